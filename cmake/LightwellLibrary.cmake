@@ -1,0 +1,31 @@
+# Warnings are a private matter of our own targets; consumers never inherit them.
+add_library(lightwell_warnings INTERFACE)
+target_compile_options(lightwell_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                       -Woverloaded-virtual -Wno-missing-field-initializers
+                       $<$<BOOL:${LIGHTWELL_WERROR}>:-Werror>)
+
+function(lightwell_compile_settings target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:lightwell_warnings>)
+  if(LIGHTWELL_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${LIGHTWELL_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${LIGHTWELL_SANITIZE})
+  endif()
+endfunction()
+
+# lightwell_library(NAME HEADERS ... SOURCES ... PUBLIC ... PRIVATE ...)
+# One static library per room, lightwell::NAME, with headers beside the sources, included as "room/header.h".
+function(lightwell_library name)
+  cmake_parse_arguments(arg "" "" "HEADERS;SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target lightwell_${name})
+  add_library(${target} STATIC ${arg_SOURCES})
+  add_library(lightwell::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})
+  target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  lightwell_compile_settings(${target})
+  install(TARGETS ${target} EXPORT lightwellTargets
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell)
+endfunction()

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/patch_mesh.h"
+#include "scene/ray_caster.h"
+
+namespace lightwell {
+
+struct ElementHit {
+  int facet = -1;    ///< scene-wide facet that was met; -1: the ray left the scene
+  int element = -1;  ///< element on the side that was met; -1: nothing, or the black back of a
+                     ///< one-sided surface
+  bool from_back = false;  ///< the facet was met from behind (inside, for a sphere)
+  double t = 0.0;          ///< distance in multiples of the ray's direction
+  /// Weights of the element's corners, in the order of PatchMesh::corners; they sum to 1 (bilinear
+  /// in quads).
+  Eigen::Array4f weights = Eigen::Array4f::Zero();
+};
+
+/// Casts rays at the elements of a PatchMesh, so that a ray names its element and place at once;
+/// spheres are the exact ones. Ray::origin_group and target_group are scene-wide facet numbers
+/// here. Keeps a reference to the mesh.
+class ElementCaster {
+ public:
+  explicit ElementCaster(const PatchMesh& mesh);
+
+  void closest_hits(std::span<const Ray> rays, std::span<ElementHit> hits) const;
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
+    caster_.occluded(rays, blocked);
+  }
+  const PatchMesh& mesh() const { return mesh_; }
+
+ private:
+  const PatchMesh& mesh_;
+  RayCaster caster_;
+  std::vector<int> element_of_primitive_;  ///< front element; for a sphere -1 - (index of its grid)
+};
+
+/// Value at a hit from values at vertices (vertices x bands).
+Spectrum interpolate(const PatchMesh& mesh, const BandArray& vertex_values, const ElementHit& hit);
+
+}  // namespace lightwell

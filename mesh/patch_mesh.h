@@ -1,0 +1,110 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+#include <array>
+#include <vector>
+
+#include "scene/progress.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+struct ElementMeshTraits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+  using Normal = OpenMesh::Vec3d;
+};
+/// A face is an element, a vertex is a point where radiosity is reconstructed.
+using HalfedgeMesh = OpenMesh::PolyMesh_ArrayKernelT<ElementMeshTraits>;
+
+/// The elements of one sphere's outside (or inside): a latitude-longitude grid about +z, so that a
+/// point of the exact sphere finds its element. Ring 0 touches the +z pole; sector 0 starts at
+/// longitude 0 (+x), turning towards +y.
+struct SphereGrid {
+  int facet = 0;  ///< scene-wide facet number of the sphere
+  Sphere sphere{};
+  int rings = 0, sectors = 0;
+  std::vector<int> element{};  ///< outside element of (ring, sector) at ring * sectors + sector
+};
+
+/// Surfaces cut into *patches*, the sources of energy and unknowns of the solver, and each patch
+/// into *elements*, which receive and carry the gradient (Cohen, Greenberg, Immel & Brock 1986).
+/// One array per quantity. Conforming: no vertex lies inside another element's edge. Vertices are
+/// shared only where radiosity is continuous: within one side of one facet, or across facets of one
+/// surface whose normals differ by less than MeshOptions::smooth_angle_degrees; never across
+/// contact lines.
+struct PatchMesh {
+  HalfedgeMesh elements{};
+
+  // Per element. The elements of patch i are first_element[i] .. first_element[i+1] - 1.
+  std::vector<int> patch{};
+  /// Vertices counter-clockwise seen from the side the element faces; [3] is -1 for a triangle. The
+  /// same as the half-edge mesh's faces, flat for inner loops.
+  std::vector<std::array<int, 4>> corners{};
+  Eigen::ArrayXd element_area{};  ///< m^2; exact on spheres
+  std::vector<int> twin{};  ///< element on the other side of the same place; -1: behind it is black
+
+  // Per vertex.
+  std::vector<Eigen::Vector3d> vertex_normal{};  ///< unit, on the side its elements face
+
+  // Per patch.
+  std::vector<int> first_element{};  ///< patch_count + 1 entries
+  Eigen::ArrayXd area{};             ///< A_i, m^2, > 0
+  BandArray reflectance{};           ///< rho_i, patches x bands
+  BandArray emission{};              ///< M_i, W/m^2, patches x bands
+  std::vector<int> surface{};        ///< index into Scene::surfaces
+  std::vector<int> material{};       ///< index into Scene::materials
+  std::vector<int> facet{};          ///< scene-wide facet number (see scene_facets)
+  std::vector<char> is_back{};       ///< 1: the patch faces away from its facet's front
+
+  std::vector<SphereGrid> sphere_grids{};
+
+  int patch_count() const { return static_cast<int>(area.size()); }
+  int element_count() const { return static_cast<int>(patch.size()); }
+  int vertex_count() const { return static_cast<int>(vertex_normal.size()); }
+  int corner_count(int element) const { return corners[element][3] < 0 ? 3 : 4; }
+  Eigen::Vector3d position(int vertex) const {
+    const auto& p = elements.point(HalfedgeMesh::VertexHandle(vertex));
+    return {p[0], p[1], p[2]};
+  }
+};
+
+struct MeshOptions {
+  /// Longest patch edge, metres. 0: chosen so that the scene's diffuse surfaces make about
+  /// `auto_patch_count` patches.
+  double max_patch_size = 0.0;
+  int auto_patch_count = 1600;
+  /// Elements along a patch edge, >= 1. More follow shadows more closely at the square of the cost.
+  int elements_per_patch_edge = 2;
+  double smooth_angle_degrees = 5.0;  ///< facets of one surface meeting at less share vertices
+  Progress progress{};
+};
+
+/// Cuts the scene into patches and elements. Coplanar touching and intersecting surfaces are cut
+/// along their contact lines first, so no element straddles one; parts of a facet that are covered
+/// by another surface lying on it become elements of their own. Throws InputError for a scene
+/// without surfaces, or when `max_patch_size` asks for more than 20 million elements.
+PatchMesh build_patches(const Scene& scene, const MeshOptions& options = {});
+
+/// The size build_patches uses: options.max_patch_size, or the automatic one. Metres.
+double patch_size(const Scene& scene, const MeshOptions& options);
+
+/// A point of a patch.
+struct PatchPoint {
+  int element = -1;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the side the patch faces
+};
+
+/// Uniform over the patch's area for (u, v) uniform in [0,1)^2 (u also picks the element, in
+/// proportion to area); on a sphere the point lies on the exact sphere.
+PatchPoint patch_point(const PatchMesh& mesh, int patch, double u, double v);
+
+/// Mean of the element's corners (on spheres moved out to the exact sphere) and its unit normal.
+PatchPoint element_center(const PatchMesh& mesh, int element);
+
+/// Rebuilds `elements` from `positions` and `corners`, and vertex normals from faces
+/// (area-weighted; exact on spheres): what makes a PatchMesh read from a file whole again.
+void build_topology(PatchMesh& mesh, const std::vector<Eigen::Vector3d>& positions);
+
+}  // namespace lightwell

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh/patch_mesh.h"
+#include "scene/bands.h"
+
+namespace lightwell {
+
+enum class Outcome { converged, max_sweeps_reached };
+
+struct StepRecord {
+  double residual = 0.0;  ///< max over patches of |M + rho F B - B| relative to the largest B
+  double seconds = 0.0;   ///< since the solver started
+};
+
+/// Watts, all bands added. emitted = absorbed + escaped + unshot.
+struct EnergyBalance {
+  double emitted = 0.0;
+  double absorbed = 0.0;  ///< by diffuse surfaces and, on the way, by mirrors and glass
+  double escaped = 0.0;   ///< out of an open scene, or onto black backs
+  double unshot = 0.0;    ///< what the solver left undistributed
+};
+
+struct PhaseSeconds {
+  std::string phase{};
+  double seconds = 0.0;
+};
+
+struct Provenance {
+  std::string version{};  ///< program version that made it
+  std::string scene_file{};
+  std::uint64_t scene_hash = 0;
+  std::string options{};  ///< the command-line equivalent of what was in force
+};
+
+/// A view-independent solution on a PatchMesh; also what is saved.
+struct RadiositySolution {
+  Bands bands{};
+  double metres_per_unit = 1.0;  ///< of the scene file, for coordinates shown to people
+  std::string unit_name = "m";
+
+  BandArray patch_radiosity{};  ///< B_i, W/m^2, patches x bands
+
+  // Per mesh vertex, W/m^2, vertices x bands, reconstructed by a final gather.
+  BandArray direct_irradiance{};    ///< straight from DirectLight's emitters
+  BandArray indirect_irradiance{};  ///< everything else
+
+  std::vector<StepRecord> history{};
+  Outcome outcome = Outcome::converged;
+  double residual = 0.0;
+  EnergyBalance energy{};
+  /// Relative RMS error of interpolated irradiance: independent gathers at random points against
+  /// the interpolation.
+  double error_estimate = 0.0;
+  std::vector<PhaseSeconds> seconds{};
+  Provenance provenance{};
+
+  BandArray irradiance() const { return direct_irradiance + indirect_irradiance; }
+};
+
+/// B = M + rho E at every vertex, W/m^2 (each vertex belongs to patches of one material).
+BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution);
+
+/// Mean over each element's corners: elements x bands.
+BandArray element_mean(const PatchMesh& mesh, const BandArray& vertex_values);
+
+}  // namespace lightwell

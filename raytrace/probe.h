@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "radiosity/final_gather.h"
+#include "radiosity/solution.h"
+
+namespace lightwell {
+
+/// Where and facing which way irradiance is wanted; metres.
+struct Probe {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+};
+
+/// Reads columns x,y,z,nx,ny,nz (a header line names them; more columns are ignored) in the scene
+/// file's units. Throws InputError naming file, line and value.
+std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_per_unit);
+
+/// Irradiance (W/m^2) at each probe, probes x bands: a fresh gather of the solved scene.
+BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
+                           const DirectLight& direct_light, const RadiositySolution& solution,
+                           std::span<const Probe> probes,
+                           const GatherOptions& options = {.rays = 1024});
+
+/// The same by mesh interpolation; probes must lie on a surface (within 1e-4 of the scene's
+/// diagonal). Throws InputError naming the first probe that does not.
+BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySolution& solution,
+                                 std::span<const Probe> probes);
+
+/// Writes x,y,z,nx,ny,nz,E_<band>...,lux; coordinates in file units. Temporary name, then renamed.
+void write_probes(const std::filesystem::path& csv, std::span<const Probe> probes,
+                  const BandArray& irradiance, const Bands& bands, double metres_per_unit);
+
+}  // namespace lightwell

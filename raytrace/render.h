@@ -1,0 +1,41 @@
+#pragma once
+
+#include "mesh/element_caster.h"
+#include "radiosity/direct_light.h"
+#include "radiosity/solution.h"
+#include "raytrace/image.h"
+#include "scene/progress.h"
+
+namespace lightwell {
+
+/// How a diffuse hit is shaded.
+enum class Pass {
+  interpolate,  ///< the solution as it is
+  direct,       ///< direct light re-traced with shadow rays, indirect light interpolated
+};
+
+struct RenderOptions {
+  Pass pass = Pass::direct;
+  int max_depth = 10;              ///< mirror and glass events along one path of the ray tree
+  float min_contribution = 1e-3f;  ///< branches that weigh less are not followed
+  ShadowOptions shadows{};
+  /// Whitted's adaptive supersampling: a pixel whose corners differ by more than `contrast`
+  /// (relative) or show different facets is split in four, at most `max_subdivision` times.
+  int max_subdivision = 2;
+  float contrast = 0.05f;
+  Progress progress{};
+};
+
+struct RenderReport {
+  double seconds = 0.0;
+  std::int64_t eye_rays = 0;   ///< pixel samples
+  std::int64_t depth_cut = 0;  ///< branches that max_depth ended
+};
+
+/// Second pass: Whitted's recursive ray tracing (1980) over the radiosity solution. A pixel is the
+/// mean radiance over its square. The same bits for any number of threads.
+Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+             const RadiositySolution& solution, const Camera& camera,
+             const RenderOptions& options = {}, RenderReport* report = nullptr);
+
+}  // namespace lightwell

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Reads a scene; the format is told by the extension: .toml (native, docs/scene-format.md), .obj,
+/// .ply, .stl. The result has passed validate(). Throws InputError naming file, line or object,
+/// value and remedy.
+Scene read_scene(const std::filesystem::path& path);
+
+/// The native format. See docs/scene-format.md for the grammar.
+Scene read_toml(const std::filesystem::path& path);
+
+/// Wavefront OBJ + MTL: Kd diffuse, Ks mirror (where illum asks for mirrors), Ni with d or Tf clear
+/// glass, Ke emitted radiance in W/(sr m^2); one Surface per object/group and material. Polygons
+/// stay polygons. Metres unless `metres_per_unit` says otherwise.
+Scene read_obj(const std::filesystem::path& path, double metres_per_unit = 1.0);
+
+/// Geometry only (PLY, STL), one white-ish diffuse material (reflectance 0.5, noted).
+Scene read_geometry(const std::filesystem::path& path, double metres_per_unit = 1.0);
+
+}  // namespace lightwell

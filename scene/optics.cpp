@@ -1,0 +1,33 @@
+#include "scene/optics.h"
+
+#include <cmath>
+
+namespace lightwell {
+
+double fresnel_reflectance(double cos_incident, double relative_index) {
+  const double sin2_transmitted =
+      (1.0 - cos_incident * cos_incident) / (relative_index * relative_index);
+  if (sin2_transmitted >= 1.0) return 1.0;
+  const double cos_transmitted = std::sqrt(1.0 - sin2_transmitted);
+  const double s = (cos_incident - relative_index * cos_transmitted) /
+                   (cos_incident + relative_index * cos_transmitted);
+  const double p = (relative_index * cos_incident - cos_transmitted) /
+                   (relative_index * cos_incident + cos_transmitted);
+  return 0.5 * (s * s + p * p);
+}
+
+Eigen::Vector3d reflect(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal) {
+  return direction - 2.0 * direction.dot(normal) * normal;
+}
+
+std::optional<Eigen::Vector3d> refract(const Eigen::Vector3d& direction,
+                                       const Eigen::Vector3d& normal, double relative_index) {
+  const double cos_incident = -direction.dot(normal);
+  const double sin2_transmitted =
+      (1.0 - cos_incident * cos_incident) / (relative_index * relative_index);
+  if (sin2_transmitted >= 1.0) return std::nullopt;
+  const double cos_transmitted = std::sqrt(1.0 - sin2_transmitted);
+  return (direction + cos_incident * normal) / relative_index - cos_transmitted * normal;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// What a RayCaster is built over. Primitives are numbered triangles first, then quads, then
+/// spheres. A *group* joins primitives that cannot see each other because they lie in one plane (a
+/// facet), or are one sphere; a ray never meets the group it starts from, whatever rounding does to
+/// its origin.
+struct CastGeometry {
+  std::vector<Eigen::Vector3d> vertices{};
+  std::vector<std::array<int, 3>> triangles{};
+  std::vector<std::array<int, 4>> quads{};  ///< planar, convex, in order around
+  std::vector<Sphere> spheres{};
+  std::vector<int> group{};  ///< one per primitive, >= 0
+};
+
+struct Ray {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction =
+      Eigen::Vector3d::UnitZ();  ///< any length > 0; distances t are in multiples of it
+  double t_max = std::numeric_limits<double>::infinity();
+  int origin_group =
+      -1;  ///< group the ray starts on (a ray inside a sphere still meets its far side)
+  int target_group = -1;  ///< for occluded(): group that does not count as an occluder
+};
+
+struct Hit {
+  int primitive = -1;  ///< -1: nothing was hit
+  double t = std::numeric_limits<double>::infinity();
+  /// Triangle (v0,v1,v2): weights (1-u-v, u, v). Quad (v0..v3): bilinear, u along v0-v1, v along
+  /// v0-v3. Sphere: 0.
+  float u = 0.0f, v = 0.0f;
+  bool from_back = false;  ///< the ray met the clockwise side, or a sphere's inside
+};
+
+/// Answers batches of rays over Embree; the only class that knows it. Immutable once built, and
+/// safe to use from many threads. Coordinates are recentred before they become float, so a room far
+/// from the origin loses no digits. Triangles and quads are watertight (Embree's robust mode);
+/// spheres are intersected in double precision.
+class RayCaster {
+ public:
+  /// Throws std::invalid_argument if `group` does not match the primitives, std::runtime_error if
+  /// Embree fails.
+  explicit RayCaster(const CastGeometry& geometry);
+  ~RayCaster();
+  RayCaster(RayCaster&&) noexcept;
+  RayCaster& operator=(RayCaster&&) noexcept;
+
+  /// hits[i] answers rays[i] with the closest primitive in (0, t_max).
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const;
+
+  /// blocked[i] = 1 if anything but the origin's and the target's group lies in (0, t_max), else 0.
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
+
+  int triangle_count() const;
+  int quad_count() const;
+  int sphere_count() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace lightwell {
+
+/// Mixes up to four numbers (patch, purpose, replica ...) into a key for scrambling. Any change of
+/// any argument gives an unrelated key.
+std::uint64_t random_key(std::uint64_t a, std::uint64_t b = 0, std::uint64_t c = 0,
+                         std::uint64_t d = 0);
+
+/// A uniform number in [0,1) that depends on the key only.
+double random_uniform(std::uint64_t key);
+
+/// The first `count` points of the 4-D Sobol sequence (direction numbers of Joe & Kuo 2008), to be
+/// Owen-scrambled with a key of one's own: every key gives an equally well stratified, independent
+/// randomisation (hash-based, after Burley 2020), so results depend on neither threads nor order.
+/// Counts that are powers of two are stratified best.
+class SobolPoints {
+ public:
+  explicit SobolPoints(int count);
+  int count() const { return static_cast<int>(points_.size()); }
+  /// Point i in [0,1)^4; any two dimensions are well stratified together.
+  Eigen::Array4f point(int i, std::uint64_t key) const;
+
+ private:
+  std::vector<Eigen::Array<std::uint32_t, 4, 1>> points_;
+};
+
+/// Unit direction about +z with density cos(theta)/pi (Malley's method on Shirley & Chiu's
+/// concentric disk map, which keeps stratification).
+Eigen::Vector3d cosine_direction(float u, float v);
+
+/// Two unit vectors that make a right-handed frame (first, second, n) with the unit vector n
+/// (Duff et al. 2017: continuous but at n_z = 0 crossing, no branch on zero).
+void tangent_frame(const Eigen::Vector3d& n, Eigen::Vector3d& first, Eigen::Vector3d& second);
+
+/// Barycentric weights of a uniform point of a triangle.
+Eigen::Vector3d triangle_point(float u, float v);
+
+}  // namespace lightwell

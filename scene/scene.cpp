@@ -1,0 +1,241 @@
+#include "scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+Eigen::Vector3d loop_area_vector(const PolygonMesh& mesh, const std::vector<int>& loop) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d& origin = mesh.vertices[loop.front()];  // relative: keeps digits far from 0
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Eigen::Vector3d a = mesh.vertices[loop[i]] - origin;
+    const Eigen::Vector3d b = mesh.vertices[loop[(i + 1) % loop.size()]] - origin;
+    sum += a.cross(b);
+  }
+  return 0.5 * sum;
+}
+
+Eigen::Vector3d area_vector(const PolygonMesh& mesh, const Facet& facet) {
+  Eigen::Vector3d sum = loop_area_vector(mesh, facet.boundary);
+  for (const auto& hole : facet.holes) sum += loop_area_vector(mesh, hole);
+  return sum;
+}
+
+[[noreturn]] void fail(const Scene& scene, const std::string& what) {
+  throw InputError(scene.file.empty() ? what : fmt::format("{}: {}", scene.file.string(), what));
+}
+
+void check_share(const Scene& scene, const Material& material, const char* what,
+                 const Spectrum& values) {
+  if (values.size() != scene.bands.count()) {
+    fail(scene, fmt::format("material '{}': {} has {} bands, the scene has {}", material.name, what,
+                            values.size(), scene.bands.count()));
+  }
+  for (int k = 0; k < values.size(); ++k) {
+    if (!(values[k] >= 0.0f && values[k] <= 1.0f)) {
+      fail(scene, fmt::format("material '{}': {} is {} in band {}; it must lie between 0 and 1",
+                              material.name, what, values[k], scene.bands.names[k]));
+    }
+  }
+}
+
+void check_material(const Scene& scene, const Material& m) {
+  check_share(scene, m, "reflectance", m.reflectance);
+  check_share(scene, m, "specular reflectance", m.specular);
+  constexpr float rounding = 1e-5f;  // decimals of a file that should add up to 1
+  for (int k = 0; k < scene.bands.count(); ++k) {
+    const float sum = m.reflectance[k] + m.specular[k];
+    if (!(sum <= 1.0f + rounding)) {
+      fail(scene,
+           fmt::format(
+               "material '{}': reflectance {} + specular {} = {} in band {}; more light would "
+               "leave than arrives, lower one so that they add up to at most 1",
+               m.name, m.reflectance[k], m.specular[k], sum, scene.bands.names[k]));
+    }
+  }
+  if (m.dielectric) {
+    check_share(scene, m, "dielectric tint", m.dielectric->tint);
+    if (!(m.dielectric->index_of_refraction > 0.0f) ||
+        !std::isfinite(m.dielectric->index_of_refraction)) {
+      fail(scene, fmt::format("material '{}': index of refraction {} must be positive (glass: 1.5)",
+                              m.name, m.dielectric->index_of_refraction));
+    }
+    if ((m.reflectance > 0.0f).any() || (m.specular > 0.0f).any()) {
+      fail(scene, fmt::format(
+                      "material '{}' is a dielectric and also has a diffuse or mirror reflectance; "
+                      "remove one: a clear surface reflects by Fresnel's law alone",
+                      m.name));
+    }
+  }
+  if (m.emission.size() != scene.bands.count() || !(m.emission >= 0.0f).all() ||
+      !m.emission.isFinite().all()) {
+    fail(scene,
+         fmt::format("material '{}': emission must be one finite number >= 0 per band", m.name));
+  }
+}
+
+void check_loop(const Scene& scene, const Surface& surface, const PolygonMesh& mesh, int facet,
+                const std::vector<int>& loop) {
+  if (loop.size() < 3) {
+    fail(scene, fmt::format("surface '{}', polygon {}: {} vertices; a polygon needs at least 3",
+                            surface.name, facet, loop.size()));
+  }
+  for (int v : loop) {
+    if (v < 0 || v >= static_cast<int>(mesh.vertices.size())) {
+      fail(scene, fmt::format("surface '{}', polygon {}: vertex index {} is out of range 0..{}",
+                              surface.name, facet, v, mesh.vertices.size() - 1));
+    }
+  }
+}
+
+void check_mesh(const Scene& scene, const Surface& surface, const PolygonMesh& mesh) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (!mesh.vertices[v].allFinite()) {
+      fail(scene, fmt::format("surface '{}', vertex {}: a coordinate is not a finite number",
+                              surface.name, v));
+    }
+  }
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Facet& facet = mesh.facets[f];
+    check_loop(scene, surface, mesh, static_cast<int>(f), facet.boundary);
+    for (const auto& hole : facet.holes)
+      check_loop(scene, surface, mesh, static_cast<int>(f), hole);
+    if (!(facet_area(mesh, facet) > 0.0)) {
+      fail(scene,
+           fmt::format(
+               "surface '{}', polygon {}: its area is zero; remove it or correct its vertices",
+               surface.name, f));
+    }
+  }
+}
+
+// FNV-1a over the bits of what it is fed.
+class Hash {
+ public:
+  void add(std::uint64_t x) {
+    for (int byte = 0; byte < 8; ++byte) {
+      state_ = (state_ ^ ((x >> (8 * byte)) & 0xffu)) * 0x100000001b3ull;
+    }
+  }
+  void add(double x) {
+    add(std::bit_cast<std::uint64_t>(x + 0.0));
+  }  // + 0.0: -0 and 0 are one value
+  void add(const Eigen::Vector3d& v) {
+    for (int c = 0; c < 3; ++c) add(v[c]);
+  }
+  void add(const Spectrum& s) {
+    add(static_cast<std::uint64_t>(s.size()));
+    for (float x : s) add(static_cast<double>(x));
+  }
+  void add(const std::vector<int>& loop) {
+    add(static_cast<std::uint64_t>(loop.size()));
+    for (int i : loop) add(static_cast<std::uint64_t>(i));
+  }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325ull;
+};
+
+}  // namespace
+
+std::vector<FacetRef> scene_facets(const Scene& scene) {
+  std::vector<FacetRef> facets;
+  for (int s = 0; s < static_cast<int>(scene.surfaces.size()); ++s) {
+    const auto* mesh = std::get_if<PolygonMesh>(&scene.surfaces[s].shape);
+    const int count = mesh ? static_cast<int>(mesh->facets.size()) : 1;
+    for (int f = 0; f < count; ++f) facets.push_back({.surface = s, .facet = f});
+  }
+  return facets;
+}
+
+Eigen::Vector3d facet_normal(const PolygonMesh& mesh, const Facet& facet) {
+  const Eigen::Vector3d n = area_vector(mesh, facet);
+  const double length = n.norm();
+  return length > 0.0 ? Eigen::Vector3d(n / length) : Eigen::Vector3d::Zero();
+}
+
+double facet_area(const PolygonMesh& mesh, const Facet& facet) {
+  return area_vector(mesh, facet).norm();
+}
+
+Bounds scene_bounds(const Scene& scene) {
+  Eigen::AlignedBox3d box;
+  for (const Surface& surface : scene.surfaces) {
+    if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
+      for (const auto& v : mesh->vertices) box.extend(v);
+    } else {
+      const auto& sphere = std::get<Sphere>(surface.shape);
+      box.extend((sphere.center.array() - sphere.radius).matrix().eval());
+      box.extend((sphere.center.array() + sphere.radius).matrix().eval());
+    }
+  }
+  if (box.isEmpty()) throw std::invalid_argument("the scene has no surfaces");
+  return {box.min(), box.max()};
+}
+
+void validate(const Scene& scene) {
+  const int bands = scene.bands.count();
+  if (bands < 1 || bands > max_bands) {
+    fail(scene, fmt::format("the scene has {} bands; give between 1 and {}", bands, max_bands));
+  }
+  for (const Material& material : scene.materials) check_material(scene, material);
+  for (const Surface& surface : scene.surfaces) {
+    if (surface.material < 0 || surface.material >= static_cast<int>(scene.materials.size())) {
+      fail(scene, fmt::format("surface '{}' names a material that does not exist", surface.name));
+    }
+    if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
+      check_mesh(scene, surface, *mesh);
+    } else {
+      const auto& sphere = std::get<Sphere>(surface.shape);
+      if (!sphere.center.allFinite() || !(sphere.radius > 0.0) || !std::isfinite(sphere.radius)) {
+        fail(scene,
+             fmt::format("sphere '{}': centre and radius must be finite, the radius ({}) positive",
+                         surface.name, sphere.radius));
+      }
+    }
+  }
+}
+
+std::uint64_t scene_hash(const Scene& scene) {
+  Hash hash;
+  hash.add(scene.bands.lumens_per_watt);
+  for (double nm : scene.bands.wavelengths_nm) hash.add(nm);
+  for (const Material& m : scene.materials) {
+    hash.add(m.reflectance);
+    hash.add(m.specular);
+    hash.add(m.emission);
+    hash.add(static_cast<std::uint64_t>(m.one_sided) +
+             2 * static_cast<std::uint64_t>(m.emits_both_sides));
+    if (m.dielectric) {
+      hash.add(static_cast<double>(m.dielectric->index_of_refraction));
+      hash.add(m.dielectric->tint);
+    }
+  }
+  for (const Surface& surface : scene.surfaces) {
+    hash.add(static_cast<std::uint64_t>(surface.material));
+    if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
+      for (const auto& v : mesh->vertices) hash.add(v);
+      for (const Facet& facet : mesh->facets) {
+        hash.add(facet.boundary);
+        for (const auto& hole : facet.holes) hash.add(hole);
+      }
+    } else {
+      const auto& sphere = std::get<Sphere>(surface.shape);
+      hash.add(sphere.center);
+      hash.add(sphere.radius);
+    }
+  }
+  return hash.value();
+}
+
+}  // namespace lightwell

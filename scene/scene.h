@@ -1,0 +1,119 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene/bands.h"
+
+namespace lightwell {
+
+/// Clear, smooth dielectric: glass, water. Reflection and refraction follow Fresnel's equations.
+struct Dielectric {
+  float index_of_refraction = 1.5f;  ///< relative to the outside (front) of the surface, > 0
+  Spectrum tint{};  ///< share of the refracted light that passes, [0,1] per crossing
+};
+
+/// How a surface gives light back. Energy: reflectance + specular <= 1 in every band.
+struct Material {
+  std::string name{};
+  Spectrum reflectance{};                  ///< diffuse rho, [0,1]
+  Spectrum specular{};                     ///< perfect mirror reflectance, [0,1]
+  std::optional<Dielectric> dielectric{};  ///< if set, the surface is clear; rho and specular are 0
+  Spectrum emission{};            ///< exitance M = pi L of a Lambertian emitter, W/m^2, >= 0
+  bool one_sided = false;         ///< nothing is reflected from behind; the back is black
+  bool emits_both_sides = false;  ///< emission leaves the back as well as the front
+
+  /// Light continues through or off it undiffused.
+  bool is_specular() const { return dielectric.has_value() || (specular > 0.0f).any(); }
+  bool is_emitter() const { return (emission > 0.0f).any(); }
+};
+
+/// A planar polygon, counter-clockwise seen from its front, with holes of the opposite winding.
+/// Numbers index PolygonMesh::vertices.
+struct Facet {
+  std::vector<int> boundary{};
+  std::vector<std::vector<int>> holes{};
+};
+
+/// Polygons over shared vertices (metres). Facets are planar: readers split what is not.
+struct PolygonMesh {
+  std::vector<Eigen::Vector3d> vertices{};
+  std::vector<Facet> facets{};
+};
+
+/// An exact sphere (metres); its front is the outside.
+struct Sphere {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius = 1.0;
+};
+
+/// One named object of the input.
+struct Surface {
+  std::string name{};
+  int material = 0;  ///< index into Scene::materials
+  std::variant<PolygonMesh, Sphere> shape{};
+};
+
+/// Pinhole camera. The picture's x axis is direction x up, so with direction +z and up +y world +x
+/// is on the left; row 0 is the top.
+struct Camera {
+  std::string name{};
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit length
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();  ///< unit length, perpendicular to direction
+  double fov_degrees = 40.0;                      ///< full horizontal angle, (0, 180)
+  int width = 512, height = 512;                  ///< pixels
+};
+
+/// A room and what is in it, as plain data: metres and watts.
+struct Scene {
+  std::filesystem::path file{};  ///< where it was read from, for messages
+  std::string title{};
+  double metres_per_unit = 1.0;  ///< the file's length unit; coordinates here are already metres
+  std::string unit_name = "m";   ///< the file's word for it
+  Bands bands = rgb_bands();
+  std::vector<Material> materials{};
+  std::vector<Surface> surfaces{};
+  std::vector<Camera> cameras{};
+  std::vector<std::string>
+      notes{};  ///< what the reader assumed, repaired or dropped: one sentence each
+};
+
+/// A facet's place in the Scene: facets are numbered through all surfaces in order; a sphere is one
+/// facet.
+struct FacetRef {
+  int surface = 0;
+  int facet = 0;  ///< within the surface's PolygonMesh; 0 for a sphere
+};
+
+/// Every facet of the scene; the index into the result is the facet's scene-wide number.
+std::vector<FacetRef> scene_facets(const Scene& scene);
+
+/// Unit normal by Newell's method, towards the front. Zero if the polygon has no area.
+Eigen::Vector3d facet_normal(const PolygonMesh& mesh, const Facet& facet);
+
+/// Area in m^2, holes taken out.
+double facet_area(const PolygonMesh& mesh, const Facet& facet);
+
+/// Axis-aligned bounds of all surfaces; throws std::invalid_argument for a scene without surfaces.
+struct Bounds {
+  Eigen::Vector3d low, high;
+  double diagonal() const { return (high - low).norm(); }
+};
+Bounds scene_bounds(const Scene& scene);
+
+/// Checks what every later stage relies on: finite coordinates, indices in range, facets with area,
+/// spheres with radius, bands of equal count, reflectances in [0,1] that do not create energy.
+/// Throws InputError naming surface, material, value and remedy.
+void validate(const Scene& scene);
+
+/// 64-bit hash of everything that decides the light: geometry, materials and bands, not cameras,
+/// names or notes. Written into solutions so that a mismatch is refused.
+std::uint64_t scene_hash(const Scene& scene);
+
+}  // namespace lightwell
