@@ -1,0 +1,233 @@
+#include "radiosity/direct_light.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace lightwell {
+namespace {
+
+constexpr double largest_direct_area = 0.25;  // share of the scene's area that counts as "small"
+constexpr int max_shadow_rays = 256;
+
+struct EmittingFacet {
+  int facet = 0;
+  double area = 0.0;
+  float exitance = 0.0f;  // all bands
+};
+
+Loop loop_points(const PolygonMesh& mesh, const std::vector<int>& loop) {
+  Loop points;
+  for (int v : loop) points.push_back(mesh.vertices[v]);
+  return points;
+}
+
+// A convex polygon is a fan, which keeps samples better stratified than the mesh's many elements.
+bool is_convex(const Loop& loop, const Eigen::Vector3d& normal) {
+  const std::size_t n = loop.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d a = loop[(i + 1) % n] - loop[i];
+    const Eigen::Vector3d b = loop[(i + 2) % n] - loop[(i + 1) % n];
+    if (a.cross(b).dot(normal) < 0.0) return false;
+  }
+  return true;
+}
+
+void tile(const PatchMesh& mesh, Emitter& emitter) {
+  if (emitter.loops.size() == 1 && is_convex(emitter.loops[0], emitter.normal)) {
+    const Loop& loop = emitter.loops[0];
+    for (std::size_t i = 2; i < loop.size(); ++i) {
+      emitter.triangles.push_back({loop[0], loop[i - 1], loop[i]});
+    }
+  } else {
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const int p = mesh.patch[e];
+      if (mesh.facet[p] != emitter.facet || mesh.is_back[p]) continue;
+      const auto& c = mesh.corners[e];
+      emitter.triangles.push_back({mesh.position(c[0]), mesh.position(c[1]), mesh.position(c[2])});
+      if (c[3] >= 0) {
+        emitter.triangles.push_back(
+            {mesh.position(c[0]), mesh.position(c[2]), mesh.position(c[3])});
+      }
+    }
+  }
+  double sum = 0.0;
+  for (const auto& t : emitter.triangles) {
+    sum += 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
+    emitter.area_cdf.push_back(sum);
+  }
+  for (double& share : emitter.area_cdf) share /= sum;
+}
+
+Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
+  const auto at = std::upper_bound(emitter.area_cdf.begin(), emitter.area_cdf.end() - 1, u);
+  const auto i = static_cast<std::size_t>(at - emitter.area_cdf.begin());
+  const double low = i == 0 ? 0.0 : emitter.area_cdf[i - 1];
+  const double within = std::clamp((u - low) / (emitter.area_cdf[i] - low), 0.0, 1.0);
+  const Eigen::Vector3d w = triangle_point(static_cast<float>(within), static_cast<float>(v));
+  const auto& t = emitter.triangles[i];
+  return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+}
+
+// A shadow ray to a sample of the emitter, and the sample's share of the unoccluded kernel.
+struct ShadowSample {
+  Ray ray{};
+  double weight = 0.0;
+};
+
+ShadowSample polygon_sample(const Emitter& emitter, const Eigen::Vector3d& point,
+                            const Eigen::Vector3d& normal, double u, double v) {
+  const Eigen::Vector3d to = emitter_point(emitter, u, v) - point;
+  const double r2 = to.squaredNorm();
+  const double cos_cos = to.dot(normal) * std::abs(to.dot(emitter.normal));
+  return {.ray = {.origin = point, .direction = to, .t_max = 1.0},
+          .weight = cos_cos > 0.0 ? cos_cos / (r2 * r2) : 0.0};
+}
+
+// Uniform over the cone of directions that the sphere fills, seen from outside.
+ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
+                           const Eigen::Vector3d& normal, double u, double v) {
+  const Eigen::Vector3d to_center = emitter.sphere.center - point;
+  const double distance = to_center.norm();
+  const double sin_alpha = emitter.sphere.radius / distance;
+  const double cos_alpha = std::sqrt(std::max(0.0, 1.0 - sin_alpha * sin_alpha));
+  const double cos_beta = 1.0 - u * (1.0 - cos_alpha);
+  const double sin_beta = std::sqrt(std::max(0.0, 1.0 - cos_beta * cos_beta));
+  const double phi = 2.0 * std::numbers::pi * v;
+  const Eigen::Vector3d axis = to_center / distance;
+  Eigen::Vector3d a, b;
+  tangent_frame(axis, a, b);
+  const Eigen::Vector3d direction =
+      sin_beta * (std::cos(phi) * a + std::sin(phi) * b) + cos_beta * axis;
+  const double reach = distance * cos_beta -
+                       std::sqrt(std::max(0.0, emitter.sphere.radius * emitter.sphere.radius -
+                                                   distance * distance * sin_beta * sin_beta));
+  return {.ray = {.origin = point, .direction = direction, .t_max = reach},
+          .weight = std::max(0.0, direction.dot(normal))};
+}
+
+}  // namespace
+
+DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh)
+    : bands_(scene.bands.count()), samples_(max_shadow_rays) {
+  const std::vector<FacetRef> facets = scene_facets(scene);
+  owned_.assign(facets.size(), 0);
+  double scene_area = 0.0;
+  std::vector<EmittingFacet> emitting;
+  for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+    const Surface& surface = scene.surfaces[facets[f].surface];
+    const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
+    double area = 0.0;
+    if (polygons) {
+      area = facet_area(*polygons, polygons->facets[facets[f].facet]);
+    } else {
+      const double r = std::get<Sphere>(surface.shape).radius;
+      area = 4.0 * M_PI * r * r;
+    }
+    scene_area += area;
+    const Material& material = scene.materials[surface.material];
+    if (material.is_emitter()) emitting.push_back({f, area, material.emission.sum()});
+  }
+  std::stable_sort(emitting.begin(), emitting.end(),
+                   [](const auto& a, const auto& b) { return a.exitance > b.exitance; });
+
+  double taken = 0.0;
+  for (std::size_t i = 0; i < emitting.size();) {
+    std::size_t end = i;
+    double area = 0.0;
+    while (end < emitting.size() && emitting[end].exitance >= emitting[i].exitance * (1 - 1e-6f)) {
+      area += emitting[end++].area;
+    }
+    if (taken + area > largest_direct_area * scene_area) break;
+    taken += area;
+    for (; i < end; ++i) {
+      const FacetRef& ref = facets[emitting[i].facet];
+      const Surface& surface = scene.surfaces[ref.surface];
+      const Material& material = scene.materials[surface.material];
+      Emitter emitter{.facet = emitting[i].facet,
+                      .exitance = material.emission,
+                      .area = emitting[i].area,
+                      .emits_both_sides = material.emits_both_sides};
+      if (const auto* polygons = std::get_if<PolygonMesh>(&surface.shape)) {
+        const Facet& facet = polygons->facets[ref.facet];
+        emitter.normal = facet_normal(*polygons, facet);
+        emitter.loops.push_back(loop_points(*polygons, facet.boundary));
+        for (const auto& hole : facet.holes) emitter.loops.push_back(loop_points(*polygons, hole));
+        tile(mesh, emitter);
+      } else {
+        emitter.is_sphere = true;
+        emitter.sphere = std::get<Sphere>(surface.shape);
+      }
+      owned_[emitter.facet] = 1;
+      emitters_.push_back(std::move(emitter));
+    }
+  }
+}
+
+double DirectLight::visible_share(const Emitter& emitter, const ElementCaster& caster,
+                                  const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                  int facet, std::uint64_t key,
+                                  const ShadowOptions& options) const {
+  const int max_rays = std::clamp(options.max_rays, 1, max_shadow_rays);
+  const int min_rays = std::clamp(options.min_rays, 1, max_rays);
+  std::array<Ray, max_shadow_rays> rays;
+  std::array<double, max_shadow_rays> weights;
+  std::array<std::uint8_t, max_shadow_rays> blocked;
+  double seen = 0.0, all = 0.0;
+  for (int begin = 0, end = min_rays;;) {
+    int count = 0;
+    for (int s = begin; s < end; ++s) {
+      const Eigen::Array4f u = samples_.point(s, key);
+      ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u[0], u[1])
+                                              : polygon_sample(emitter, point, normal, u[0], u[1]);
+      if (!(sample.weight > 0.0)) continue;
+      sample.ray.origin_group = facet;
+      sample.ray.target_group = emitter.facet;
+      rays[count] = sample.ray;
+      weights[count++] = sample.weight;
+    }
+    caster.occluded({rays.data(), static_cast<std::size_t>(count)},
+                    {blocked.data(), static_cast<std::size_t>(count)});
+    for (int i = 0; i < count; ++i) {
+      all += weights[i];
+      if (!blocked[i]) seen += weights[i];
+    }
+    if (end == max_rays || seen == 0.0 || seen == all) break;
+    begin = end;
+    end = max_rays;
+  }
+  return all > 0.0 ? seen / all : 0.0;
+}
+
+double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& caster,
+                                const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                int facet, std::uint64_t key, const ShadowOptions& options) const {
+  if (facet == emitter.facet) return 0.0;
+  double F = 0.0;
+  if (emitter.is_sphere) {
+    F = point_to_sphere(point, normal, emitter.sphere.center, emitter.sphere.radius);
+  } else {
+    const double front = (point - emitter.loops[0][0]).dot(emitter.normal);
+    if (!(front > 0.0) && !(emitter.emits_both_sides && front < 0.0)) return 0.0;
+    F = std::abs(point_to_polygon(point, normal, emitter.loops));
+  }
+  // Below this the emitter grazes the horizon or is edge-on: rounding, not light.
+  constexpr double nothing = 1e-12;
+  if (!(F > nothing)) return 0.0;
+  return F * visible_share(emitter, caster, point, normal, facet, key, options);
+}
+
+Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                                 const ShadowOptions& options) const {
+  Spectrum E = Spectrum::Zero(bands_);
+  for (std::size_t e = 0; e < emitters_.size(); ++e) {
+    const double F = form_factor(emitters_[e], caster, point, normal, facet, random_key(key, e),
+                                 options);
+    if (F > 0.0) E += emitters_[e].exitance * static_cast<float>(F);
+  }
+  return E;
+}
+
+}  // namespace lightwell

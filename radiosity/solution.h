@@ -46,7 +46,9 @@ struct RadiositySolution {
 
   // Per mesh vertex, W/m^2, vertices x bands, reconstructed by a final gather.
   BandArray direct_irradiance{};    ///< straight from DirectLight's emitters
-  BandArray indirect_irradiance{};  ///< everything else
+  BandArray indirect_irradiance{};  ///< everything else, caustics included
+  /// The part of indirect_irradiance that DirectLight's emitters send by way of mirrors and glass.
+  BandArray caustic_irradiance{};
 
   std::vector<StepRecord> history{};
   Outcome outcome = Outcome::converged;
