@@ -100,9 +100,9 @@ ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
   tangent_frame(axis, a, b);
   const Eigen::Vector3d direction =
       sin_beta * (std::cos(phi) * a + std::sin(phi) * b) + cos_beta * axis;
-  const double reach = distance * cos_beta -
-                       std::sqrt(std::max(0.0, emitter.sphere.radius * emitter.sphere.radius -
-                                                   distance * distance * sin_beta * sin_beta));
+  const double reach =
+      distance * cos_beta - std::sqrt(std::max(0.0, emitter.sphere.radius * emitter.sphere.radius -
+                                                        distance * distance * sin_beta * sin_beta));
   return {.ray = {.origin = point, .direction = direction, .t_max = reach},
           .weight = std::max(0.0, direction.dot(normal))};
 }
@@ -223,8 +223,8 @@ Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vecto
                                  const ShadowOptions& options) const {
   Spectrum E = Spectrum::Zero(bands_);
   for (std::size_t e = 0; e < emitters_.size(); ++e) {
-    const double F = form_factor(emitters_[e], caster, point, normal, facet, random_key(key, e),
-                                 options);
+    const double F =
+        form_factor(emitters_[e], caster, point, normal, facet, random_key(key, e), options);
     if (F > 0.0) E += emitters_[e].exitance * static_cast<float>(F);
   }
   return E;

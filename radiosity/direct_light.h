@@ -14,9 +14,9 @@ namespace lightwell {
 
 /// An emitting facet whose light is computed by closed form times visibility, never left to chance.
 struct Emitter {
-  int facet = 0;         ///< scene-wide facet number
-  Spectrum exitance{};   ///< M, W/m^2
-  double area = 0.0;     ///< m^2, one side
+  int facet = 0;        ///< scene-wide facet number
+  Spectrum exitance{};  ///< M, W/m^2
+  double area = 0.0;    ///< m^2, one side
   bool emits_both_sides = false;
   bool is_sphere = false;
   Sphere sphere{};
@@ -26,28 +26,30 @@ struct Emitter {
   std::vector<double> area_cdf{};  ///< running share of the area, one per triangle, last is 1
 };
 
-/// Shadow rays per emitter and point: `min_rays` stratified ones first; where they disagree, `max_rays`.
+/// Shadow rays per emitter and point: `min_rays` stratified ones first; where they disagree,
+/// `max_rays`.
 struct ShadowOptions {
   int min_rays = 16;
   int max_rays = 64;  ///< at most 256
 };
 
-/// Light straight from the scene's emitters. Emitters are taken in order of falling exitance, all of
-/// one exitance together, while they add up to at most a quarter of the scene's area: those are small
-/// and bright, and a hemisphere of rays would find them by chance. What emits beyond that is large and
-/// is found by any hemisphere of rays.
+/// Light straight from the scene's emitters. Emitters are taken in order of falling exitance, all
+/// of one exitance together, while they add up to at most a quarter of the scene's area: those are
+/// small and bright, and a hemisphere of rays would find them by chance. What emits beyond that is
+/// large and is found by any hemisphere of rays.
 class DirectLight {
  public:
   DirectLight(const Scene& scene, const PatchMesh& mesh);
 
   const std::vector<Emitter>& emitters() const { return emitters_; }
-  /// Whether the facet's emission is accounted for here (and must not be counted again by other rays).
+  /// Whether the facet's emission is accounted for here (and must not be counted again by other
+  /// rays).
   bool owns(int facet) const { return owned_[facet] != 0; }
 
-  /// Form factor from a differential element to one emitter: the unoccluded closed form times the visible
-  /// share. The share is the ratio of the cosine kernel over samples that see the point to that over all
-  /// samples, so without an occluder the result is exact. `facet` is where the point lies (-1: in
-  /// free space); `key` decides where the samples fall.
+  /// Form factor from a differential element to one emitter: the unoccluded closed form times the
+  /// visible share. The share is the ratio of the cosine kernel over samples that see the point to
+  /// that over all samples, so without an occluder the result is exact. `facet` is where the point
+  /// lies (-1: in free space); `key` decides where the samples fall.
   double form_factor(const Emitter& emitter, const ElementCaster& caster,
                      const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
                      std::uint64_t key, const ShadowOptions& options = {}) const;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "mesh/element_caster.h"
 #include "radiosity/direct_light.h"
@@ -15,13 +16,13 @@ struct GatherPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< metres
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< unit
   int facet =
-      -1;  ///< scene-wide facet it lies on, so that it does not see its own plane; -1: free space
+      -1;  ///< scene-wide facet it lies on, whose plane it then does not see; -1: free space
 };
 
 struct GatherOptions {
-  int rays = 512;  ///< hemisphere rays per point, a power of two
+  int rays = 512;  ///< hemisphere rays per point; a power of two stratifies best
   int max_specular_depth = 8;
-  ShadowOptions shadows{};
+  ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
   std::uint64_t replica = 0;  ///< another number gives an independent estimate
   Progress progress{};
 };
@@ -29,28 +30,34 @@ struct GatherOptions {
 /// points x bands, W/m^2.
 struct GatheredIrradiance {
   BandArray direct{};    ///< straight from DirectLight's emitters
-  BandArray indirect{};  ///< from reflecting (and large emitting) surfaces, also by way of mirrors
+  BandArray indirect{};  ///< from everything else that reflects or emits, also by way of mirrors
                          ///< and glass
 };
 
-/// Irradiance at points from a solved scene: direct light by closed form times visibility, the rest
-/// by cosine-distributed rays that read the radiosity where they end, continuing through mirrors
-/// and clear glass. Light that small bright emitters send by way of mirrors or glass (caustics) is
-/// not in it; see SpecularLight. `vertex_radiosity` is vertices x bands and must leave out the
-/// emission of the facets DirectLight owns.
+/// Irradiance at points of a solved scene: direct light by closed form times visibility, the rest
+/// by cosine-distributed rays that read the radiosity where they end, going on through mirrors and
+/// clear glass. Light that DirectLight's emitters send by way of mirrors and glass is left out,
+/// since rays from the receiver find it by chance only: see caustic_irradiance. `radiosity` is
+/// vertices x bands, as gatherable_radiosity makes it.
 GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& caster,
-                                     const DirectLight& direct_light,
-                                     const BandArray& vertex_radiosity,
+                                     const DirectLight& direct_light, const BandArray& radiosity,
                                      std::span<const GatherPoint> points,
                                      const GatherOptions& options = {});
 
-/// rho E + the emission of facets that `direct_light` does not own: what gather_irradiance reads.
+/// rho E, plus the emission of patches that `direct_light` does not own: what gather_irradiance
+/// reads. `irradiance` is vertices x bands.
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
-                               const BandArray& vertex_irradiance);
+                               const BandArray& irradiance);
 
-/// A point within a hair of the vertex, moved inwards so that it lies on none of its elements'
-/// edges.
-GatherPoint vertex_gather_point(const PatchMesh& mesh, int vertex,
-                                std::span<const int> elements_around);
+/// Irradiance at every vertex (vertices x bands, W/m^2) from emitters by way of mirrors and glass:
+/// `rays` rays in all from each emitter DirectLight owns leave their power on the elements where
+/// they end (after Heckbert 1990), and vertices take the mean of the elements around. Empty if the
+/// scene has no mirrors or glass.
+BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
+                             const DirectLight& direct_light, int rays, int max_specular_depth);
+
+/// For every vertex, a point a hair inside one of its elements, so that it lies on no edge, and
+/// that element's facet and normal.
+std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
 
 }  // namespace lightwell

@@ -1,9 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "mesh/element_caster.h"
 #include "radiosity/direct_light.h"
@@ -17,55 +16,58 @@ struct FormFactor {
   float value = 0.0f;
 };
 
-/// Light that reaches patch j from i by way of mirrors and clear glass: the extended form factor of
-/// Sillion & Puech 1989, one share per band because mirrors and glass may be tinted.
-struct SpecularFormFactor {
-  int patch = 0;
-  Spectrum value{};
+/// Light that reaches other patches from patch i by way of mirrors and clear glass: the extended
+/// form factors of Sillion & Puech 1989, a share per band because mirrors and glass may be tinted.
+struct SpecularRow {
+  std::span<const int> patch{};
+  Eigen::Map<const BandArray> value{nullptr, 0, 0};  ///< entries x bands
 };
 
-/// F_ij of a meshed scene, one sparse row per source patch i.
+/// F_ij of a meshed scene, one sparse row per source patch i, ordered by j.
 ///
-/// Guarantees of every implementation: 0 <= F_ij; A_i F_ij = A_j F_ji (reciprocity);
-/// sum_j F_ij + escaped_i = 1, where light by way of specular surfaces counts with what it loses
-/// there (closure).
+/// Every implementation keeps 0 <= F_ij, reciprocity A_i F_ij = A_j F_ji, and closure: what row(i)
+/// and specular_row(i) add up to, together with escaped(i) and absorbed_by_specular(i), is 1 in
+/// every band (a surface that both mirrors and scatters counts in row(i) and passes its mirrored
+/// share on).
 class FormFactors {
  public:
   virtual ~FormFactors() = default;
   virtual int patch_count() const = 0;
   virtual std::span<const FormFactor> row(int i) const = 0;
-  /// Empty for scenes without mirrors or glass.
-  virtual std::span<const SpecularFormFactor> specular_row(int i) const = 0;
+  virtual SpecularRow specular_row(int i) const = 0;  ///< empty without mirrors or glass
   /// Share per band of what leaves patch i that leaves the scene or meets a black back.
   virtual Spectrum escaped(int i) const = 0;
-  /// Share per band that mirrors and glass absorb.
+  /// Share per band that mirrors and glass take up on the way.
   virtual Spectrum absorbed_by_specular(int i) const = 0;
 };
 
 struct FormFactorOptions {
-  int rays_per_patch = 512;  ///< power of two; noise of the indirect light falls as about 1/rays
-  int rays_per_emitter =
-      32768;  ///< from small bright emitters, for light thrown by mirrors and glass
+  int rays_per_patch = 512;  ///< a power of two stratifies best; noise falls nearly as 1/rays
+  /// From each facet DirectLight owns, in all, for what mirrors and glass throw; a power of two.
+  int rays_per_emitter = 65536;
   int max_specular_depth = 8;  ///< mirror and glass events along one ray
+  int emitter_points = 16;     ///< points of a patch at which an emitter's closed form is taken
   ShadowOptions shadows{.min_rays = 4, .max_rays = 16};
   Progress progress{};
 };
 
-/// What was measured before closure and reciprocity were enforced.
+/// What was measured before and after closure was enforced.
 struct FormFactorReport {
-  double seconds = 0.0;
   std::int64_t rays = 0;
-  double closure_correction = 0.0;  ///< largest |1 - row sum| before balancing
-  double mean_closure_correction = 0.0;
-  double closure_error = 0.0;  ///< the same after
-  double depth_cut = 0.0;      ///< mean share of a row lost to max_specular_depth
+  double mean_closure_correction = 0.0;  ///< mean |1 - row sum| of the joined estimates
+  double max_closure_correction = 0.0;
+  double max_closure_error = 0.0;  ///< max |1 - row sum| that is left
+  double depth_cut = 0.0;  ///< mean share of a row lost to max_specular_depth (counted as absorbed)
 };
 
-/// Ray-cast form factors with closed-form emitters: cosine-distributed, Owen-scrambled rays from
-/// points all over a patch (METHODS: Malley 1988; Sobol) for the smooth part; for small bright
-/// emitters the closed form times visibility. Both estimates A_i F_ij and A_j F_ji are joined by
-/// their variances and the result is balanced by symmetric diagonal scaling (Sinkhorn & Knopp 1967;
-/// Knight, Ruiz & Ucar 2014), which keeps reciprocity and brings every row sum to 1.
+/// Ray-cast form factors with closed-form emitters.
+///
+/// Cosine-distributed Owen-scrambled rays start all over each patch (Malley's method) and count
+/// where they end. The counts of i -> j and j -> i estimate the same A_i F_ij and are joined in
+/// proportion to their rays per area. Facets that DirectLight owns are small and bright: for them
+/// the closed form times visibility, averaged over points of the receiving patch, takes the place
+/// of the counts. The result is balanced by symmetric diagonal scaling (Sinkhorn & Knopp 1967;
+/// Knight, Ruiz & Ucar 2014), which keeps reciprocity and closes every row.
 std::unique_ptr<FormFactors> ray_cast_form_factors(const Scene& scene, const ElementCaster& caster,
                                                    const DirectLight& direct_light,
                                                    const FormFactorOptions& options = {},

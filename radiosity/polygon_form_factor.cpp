@@ -8,16 +8,19 @@
 namespace lightwell {
 namespace {
 
-// Gamma_k . n of one edge between points a and b as seen from the origin: the angle it spans times the unit normal of
-// its plane. atan2 keeps digits for edges that span almost nothing or almost 180 degrees.
-double edge_term(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& normal) {
+// Gamma_k . n of one edge between points a and b as seen from the origin: the angle it spans times
+// the unit normal of its plane. atan2 keeps digits for edges that span almost nothing or almost 180
+// degrees.
+double edge_term(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                 const Eigen::Vector3d& normal) {
   const Eigen::Vector3d cross = a.cross(b);
   const double sine = cross.norm();
   if (!(sine > 0.0)) return 0.0;  // the edge points at the element: no angle
   return std::atan2(sine, a.dot(b)) * cross.dot(normal) / sine;
 }
 
-// Sum over the part of the loop above the horizon (Sutherland & Hodgman against one plane, without storing it).
+// Sum over the part of the loop above the horizon (Sutherland & Hodgman against one plane, without
+// storing it).
 double loop_term(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, const Loop& loop) {
   double sum = 0.0;
   bool started = false;

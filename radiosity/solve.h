@@ -9,10 +9,11 @@ namespace lightwell {
 struct SolveOptions {
   MeshOptions mesh{};
   FormFactorOptions form_factors{};
-  double tolerance = 1e-5;  ///< Gauss-Seidel stops when the relative residual falls below
-  int max_sweeps = 200;
+  double tolerance = 1e-5;  ///< see GaussSeidelOptions
+  int max_sweeps = 500;
   GatherOptions gather{.rays = 256};
-  int error_points = 512;  ///< random points that the error estimate compares
+  int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
+  int error_points = 512;      ///< random points that the error estimate looks at
   Progress progress{};
 };
 
@@ -22,13 +23,21 @@ struct SolvedScene {
   RadiositySolution solution{};
 };
 
-/// The whole first pass: mesh, form factors, Gauss-Seidel, final gather, error estimate.
-/// Throws InputError if nothing in the scene emits light, Interrupted when progress says stop.
-SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {});
+/// What the first pass found out besides the solution.
+struct SolveReport {
+  FormFactorReport form_factors{};
+};
 
-/// The final part alone, for a mesh and its patch radiosities.
-void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const FormFactors& form_factors, const SolveOptions& options,
-                 RadiositySolution& solution);
+/// The whole first pass: mesh, form factors, Gauss-Seidel, final gather to the elements' vertices,
+/// and an error estimate by independent gathers at random points (relative RMS difference from the
+/// interpolation; it holds the noise of both, so it errs on the high side). Throws InputError if
+/// nothing in the scene emits light, Interrupted when progress says stop.
+SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
+                        SolveReport* report = nullptr);
+
+/// Where the light of patch radiosities B went; `residual` = M + rho F B - B. Mirrors' share is
+/// taken from the scene's materials.
+EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
+                             const FormFactors& form_factors, const BandArray& B);
 
 }  // namespace lightwell

@@ -1,0 +1,237 @@
+#include "radiosity/final_gather.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "radiosity/light_path.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t gather_rays = 10;  // purposes of random keys
+constexpr std::uint64_t gather_branches = 11;
+constexpr std::uint64_t gather_shadows = 12;
+constexpr std::uint64_t caustic_rays = 13;
+constexpr std::uint64_t caustic_branches = 14;
+constexpr int batch = 128;
+
+class HemisphereGather {
+ public:
+  HemisphereGather(const Scene& scene, const ElementCaster& caster, const BandArray& radiosity,
+                   const GatherOptions& options)
+      : mesh_(caster.mesh()),
+        caster_(caster),
+        radiosity_(radiosity),
+        paths_(scene, caster, options.max_specular_depth),
+        sobol_(std::max(1, options.rays)) {}
+
+  // E = (1/N) sum B over cosine-distributed rays.
+  Spectrum irradiance(const GatherPoint& at, std::uint64_t key) const {
+    Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(radiosity_.cols());
+    Eigen::Vector3d a, b;
+    tangent_frame(at.normal, a, b);
+    std::array<Ray, batch> ray;
+    std::array<ElementHit, batch> hit;
+    const std::uint64_t ray_key = random_key(key, gather_rays);
+    for (int begin = 0; begin < sobol_.count(); begin += batch) {
+      const int count = std::min(batch, sobol_.count() - begin);
+      for (int r = 0; r < count; ++r) {
+        const Eigen::Array4f u = sobol_.point(begin + r, ray_key);
+        const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
+        ray[r] = {.origin = at.position,
+                  .direction = d.x() * a + d.y() * b + d.z() * at.normal,
+                  .origin_group = at.facet};
+      }
+      const auto n = static_cast<std::size_t>(count);
+      caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+      for (int r = 0; r < count; ++r) {
+        const auto index = static_cast<std::uint64_t>(begin + r);
+        add(ray[r], hit[r], random_key(key, gather_branches, index), sum);
+      }
+    }
+    return (sum / sobol_.count()).cast<float>();
+  }
+
+ private:
+  void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, Eigen::ArrayXd& sum) const {
+    if (hit.facet < 0) return;
+    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, sum);
+    if (!paths_.is_specular(hit.facet)) return;
+    paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+      sum += (throughput * interpolate(mesh_, radiosity_, end)).cast<double>();
+    });
+  }
+
+  void add_radiosity(const ElementHit& hit, Eigen::ArrayXd& sum) const {
+    const auto& corners = mesh_.corners[hit.element];
+    for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
+      const float* B = radiosity_.data() + corners[c] * radiosity_.cols();
+      for (Eigen::Index k = 0; k < sum.size(); ++k) {
+        sum[k] += static_cast<double>(hit.weights[c] * B[k]);
+      }
+    }
+  }
+
+  const PatchMesh& mesh_;
+  const ElementCaster& caster_;
+  const BandArray& radiosity_;
+  LightPaths paths_;
+  SobolPoints sobol_;
+};
+
+std::vector<int> vertex_patches(const PatchMesh& mesh) {
+  std::vector<int> patch(mesh.vertex_count(), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
+  }
+  return patch;
+}
+
+}  // namespace
+
+GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& caster,
+                                     const DirectLight& direct_light, const BandArray& radiosity,
+                                     std::span<const GatherPoint> points,
+                                     const GatherOptions& options) {
+  const int count = static_cast<int>(points.size());
+  const HemisphereGather hemisphere(scene, caster, radiosity, options);
+  GatheredIrradiance result{.direct = BandArray::Zero(count, scene.bands.count()),
+                            .indirect = BandArray::Zero(count, scene.bands.count())};
+  const int slice = std::max(64, count / 100);
+  for (int begin = 0; begin < count; begin += slice) {
+    report(options.progress, "gather", static_cast<double>(begin) / count);
+    parallel_for(std::min(slice, count - begin), 8, [&](int low, int high) {
+      for (int i = begin + low; i < begin + high; ++i) {
+        const GatherPoint& at = points[i];
+        const std::uint64_t key = random_key(static_cast<std::uint64_t>(i), options.replica);
+        result.direct.row(i) = direct_light
+                                   .irradiance(caster, at.position, at.normal, at.facet,
+                                               random_key(key, gather_shadows), options.shadows)
+                                   .transpose();
+        result.indirect.row(i) = hemisphere.irradiance(at, key).transpose();
+      }
+    });
+  }
+  report(options.progress, "gather", 1.0);
+  return result;
+}
+
+BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
+                               const BandArray& irradiance) {
+  const std::vector<int> patch = vertex_patches(mesh);
+  BandArray B(irradiance.rows(), irradiance.cols());
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const int p = patch[v];
+    B.row(v) = mesh.reflectance.row(p) * irradiance.row(v);
+    if (!direct_light.owns(mesh.facet[p])) B.row(v) += mesh.emission.row(p);
+  }
+  return B;
+}
+
+BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
+                             const DirectLight& direct_light, int rays, int max_specular_depth) {
+  const PatchMesh& mesh = caster.mesh();
+  const LightPaths paths(scene, caster, max_specular_depth);
+  if (!paths.has_specular() || direct_light.emitters().empty()) return {};
+  const int bands = scene.bands.count();
+  BandArray power = BandArray::Zero(mesh.element_count(), bands);
+
+  // Every lit patch sends rays in proportion to its area. Pieces deposit into lists that are added
+  // in order, so that the sum does not depend on threads.
+  struct Deposit {
+    int element;
+    Spectrum power;
+  };
+  std::vector<int> emitter_of_facet;
+  for (int e = 0; e < static_cast<int>(direct_light.emitters().size()); ++e) {
+    const int facet = direct_light.emitters()[e].facet;
+    emitter_of_facet.resize(std::max<std::size_t>(emitter_of_facet.size(), facet + 1), -1);
+    emitter_of_facet[facet] = e;
+  }
+  const SobolPoints sobol(rays);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const int facet = mesh.facet[p];
+    if (!direct_light.owns(facet) || !(mesh.emission.row(p) > 0.0f).any()) continue;
+    const double share = mesh.area[p] / direct_light.emitters()[emitter_of_facet[facet]].area;
+    const int count = std::clamp(static_cast<int>(std::lround(rays * share)), 1, rays);
+    const Spectrum power_per_ray =
+        mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
+    const std::uint64_t key = random_key(static_cast<std::uint64_t>(p), caustic_rays);
+    constexpr int piece = 2048;
+    std::vector<std::vector<Deposit>> deposits((count + piece - 1) / piece);
+    parallel_for(count, piece, [&](int begin, int end) {
+      auto& list = deposits[begin / piece];
+      for (int r = begin; r < end; ++r) {
+        const Eigen::Array4f u = sobol.point(r, key);
+        const PatchPoint from = patch_point(mesh, p, u[0], u[1]);
+        Eigen::Vector3d a, b;
+        tangent_frame(from.normal, a, b);
+        const Eigen::Vector3d d = cosine_direction(u[2], u[3]);
+        const Ray ray{.origin = from.position,
+                      .direction = d.x() * a + d.y() * b + d.z() * from.normal,
+                      .origin_group = facet};
+        ElementHit hit;
+        caster.closest_hits({&ray, 1}, {&hit, 1});
+        if (hit.facet < 0 || !paths.is_specular(hit.facet)) continue;
+        paths.follow(ray, hit, random_key(key, caustic_branches, static_cast<std::uint64_t>(r)),
+                     [&](const ElementHit& at, const Spectrum& throughput) {
+                       list.push_back({at.element, throughput * power_per_ray});
+                     });
+      }
+    });
+    for (const auto& list : deposits) {
+      for (const Deposit& deposit : list) {
+        power.row(deposit.element) += deposit.power.transpose();
+      }
+    }
+  }
+
+  BandArray vertex_power = BandArray::Zero(mesh.vertex_count(), bands);
+  Eigen::ArrayXf vertex_area = Eigen::ArrayXf::Zero(mesh.vertex_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      vertex_power.row(mesh.corners[e][c]) += power.row(e);
+      vertex_area[mesh.corners[e][c]] += static_cast<float>(mesh.element_area[e]);
+    }
+  }
+  return vertex_power.colwise() / vertex_area.max(1e-30f);
+}
+
+std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
+  // Far enough in to clear the float rounding of a room-sized scene, near enough to stand for the
+  // vertex.
+  constexpr double inset = 0.02;
+  std::vector<GatherPoint> points(mesh.vertex_count());
+  std::vector<char> done(mesh.vertex_count(), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const PatchPoint center = element_center(mesh, e);
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const int v = mesh.corners[e][c];
+      if (done[v]) continue;
+      done[v] = 1;
+      const Eigen::Vector3d p = mesh.position(v);
+      points[v] = {.position = p + inset * (center.position - p),
+                   .normal = center.normal,
+                   .facet = mesh.facet[mesh.patch[e]]};
+    }
+  }
+  // On a sphere the chord lies inside the ball: go back out to the surface, with the sphere's own
+  // normal.
+  for (const SphereGrid& grid : mesh.sphere_grids) {
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      if (mesh.facet[mesh.patch[e]] != grid.facet) continue;
+      for (int c = 0; c < mesh.corner_count(e); ++c) {
+        GatherPoint& at = points[mesh.corners[e][c]];
+        const Eigen::Vector3d out = (at.position - grid.sphere.center).normalized();
+        at.position = grid.sphere.center + grid.sphere.radius * out;
+        at.normal = mesh.is_back[mesh.patch[e]] ? Eigen::Vector3d(-out) : out;
+      }
+    }
+  }
+  return points;
+}
+
+}  // namespace lightwell

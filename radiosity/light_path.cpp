@@ -1,0 +1,92 @@
+#include "radiosity/light_path.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "scene/optics.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+
+LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth)
+    : scene_(scene), caster_(caster), max_depth_(max_depth) {
+  for (const FacetRef& ref : scene_facets(scene)) {
+    const Surface& surface = scene.surfaces[ref.surface];
+    const Material& material = scene.materials[surface.material];
+    const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
+    material_.push_back(surface.material);
+    specular_.push_back(material.is_specular());
+    diffuse_.push_back((material.reflectance > 0.0f).any() || material.is_emitter() ||
+                       !material.is_specular());
+    normal_.push_back(polygons ? facet_normal(*polygons, polygons->facets[ref.facet])
+                               : Eigen::Vector3d::Zero());
+    sphere_.push_back(polygons ? nullptr : &std::get<Sphere>(surface.shape));
+    has_specular_ = has_specular_ || material.is_specular();
+  }
+}
+
+bool LightPaths::continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key,
+                             Spectrum& throughput, PathLosses& losses) const {
+  const Material& material = scene_.materials[material_[hit.facet]];
+  // The back of a one-sided mirror is black; glass is clear from both sides.
+  if (!material.dielectric && hit.element < 0) {
+    losses.escaped += throughput;
+    return false;
+  }
+  const Eigen::Vector3d direction = ray.direction.normalized();
+  const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
+  const Sphere* sphere = sphere_[hit.facet];
+  Eigen::Vector3d normal = sphere ? (point - sphere->center).normalized() : normal_[hit.facet];
+  if (hit.from_back) normal = -normal;
+
+  Spectrum share = material.specular;
+  Eigen::Vector3d onward = reflect(direction, normal);
+  if (material.dielectric) {
+    const double index = material.dielectric->index_of_refraction;
+    const double relative = hit.from_back ? 1.0 / index : index;
+    share = Spectrum::Ones(throughput.size());
+    const double reflected = fresnel_reflectance(-direction.dot(normal), relative);
+    if (random_uniform(key) >= reflected) {
+      if (const auto refracted = refract(direction, normal, relative)) {
+        onward = *refracted;
+        share = material.dielectric->tint;
+      }
+    }
+  }
+  // What a partly diffuse surface does not mirror was taken up by its diffuse side, where the
+  // caller counts it.
+  if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - share);
+  throughput *= share;
+  ray = {.origin = point, .direction = onward, .origin_group = hit.facet};
+  return (throughput > 0.0f).any();
+}
+
+PathLosses LightPaths::follow(
+    const Ray& first_ray, const ElementHit& first_hit, std::uint64_t key,
+    const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const {
+  const int bands = scene_.bands.count();
+  PathLosses losses{Spectrum::Zero(bands), Spectrum::Zero(bands), Spectrum::Zero(bands)};
+  Spectrum throughput = Spectrum::Ones(bands);
+  Ray ray = first_ray;
+  ElementHit hit = first_hit;
+  for (int depth = 0;; ++depth) {
+    if (depth == max_depth_) {
+      losses.cut += throughput;
+      return losses;
+    }
+    if (!continue_at(ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), throughput,
+                     losses)) {
+      return losses;
+    }
+    caster_.closest_hits({&ray, 1}, {&hit, 1});
+    const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));
+    if (leaves) {
+      losses.escaped += throughput;
+      return losses;
+    }
+    if (is_diffuse(hit.facet) && hit.element >= 0) arrive(hit, throughput);
+    if (!is_specular(hit.facet)) return losses;
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// What happened to a ray's unit of light beyond the places where it arrived.
+struct PathLosses {
+  Spectrum escaped{};   ///< left the scene or met a black back
+  Spectrum absorbed{};  ///< taken up by mirrors and tinted glass
+  Spectrum cut{};       ///< still under way when the depth limit was reached
+};
+
+/// Follows rays through mirrors and clear glass until something diffuse takes them up (extended
+/// form factors, Sillion & Puech 1989). At glass one branch is followed, picked with Fresnel's
+/// probability, so that a ray stays a ray and the mean is exact.
+class LightPaths {
+ public:
+  LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth);
+
+  /// Whether the scene has any mirror or glass at all.
+  bool has_specular() const { return has_specular_; }
+  /// Whether light that meets this facet goes on undiffused (in part or whole).
+  bool is_specular(int facet) const { return specular_[facet] != 0; }
+  /// Whether the facet's sides take part in diffuse exchange (reflect or emit diffusely).
+  bool is_diffuse(int facet) const { return diffuse_[facet] != 0; }
+
+  /// `arrive(hit, throughput)` is called for every diffuse arrival behind the specular facet that
+  /// `hit` of `ray` names (the facet's own diffuse share, if any, is the caller's). `key` picks
+  /// branches.
+  PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
+                    const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const;
+
+ private:
+  bool continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key, Spectrum& throughput,
+                   PathLosses& losses) const;
+
+  const Scene& scene_;
+  const ElementCaster& caster_;
+  int max_depth_ = 8;
+  bool has_specular_ = false;
+  std::vector<char> specular_, diffuse_;
+  std::vector<int> material_;            // per facet
+  std::vector<Eigen::Vector3d> normal_;  // per facet; zero for spheres
+  std::vector<const Sphere*> sphere_;    // per facet; null for polygons
+};
+
+}  // namespace lightwell

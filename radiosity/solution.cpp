@@ -1,0 +1,27 @@
+#include "radiosity/solution.h"
+
+namespace lightwell {
+
+BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution) {
+  BandArray B = solution.irradiance();
+  std::vector<int> patch(mesh.vertex_count(), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
+  }
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    B.row(v) = mesh.emission.row(patch[v]) + mesh.reflectance.row(patch[v]) * B.row(v);
+  }
+  return B;
+}
+
+BandArray element_mean(const PatchMesh& mesh, const BandArray& vertex_values) {
+  BandArray mean = BandArray::Zero(mesh.element_count(), vertex_values.cols());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int count = mesh.corner_count(e);
+    for (int c = 0; c < count; ++c) mean.row(e) += vertex_values.row(mesh.corners[e][c]);
+    mean.row(e) /= static_cast<float>(count);
+  }
+  return mean;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,185 @@
+#include "radiosity/solve.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "radiosity/solve_gauss_seidel.h"
+#include "scene/errors.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t error_point_key = 20;  // purpose of random keys
+
+class Stopwatch {
+ public:
+  // Seconds since the last call.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void require_light(const Scene& scene) {
+  for (const Surface& surface : scene.surfaces) {
+    if (scene.materials[surface.material].is_emitter()) return;
+  }
+  throw InputError(fmt::format(
+      "{}: nothing emits light, so there is nothing to solve; give a material a 'radiance', "
+      "'exitance' or 'power' (in OBJ files: Ke) and use it on a surface",
+      scene.file.empty() ? "the scene" : scene.file.string()));
+}
+
+// First guess for the gather: patch radiosities, smoothed to vertices by the mean of the elements
+// around.
+BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,
+                          const BandArray& patch_radiosity) {
+  BandArray sum = BandArray::Zero(mesh.vertex_count(), patch_radiosity.cols());
+  Eigen::ArrayXf weight = Eigen::ArrayXf::Zero(mesh.vertex_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    const auto area = static_cast<float>(mesh.element_area[e]);
+    Eigen::Array<float, 1, Eigen::Dynamic> B = patch_radiosity.row(p);
+    if (direct_light.owns(mesh.facet[p])) B -= mesh.emission.row(p);
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      sum.row(mesh.corners[e][c]) += area * B;
+      weight[mesh.corners[e][c]] += area;
+    }
+  }
+  return sum.colwise() / weight.max(1e-30f);
+}
+
+void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                 const SolveOptions& options, RadiositySolution& solution) {
+  const PatchMesh& mesh = caster.mesh();
+  GatherOptions gather_options = options.gather;
+  gather_options.progress = options.progress;
+  const GatheredIrradiance gathered = gather_irradiance(
+      scene, caster, direct_light, patch_to_vertex(mesh, direct_light, solution.patch_radiosity),
+      vertex_gather_points(mesh), gather_options);
+  solution.direct_irradiance = gathered.direct;
+  solution.indirect_irradiance = gathered.indirect;
+  solution.caustic_irradiance = caustic_irradiance(
+      scene, caster, direct_light, options.caustic_rays, options.form_factors.max_specular_depth);
+  if (solution.caustic_irradiance.size() > 0) {
+    solution.indirect_irradiance += solution.caustic_irradiance;
+  }
+}
+
+// Uniform over the area that reflects: independent gathers against the interpolation.
+double estimate_error(const Scene& scene, const ElementCaster& caster,
+                      const DirectLight& direct_light, const SolveOptions& options,
+                      const RadiositySolution& solution) {
+  const PatchMesh& mesh = caster.mesh();
+  std::vector<double> area_to(mesh.patch_count());
+  double total = 0.0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if ((mesh.reflectance.row(p) > 0.0f).any()) total += mesh.area[p];
+    area_to[p] = total;
+  }
+  if (!(total > 0.0) || options.error_points < 1) return 0.0;
+
+  std::vector<GatherPoint> points(options.error_points);
+  BandArray caustic = BandArray::Zero(options.error_points, scene.bands.count());
+  BandArray interpolated(options.error_points, scene.bands.count());
+  const BandArray irradiance = solution.irradiance();
+  const SobolPoints sobol(options.error_points);
+  for (int i = 0; i < options.error_points; ++i) {
+    const Eigen::Array4f u = sobol.point(i, error_point_key);
+    const auto at = std::upper_bound(area_to.begin(), area_to.end() - 1, u[0] * total);
+    const int p = static_cast<int>(at - area_to.begin());
+    const PatchPoint point = patch_point(mesh, p, u[1], u[2]);
+    points[i] = {point.position, point.normal, mesh.facet[p]};
+    // The element's own interpolation: look at the point from just above it.
+    const double above = 1e-3 * std::sqrt(mesh.element_area[point.element]);
+    const Ray ray{.origin = point.position + above * point.normal, .direction = -point.normal};
+    ElementHit hit;
+    caster.closest_hits({&ray, 1}, {&hit, 1});
+    if (hit.element < 0)
+      hit = {.facet = mesh.facet[p], .element = point.element, .weights = {1, 0, 0, 0}};
+    interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
+    if (solution.caustic_irradiance.size() > 0) {
+      caustic.row(i) = interpolate(mesh, solution.caustic_irradiance, hit).transpose();
+    }
+  }
+  GatherOptions gather_options = options.gather;
+  gather_options.rays = 4 * options.gather.rays;
+  gather_options.replica = options.gather.replica + 1;
+  const GatheredIrradiance independent = gather_irradiance(
+      scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
+      gather_options);
+  const BandArray truth = independent.direct + independent.indirect + caustic;
+  const double mean = truth.cast<double>().mean();
+  if (!(mean > 0.0)) return 0.0;
+  return std::sqrt((interpolated - truth).cast<double>().square().mean()) / mean;
+}
+
+}  // namespace
+
+EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
+                             const FormFactors& form_factors, const BandArray& B) {
+  const BandArray E = gather(form_factors, B);
+  EnergyBalance energy;
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    const double A = mesh.area[i];
+    const Spectrum B_i = B.row(i).transpose(), E_i = E.row(i).transpose();
+    const Spectrum M_i = mesh.emission.row(i).transpose(),
+                   rho = mesh.reflectance.row(i).transpose();
+    const Spectrum kept = 1.0f - rho - scene.materials[mesh.material[i]].specular;
+    energy.emitted += A * M_i.cast<double>().sum();
+    energy.absorbed +=
+        A * (kept * E_i + form_factors.absorbed_by_specular(i) * B_i).cast<double>().sum();
+    energy.escaped += A * (form_factors.escaped(i) * B_i).cast<double>().sum();
+    energy.unshot += A * (M_i + rho * E_i - B_i).cast<double>().sum();
+  }
+  return energy;
+}
+
+SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveReport* report) {
+  require_light(scene);
+  SolvedScene solved;
+  std::vector<PhaseSeconds> seconds;
+  Stopwatch watch;
+  MeshOptions mesh_options = options.mesh;
+  mesh_options.progress = options.progress;
+  solved.mesh = build_patches(scene, mesh_options);
+  const ElementCaster caster(solved.mesh);
+  const DirectLight direct_light(scene, solved.mesh);
+  seconds.push_back({"mesh", watch.lap()});
+
+  FormFactorOptions form_factor_options = options.form_factors;
+  form_factor_options.progress = options.progress;
+  const auto form_factors = ray_cast_form_factors(scene, caster, direct_light, form_factor_options,
+                                                  report ? &report->form_factors : nullptr);
+  seconds.push_back({"form_factors", watch.lap()});
+
+  solved.solution = solve_gauss_seidel(solved.mesh, *form_factors,
+                                       {.tolerance = options.tolerance,
+                                        .max_sweeps = options.max_sweeps,
+                                        .progress = options.progress});
+  RadiositySolution& solution = solved.solution;
+  solution.bands = scene.bands;
+  solution.metres_per_unit = scene.metres_per_unit;
+  solution.unit_name = scene.unit_name;
+  solution.energy = energy_balance(scene, solved.mesh, *form_factors, solution.patch_radiosity);
+  seconds.push_back({"solve", watch.lap()});
+
+  reconstruct(scene, caster, direct_light, options, solution);
+  seconds.push_back({"gather", watch.lap()});
+  solution.error_estimate = estimate_error(scene, caster, direct_light, options, solution);
+  seconds.push_back({"error_estimate", watch.lap()});
+  solution.seconds = std::move(seconds);
+  solution.provenance.scene_file = scene.file.string();
+  solution.provenance.scene_hash = scene_hash(scene);
+  return solved;
+}
+
+}  // namespace lightwell
