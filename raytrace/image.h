@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -14,6 +15,10 @@ struct Image {
   int width = 0, height = 0;
   BandArray radiance{};
 };
+
+/// The largest picture that is rendered, written or read: 805 MB of RGB. A hostile or torn header
+/// may ask for no more than this before a byte of it is believed.
+inline constexpr std::int64_t max_image_pixels = std::int64_t{1} << 26;
 
 /// Free text stored with an image: camera, units, version, how it was made.
 using ImageMetadata = std::vector<std::pair<std::string, std::string>>;
