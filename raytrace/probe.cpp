@@ -1,0 +1,160 @@
+#include "raytrace/probe.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "scene/errors.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+// How near a surface a probe must be to lie on it, as a share of the scene's diagonal.
+constexpr double reach_share = 1e-4;
+
+double diagonal(const PatchMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (int v = 0; v < mesh.vertex_count(); ++v) box.extend(mesh.position(v));
+  return box.isEmpty() ? 0.0 : box.diagonal().norm();
+}
+
+// Unit normal of what was hit, on the side of the probe or its opposite; the back of a one-sided
+// surface has no element, but its front does.
+Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
+                           const Eigen::Vector3d& at) {
+  for (const SphereGrid& grid : mesh.sphere_grids) {
+    if (grid.facet == hit.facet) return (at - grid.sphere.center).normalized();
+  }
+  if (hit.element >= 0) return element_center(mesh, hit.element).normal;
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    if (mesh.facet[i] == hit.facet) return element_center(mesh, mesh.first_element[i]).normal;
+  }
+  return Eigen::Vector3d::Zero();
+}
+
+// Finds the surface a probe lies on.
+class ProbeSurface {
+ public:
+  struct Place {
+    ElementHit hit{};
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< on the surface
+  };
+
+  explicit ProbeSurface(const ElementCaster& caster)
+      : caster_(caster), reach_(reach_share * diagonal(caster.mesh())) {}
+
+  // A probe on an edge, or where another surface stands on its own, is moved by a hair to where it
+  // is clear on which side of what it lies.
+  std::optional<Place> find(const Probe& probe) const {
+    Eigen::Vector3d a, b;
+    tangent_frame(probe.normal, a, b);
+    const double hair = 0.1 * reach_;
+    const auto straight = below(probe.position, probe.normal);
+    if (straight && is_clear(probe.position, probe.normal, a, b, hair)) return straight;
+    const std::array<Eigen::Vector3d, 8> sideways = {a, b, -a, -b, a + b, a - b, b - a, -a - b};
+    for (const Eigen::Vector3d& step : sideways) {
+      const Eigen::Vector3d moved = probe.position + hair * step;
+      const auto place = below(moved, probe.normal);
+      if (place && is_clear(moved, probe.normal, a, b, 0.5 * hair)) return place;
+    }
+    return straight;
+  }
+
+ private:
+  // Of all that lies within reach above or below the point and faces the probe's way, the nearest;
+  // what can give light back comes before black backs.
+  std::optional<Place> below(const Eigen::Vector3d& position, const Eigen::Vector3d& normal) const {
+    constexpr double min_facing = 0.9;  // a wall touched from the side is not what it lies on
+    constexpr int max_layers = 8;
+    std::optional<Place> best;
+    double best_distance = 0.0;
+    const Eigen::Vector3d top = position + reach_ * normal;
+    Ray ray{.origin = top, .direction = -normal, .t_max = 2.0 * reach_};
+    for (int layer = 0; layer < max_layers; ++layer) {
+      ElementHit hit;
+      caster_.closest_hits({&ray, 1}, {&hit, 1});
+      if (hit.facet < 0) break;
+      const Eigen::Vector3d at = ray.origin + hit.t * ray.direction;
+      const double distance = std::abs((at - position).dot(normal));
+      const bool faces = std::abs(hit_normal(caster_.mesh(), hit, at).dot(normal)) > min_facing;
+      const bool is_better =
+          !best || (hit.element >= 0 && best->hit.element < 0) ||
+          ((hit.element >= 0) == (best->hit.element >= 0) && distance < best_distance);
+      if (faces && is_better) {
+        best = Place{.hit = hit, .position = at};
+        best_distance = distance;
+      }
+      // From a little before this surface, for another may lie in the same plane.
+      ray.origin = at + 1e-3 * reach_ * normal;
+      ray.t_max = 2.0 * reach_ - (top - ray.origin).dot(normal);
+      ray.origin_group = hit.facet;
+    }
+    return best;
+  }
+
+  // Whether nothing stands within `radius` of the point, looked for along two crossing lines just
+  // above it.
+  bool is_clear(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
+                const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) const {
+    for (const Eigen::Vector3d& along : {a, b}) {
+      const Ray ray{.origin = position + reach_ * normal - radius * along,
+                    .direction = along,
+                    .t_max = 2.0 * radius};
+      std::uint8_t blocked = 0;
+      caster_.occluded({&ray, 1}, {&blocked, 1});
+      if (blocked) return false;
+    }
+    return true;
+  }
+
+  const ElementCaster& caster_;
+  double reach_;
+};
+
+}  // namespace
+
+BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
+                           const DirectLight& direct_light, const RadiositySolution& solution,
+                           std::span<const Probe> probes, const GatherOptions& options) {
+  const ProbeSurface surface(caster);
+  std::vector<GatherPoint> points;
+  points.reserve(probes.size());
+  for (const Probe& probe : probes) {
+    GatherPoint point{.position = probe.position, .normal = probe.normal};
+    if (const auto place = surface.find(probe)) {
+      point.position = place->position;
+      point.facet = place->hit.facet;
+    }
+    points.push_back(point);
+  }
+  const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance());
+  const GatheredIrradiance E = gather_irradiance(scene, caster, direct_light, B, points, options);
+  return E.direct + E.indirect;
+}
+
+BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySolution& solution,
+                                 std::span<const Probe> probes) {
+  const ProbeSurface surface(caster);
+  const BandArray E = solution.irradiance();
+  BandArray result(static_cast<Eigen::Index>(probes.size()), E.cols());
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const auto place = surface.find(probes[i]);
+    if (!place || place->hit.element < 0) {
+      const Eigen::Vector3d p = probes[i].position / solution.metres_per_unit;
+      throw InputError(fmt::format("probe {} at ({:g}, {:g}, {:g}) {} {}: {}", i + 1, p.x(), p.y(),
+                                   p.z(), solution.unit_name,
+                                   place ? "lies on the back of a one-sided surface"
+                                         : "lies on no surface that faces its way",
+                                   "there is nothing to interpolate; gather instead, or move it"));
+    }
+    result.row(static_cast<Eigen::Index>(i)) =
+        interpolate(caster.mesh(), E, place->hit).transpose();
+  }
+  return result;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,221 @@
+#include "raytrace/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "raytrace/camera_ray.h"
+#include "raytrace/shade.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+// Samples are keyed by their place on a lattice of this many steps per pixel, whatever the
+// subdivision in force, so that a finer picture keeps the samples of a coarser one.
+constexpr int max_levels = 6;
+constexpr int lattice_steps = 1 << max_levels;
+
+void check(const RenderOptions& options) {
+  const auto fail = [](const std::string& what) { throw std::invalid_argument("render: " + what); };
+  if (options.max_subdivision < 0 || options.max_subdivision > max_levels) {
+    fail(fmt::format("max_subdivision is {}, it must lie between 0 and {}", options.max_subdivision,
+                     max_levels));
+  }
+  if (options.max_depth < 0) fail("max_depth must not be negative");
+  if (!(options.contrast > 0.0f)) fail("contrast must be above 0");
+  if (!(options.min_contribution >= 0.0f)) fail("min_contribution must not be negative");
+}
+
+struct Counters {
+  std::atomic<std::int64_t> eye_rays{0}, depth_cut{0};
+};
+
+// Looks at points of the picture, given in lattice steps from its top left corner.
+class Eye {
+ public:
+  Eye(const CameraRays& rays, const RayTree& tree, Counters& counters)
+      : rays_(rays), tree_(tree), counters_(counters) {}
+
+  Sight look(int x, int y) const {
+    const auto key = random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));
+    Sight sight = tree_.look(ray(x, y), key);
+    counters_.eye_rays.fetch_add(1, std::memory_order_relaxed);
+    counters_.depth_cut.fetch_add(sight.depth_cut, std::memory_order_relaxed);
+    return sight;
+  }
+  std::uint64_t fingerprint(int x, int y) const { return tree_.fingerprint(ray(x, y)); }
+
+ private:
+  Ray ray(int x, int y) const {
+    constexpr double step = 1.0 / lattice_steps;
+    return rays_.ray(step * x, step * y);
+  }
+
+  const CameraRays& rays_;
+  const RayTree& tree_;
+  Counters& counters_;
+};
+
+// Mean radiance over one pixel's square by adaptive subdivision (Whitted 1980): the mean of the
+// four corners where they agree, else of the four quarters.
+class PixelMean {
+ public:
+  PixelMean(const Eye& eye, const RenderOptions& options)
+      : eye_(eye),
+        options_(options),
+        cells_(1 << options.max_subdivision),
+        steps_per_cell_(lattice_steps >> options.max_subdivision),
+        sights_((cells_ + 1) * (cells_ + 1)),
+        known_(sights_.size()) {}
+
+  // `corners`: top left, top right, bottom left, bottom right.
+  Spectrum operator()(int x, int y, const std::array<const Sight*, 4>& corners) {
+    x_ = x * lattice_steps;
+    y_ = y * lattice_steps;
+    if (!must_split(0, 0, cells_, corners)) return mean(corners);
+    std::fill(known_.begin(), known_.end(), 0);
+    for (int c = 0; c < 4; ++c) keep(cells_ * (c & 1), cells_ * (c >> 1), *corners[c]);
+    return split(0, 0, cells_);
+  }
+
+ private:
+  using Corners = std::array<const Sight*, 4>;
+
+  int slot(int i, int j) const { return j * (cells_ + 1) + i; }
+
+  void keep(int i, int j, Sight sight) {
+    sights_[slot(i, j)] = std::move(sight);
+    known_[slot(i, j)] = 1;
+  }
+
+  const Sight* sight(int i, int j) {
+    if (!known_[slot(i, j)]) {
+      keep(i, j, eye_.look(x_ + i * steps_per_cell_, y_ + j * steps_per_cell_));
+    }
+    return &sights_[slot(i, j)];
+  }
+
+  Spectrum cell_mean(int i, int j, int size) {
+    const Corners corners = {sight(i, j), sight(i + size, j), sight(i, j + size),
+                             sight(i + size, j + size)};
+    return must_split(i, j, size, corners) ? split(i, j, size) : mean(corners);
+  }
+
+  Spectrum split(int i, int j, int size) {
+    const int half = size / 2;
+    return 0.25f * (cell_mean(i, j, half) + cell_mean(i + half, j, half) +
+                    cell_mean(i, j + half, half) + cell_mean(i + half, j + half, half));
+  }
+
+  // Largest difference between corners in any band, over the bands' mean of the largest value.
+  static float spread(const Corners& c) {
+    float widest = 0.0f, sum = 0.0f;
+    for (Eigen::Index k = 0; k < c[0]->radiance.size(); ++k) {
+      const auto [low, high] =
+          std::minmax({c[0]->radiance[k], c[1]->radiance[k], c[2]->radiance[k], c[3]->radiance[k]});
+      widest = std::max(widest, high - low);
+      sum += high;
+    }
+    return widest > 0.0f ? widest * static_cast<float>(c[0]->radiance.size()) / sum : 0.0f;
+  }
+
+  static Spectrum mean(const Corners& c) {
+    return 0.25f * (c[0]->radiance + c[1]->radiance + c[2]->radiance + c[3]->radiance);
+  }
+
+  bool must_split(int i, int j, int size, const Corners& c) const {
+    if (size < 2) return false;
+    for (const Sight* other : c) {
+      if (other->fingerprint != c[0]->fingerprint) return true;
+    }
+    if (!(spread(c) <= options_.contrast)) return true;
+    // Something thin may pass between the corners; to see what is in the middle costs no shadow
+    // rays.
+    const int half = size * steps_per_cell_ / 2;
+    return eye_.fingerprint(x_ + i * steps_per_cell_ + half, y_ + j * steps_per_cell_ + half) !=
+           c[0]->fingerprint;
+  }
+
+  const Eye& eye_;
+  const RenderOptions& options_;
+  int cells_, steps_per_cell_;
+  int x_ = 0, y_ = 0;
+  std::vector<Sight> sights_;  // of this pixel's lattice points
+  std::vector<char> known_;
+};
+
+// A row of pixel corners.
+using CornerRow = std::vector<Sight>;
+
+void look_at_corners(const Eye& eye, int first_row, std::span<CornerRow> rows) {
+  constexpr int grain = 32;
+  const int columns = static_cast<int>(rows.front().size());
+  parallel_for(static_cast<int>(rows.size()) * columns, grain, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const int row = i / columns, column = i % columns;
+      rows[row][column] = eye.look(column * lattice_steps, (first_row + row) * lattice_steps);
+    }
+  });
+}
+
+void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
+                    std::span<const CornerRow> corners, Image& image) {
+  constexpr int grain = 32;
+  const int rows = static_cast<int>(corners.size()) - 1;
+  parallel_for(rows * image.width, grain, [&](int begin, int end) {
+    PixelMean pixel_mean(eye, options);
+    for (int i = begin; i < end; ++i) {
+      const int row = i / image.width, x = i % image.width, y = first_row + row;
+      const CornerRow& top = corners[row];
+      const CornerRow& bottom = corners[row + 1];
+      image.radiance.row(y * image.width + x) =
+          pixel_mean(x, y, {&top[x], &top[x + 1], &bottom[x], &bottom[x + 1]}).transpose();
+    }
+  });
+}
+
+}  // namespace
+
+Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+             const RadiositySolution& solution, const Camera& camera, const RenderOptions& options,
+             RenderReport* render_report) {
+  const auto start = std::chrono::steady_clock::now();
+  check(options);
+  const CameraRays rays(camera);
+  const RayTree tree(scene, caster, direct_light, solution, options);
+  Counters counters;
+  const Eye eye(rays, tree, counters);
+  Image image{.width = camera.width, .height = camera.height};
+  image.radiance.resize(std::int64_t{camera.width} * camera.height, scene.bands.count());
+
+  // Strips keep memory small and let the caller stop the work soon; they share a row of corners.
+  constexpr int pixels_per_strip = 8192;
+  const int strip_rows = std::max(1, pixels_per_strip / camera.width);
+  std::vector<CornerRow> corners(strip_rows + 1, CornerRow(camera.width + 1));
+  report(options.progress, "render", 0.0);
+  look_at_corners(eye, 0, {corners.data(), 1});
+  for (int y = 0; y < camera.height; y += strip_rows) {
+    const int rows = std::min(strip_rows, camera.height - y);
+    look_at_corners(eye, y + 1, {corners.data() + 1, static_cast<std::size_t>(rows)});
+    average_pixels(eye, options, y, {corners.data(), static_cast<std::size_t>(rows) + 1}, image);
+    std::swap(corners.front(), corners[rows]);
+    report(options.progress, "render", static_cast<double>(y + rows) / camera.height);
+  }
+  if (render_report) {
+    *render_report = {
+        .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+        .eye_rays = counters.eye_rays,
+        .depth_cut = counters.depth_cut};
+  }
+  return image;
+}
+
+}  // namespace lightwell

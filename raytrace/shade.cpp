@@ -1,0 +1,178 @@
+#include "raytrace/shade.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "scene/optics.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t shadow_purpose = 0x5ec07d;
+
+int root(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+// Facets that share mesh vertices are one smooth surface: a tessellated column is not an edge at
+// every facet.
+std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
+  std::vector<int> parent(facet_count);
+  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<int> facet_of_vertex(mesh.vertex_count(), -1);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int facet = mesh.facet[mesh.patch[e]];
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      int& other = facet_of_vertex[mesh.corners[e][c]];
+      if (other < 0) other = facet;
+      parent[root(parent, facet)] = root(parent, other);
+    }
+  }
+  for (int f = 0; f < facet_count; ++f) parent[f] = root(parent, f);
+  return parent;
+}
+
+}  // namespace
+
+RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                 const RadiositySolution& solution, const RenderOptions& options)
+    : scene_(scene),
+      caster_(caster),
+      direct_light_(direct_light),
+      solution_(solution),
+      options_(options) {
+  if (options.pass == Pass::interpolate) irradiance_ = solution.irradiance();
+  for (const FacetRef& ref : scene_facets(scene)) {
+    const Surface& surface = scene.surfaces[ref.surface];
+    FacetShape shape{.material = surface.material};
+    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+      shape.is_sphere = true;
+      shape.point = sphere->center;
+    } else {
+      const auto& polygons = std::get<PolygonMesh>(surface.shape);
+      const Facet& facet = polygons.facets[ref.facet];
+      shape.point = polygons.vertices[facet.boundary.front()];
+      shape.normal = facet_normal(polygons, facet);
+    }
+    facets_.push_back(shape);
+  }
+  const auto joined = smooth_surfaces(caster.mesh(), static_cast<int>(facets_.size()));
+  for (std::size_t f = 0; f < facets_.size(); ++f) facets_[f].smooth_surface = joined[f];
+  // Sixteen float roundings of the scene's size.
+  constexpr double contact_share = 1e-6;
+  contact_offset_ = contact_share * scene_bounds(scene).diagonal();
+}
+
+Sight RayTree::look(const Ray& ray, std::uint64_t key) const {
+  const int bands = scene_.bands.count();
+  Walk walk{.sight = {.radiance = Spectrum::Zero(bands)}, .key = key};
+  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
+  return walk.sight;
+}
+
+std::uint64_t RayTree::fingerprint(const Ray& ray) const {
+  Walk walk{.shades = false};
+  follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, walk);
+  return walk.sight.fingerprint;
+}
+
+void RayTree::follow(const Branch& branch, Walk& walk) const {
+  ElementHit hit;
+  caster_.closest_hits({&branch.ray, 1}, {&hit, 1});
+  Sight& sight = walk.sight;
+  if (branch.weight.maxCoeff() >= options_.contrast) {
+    const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
+    sight.fingerprint = random_key(sight.fingerprint, branch.place,
+                                   static_cast<std::uint64_t>(seen + 1), hit.from_back);
+  }
+  if (hit.facet < 0) return;  // the world outside is black
+  const SurfacePoint at = surface_point(branch.ray, hit);
+  if (walk.shades && hit.element >= 0) {
+    const std::uint64_t key = random_key(walk.key, branch.place, shadow_purpose);
+    sight.radiance += branch.weight * diffuse_radiance(hit, at, key);
+  }
+  split(branch, hit, at, walk);
+}
+
+void RayTree::split(const Branch& branch, const ElementHit& hit, const SurfacePoint& at,
+                    Walk& walk) const {
+  const Material& material = scene_.materials[facets_[hit.facet].material];
+  const Eigen::Vector3d& d = branch.ray.direction;
+  if (const auto& glass = material.dielectric) {
+    const double n = hit.from_back ? 1.0 / glass->index_of_refraction : glass->index_of_refraction;
+    const double cos_i = std::min(1.0, -d.dot(at.normal));
+    const auto R = static_cast<float>(fresnel_reflectance(cos_i, n));
+    grow(branch, 0, reflect(d, at.normal), Spectrum::Constant(scene_.bands.count(), R), hit, at,
+         walk);
+    if (const auto refracted = refract(d, at.normal, n)) {
+      grow(branch, 1, *refracted, (1.0f - R) * glass->tint, hit, at, walk);
+    }
+  } else if (hit.element >= 0 && (material.specular > 0.0f).any()) {
+    grow(branch, 0, reflect(d, at.normal), material.specular, hit, at, walk);
+  }
+}
+
+void RayTree::grow(const Branch& parent, int child, const Eigen::Vector3d& direction,
+                   const Spectrum& share, const ElementHit& hit, const SurfacePoint& at,
+                   Walk& walk) const {
+  Branch branch{.weight = parent.weight * share,
+                .depth = parent.depth + 1,
+                .place = 2 * parent.place + static_cast<std::uint64_t>(child)};
+  if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
+  if (branch.depth > options_.max_depth) {
+    ++walk.sight.depth_cut;
+    return;
+  }
+  // A facet may lie on another: glass on a table, a mirror on a wall. A hair before the surface,
+  // which the ray itself cannot meet again, the other one is still ahead of what is refracted, and
+  // behind what is reflected.
+  const bool is_flat = !facets_[hit.facet].is_sphere;
+  const Eigen::Vector3d offset = (is_flat ? contact_offset_ : 0.0) * at.normal;
+  branch.ray = {.origin = at.position + offset,
+                .direction = direction.normalized(),
+                .origin_group = hit.facet};
+  follow(branch, walk);
+}
+
+RayTree::SurfacePoint RayTree::surface_point(const Ray& ray, const ElementHit& hit) const {
+  const FacetShape& facet = facets_[hit.facet];
+  SurfacePoint at{.position = ray.origin + hit.t * ray.direction, .normal = facet.normal};
+  if (facet.is_sphere) {
+    at.normal = (at.position - facet.point).normalized();
+  } else {
+    // The caster's distances are float; the plane is known in double.
+    at.position -= facet.normal.dot(at.position - facet.point) * facet.normal;
+  }
+  if (at.normal.dot(ray.direction) > 0.0) at.normal = -at.normal;
+  return at;
+}
+
+// L = (M + rho E) / pi.
+Spectrum RayTree::diffuse_radiance(const ElementHit& hit, const SurfacePoint& at,
+                                   std::uint64_t key) const {
+  const PatchMesh& mesh = caster_.mesh();
+  const int patch = mesh.patch[hit.element];
+  const Spectrum M = mesh.emission.row(patch).transpose();
+  const Spectrum rho = mesh.reflectance.row(patch).transpose();
+  constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
+  if (!(rho > 0.0f).any()) return one_over_pi * M;
+  if (options_.pass == Pass::interpolate) {
+    return one_over_pi * (M + rho * interpolate(mesh, irradiance_, hit));
+  }
+  // The vertices' normals round off a tessellated surface, and are the facet's own on a flat one.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (int c = 0; c < mesh.corner_count(hit.element); ++c) {
+    normal += hit.weights[c] * mesh.vertex_normal[mesh.corners[hit.element][c]];
+  }
+  const bool is_sphere = facets_[hit.facet].is_sphere;
+  if (is_sphere || !(normal.norm() > 0.0)) normal = at.normal;
+  const Spectrum direct = direct_light_.irradiance(caster_, at.position, normal.normalized(),
+                                                   hit.facet, key, options_.shadows);
+  return one_over_pi * (M + rho * (direct + interpolate(mesh, solution_.indirect_irradiance, hit)));
+}
+
+}  // namespace lightwell

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "radiosity/direct_light.h"
+#include "radiosity/solution.h"
+#include "raytrace/render.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// What one look along a ray found.
+struct Sight {
+  Spectrum radiance{};            ///< W/(m^2 sr)
+  std::uint64_t fingerprint = 0;  ///< of the surfaces seen, see RayTree
+  std::int64_t depth_cut = 0;     ///< branches that max_depth ended
+};
+
+/// Whitted's ray tree (1980) over a radiosity solution. Where a ray meets something diffuse,
+/// L = (M + rho E) / pi; mirrors add specular * L(reflected); clear dielectrics add
+/// R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R.
+///
+/// L inside a dielectric is the basic radiance L/n^2, which refraction leaves unchanged; a path
+/// that ends outside again needs no factor n^2.
+///
+/// The *fingerprint* is equal for two rays whose trees see the same smooth surfaces from the same
+/// sides in the same order; branches that weigh less than RenderOptions::contrast are left out, for
+/// they alone cannot change a pixel by more.
+class RayTree {
+ public:
+  RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+          const RadiositySolution& solution, const RenderOptions& options);
+
+  /// `key` decides the shadow samples.
+  Sight look(const Ray& ray, std::uint64_t key) const;
+  /// The fingerprint alone, without shadow rays.
+  std::uint64_t fingerprint(const Ray& ray) const;
+
+ private:
+  /// How a facet meets a ray.
+  struct FacetShape {
+    int material = 0;
+    int smooth_surface = 0;  ///< the same for facets that share vertices
+    bool is_sphere = false;
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the plane, or the sphere's centre
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  };
+  /// A place that was met; the normal is unit and on the side the ray came from.
+  struct SurfacePoint {
+    Eigen::Vector3d position, normal;
+  };
+  /// A ray of the tree.
+  struct Branch {
+    Ray ray{};
+    Spectrum weight{};  ///< share of what it sees that reaches the eye
+    int depth = 0;
+    std::uint64_t place = 1;  ///< 1 for the root, 2 p and 2 p + 1 for the children of p
+  };
+  /// What is gathered while the tree grows.
+  struct Walk {
+    Sight sight{};
+    std::uint64_t key = 0;
+    bool shades = true;
+  };
+
+  void follow(const Branch& branch, Walk& walk) const;
+  void split(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
+  void grow(const Branch& parent, int child, const Eigen::Vector3d& direction,
+            const Spectrum& share, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
+  SurfacePoint surface_point(const Ray& ray, const ElementHit& hit) const;
+  Spectrum diffuse_radiance(const ElementHit& hit, const SurfacePoint& at, std::uint64_t key) const;
+
+  const Scene& scene_;
+  const ElementCaster& caster_;
+  const DirectLight& direct_light_;
+  const RadiositySolution& solution_;
+  const RenderOptions& options_;
+  BandArray irradiance_{};  ///< direct + indirect at vertices, for Pass::interpolate
+  std::vector<FacetShape> facets_{};
+  double contact_offset_ = 0.0;
+};
+
+}  // namespace lightwell
