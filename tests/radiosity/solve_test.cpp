@@ -1,0 +1,230 @@
+#include "radiosity/solve.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scene/errors.h"
+#include "scene/parallel.h"
+#include "test_scenes.h"
+
+namespace lightwell {
+namespace {
+
+class Furnace : public testing::TestWithParam<std::tuple<float, bool>> {};
+
+// Closed room, every surface emits M and reflects rho: B = M / (1 - rho) everywhere, whatever
+// stands in it.
+TEST_P(Furnace, RadiosityIsEmissionOverOneMinusRho) {
+  const auto [rho, with_block] = GetParam();
+  const Scene scene = test::furnace(rho, 2.0f, with_block);
+  SolveOptions options;
+  options.mesh.max_patch_size = 0.2;
+  options.form_factors.rays_per_patch = 128;
+  options.gather.rays = 64;
+  const SolvedScene solved = solve_scene(scene, options);
+  const double B = 2.0 / (1.0 - static_cast<double>(rho));
+  const BandArray vertex_B = vertex_radiosity(solved.mesh, solved.solution);
+  const double patch_error =
+      (solved.solution.patch_radiosity.cast<double>() / B - 1.0).abs().maxCoeff();
+  const double vertex_error = (vertex_B.cast<double>() / B - 1.0).abs().maxCoeff();
+  std::printf("furnace rho %.2f: worst relative error %.1e (patches), %.1e (vertices)\n", rho,
+              patch_error, vertex_error);
+  EXPECT_LT(patch_error, 1e-4);
+  EXPECT_LT(vertex_error, 1e-4);
+}
+INSTANTIATE_TEST_SUITE_P(Rooms, Furnace,
+                         testing::Combine(testing::Values(0.0f, 0.3f, 0.5f, 0.8f, 0.95f, 0.99f),
+                                          testing::Bool()));
+
+Scene lit_room() {
+  Scene scene;
+  const int white = test::add_material(scene, test::diffuse(scene.bands, 0.7f));
+  const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.1f, 20.0f));
+  test::add_box(scene, {0, 0, 0}, {2, 3, 2.5}, {white, white, white, white, white, white}, true);
+  test::add_polygon(scene, "lamp", lamp,
+                    {{0.8, 1.2, 2.4}, {0.8, 1.8, 2.4}, {1.2, 1.8, 2.4}, {1.2, 1.2, 2.4}});
+  test::add_box(scene, {0.4, 0.5, 0.0}, {0.9, 1.1, 0.8}, {white, white, white, white, white, white},
+                false);
+  return scene;
+}
+
+SolveOptions quick() {
+  SolveOptions options;
+  options.mesh.max_patch_size = 0.3;
+  options.form_factors.rays_per_patch = 128;
+  options.gather.rays = 64;
+  options.error_points = 64;
+  return options;
+}
+
+TEST(SolveScene, EmittedIsAbsorbedPlusEscaped) {
+  for (const bool open : {false, true}) {
+    Scene scene = lit_room();
+    if (open) scene.surfaces.erase(scene.surfaces.begin());
+    const EnergyBalance e = solve_scene(scene, quick()).solution.energy;
+    std::printf("%s room: emitted %.6f absorbed %.6f escaped %.6f unshot %.1e\n",
+                open ? "open" : "closed", e.emitted, e.absorbed, e.escaped, e.unshot);
+    EXPECT_NEAR((e.absorbed + e.escaped) / e.emitted, 1.0, 1e-4);
+    EXPECT_NEAR(e.emitted, 3 * 20.0 * 0.4 * 0.6, 1e-5 * e.emitted);  // three bands of M A
+    if (open) {
+      EXPECT_GT(e.escaped, 0.05 * e.emitted);
+    } else {
+      EXPECT_EQ(e.escaped, 0.0);
+    }
+  }
+}
+
+TEST(SolveScene, MirrorsAndGlassKeepTheEnergyBalance) {
+  Scene scene = lit_room();
+  Material mirror = test::diffuse(scene.bands, 0.0f);
+  mirror.specular = constant_spectrum(scene.bands, 0.9f);
+  scene.surfaces[1].material = test::add_material(scene, mirror);
+  Material glass = test::diffuse(scene.bands, 0.0f);
+  glass.dielectric =
+      Dielectric{.index_of_refraction = 1.5f, .tint = constant_spectrum(scene.bands, 1.0f)};
+  const int g = test::add_material(scene, glass);
+  scene.surfaces.push_back({.name = "ball", .material = g, .shape = Sphere{{1.4, 2.2, 0.6}, 0.3}});
+  const EnergyBalance e = solve_scene(scene, quick()).solution.energy;
+  std::printf("mirror and glass: emitted %.5f absorbed %.5f escaped %.1e\n", e.emitted, e.absorbed,
+              e.escaped);
+  EXPECT_NEAR((e.absorbed + e.escaped) / e.emitted, 1.0, 1e-4);
+}
+
+bool same_bits(const BandArray& a, const BandArray& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         std::memcmp(a.data(), b.data(), sizeof(float) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+TEST(SolveScene, BitsDoNotDependOnTheNumberOfThreads) {
+  const auto with_threads = [](int n) {
+    const ThreadLimit limit(n);
+    return solve_scene(lit_room(), quick());
+  };
+  const SolvedScene one = with_threads(1), two = with_threads(2), five = with_threads(5);
+  for (const SolvedScene* other : {&two, &five}) {
+    EXPECT_TRUE(same_bits(one.solution.patch_radiosity, other->solution.patch_radiosity));
+    EXPECT_TRUE(same_bits(one.solution.direct_irradiance, other->solution.direct_irradiance));
+    EXPECT_TRUE(same_bits(one.solution.indirect_irradiance, other->solution.indirect_irradiance));
+    EXPECT_EQ(one.solution.error_estimate, other->solution.error_estimate);
+  }
+}
+
+// Two rooms that share floor and ceiling polygons, parted by a wall without thickness; the lamp is
+// in the first.
+TEST(SolveScene, NoLightLeaksThroughAWallWithoutThickness) {
+  for (const double patch : {0.15, 0.35, 1.0}) {
+    Scene scene;
+    Material white = test::diffuse(scene.bands, 0.7f);
+    white.one_sided = false;
+    const int w = test::add_material(scene, white);
+    const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 20.0f));
+    test::add_box(scene, {0, 0, 0}, {4, 2, 2}, {w, w, w, w, w, w}, true);
+    test::add_polygon(scene, "partition", w, {{1.9, 0, 0}, {1.9, 2, 0}, {1.9, 2, 2}, {1.9, 0, 2}});
+    test::add_polygon(scene, "lamp", lamp,
+                      {{0.8, 0.8, 1.9}, {0.8, 1.2, 1.9}, {1.2, 1.2, 1.9}, {1.2, 0.8, 1.9}});
+    SolveOptions options = quick();
+    options.mesh.max_patch_size = patch;
+    const SolvedScene solved = solve_scene(scene, options);
+    const BandArray E = element_mean(solved.mesh, solved.solution.irradiance());
+    float dark = 0.0f, lit = 0.0f;
+    for (int e = 0; e < solved.mesh.element_count(); ++e) {
+      const PatchPoint at = element_center(solved.mesh, e);
+      const bool in_dark_room =
+          at.position.x() > 1.9 || (at.position.x() > 1.899 && at.normal.x() > 0.5);
+      (in_dark_room ? dark : lit) = std::max(in_dark_room ? dark : lit, E.row(e).maxCoeff());
+    }
+    EXPECT_EQ(dark, 0.0f) << "patch size " << patch;
+    EXPECT_GT(lit, 1.0f);
+  }
+}
+
+TEST(SolveScene, IrradianceDoesNotDependOnTheUnitOfLength) {
+  const auto mean_irradiance = [](double scale) {
+    Scene scene = lit_room();
+    for (Surface& s : scene.surfaces) {
+      for (auto& v : std::get<PolygonMesh>(s.shape).vertices) v *= scale;
+    }
+    SolveOptions options = quick();
+    options.mesh.max_patch_size *= scale;
+    const SolvedScene solved = solve_scene(scene, options);
+    return solved.solution.irradiance().cast<double>().mean();
+  };
+  const double metres = mean_irradiance(1.0);
+  // The same rays in another unit; only float rounding at edges may send one elsewhere.
+  EXPECT_NEAR(mean_irradiance(1e-3) / metres, 1.0, 1e-4);
+  EXPECT_NEAR(mean_irradiance(1e3) / metres, 1.0, 1e-4);
+}
+
+int material_of_face(Scene& scene, const nlohmann::json& p, const std::string& emitting, int face) {
+  static const std::array<std::string, 6> names = {"x0", "x1", "y0", "y1", "z0", "z1"};
+  return test::add_material(scene, test::diffuse(scene.bands, p["rho"][face].get<float>(),
+                                                 names[face] == emitting ? 1.0f : 0.0f));
+}
+
+TEST(SolveScene, ConvergedBoxesWithinDiscretisation) {
+  std::ifstream file(LIGHTWELL_TEST_DATA "/analytic/enclosures.json");
+  int tested = 0;
+  for (const auto& c : nlohmann::json::parse(file)) {
+    if (c["kind"] != "box-converged") continue;
+    const auto& p = c["parameters"];
+    const std::string emission = p["emission"].is_string() ? p["emission"].get<std::string>() : "";
+    if (emission.rfind("face ", 0) != 0 || emission.substr(7) != " emits E=1") continue;
+    Scene scene;
+    std::array<int, 6> faces;
+    for (int f = 0; f < 6; ++f) faces[f] = material_of_face(scene, p, emission.substr(5, 2), f);
+    test::add_box(
+        scene, {0, 0, 0},
+        {p["dims"][0].get<double>(), p["dims"][1].get<double>(), p["dims"][2].get<double>()}, faces,
+        true);
+    SolveOptions options;
+    options.mesh.auto_patch_count = 600;
+    options.gather.rays = 1024;
+    const SolvedScene solved = solve_scene(scene, options);
+    const ElementCaster caster(solved.mesh);
+    double worst = 0.0;
+    for (const auto& at : c["expected"]["points"]) {
+      const auto point_of = [](const nlohmann::json& j) {
+        return Eigen::Vector3d(j[0].get<double>(), j[1].get<double>(), j[2].get<double>());
+      };
+      const Eigen::Vector3d point = point_of(at["point"]);
+      const std::string face = at["face"];
+      const int axis = face[0] - 'x';
+      Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+      normal[axis] = face[1] == '0' ? 1.0 : -1.0;
+      const Ray ray{.origin = point + 1e-3 * normal, .direction = -normal};
+      ElementHit hit;
+      caster.closest_hits({&ray, 1}, {&hit, 1});
+      ASSERT_GE(hit.element, 0);
+      const double E = interpolate(solved.mesh, solved.solution.irradiance(), hit)[0];
+      const double H = at["H"];
+      if (H > 0.0) worst = std::max(worst, std::abs(E / H - 1.0));
+    }
+    std::printf("%s: worst relative error of irradiance %.2e (estimate %.2e)\n",
+                c["id"].get<std::string>().c_str(), worst, solved.solution.error_estimate);
+    // 10 x 10 patches a face, constant over each while they exchange light, then 1024 gathered rays
+    // a vertex: the noise of 1024 stratified rays of a smooth function is about 2e-3, four of them
+    // 8e-3.
+    EXPECT_LT(worst, 8e-3) << c["id"];
+    ++tested;
+  }
+  EXPECT_GE(tested, 1);
+}
+
+TEST(SolveScene, SaysWhatToDoWhenNothingEmits) {
+  Scene scene;
+  const int white = test::add_material(scene, test::diffuse(scene.bands, 0.7f));
+  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, {white, white, white, white, white, white}, true);
+  try {
+    solve_scene(scene);
+    FAIL() << "expected InputError";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("nothing emits light"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("radiance"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace lightwell::test {
+
+inline Material diffuse(const Bands& bands, float rho, float exitance = 0.0f) {
+  return {.name = "rho" + std::to_string(rho),
+          .reflectance = constant_spectrum(bands, rho),
+          .specular = constant_spectrum(bands, 0.0f),
+          .emission = constant_spectrum(bands, exitance),
+          .one_sided = true};
+}
+
+inline int add_material(Scene& scene, const Material& material) {
+  scene.materials.push_back(material);
+  return static_cast<int>(scene.materials.size()) - 1;
+}
+
+inline void add_polygon(Scene& scene, const std::string& name, int material,
+                        const std::vector<Eigen::Vector3d>& points) {
+  PolygonMesh mesh{.vertices = points, .facets = {Facet{}}};
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) mesh.facets[0].boundary.push_back(i);
+  scene.surfaces.push_back({.name = name, .material = material, .shape = mesh});
+}
+
+/// Faces named x0 x1 y0 y1 z0 z1, one surface each, facing inwards (a room) or outwards (a block).
+/// `materials` in that order.
+inline void add_box(Scene& scene, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                    const std::array<int, 6>& materials, bool inwards) {
+  const auto at = [&](int x, int y, int z) {
+    return Eigen::Vector3d(x ? high.x() : low.x(), y ? high.y() : low.y(), z ? high.z() : low.z());
+  };
+  // Counter-clockwise seen from inside.
+  const std::array<std::vector<Eigen::Vector3d>, 6> faces = {{
+      {at(0, 0, 0), at(0, 1, 0), at(0, 1, 1), at(0, 0, 1)},
+      {at(1, 0, 0), at(1, 0, 1), at(1, 1, 1), at(1, 1, 0)},
+      {at(0, 0, 0), at(0, 0, 1), at(1, 0, 1), at(1, 0, 0)},
+      {at(0, 1, 0), at(1, 1, 0), at(1, 1, 1), at(0, 1, 1)},
+      {at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0)},
+      {at(0, 0, 1), at(0, 1, 1), at(1, 1, 1), at(1, 0, 1)},
+  }};
+  const std::array<const char*, 6> names = {"x0", "x1", "y0", "y1", "z0", "z1"};
+  for (int f = 0; f < 6; ++f) {
+    auto points = faces[f];
+    if (!inwards) points = {points.rbegin(), points.rend()};
+    add_polygon(scene, names[f], materials[f], points);
+  }
+}
+
+/// A closed room where every face has reflectance rho and emits M; with a block inside if asked.
+inline Scene furnace(float rho, float M, bool with_block) {
+  Scene scene;
+  const int m = add_material(scene, diffuse(scene.bands, rho, M));
+  const std::array<int, 6> all = {m, m, m, m, m, m};
+  add_box(scene, {0, 0, 0}, {1.0, 1.2, 0.9}, all, true);
+  if (with_block) add_box(scene, {0.3, 0.4, 0.0}, {0.6, 0.7, 0.5}, all, false);
+  return scene;
+}
+
+}  // namespace lightwell::test
