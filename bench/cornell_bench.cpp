@@ -1,0 +1,172 @@
+// How fast the two passes are, against what plain Embree does with the same rays in the same
+// process.
+//
+//   lightwell_bench [SCENE.toml]     default: the diffuse Cornell box
+//
+// Prints: raw incoherent Embree rays per second; form-factor rays per second and the ratio; seconds
+// for the default solve and the 512 x 512 second pass; peak memory.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <vector>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "radiosity/ray_cast_rows.h"
+#include "radiosity/solve.h"
+#include "raytrace/render.h"
+#include "scene/io/read_scene.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace {
+
+using namespace lightwell;
+
+double seconds_of(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// The median of some runs: machines are shared and noisy.
+double median_seconds(int runs, const std::function<void()>& work) {
+  std::vector<double> seconds;
+  for (int i = 0; i < runs; ++i) seconds.push_back(seconds_of(work));
+  std::sort(seconds.begin(), seconds.end());
+  return seconds[runs / 2];
+}
+
+struct EmbreeScene {
+  RTCDevice device = rtcNewDevice(nullptr);
+  RTCScene scene = rtcNewScene(device);
+
+  explicit EmbreeScene(const PatchMesh& mesh) {
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
+    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.vertex_count()));
+    for (int i = 0; i < mesh.vertex_count(); ++i) {
+      for (int c = 0; c < 3; ++c) v[3 * i + c] = static_cast<float>(mesh.position(i)[c]);
+    }
+    auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, mesh.element_count()));
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const auto& c = mesh.corners[e];  // a repeated last corner is Embree's way to say triangle
+      for (int k = 0; k < 4; ++k) index[4 * e + k] = static_cast<unsigned>(c[k] < 0 ? c[2] : c[k]);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+  }
+  ~EmbreeScene() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+};
+
+std::vector<RTCRayHit> hemisphere_rays(const PatchMesh& mesh, int rays_per_patch) {
+  std::vector<RTCRayHit> rays;
+  const SobolPoints sobol(rays_per_patch);
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    for (int r = 0; r < rays_per_patch; ++r) {
+      const Eigen::Array4f u = sobol.point(r, random_key(i, 99));
+      const PatchPoint from = patch_point(mesh, i, u[0], u[1]);
+      Eigen::Vector3d a, b;
+      tangent_frame(from.normal, a, b);
+      const Eigen::Vector3d local = cosine_direction(u[2], u[3]);
+      const Eigen::Vector3d d = local.x() * a + local.y() * b + local.z() * from.normal;
+      const Eigen::Vector3d o = from.position + 1e-6 * from.normal;
+      RTCRayHit q{};
+      q.ray.org_x = static_cast<float>(o.x());
+      q.ray.org_y = static_cast<float>(o.y());
+      q.ray.org_z = static_cast<float>(o.z());
+      q.ray.dir_x = static_cast<float>(d.x());
+      q.ray.dir_y = static_cast<float>(d.y());
+      q.ray.dir_z = static_cast<float>(d.z());
+      q.ray.tfar = 1e30f;
+      q.ray.mask = ~0u;
+      rays.push_back(q);
+    }
+  }
+  return rays;
+}
+
+void trace_raw(RTCScene scene, std::vector<RTCRayHit>& rays) {
+  parallel_for(static_cast<int>(rays.size()), 4096, [&](int begin, int end) {
+#if RTC_VERSION_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+#endif
+    for (int i = begin; i < end; ++i) {
+      rays[i].ray.tfar = 1e30f;
+      rays[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+      rtcIntersect1(scene, &rays[i], &arguments);
+#else
+      rtcIntersect1(scene, &context, &rays[i]);
+#endif
+    }
+  });
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss / 1024.0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Scene scene = read_scene(argc > 1 ? argv[1] : LIGHTWELL_CORNELL "/cornell.toml");
+  fmt::print("scene {}, {} threads\n", scene.file.string(), thread_count());
+
+  // End to end first, so that peak memory is the product's own.
+  SolvedScene solved;
+  const double solve_seconds = seconds_of([&] { solved = solve_scene(scene); });
+  const PatchMesh& mesh = solved.mesh;
+  const ElementCaster caster(mesh);
+  const DirectLight direct_light(scene, mesh);
+  double render_seconds = 0.0;
+  if (!scene.cameras.empty()) {
+    Camera camera = scene.cameras[0];
+    camera.width = camera.height = 512;
+    render_seconds =
+        seconds_of([&] { render(scene, caster, direct_light, solved.solution, camera); });
+  }
+  fmt::print("solve {:.2f} s ({} patches, {} elements)", solve_seconds, mesh.patch_count(),
+             mesh.element_count());
+  for (const PhaseSeconds& phase : solved.solution.seconds) {
+    fmt::print("  {} {:.2f}", phase.phase, phase.seconds);
+  }
+  fmt::print("\nsecond pass 512 x 512 {:.2f} s\nsolve + picture {:.2f} s, peak memory {:.0f} MB\n",
+             render_seconds, solve_seconds + render_seconds, peak_memory_mb());
+
+  constexpr int rays_per_patch = 512, runs = 5;
+  const EmbreeScene embree(mesh);
+  std::vector<RTCRayHit> raw = hemisphere_rays(mesh, rays_per_patch);
+  const double raw_seconds = median_seconds(runs, [&] { trace_raw(embree.scene, raw); });
+  const LightPaths paths(scene, caster, 8);
+  const std::vector<int> counts(mesh.patch_count(), rays_per_patch);
+  const double row_seconds = median_seconds(runs, [&] { cast_rows(caster, paths, counts, {}); });
+  const double rays = static_cast<double>(rays_per_patch) * mesh.patch_count() / 1e6;
+  fmt::print(
+      "raw Embree, incoherent: {:.2f} Mray/s\nform-factor rows: {:.2f} Mray/s, {:.0f} % of raw\n",
+      rays / raw_seconds, rays / row_seconds, 100.0 * raw_seconds / row_seconds);
+}
