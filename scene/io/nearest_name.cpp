@@ -1,0 +1,53 @@
+#include "scene/io/nearest_name.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace lightwell {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string did_you_mean(std::string_view given, const std::vector<std::string>& known) {
+  constexpr std::size_t longest = 64;  // names are words; the table is quadratic
+  if (given.size() > longest) return {};
+  // Up to about a third of the letters: "reflectivity" still finds "reflectance", "x" finds
+  // nothing.
+  std::size_t best = given.size() / 3 + 2;
+  const std::string* nearest = nullptr;
+  for (const std::string& name : known) {
+    if (name.size() > longest) continue;
+    const std::size_t distance = edit_distance(lower(given), lower(name));
+    if (distance < best && distance < std::max(given.size(), name.size())) {
+      best = distance;
+      nearest = &name;
+    }
+  }
+  return nearest ? fmt::format(" Did you mean '{}'?", *nearest) : std::string();
+}
+
+}  // namespace lightwell

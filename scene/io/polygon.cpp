@@ -1,0 +1,286 @@
+#include "scene/io/polygon.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+using Point = Eigen::Vector2d;
+using FlatLoop = std::vector<Point>;
+
+// Points closer than this share of the size are one: far below `flatness`, far above rounding.
+constexpr double coincident = 1e-9;
+
+Eigen::Vector3d newell(const Loop& loop) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    sum += (loop[i] - loop[0]).cross(loop[(i + 1) % loop.size()] - loop[0]);
+  }
+  return 0.5 * sum;
+}
+
+// The plane's own coordinates, in which the boundary runs counter-clockwise and has size 1.
+struct Plane {
+  Eigen::Vector3d origin, normal, x, y;
+  double size = 0.0;
+
+  explicit Plane(const Loop& boundary) : size(size_of(boundary)) {
+    origin = std::accumulate(boundary.begin(), boundary.end(), Eigen::Vector3d(0, 0, 0)) /
+             static_cast<double>(boundary.size());
+    const Eigen::Vector3d area = newell(boundary);
+    normal = area.norm() > 0.0 ? Eigen::Vector3d(area.normalized()) : Eigen::Vector3d::UnitZ();
+    tangent_frame(normal, x, y);
+  }
+  FlatLoop flatten(const Loop& loop) const {
+    FlatLoop flat;
+    for (const auto& p : loop) {
+      flat.emplace_back((p - origin).dot(x) / size, (p - origin).dot(y) / size);
+    }
+    return flat;
+  }
+};
+
+// Twice the area of (a, b, c), zero where that is rounding.
+double turn(const Point& a, const Point& b, const Point& c) {
+  const Point ab = b - a, ac = c - a;
+  const double area = ab.x() * ac.y() - ab.y() * ac.x();
+  return std::abs(area) > coincident * ab.norm() ? area : 0.0;
+}
+
+bool lies_on(const Point& p, const Point& a, const Point& b) {
+  if (turn(a, b, p) != 0.0) return false;
+  const double along = (p - a).dot(b - a);
+  return along >= 0.0 && along <= (b - a).squaredNorm();
+}
+
+bool cross_properly(const Point& a, const Point& b, const Point& c, const Point& d) {
+  return turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
+}
+
+bool cross_or_touch(const Point& a, const Point& b, const Point& c, const Point& d) {
+  if ((a.cwiseMax(b).array() < c.cwiseMin(d).array() - coincident).any()) return false;
+  if ((c.cwiseMax(d).array() < a.cwiseMin(b).array() - coincident).any()) return false;
+  return cross_properly(a, b, c, d) || lies_on(c, a, b) || lies_on(d, a, b) || lies_on(a, c, d) ||
+         lies_on(b, c, d);
+}
+
+std::string loop_fault(const FlatLoop& p) {
+  const std::size_t n = p.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      if ((p[i] - p[j]).norm() <= coincident) {
+        return fmt::format("has the same point as vertex {} and vertex {}", i + 1, j + 1);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point &a = p[i], &b = p[(i + 1) % n], &c = p[(i + 2) % n];
+    if (turn(a, b, c) == 0.0 && (b - a).dot(c - b) < 0.0) {
+      return fmt::format("folds back on itself at vertex {}", (i + 1) % n + 1);
+    }
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (i == 0 && j == n - 1) continue;  // neighbours share a vertex
+      if (cross_or_touch(a, b, p[j], p[(j + 1) % n])) {
+        return fmt::format("has edges {} and {} that cross or touch", i + 1, j + 1);
+      }
+    }
+  }
+  return {};
+}
+
+bool crosses_itself_properly(const FlatLoop& p) {
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    for (std::size_t j = i + 2; j < p.size(); ++j) {
+      if (cross_properly(p[i], p[i + 1], p[j], p[(j + 1) % p.size()])) return true;
+    }
+  }
+  return false;
+}
+
+bool loops_meet(const FlatLoop& p, const FlatLoop& q) {
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    for (std::size_t j = 0; j < q.size(); ++j) {
+      if (cross_or_touch(p[i], p[(i + 1) % p.size()], q[j], q[(j + 1) % q.size()])) return true;
+    }
+  }
+  return false;
+}
+
+// Even-odd rule; the point is not on the loop.
+bool is_inside(const Point& p, const FlatLoop& loop) {
+  bool inside = false;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Point &a = loop[i], &b = loop[(i + 1) % loop.size()];
+    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+    if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+  }
+  return inside;
+}
+
+std::string count_fault(const Loop& loop) {
+  if (loop.size() >= 3) return {};
+  return fmt::format("has {} vertices; a polygon needs at least 3", loop.size());
+}
+
+// Twice the area over the squared size, so about the width over the length of a thin strip.
+bool is_thin(const Loop& loop) {
+  const double size = size_of(loop);
+  return !(newell(loop).norm() > 0.5 * flatness * size * size);
+}
+
+std::string holes_fault(const Polygon& polygon, const Plane& plane, const FlatLoop& boundary) {
+  std::vector<FlatLoop> holes;
+  for (std::size_t h = 0; h < polygon.holes.size(); ++h) {
+    const Loop& hole = polygon.holes[h];
+    const auto wrong = [&](const std::string& what) {
+      return fmt::format("has a hole {} that {}", h + 1, what);
+    };
+    if (const auto what = count_fault(hole); !what.empty()) return wrong(what);
+    FlatLoop flat = plane.flatten(hole);
+    if (const auto what = loop_fault(flat); !what.empty()) return wrong(what);
+    if (is_thin(hole)) return wrong("has no area");
+    if (loops_meet(flat, boundary)) return wrong("crosses or touches the boundary");
+    if (!is_inside(flat.front(), boundary)) return wrong("lies outside the boundary");
+    for (std::size_t g = 0; g < holes.size(); ++g) {
+      if (loops_meet(flat, holes[g]) || is_inside(flat.front(), holes[g]) ||
+          is_inside(holes[g].front(), flat)) {
+        return wrong(fmt::format("meets hole {}", g + 1));
+      }
+    }
+    holes.push_back(std::move(flat));
+  }
+  return {};
+}
+
+bool blocks_ear(const Point& p, const Point& a, const Point& b, const Point& c) {
+  if (p == a || p == b || p == c) return false;
+  return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+}
+
+bool is_ear(const FlatLoop& p, const std::vector<int>& left, std::size_t i) {
+  const std::size_t n = left.size();
+  const Point &a = p[left[(i + n - 1) % n]], &b = p[left[i]], &c = p[left[(i + 1) % n]];
+  if (!(turn(a, b, c) > 0.0)) return false;
+  return std::none_of(left.begin(), left.end(),
+                      [&](int other) { return blocks_ear(p[other], a, b, c); });
+}
+
+}  // namespace
+
+double size_of(const Loop& loop) {
+  Eigen::AlignedBox3d box;
+  for (const auto& p : loop) box.extend(p);
+  return box.isEmpty() ? 0.0 : box.diagonal().norm();
+}
+
+double deviation_from_plane(const Polygon& polygon) {
+  const Plane plane(polygon.boundary);
+  double deviation = 0.0;
+  const auto add = [&](const Loop& loop) {
+    for (const auto& p : loop) {
+      deviation = std::max(deviation, std::abs((p - plane.origin).dot(plane.normal)));
+    }
+  };
+  add(polygon.boundary);
+  for (const Loop& hole : polygon.holes) add(hole);
+  return deviation / plane.size;
+}
+
+std::string fault(const Polygon& polygon) {
+  if (auto what = count_fault(polygon.boundary); !what.empty()) return what;
+  if (!(size_of(polygon.boundary) > 0.0)) return "has all its vertices in one point";
+  const Plane plane(polygon.boundary);
+  const FlatLoop boundary = plane.flatten(polygon.boundary);
+  // The area of a crossing loop may cancel, so the crossing is the better explanation.
+  if (auto what = loop_fault(boundary); !what.empty() && polygon.boundary.size() > 3) return what;
+  if (is_thin(polygon.boundary)) return "has no area (it is thinner than 1e-6 of its size)";
+  return holes_fault(polygon, plane, boundary);
+}
+
+std::vector<std::array<int, 3>> split_into_triangles(const Loop& loop) {
+  const FlatLoop p = Plane(loop).flatten(loop);
+  if (crosses_itself_properly(p)) return {};
+  std::vector<int> left(loop.size());
+  std::iota(left.begin(), left.end(), 0);
+  std::vector<std::array<int, 3>> triangles;
+  while (left.size() >= 3) {
+    const std::size_t n = left.size();
+    // Vertex 1 first, so that a quadrilateral is cut along 0-2.
+    std::size_t ear = 0;
+    while (ear < n && !is_ear(p, left, (ear + 1) % n)) ++ear;
+    if (ear == n) return {};
+    const std::size_t i = (ear + 1) % n;
+    triangles.push_back({left[(i + n - 1) % n], left[i], left[(i + 1) % n]});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return triangles;
+}
+
+std::vector<int> MeshBuilder::indices(const Loop& loop) {
+  std::vector<int> result;
+  for (const auto& p : loop) {
+    // + 0.0: -0 and 0 are one position.
+    const std::array<double, 3> key = {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};
+    const auto [found, is_new] = index_of_.emplace(key, static_cast<int>(mesh_.vertices.size()));
+    if (is_new) mesh_.vertices.push_back(p);
+    result.push_back(found->second);
+  }
+  return result;
+}
+
+void MeshBuilder::add(const Polygon& polygon) {
+  Facet facet{.boundary = indices(polygon.boundary)};
+  const Eigen::Vector3d normal = newell(polygon.boundary);
+  for (const Loop& hole : polygon.holes) {
+    facet.holes.push_back(indices(hole));
+    if (newell(hole).dot(normal) > 0.0)
+      std::reverse(facet.holes.back().begin(), facet.holes.back().end());
+  }
+  mesh_.facets.push_back(std::move(facet));
+}
+
+std::vector<std::string> Repairs::notes() const {
+  std::vector<std::string> result;
+  const auto add = [&](int count, const char* one, const char* many) {
+    if (count > 0) result.push_back(fmt::format("{} {}", count, count == 1 ? one : many));
+  };
+  add(split, "polygon was not planar and was split into triangles",
+      "polygons were not planar and were split into triangles");
+  add(thin, "polygon without area was dropped", "polygons without area were dropped");
+  add(crossing, "polygon that crosses itself was dropped, leaving a gap",
+      "polygons that cross themselves were dropped, leaving gaps");
+  return result;
+}
+
+void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs) {
+  loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
+  while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+  if (loop.size() < 3 || is_thin(loop)) {
+    ++(loop.size() > 3 && !fault({loop}).empty() ? repairs.crossing : repairs.thin);
+    return;
+  }
+  if (loop.size() == 3) return mesh.add({std::move(loop)});
+  const bool sound = fault({loop}).empty();
+  if (sound && deviation_from_plane({loop}) <= flatness) return mesh.add({std::move(loop)});
+  // Exporters join a hole to its polygon by a bridge that runs there and back; such a loop is no
+  // simple polygon, yet ears can be clipped from it.
+  const auto triangles = split_into_triangles(loop);
+  if (triangles.empty()) {
+    ++repairs.crossing;
+    return;
+  }
+  ++repairs.split;
+  for (const auto& t : triangles) {
+    const Loop corners = {loop[t[0]], loop[t[1]], loop[t[2]]};
+    if (!is_thin(corners)) mesh.add({corners});
+  }
+}
+
+}  // namespace lightwell

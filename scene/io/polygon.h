@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Share of a polygon's size by which it may leave its plane, and below whose width it has no area
+/// worth the name. Coordinates with six decimals keep to it; a radiosity mesh could not tell.
+inline constexpr double flatness = 1e-6;
+
+using Loop = std::vector<Eigen::Vector3d>;
+
+/// A polygon as a file gives it, before it becomes a Facet.
+struct Polygon {
+  Loop boundary{};
+  std::vector<Loop> holes{};
+};
+
+/// What keeps a polygon from being used ("has edges 1 and 3 that cross or touch"), or empty.
+/// Vertices and edges count from 1; edge i starts at vertex i. A polygon out of its plane is judged
+/// as seen along its normal.
+std::string fault(const Polygon& polygon);
+
+/// Largest distance of a vertex, holes included, from the boundary's plane (Newell's normal through
+/// the centroid) over the boundary's size.
+double deviation_from_plane(const Polygon& polygon);
+
+/// Length of the diagonal of the loop's bounding box.
+double size_of(const Loop& loop);
+
+/// Cuts a polygon without holes into triangles of the same orientation by clipping ears (Meisters
+/// 1975) as seen along its normal. A quadrilateral is cut along v0-v2 if that diagonal lies inside.
+/// The loop may touch itself (a hole joined by a bridge); empty if it crosses itself.
+std::vector<std::array<int, 3>> split_into_triangles(const Loop& loop);
+
+/// Collects polygons into a PolygonMesh in which equal positions are one vertex.
+class MeshBuilder {
+ public:
+  /// The polygon must be sound; holes are turned to the winding opposite to the boundary's.
+  void add(const Polygon& polygon);
+  bool empty() const { return mesh_.facets.empty(); }
+  const PolygonMesh& mesh() const { return mesh_; }
+
+ private:
+  std::vector<int> indices(const Loop& loop);
+  PolygonMesh mesh_;
+  std::map<std::array<double, 3>, int> index_of_;
+};
+
+/// What had to be done to the polygons of a mesh file before they could be used.
+struct Repairs {
+  int split = 0;     ///< not planar, or with a hole joined by a bridge: cut into triangles
+  int thin = 0;      ///< without area: dropped
+  int crossing = 0;  ///< crossing themselves: dropped
+
+  /// One sentence for each count that is not zero.
+  std::vector<std::string> notes() const;
+};
+
+/// Adds a polygon of a mesh file, repaired where that is possible.
+void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs);
+
+}  // namespace lightwell

@@ -1,0 +1,22 @@
+#include "scene/io/read_scene.h"
+
+#include <fmt/format.h>
+
+#include "scene/errors.h"
+#include "scene/io/text_file.h"
+
+namespace lightwell {
+
+Scene read_scene(const std::filesystem::path& path) {
+  require_readable(path);
+  const std::string extension = lower_extension(path);
+  if (extension == ".toml") return read_toml(path);
+  if (extension == ".obj") return read_obj(path);
+  if (extension == ".ply" || extension == ".stl") return read_geometry(path);
+  throw InputError(
+      fmt::format("{}: the extension '{}' is of no known scene format; readable are "
+                  ".toml (native), .obj, .ply and .stl",
+                  path.string(), extension));
+}
+
+}  // namespace lightwell

@@ -1,0 +1,98 @@
+#include "scene/io/text_file.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\f\v";
+
+}  // namespace
+
+void require_readable(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw InputError(
+        fmt::format("{}: there is no such file; check the name and the folder", path.string()));
+  }
+  if (std::filesystem::is_directory(status)) {
+    throw InputError(fmt::format("{}: this is a folder; name a file in it", path.string()));
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw InputError(fmt::format("{}: this is not a regular file", path.string()));
+  }
+  if (!std::ifstream(path, std::ios::binary)) {
+    throw InputError(
+        fmt::format("{}: the file cannot be opened; check its permissions", path.string()));
+  }
+}
+
+TextFile::TextFile(const std::filesystem::path& path) : path_(path) {
+  require_readable(path);
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream content;
+  if (std::filesystem::file_size(path) > 0) content << stream.rdbuf();
+  if (!stream || !content) {
+    throw InputError(fmt::format("{}: the file could not be read to its end", path.string()));
+  }
+  text_ = std::move(content).str();
+}
+
+void TextFile::for_each_line(
+    const std::function<void(int line, std::string_view text)>& visit) const {
+  std::string_view rest = text_;
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+  for (int line = 1; !rest.empty(); ++line) {
+    const std::size_t end = rest.find('\n');
+    std::string_view text = rest.substr(0, end);
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    visit(line, text);
+    if (end == std::string_view::npos) return;
+    rest.remove_prefix(end + 1);
+  }
+}
+
+void TextFile::fail(int line, std::string_view problem) const {
+  throw InputError(fmt::format("{}:{}: {}", path_.string(), line, problem));
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string_view next_word(std::string_view& text) {
+  text = trimmed(text);
+  const std::string_view word = text.substr(0, text.find_first_of(blanks));
+  text.remove_prefix(word.size());
+  return word;
+}
+
+std::optional<double> parse_finite(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+}  // namespace lightwell

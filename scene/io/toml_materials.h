@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/io/spectrum_samples.h"
+#include "scene/io/toml_value.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// The [bands] of a native file and where they lie.
+struct TomlBands {
+  Bands bands = rgb_bands();
+  BandEdges edges = {{600.0, 700.0}, {500.0, 600.0}, {400.0, 500.0}};
+};
+
+TomlBands read_toml_bands(const TomlValue& value);
+
+/// A [materials.NAME] table. Its `power` becomes an exitance once the area is known.
+struct TomlMaterial {
+  Material material{};
+  std::optional<Spectrum> power{};  ///< W per band over all surfaces of the material
+};
+
+TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
+                                const TomlBands& bands);
+
+/// Sets the emission of every material that was given as a power: M = power / area, both sides
+/// counted where both shine. `materials` are the first of the scene's. Notes those without surface.
+void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene);
+
+}  // namespace lightwell
