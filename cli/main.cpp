@@ -1,1 +1,176 @@
-int main() { return 0; }
+// The lightwell command: arguments to options, results to files, exceptions to exit codes.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <new>
+#include <optional>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "scene/errors.h"
+#include "scene/io/nearest_name.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+constexpr const char* recipes =
+    R"(lightwell computes the light in a room once, and shows it from everywhere.
+
+  lightwell run cornell/cornell.toml                     solve, and render every camera of the scene
+  lightwell solve room.toml -o room.vtp                  solve, and keep the light on all surfaces
+  lightwell render room.toml room.vtp -o room.png        a picture: mirrors, glass, exact shadows
+  lightwell view room.toml room.vtp                      walk through it
+  lightwell probe room.toml room.vtp --points desk.csv -o lux.csv
+                                                         irradiance and lux at points
+  lightwell compare mine.exr reference.exr               how far two pictures are apart
+  lightwell info room.toml                               what is in a scene, solution or picture
+
+'lightwell COMMAND --help' explains a command. A scene is a .toml file (docs/scene-format.md),
+.obj, .ply or .stl.
+)";
+
+struct NamedCommand {
+  const char* name;
+  Action (*add)(CLI::App&);
+};
+constexpr std::array<NamedCommand, 7> commands = {{{"run", add_run},
+                                                   {"solve", add_solve},
+                                                   {"render", add_render},
+                                                   {"probe", add_probe},
+                                                   {"view", add_view},
+                                                   {"compare", add_compare},
+                                                   {"info", add_info}}};
+
+void add_common(CLI::App& app, CommonOptions& options) {
+  const std::string group = "Everywhere";
+  app.add_flag("--quiet", options.quiet, "no progress, notes or report")->group(group);
+  app.add_flag("--json", options.json, "one JSON object on standard output")->group(group);
+  app.add_flag("--verbose", options.verbose, "also say which options are in force")->group(group);
+  app.add_option("--threads", options.threads, "default: one per core")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->group(group);
+  app.set_version_flag("--version", "lightwell " LIGHTWELL_VERSION)->group(group);
+  app.set_help_flag("-h,--help", "this text")->group(group);
+}
+
+int wrong_usage(const std::string& sentence, const std::string& command = {}) {
+  fmt::print(stderr, "error: {}\n'lightwell{} --help' shows what there is.\n", sentence,
+             command.empty() ? "" : " " + command);
+  return exit_wrong_usage;
+}
+
+// The first word that is not an option, if it names no command.
+std::optional<std::string> unknown_command(int argc, char** argv,
+                                           const std::vector<std::string>& known) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--threads") {
+      ++i;
+    } else if (word.empty() || word[0] != '-') {
+      if (std::find(known.begin(), known.end(), word) == known.end()) return word;
+      return std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+// CLI11's sentence, and for an option that does not exist the nearest that does.
+std::string usage_sentence(const CLI::ParseError& error, const CLI::App& command) {
+  std::string sentence = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return sentence;
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  for (const std::string& word : command.remaining()) {
+    if (word.rfind("--", 0) == 0)
+      return fmt::format("there is no option '{}'.{}", word, did_you_mean(word, known));
+  }
+  return sentence;
+}
+
+int fail(ExitCode code, const std::string& sentence) {
+  fmt::print(stderr, "error: {}\n", sentence);
+  return code;
+}
+
+int act(const Action& action, const CommonOptions& options) {
+  Console console(options);
+  try {
+    const ThreadLimit limit(options.threads);
+    const int code = action(console);
+    if (std::fflush(stdout) != 0) {
+      return fail(exit_failed, "standard output could not be written");
+    }
+    return code;
+  } catch (const InputError& error) {
+    console.finish_phase();
+    return fail(exit_bad_input, error.what());
+  } catch (const Interrupted&) {
+    console.finish_phase();
+    fmt::print(stderr, "interrupted; nothing is left half-written\n");
+    return exit_interrupted;
+  } catch (const std::bad_alloc&) {
+    console.finish_phase();
+    return fail(exit_failed,
+                "not enough memory; a larger --max-patch-size or a smaller picture needs less");
+  } catch (const std::exception& error) {
+    console.finish_phase();
+    return fail(exit_failed, error.what());
+  }
+}
+
+int run_program(int argc, char** argv) {
+  CommonOptions options;
+  CLI::App app("Radiosity with a ray-traced second pass.", "lightwell");
+  add_common(app, options);
+  app.require_subcommand(0, 1);
+  app.get_formatter()->column_width(36);
+
+  std::map<const CLI::App*, Action> actions;
+  std::vector<std::string> names;
+  for (const NamedCommand& named : commands) {
+    CLI::App* const command = app.add_subcommand(named.name);
+    actions[command] = named.add(*command);
+    add_common(*command, options);
+    names.push_back(named.name);
+  }
+  if (const auto word = unknown_command(argc, argv, names)) {
+    return wrong_usage(
+        fmt::format("there is no command '{}'.{}", *word, did_you_mean(*word, names)));
+  }
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);  // --help and --version
+  } catch (const CLI::ParseError& error) {
+    const auto parsed = app.get_subcommands();
+    const CLI::App& at = parsed.empty() ? app : *parsed.front();
+    return wrong_usage(usage_sentence(error, at), parsed.empty() ? "" : at.get_name());
+  }
+  const auto parsed = app.get_subcommands();
+  if (parsed.empty()) {
+    fmt::print("{}", recipes);
+    return exit_done;
+  }
+  return act(actions.at(parsed.front()), options);
+}
+
+}  // namespace
+}  // namespace lightwell
+
+int main(int argc, char** argv) {
+  lightwell::catch_interrupts();
+  try {
+    return lightwell::run_program(argc, argv);
+  } catch (const std::exception& error) {
+    return lightwell::fail(lightwell::exit_failed, error.what());
+  }
+}

@@ -1,0 +1,238 @@
+#include "cli/arguments.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "scene/errors.h"
+#include "scene/io/nearest_name.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int largest_picture_edge = 32768;  // as in scene files
+
+std::optional<double> number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// Only what exists may be asked for; the sentence says what that is.
+CLI::Validator one_of(std::string what, std::vector<std::string> known) {
+  return CLI::Validator(
+      [what, known](std::string& given) -> std::string {
+        if (std::find(known.begin(), known.end(), given) != known.end()) return {};
+        return fmt::format("there is no {} '{}' in this version; there {}: {}.{}", what, given,
+                           known.size() == 1 ? "is one" : "are", fmt::join(known, ", "),
+                           did_you_mean(given, known));
+      },
+      std::string{});
+}
+
+CLI::Validator finite() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        const auto value = number(text);
+        return value && std::isfinite(*value)
+                   ? std::string()
+                   : fmt::format("a number is needed, and '{}' is none", text);
+      },
+      std::string{});
+}
+
+std::pair<int, int> parse_size(const std::string& text) {
+  int width = 0, height = 0;
+  const char* const last = text.data() + text.size();
+  const auto [x, bad_width] = std::from_chars(text.data(), last, width);
+  if (bad_width == std::errc() && x != last && (*x == 'x' || *x == 'X')) {
+    const auto [end, bad_height] = std::from_chars(x + 1, last, height);
+    if (bad_height == std::errc() && end == last && width >= 1 && height >= 1 &&
+        width <= largest_picture_edge && height <= largest_picture_edge) {
+      return {width, height};
+    }
+  }
+  throw CLI::ValidationError(
+      "--size", fmt::format("'{}' is no picture size; write WIDTHxHEIGHT in pixels, such as "
+                            "640x480, each from 1 to {}",
+                            text, largest_picture_edge));
+}
+
+}  // namespace
+
+CLI::Validator positive() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        const auto value = number(text);
+        return value && *value > 0.0 && std::isfinite(*value)
+                   ? std::string()
+                   : fmt::format("a number above 0 is needed, not '{}'", text);
+      },
+      std::string{});
+}
+
+CLI::Validator power_of_two() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        constexpr int most = 1 << 20;
+        int value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool whole = error == std::errc() && end == text.data() + text.size();
+        return whole && value >= 1 && value <= most && (value & (value - 1)) == 0
+                   ? std::string()
+                   : fmt::format("'{}' is not a power of two from 1 to {}, such as 256, 512, 1024",
+                                 text, most);
+      },
+      std::string{});
+}
+
+CLI::Validator with_extension(std::vector<std::string> extensions) {
+  return CLI::Validator(
+      [extensions](std::string& file) -> std::string {
+        const std::string given = extension_of(file);
+        if (std::find(extensions.begin(), extensions.end(), given) != extensions.end()) return {};
+        return fmt::format("'{}' must end in {}", file, fmt::join(extensions, " or "));
+      },
+      std::string{});
+}
+
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+const Camera& choose_camera(const Scene& scene, const std::string& name) {
+  if (scene.cameras.empty()) {
+    throw InputError(fmt::format(
+        "{}: the scene has no camera, so there is nothing to look from; add one "
+        "([[cameras]] in a .toml scene, see docs/scene-format.md), or use 'lightwell solve'",
+        scene.file.string()));
+  }
+  if (name.empty()) return scene.cameras.front();
+  std::vector<std::string> names;
+  for (const Camera& camera : scene.cameras) {
+    if (camera.name == name) return camera;
+    names.push_back(camera.name);
+  }
+  throw InputError(fmt::format("{}: there is no camera '{}'; the scene has: {}.{}",
+                               scene.file.string(), name, fmt::join(names, ", "),
+                               did_you_mean(name, names)));
+}
+
+void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size) {
+  command
+      .add_option_function<std::string>(
+          "--size", [&size](const std::string& text) { size = parse_size(text); },
+          "picture size in pixels (default: the camera's)")
+      ->type_name("WxH");
+}
+
+void add_exposure(CLI::App& command, double& exposure_ev) {
+  command
+      .add_option("--exposure", exposure_ev,
+                  "stops brighter (or darker, if negative) than automatic")
+      ->type_name("EV")
+      ->check(finite());
+}
+
+void SolveArguments::add_to(CLI::App& command) {
+  const std::string group = "How the light is solved";
+  command
+      .add_option("--max-patch-size", max_patch_size,
+                  "longest patch edge in the scene file's unit (default: about 1600 patches)")
+      ->type_name("L")
+      ->check(positive())
+      ->group(group);
+  command
+      .add_option("--elements-per-patch-edge", solve.mesh.elements_per_patch_edge,
+                  "detail of shadows within a patch (default 2)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 64))
+      ->group(group);
+  command.add_option("--form-factors", form_factors, "how form factors are found: ray-cast")
+      ->type_name("METHOD")
+      ->check(one_of("form-factor method", {"ray-cast"}))
+      ->group(group);
+  command.add_option("--solver", solver, "how the equations are solved: gauss-seidel")
+      ->type_name("METHOD")
+      ->check(one_of("solver", {"gauss-seidel"}))
+      ->group(group);
+  command
+      .add_option("--rays", solve.form_factors.rays_per_patch,
+                  "form-factor rays per patch, a power of two (default 512)")
+      ->type_name("N")
+      ->check(power_of_two())
+      ->group(group);
+  command
+      .add_option("--gather-rays", solve.gather.rays,
+                  "final-gather rays per mesh vertex, a power of two (default 256)")
+      ->type_name("N")
+      ->check(power_of_two())
+      ->group(group);
+  command
+      .add_option("--tolerance", solve.tolerance,
+                  "relative residual at which the solver stops (default 1e-5)")
+      ->type_name("T")
+      ->check(positive())
+      ->group(group);
+}
+
+SolveOptions SolveArguments::options(const Scene& scene) const {
+  SolveOptions options = solve;
+  options.mesh.max_patch_size = max_patch_size * scene.metres_per_unit;
+  return options;
+}
+
+std::string SolveArguments::text(const Scene& scene) const {
+  return fmt::format(
+      "--max-patch-size {:.6g} --elements-per-patch-edge {} --form-factors {} --solver {} --rays "
+      "{} --gather-rays {} --tolerance {:g}",
+      patch_size(scene, options(scene).mesh) / scene.metres_per_unit,
+      solve.mesh.elements_per_patch_edge, form_factors, solver, solve.form_factors.rays_per_patch,
+      solve.gather.rays, solve.tolerance);
+}
+
+void RenderArguments::add_to(CLI::App& command) {
+  const std::string group = "How pictures are made";
+  add_size(command, size);
+  add_exposure(command, exposure_ev);
+  for (const char* name : {"--size", "--exposure"}) command.get_option(name)->group(group);
+  command
+      .add_option("--pass", pass,
+                  "direct: exact shadows per pixel (default); interpolate: the solution as it is")
+      ->type_name("PASS")
+      ->check(one_of("pass", {"interpolate", "direct"}))
+      ->group(group);
+  command
+      .add_option("--shadow-rays", shadow_rays,
+                  "most shadow rays per emitter and point (default 64)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 65536))
+      ->group(group);
+}
+
+RenderOptions RenderArguments::options() const {
+  RenderOptions options;
+  options.pass = pass == "interpolate" ? Pass::interpolate : Pass::direct;
+  options.shadows.max_rays = shadow_rays;
+  options.shadows.min_rays = std::min(options.shadows.min_rays, shadow_rays);
+  return options;
+}
+
+std::string RenderArguments::text() const {
+  return fmt::format("--pass {} --shadow-rays {}", pass, shadow_rays);
+}
+
+Camera RenderArguments::sized(Camera camera) const {
+  if (size) std::tie(camera.width, camera.height) = *size;
+  return camera;
+}
+
+}  // namespace lightwell

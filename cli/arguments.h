@@ -1,0 +1,64 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "radiosity/solve.h"
+#include "raytrace/render.h"
+
+namespace lightwell {
+
+/// How the light is solved, as asked for on the command line.
+struct SolveArguments {
+  double max_patch_size = 0.0;  ///< in the scene file's unit; 0: automatic
+  std::string form_factors = "ray-cast";
+  std::string solver = "gauss-seidel";
+  SolveOptions solve{};
+
+  void add_to(CLI::App& command);
+  /// With lengths in metres; `progress` is left empty.
+  SolveOptions options(const Scene& scene) const;
+  /// The command line that repeats it, with every default spelled out.
+  std::string text(const Scene& scene) const;
+};
+
+/// How a picture is made.
+struct RenderArguments {
+  std::optional<std::pair<int, int>> size{};  ///< pixels; else the camera's own
+  std::string pass = "direct";
+  int shadow_rays = 64;
+  double exposure_ev = 0.0;
+
+  void add_to(CLI::App& command);
+  RenderOptions options() const;
+  std::string text() const;
+  /// The camera with the size asked for.
+  Camera sized(Camera camera) const;
+};
+
+/// Adds --size WxH.
+void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size);
+
+/// Adds --exposure EV.
+void add_exposure(CLI::App& command, double& exposure_ev);
+
+/// For numbers that must be above zero (a NaN is not).
+CLI::Validator positive();
+
+/// For ray counts: the sample points are stratified in powers of two.
+CLI::Validator power_of_two();
+
+/// A file name that ends in one of `extensions` (".png"), whatever its case.
+CLI::Validator with_extension(std::vector<std::string> extensions);
+
+/// The file's extension in lower case, dot included.
+std::string extension_of(const std::filesystem::path& file);
+
+/// The scene's camera of that name, or its first if `name` is empty. Throws InputError that lists
+/// the names there are.
+const Camera& choose_camera(const Scene& scene, const std::string& name);
+
+}  // namespace lightwell

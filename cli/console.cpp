@@ -1,0 +1,91 @@
+#include "cli/console.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "cli/interrupt.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double redraw_seconds = 0.1;  // faster flickers and costs time
+// Before that much is done, a guess at the time left jumps about.
+constexpr double least_share_for_guess = 0.02;
+
+double seconds_between(std::chrono::steady_clock::time_point a,
+                       std::chrono::steady_clock::time_point b) {
+  return std::chrono::duration<double>(b - a).count();
+}
+
+}  // namespace
+
+double Stopwatch::seconds() const {
+  return seconds_between(start_, std::chrono::steady_clock::now());
+}
+
+double Stopwatch::lap() {
+  const auto now = std::chrono::steady_clock::now();
+  const double seconds = seconds_between(start_, now);
+  start_ = now;
+  return seconds;
+}
+
+Console::Console(const CommonOptions& options)
+    : options_(options), on_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Console::~Console() {
+  finish_phase();
+}
+
+Progress Console::progress() {
+  return [this](std::string_view phase, double share) {
+    show(phase, share);
+    return !interrupt_requested();
+  };
+}
+
+void Console::show(std::string_view phase, double share) {
+  if (options_.quiet) return;
+  if (phase != phase_) {
+    finish_phase();
+    phase_ = phase;
+    phase_time_ = Stopwatch();
+    last_drawn_ = -redraw_seconds;
+  }
+  const double seconds = phase_time_.seconds();
+  if (!on_terminal_ || seconds - last_drawn_ < redraw_seconds) return;
+  last_drawn_ = seconds;
+  std::string left;
+  if (share > least_share_for_guess && share < 1.0) {
+    left = fmt::format(", {:.0f} s left", std::ceil(seconds * (1.0 - share) / share));
+  }
+  // Back to the line's start, and clear to its end.
+  fmt::print(stderr, "\r\033[K{}: {:.0f} %{}", phase_, std::floor(100.0 * share), left);
+  std::fflush(stderr);
+}
+
+void Console::finish_phase() {
+  if (phase_.empty()) return;
+  if (on_terminal_) fmt::print(stderr, "\r\033[K");
+  fmt::print(stderr, "{}: {:.1f} s\n", phase_, phase_time_.seconds());
+  phase_.clear();
+}
+
+void Console::say(std::string_view line) {
+  if (options_.quiet) return;
+  finish_phase();
+  fmt::print(stderr, "{}\n", line);
+}
+
+void Console::say_notes(const Scene& scene) {
+  for (const std::string& note : scene.notes) say("note: " + note);
+}
+
+void Console::say_verbose(std::string_view line) {
+  if (options_.verbose) say(line);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <numbers>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "radiosity/solution_file.h"
+#include "raytrace/image.h"
+#include "scene/io/read_scene.h"
+
+namespace lightwell {
+namespace {
+
+// Both sides, where it shines to both.
+double emitting_area(const Scene& scene, const Surface& surface) {
+  double area = 0.0;
+  if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+    area = 4.0 * std::numbers::pi * sphere->radius * sphere->radius;
+  } else {
+    const auto& mesh = std::get<PolygonMesh>(surface.shape);
+    for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
+  }
+  return scene.materials[surface.material].emits_both_sides ? 2.0 * area : area;
+}
+
+Json emitters_json(const Scene& scene) {
+  Json emitters = Json::array();
+  for (const Surface& surface : scene.surfaces) {
+    const Material& material = scene.materials[surface.material];
+    if (!material.is_emitter()) continue;
+    const double area = emitting_area(scene, surface);
+    emitters.push_back({{"surface", surface.name},
+                        {"watts", area * material.emission.cast<double>().sum()},
+                        {"lumens", area * luminous(scene.bands, material.emission)}});
+  }
+  return emitters;
+}
+
+std::string kind_of(const Material& material) {
+  std::vector<std::string> words;
+  if (material.dielectric) {
+    words.push_back(fmt::format("glass {:.4g}", material.dielectric->index_of_refraction));
+  }
+  const auto mean = [](const Spectrum& values) { return values.cast<double>().mean(); };
+  if ((material.reflectance > 0.0f).any()) {
+    words.push_back(fmt::format("reflectance {:.3g}", mean(material.reflectance)));
+  }
+  if ((material.specular > 0.0f).any()) {
+    words.push_back(fmt::format("mirror {:.3g}", mean(material.specular)));
+  }
+  if (material.is_emitter()) {
+    words.push_back(fmt::format("exitance {:.4g} W/m2", material.emission.cast<double>().sum()));
+  }
+  if (words.empty()) words.push_back("black");
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+Json corner_json(const Eigen::Vector3d& metres, const Scene& scene) {
+  const Eigen::Vector3d p = metres / scene.metres_per_unit;
+  return {p.x(), p.y(), p.z()};
+}
+
+Json scene_json(const Scene& scene) {
+  std::size_t spheres = 0;
+  for (const Surface& surface : scene.surfaces) {
+    spheres += std::holds_alternative<Sphere>(surface.shape) ? 1 : 0;
+  }
+  const Bounds bounds = scene_bounds(scene);
+  Json materials = Json::array(), cameras = Json::array();
+  for (const Material& material : scene.materials) {
+    materials.push_back({{"name", material.name}, {"is", kind_of(material)}});
+  }
+  for (const Camera& camera : scene.cameras) {
+    cameras.push_back({{"name", camera.name},
+                       {"width", camera.width},
+                       {"height", camera.height},
+                       {"fov", camera.fov_degrees}});
+  }
+  return {{"kind", "scene"},
+          {"title", scene.title},
+          {"unit", scene.unit_name},
+          {"metres_per_unit", scene.metres_per_unit},
+          {"bounds", {corner_json(bounds.low, scene), corner_json(bounds.high, scene)}},
+          {"bands", scene.bands.names},
+          {"surfaces", scene.surfaces.size()},
+          {"facets", scene_facets(scene).size()},
+          {"spheres", spheres},
+          {"materials", std::move(materials)},
+          {"emitters", emitters_json(scene)},
+          {"cameras", std::move(cameras)},
+          {"notes", scene.notes},
+          {"scene_hash", fmt::format("{:016x}", scene_hash(scene))}};
+}
+
+Json solution_json(const SolvedScene& solved) {
+  const RadiositySolution& solution = solved.solution;
+  return {{"kind", "solution"},
+          {"version", solution.provenance.version},
+          {"scene", solution.provenance.scene_file},
+          {"scene_hash", fmt::format("{:016x}", solution.provenance.scene_hash)},
+          {"options", solution.provenance.options},
+          {"unit", solution.unit_name},
+          {"bands", solution.bands.names},
+          {"patches", solved.mesh.patch_count()},
+          {"elements", solved.mesh.element_count()},
+          {"energy", energy_json(solution.energy)},
+          {"residual", solution.residual},
+          {"sweeps", solution.history.size()},
+          {"error_estimate", solution.error_estimate},
+          {"outcome", outcome_name(solution.outcome)}};
+}
+
+Json picture_json(const Image& image) {
+  const auto means = image.radiance.cast<double>().colwise().mean().eval();
+  return {{"kind", "picture"},
+          {"width", image.width},
+          {"height", image.height},
+          {"mean_radiance", std::vector<double>(means.data(), means.data() + means.size())},
+          {"largest", image.radiance.maxCoeff()}};
+}
+
+Json describe(const std::string& file) {
+  const std::string extension = extension_of(file);
+  if (extension == ".vtp") return solution_json(read_solution(file));
+  if (extension == ".exr") return picture_json(read_exr(file));
+  return scene_json(read_scene(file));
+}
+
+// A value on one line; a list of objects as a line each.
+void print_for_people(const Json& facts) {
+  const auto word = [](const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+    return value.dump();
+  };
+  const auto words = [&word](const Json& object) {
+    std::vector<std::string> parts;
+    for (const auto& [key, value] : object.items()) {
+      parts.push_back(key == "name" || key == "surface" || key == "is" ? word(value)
+                                                                       : key + " " + word(value));
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+  };
+  for (const auto& [key, value] : facts.items()) {
+    if (value.is_array() && !value.empty() && (value[0].is_object() || key == "notes")) {
+      fmt::print("{} ({})\n", key, value.size());
+      for (const Json& item : value) {
+        fmt::print("  {}\n", item.is_object() ? words(item) : word(item));
+      }
+    } else if (value.is_object()) {
+      fmt::print("{:<16} {}\n", key, words(value));
+    } else if (value.is_array()) {
+      std::vector<std::string> parts;
+      for (const Json& item : value) parts.push_back(word(item));
+      fmt::print("{:<16} {}\n", key, fmt::join(parts, " "));
+    } else if (!(value.is_string() && value.get<std::string>().empty())) {
+      fmt::print("{:<16} {}\n", key, word(value));
+    }
+  }
+}
+
+}  // namespace
+
+Action add_info(CLI::App& command) {
+  const auto file = std::make_shared<std::string>();
+  command.description(
+      "What is in a scene (.toml, .obj, .ply, .stl), a solution (.vtp) or a picture (.exr).");
+  command.add_option("file", *file, "the file")->required()->type_name("FILE");
+  command.footer("Example: lightwell info cornell/cornell.toml");
+  return [file](Console& console) {
+    const Json facts = describe(*file);
+    if (console.options().json) {
+      print_json(facts);
+    } else {
+      print_for_people(facts);
+    }
+    return int{exit_done};
+  };
+}
+
+}  // namespace lightwell

@@ -1,0 +1,34 @@
+#include "cli/interrupt.h"
+
+#include <csignal>
+
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+volatile std::sig_atomic_t requested = 0;  // all that a signal handler may touch
+
+void request(int) {
+  requested = 1;
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = request;
+  action.sa_flags = SA_RESTART | SA_RESETHAND;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupt_requested() {
+  return requested != 0;
+}
+
+void stop_if_interrupted() {
+  if (interrupt_requested()) throw Interrupted();
+}
+
+}  // namespace lightwell

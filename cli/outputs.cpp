@@ -1,0 +1,67 @@
+#include "cli/outputs.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+namespace lightwell {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
+  throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), why));
+}
+
+}  // namespace
+
+void require_writable(const fs::path& file) {
+  std::error_code error;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) {
+    refuse(file, fmt::format("there is no folder '{}'; make it first", folder.string()));
+  }
+  const fs::file_status status = fs::status(file, error);
+  if (fs::is_directory(status)) refuse(file, "it is a folder");
+  // A rename would put a file in the place of a device.
+  if (fs::exists(status) && !fs::is_regular_file(status)) refuse(file, "it is not a plain file");
+
+  fs::path trial = file;
+  trial += fmt::format(".{}.trial", ::getpid());
+  const int descriptor = ::open(trial.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
+  if (descriptor < 0) refuse(file, std::generic_category().message(errno));
+  ::close(descriptor);
+  fs::remove(trial, error);
+}
+
+OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
+  std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path p = fs::absolute(folder).lexically_normal();
+       !p.empty() && !fs::exists(p, error) && p != p.parent_path(); p = p.parent_path()) {
+    if (p.has_filename()) missing.push_back(p);
+  }
+  for (auto p = missing.rbegin(); p != missing.rend(); ++p) {
+    if (!fs::create_directory(*p, error) && error) {
+      const std::string why = error.message();
+      for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, error);
+      throw std::runtime_error(
+          fmt::format("{}: the folder cannot be made: {}", folder.string(), why));
+    }
+    made_.push_back(*p);
+  }
+  if (!fs::is_directory(folder, error)) {
+    throw std::runtime_error(
+        fmt::format("{}: the folder cannot be used: it is a file", folder.string()));
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code not_empty;  // then it stays, which is what is wanted
+  for (auto p = made_.rbegin(); p != made_.rend(); ++p) fs::remove(*p, not_empty);
+}
+
+}  // namespace lightwell

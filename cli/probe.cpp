@@ -1,0 +1,85 @@
+#include "raytrace/probe.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/steps.h"
+#include "mesh/element_caster.h"
+
+namespace lightwell {
+namespace {
+
+struct Arguments {
+  std::string scene, solution, points, output;
+  bool interpolate = false;
+  int rays = 1024;
+};
+
+int probe(const Arguments& arguments, Console& console) {
+  Report report(console.options());
+  const Scene scene = read_scene_step(arguments.scene, console, report);
+  const std::vector<Probe> probes = read_probes(arguments.points, scene.metres_per_unit);
+  require_writable(arguments.output);
+  const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+
+  const Stopwatch watch;
+  const ElementCaster caster(solved.mesh);
+  BandArray irradiance;
+  if (arguments.interpolate) {
+    irradiance = interpolate_irradiance(caster, solved.solution, probes);
+  } else {
+    const DirectLight direct_light(scene, solved.mesh);
+    irradiance = probe_irradiance(scene, caster, direct_light, solved.solution, probes,
+                                  {.rays = arguments.rays, .progress = console.progress()});
+  }
+  console.finish_phase();
+  stop_if_interrupted();
+  write_probes(arguments.output, probes, irradiance, scene.bands, scene.metres_per_unit);
+  report.add_file(arguments.output);
+  report.add("points", probes.size());
+  report.add("method", arguments.interpolate ? "interpolate" : "gather");
+  report.add_phase("probe", watch.seconds());
+  report.print();
+  return exit_done;
+}
+
+}  // namespace
+
+Action add_probe(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.description(
+      "Irradiance (W/m2 per band) and illuminance (lx) at points of a solved scene.");
+  command.add_option("scene", arguments->scene, "the scene file the solution was made from")
+      ->required()
+      ->type_name("SCENE");
+  command.add_option("solution", arguments->solution, "the solution, .vtp")
+      ->required()
+      ->type_name("SOLUTION");
+  command
+      .add_option("--points", arguments->points,
+                  "CSV with columns x,y,z,nx,ny,nz in the scene file's unit")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("-o,--output", arguments->output, "CSV: the points with E_<band>..., lux")
+      ->required()
+      ->type_name("FILE");
+  auto* const interpolate = command.add_flag(
+      "--interpolate", arguments->interpolate,
+      "read the solution's mesh instead of gathering afresh; points must lie on surfaces");
+  command
+      .add_option("--rays", arguments->rays, "gather rays per point, a power of two (default 1024)")
+      ->type_name("N")
+      ->check(power_of_two())
+      ->excludes(interpolate);
+  command.footer(
+      "Example: lightwell probe office.toml office.vtp --points desk.csv -o desk-lux.csv");
+  return [arguments](Console& console) { return probe(*arguments, console); };
+}
+
+}  // namespace lightwell

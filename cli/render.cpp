@@ -1,0 +1,62 @@
+#include "raytrace/render.h"
+
+#include <memory>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/steps.h"
+
+namespace lightwell {
+namespace {
+
+struct Arguments {
+  std::string scene, solution, camera;
+  std::vector<std::string> outputs;
+  RenderArguments render;
+};
+
+int render(const Arguments& arguments, Console& console) {
+  Report report(console.options());
+  const Scene scene = read_scene_step(arguments.scene, console, report);
+  const Camera& camera = choose_camera(scene, arguments.camera);
+  const std::vector<std::filesystem::path> files(arguments.outputs.begin(),
+                                                 arguments.outputs.end());
+  for (const std::filesystem::path& file : files) require_writable(file);
+  const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  report.add("camera", camera.name);
+  render_step(scene, solved, camera, arguments.render, files, console, report);
+  report.print();
+  return exit_done;
+}
+
+}  // namespace
+
+Action add_render(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.description(
+      "Renders a picture of a solved scene: diffuse light from the solution,\n"
+      "mirrors and glass by ray tracing.");
+  command.add_option("scene", arguments->scene, "the scene file the solution was made from")
+      ->required()
+      ->type_name("SCENE");
+  command.add_option("solution", arguments->solution, "the solution, .vtp")
+      ->required()
+      ->type_name("SOLUTION");
+  command
+      .add_option("-o,--output", arguments->outputs, "the picture, .exr or .png; may be repeated")
+      ->required()
+      ->type_name("FILE")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->check(with_extension({".exr", ".png"}));
+  command.add_option("--camera", arguments->camera, "which camera (default: the first)")
+      ->type_name("NAME");
+  arguments->render.add_to(command);
+  command.footer(
+      "Example: lightwell render cornell/cornell.toml cornell.vtp --size 256x256 -o small.png");
+  return [arguments](Console& console) { return render(*arguments, console); };
+}
+
+}  // namespace lightwell

@@ -1,0 +1,150 @@
+#include "cli/report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include <fstream>
+#include <stdexcept>
+
+#include "raytrace/atomic_file.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts KiB
+}
+
+std::string to_text(const Json& json) {
+  // File names may hold bytes that are no UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+Report::Report(const CommonOptions& options) : options_(options) {}
+
+void Report::add_solution(const SolvedScene& solved, bool solved_now) {
+  const RadiositySolution& solution = solved.solution;
+  facts_["scene"] = solution.provenance.scene_file;
+  facts_["options"] = solution.provenance.options;
+  facts_["patches"] = solved.mesh.patch_count();
+  facts_["elements"] = solved.mesh.element_count();
+  facts_["bands"] = solution.bands.count();
+  facts_["energy"] = energy_json(solution.energy);
+  facts_["residual"] = solution.residual;
+  facts_["sweeps"] = solution.history.size();
+  facts_["error_estimate"] = solution.error_estimate;
+  facts_["outcome"] = outcome_name(solution.outcome);
+  if (!solved_now) return;
+  for (const PhaseSeconds& phase : solution.seconds) phases_.push_back(phase);
+}
+
+void Report::add_phase(const std::string& phase, double seconds) {
+  phases_.push_back({phase, seconds});
+}
+
+void Report::add_file(const std::filesystem::path& file) {
+  files_.push_back(file.string());
+}
+
+void Report::add(const std::string& key, Json value) {
+  facts_[key] = std::move(value);
+}
+
+Json Report::json() const {
+  Json json = facts_;
+  Json seconds = Json::object();
+  for (const PhaseSeconds& phase : phases_) seconds[phase.phase] = phase.seconds;
+  seconds["total"] = total_.seconds();
+  json["seconds"] = std::move(seconds);
+  json["peak_memory_mb"] = peak_memory_mb();
+  json["threads"] = thread_count();
+  json["version"] = LIGHTWELL_VERSION;
+  json["files"] = files_;
+  return json;
+}
+
+std::string Report::for_people() const {
+  std::string text;
+  const auto line = [&text](const char* head, const std::string& body) {
+    text += fmt::format("{:<9} {}\n", head, body);
+  };
+  if (facts_.contains("patches")) {
+    line("patches", fmt::format("{} ({} elements)", facts_["patches"].get<int>(),
+                                facts_["elements"].get<int>()));
+    const Json& energy = facts_["energy"];
+    const double emitted = energy["emitted"];
+    const auto percent = [&](const char* key) {
+      return emitted > 0.0 ? 100.0 * energy[key].get<double>() / emitted : 0.0;
+    };
+    line("energy",
+         fmt::format("{:.6g} W emitted = {:.4f} % absorbed + {:.4f} % escaped + {:.4f} % "
+                     "unshot",
+                     emitted, percent("absorbed"), percent("escaped"), percent("unshot")));
+    line("residual",
+         fmt::format("{:.2g} after {} sweeps ({})", facts_["residual"].get<double>(),
+                     facts_["sweeps"].get<int>(), facts_["outcome"].get<std::string>()));
+    line("error", fmt::format("{:.2f} % of the mean irradiance, estimated (relative RMS)",
+                              100.0 * facts_["error_estimate"].get<double>()));
+  }
+  std::vector<std::string> phases;
+  for (const PhaseSeconds& phase : phases_) {
+    phases.push_back(fmt::format("{} {:.1f}", phase.phase, phase.seconds));
+  }
+  line("seconds", fmt::format("{:.1f} ({}), {} {}", total_.seconds(), fmt::join(phases, ", "),
+                              thread_count(), thread_count() == 1 ? "thread" : "threads"));
+  line("memory", fmt::format("{:.0f} MB at most", peak_memory_mb()));
+  for (const std::string& file : files_) line("wrote", file);
+  return text;
+}
+
+void Report::print() const {
+  if (options_.json) {
+    print_json(json());
+  } else if (!options_.quiet) {
+    fmt::print("{}", for_people());
+  }
+}
+
+void Report::write(const std::filesystem::path& file) const {
+  AtomicFile target(file);
+  std::ofstream out(target.temporary(), std::ios::binary);
+  out << to_text(json());
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("{}: could not be written", file.string()));
+  target.commit();
+}
+
+void print_json(const Json& json) {
+  fmt::print("{}", to_text(json));
+}
+
+std::string outcome_name(Outcome outcome) {
+  return outcome == Outcome::converged ? "converged" : "max_sweeps_reached";
+}
+
+Json energy_json(const EnergyBalance& energy) {
+  return {{"emitted", energy.emitted},
+          {"absorbed", energy.absorbed},
+          {"escaped", energy.escaped},
+          {"unshot", energy.unshot}};
+}
+
+ImageMetadata picture_metadata(const RadiositySolution& solution, const Camera& camera,
+                               const std::string& options) {
+  const Provenance& made = solution.provenance;
+  return {{"software", fmt::format("lightwell {}", LIGHTWELL_VERSION)},
+          {"scene", made.scene_file},
+          {"sceneHash", fmt::format("{:016x}", made.scene_hash)},
+          {"camera", camera.name},
+          {"renderOptions", options},
+          {"solveOptions", made.options},
+          {"unit", "W/(m^2 sr) per band"}};
+}
+
+}  // namespace lightwell

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/console.h"
+#include "radiosity/solve.h"
+#include "raytrace/image.h"
+
+namespace lightwell {
+
+/// Keys in the order they are added.
+using Json = nlohmann::ordered_json;
+
+/// What a command did and what it cost, collected on the way: for people by default, one JSON
+/// object with --json.
+class Report {
+ public:
+  explicit Report(const CommonOptions& options);
+
+  /// Sizes, energy balance, residual, error estimate, and the solver's own phases if it ran now.
+  void add_solution(const SolvedScene& solved, bool solved_now);
+  void add_phase(const std::string& phase, double seconds);
+  void add_file(const std::filesystem::path& file);
+  void add(const std::string& key, Json value);
+
+  /// All of it, with the totals up to now.
+  Json json() const;
+  /// On standard output: the JSON object with --json, else a report for people unless --quiet.
+  void print() const;
+  /// The JSON object as a file; throws std::runtime_error naming it.
+  void write(const std::filesystem::path& file) const;
+
+ private:
+  std::string for_people() const;
+
+  CommonOptions options_;
+  Stopwatch total_{};
+  Json facts_ = Json::object();
+  std::vector<PhaseSeconds> phases_{};
+  std::vector<std::string> files_{};
+};
+
+/// One JSON object on standard output.
+void print_json(const Json& json);
+
+/// Watts by fate, for JSON.
+Json energy_json(const EnergyBalance& energy);
+
+/// "converged" or "max_sweeps_reached".
+std::string outcome_name(Outcome outcome);
+
+/// What every picture carries in its header.
+ImageMetadata picture_metadata(const RadiositySolution& solution, const Camera& camera,
+                               const std::string& options);
+
+}  // namespace lightwell

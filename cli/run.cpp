@@ -1,0 +1,67 @@
+#include <memory>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/steps.h"
+
+namespace lightwell {
+namespace fs = std::filesystem;
+namespace {
+
+struct Arguments {
+  std::string scene, output;
+  SolveArguments solve;
+  RenderArguments render;
+};
+
+fs::path default_folder(const fs::path& scene) {
+  return scene.stem().string() + "-output";  // in the working folder
+}
+
+int run(const Arguments& arguments, Console& console) {
+  Report report(console.options());
+  const Scene scene = read_scene_step(arguments.scene, console, report);
+  choose_camera(scene, "");  // to refuse before the work, not after it
+  const OutputFolder folder(arguments.output.empty() ? default_folder(arguments.scene)
+                                                     : fs::path(arguments.output));
+  const fs::path solution_file = folder / "solution.vtp", report_file = folder / "report.json";
+  std::vector<std::vector<fs::path>> pictures;
+  for (const Camera& camera : scene.cameras) {
+    pictures.push_back({folder / (camera.name + ".exr"), folder / (camera.name + ".png")});
+    for (const fs::path& picture : pictures.back()) require_writable(picture);
+  }
+  require_writable(solution_file);
+  require_writable(report_file);
+
+  const SolvedScene solved = solve_step(scene, arguments.solve, console, report);
+  write_solution_step(solution_file, solved, console, report);
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    render_step(scene, solved, scene.cameras[i], arguments.render, pictures[i], console, report);
+  }
+  report.add_file(report_file);
+  report.write(report_file);
+  report.print();
+  return exit_code(solved.solution);
+}
+
+}  // namespace
+
+Action add_run(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.description(
+      "Solves a scene and renders each of its cameras: solution.vtp, a .exr and a .png per\n"
+      "camera, report.json.");
+  command.add_option("scene", arguments->scene, "scene file: .toml, .obj, .ply, .stl")
+      ->required()
+      ->type_name("SCENE");
+  command.add_option("-o,--output", arguments->output, "folder for the results (SCENE-output)")
+      ->type_name("DIR");
+  arguments->solve.add_to(command);
+  arguments->render.add_to(command);
+  command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");
+  return [arguments](Console& console) { return run(*arguments, console); };
+}
+
+}  // namespace lightwell

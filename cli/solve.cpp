@@ -1,0 +1,50 @@
+#include "radiosity/solve.h"
+
+#include <memory>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/steps.h"
+#include "radiosity/solution_file.h"
+#include "scene/io/read_scene.h"
+
+namespace lightwell {
+namespace {
+
+struct Arguments {
+  std::string scene, output;
+  SolveArguments solve;
+};
+
+int solve(const Arguments& arguments, Console& console) {
+  Report report(console.options());
+  const Scene scene = read_scene_step(arguments.scene, console, report);
+  require_writable(arguments.output);
+  const SolvedScene solved = solve_step(scene, arguments.solve, console, report);
+  write_solution_step(arguments.output, solved, console, report);
+  report.print();
+  return exit_code(solved.solution);
+}
+
+}  // namespace
+
+Action add_solve(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.description("Meshes a scene, solves for the light on all its surfaces, and saves it.");
+  command.add_option("scene", arguments->scene, "scene file: .toml, .obj, .ply, .stl")
+      ->required()
+      ->type_name("SCENE");
+  command.add_option("-o,--output", arguments->output, "the solution, .vtp (opens in ParaView)")
+      ->required()
+      ->type_name("FILE")
+      ->check(with_extension({".vtp"}));
+  arguments->solve.add_to(command);
+  command.footer(
+      "Example: lightwell solve cornell/cornell.toml -o cornell.vtp --max-patch-size 25");
+  return [arguments](Console& console) { return solve(*arguments, console); };
+}
+
+}  // namespace lightwell

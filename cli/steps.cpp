@@ -1,0 +1,109 @@
+#include "cli/steps.h"
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "radiosity/solution_file.h"
+#include "scene/io/read_scene.h"
+
+namespace lightwell {
+namespace fs = std::filesystem;
+namespace {
+
+void write_picture(const fs::path& file, const Image& image, const RadiositySolution& solution,
+                   const Camera& camera, const RenderArguments& arguments) {
+  if (extension_of(file) == ".png") {
+    const ToneMapping tones{.exposure_ev = arguments.exposure_ev};
+    write_png(
+        file, image.width, image.height, tone_map(image, solution.bands, tones),
+        picture_metadata(solution, camera,
+                         fmt::format("{} --exposure {:g}", arguments.text(), tones.exposure_ev)));
+  } else {
+    write_exr(file, image, solution.bands, picture_metadata(solution, camera, arguments.text()));
+  }
+}
+
+}  // namespace
+
+Scene read_scene_step(const fs::path& file, Console& console, Report& report) {
+  const Stopwatch watch;
+  Scene scene = read_scene(file);
+  console.say_notes(scene);
+  report.add_phase("read_scene", watch.seconds());
+  stop_if_interrupted();
+  return scene;
+}
+
+SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, Console& console,
+                       Report& report) {
+  SolveOptions options = arguments.options(scene);
+  options.progress = console.progress();
+  console.say_verbose("solving with " + arguments.text(scene));
+  SolvedScene solved = solve_scene(scene, options);
+  console.finish_phase();
+  solved.solution.provenance.version = LIGHTWELL_VERSION;
+  solved.solution.provenance.options = arguments.text(scene);
+  report.add_solution(solved, true);
+  if (solved.solution.outcome != Outcome::converged) {
+    console.say(
+        fmt::format("warning: the solver stopped after {} sweeps at a residual of {:.2g}, "
+                    "above the tolerance of {:g}; what it has is written",
+                    solved.solution.history.size(), solved.solution.residual, options.tolerance));
+  }
+  stop_if_interrupted();
+  return solved;
+}
+
+void write_solution_step(const fs::path& file, const SolvedScene& solved, Console& console,
+                         Report& report) {
+  const Stopwatch watch;
+  write_solution(file, solved);
+  report.add_file(file);
+  report.add_phase("write_solution", watch.seconds());
+  console.say_verbose("wrote " + file.string());
+}
+
+SolvedScene read_solution_step(const fs::path& file, const Scene& scene, Console& console,
+                               Report& report) {
+  const Stopwatch watch;
+  SolvedScene solved = read_solution(file);
+  check_matches(scene, solved.solution);
+  report.add_solution(solved, false);
+  report.add_phase("read_solution", watch.seconds());
+  console.say_verbose("the solution was made with " + solved.solution.provenance.options);
+  stop_if_interrupted();
+  return solved;
+}
+
+void render_step(const Scene& scene, const SolvedScene& solved, const Camera& camera,
+                 const RenderArguments& arguments, const std::vector<fs::path>& files,
+                 Console& console, Report& report) {
+  const Stopwatch watch;
+  console.say_verbose(fmt::format("rendering {} with {}", camera.name, arguments.text()));
+  const ElementCaster caster(solved.mesh);
+  const DirectLight direct_light(scene, solved.mesh);
+  RenderOptions options = arguments.options();
+  options.progress = console.progress();
+  RenderReport rendered;
+  const Camera view = arguments.sized(camera);
+  const Image image =
+      render(scene, caster, direct_light, solved.solution, view, options, &rendered);
+  console.finish_phase();
+  stop_if_interrupted();
+  for (const fs::path& file : files) {
+    write_picture(file, image, solved.solution, view, arguments);
+    report.add_file(file);
+  }
+  report.add_phase("render_" + camera.name, watch.seconds());
+  if (rendered.depth_cut > 0) {
+    console.say_verbose(fmt::format("{}: {} branches ended at depth {} (mirrors facing mirrors)",
+                                    camera.name, rendered.depth_cut, options.max_depth));
+  }
+}
+
+int exit_code(const RadiositySolution& solution) {
+  return solution.outcome == Outcome::converged ? exit_done : exit_not_accurate;
+}
+
+}  // namespace lightwell

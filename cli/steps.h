@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "cli/console.h"
+#include "cli/report.h"
+#include "radiosity/solve.h"
+#include "raytrace/image.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+// The steps that several sub-commands share. Each notes its seconds in the report, says on the
+// console what people should know, and throws Interrupted when asked to stop.
+
+Scene read_scene_step(const std::filesystem::path& file, Console& console, Report& report);
+
+SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, Console& console,
+                       Report& report);
+
+void write_solution_step(const std::filesystem::path& file, const SolvedScene& solved,
+                         Console& console, Report& report);
+
+/// Reads a solution and makes sure that it belongs to the scene.
+SolvedScene read_solution_step(const std::filesystem::path& file, const Scene& scene,
+                               Console& console, Report& report);
+
+/// Renders one camera's picture into every file given (.exr or .png).
+void render_step(const Scene& scene, const SolvedScene& solved, const Camera& camera,
+                 const RenderArguments& arguments, const std::vector<std::filesystem::path>& files,
+                 Console& console, Report& report);
+
+/// 0, or 4 where the solver stopped early.
+int exit_code(const RadiositySolution& solution);
+
+}  // namespace lightwell

@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <stdexcept>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/steps.h"
+#ifdef LIGHTWELL_VIEWER
+#include "viewer/view.h"
+#endif
+
+namespace lightwell {
+namespace {
+
+struct Arguments {
+  std::string scene, solution, camera, offscreen;
+  std::optional<std::pair<int, int>> size;
+  double exposure_ev = 0.0;
+};
+
+#ifdef LIGHTWELL_VIEWER
+int view(const Arguments& arguments, Console& console) {
+  Report report(console.options());
+  const Scene scene = read_scene_step(arguments.scene, console, report);
+  ViewOptions options{.cameras = scene.cameras, .exposure_ev = arguments.exposure_ev};
+  if (!arguments.camera.empty()) options.camera = choose_camera(scene, arguments.camera);
+  if (arguments.size) std::tie(options.width, options.height) = *arguments.size;
+  if (!arguments.offscreen.empty()) require_writable(arguments.offscreen);
+  const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  if (arguments.offscreen.empty()) {
+    show_window(solved, options);
+    return exit_done;
+  }
+  const Stopwatch watch;
+  write_snapshot(solved, options, arguments.offscreen);
+  report.add_phase("draw", watch.seconds());
+  report.add_file(arguments.offscreen);
+  report.print();
+  return exit_done;
+}
+#else
+int view(const Arguments&, Console&) {
+  throw std::runtime_error(
+      "this lightwell was built without its viewer; build it with -DLIGHTWELL_VIEWER=ON, or use "
+      "'lightwell render'");
+}
+#endif
+
+}  // namespace
+
+Action add_view(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.description(
+      "Walk through a solved scene in a window: W A S D to walk, the mouse to look around,\n"
+      "1 to 9 for the scene's cameras, Q to leave.");
+  command.add_option("scene", arguments->scene, "the scene file the solution was made from")
+      ->required()
+      ->type_name("SCENE");
+  command.add_option("solution", arguments->solution, "the solution, .vtp")
+      ->required()
+      ->type_name("SOLUTION");
+  command
+      .add_option("--offscreen", arguments->offscreen, "draw into this .png instead of a window")
+      ->type_name("FILE")
+      ->check(with_extension({".png"}));
+  command.add_option("--camera", arguments->camera, "where to start (default: the first camera)")
+      ->type_name("NAME");
+  add_size(command, arguments->size);
+  add_exposure(command, arguments->exposure_ev);
+  command.footer("Example: lightwell view cornell/cornell.toml cornell.vtp");
+  return [arguments](Console& console) { return view(*arguments, console); };
+}
+
+}  // namespace lightwell

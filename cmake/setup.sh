@@ -1,0 +1,82 @@
+# Shared by cornell/run, tests/run and .ci/run: the packages a build needs, and the build itself.
+# To be sourced by bash, with the repository root as the working directory.
+
+build_dir=build/release
+
+# Everything the program, its viewer and its tests are compiled against (Debian's names).
+build_packages=(
+  build-essential cmake ninja-build
+  libeigen3-dev libtbb-dev libfmt-dev libembree-dev libcgal-dev libopenmesh-dev libvtk9-dev
+  libtomlplusplus-dev libtinyobjloader-dev libassimp-dev libopenexr-dev libpng-dev
+  libcli11-dev nlohmann-json3-dev libgtest-dev
+)
+# A virtual display and a software OpenGL, for the tests of the viewer.
+display_packages=(xvfb xauth libgl1-mesa-dri)
+
+say() { printf '==> %s\n' "$*"; }
+die() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+# need_packages NAME...: installs those that are missing; asks for nothing, and for no network, when none is.
+need_packages() {
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    say "This is not Debian, so nothing is installed for you. What is needed: a C++20 compiler, CMake 3.25,"
+    say "Ninja, Eigen 3.4, oneTBB, fmt, Embree 3.13 or 4, CGAL 5.5, OpenMesh, VTK 9.1, toml++, tinyobjloader,"
+    say "assimp, OpenEXR, libpng, CLI11, nlohmann-json, GoogleTest; Xvfb for the tests of the viewer."
+    return 0
+  fi
+  local name missing=()
+  for name in "$@"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+
+  local as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || die "these Debian packages are missing, and only root can install them:
+  apt-get install --no-install-recommends ${missing[*]}
+Run that as root (or install sudo), then start this again."
+    as_root=(sudo)
+  fi
+  say "Installing ${#missing[@]} Debian packages and what they need (up to 0.6 GB to download): ${missing[*]}"
+  local log=build/install.log
+  mkdir -p build
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=600 -o Acquire::Retries=3)
+  { "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 </dev/null || {
+    tail -n 20 "$log" >&2
+    die "the packages could not be installed; the lines above (all of them: $log) say why. Is the network up?"
+  }
+}
+
+# Compiling against CGAL or VTK takes up to 1.6 GB at a time: as many jobs as cores and free memory allow.
+# LIGHTWELL_JOBS overrides.
+job_count() {
+  local cores memory_kb
+  cores=$(nproc)
+  memory_kb=$(awk '/^MemAvailable:/ {print $2}' /proc/meminfo 2>/dev/null || true)
+  local jobs=$((${memory_kb:-1600000} / 1600000))
+  [ "$jobs" -lt "$cores" ] || jobs=$cores
+  [ "$jobs" -ge 1 ] || jobs=1
+  echo "${LIGHTWELL_JOBS:-$jobs}"
+}
+
+# configure [-DNAME=VALUE...]: the first time, or when values are given.
+configure() {
+  if [ $# -gt 0 ] || [ ! -f $build_dir/build.ninja ]; then
+    local launcher=()
+    ! command -v ccache >/dev/null || launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    mkdir -p build
+    say "Configuring in $build_dir"
+    cmake --preset release "${launcher[@]}" "$@" >build/configure.log 2>&1 || {
+      tail -n 40 build/configure.log >&2
+      die "CMake could not configure the build; the lines above (all of them: build/configure.log) say why."
+    }
+  fi
+}
+
+# build [TARGET...]: all by default.
+build() {
+  local targets=()
+  [ $# -eq 0 ] || targets=(--target "$@")
+  say "Building in $build_dir with $(job_count) jobs (a few minutes the first time)"
+  nice cmake --build $build_dir -j "$(job_count)" "${targets[@]}" || die "the build failed; the compiler's messages are above."
+}
