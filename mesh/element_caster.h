@@ -34,8 +34,8 @@ class ElementCaster {
 
  private:
   const PatchMesh& mesh_;
-  RayCaster caster_;
   std::vector<int> element_of_primitive_;  ///< front element; for a sphere -1 - (index of its grid)
+  RayCaster caster_;
 };
 
 /// Value at a hit from values at vertices (vertices x bands).

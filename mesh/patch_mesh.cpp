@@ -1,0 +1,167 @@
+#include "mesh/patch_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesh/contact_graph.h"
+#include "mesh/facet_plane.h"
+#include "mesh/patch_builder.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+// Points closer than this share of the scene's diagonal are one: the precision of a file written
+// with single-precision coordinates.
+constexpr double weld_share = 1e-7;
+constexpr double most_elements = 20e6;
+
+int side_count(const Material& material) {
+  return material.one_sided || material.dielectric ? 1 : 2;
+}
+
+double sphere_area(const Sphere& sphere) {
+  return 4.0 * std::numbers::pi * sphere.radius * sphere.radius;
+}
+
+double surface_area(const Surface& surface) {
+  if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) return sphere_area(*sphere);
+  const auto& mesh = std::get<PolygonMesh>(surface.shape);
+  double area = 0.0;
+  for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
+  return area;
+}
+
+double boundary_length(const PolygonMesh& mesh, const Facet& facet) {
+  double length = 0.0;
+  const auto add = [&](const std::vector<int>& loop) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      length += (mesh.vertices[loop[i]] - mesh.vertices[loop[(i + 1) % loop.size()]]).norm();
+    }
+  };
+  add(facet.boundary);
+  for (const auto& hole : facet.holes) add(hole);
+  return length;
+}
+
+double predicted_elements(const Scene& scene, double element_size) {
+  double count = 0.0;
+  for (const Surface& surface : scene.surfaces) {
+    const int sides = side_count(scene.materials[surface.material]);
+    if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
+      for (const Facet& facet : mesh->facets) {
+        // A strip narrower than an element is cut along its length only.
+        const double inside = facet_area(*mesh, facet) / (element_size * element_size);
+        const double along = boundary_length(*mesh, facet) / (2.0 * element_size);
+        count += sides * std::max({1.0, inside, along});
+      }
+    } else {
+      count += sides * surface_area(surface) / (element_size * element_size);
+    }
+  }
+  return count;
+}
+
+void check(const Scene& scene, const MeshOptions& options) {
+  if (scene_facets(scene).empty()) {
+    throw InputError(fmt::format("{}{}the scene has no surfaces; there is nothing to mesh",
+                                 scene.file.string(), scene.file.empty() ? "" : ": "));
+  }
+  if (!(options.max_patch_size >= 0.0) || !std::isfinite(options.max_patch_size)) {
+    throw InputError(fmt::format(
+        "the largest patch size is {} m; give a positive length, or 0 to have it chosen",
+        options.max_patch_size));
+  }
+  if (options.auto_patch_count < 1) {
+    throw InputError(
+        fmt::format("{} patches are asked for; give at least 1", options.auto_patch_count));
+  }
+  constexpr int most_per_edge = 1000;
+  if (options.elements_per_patch_edge < 1 || options.elements_per_patch_edge > most_per_edge) {
+    throw InputError(fmt::format("{} elements along a patch edge are asked for; give 1 to {}",
+                                 options.elements_per_patch_edge, most_per_edge));
+  }
+}
+
+void check_count(const Scene& scene, double size, const CutSize& cut) {
+  const double count = predicted_elements(scene, cut.element_size());
+  if (count <= most_elements) return;
+  throw InputError(fmt::format(
+      "{}{}patches of {:.6g} m with {} elements along an edge would make about {:.3g} million "
+      "elements; the limit is {:.0f} million. Use a larger patch size",
+      scene.file.string(), scene.file.empty() ? "" : ": ", size, cut.elements_per_edge, count / 1e6,
+      most_elements / 1e6));
+}
+
+}  // namespace
+
+double patch_size(const Scene& scene, const MeshOptions& options) {
+  check(scene, options);
+  if (options.max_patch_size > 0.0) return options.max_patch_size;
+  double diffuse = 0.0, all = 0.0;
+  for (const Surface& surface : scene.surfaces) {
+    const Material& material = scene.materials[surface.material];
+    const double area = side_count(material) * surface_area(surface);
+    all += area;
+    if (!material.is_specular()) diffuse += area;
+  }
+  return std::sqrt((diffuse > 0.0 ? diffuse : all) / options.auto_patch_count);
+}
+
+PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
+  const double size = patch_size(scene, options);
+  const CutSize cut{.patch_size = size, .elements_per_edge = options.elements_per_patch_edge};
+  check_count(scene, size, cut);
+  report(options.progress, "mesh", 0.0);
+
+  WeldedPoints points(weld_share * scene_bounds(scene).diagonal());
+  const std::vector<FacetPlane> planes = facet_planes(scene, points);
+  const ContactGraph graph(scene, planes, std::move(points), cut, options.progress);
+
+  PatchBuilder builder(scene, options.smooth_angle_degrees);
+  const std::vector<FacetRef> facets = scene_facets(scene);
+  constexpr int batch = 1024;  // facets between two looks at the stop request
+  int next_plane = 0;
+  for (int begin = 0; begin < static_cast<int>(facets.size()); begin += batch) {
+    report(options.progress, "mesh", 0.4 + 0.5 * begin / static_cast<double>(facets.size()));
+    const int end = std::min<int>(begin + batch, static_cast<int>(facets.size()));
+    int plane_end = next_plane;
+    while (plane_end < static_cast<int>(planes.size()) && planes[plane_end].facet < end) {
+      ++plane_end;
+    }
+    std::vector<FacetMesh> meshes(plane_end - next_plane);
+    parallel_for(plane_end - next_plane, 1, [&](int from, int to) {
+      for (int k = from; k < to; ++k) {
+        meshes[k] =
+            mesh_facet(planes[next_plane + k], graph.outline(next_plane + k), graph.points(), cut);
+      }
+    });
+    int plane = next_plane;
+    for (int f = begin; f < end; ++f) {
+      const Surface& surface = scene.surfaces[facets[f].surface];
+      if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+        builder.add_sphere(f, facets[f].surface, *sphere, sphere_elements(*sphere, cut));
+        continue;
+      }
+      FacetMesh& mesh = meshes[plane - next_plane];
+      if (mesh.corners.empty()) {
+        throw InputError(fmt::format(
+            "{}{}surface '{}', polygon {}: its boundary crosses or overlaps itself; correct the "
+            "order of its vertices or split it",
+            scene.file.string(), scene.file.empty() ? "" : ": ", surface.name, facets[f].facet));
+      }
+      builder.add_facet(f, facets[f].surface, planes[plane].normal, std::move(mesh));
+      ++plane;
+    }
+    next_plane = plane_end;
+  }
+  report(options.progress, "mesh", 0.9);
+  PatchMesh mesh = builder.finish();
+  report(options.progress, "mesh", 1.0);
+  return mesh;
+}
+
+}  // namespace lightwell

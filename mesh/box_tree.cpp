@@ -1,0 +1,63 @@
+#include "mesh/box_tree.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lightwell {
+
+BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
+  std::iota(order_.begin(), order_.end(), 0);
+  nodes_.reserve(boxes_.size());
+  if (!boxes_.empty()) build(0, static_cast<int>(boxes_.size()));
+}
+
+int BoxTree::build(int begin, int end) {
+  constexpr int leaf_size = 4;
+  const int index = static_cast<int>(nodes_.size());
+  nodes_.push_back({.begin = begin, .end = end});
+  Box box, centers;
+  for (int i = begin; i < end; ++i) {
+    box.extend(boxes_[order_[i]]);
+    centers.extend(boxes_[order_[i]].center());
+  }
+  nodes_[index].box = box;
+  if (end - begin <= leaf_size) return index;
+
+  int axis = 0;
+  centers.sizes().maxCoeff(&axis);
+  const int middle = begin + (end - begin) / 2;
+  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                   [&](int a, int b) {
+                     const double ca = boxes_[a].center()[axis], cb = boxes_[b].center()[axis];
+                     return ca != cb ? ca < cb : a < b;
+                   });
+  build(begin, middle);
+  const int right = build(middle, end);
+  nodes_[index].right = right;
+  return index;
+}
+
+void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
+  found.clear();
+  if (nodes_.empty()) return;
+  // The tree halves at every level, so its depth stays below 32 for any int count.
+  std::array<int, 64> stack;
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const int index = stack[--depth];
+    const Node& node = nodes_[index];
+    if (!node.box.intersects(query)) continue;
+    if (node.right != 0) {
+      stack[depth++] = node.right;
+      stack[depth++] = index + 1;
+      continue;
+    }
+    for (int i = node.begin; i < node.end; ++i) {
+      if (boxes_[order_[i]].intersects(query)) found.push_back(order_[i]);
+    }
+  }
+  std::sort(found.begin(), found.end());
+}
+
+}  // namespace lightwell

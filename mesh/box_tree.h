@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace lightwell {
+
+/// Finds which of many axis-aligned boxes meet a given one: a binary tree of boxes split at the
+/// median centre of the widest axis. O(n log n) to build, about O(log n + answers) a question.
+class BoxTree {
+ public:
+  using Box = Eigen::AlignedBox3d;
+  explicit BoxTree(std::vector<Box> boxes);
+
+  /// Fills `found` with the boxes that meet `query` (touching counts), in ascending order.
+  void find_overlaps(const Box& query, std::vector<int>& found) const;
+
+ private:
+  struct Node {
+    Box box{};
+    int begin = 0, end = 0;  ///< of order_; a leaf if `right` is 0
+    int right = 0;           ///< the left child follows its parent
+  };
+  int build(int begin, int end);
+
+  std::vector<Box> boxes_;
+  std::vector<int> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,363 @@
+#include "mesh/contact_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mesh/box_tree.h"
+#include "mesh/contact_lines.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double whole = 1.0 - 1e-9;  // a length of 3.0000000001 patches is three patches
+
+std::uint64_t ends_key(int a, int b) {
+  return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b);
+}
+
+BoxTree::Box inflated(const BoxTree::Box& box, double by) {
+  const Vector3d d = Vector3d::Constant(by);
+  return {box.min() - d, box.max() + d};
+}
+
+BoxTree::Box segment_box(const Vector3d& a, const Vector3d& b, double by) {
+  return inflated({a.cwiseMin(b), a.cwiseMax(b)}, by);
+}
+
+// Parameters of the closest points of the lines p + s u and q + t v; false if they are parallel.
+bool closest_parameters(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v,
+                        double& s, double& t) {
+  const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
+  const double determinant = u.cross(v).squaredNorm();
+  constexpr double parallel = 1e-12;  // sin^2: below, a common part is found by its ends instead
+  if (!(determinant > parallel * uu * vv)) return false;
+  const Vector3d w = q - p;
+  s = (vv * u.dot(w) - uv * v.dot(w)) / determinant;
+  t = (uv * u.dot(w) - uu * v.dot(w)) / determinant;
+  return true;
+}
+
+}  // namespace
+
+int CutSize::patches(double length) const {
+  return std::max(1, static_cast<int>(std::ceil(length / patch_size * whole)));
+}
+
+int CutSize::pieces(double length) const {
+  if (length >= patch_size * whole) return elements_per_edge * patches(length);
+  return std::max(1, static_cast<int>(std::ceil(length / element_size() * whole)));
+}
+
+ContactGraph::ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes,
+                           WeldedPoints points, const CutSize& size, const Progress& progress)
+    : planes_(planes), size_(size), welded_(std::move(points)), contact_segments_(planes.size()) {
+  add_boundaries();
+  add_contacts(scene, progress);
+  cuts_.resize(segments_.size());
+  cut_at_crossings();
+  cut_at_points();
+  make_atoms();
+  count_pieces();
+  divide();
+}
+
+int ContactGraph::segment(int a, int b) {
+  if (a > b) std::swap(a, b);
+  const auto [entry, is_new] =
+      segment_of_ends_.try_emplace(ends_key(a, b), static_cast<int>(segments_.size()));
+  if (is_new) segments_.push_back({.a = a, .b = b});
+  return entry->second;
+}
+
+void ContactGraph::add_boundaries() {
+  for (const FacetPlane& plane : planes_) {
+    first_edge_.push_back(static_cast<int>(edge_segment_.size()));
+    plane.for_each_edge([&](int i, int j) {
+      const int s = segment(plane.point[i], plane.point[j]);
+      edge_segment_.push_back(s);
+      if (!plane.is_triangle()) return;
+      const int apex = plane.point[3 - i - j];
+      int* slot = segments_[s].triangle_apex;
+      (slot[0] < 0 ? slot[0] : slot[1]) = apex;
+    });
+  }
+}
+
+void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
+  const double tolerance = welded_.tolerance();
+  std::vector<BoxTree::Box> boxes;
+  for (const FacetPlane& plane : planes_) boxes.push_back(inflated(plane.box, tolerance));
+  std::vector<Sphere> spheres;
+  for (const Surface& surface : scene.surfaces) {
+    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) spheres.push_back(*sphere);
+  }
+  for (const Sphere& s : spheres) {
+    const Vector3d r = Vector3d::Constant(s.radius);
+    boxes.push_back({s.center - r, s.center + r});
+  }
+  const BoxTree tree(boxes);
+
+  const int count = static_cast<int>(planes_.size());
+  struct Contact {
+    int other;
+    ContactSegment segment;
+  };
+  constexpr int batch = 4096;  // facets between two looks at the stop request
+  for (int begin = 0; begin < count; begin += batch) {
+    report(progress, "mesh", 0.3 * begin / count);
+    const int end = std::min(count, begin + batch);
+    std::vector<std::vector<Contact>> contacts(end - begin);
+    parallel_for(end - begin, 32, [&](int from, int to) {
+      std::vector<int> near;
+      for (int k = from; k < to; ++k) {
+        const int i = begin + k;
+        tree.find_overlaps(boxes[i], near);
+        for (int j : near) {
+          if (j <= i) continue;
+          // A circle much smaller than an element would only make slivers.
+          constexpr double least_circle = 0.05;
+          const auto segments =
+              j < count ? facet_contact(planes_[i], planes_[j], tolerance)
+                        : sphere_contact(planes_[i], spheres[j - count], size_.element_size(),
+                                         least_circle * size_.element_size(), tolerance);
+          for (const auto& segment : segments) contacts[k].push_back({j, segment});
+        }
+      }
+    });
+    for (int k = 0; k < end - begin; ++k) {
+      for (const Contact& contact : contacts[k]) {
+        const int a = welded_.add(contact.segment[0], tolerance);
+        const int b = welded_.add(contact.segment[1], tolerance);
+        if (a == b) continue;
+        const int s = segment(a, b);
+        contact_segments_[begin + k].push_back(s);
+        if (contact.other < count) contact_segments_[contact.other].push_back(s);
+      }
+    }
+  }
+  for (auto& list : contact_segments_) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+}
+
+void ContactGraph::cut_at_crossings() {
+  const double tolerance = welded_.tolerance();
+  const int count = static_cast<int>(segments_.size());
+  std::vector<BoxTree::Box> boxes(count);
+  for (int i = 0; i < count; ++i) {
+    boxes[i] = segment_box(welded_[segments_[i].a], welded_[segments_[i].b], tolerance);
+  }
+  const BoxTree tree(boxes);
+  struct Crossing {
+    int other;
+    double s, t;
+    Vector3d point;
+  };
+  std::vector<std::vector<Crossing>> crossings(count);
+  parallel_for(count, 64, [&](int begin, int end) {
+    std::vector<int> near;
+    for (int i = begin; i < end; ++i) {
+      const Segment& si = segments_[i];
+      const Vector3d p = welded_[si.a], u = welded_[si.b] - p;
+      tree.find_overlaps(boxes[i], near);
+      for (int j : near) {
+        if (j <= i) continue;
+        const Segment& sj = segments_[j];
+        if (si.a == sj.a || si.a == sj.b || si.b == sj.a || si.b == sj.b) continue;
+        const Vector3d q = welded_[sj.a], v = welded_[sj.b] - q;
+        double s, t;
+        if (!closest_parameters(p, u, q, v, s, t)) continue;
+        // Near an end the end itself is the cut: cut_at_points finds it.
+        const double end_s = tolerance / u.norm(), end_t = tolerance / v.norm();
+        if (!(s > end_s && s < 1.0 - end_s && t > end_t && t < 1.0 - end_t)) continue;
+        const Vector3d on_i = p + s * u, on_j = q + t * v;
+        if ((on_i - on_j).norm() <= tolerance)
+          crossings[i].push_back({j, s, t, 0.5 * (on_i + on_j)});
+      }
+    }
+  });
+  for (int i = 0; i < count; ++i) {
+    for (const Crossing& crossing : crossings[i]) {
+      const int point = welded_.add(crossing.point, tolerance);
+      cuts_[i].emplace_back(crossing.s, point);
+      cuts_[crossing.other].emplace_back(crossing.t, point);
+    }
+  }
+}
+
+void ContactGraph::cut_at_points() {
+  std::vector<BoxTree::Box> boxes;
+  for (const Vector3d& p : welded_.all()) boxes.emplace_back(p, p);
+  const BoxTree tree(std::move(boxes));
+  parallel_for(static_cast<int>(segments_.size()), 64, [&](int begin, int end) {
+    std::vector<int> near;
+    for (int i = begin; i < end; ++i) {
+      const Segment& s = segments_[i];
+      const Vector3d p = welded_[s.a], d = welded_[s.b] - p;
+      const double length = d.norm();
+      constexpr double share_of_length = 1e-3;
+      const double tolerance = std::min(welded_.tolerance(), share_of_length * length);
+      tree.find_overlaps(segment_box(p, welded_[s.b], tolerance), near);
+      for (int point : near) {
+        if (point == s.a || point == s.b) continue;
+        // A needle's apex on its own long edge: cutting there would fold the triangle up.
+        if (point == s.triangle_apex[0] || point == s.triangle_apex[1]) continue;
+        const double t = d.dot(welded_[point] - p) / (length * length);
+        if (!(t * length > tolerance && (1.0 - t) * length > tolerance)) continue;
+        if ((welded_[point] - p - t * d).norm() <= tolerance) cuts_[i].emplace_back(t, point);
+      }
+      std::sort(cuts_[i].begin(), cuts_[i].end());
+    }
+  });
+}
+
+void ContactGraph::make_atoms() {
+  std::unordered_map<std::uint64_t, int> atom_of_ends;
+  atoms_of_segment_.resize(segments_.size());
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    std::vector<int> chain{segments_[i].a};
+    const auto append = [&chain](int point) {
+      if (std::find(chain.begin(), chain.end(), point) == chain.end()) chain.push_back(point);
+    };
+    for (const auto& [t, point] : cuts_[i]) {
+      if (point != segments_[i].b) append(point);
+    }
+    append(segments_[i].b);
+    for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+      const int a = std::min(chain[k], chain[k + 1]), b = std::max(chain[k], chain[k + 1]);
+      const auto [entry, is_new] =
+          atom_of_ends.try_emplace(ends_key(a, b), static_cast<int>(atoms_.size()));
+      if (is_new) {
+        atoms_.push_back(
+            {.a = a, .b = b, .pieces = size_.pieces((welded_[a] - welded_[b]).norm())});
+      }
+      atoms_of_segment_[i].push_back(entry->second);
+    }
+  }
+}
+
+std::vector<int> ContactGraph::atoms_of_boundary(int index) const {
+  std::vector<int> atoms;
+  for (int e = 0; e < planes_[index].corner_count(); ++e) {
+    const auto& of_edge = atoms_of_segment_[edge_segment_[first_edge_[index] + e]];
+    atoms.insert(atoms.end(), of_edge.begin(), of_edge.end());
+  }
+  std::sort(atoms.begin(), atoms.end());
+  return atoms;
+}
+
+std::vector<int> ContactGraph::contact_atoms(int index) const {
+  std::vector<int> atoms;
+  if (contact_segments_[index].empty()) return atoms;
+  for (int s : contact_segments_[index]) {
+    atoms.insert(atoms.end(), atoms_of_segment_[s].begin(), atoms_of_segment_[s].end());
+  }
+  std::sort(atoms.begin(), atoms.end());
+  atoms.erase(std::unique(atoms.begin(), atoms.end()), atoms.end());
+  const std::vector<int> boundary = atoms_of_boundary(index);
+  std::vector<int> inside;
+  std::set_difference(atoms.begin(), atoms.end(), boundary.begin(), boundary.end(),
+                      std::back_inserter(inside));
+  return inside;
+}
+
+// Opposite edges of four-sided facets get equal counts where their lengths nearly agree, so that a
+// slightly trapezoidal wall is a grid of quadrilaterals; and a contact line with both ends free
+// gets a point of its own, on which the two sides can differ.
+void ContactGraph::count_pieces() {
+  std::vector<int> parent(atoms_.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&parent](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  const auto length = [&](int atom) {
+    return (welded_[atoms_[atom].a] - welded_[atoms_[atom].b]).norm();
+  };
+  for (std::size_t f = 0; f < planes_.size(); ++f) {
+    const std::vector<int> contacts = contact_atoms(static_cast<int>(f));
+    std::unordered_map<int, int> degree;
+    const auto count_ends = [&](const std::vector<int>& list) {
+      for (int atom : list) ++degree[atoms_[atom].a], ++degree[atoms_[atom].b];
+    };
+    if (!contacts.empty()) {
+      count_ends(contacts);
+      count_ends(atoms_of_boundary(static_cast<int>(f)));
+    }
+    for (int c : contacts) {
+      Atom& atom = atoms_[c];
+      if (degree[atom.a] == 1 && degree[atom.b] == 1) atom.pieces = std::max(atom.pieces, 2);
+    }
+    if (planes_[f].corner_count() != 4 || planes_[f].loop_count() != 1) continue;
+    for (int e = 0; e < 2; ++e) {
+      const auto& one = atoms_of_segment_[edge_segment_[first_edge_[f] + e]];
+      const auto& other = atoms_of_segment_[edge_segment_[first_edge_[f] + e + 2]];
+      if (one.size() != 1 || other.size() != 1) continue;
+      const double ratio = length(one[0]) / length(other[0]);
+      constexpr double nearly = 1.1;
+      if (ratio < nearly && ratio * nearly > 1.0) parent[root(one[0])] = root(other[0]);
+    }
+  }
+  std::vector<int> most(atoms_.size(), 0);
+  for (std::size_t i = 0; i < atoms_.size(); ++i) {
+    int& m = most[root(static_cast<int>(i))];
+    m = std::max(m, atoms_[i].pieces);
+  }
+  for (std::size_t i = 0; i < atoms_.size(); ++i) {
+    const int wanted = most[root(static_cast<int>(i))];
+    // A long chain of ever longer edges must not refine its short end without limit.
+    if (wanted <= 1.25 * atoms_[i].pieces + size_.elements_per_edge) atoms_[i].pieces = wanted;
+  }
+}
+
+void ContactGraph::divide() {
+  points_ = welded_.all();
+  for (Atom& atom : atoms_) {
+    atom.first_division = static_cast<int>(points_.size());
+    const Vector3d a = points_[atom.a], b = points_[atom.b];
+    for (int k = 1; k < atom.pieces; ++k) {
+      points_.push_back(a + (b - a) * (static_cast<double>(k) / atom.pieces));
+    }
+  }
+}
+
+FacetOutline ContactGraph::outline(int index) const {
+  const FacetPlane& plane = planes_[index];
+  FacetOutline outline;
+  int edge = first_edge_[index];
+  for (int l = 0; l < plane.loop_count(); ++l) {
+    std::vector<int>& loop = outline.loops.emplace_back();
+    for (int i = plane.loop_begin[l]; i < plane.loop_begin[l + 1]; ++i, ++edge) {
+      const int s = edge_segment_[edge];
+      std::vector<int> chain = atoms_of_segment_[s];
+      int from = plane.point[i];
+      if (from != segments_[s].a) std::reverse(chain.begin(), chain.end());
+      for (int c : chain) {
+        const Atom& atom = atoms_[c];
+        const bool forward = from == atom.a;
+        loop.push_back(from);
+        for (int k = 0; k < atom.pieces - 1; ++k) {
+          loop.push_back(atom.first_division + (forward ? k : atom.pieces - 2 - k));
+        }
+        from = forward ? atom.b : atom.a;
+      }
+    }
+  }
+  for (int c : contact_atoms(index)) {
+    const Atom& atom = atoms_[c];
+    int from = atom.a;
+    for (int k = 0; k < atom.pieces - 1; ++k) {
+      outline.contacts.push_back({from, atom.first_division + k});
+      from = atom.first_division + k;
+    }
+    outline.contacts.push_back({from, atom.b});
+  }
+  return outline;
+}
+
+}  // namespace lightwell

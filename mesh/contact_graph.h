@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "mesh/facet_plane.h"
+#include "scene/progress.h"
+
+namespace lightwell {
+
+/// How finely to cut: patches of at most `patch_size` metres, each edge of a full patch in
+/// `elements_per_edge` equal pieces.
+struct CutSize {
+  double patch_size = 1.0;
+  int elements_per_edge = 2;
+
+  double element_size() const { return patch_size / elements_per_edge; }
+  /// Pieces of a straight line: whole patches if it is at least one patch long, else elements.
+  int pieces(double length) const;
+  int patches(double length) const;
+};
+
+/// What a facet's triangulation must respect, as numbers of ContactGraph::points.
+struct FacetOutline {
+  std::vector<std::vector<int>> loops{};       ///< boundary, then holes, already divided
+  std::vector<std::array<int, 2>> contacts{};  ///< pieces of contact lines inside the facet
+};
+
+/// All boundary edges and contact lines of a scene, cut at every point where one meets another, and
+/// divided into pieces of element size. A line that several facets share is cut once, for all of
+/// them: that is what makes the mesh conform across facets.
+class ContactGraph {
+ public:
+  /// `points` must hold the planes' corners.
+  ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes, WeldedPoints points,
+               const CutSize& size, const Progress& progress);
+
+  const std::vector<Eigen::Vector3d>& points() const { return points_; }
+  /// `index` is the plane's place in `planes`.
+  FacetOutline outline(int index) const;
+
+ private:
+  struct Segment {
+    int a = 0, b = 0;                 ///< points, a < b
+    int triangle_apex[2] = {-1, -1};  ///< third corners of triangles that have this edge
+  };
+  struct Atom {
+    int a = 0, b = 0;  ///< points, a < b
+    int pieces = 1;
+    int first_division = 0;  ///< the pieces - 1 points between a and b, in order
+  };
+
+  int segment(int a, int b);
+  void add_boundaries();
+  void add_contacts(const Scene& scene, const Progress& progress);
+  void cut_at_crossings();
+  void cut_at_points();
+  void make_atoms();
+  void count_pieces();
+  void divide();
+  std::vector<int> atoms_of_boundary(int index) const;
+  std::vector<int> contact_atoms(int index) const;
+
+  const std::vector<FacetPlane>& planes_;
+  CutSize size_;
+  WeldedPoints welded_;
+  std::vector<Segment> segments_;
+  std::unordered_map<std::uint64_t, int> segment_of_ends_;
+  std::vector<int> first_edge_;    ///< of a plane, in edge_segment_
+  std::vector<int> edge_segment_;  ///< segment of every boundary edge of every plane
+  std::vector<std::vector<int>> contact_segments_;         ///< per plane, ascending, unique
+  std::vector<std::vector<std::pair<double, int>>> cuts_;  ///< per segment: (parameter, point)
+  std::vector<Atom> atoms_;
+  std::vector<std::vector<int>> atoms_of_segment_;  ///< in order from a to b
+  std::vector<Eigen::Vector3d> points_;
+};
+
+}  // namespace lightwell

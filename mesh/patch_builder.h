@@ -1,0 +1,43 @@
+#pragma once
+
+#include "mesh/facet_mesh.h"
+#include "mesh/patch_mesh.h"
+#include "mesh/sphere_grid.h"
+
+namespace lightwell {
+
+/// Joins the meshes of all facets and spheres into one PatchMesh, in the order they are added
+/// (ascending facet numbers): shares vertices across smooth edges, makes the back sides.
+class PatchBuilder {
+ public:
+  PatchBuilder(const Scene& scene, double smooth_angle_degrees)
+      : scene_(scene), smooth_angle_degrees_(smooth_angle_degrees) {}
+
+  void add_facet(int facet, int surface, const Eigen::Vector3d& normal, FacetMesh mesh);
+  void add_sphere(int facet, int surface, const Sphere& sphere, SphereElements elements);
+  PatchMesh finish();
+
+ private:
+  struct Piece {  // front of one facet, its vertices numbered from `first_vertex`
+    int facet = 0, surface = 0;
+    int first_vertex = 0;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    FacetMesh mesh{};
+    int sphere = -1;  ///< index into grids_; its areas are in sphere_area_
+  };
+  void share_smooth_edges();
+  int root(int vertex);
+  void emit_side(const Piece& piece, bool is_back, std::vector<int>& number, PatchMesh& out,
+                 std::vector<Eigen::Vector3d>& positions);
+  bool has_back(const Material& material) const;
+
+  const Scene& scene_;
+  double smooth_angle_degrees_;
+  std::vector<Piece> pieces_;
+  std::vector<SphereGrid> grids_;
+  std::vector<std::vector<double>> sphere_area_;
+  std::vector<int> parent_;  ///< union-find over front vertices
+  std::vector<double> element_area_, patch_area_;
+};
+
+}  // namespace lightwell

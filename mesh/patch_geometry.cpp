@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "mesh/patch_mesh.h"
+#include "mesh/sphere_grid.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+// Twice the area, along the normal; planar quadrilaterals and triangles.
+Vector3d area_vector(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return (b - a).cross(c - a);
+}
+
+Vector3d element_area_vector(const PatchMesh& mesh, int element) {
+  const auto& c = mesh.corners[element];
+  const Vector3d p0 = mesh.position(c[0]), p1 = mesh.position(c[1]), p2 = mesh.position(c[2]);
+  if (c[3] < 0) return area_vector(p0, p1, p2);
+  return (p2 - p0).cross(mesh.position(c[3]) - p1);
+}
+
+Vector3d mean_of_corners(const PatchMesh& mesh, int element) {
+  Vector3d sum = Vector3d::Zero();
+  const int n = mesh.corner_count(element);
+  for (int i = 0; i < n; ++i) sum += mesh.position(mesh.corners[element][i]);
+  return sum / n;
+}
+
+const SphereGrid* sphere_of_element(const PatchMesh& mesh, int element) {
+  return sphere_grid_of(mesh, mesh.facet[mesh.patch[element]]);
+}
+
+// Uniform over a triangle: the square root keeps density even towards corner a.
+Vector3d point_of_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c, double u,
+                           double v) {
+  const double s = std::sqrt(u);
+  return (1.0 - s) * a + s * (1.0 - v) * b + s * v * c;
+}
+
+Vector3d point_of_polygon(const PatchMesh& mesh, int element, double u, double v) {
+  const auto& c = mesh.corners[element];
+  const Vector3d p0 = mesh.position(c[0]), p1 = mesh.position(c[1]), p2 = mesh.position(c[2]);
+  if (c[3] < 0) return point_of_triangle(p0, p1, p2, u, v);
+  const Vector3d p3 = mesh.position(c[3]);
+  const double first = area_vector(p0, p1, p2).norm(), second = area_vector(p0, p2, p3).norm();
+  const double share = first / (first + second);
+  if (u < share) return point_of_triangle(p0, p1, p2, u / share, v);
+  return point_of_triangle(p0, p2, p3, (u - share) / (1.0 - share), v);
+}
+
+// Uniform over a sphere's element: even in longitude and in cos(theta) (Archimedes).
+Vector3d direction_of_sphere(const PatchMesh& mesh, const SphereGrid& grid, int element, double u,
+                             double v) {
+  SpherePlace place = sphere_place(grid, mean_of_corners(mesh, element) - grid.sphere.center);
+  place.u = 0.0;
+  place.v = 0.0;
+  const double south = sphere_direction(grid, place).z();
+  place.v = 1.0;
+  const double north = sphere_direction(grid, place).z();
+  const double z = std::clamp(south + v * (north - south), -1.0, 1.0);
+  place.u = u;
+  const Vector3d around = sphere_direction(grid, {place.ring, place.sector, u, 0.5});
+  const double across = std::hypot(around.x(), around.y()), r = std::sqrt(1.0 - z * z);
+  return {r * around.x() / across, r * around.y() / across, z};
+}
+
+// Radial on spheres, inwards for inner elements; elsewhere the mean of the faces around.
+void set_vertex_normals(PatchMesh& mesh, int vertex_count) {
+  mesh.vertex_normal.assign(vertex_count, Vector3d::Zero());
+  const int patches = mesh.patch_count();
+  for (int p = 0; p < patches; ++p) {
+    const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[p]);
+    const double towards = mesh.is_back[p] != 0 ? -1.0 : 1.0;
+    for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+      const Vector3d area = element_area_vector(mesh, e);
+      for (int i = 0; i < mesh.corner_count(e); ++i) {
+        const int v = mesh.corners[e][i];
+        if (grid) {
+          mesh.vertex_normal[v] = towards * (mesh.position(v) - grid->sphere.center);
+        } else {
+          mesh.vertex_normal[v] += area;
+        }
+      }
+    }
+  }
+  for (Vector3d& n : mesh.vertex_normal) n.normalize();
+}
+
+}  // namespace
+
+PatchPoint patch_point(const PatchMesh& mesh, int patch, double u, double v) {
+  const int first = mesh.first_element[patch], last = mesh.first_element[patch + 1] - 1;
+  double rest = u * mesh.area[patch];
+  int element = first;
+  while (element < last && rest >= mesh.element_area[element]) rest -= mesh.element_area[element++];
+  u = std::clamp(rest / mesh.element_area[element], 0.0, 1.0);
+
+  PatchPoint point{.element = element};
+  if (const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[patch])) {
+    const Vector3d direction = direction_of_sphere(mesh, *grid, element, u, v);
+    point.position = grid->sphere.center + grid->sphere.radius * direction;
+    point.normal = mesh.is_back[patch] != 0 ? Vector3d(-direction) : direction;
+  } else {
+    point.position = point_of_polygon(mesh, element, u, v);
+    point.normal = element_area_vector(mesh, element).normalized();
+  }
+  return point;
+}
+
+PatchPoint element_center(const PatchMesh& mesh, int element) {
+  PatchPoint point{.element = element, .position = mean_of_corners(mesh, element)};
+  if (const SphereGrid* grid = sphere_of_element(mesh, element)) {
+    const Vector3d direction = (point.position - grid->sphere.center).normalized();
+    point.position = grid->sphere.center + grid->sphere.radius * direction;
+    point.normal = mesh.is_back[mesh.patch[element]] != 0 ? Vector3d(-direction) : direction;
+  } else {
+    point.normal = element_area_vector(mesh, element).normalized();
+  }
+  return point;
+}
+
+void build_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
+  using Vertex = HalfedgeMesh::VertexHandle;
+  mesh.elements.clear();
+  mesh.elements.reserve(positions.size(), 2 * mesh.corners.size() + positions.size(),
+                        mesh.corners.size());
+  for (const Vector3d& p : positions) mesh.elements.add_vertex({p.x(), p.y(), p.z()});
+  const int vertex_count = static_cast<int>(positions.size());
+  for (std::size_t e = 0; e < mesh.corners.size(); ++e) {
+    std::array<Vertex, 4> face;
+    std::size_t n = 0;
+    for (int v : mesh.corners[e]) {
+      if (v < 0) break;
+      if (v >= vertex_count) {
+        throw std::runtime_error("element " + std::to_string(e) + " of the mesh names vertex " +
+                                 std::to_string(v) + ", but there are only " +
+                                 std::to_string(vertex_count));
+      }
+      face[n++] = Vertex(v);
+    }
+    if (n < 3 || !mesh.elements.add_face(face.data(), n).is_valid()) {
+      throw std::runtime_error("element " + std::to_string(e) +
+                               " of the mesh does not fit its neighbours: more than two elements "
+                               "share an edge, or two run along it in one direction");
+    }
+  }
+  set_vertex_normals(mesh, vertex_count);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "mesh/patch_mesh.h"
+#include "scene/scene.h"
+
+namespace lightwell::testing {
+
+using Loop = std::vector<Eigen::Vector3d>;
+
+/// A material that reflects `rho` in every band of an RGB scene.
+Material diffuse(const std::string& name, float rho);
+
+/// A scene with RGB bands and no surfaces; material 0 reflects 0.5 on both sides, material 1 the
+/// same on its front only.
+Scene empty_scene();
+
+PolygonMesh polygon(const Loop& boundary, const std::vector<Loop>& holes = {});
+void add_polygon(Scene& scene, const std::string& name, const Loop& boundary,
+                 const std::vector<Loop>& holes = {}, int material = 0);
+void add_sphere(Scene& scene, const std::string& name, const Sphere& sphere, int material = 0);
+
+/// Six outward rectangles around the axis-aligned box, as one surface or six.
+void add_box(Scene& scene, const std::string& name, const Eigen::Vector3d& low,
+             const Eigen::Vector3d& high, bool one_surface = true, int material = 0);
+
+/// The measured Cornell box (metres): rectangles as published, blocks without bottoms standing on
+/// the floor, a ceiling with a hole that the light fills, and the warped left wall as two triangles
+/// of one surface.
+Scene cornell_box();
+
+/// A height field of 2 n^2 triangles over the unit square.
+Scene terrain(int n);
+
+/// Checks every promise of PatchMesh's comments that can be told from the mesh alone.
+void expect_consistent(const PatchMesh& mesh);
+
+/// Sum of the areas of the elements of a facet on one side.
+double side_area(const PatchMesh& mesh, int facet, bool back);
+
+/// Number of vertices that lie inside an edge of some element, within 1e-9 of its length: brute
+/// force over a hash of boxes. Touching facets count, so this is conformity across facets as well.
+int hanging_vertices(const PatchMesh& mesh);
+
+/// Smallest angle of all elements, degrees.
+double smallest_angle(const PatchMesh& mesh);
+
+}  // namespace lightwell::testing
