@@ -1,0 +1,288 @@
+#include "viewer/view.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPNGReader.h>
+
+#include <array>
+#include <cstdlib>
+#include <numbers>
+#include <thread>
+
+#include "raytrace/image.h"
+#include "solved_box.h"
+#include "viewer/solution_view.h"
+
+namespace lightwell {
+namespace {
+
+namespace fs = std::filesystem;
+using Pixel = std::array<int, 3>;
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> bytes;
+  Pixel at(int x, int y) const {
+    const std::size_t i = 3 * (static_cast<std::size_t>(y) * width + x);
+    return {bytes[i], bytes[i + 1], bytes[i + 2]};
+  }
+};
+
+ViewOptions options_for(const Camera& camera) {
+  ViewOptions options;
+  options.camera = camera;
+  options.cameras = {camera};
+  options.width = camera.width;
+  options.height = camera.height;
+  return options;
+}
+
+Picture draw(const SolvedScene& solved, const ViewOptions& options, const Look* look = nullptr) {
+  SolutionView view(solved, options);
+  if (look) view.set_look(*look);
+  return {options.width, options.height, draw_offscreen(view, options.width, options.height)};
+}
+
+/// The bytes a surface of this irradiance (and reflectance 1) must show in a picture.
+Pixel expected(const SolvedScene& solved, const ViewOptions& options, const Eigen::Array3f& E) {
+  const SolutionView view(solved, options);
+  const BandArray L = E.transpose() / std::numbers::pi_v<float>;
+  const auto bytes = display_colors(L, solved.solution.bands,
+                                    view.look().metered_scale * std::exp2(view.look().exposure_ev));
+  return {bytes[0], bytes[1], bytes[2]};
+}
+
+/// OpenGL may round a colour either way, and the average over subpixels rounds once more.
+void expect_pixel(const Pixel& seen, const Pixel& wanted, const char* what) {
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(seen[c], wanted[c], 2) << what << ", colour component " << c;
+  }
+}
+
+/// Walls of one colour each: the pixels are the tone-mapped vertex colours, and left is left. The
+/// opening is 3 m away and 2 m wide in a picture 2 * 3 tan 20 deg = 2.18 m wide there.
+TEST(Snapshot, ShowsEveryWallWhereTheCameraSeesIt) {
+  const SolvedScene box = solved_box();
+  const ViewOptions options = options_for(box_camera());
+  const Picture picture = draw(box, options);
+  expect_pixel(picture.at(100, 75), expected(box, options, white), "back wall");
+  expect_pixel(picture.at(20, 75), expected(box, options, green), "world +x is on the left");
+  expect_pixel(picture.at(180, 75), expected(box, options, red), "world -x is on the right");
+  expect_pixel(picture.at(100, 5), expected(box, options, blue), "ceiling");
+  expect_pixel(picture.at(100, 145), expected(box, options, grey), "floor");
+  expect_pixel(picture.at(2, 75), {0, 0, 0}, "beside the box there is nothing");
+}
+
+TEST(Snapshot, BacksAreNotDrawn) {
+  const SolvedScene box = solved_box();
+  Camera camera = box_camera();
+  camera.position = {-3, 1, 1};
+  camera.direction = {1, 0, 0};
+  const ViewOptions options = options_for(camera);
+  const Picture picture = draw(box, options);
+  expect_pixel(picture.at(100, 75), expected(box, options, green),
+               "through the back of the red wall");
+}
+
+/// Both sides of one wall lie in the same plane and must not fight for the pixels.
+TEST(Snapshot, EachSideOfAWallShowsItsOwnLight) {
+  SolvedQuads quads;
+  quads.add({{{0, 0, 0}, {0, 2, 0}, {2, 2, 0}, {2, 0, 0}}}, red);   // faces -z
+  quads.add({{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}}, blue);  // faces +z
+  SolvedScene wall = quads.solved();
+  wall.mesh.twin = {1, 0};
+  Camera camera = box_camera();
+  camera.position = {1, 1, -2};
+  for (const bool from_front : {true, false}) {
+    if (!from_front) {
+      camera.position.z() = 2;
+      camera.direction.z() = -1;
+    }
+    const ViewOptions options = options_for(camera);
+    const Picture picture = draw(wall, options);
+    const Pixel wanted = expected(wall, options, from_front ? red : blue);
+    for (int y = 30; y < 120; ++y) {
+      for (int x = 40; x < 160; ++x) expect_pixel(picture.at(x, y), wanted, "one colour all over");
+    }
+  }
+}
+
+/// Two opposite corners are equal and the others are not: the crease must join the equal ones, so
+/// that the middle has their value, whichever pair it is.
+TEST(Snapshot, QuadsAreSplitAlongTheSmootherDiagonal) {
+  const Eigen::Array3f dim = 0.25f * grey, bright = 3.0f * grey;
+  for (const auto& irradiance :
+       {std::array{grey, dim, grey, bright}, std::array{dim, grey, bright, grey}}) {
+    SolvedQuads quads;
+    quads.add({{{0, 0, 0}, {0, 2, 0}, {2, 2, 0}, {2, 0, 0}}}, irradiance);
+    const SolvedScene quad = quads.solved();
+    Camera camera = box_camera();
+    camera.position = {1, 1, -2};
+    const ViewOptions options = options_for(camera);
+    const Picture picture = draw(quad, options);
+    expect_pixel(picture.at(100, 75), expected(quad, options, grey), "the middle of the quad");
+  }
+}
+
+TEST(Snapshot, OneStopDoublesTheLight) {
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  const SolutionView plain(box, options);
+  options.exposure_ev = 1.0;
+  const SolutionView brighter(box, options);
+  EXPECT_EQ(plain.look().metered_scale, brighter.look().metered_scale);
+  const Picture picture = draw(box, options);
+  const auto doubled = display_colors(white.transpose() / std::numbers::pi_v<float>,
+                                      box.solution.bands, 2.0 * plain.look().metered_scale);
+  expect_pixel(picture.at(100, 75), {doubled[0], doubled[1], doubled[2]}, "back wall");
+}
+
+TEST(Snapshot, UnlitSurfacesHideWhatIsBehindUntilLookedThrough) {
+  SolvedQuads quads;  // a dark wall facing the camera, and a lit one behind it
+  quads.add({{{0, 0, 0}, {0, 2, 0}, {2, 2, 0}, {2, 0, 0}}}, Eigen::Array3f::Zero().eval());
+  quads.add({{{0, 0, 2}, {0, 2, 2}, {2, 2, 2}, {2, 0, 2}}}, white);
+  const SolvedScene scene = quads.solved();
+  const ViewOptions options = options_for(box_camera());
+  expect_pixel(draw(scene, options).at(100, 75), {0, 0, 0}, "the dark wall");
+  SolutionView view(scene, options);
+  Look look = view.look();
+  look.unlit = false;
+  expect_pixel(draw(scene, options, &look).at(100, 75), expected(scene, options, white),
+               "the lit wall behind it");
+}
+
+TEST(Snapshot, TheMeshOverlayDrawsTheOutlinesAndNoDiagonals) {
+  const SolvedScene box = solved_box();
+  const ViewOptions options = options_for(box_camera());
+  const Picture plain = draw(box, options);
+  Look look = SolutionView(box, options).look();
+  look.mesh = true;
+  const Picture meshed = draw(box, options, &look);
+  // Across the edge between the back wall and the floor, 1 m below the axis at 5 m: 1 / (5 tan 20)
+  // of the half width of 100 pixels, 55 pixels below the middle.
+  int darkest = 255;
+  for (int y = 127; y <= 133; ++y) darkest = std::min(darkest, meshed.at(100, y)[0]);
+  EXPECT_LT(darkest, plain.at(100, 126)[0] - 40);
+  // Nothing crosses the middle of the back wall, where both diagonals would pass.
+  for (int d = -3; d <= 3; ++d) {
+    expect_pixel(meshed.at(100 + d, 75), plain.at(100, 75), "the middle of the back wall");
+  }
+}
+
+/// A folder of its own that goes away with the test.
+class SnapshotFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("lightwell-view-" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::size_t file_count() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+  Picture read(const fs::path& png) const {
+    vtkNew<vtkPNGReader> reader;
+    reader->SetFileName(png.c_str());
+    reader->Update();
+    const int* size = reader->GetOutput()->GetDimensions();
+    Picture picture{size[0], size[1], {}};
+    for (int y = size[1] - 1; y >= 0; --y) {
+      const auto* row = static_cast<unsigned char*>(reader->GetOutput()->GetScalarPointer(0, y, 0));
+      picture.bytes.insert(picture.bytes.end(), row, row + std::ptrdiff_t{3} * size[0]);
+    }
+    return picture;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(SnapshotFile, IsThePictureAsAPng) {
+  const SolvedScene box = solved_box();
+  const ViewOptions options = options_for(box_camera());
+  write_snapshot(box, options, folder_ / "box.png");
+  const Picture drawn = draw(box, options);
+  const Picture stored = read(folder_ / "box.png");
+  EXPECT_EQ(stored.width, 200);
+  EXPECT_EQ(stored.height, 150);
+  EXPECT_EQ(stored.bytes, drawn.bytes);
+  EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(SnapshotFile, MayBeOnePixelOrLargerThanTheScreen) {
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  options.width = options.height = 1;
+  write_snapshot(box, options, folder_ / "one.png");
+  EXPECT_EQ(read(folder_ / "one.png").width, 1);
+  options.width = 2500;
+  options.height = 1800;
+  write_snapshot(box, options, folder_ / "large.png");
+  expect_pixel(read(folder_ / "large.png").at(1250, 900), expected(box, options, white), "middle");
+  options.width = 0;
+  EXPECT_THROW(write_snapshot(box, options, folder_ / "none.png"), std::invalid_argument);
+  options.width = 100000;
+  EXPECT_THROW(write_snapshot(box, options, folder_ / "none.png"), std::invalid_argument);
+}
+
+TEST_F(SnapshotFile, AFolderThatDoesNotExistIsNamed) {
+  try {
+    write_snapshot(solved_box(), options_for(box_camera()), folder_ / "absent" / "box.png");
+    FAIL() << "wrote into a folder that does not exist";
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("absent"), std::string::npos) << e.what();
+  }
+}
+
+/// VTK would end the program; the library must say what to do instead.
+TEST_F(SnapshotFile, WithoutADisplayTheMessageSaysWhatToDo) {
+  const char* before = std::getenv("DISPLAY");
+  const std::string display = before ? before : "";
+  for (const char* name : {"", ":7654"}) {
+    setenv("DISPLAY", name, 1);
+    try {
+      write_snapshot(solved_box(), options_for(box_camera()), folder_ / "box.png");
+      ADD_FAILURE() << "drew without a display";
+    } catch (const std::runtime_error& e) {
+      EXPECT_NE(std::string(e.what()).find("xvfb-run"), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("isplay"), std::string::npos) << e.what();
+    }
+    EXPECT_THROW(show_window(solved_box(), options_for(box_camera())), std::runtime_error);
+  }
+  setenv("DISPLAY", display.c_str(), 1);
+  EXPECT_EQ(file_count(), 0u);
+}
+
+/// The whole window, driven from outside as a person would: walk, save a picture, close.
+TEST_F(SnapshotFile, AWindowCanBeWalkedPhotographedAndClosed) {
+  if (std::system("command -v xdotool >/dev/null") != 0) GTEST_SKIP() << "xdotool is not installed";
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  options.width = 320;
+  options.height = 240;
+  options.screenshot_folder = folder_;
+  std::thread person([] {
+    const char* script =
+        "timeout 60 xdotool search --sync --name 'Lightwell - box.toml' >/dev/null && sleep 0.5 &&"
+        " xdotool mousemove 100 100 && sleep 0.2 && xdotool key p && sleep 1 &&"
+        " xdotool keydown w && sleep 1 && xdotool keyup w && sleep 0.5 && xdotool key p &&"
+        " sleep 1 && xdotool key Escape";
+    EXPECT_EQ(std::system(script), 0);
+  });
+  show_window(box, options);
+  person.join();
+  ASSERT_EQ(file_count(), 2u);
+  const Picture before = read(folder_ / "lightwell-1.png");
+  const Picture after = read(folder_ / "lightwell-2.png");
+  EXPECT_EQ(before.width, 320);
+  expect_pixel(before.at(160, 120), expected(box, options, white), "back wall");
+  // Walking in by 2/3 m or more: the back wall covered 0.55 of the width, and now more than 0.6.
+  const Pixel white_now = expected(box, options, white);
+  expect_pixel(after.at(160 - 96, 120), white_now, "the back wall has come closer");
+  EXPECT_NE(before.at(160 - 96, 120), after.at(160 - 96, 120));
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,180 @@
+#include "viewer/appearance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "raytrace/camera_ray.h"
+#include "raytrace/display.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int vertex_grain = 4096;
+/// Surfaces a sample looks through before it counts as black; each is a pane or a wall from behind.
+constexpr int max_layers = 16;
+
+const Material* find_material(const PatchMesh& mesh, const std::vector<Material>& materials,
+                              int element) {
+  const auto m = static_cast<std::size_t>(mesh.material[mesh.patch[element]]);
+  return m < materials.size() ? &materials[m] : nullptr;
+}
+
+}  // namespace
+
+std::vector<ElementKind> element_kinds(const SolvedScene& solved,
+                                       const std::vector<Material>& materials) {
+  const PatchMesh& mesh = solved.mesh;
+  const BandArray E = solved.solution.irradiance();
+  std::vector<ElementKind> kinds(static_cast<std::size_t>(mesh.element_count()));
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const Material* material = find_material(mesh, materials, e);
+    bool lit = (mesh.emission.row(mesh.patch[e]) > 0.0f).any();
+    for (int c = 0; c < mesh.corner_count(e); ++c) lit |= (E.row(mesh.corners[e][c]) > 0.0f).any();
+    kinds[e] = material && material->dielectric ? ElementKind::glass
+               : lit                            ? ElementKind::lit
+                                                : ElementKind::unlit;
+  }
+  return kinds;
+}
+
+BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>& materials) {
+  const PatchMesh& mesh = solved.mesh;
+  const BandArray E = solved.solution.irradiance();
+  BandArray B = vertex_radiosity(mesh, solved.solution);
+  std::vector<char> done(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const Material* material = find_material(mesh, materials, e);
+    if (!material || !material->is_specular()) continue;
+    const Spectrum& share = material->dielectric ? material->dielectric->tint : material->specular;
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const int v = mesh.corners[e][c];
+      if (!done[v]) B.row(v) += share.transpose() * E.row(v);
+      done[v] = 1;
+    }
+  }
+  return B / std::numbers::pi_v<float>;
+}
+
+std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
+                                         double scale) {
+  const int count = static_cast<int>(radiance.rows());
+  std::vector<std::uint8_t> bytes(std::size_t{3} * radiance.rows());
+  parallel_for(count, vertex_grain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      const Spectrum L = radiance.row(v).transpose();
+      const Eigen::Array3f shown = display_rgb(linear_rgb(bands, L), scale, true);
+      for (int c = 0; c < 3; ++c) {
+        bytes[std::size_t{3} * v + c] =
+            static_cast<std::uint8_t>(255.0f * srgb_encode(shown[c]) + 0.5f);
+      }
+    }
+  });
+  return bytes;
+}
+
+std::vector<float> vertex_illuminance(const RadiositySolution& solution) {
+  const BandArray E = solution.irradiance();
+  std::vector<float> lux(static_cast<std::size_t>(E.rows()));
+  for (Eigen::Index v = 0; v < E.rows(); ++v) {
+    lux[v] = static_cast<float>(luminous(solution.bands, E.row(v).transpose()));
+  }
+  return lux;
+}
+
+LuxRange lux_range(const std::vector<float>& lux) {
+  std::vector<float> lit;
+  for (const float value : lux) {
+    if (value > 0.0f && std::isfinite(value)) lit.push_back(value);
+  }
+  if (lit.empty()) return {};
+  std::sort(lit.begin(), lit.end());
+  const double darkest = lit.front();
+  const double brightest =
+      lit[static_cast<std::size_t>(0.995 * static_cast<double>(lit.size() - 1))];
+  // The nearest 1, 2 or 5 times a power of ten that is not below (above, for the low end).
+  const auto round = [](double value, bool up) {
+    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    double result = up ? 10.0 * power : power;
+    for (const double step : {2.0, 5.0}) {
+      if (up && step * power >= value) return value <= power ? power : step * power;
+      if (!up && step * power <= value) result = step * power;
+    }
+    return result;
+  };
+  LuxRange range;
+  range.high = round(brightest, true);
+  range.low = round(std::max(darkest, range.high / 1000.0), false);
+  if (!(range.low < range.high)) range.low = range.high / 10.0;
+  return range;
+}
+
+Eigen::Array3f false_color(float place) {
+  // Lightness rises evenly from stop to stop.
+  static const std::array<Eigen::Array3f, 6> stops = {
+      Eigen::Array3f{0.16f, 0.05f, 0.36f}, Eigen::Array3f{0.16f, 0.29f, 0.60f},
+      Eigen::Array3f{0.08f, 0.49f, 0.58f}, Eigen::Array3f{0.20f, 0.66f, 0.44f},
+      Eigen::Array3f{0.63f, 0.81f, 0.27f}, Eigen::Array3f{1.00f, 0.93f, 0.33f}};
+  const float x = std::clamp(place, 0.0f, 1.0f) * (stops.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(x), stops.size() - 2);
+  return stops[i] + (x - static_cast<float>(i)) * (stops[i + 1] - stops[i]);
+}
+
+std::vector<std::uint8_t> false_colors(const std::vector<float>& lux, const LuxRange& range) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(3 * lux.size());
+  const double span = std::log(range.high / range.low);
+  for (const float value : lux) {
+    const double place = value > 0.0f ? std::log(value / range.low) / span : 0.0;
+    for (const float c : false_color(static_cast<float>(place))) {
+      bytes.push_back(static_cast<std::uint8_t>(255.0f * c + 0.5f));
+    }
+  }
+  return bytes;
+}
+
+Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                     const BandArray& radiance, const Camera& camera, int width) {
+  Camera coarse = camera;
+  coarse.width = width;
+  coarse.height = std::clamp(
+      static_cast<int>(std::lround(static_cast<double>(width) * camera.height / camera.width)), 1,
+      4 * width);
+  const CameraRays camera_rays(coarse);
+  Image image{coarse.width, coarse.height, {}};
+  image.radiance = BandArray::Zero(image.width * image.height, radiance.cols());
+
+  std::vector<Ray> rays;
+  std::vector<int> pixels;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      rays.push_back(camera_rays.ray(x + 0.5, y + 0.5));
+      pixels.push_back(y * image.width + x);
+    }
+  }
+  for (int layer = 0; layer < max_layers && !rays.empty(); ++layer) {
+    std::vector<ElementHit> hits(rays.size());
+    caster.closest_hits(rays, hits);
+    std::vector<Ray> further;
+    std::vector<int> further_pixels;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (hits[i].facet < 0) continue;
+      if (hits[i].element >= 0 && kinds[hits[i].element] != ElementKind::glass) {
+        image.radiance.row(pixels[i]) = interpolate(caster.mesh(), radiance, hits[i]).transpose();
+        continue;
+      }
+      Ray ray = rays[i];
+      ray.origin += hits[i].t * ray.direction;
+      ray.origin_group = hits[i].facet;
+      further.push_back(ray);
+      further_pixels.push_back(pixels[i]);
+    }
+    rays = std::move(further);
+    pixels = std::move(further_pixels);
+  }
+  return image;
+}
+
+}  // namespace lightwell

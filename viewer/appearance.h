@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "radiosity/solve.h"
+#include "raytrace/image.h"
+
+namespace lightwell {
+
+/// Shares of a mesh that are drawn differently.
+enum class ElementKind : std::uint8_t {
+  lit,    ///< shows light
+  unlit,  ///< no light at any corner: the outside of a closed room, for one
+  glass,  ///< clear: drawn as a veil over what is behind
+};
+
+/// What each element is. Without materials nothing is glass.
+std::vector<ElementKind> element_kinds(const SolvedScene& solved,
+                                       const std::vector<Material>& materials);
+
+/// Radiance that stands for each vertex, W/(m^2 sr), vertices x bands: B / pi; mirrors and glass
+/// add what they would send out if they scattered the mirrored or the refracted light evenly.
+BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>& materials);
+
+/// 8-bit sRGB, 3 bytes a vertex: the second pass's automatic tone mapping with `scale` as the
+/// exposure (see exposure_scale).
+std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
+                                         double scale);
+
+/// Range of a logarithmic false-colour scale, lx: 1, 2 or 5 times a power of ten at either end,
+/// that takes in all but the brightest 0.5 % of the vertices and reaches at most a thousandth down.
+struct LuxRange {
+  double low = 1.0, high = 1000.0;
+};
+LuxRange lux_range(const std::vector<float>& lux);
+
+/// Illuminance at each vertex, lx.
+std::vector<float> vertex_illuminance(const RadiositySolution& solution);
+
+/// False colour for a place on the scale, [0,1]: dark blue by green to yellow, rising in lightness
+/// so that it reads the same in grey and for colour-blind eyes. sRGB, [0,1].
+Eigen::Array3f false_color(float place);
+
+/// 8-bit sRGB, 3 bytes a vertex.
+std::vector<std::uint8_t> false_colors(const std::vector<float>& lux, const LuxRange& range);
+
+/// A coarse picture, `width` pixels wide, of what the viewer draws for a camera: backs and glass
+/// are looked through, a miss is black. Its exposure_scale is what the second pass's picture from
+/// there has, up to mirrors and glass.
+Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                     const BandArray& radiance, const Camera& camera, int width);
+
+}  // namespace lightwell

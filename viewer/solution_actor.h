@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vtkSmartPointer.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/patch_mesh.h"
+#include "viewer/appearance.h"
+
+class vtkActor;
+class vtkPolyData;
+class vtkRenderer;
+class vtkUnsignedCharArray;
+
+namespace lightwell {
+
+/// The mesh in VTK's terms: unlit, Gouraud-shaded polygons whose vertex colours are shown as they
+/// are. Every side of a surface has elements of its own, so what faces away from the eye is left
+/// out: a room can be looked into from outside, and the two sides of a wall never fight for a
+/// pixel.
+class SolutionActor {
+ public:
+  /// `radiance` (vertices x bands) decides how quads are split: along the diagonal whose ends
+  /// differ less, so that the crease follows the light.
+  SolutionActor(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
+                const BandArray& radiance);
+  ~SolutionActor();
+
+  void add_to(vtkRenderer* renderer) const;
+  /// 8-bit sRGB, 3 bytes a vertex.
+  void set_colors(const std::vector<std::uint8_t>& rgb);
+  /// Draws the elements' outlines.
+  void show_mesh(bool shown);
+  /// Whether surfaces without any light are drawn (black) or looked through.
+  void show_unlit(bool shown);
+
+ private:
+  struct Part {
+    ElementKind kind;
+    vtkSmartPointer<vtkPolyData> data;
+    vtkSmartPointer<vtkActor> actor;
+  };
+  std::vector<Part> parts_;
+  vtkSmartPointer<vtkUnsignedCharArray> colors_;
+};
+
+}  // namespace lightwell

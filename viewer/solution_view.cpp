@@ -1,0 +1,190 @@
+#include "viewer/solution_view.h"
+
+#include <vtkCamera.h>
+#include <vtkLookupTable.h>
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkScalarBarActor.h>
+#include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "radiosity/vtk_messages.h"
+#include "raytrace/display.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int metering_width = 160;
+constexpr int largest_drawing = 8192;  ///< pixels along a side that every driver can draw
+
+vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range) {
+  constexpr int entries = 256;
+  vtkNew<vtkLookupTable> table;
+  table->SetNumberOfTableValues(entries);
+  table->SetScaleToLog10();
+  table->SetTableRange(range.low, range.high);
+  for (int i = 0; i < entries; ++i) {
+    const Eigen::Array3f c = false_color(static_cast<float>(i) / (entries - 1));
+    table->SetTableValue(i, c[0], c[1], c[2]);
+  }
+  auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
+  legend->SetLookupTable(table);
+  legend->SetTitle("lx");
+  legend->SetNumberOfLabels(2 + static_cast<int>(std::lround(std::log10(range.high / range.low))));
+  legend->SetLabelFormat("%.4g");
+  legend->SetMaximumWidthInPixels(90);
+  legend->SetMaximumHeightInPixels(320);
+  legend->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+  legend->GetPositionCoordinate()->SetValue(0.86, 0.3);
+  legend->SetWidth(0.12);
+  legend->SetHeight(0.6);
+  for (vtkTextProperty* text : {legend->GetTitleTextProperty(), legend->GetLabelTextProperty()}) {
+    text->ItalicOff();
+    text->BoldOff();
+    text->ShadowOn();
+  }
+  legend->VisibilityOff();
+  return legend;
+}
+
+/// Linear light of each sRGB byte: the inverse of srgb_encode.
+std::array<float, 256> srgb_table() {
+  std::array<float, 256> table{};
+  for (int i = 0; i < 256; ++i) {
+    const float s = static_cast<float>(i) / 255.0f;
+    table[i] = s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+  }
+  return table;
+}
+
+/// Box average over factor x factor pixels; turns VTK's rows, which begin at the bottom.
+std::vector<std::uint8_t> reduce(const unsigned char* pixels, int width, int height, int factor) {
+  const std::array<float, 256> linear = srgb_table();
+  std::vector<std::uint8_t> picture;
+  picture.reserve(std::size_t{3} * width * height);
+  const std::size_t stride = std::size_t{3} * width * factor;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      Eigen::Array3f sum = Eigen::Array3f::Zero();
+      for (int row = (height - 1 - y) * factor; row < (height - y) * factor; ++row) {
+        const unsigned char* p = pixels + row * stride + std::size_t{3} * x * factor;
+        for (int i = 0; i < factor; ++i, p += 3) {
+          sum += Eigen::Array3f(linear[p[0]], linear[p[1]], linear[p[2]]);
+        }
+      }
+      for (const float mean : sum / static_cast<float>(factor * factor)) {
+        picture.push_back(static_cast<std::uint8_t>(255.0f * srgb_encode(mean) + 0.5f));
+      }
+    }
+  }
+  return picture;
+}
+
+}  // namespace
+
+SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options)
+    : solved_(solved),
+      caster_(solved.mesh),
+      kinds_(element_kinds(solved, options.materials)),
+      radiance_(shown_radiance(solved, options.materials)),
+      lux_(vertex_illuminance(solved.solution)),
+      lux_range_(lux_range(lux_)),
+      bounds_(mesh_bounds(solved.mesh)),
+      up_axis_(guess_up_axis(options.cameras, bounds_)),
+      actor_(solved.mesh, kinds_, radiance_),
+      renderer_(vtkSmartPointer<vtkRenderer>::New()),
+      legend_(make_legend(lux_range_)) {
+  if (options.camera) {
+    start_camera_ = *options.camera;
+  } else if (!options.cameras.empty()) {
+    start_camera_ = options.cameras.front();
+  } else {
+    start_camera_ = find_start(caster_, kinds_, radiance_, up_axis_, options.width, options.height);
+  }
+  actor_.add_to(renderer_);
+  renderer_->AddViewProp(legend_);
+  renderer_->SetBackground(0.0, 0.0, 0.0);
+  look_.camera = start_camera_;
+  look_.metered_scale = meter(start_camera_);
+  look_.exposure_ev = options.exposure_ev;
+  apply_camera();
+  apply_colors();
+}
+
+SolutionView::~SolutionView() = default;
+
+vtkRenderer* SolutionView::renderer() const { return renderer_; }
+
+double SolutionView::meter(const Camera& camera) const {
+  const Image seen = coarse_picture(caster_, kinds_, radiance_, camera, metering_width);
+  if ((seen.radiance > 0.0f).any()) return exposure_scale(seen, solved_.solution.bands);
+  // Nothing to see from here: expose for the scene as a whole.
+  return exposure_scale({static_cast<int>(radiance_.rows()), 1, radiance_}, solved_.solution.bands);
+}
+
+void SolutionView::set_look(const Look& look) {
+  const bool recolor = look.metered_scale != look_.metered_scale ||
+                       look.exposure_ev != look_.exposure_ev ||
+                       look.illuminance != look_.illuminance;
+  look_ = look;
+  actor_.show_mesh(look.mesh);
+  actor_.show_unlit(look.unlit);
+  legend_->SetVisibility(look.illuminance);
+  if (recolor) apply_colors();
+  apply_camera();
+}
+
+void SolutionView::apply_colors() {
+  actor_.set_colors(look_.illuminance
+                        ? false_colors(lux_, lux_range_)
+                        : display_colors(radiance_, solved_.solution.bands,
+                                         look_.metered_scale * std::exp2(look_.exposure_ev)));
+}
+
+void SolutionView::apply_camera() {
+  const Camera& camera = look_.camera;
+  const double size = bounds_.diagonal();
+  vtkCamera* eye = renderer_->GetActiveCamera();
+  eye->SetPosition(camera.position.data());
+  const Eigen::Vector3d target = camera.position + size * camera.direction;
+  eye->SetFocalPoint(target.data());
+  eye->SetViewUp(camera.up.data());
+  eye->SetUseHorizontalViewAngle(true);
+  eye->SetViewAngle(camera.fov_degrees);
+  // All of the bounding sphere; from inside, as near as a depth buffer of 24 bits affords.
+  const double to_center = (0.5 * (bounds_.low + bounds_.high) - camera.position).norm();
+  const double nearest = std::max(to_center - 0.51 * size, 5e-4 * size);
+  eye->SetClippingRange(nearest, std::max(to_center + 0.51 * size, 2.0 * nearest));
+}
+
+std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, int height) {
+  const int side = std::max(width, height);
+  const int factor = std::clamp(largest_drawing / side, 1, 3);
+  const VtkMessages messages;
+  vtkNew<vtkRenderWindow> window;
+  window->OffScreenRenderingOn();
+  window->SetMultiSamples(0);
+  window->SetSize(width * factor, height * factor);
+  window->AddRenderer(view.renderer());
+  window->Render();
+  vtkNew<vtkUnsignedCharArray> pixels;
+  const int* drawn = window->GetActualSize();
+  const bool whole = drawn[0] == width * factor && drawn[1] == height * factor;
+  if (whole) {
+    window->GetPixelData(0, 0, width * factor - 1, height * factor - 1, 0, pixels);
+  }
+  window->RemoveRenderer(view.renderer());
+  if (!whole || pixels->GetNumberOfValues() != vtkIdType{3} * width * height * factor * factor) {
+    throw std::runtime_error(
+        "the graphics driver could not draw the picture off screen; try a smaller size");
+  }
+  return reduce(pixels->GetPointer(0), width, height, factor);
+}
+
+}  // namespace lightwell

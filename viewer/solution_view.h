@@ -1,0 +1,68 @@
+#pragma once
+
+#include <vtkSmartPointer.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "viewer/appearance.h"
+#include "viewer/solution_actor.h"
+#include "viewer/start_view.h"
+#include "viewer/view.h"
+
+class vtkRenderer;
+class vtkScalarBarActor;
+
+namespace lightwell {
+
+/// All that decides a picture of a solution.
+struct Look {
+  Camera camera{};
+  double metered_scale = 1.0;  ///< automatic exposure, from radiance to display values
+  double exposure_ev = 0.0;    ///< stops on top
+  bool mesh = false;           ///< outlines of the elements
+  bool unlit = true;           ///< surfaces without light are drawn, black; else looked through
+  bool illuminance = false;    ///< false colours with a legend instead of light
+};
+
+/// A solution set up for drawing with VTK. Keeps references to both arguments.
+class SolutionView {
+ public:
+  SolutionView(const SolvedScene& solved, const ViewOptions& options);
+  ~SolutionView();
+
+  const Look& look() const { return look_; }
+  void set_look(const Look& look);
+  /// The exposure_scale of the picture the camera sees.
+  double meter(const Camera& camera) const;
+
+  const Camera& start_camera() const { return start_camera_; }
+  const Bounds& bounds() const { return bounds_; }
+  const Eigen::Vector3d& up_axis() const { return up_axis_; }
+  vtkRenderer* renderer() const;
+
+ private:
+  void apply_camera();
+  void apply_colors();
+
+  const SolvedScene& solved_;
+  ElementCaster caster_;
+  std::vector<ElementKind> kinds_;
+  BandArray radiance_;
+  std::vector<float> lux_;
+  LuxRange lux_range_;
+  Bounds bounds_;
+  Eigen::Vector3d up_axis_;
+  Camera start_camera_;
+  Look look_;
+  SolutionActor actor_;
+  vtkSmartPointer<vtkRenderer> renderer_;
+  vtkSmartPointer<vtkScalarBarActor> legend_;
+};
+
+/// Draws off screen, two or three times as large, and averages in linear light. 8-bit sRGB, 3 bytes
+/// a pixel, row 0 on top. Needs require_display() to hold. Throws std::runtime_error if the
+/// graphics driver cannot draw.
+std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, int height);
+
+}  // namespace lightwell

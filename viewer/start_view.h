@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "scene/scene.h"
+#include "viewer/appearance.h"
+
+namespace lightwell {
+
+/// Axis-aligned bounds of the mesh's vertices.
+Bounds mesh_bounds(const PatchMesh& mesh);
+
+/// The coordinate axis most cameras' up leans to; without cameras the one of y and z in which the
+/// scene is lower, as rooms are wider than high.
+Eigen::Vector3d guess_up_axis(const std::vector<Camera>& cameras, const Bounds& bounds);
+
+/// From outside along `direction` (unit), the whole scene in the picture of width : height.
+Camera frame_all(const Bounds& bounds, const Eigen::Vector3d& direction,
+                 const Eigen::Vector3d& up_axis, int width, int height);
+
+/// Where to start when no camera is given: the whole scene from outside if light is seen from
+/// there, else inside, looking across the room.
+Camera find_start(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                  const BandArray& radiance, const Eigen::Vector3d& up_axis, int width, int height);
+
+}  // namespace lightwell

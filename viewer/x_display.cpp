@@ -1,0 +1,49 @@
+#include "viewer/x_display.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <vtkRenderWindow.h>
+#include <vtkSmartPointer.h>
+
+#include <cstdlib>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace lightwell {
+namespace {
+
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(fmt::format(
+      "{}. Run this in a desktop session, or under a virtual display: "
+      "'xvfb-run -a lightwell view --offscreen OUT.png ...' (Debian packages xvfb, xauth and "
+      "libgl1-mesa-dri)",
+      what));
+}
+
+}  // namespace
+
+void require_display() {
+  // Making the window object says which back end VTK was built with; it opens nothing yet.
+  if (!vtkSmartPointer<vtkRenderWindow>::New()->IsA("vtkXOpenGLRenderWindow")) return;
+
+  const char* name = std::getenv("DISPLAY");
+  if (!name || !*name) fail("there is no X display (DISPLAY is not set), and drawing needs one");
+
+  // VTK has loaded this library already; asking it by name saves a build dependency on X11.
+  const std::unique_ptr<void, int (*)(void*)> x11(dlopen("libX11.so.6", RTLD_LAZY), &dlclose);
+  if (!x11) return;
+  const auto open = reinterpret_cast<void* (*)(const char*)>(dlsym(x11.get(), "XOpenDisplay"));
+  const auto close = reinterpret_cast<int (*)(void*)>(dlsym(x11.get(), "XCloseDisplay"));
+  const auto has_extension = reinterpret_cast<int (*)(void*, const char*, int*, int*, int*)>(
+      dlsym(x11.get(), "XQueryExtension"));
+  if (!open || !close || !has_extension) return;
+  void* display = open(name);
+  if (!display) fail(fmt::format("the X display '{}' cannot be opened", name));
+  int opcode = 0, event = 0, error = 0;
+  const bool draws_gl = has_extension(display, "GLX", &opcode, &event, &error) != 0;
+  close(display);
+  if (!draws_gl) fail(fmt::format("the X display '{}' cannot draw OpenGL (no GLX)", name));
+}
+
+}  // namespace lightwell
