@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 #include <unordered_map>
 
 #include "mesh/group_patches.h"
@@ -64,45 +65,48 @@ CellGrid patch_grid(const Eigen::AlignedBox2d& box, const CutSize& size) {
   return {box, size.patches(box.sizes().x()), size.patches(box.sizes().y())};
 }
 
-double twice_area(const PlanarTriangulation& t, int triangle) {
-  const auto& [a, b, c] = t.triangles[triangle];
-  const Vector2d u = t.points[b] - t.points[a], v = t.points[c] - t.points[a];
-  return u.x() * v.y() - u.y() * v.x();
-}
-
-// Which triangles lie inside the polygon: decided once for each part between lines, at the centre
-// of its largest triangle.
-std::vector<char> inside_polygon(const FacetPlane& plane, const PlanarTriangulation& t) {
+// Which triangles lie inside the polygon: every border line crossed on the way in from outside
+// changes sides. Combinatorial, so right even for the slivers that rounding leaves along a divided
+// edge, whose centres no geometric test can place.
+std::vector<char> inside_by_parity(const PlanarTriangulation& t,
+                                   const std::vector<Pair>& boundary) {
+  const std::set<Pair> border(boundary.begin(), boundary.end());
+  const auto crosses_border = [&](int triangle, int i) {
+    if (!t.constrained[triangle][i]) return false;
+    const int a = t.triangles[triangle][(i + 1) % 3], b = t.triangles[triangle][(i + 2) % 3];
+    return border.contains({std::min(a, b), std::max(a, b)});
+  };
   const int count = static_cast<int>(t.triangles.size());
-  std::vector<int> part(count, -1);
-  std::vector<int> largest;
+  constexpr char unknown = 2;
+  std::vector<char> inside(count, unknown);
   std::vector<int> open;
-  for (int start = 0; start < count; ++start) {
-    if (part[start] >= 0) continue;
-    const int number = static_cast<int>(largest.size());
-    largest.push_back(start);
-    open.assign(1, start);
-    part[start] = number;
-    while (!open.empty()) {
-      const int current = open.back();
-      open.pop_back();
-      if (twice_area(t, current) > twice_area(t, largest[number])) largest[number] = current;
-      for (int i = 0; i < 3; ++i) {
-        const int next = t.neighbor[current][i];
-        if (next < 0 || t.constrained[current][i] || part[next] >= 0) continue;
-        part[next] = number;
-        open.push_back(next);
-      }
+  for (int i = 0; i < count; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      if (t.neighbor[i][c] >= 0 || inside[i] != unknown) continue;
+      inside[i] = crosses_border(i, c) ? 1 : 0;
+      open.push_back(i);
     }
   }
-  std::vector<char> part_inside;
-  for (int triangle : largest) {
-    const auto& [a, b, c] = t.triangles[triangle];
-    part_inside.push_back(plane.contains((t.points[a] + t.points[b] + t.points[c]) / 3.0, 0.0) ? 1
-                                                                                               : 0);
+  while (!open.empty()) {
+    const int current = open.back();
+    open.pop_back();
+    for (int c = 0; c < 3; ++c) {
+      const int next = t.neighbor[current][c];
+      if (next < 0 || inside[next] != unknown) continue;
+      inside[next] = static_cast<char>(inside[current] ^ (crosses_border(current, c) ? 1 : 0));
+      open.push_back(next);
+    }
   }
-  std::vector<char> inside(count);
-  for (int i = 0; i < count; ++i) inside[i] = part_inside[part[i]];
+  return inside;
+}
+
+// The same by geometry, for the rare case that lines had to be cut where they cross by rounding.
+std::vector<char> inside_by_place(const FacetPlane& plane, const PlanarTriangulation& t) {
+  std::vector<char> inside;
+  for (const auto& [a, b, c] : t.triangles) {
+    const Vector2d center = (t.points[a] + t.points[b] + t.points[c]) / 3.0;
+    inside.push_back(plane.contains(center, 0.0) ? 1 : 0);
+  }
   return inside;
 }
 
@@ -250,7 +254,9 @@ FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
   const auto inner = inner_points(cell_grid(lines.box, size), lines.xy, lines.boundary, lines.all);
   xy.insert(xy.end(), inner.begin(), inner.end());
   const PlanarTriangulation triangulation = triangulate(xy, lines.all);
-  const SplitTriangles split = split_at_lines(triangulation, inside_polygon(plane, triangulation));
+  const SplitTriangles split = split_at_lines(
+      triangulation, triangulation.is_as_given ? inside_by_parity(triangulation, lines.boundary)
+                                               : inside_by_place(plane, triangulation));
   if (split.triangles.empty()) return {};
   return assemble(plane, split, lines, points, patch_grid(lines.box, size));
 }

@@ -44,6 +44,7 @@ PlanarTriangulation triangulate(const std::vector<Eigen::Vector2d>& points,
   }
 
   PlanarTriangulation result{.points = points};
+  result.is_as_given = delaunay.number_of_vertices() == points.size();
   if (delaunay.number_of_vertices() > given) {
     const std::set<Delaunay::Vertex_handle> known(handles.begin(), handles.end());
     for (const auto& vertex : delaunay.finite_vertex_handles()) {

@@ -14,6 +14,8 @@ struct PlanarTriangulation {
   std::vector<std::array<int, 3>> neighbor{};
   /// Whether the edge opposite corner i is (part of) a constraint.
   std::vector<std::array<bool, 3>> constrained{};
+  /// No point was added or joined with an equal one: every constraint is an edge as it was given.
+  bool is_as_given = true;
 };
 
 /// Constrained Delaunay triangulation of the convex hull of `points` that has every constraint (a
