@@ -140,7 +140,7 @@ std::string holes_fault(const Polygon& polygon, const Plane& plane, const FlatLo
   for (std::size_t h = 0; h < polygon.holes.size(); ++h) {
     const Loop& hole = polygon.holes[h];
     const auto wrong = [&](const std::string& what) {
-      return fmt::format("has a hole {} that {}", h + 1, what);
+      return fmt::format("has hole {}, which {}", h + 1, what);
     };
     if (const auto what = count_fault(hole); !what.empty()) return wrong(what);
     FlatLoop flat = plane.flatten(hole);

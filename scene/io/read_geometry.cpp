@@ -5,6 +5,7 @@
 #include <assimp/Importer.hpp>
 
 #include "scene/errors.h"
+#include "scene/io/mesh_file.h"
 #include "scene/io/obj_materials.h"
 #include "scene/io/polygon.h"
 #include "scene/io/read_scene.h"
@@ -43,15 +44,18 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
 
 }  // namespace
 
-Scene read_geometry(const std::filesystem::path& path, double metres_per_unit) {
+Scene read_geometry_file(const std::filesystem::path& path, double metres_per_unit,
+                         MeshMaterials materials) {
   require_readable(path);
   Assimp::Importer importer;
   const aiScene* file = importer.ReadFile(path.string(), aiProcess_ValidateDataStructure);
   if (!file) fail(path, fmt::format("the file cannot be read: {}", importer.GetErrorString()));
   Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
   scene.materials.push_back(default_material(scene.bands));
-  scene.notes.push_back(
-      "The file has no materials; every surface gets a diffuse reflectance of 0.5.");
+  if (materials == MeshMaterials::from_file) {
+    scene.notes.push_back(
+        "The file has no materials; every surface gets a diffuse reflectance of 0.5.");
+  }
   Repairs repairs;
   for (unsigned m = 0; m < file->mNumMeshes; ++m) {
     PolygonMesh mesh = read_mesh(path, *file->mMeshes[m], metres_per_unit, repairs);
@@ -65,6 +69,10 @@ Scene read_geometry(const std::filesystem::path& path, double metres_per_unit) {
   for (const std::string& note : repairs.notes()) scene.notes.push_back(note + ".");
   validate(scene);
   return scene;
+}
+
+Scene read_geometry(const std::filesystem::path& path, double metres_per_unit) {
+  return read_geometry_file(path, metres_per_unit, MeshMaterials::from_file);
 }
 
 }  // namespace lightwell

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "scene/errors.h"
+#include "scene/io/mesh_file.h"
 #include "scene/io/obj_materials.h"
 #include "scene/io/polygon.h"
 #include "scene/io/read_scene.h"
@@ -268,21 +269,32 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
 
 }  // namespace
 
-Scene read_obj(const std::filesystem::path& path, double metres_per_unit) {
+Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit,
+                    MeshMaterials wanted) {
   const TextFile file(path);
-  const ObjContent content = ObjParser(file, metres_per_unit).parse();
+  ObjContent content = ObjParser(file, metres_per_unit).parse();
   Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
   if (content.free_form > 0) {
     scene.notes.push_back(fmt::format(
         "{} free-form curves and surfaces were left out; export polygons.", content.free_form));
   }
-  const auto materials = take_materials(content, read_materials(path, content, scene.notes), scene);
+  std::map<int, int> materials = {{-1, 0}};
+  if (wanted == MeshMaterials::from_file) {
+    materials = take_materials(content, read_materials(path, content, scene.notes), scene);
+  } else {
+    for (ObjFace& face : content.faces) face.material = -1;
+    scene.materials.push_back(default_material(scene.bands));
+  }
   build_surfaces(content, materials, scene);
   if (scene.surfaces.empty()) {
     throw InputError(fmt::format("{}: the file has no polygons with an area", path.string()));
   }
   validate(scene);
   return scene;
+}
+
+Scene read_obj(const std::filesystem::path& path, double metres_per_unit) {
+  return read_obj_file(path, metres_per_unit, MeshMaterials::from_file);
 }
 
 }  // namespace lightwell

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/io/text_file.h"
+#include "scene/errors.h"
 
 namespace lightwell {
 namespace {
@@ -59,8 +59,13 @@ SpectrumSamples read_samples(const TomlTable& table) {
     table.fail("has a 'file' and also samples in place; keep one of them");
   }
   const std::string column = table.has("column") ? table.require("column").name() : "";
-  const auto path = table.value().file().parent_path() / table.require("file").name();
-  return read_spectrum_csv(path, column);
+  const TomlValue file = table.require("file");
+  const auto path = (file.file().parent_path() / file.name()).lexically_normal();
+  try {
+    return read_spectrum_csv(path, column);
+  } catch (const InputError& error) {
+    file.fail(fmt::format("cannot be used: {}", error.what()));
+  }
 }
 
 Spectrum sampled(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
@@ -93,6 +98,9 @@ Spectrum sampled(const TomlValue& value, const TomlBands& bands, Quantity quanti
 }
 
 Spectrum spectral(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
+  if (!value.is_number() && !value.is_array() && !value.is_table()) {
+    value.fail("must be a number, an array of one number per band, or a spectrum { file = ... }");
+  }
   const Spectrum result = value.is_array()   ? per_band(value, bands, quantity)
                           : value.is_table() ? sampled(value, bands, quantity)
                                              : constant(value, bands, quantity);

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "scene/errors.h"
+#include "scene/io/mesh_file.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/polygon.h"
-#include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -217,7 +217,7 @@ class SurfaceReader {
     if (extension != ".obj" && extension != ".ply" && extension != ".stl") {
       value.fail(fmt::format("is '{}'; a mesh is an .obj, .ply or .stl file", name));
     }
-    const auto path = value.file().parent_path() / name;
+    const auto path = (value.file().parent_path() / name).lexically_normal();
     const auto material = table_.find("material");
     if (!material && extension != ".obj") {
       value.fail(fmt::format("has no materials in '{}'; add a 'material' to the surface", name));
@@ -226,7 +226,9 @@ class SurfaceReader {
     const bool turned = flip && flip->boolean();
     Scene mesh;
     try {
-      mesh = extension == ".obj" ? read_obj(path) : read_geometry(path);
+      const auto wanted = material ? MeshMaterials::ignored : MeshMaterials::from_file;
+      mesh = extension == ".obj" ? read_obj_file(path, 1.0, wanted)
+                                 : read_geometry_file(path, 1.0, wanted);
     } catch (const InputError& error) {
       value.fail(fmt::format("cannot be used: {}", error.what()));
     }

@@ -22,6 +22,7 @@ class TomlValue {
  public:
   TomlValue(const std::filesystem::path& file, const toml::node& node, std::string what);
 
+  bool is_number() const { return node_->is_number(); }
   bool is_array() const { return node_->is_array(); }
   bool is_table() const { return node_->is_table(); }
 
