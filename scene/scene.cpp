@@ -97,11 +97,21 @@ void check_loop(const Scene& scene, const Surface& surface, const PolygonMesh& m
   }
 }
 
+// What is wrong with a position or a radius; empty if nothing is.
+std::string place_fault(const Eigen::Vector3d& p) {
+  if (!p.allFinite()) return "a coordinate is not a finite number";
+  constexpr double farthest =
+      1e9;  // m; far below where products of the ray caster's floats overflow
+  const double reach = p.cwiseAbs().maxCoeff();
+  if (reach <= farthest) return {};
+  return fmt::format("a coordinate is {:g} m; nothing may lie beyond {:g} m, check the unit", reach,
+                     farthest);
+}
+
 void check_mesh(const Scene& scene, const Surface& surface, const PolygonMesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (!mesh.vertices[v].allFinite()) {
-      fail(scene, fmt::format("surface '{}', vertex {}: a coordinate is not a finite number",
-                              surface.name, v));
+    if (const std::string what = place_fault(mesh.vertices[v]); !what.empty()) {
+      fail(scene, fmt::format("surface '{}', vertex {}: {}", surface.name, v, what));
     }
   }
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
@@ -197,10 +207,15 @@ void validate(const Scene& scene) {
       check_mesh(scene, surface, *mesh);
     } else {
       const auto& sphere = std::get<Sphere>(surface.shape);
-      if (!sphere.center.allFinite() || !(sphere.radius > 0.0) || !std::isfinite(sphere.radius)) {
-        fail(scene,
-             fmt::format("sphere '{}': centre and radius must be finite, the radius ({}) positive",
-                         surface.name, sphere.radius));
+      const Eigen::Vector3d reach = Eigen::Vector3d::Constant(sphere.radius);
+      for (const Eigen::Vector3d& p : {sphere.center, reach}) {
+        if (const std::string what = place_fault(p); !what.empty()) {
+          fail(scene, fmt::format("sphere '{}': {}", surface.name, what));
+        }
+      }
+      if (!(sphere.radius > 0.0)) {
+        fail(scene, fmt::format("sphere '{}': its radius is {}; it must be positive", surface.name,
+                                sphere.radius));
       }
     }
   }
