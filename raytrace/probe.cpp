@@ -48,23 +48,32 @@ class ProbeSurface {
       : caster_(caster), reach_(reach_share * diagonal(caster.mesh())) {}
 
   // A probe on an edge, or where another surface stands on its own, is moved by a hair to where it
-  // is clear on which side of what it lies.
+  // is clear on which side of what it lies: on the surface, and in front of what stands there.
   std::optional<Place> find(const Probe& probe) const {
-    Eigen::Vector3d a, b;
-    tangent_frame(probe.normal, a, b);
+    Frame frame{.normal = probe.normal};
+    tangent_frame(probe.normal, frame.a, frame.b);
     const double hair = 0.1 * reach_;
     const auto straight = below(probe.position, probe.normal);
-    if (straight && is_clear(probe.position, probe.normal, a, b, hair)) return straight;
-    const std::array<Eigen::Vector3d, 8> sideways = {a, b, -a, -b, a + b, a - b, b - a, -a - b};
-    for (const Eigen::Vector3d& step : sideways) {
+    if (straight && is_inside(probe.position, frame, hair)) return straight;
+    std::optional<Place> behind;
+    const Eigen::Vector3d &a = frame.a, &b = frame.b;
+    for (const Eigen::Vector3d& step :
+         {a, b, Eigen::Vector3d(-a), Eigen::Vector3d(-b), Eigen::Vector3d(a + b),
+          Eigen::Vector3d(a - b), Eigen::Vector3d(b - a), Eigen::Vector3d(-a - b)}) {
       const Eigen::Vector3d moved = probe.position + hair * step;
       const auto place = below(moved, probe.normal);
-      if (place && is_clear(moved, probe.normal, a, b, 0.5 * hair)) return place;
+      if (!place || !is_inside(moved, frame, 0.5 * hair)) continue;
+      if (!is_behind(moved, -hair * step, frame)) return place;
+      if (!behind) behind = place;
     }
-    return straight;
+    return behind ? behind : straight;
   }
 
  private:
+  struct Frame {
+    Eigen::Vector3d normal, a{}, b{};  // a and b lie in the surface
+  };
+
   // Of all that lies within reach above or below the point and faces the probe's way, the nearest;
   // what can give light back comes before black backs.
   std::optional<Place> below(const Eigen::Vector3d& position, const Eigen::Vector3d& normal) const {
@@ -96,19 +105,29 @@ class ProbeSurface {
     return best;
   }
 
-  // Whether nothing stands within `radius` of the point, looked for along two crossing lines just
-  // above it.
-  bool is_clear(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
-                const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) const {
-    for (const Eigen::Vector3d& along : {a, b}) {
-      const Ray ray{.origin = position + reach_ * normal - radius * along,
+  // Whether the surface goes on for `radius` around the point and nothing stands on it there.
+  bool is_inside(const Eigen::Vector3d& position, const Frame& frame, double radius) const {
+    for (const Eigen::Vector3d& along : {frame.a, frame.b}) {
+      const Ray ray{.origin = position + reach_ * frame.normal - radius * along,
                     .direction = along,
                     .t_max = 2.0 * radius};
       std::uint8_t blocked = 0;
       caster_.occluded({&ray, 1}, {&blocked, 1});
-      if (blocked) return false;
+      if (blocked || !below(position - radius * along, frame.normal) ||
+          !below(position + radius * along, frame.normal)) {
+        return false;
+      }
     }
     return true;
+  }
+
+  // Whether what stands on the surface between the point and point + 2 `way` shows its back.
+  bool is_behind(const Eigen::Vector3d& position, const Eigen::Vector3d& way,
+                 const Frame& frame) const {
+    const Ray ray{.origin = position + reach_ * frame.normal, .direction = way, .t_max = 2.0};
+    ElementHit hit;
+    caster_.closest_hits({&ray, 1}, {&hit, 1});
+    return hit.facet >= 0 && hit.from_back;
   }
 
   const ElementCaster& caster_;

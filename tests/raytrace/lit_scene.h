@@ -1,0 +1,162 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "mesh/patch_mesh.h"
+#include "radiosity/direct_light.h"
+#include "radiosity/solution.h"
+#include "raytrace/render.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// A material in grey; two-sided unless said otherwise.
+struct Paint {
+  float reflectance = 0.0f, specular = 0.0f, exitance = 0.0f;
+  std::optional<float> index_of_refraction{};
+  float tint = 1.0f;
+  bool one_sided = false, emits_both_sides = false;
+};
+
+/// Builds a scene surface by surface.
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(const Bands& bands = rgb_bands()) { scene_.bands = bands; }
+
+  SceneBuilder& polygon(const Paint& paint, std::vector<Eigen::Vector3d> points) {
+    PolygonMesh mesh{.vertices = std::move(points), .facets = {Facet{}}};
+    for (int i = 0; i < static_cast<int>(mesh.vertices.size()); ++i) {
+      mesh.facets[0].boundary.push_back(i);
+    }
+    return add(paint, std::move(mesh));
+  }
+
+  /// A square around `center`, facing `normal`.
+  SceneBuilder& square(const Paint& paint, const Eigen::Vector3d& center,
+                       const Eigen::Vector3d& normal, double half_width) {
+    const Eigen::Vector3d a = half_width * normal.unitOrthogonal();
+    const Eigen::Vector3d b = normal.normalized().cross(a);
+    return polygon(paint, {center - a - b, center + a - b, center + a + b, center - a + b});
+  }
+
+  SceneBuilder& sphere(const Paint& paint, const Eigen::Vector3d& center, double radius) {
+    return add(paint, Sphere{.center = center, .radius = radius});
+  }
+
+  /// Six squares that face inwards (a room) or outwards (a block).
+  SceneBuilder& box(const Paint& paint, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                    bool faces_inwards) {
+    PolygonMesh mesh;
+    for (int i = 0; i < 8; ++i) {
+      mesh.vertices.emplace_back(i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(),
+                                 i & 4 ? high.z() : low.z());
+    }
+    const std::array<std::vector<int>, 6> outwards = {
+        {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+    for (std::vector<int> face : outwards) {
+      if (faces_inwards) face = {face.rbegin(), face.rend()};
+      mesh.facets.push_back({.boundary = face});
+    }
+    return add(paint, std::move(mesh));
+  }
+
+  Scene build() const {
+    validate(scene_);
+    return scene_;
+  }
+
+ private:
+  SceneBuilder& add(const Paint& paint, std::variant<PolygonMesh, Sphere> shape) {
+    const Bands& bands = scene_.bands;
+    Material material{.name = "paint " + std::to_string(scene_.materials.size()),
+                      .reflectance = constant_spectrum(bands, paint.reflectance),
+                      .specular = constant_spectrum(bands, paint.specular),
+                      .emission = constant_spectrum(bands, paint.exitance),
+                      .one_sided = paint.one_sided,
+                      .emits_both_sides = paint.emits_both_sides};
+    if (paint.index_of_refraction) {
+      material.dielectric = Dielectric{.index_of_refraction = *paint.index_of_refraction,
+                                       .tint = constant_spectrum(bands, paint.tint)};
+    }
+    scene_.materials.push_back(std::move(material));
+    scene_.surfaces.push_back({.name = "surface " + std::to_string(scene_.surfaces.size()),
+                               .material = static_cast<int>(scene_.materials.size()) - 1,
+                               .shape = std::move(shape)});
+    return *this;
+  }
+
+  Scene scene_{};
+};
+
+/// A scene with its mesh and an irradiance set by hand instead of a solver.
+class LitScene {
+ public:
+  using Field = std::function<float(const Eigen::Vector3d& position)>;
+
+  explicit LitScene(Scene built, double patch_size = 0.0)
+      : scene(std::move(built)),
+        mesh(build_patches(scene, {.max_patch_size = patch_size, .auto_patch_count = 100})),
+        caster(mesh),
+        direct_light(scene, mesh) {
+    solution.bands = scene.bands;
+    solution.direct_irradiance.setZero(mesh.vertex_count(), scene.bands.count());
+    solution.indirect_irradiance = solution.direct_irradiance;
+  }
+  LitScene(const LitScene&) = delete;
+  LitScene& operator=(const LitScene&) = delete;
+
+  void set_indirect(const Field& E) { set(solution.indirect_irradiance, E); }
+  void set_direct(const Field& E) { set(solution.direct_irradiance, E); }
+
+  Image render(const Camera& camera, const RenderOptions& options = {},
+               RenderReport* report = nullptr) const {
+    return lightwell::render(scene, caster, direct_light, solution, camera, options, report);
+  }
+
+  Scene scene;
+  PatchMesh mesh;
+  ElementCaster caster;
+  DirectLight direct_light;
+  RadiositySolution solution{};
+
+ private:
+  void set(BandArray& values, const Field& E) {
+    for (int v = 0; v < mesh.vertex_count(); ++v) values.row(v) = E(mesh.position(v));
+  }
+};
+
+/// Looks from `eye` at `target`; up is any direction across.
+inline Camera camera_towards(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
+                             double fov_degrees, int pixels) {
+  const Eigen::Vector3d direction = (target - eye).normalized();
+  return {.name = "test",
+          .position = eye,
+          .direction = direction,
+          .up = direction.unitOrthogonal(),
+          .fov_degrees = fov_degrees,
+          .width = pixels,
+          .height = pixels};
+}
+
+/// Where the light of the first band is centred: pixels from the left and from the top.
+inline Eigen::Vector2d centroid(const Image& image) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double weight = 0.0;
+  for (Eigen::Index i = 0; i < image.radiance.rows(); ++i) {
+    const double L = image.radiance(i, 0);
+    sum += L * Eigen::Vector2d(static_cast<double>(i % image.width) + 0.5,
+                               static_cast<double>(i / image.width) + 0.5);
+    weight += L;
+  }
+  return sum / weight;
+}
+
+}  // namespace lightwell

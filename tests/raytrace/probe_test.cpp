@@ -1,0 +1,139 @@
+#include "raytrace/probe.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scene/errors.h"
+#include "tests/raytrace/lit_scene.h"
+#include "tests/raytrace/temporary_folder.h"
+
+namespace lightwell {
+namespace {
+
+constexpr auto pi_f = std::numbers::pi_v<float>;
+const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+
+BandArray interpolated(const LitScene& lit, const std::vector<Probe>& probes) {
+  return interpolate_irradiance(lit.caster, lit.solution, probes);
+}
+BandArray gathered(const LitScene& lit, const std::vector<Probe>& probes, int rays = 256) {
+  return probe_irradiance(lit.scene, lit.caster, lit.direct_light, lit.solution, probes,
+                          {.rays = rays});
+}
+
+/// A closed room with a block standing on the floor; all emit M and reflect rho, E = M / (1 - rho).
+constexpr float rho = 0.5f, M = 1.0f, B = M / (1.0f - rho);
+const LitScene& furnace() {
+  static const auto lit = [] {
+    const Paint paint{.reflectance = rho, .exitance = M, .one_sided = true};
+    auto scene = std::make_unique<LitScene>(SceneBuilder()
+                                                .box(paint, {0, 0, 0}, {2, 2, 2}, true)
+                                                .box(paint, {0.5, 0.5, 0}, {1, 1, 1}, false)
+                                                .build());
+    scene->set_indirect([](const auto&) { return B; });
+    return scene;
+  }();
+  return *lit;
+}
+
+struct NamedProbe {
+  const char* name;
+  Probe probe;
+};
+class FurnaceProbe : public ::testing::TestWithParam<NamedProbe> {};
+
+TEST_P(FurnaceProbe, SeesTheSameLightEverywhere) {
+  // Closed: every ray ends on B, so the gather has no noise; only float sums round.
+  const std::vector<Probe> probes = {GetParam().probe};
+  EXPECT_NEAR(gathered(furnace(), probes)(0, 0), B, 1e-4 * B);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Places, FurnaceProbe,
+    ::testing::Values(NamedProbe{"floor", {{1.5, 1.5, 0}, {0, 0, 1}}},
+                      NamedProbe{"little_above_floor", {{1.5, 1.5, 1e-5}, {0, 0, 1}}},
+                      NamedProbe{"little_below_floor", {{1.5, 1.5, -1e-5}, {0, 0, 1}}},
+                      NamedProbe{"ceiling", {{0.3, 0.3, 2}, {0, 0, -1}}},
+                      NamedProbe{"free", {{1.5, 1.5, 1}, {0, 0.6, 0.8}}},
+                      NamedProbe{"floor_at_wall", {{0, 1.3, 0}, {0, 0, 1}}},
+                      NamedProbe{"wall_at_floor", {{2, 1.3, 0}, {-1, 0, 0}}},
+                      NamedProbe{"corner", {{0, 0, 0}, {0, 0, 1}}},
+                      NamedProbe{"floor_at_block", {{0.5, 0.7, 0}, {0, 0, 1}}},
+                      NamedProbe{"block_edge", {{0.5, 0.7, 1}, {0, 0, 1}}},
+                      NamedProbe{"block_side_at_edge", {{0.5, 0.7, 1}, {-1, 0, 0}}}),
+    [](const auto& place) { return place.param.name; });
+
+TEST(InterpolateIrradiance, IsExactForALinearField) {
+  LitScene lit(SceneBuilder()
+                   .polygon({.reflectance = 0.5f}, {{0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {0, 1, 1}})
+                   .build());
+  const auto E = [](const Eigen::Vector3d& p) { return static_cast<float>(3 + p.x() - p.y()); };
+  lit.set_indirect(E);
+  std::vector<Probe> probes;
+  for (const double x : {0.0, 0.13, 0.77, 1.99, 2.0}) {
+    for (const double y : {0.0, 0.41, 1.0}) probes.push_back({{x, y, 1}, up});
+  }
+  const BandArray values = interpolated(lit, probes);
+  // On the rim the probe is read a hair inwards: at most 1e-5 of the diagonal.
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    EXPECT_NEAR(values(static_cast<Eigen::Index>(i), 2), E(probes[i].position), 1e-4);
+  }
+}
+
+TEST(InterpolateIrradiance, TellsTheSidesOfAWallApart) {
+  LitScene lit(SceneBuilder().square({.reflectance = 0.5f}, {0, 0, 0}, up, 1).build());
+  for (int v = 0; v < lit.mesh.vertex_count(); ++v) {
+    lit.solution.direct_irradiance.row(v) = lit.mesh.vertex_normal[v].z() > 0 ? 5.0f : 1.0f;
+  }
+  const BandArray E = interpolated(lit, {{{0.1, 0.2, 0}, up}, {{0.1, 0.2, 0}, -up}});
+  EXPECT_FLOAT_EQ(E(0, 0), 5.0f);
+  EXPECT_FLOAT_EQ(E(1, 0), 1.0f);
+}
+
+TEST(InterpolateIrradiance, ProbeOffEverySurfaceIsNamedInFileUnits) {
+  LitScene lit(
+      SceneBuilder().square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1).build());
+  lit.solution.metres_per_unit = 1e-3;
+  lit.solution.unit_name = "mm";
+  const auto refusal = [&](const Probe& probe) {
+    return message_of<InputError>([&] { interpolated(lit, {{{0, 0, 0}, up}, probe}); });
+  };
+  // The scene's diagonal is 2.83 m: 0.1 m is not on it, 0.1 mm is.
+  EXPECT_TRUE(says(refusal({{0.5, 0.25, 0.1}, up}), "probe 2 at (500, 250, 100) mm lies on no"));
+  EXPECT_EQ(refusal({{0.5, 0.25, 1e-4}, up}), "");
+  EXPECT_TRUE(says(refusal({{0.5, 0.25, 0}, Eigen::Vector3d::UnitX()}), "lies on no surface"));
+  EXPECT_TRUE(says(refusal({{0.5, 0.25, 0}, -up}), "back of a one-sided surface"));
+}
+
+TEST(ProbeIrradiance, UnderASmallLampIsTheClosedForm) {
+  // A square lamp of half-width a at height h above the probe, parallel to it: four corner
+  // rectangles (Howell, A catalog of radiation heat transfer configuration factors, B-4).
+  constexpr double a = 0.5, h = 2.0;
+  const double X = a / h, root = std::sqrt(1 + X * X);
+  const double F = 4.0 / (2 * std::numbers::pi) * 2 * (X / root) * std::atan(X / root);
+  const LitScene lit(SceneBuilder()
+                         .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 5)
+                         .square({.exitance = 7.0f, .one_sided = true}, {0, 0, h}, -up, a)
+                         .build());
+  ASSERT_EQ(lit.direct_light.emitters().size(), 1u);
+  const BandArray E = gathered(lit, {{{0, 0, 0}, up}, {{0, 0, 1e-4}, up}, {{0, 0, 0}, -up}});
+  EXPECT_NEAR(E(0, 0), 7.0 * F, 1e-5 * 7.0 * F);
+  EXPECT_NEAR(E(1, 0), 7.0 * F, 1e-3 * 7.0 * F);  // on the floor, 1e-4 m above it or not
+  EXPECT_EQ(E(2, 0), 0.0f);
+}
+
+TEST(ProbeIrradiance, BelowAStackOfTwoFloorsSeesNeither) {
+  // Two sheets in one plane: whichever the caster names, the other must not shade the probe.
+  LitScene lit(SceneBuilder()
+                   .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1)
+                   .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 0.5)
+                   .square({.exitance = pi_f}, {0, 0, 1}, -up, 100)
+                   .build());
+  const BandArray E = gathered(lit, {{{0.1, 0.2, 0}, up}}, 1024);
+  EXPECT_NEAR(E(0, 0), pi_f, 1e-3 * pi_f);  // a lamp as wide as the sky: all but (1/100)^2
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,233 @@
+#include "raytrace/render.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scene/errors.h"
+#include "scene/parallel.h"
+#include "tests/raytrace/lit_scene.h"
+
+namespace lightwell {
+namespace {
+
+constexpr auto pi_f = std::numbers::pi_v<float>;
+
+/// Every wall emits M and reflects rho: B = M / (1 - rho) and E = B everywhere.
+class Furnace : public ::testing::TestWithParam<std::tuple<Pass, int>> {};
+
+TEST_P(Furnace, EveryPixelShowsBOverPi) {
+  const auto [pass, bands] = GetParam();
+  constexpr float M = 1.0f, rho = 0.6f, B = M / (1.0f - rho);
+  LitScene lit(
+      SceneBuilder(bands == 3 ? rgb_bands() : spectral_bands(400, 700, bands))
+          .box({.reflectance = rho, .exitance = M, .one_sided = true}, {0, 0, 0}, {2, 1, 1.5}, true)
+          .box({.reflectance = rho, .exitance = M, .one_sided = true}, {0.5, 0, 0.5},
+               {0.8, 0.4, 0.7}, false)
+          .sphere({.reflectance = rho, .exitance = M, .one_sided = true}, {1.2, 0.5, 0.9}, 0.3)
+          .build());
+  ASSERT_TRUE(lit.direct_light.emitters().empty());  // all of it emits: hemispheres find it
+  lit.set_indirect([](const auto&) { return B; });
+  Camera camera = camera_towards({0.1, 0.9, 0.1}, {1.5, 0.2, 1.2}, 70, 48);
+  camera.height = 31;
+  const Image image = lit.render(camera, {.pass = pass});
+  ASSERT_EQ(image.radiance.rows(), 48 * 31);
+  ASSERT_EQ(image.radiance.cols(), bands);
+  EXPECT_LT((image.radiance - B / pi_f).abs().maxCoeff(), 1e-5f * B / pi_f);
+}
+
+INSTANTIATE_TEST_SUITE_P(PassesAndBands, Furnace,
+                         ::testing::Combine(::testing::Values(Pass::interpolate, Pass::direct),
+                                            ::testing::Values(3, 7)));
+
+TEST(Render, InterpolatedLinearIrradianceIsExactInEveryPixel) {
+  // E = 1 + x + 2 y on the floor: vertices interpolate it exactly, and the mean over a pixel's
+  // square of a function that is nearly linear across it is its value at the centre.
+  LitScene lit(SceneBuilder()
+                   .polygon({.reflectance = 1.0f}, {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}})
+                   .build());
+  const auto E = [](const Eigen::Vector3d& p) { return static_cast<float>(1 + p.x() + 2 * p.y()); };
+  lit.set_direct(E);
+  const Camera camera{.position = {1, 0.5, 4},
+                      .direction = {0, 0, -1},
+                      .up = {0, 1, 0},
+                      .fov_degrees = 10,
+                      .width = 20,
+                      .height = 20};
+  const Image image = lit.render(camera, {.pass = Pass::interpolate});
+  const double pixel = 2 * 4 * std::tan(5 * std::numbers::pi / 180) / 20;
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      const Eigen::Vector3d p(1 + (x - 9.5) * pixel, 0.5 - (y - 9.5) * pixel, 0);
+      // Float distances of the caster move the point by 1e-6.
+      EXPECT_NEAR(image.radiance(20 * y + x, 0), E(p) / pi_f, 1e-5);
+    }
+  }
+}
+
+TEST(Render, PixelsAreMeansOverTheirSquares) {
+  // A slanted half-plane of radiance 1: the sum over the picture is the area it covers.
+  const LitScene lit(
+      SceneBuilder()
+          .polygon({.exitance = pi_f}, {{-9, -8.9, 0}, {9, -8.9, 0}, {9, 3.3, 0}, {-9, -2.7, 0}})
+          .build());
+  const Camera camera{.position = {0, 0, 10},
+                      .direction = {0, 0, -1},
+                      .up = {0, 1, 0},
+                      .fov_degrees = 2 * std::atan(0.1) * 180 / std::numbers::pi,  // 2 m wide
+                      .width = 24,
+                      .height = 24};
+  constexpr int levels = 4;
+  const Image image = lit.render(camera, {.max_subdivision = levels});
+  const double pixel = 2.0 / 24;
+  double worst = 0.0, sum = 0.0;
+  for (int y = 0; y < 24; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      // Exact cover by integrating the edge y = 0.3 + x / 3 over the pixel.
+      const double left = -1 + x * pixel, bottom = 1 - (y + 1) * pixel;
+      double cover = 0.0;
+      constexpr int slices = 2000;
+      for (int s = 0; s < slices; ++s) {
+        const double edge = 0.3 + (left + (s + 0.5) * pixel / slices) / 3;
+        cover += std::clamp((edge - bottom) / pixel, 0.0, 1.0) / slices;
+      }
+      worst = std::max(worst, std::abs(image.radiance(24 * y + x, 0) - cover));
+      sum += image.radiance(24 * y + x, 0) - cover;
+    }
+  }
+  // The edge crosses at most 2^levels + 2^levels / 3 + 1 of 4^levels cells, each off by half at
+  // most.
+  EXPECT_LT(worst, 0.5 * (4.0 / 3.0 * 16 + 1) / 256);
+  EXPECT_LT(std::abs(sum) / (24 * 24), 1e-3);
+}
+
+TEST(Render, StripThinnerThanAPixelIsNotLost) {
+  // 0.4 pixels wide, through the middle of a column of pixels, between all their corners.
+  const double pixel = 0.1;
+  const double half = 0.2 * pixel, middle = 0.5 * pixel;
+  const LitScene lit(SceneBuilder()
+                         .polygon({.exitance = pi_f}, {{middle - half, -5, 0},
+                                                       {middle + half, -5, 0},
+                                                       {middle + half, 5, 0},
+                                                       {middle - half, 5, 0}})
+                         .build());
+  const Camera camera{.position = {0, 0, 8},
+                      .direction = {0, 0, -1},
+                      .up = {0, 1, 0},
+                      .fov_degrees = 2 * std::atan(0.1) * 180 / std::numbers::pi,  // 1.6 m wide
+                      .width = 16,
+                      .height = 16};
+  const Image image = lit.render(camera, {.max_subdivision = 4});
+  EXPECT_NEAR(image.radiance.col(0).mean(), 0.4 / 16, 0.1 / 16);  // 16 cells across: within 1/16
+  for (int y = 0; y < 16; ++y) EXPECT_GT(image.radiance(16 * y + 8, 0), 0.3f);
+}
+
+TEST(Render, WorldOutsideIsBlack) {
+  LitScene lit(SceneBuilder().square({.reflectance = 1.0f}, {0, 0, 0}, {0, 0, 1}, 0.5).build());
+  lit.set_direct([](const auto&) { return 1.0f; });
+  const Camera camera = camera_towards({0, 0, 3}, {0, 0, 0}, 40, 16);
+  const Image image = lit.render(camera, {.pass = Pass::interpolate});
+  EXPECT_EQ(image.radiance.row(0).maxCoeff(), 0.0f);
+  EXPECT_GT(image.radiance.row(16 * 8 + 8).minCoeff(), 0.0f);
+}
+
+TEST(Render, EveryPathBetweenTwoMirrorsIsCutOnce) {
+  const LitScene lit(SceneBuilder()
+                         .square({.specular = 1.0f}, {0, 0, 0}, {0, 0, 1}, 1000)
+                         .square({.specular = 1.0f}, {0, 0, 1}, {0, 0, -1}, 1000)
+                         .build());
+  const Camera camera = camera_towards({0, 0, 0.5}, {1, 0, 0}, 30, 8);
+  Camera tilted = camera_towards({0, 0, 0.5}, {1, 0.2, 1}, 30, 8);
+  RenderReport report;
+  lit.render(tilted, {.max_depth = 5}, &report);
+  EXPECT_GE(report.eye_rays, 81);
+  EXPECT_EQ(report.depth_cut, report.eye_rays);
+  // A lossy mirror is left when its contribution is spent, and nothing is counted as cut.
+  const LitScene dim(SceneBuilder()
+                         .square({.specular = 0.1f}, {0, 0, 0}, {0, 0, 1}, 1000)
+                         .square({.specular = 0.1f}, {0, 0, 1}, {0, 0, -1}, 1000)
+                         .build());
+  dim.render(tilted, {.max_depth = 5, .min_contribution = 1e-3f}, &report);
+  EXPECT_EQ(report.depth_cut, 0);
+}
+
+/// A room with a small lamp, a block, a mirror and a glass sphere.
+LitScene& furnished_room() {
+  static LitScene lit(
+      SceneBuilder()
+          .box({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, {2, 2, 2}, true)
+          .square({.exitance = 10.0f, .one_sided = true}, {1, 1.99, 1}, {0, -1, 0}, 0.3)
+          .box({.reflectance = 0.3f, .specular = 0.4f, .one_sided = true}, {0.3, 0, 1.2},
+               {0.8, 1, 1.6}, false)
+          .sphere({.index_of_refraction = 1.5f}, {1.4, 0.4, 0.9}, 0.4)
+          .build());
+  lit.set_indirect([](const Eigen::Vector3d& p) { return static_cast<float>(0.2 + 0.1 * p.y()); });
+  return lit;
+}
+
+TEST(Render, OneThreadAndTwoGiveTheSameBits) {
+  const LitScene& lit = furnished_room();
+  ASSERT_EQ(lit.direct_light.emitters().size(), 1u);
+  const Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 40);
+  Image one, two;
+  {
+    const ThreadLimit limit(1);
+    one = lit.render(camera);
+  }
+  {
+    const ThreadLimit limit(2);
+    two = lit.render(camera);
+  }
+  EXPECT_TRUE((one.radiance == two.radiance).all());
+  EXPECT_GT(one.radiance.mean(), 0.0f);
+}
+
+TEST(Render, FinerSubdivisionConvergesToTheSamePicture) {
+  const LitScene& lit = furnished_room();
+  const Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 24);
+  const Image reference = lit.render(camera, {.max_subdivision = 4, .contrast = 0.01f});
+  double previous = 1e9;
+  for (const int levels : {0, 1, 2, 3}) {
+    const Image image = lit.render(camera, {.max_subdivision = levels});
+    const double error = std::sqrt((image.radiance - reference.radiance).square().mean());
+    EXPECT_LT(error, previous);
+    previous = error;
+  }
+}
+
+TEST(Render, ProgressRisesToOneAndStopsTheWork) {
+  const LitScene& lit = furnished_room();
+  Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 8);
+  camera.height = 3000;  // several strips
+  std::vector<double> shares;
+  const Progress record = [&](std::string_view phase, double share) {
+    EXPECT_EQ(phase, "render");
+    shares.push_back(share);
+    return true;
+  };
+  lit.render(camera, {.pass = Pass::interpolate, .max_subdivision = 0, .progress = record});
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.front(), 0.0);
+  EXPECT_EQ(shares.back(), 1.0);
+
+  int calls = 0;
+  const Progress stop = [&](std::string_view, double) { return ++calls < 2; };
+  EXPECT_THROW(lit.render(camera, {.progress = stop}), Interrupted);
+  EXPECT_EQ(calls, 2);
+}
+
+TEST(Render, ImpossibleOptionsAreRefused) {
+  const LitScene& lit = furnished_room();
+  const Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 8);
+  EXPECT_THROW(lit.render(camera, {.max_depth = -1}), std::invalid_argument);
+  EXPECT_THROW(lit.render(camera, {.max_subdivision = 7}), std::invalid_argument);
+  EXPECT_THROW(lit.render(camera, {.contrast = std::nanf("")}), std::invalid_argument);
+  EXPECT_THROW(lit.render(camera, {.min_contribution = -1.0f}), std::invalid_argument);
+  Camera flat = camera;
+  flat.height = 0;
+  EXPECT_THROW(lit.render(flat), InputError);
+}
+
+}  // namespace
+}  // namespace lightwell
