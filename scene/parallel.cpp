@@ -11,6 +11,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 #endif
 
 namespace lightwell {
@@ -72,8 +73,14 @@ int thread_count() {
 void parallel_for(int count, int grain, const std::function<void(int, int)>& body) {
   grain = std::max(grain, 1);
   const int pieces = (count + grain - 1) / grain;
-  tbb::parallel_for(0, pieces,
-                    [&](int piece) { body(piece * grain, std::min((piece + 1) * grain, count)); });
+  // Without this a task takes the floating-point mode of whatever started oneTBB in the process:
+  // after Embree's tree building that is denormals flushed to zero.
+  tbb::task_group_context callers_mode(
+      tbb::task_group_context::bound,
+      tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
+  tbb::parallel_for(
+      0, pieces, [&](int piece) { body(piece * grain, std::min((piece + 1) * grain, count)); },
+      callers_mode);
 }
 
 struct ThreadLimit::Impl {

@@ -259,7 +259,10 @@ struct RayCaster::Impl {
       if (own && query.ray.tfar > own_reach) {
         filter = skip_own_plane;
       } else {
-        query.ray.tnear = std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity());
+        // At least a normal number: Embree flushes denormals, and would meet the same place again.
+        query.ray.tnear =
+            std::max(std::numeric_limits<float>::min(),
+                     std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity()));
       }
       query.ray.tfar = static_cast<float>(ray.t_max);
       if (!(query.ray.tnear < query.ray.tfar)) return {};
