@@ -1,6 +1,7 @@
 #include "viewer/solution_view.h"
 
 #include <vtkCamera.h>
+#include <vtkDoubleArray.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
@@ -23,6 +24,22 @@ namespace {
 constexpr int metering_width = 160;
 constexpr int largest_drawing = 8192;  ///< pixels along a side that every driver can draw
 
+/// 1, 2 and 5 times the powers of ten of a range; the powers alone over more than two decades.
+std::vector<double> round_steps(const LuxRange& range) {
+  std::vector<double> steps;
+  const bool is_long = range.high > 100.0 * range.low;
+  for (double power = std::pow(10.0, std::floor(std::log10(range.low))); power <= range.high;
+       power *= 10.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double value = factor * power;
+      const bool inside = value >= 0.999 * range.low && value <= 1.001 * range.high;
+      const bool is_end = value <= 1.001 * range.low || value >= 0.999 * range.high;
+      if (inside && (factor == 1.0 || is_end || !is_long)) steps.push_back(value);
+    }
+  }
+  return steps;
+}
+
 vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range) {
   constexpr int entries = 256;
   vtkNew<vtkLookupTable> table;
@@ -36,15 +53,19 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range) {
   auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
   legend->SetLookupTable(table);
   legend->SetTitle("lx");
-  legend->SetNumberOfLabels(2 + static_cast<int>(std::lround(std::log10(range.high / range.low))));
+  vtkNew<vtkDoubleArray> labels;
+  for (const double value : round_steps(range)) labels->InsertNextValue(value);
+  legend->SetCustomLabels(labels);
+  legend->UseCustomLabelsOn();
   legend->SetLabelFormat("%.4g");
-  legend->SetMaximumWidthInPixels(90);
-  legend->SetMaximumHeightInPixels(320);
+  legend->UnconstrainedFontSizeOn();
+  legend->SetMaximumWidthInPixels(80);
   legend->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  legend->GetPositionCoordinate()->SetValue(0.86, 0.3);
-  legend->SetWidth(0.12);
-  legend->SetHeight(0.6);
+  legend->GetPositionCoordinate()->SetValue(0.9, 0.25);
+  legend->SetWidth(0.09);
+  legend->SetHeight(0.5);
   for (vtkTextProperty* text : {legend->GetTitleTextProperty(), legend->GetLabelTextProperty()}) {
+    text->SetFontSize(14);
     text->ItalicOff();
     text->BoldOff();
     text->ShadowOn();
@@ -119,7 +140,9 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
 
 SolutionView::~SolutionView() = default;
 
-vtkRenderer* SolutionView::renderer() const { return renderer_; }
+vtkRenderer* SolutionView::renderer() const {
+  return renderer_;
+}
 
 double SolutionView::meter(const Camera& camera) const {
   const Image seen = coarse_picture(caster_, kinds_, radiance_, camera, metering_width);

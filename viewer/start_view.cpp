@@ -72,6 +72,19 @@ Camera frame_all(const Bounds& bounds, const Eigen::Vector3d& direction,
                     outside_fov_degrees, width, height);
 }
 
+Camera fit_to_window(const Camera& camera, int width, int height) {
+  const double own_aspect = static_cast<double>(camera.width) / camera.height;
+  const double wider = static_cast<double>(width) / height / own_aspect;
+  Camera fitted = camera;
+  fitted.width = width;
+  fitted.height = height;
+  if (wider > 1.0) {
+    const double half_width = wider * std::tan(camera.fov_degrees * std::numbers::pi / 360.0);
+    fitted.fov_degrees = std::atan(half_width) * 360.0 / std::numbers::pi;
+  }
+  return fitted;
+}
+
 Camera find_start(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                   const BandArray& radiance, const Eigen::Vector3d& up_axis, int width,
                   int height) {

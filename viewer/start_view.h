@@ -20,6 +20,10 @@ Eigen::Vector3d guess_up_axis(const std::vector<Camera>& cameras, const Bounds& 
 Camera frame_all(const Bounds& bounds, const Eigen::Vector3d& direction,
                  const Eigen::Vector3d& up_axis, int width, int height);
 
+/// The same camera with as wide an angle as a window of width : height needs to show all of the
+/// camera's own picture.
+Camera fit_to_window(const Camera& camera, int width, int height);
+
 /// Where to start when no camera is given: the whole scene from outside if light is seen from
 /// there, else inside, looking across the room.
 Camera find_start(const ElementCaster& caster, const std::vector<ElementKind>& kinds,

@@ -17,6 +17,7 @@
 
 #include "radiosity/vtk_messages.h"
 #include "raytrace/image.h"
+#include "viewer/x_display.h"
 
 namespace lightwell {
 namespace {
@@ -154,6 +155,7 @@ WalkWindow::WalkWindow(const SolvedScene& solved, const ViewOptions& options)
   vtkNew<WalkStyle> style;
   style->set_window(this);
   interactor_->SetInteractorStyle(style);
+  change(current_look());
 }
 
 // The style points at this object.
@@ -161,12 +163,20 @@ WalkWindow::~WalkWindow() {
   interactor_->SetInteractorStyle(nullptr);
 }
 
-vtkRenderWindowInteractor* WalkWindow::interactor() const { return interactor_; }
+vtkRenderWindowInteractor* WalkWindow::interactor() const {
+  return interactor_;
+}
 
 void WalkWindow::run() {
   const VtkMessages messages;
   window_->Render();
+  // A processor that plays graphics card has no power to spare for four samples a pixel.
+  const std::string driver = window_->ReportCapabilities();
+  for (const char* software : {"llvmpipe", "softpipe", "SWR", "SwiftShader"}) {
+    if (driver.find(software) != std::string::npos) window_->SetMultiSamples(0);
+  }
   interactor_->Initialize();
+  report_held_keys_once(window_->GetGenericDisplayId());
   interactor_->CreateRepeatingTimer(frame_milliseconds);
   interactor_->Start();
 }
@@ -190,24 +200,24 @@ void WalkWindow::press(const std::string& key_symbol) {
   const std::string key = lower_case(key_symbol);
   // A key held down reports again and again; switches act once.
   if (!held_.insert(key).second) return;
-  Look look = view_.look();
+  Look look = current_look();
   if (key == "escape") {
     interactor_->TerminateApp();
   } else if (key.size() == 1 && key[0] >= '1' && key[0] <= '9') {
     const auto index = static_cast<std::size_t>(key[0] - '1');
     if (index < options_.cameras.size()) {
-      place(options_.cameras[index], true);
+      go_to(options_.cameras[index]);
       say(options_.cameras[index].name);
     } else {
       say(fmt::format("the scene has {} cameras", options_.cameras.size()));
     }
   } else if (key == "r") {
-    place(view_.start_camera(), true);
+    go_to(view_.start_camera());
   } else if (key == "f") {
     const int* size = window_->GetSize();
-    place(frame_all(view_.bounds(), walk_.camera().direction, view_.up_axis(), std::max(1, size[0]),
-                    std::max(1, size[1])),
-          false);
+    walk_.place(frame_all(view_.bounds(), walk_.camera().direction, view_.up_axis(),
+                          std::max(1, size[0]), std::max(1, size[1])));
+    change(current_look());
   } else if (key == "plus" || key == "equal" || key == "kp_add") {
     look.exposure_ev += exposure_step;
     change(look);
@@ -249,34 +259,41 @@ void WalkWindow::drag(int right, int down) {
   const double per_pixel =
       drag_degrees * std::numbers::pi / 180.0 / std::max(1, window_->GetSize()[0]);
   walk_.look(right * per_pixel, -down * per_pixel);
-  place(walk_.camera(), false);
+  change(current_look());
 }
 
 void WalkWindow::wheel(int clicks) {
   walk_.dolly(clicks * wheel_share * view_.bounds().diagonal());
-  place(walk_.camera(), false);
+  change(current_look());
 }
 
 void WalkWindow::tick(double seconds) {
-  if (walk_.advance(held_keys(), std::min(seconds, longest_step))) {
-    Look look = view_.look();
-    look.camera = walk_.camera();
-    change(look);
-  }
+  const bool walked = walk_.advance(held_keys(), std::min(seconds, longest_step));
+  const int* size = window_->GetSize();
+  if (walked || size[0] != drawn_width_ || size[1] != drawn_height_) change(current_look());
   if (!message_.empty()) {
     message_seconds_ -= seconds;
     if (message_seconds_ <= 0.0) say("");
   }
   if (!changed_) return;
   changed_ = false;
+  drawn_width_ = size[0];
+  drawn_height_ = size[1];
+  const VtkMessages messages;  // text that finds no room in a tiny window complains
   window_->Render();
 }
 
-void WalkWindow::place(const Camera& camera, bool meter) {
-  if (&camera != &walk_.camera()) walk_.place(camera);
+Look WalkWindow::current_look() const {
+  const int* size = window_->GetSize();
   Look look = view_.look();
-  look.camera = camera;
-  if (meter) look.metered_scale = view_.meter(camera);
+  look.camera = fit_to_window(walk_.camera(), std::max(1, size[0]), std::max(1, size[1]));
+  return look;
+}
+
+void WalkWindow::go_to(const Camera& camera) {
+  walk_.place(camera);
+  Look look = current_look();
+  look.metered_scale = view_.meter(camera);
   change(look);
 }
 

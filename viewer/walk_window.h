@@ -51,7 +51,9 @@ class WalkWindow {
 
  private:
   WalkKeys held_keys() const;
-  void place(const Camera& camera, bool meter);
+  /// The look from where the walk is now, in the window as large as it is now.
+  Look current_look() const;
+  void go_to(const Camera& camera);
   void save_screenshot();
   void say(const std::string& message);
   void change(const Look& look);
@@ -64,6 +66,7 @@ class WalkWindow {
   std::set<std::string> held_;
   std::string message_;
   double message_seconds_ = 0.0;
+  int drawn_width_ = 0, drawn_height_ = 0;
   bool help_ = false;
   bool changed_ = true;
   vtkSmartPointer<vtkTextActor> status_text_, help_text_;

@@ -21,6 +21,13 @@ namespace {
       what));
 }
 
+using Library = std::unique_ptr<void, int (*)(void*)>;
+
+/// VTK has loaded this library already; asking it by name saves a build dependency on X11.
+Library load_x11() {
+  return {dlopen("libX11.so.6", RTLD_LAZY), &dlclose};
+}
+
 }  // namespace
 
 void require_display() {
@@ -30,8 +37,7 @@ void require_display() {
   const char* name = std::getenv("DISPLAY");
   if (!name || !*name) fail("there is no X display (DISPLAY is not set), and drawing needs one");
 
-  // VTK has loaded this library already; asking it by name saves a build dependency on X11.
-  const std::unique_ptr<void, int (*)(void*)> x11(dlopen("libX11.so.6", RTLD_LAZY), &dlclose);
+  const Library x11 = load_x11();
   if (!x11) return;
   const auto open = reinterpret_cast<void* (*)(const char*)>(dlsym(x11.get(), "XOpenDisplay"));
   const auto close = reinterpret_cast<int (*)(void*)>(dlsym(x11.get(), "XCloseDisplay"));
@@ -44,6 +50,14 @@ void require_display() {
   const bool draws_gl = has_extension(display, "GLX", &opcode, &event, &error) != 0;
   close(display);
   if (!draws_gl) fail(fmt::format("the X display '{}' cannot draw OpenGL (no GLX)", name));
+}
+
+void report_held_keys_once(void* display) {
+  const Library x11 = load_x11();
+  if (!x11 || !display) return;
+  const auto set =
+      reinterpret_cast<int (*)(void*, int, int*)>(dlsym(x11.get(), "XkbSetDetectableAutoRepeat"));
+  if (set) set(display, 1, nullptr);
 }
 
 }  // namespace lightwell

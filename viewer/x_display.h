@@ -7,4 +7,8 @@ namespace lightwell {
 /// draws OpenGL. Does nothing where VTK needs no X display.
 void require_display();
 
+/// X reports a key held down as a quick series of releases and presses. Asks it for presses alone,
+/// until the one release. `display` is an X Display; where that is impossible, nothing changes.
+void report_held_keys_once(void* display);
+
 }  // namespace lightwell

@@ -97,6 +97,16 @@ TEST(StartView, FrameAllHoldsTheBoundingSphere) {
   EXPECT_EQ(camera.up, Eigen::Vector3d(0, 1, 0));
 }
 
+/// A square camera of 90 degrees in a window twice as wide as high: the height must still span
+/// 90 degrees, so tan of half the width's angle doubles to 2. In a tall window the width keeps it.
+TEST(StartView, WindowsShowAllOfTheCamerasPicture) {
+  Camera camera;
+  camera.fov_degrees = 90.0;
+  camera.width = camera.height = 100;
+  EXPECT_NEAR(fit_to_window(camera, 800, 400).fov_degrees, 2.0 * std::atan(2.0) * 180.0 / pi, 1e-5);
+  EXPECT_EQ(fit_to_window(camera, 400, 800).fov_degrees, 90.0);
+}
+
 TEST(StartView, UpIsWhatTheCamerasSay) {
   const Bounds flat_in_y{{0, 0, 0}, {5, 3, 4}};
   const Bounds flat_in_z{{0, 0, 0}, {5, 4, 3}};
