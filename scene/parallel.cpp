@@ -83,13 +83,15 @@ void parallel_for(int count, int grain, const std::function<void(int, int)>& bod
       callers_mode);
 }
 
+// Made in place: a copy of a global_control limits nothing.
 struct ThreadLimit::Impl {
+  explicit Impl(std::size_t threads)
+      : control(tbb::global_control::max_allowed_parallelism, threads) {}
   tbb::global_control control;
 };
 ThreadLimit::ThreadLimit(int threads)
-    : impl_(std::make_unique<Impl>(tbb::global_control(
-          tbb::global_control::max_allowed_parallelism,
-          static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency())))) {}
+    : impl_(std::make_unique<Impl>(
+          static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency()))) {}
 ThreadLimit::~ThreadLimit() = default;
 
 #endif
