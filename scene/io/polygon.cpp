@@ -26,14 +26,19 @@ Eigen::Vector3d newell(const Loop& loop) {
   return 0.5 * sum;
 }
 
+Eigen::Vector3d mean_of(const Loop& loop) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& p : loop) sum += p - loop[0];  // relative: keeps digits far from the origin
+  return loop[0] + sum / static_cast<double>(loop.size());
+}
+
 // The plane's own coordinates, in which the boundary runs counter-clockwise and has size 1.
 struct Plane {
   Eigen::Vector3d origin, normal, x, y;
   double size = 0.0;
 
   explicit Plane(const Loop& boundary) : size(size_of(boundary)) {
-    origin = std::accumulate(boundary.begin(), boundary.end(), Eigen::Vector3d(0, 0, 0)) /
-             static_cast<double>(boundary.size());
+    origin = mean_of(boundary);
     const Eigen::Vector3d area = newell(boundary);
     normal = area.norm() > 0.0 ? Eigen::Vector3d(area.normalized()) : Eigen::Vector3d::UnitZ();
     tangent_frame(normal, x, y);
@@ -175,9 +180,10 @@ bool is_ear(const FlatLoop& p, const std::vector<int>& left, std::size_t i) {
 }  // namespace
 
 double size_of(const Loop& loop) {
-  Eigen::AlignedBox3d box;
-  for (const auto& p : loop) box.extend(p);
-  return box.isEmpty() ? 0.0 : box.diagonal().norm();
+  const Eigen::Vector3d middle = mean_of(loop);
+  double radius = 0.0;
+  for (const auto& p : loop) radius = std::max(radius, (p - middle).norm());
+  return 2.0 * radius;
 }
 
 double deviation_from_plane(const Polygon& polygon) {

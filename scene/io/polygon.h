@@ -31,7 +31,7 @@ std::string fault(const Polygon& polygon);
 /// the centroid) over the boundary's size.
 double deviation_from_plane(const Polygon& polygon);
 
-/// Length of the diagonal of the loop's bounding box.
+/// Twice the largest distance of a vertex from the vertices' mean.
 double size_of(const Loop& loop);
 
 /// Cuts a polygon without holes into triangles of the same orientation by clipping ears (Meisters

@@ -2,7 +2,10 @@
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+
 #include <assimp/Importer.hpp>
+#include <fstream>
+#include <string_view>
 
 #include "scene/errors.h"
 #include "scene/io/mesh_file.h"
@@ -16,6 +19,30 @@ namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
   throw InputError(fmt::format("{}: {}", path.string(), what));
+}
+
+// The PLY reader of assimp 5.2 never returns from a header that ends early, and believes any count.
+void check_ply_header(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  const auto bytes = static_cast<double>(std::filesystem::file_size(path));
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    std::string_view rest = line;
+    const std::string_view key = next_word(rest);
+    if (number == 1 && key != "ply")
+      fail(path, "this is no PLY file; its first line must be 'ply'");
+    if (key == "end_header" && !stream.eof()) return;
+    if (key != "element") continue;
+    const std::string_view name = next_word(rest);
+    const auto count = parse_finite(next_word(rest));
+    if (!count || !(*count >= 0.0 && *count <= bytes)) {
+      throw InputError(
+          fmt::format("{}:{}: the file is too short for so many of '{}' ({}); it was "
+                      "damaged or cut off",
+                      path.string(), number, name, trimmed(line)));
+    }
+  }
+  fail(path, "the header does not end with 'end_header'; the file was damaged or cut off");
 }
 
 PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, double metres_per_unit,
@@ -47,6 +74,7 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
 Scene read_geometry_file(const std::filesystem::path& path, double metres_per_unit,
                          MeshMaterials materials) {
   require_readable(path);
+  if (lower_extension(path) == ".ply") check_ply_header(path);
   Assimp::Importer importer;
   const aiScene* file = importer.ReadFile(path.string(), aiProcess_ValidateDataStructure);
   if (!file) fail(path, fmt::format("the file cannot be read: {}", importer.GetErrorString()));
