@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "scene/io/read_scene.h"
+
+namespace lightwell {
+namespace {
+
+const Scene& room() {
+  static const Scene scene = read_scene(LIGHTWELL_TEST_DATA "/scene/room.obj");
+  return scene;
+}
+
+const Material& material(const Scene& scene, const std::string& name) {
+  for (const Material& m : scene.materials) {
+    if (m.name == name) return m;
+  }
+  throw std::runtime_error("no material " + name);
+}
+
+const PolygonMesh& mesh(const Scene& scene, const std::string& name) {
+  for (const Surface& s : scene.surfaces) {
+    if (s.name == name) return std::get<PolygonMesh>(s.shape);
+  }
+  throw std::runtime_error("no surface " + name);
+}
+
+bool is_noted(const Scene& scene, const std::string& what) {
+  return std::any_of(scene.notes.begin(), scene.notes.end(),
+                     [&](const std::string& note) { return note.find(what) != std::string::npos; });
+}
+
+void expect_rgb(const Spectrum& actual, float r, float g, float b) {
+  ASSERT_EQ(actual.size(), 3);
+  EXPECT_FLOAT_EQ(actual[0], r);
+  EXPECT_FLOAT_EQ(actual[1], g);
+  EXPECT_FLOAT_EQ(actual[2], b);
+}
+
+// Writes an OBJ (and MTL) of these lines beside each other, reads it and removes it.
+Scene read_text(const std::string& obj, const std::string& mtl = "") {
+  const auto folder = std::filesystem::path(testing::TempDir());
+  std::ofstream(folder / "lightwell_text.obj") << "mtllib lightwell_text.mtl\n" << obj;
+  if (!mtl.empty()) std::ofstream(folder / "lightwell_text.mtl") << mtl;
+  Scene scene = read_scene(folder / "lightwell_text.obj");
+  std::filesystem::remove(folder / "lightwell_text.obj");
+  std::filesystem::remove(folder / "lightwell_text.mtl");
+  return scene;
+}
+
+const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
+
+TEST(ReadObj, MakesASurfaceOfEachGroupAndMaterial) {
+  std::vector<std::string> names;
+  for (const Surface& s : room().surfaces) names.push_back(s.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"box (wall)", "box (mirror)", "box (shiny)",
+                                             "fittings/left (pane)", "fittings/left (haze)",
+                                             "fittings/right (lamp)", "fittings/right (forgotten)",
+                                             "fittings/repaired"}));
+}
+
+TEST(ReadObj, KeepsPolygonsAsTheyAre) {
+  const PolygonMesh& floor_and_ceiling = mesh(room(), "box (wall)");
+  ASSERT_EQ(floor_and_ceiling.facets.size(), 2u);
+  EXPECT_EQ(floor_and_ceiling.facets[0].boundary.size(), 4u);
+  EXPECT_DOUBLE_EQ(facet_area(floor_and_ceiling, floor_and_ceiling.facets[0]), 12.0);
+  // Backwards indices, in reverse order: the ceiling faces down.
+  EXPECT_EQ(facet_normal(floor_and_ceiling, floor_and_ceiling.facets[1]),
+            -Eigen::Vector3d::UnitZ());
+  const PolygonMesh& concave = mesh(room(), "fittings/right (forgotten)");
+  ASSERT_EQ(concave.facets.size(), 1u);
+  EXPECT_EQ(concave.facets[0].boundary.size(), 5u);
+  EXPECT_DOUBLE_EQ(facet_area(concave, concave.facets[0]), 0.75);
+}
+
+TEST(ReadObj, JoinsContinuedLines) {
+  EXPECT_DOUBLE_EQ(facet_area(mesh(room(), "box (mirror)"), mesh(room(), "box (mirror)").facets[0]),
+                   10.0);
+}
+
+TEST(ReadObj, RepairsWhatItCanAndCountsIt) {
+  EXPECT_EQ(mesh(room(), "fittings/repaired").facets.size(), 2u);
+  EXPECT_TRUE(is_noted(room(), "1 polygon was not planar and was split"));
+  EXPECT_TRUE(is_noted(room(), "1 polygon without area was dropped"));
+  EXPECT_TRUE(is_noted(room(), "1 polygon that crosses itself was dropped"));
+}
+
+TEST(ReadObj, KsIsAMirrorOnlyWhereIllumSaysSo) {
+  expect_rgb(material(room(), "wall").reflectance, 0.6f, 0.5f, 0.4f);
+  EXPECT_FALSE(material(room(), "wall").is_specular());
+  EXPECT_TRUE(is_noted(room(), "highlight"));
+  expect_rgb(material(room(), "mirror").specular, 0.8f, 0.8f, 0.8f);
+  const Scene black = read_text(triangle, "newmtl m\nKd 0 0 0\nKs 0.9 0.8 0.7\n");
+  expect_rgb(black.materials[0].specular, 0.9f, 0.8f, 0.7f);
+}
+
+TEST(ReadObj, MoreThanAllLightIsScaledDown) {
+  const Material& shiny = material(room(), "shiny");
+  expect_rgb(shiny.reflectance, 0.5f, 0.5f, 0.6f);
+  expect_rgb(shiny.specular, 0.5f, 0.5f, 0.2f);
+  EXPECT_TRUE(is_noted(room(), "exceeded 1"));
+}
+
+TEST(ReadObj, ClearMaterialsAreDielectrics) {
+  const Material& pane = material(room(), "pane");
+  ASSERT_TRUE(pane.dielectric);
+  EXPECT_FLOAT_EQ(pane.dielectric->index_of_refraction, 1.45f);
+  expect_rgb(pane.dielectric->tint, 0.9f, 1.0f, 0.8f);
+  EXPECT_FALSE((pane.reflectance > 0.0f).any());
+  const Material& haze = material(room(), "haze");
+  ASSERT_TRUE(haze.dielectric);
+  EXPECT_FLOAT_EQ(haze.dielectric->index_of_refraction, 1.5f) << "none given";
+  EXPECT_TRUE(is_noted(room(), "'haze'"));
+  const Scene opaque = read_text(triangle, "newmtl m\nKd 1 1 1\nTr 0\nTf 1 1 1\nNi 1.5\n");
+  EXPECT_FALSE(opaque.materials[0].dielectric);
+}
+
+TEST(ReadObj, KeIsRadiance) {
+  const float pi = std::numbers::pi_v<float>;
+  expect_rgb(material(room(), "lamp").emission, 5 * pi, 4 * pi, 3 * pi);
+  EXPECT_TRUE(is_noted(room(), "textures"));
+}
+
+TEST(ReadObj, OneNumberStandsForThree) {
+  const Scene scene = read_text(triangle, "newmtl m\nKd 0.25\n");
+  expect_rgb(scene.materials[0].reflectance, 0.25f, 0.25f, 0.25f);
+}
+
+TEST(ReadObj, WithoutMaterialsGreyIsAssumedAndSaid) {
+  const Scene missing = read_text(triangle);
+  expect_rgb(missing.materials[0].reflectance, 0.5f, 0.5f, 0.5f);
+  EXPECT_TRUE(is_noted(missing, "lightwell_text.mtl' is missing"));
+  EXPECT_TRUE(is_noted(missing, "Material 'm' is not defined"));
+  const Scene none = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "newmtl unused\n");
+  EXPECT_EQ(none.materials[0].name, "default");
+  EXPECT_TRUE(is_noted(none, "1 polygon names no material"));
+  EXPECT_EQ(none.surfaces[0].name, "lightwell_text");
+}
+
+TEST(ReadObj, FacesMayComeBeforeTheirVertices) {
+  EXPECT_EQ(read_text("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").surfaces.size(), 1u);
+}
+
+TEST(ReadObj, TakesPolygonsOfAnySize) {
+  std::ostringstream text, face;
+  for (int i = 1; i <= 1000; ++i) {
+    const double phi = 2.0 * std::numbers::pi * i / 1000;
+    text << "v " << std::cos(phi) << ' ' << std::sin(phi) << " 0\n";
+    face << ' ' << i;
+  }
+  const Scene scene = read_text(text.str() + "f" + face.str() + "\n");
+  const auto& disk = std::get<PolygonMesh>(scene.surfaces[0].shape);
+  ASSERT_EQ(disk.facets.size(), 1u);
+  // Six digits per coordinate; the regular 1000-gon is 6.6e-6 short of the circle.
+  EXPECT_NEAR(facet_area(disk, disk.facets[0]), std::numbers::pi, 3e-5);
+}
+
+TEST(ReadObj, MetresPerUnitScales) {
+  const Scene scene = read_obj(LIGHTWELL_TEST_DATA "/scene/room.obj", 0.0254);
+  const Bounds bounds = scene_bounds(scene);
+  EXPECT_TRUE(bounds.high.isApprox(0.0254 * Eigen::Vector3d(4, 3, 2.5), 1e-12));
+  EXPECT_DOUBLE_EQ(scene.metres_per_unit, 0.0254);
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,291 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "scene/io/read_scene.h"
+
+namespace lightwell {
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+const Scene& everything() {
+  static const Scene scene = read_scene(LIGHTWELL_TEST_DATA "/scene/everything.toml");
+  return scene;
+}
+
+const Surface& surface(const Scene& scene, const std::string& name) {
+  for (const Surface& s : scene.surfaces) {
+    if (s.name == name) return s;
+  }
+  throw std::runtime_error("no surface " + name);
+}
+
+const PolygonMesh& mesh(const Scene& scene, const std::string& name) {
+  return std::get<PolygonMesh>(surface(scene, name).shape);
+}
+
+const Material& material_of(const Scene& scene, const std::string& surface_name) {
+  return scene.materials[static_cast<std::size_t>(surface(scene, surface_name).material)];
+}
+
+double area(const PolygonMesh& m) {
+  double sum = 0.0;
+  for (const Facet& facet : m.facets) sum += facet_area(m, facet);
+  return sum;
+}
+
+// Volume by the divergence theorem, positive if the polygons face outwards.
+double volume(const PolygonMesh& m) {
+  double sum = 0.0;
+  for (const Facet& f : m.facets) {
+    sum += m.vertices[static_cast<std::size_t>(f.boundary[0])].dot(facet_normal(m, f)) *
+           facet_area(m, f) / 3.0;
+  }
+  return sum;
+}
+
+void expect_spectrum(const Spectrum& actual, std::vector<float> expected) {
+  ASSERT_EQ(actual.size(), static_cast<int>(expected.size()));
+  for (int k = 0; k < actual.size(); ++k) {
+    // A value rounded to float, and one product.
+    EXPECT_NEAR(actual[k], expected[static_cast<std::size_t>(k)],
+                2e-7f * expected[static_cast<std::size_t>(k)])
+        << "band " << k;
+  }
+}
+
+Scene read_text(const std::string& text) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "lightwell_read_text.toml";
+  std::ofstream(path) << text;
+  Scene scene = read_scene(path);
+  std::filesystem::remove(path);
+  return scene;
+}
+
+const std::string one_polygon = R"(
+[[surfaces]]
+material = "white"
+polygon = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+)";
+
+TEST(ReadToml, KnowsTitleUnitAndBands) {
+  EXPECT_EQ(everything().title, "A workshop with one of everything");
+  EXPECT_EQ(everything().unit_name, "cm");
+  EXPECT_DOUBLE_EQ(everything().metres_per_unit, 0.01);
+  EXPECT_EQ(everything().bands.count(), 3);
+  EXPECT_DOUBLE_EQ(everything().bands.lumens_per_watt, 179.0);
+}
+
+TEST(ReadToml, UnitsAreThoseOfTheSiBrochure) {
+  const std::vector<std::pair<std::string, double>> units = {
+      {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"in", 0.0254}, {"ft", 0.3048}};
+  for (const auto& [unit, metres] : units) {
+    const Scene scene =
+        read_text("unit = \"" + unit + "\"\n[materials.white]\nexitance = 2\n" + one_polygon);
+    EXPECT_NEAR(area(mesh(scene, "surface1")), metres * metres, 1e-12 * metres * metres) << unit;
+    expect_spectrum(scene.materials[0].emission, {2, 2, 2});  // per m^2 whatever the unit
+  }
+}
+
+TEST(ReadToml, MaterialsReflect) {
+  const Scene& s = everything();
+  EXPECT_TRUE(material_of(s, "room").one_sided);
+  expect_spectrum(material_of(s, "room").reflectance, {0.5f, 0.5f, 0.5f});
+  expect_spectrum(material_of(s, "window frame").reflectance, {0.6f, 0.4f, 0.2f});
+  EXPECT_FALSE(material_of(s, "window frame").one_sided);
+  expect_spectrum(material_of(s, "crate").reflectance, {0.5f, 0.4f, 0.3f});
+  expect_spectrum(material_of(s, "crate").specular, {0.1f, 0.2f, 0.3f});
+  expect_spectrum(material_of(s, "surface4").specular, {0.9f, 0.9f, 0.9f});
+  const Material& glass = material_of(s, "ball");
+  ASSERT_TRUE(glass.dielectric);
+  EXPECT_FLOAT_EQ(glass.dielectric->index_of_refraction, 1.52f);
+  expect_spectrum(glass.dielectric->tint, {0.9f, 0.95f, 0.9f});
+}
+
+TEST(ReadToml, MaterialsEmit) {
+  const Scene& s = everything();
+  // M = pi L; twice the band means 17, 11.8 and 4 of the broken line.
+  expect_spectrum(material_of(s, "tube").emission, {pi * 34.0f, pi * 23.6f, pi * 8.0f});
+  expect_spectrum(material_of(s, "spot").emission, {1, 1, 1});  // 0.01 W/nm in 100 nm
+  // Two screens of 1 m^2, two sides each.
+  expect_spectrum(material_of(s, "screen").emission, {0.5f, 1.0f, 1.5f});
+  EXPECT_TRUE(material_of(s, "screen").emits_both_sides);
+  EXPECT_FALSE(material_of(s, "tube").emits_both_sides);
+}
+
+TEST(ReadToml, PowerIsSpreadOverSpheresToo) {
+  const Scene s = read_text(
+      "unit = \"cm\"\n[materials.bulb]\npower = 100\n[[surfaces]]\nmaterial = \"bulb\"\n"
+      "sphere = { center = [0, 0, 0], radius = 5 }\nscale = 2\n");
+  expect_spectrum(s.materials[0].emission, std::vector<float>(3, 100.0f / (4.0f * pi * 0.01f)));
+}
+
+TEST(ReadToml, BoxesFaceOutwardsAndRoomsInwards) {
+  EXPECT_NEAR(volume(mesh(everything(), "room")), -5.0 * 4.0 * 3.0, 1e-9);
+  EXPECT_NEAR(volume(mesh(everything(), "crate")), 0.8 * 0.8 * 0.8, 1e-9);
+  EXPECT_EQ(mesh(everything(), "room").vertices.size(), 8u);
+}
+
+TEST(ReadToml, ShapesAreScaledTurnedAndMoved) {
+  const PolygonMesh& crate = mesh(everything(), "crate");
+  Eigen::AlignedBox3d box;
+  for (const auto& v : crate.vertices) box.extend(v);
+  EXPECT_TRUE(box.min().isApprox(Eigen::Vector3d(2.1, 1.6, 0.0), 1e-12));
+  EXPECT_TRUE(box.max().isApprox(Eigen::Vector3d(2.9, 2.4, 0.8), 1e-12));
+  // (0,0,60) about x by 90 degrees around (0,0,50): 10 above the pivot becomes y = -10.
+  const PolygonMesh& mirrors = mesh(everything(), "surface4");
+  const auto& corner = mirrors.vertices[static_cast<std::size_t>(mirrors.facets[1].boundary[0])];
+  EXPECT_TRUE(corner.isApprox(Eigen::Vector3d(0.1, 3.8, 0.5), 1e-12)) << corner.transpose();
+  const auto& ball = std::get<Sphere>(surface(everything(), "ball").shape);
+  EXPECT_TRUE(ball.center.isApprox(Eigen::Vector3d(4.2, 1.0, 1.0), 1e-12));
+  EXPECT_DOUBLE_EQ(ball.radius, 0.3);
+}
+
+TEST(ReadToml, TurnsAboutXThenYThenZ) {
+  const Scene s = read_text(
+      "[materials.white]\n[[surfaces]]\nmaterial = \"white\"\n"
+      "sphere = { center = [1, 2, 3], radius = 1 }\nrotate = [30, 40, 50]\n");
+  const double degree = std::numbers::pi / 180.0;
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(50 * degree, Eigen::Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(40 * degree, Eigen::Vector3d::UnitY()) *
+                                Eigen::AngleAxisd(30 * degree, Eigen::Vector3d::UnitX()))
+                                   .toRotationMatrix();
+  const auto& sphere = std::get<Sphere>(s.surfaces[0].shape);
+  EXPECT_TRUE(sphere.center.isApprox(turn * Eigen::Vector3d(1, 2, 3), 1e-12));
+}
+
+TEST(ReadToml, QuarterTurnsAreExact) {
+  for (int quarters = -5; quarters <= 5; ++quarters) {
+    const Scene s = read_text(
+        "[materials.white]\n[[surfaces]]\nmaterial = \"white\"\n"
+        "sphere = { center = [1, 0, 0], radius = 1 }\nrotate = [0, 0, " +
+        std::to_string(90 * quarters) + "]\n");
+    const auto& c = std::get<Sphere>(s.surfaces[0].shape).center;
+    const int q = ((quarters % 4) + 4) % 4;
+    EXPECT_EQ(c, Eigen::Vector3d(q == 0   ? 1
+                                 : q == 2 ? -1
+                                          : 0,
+                                 q == 1   ? 1
+                                 : q == 3 ? -1
+                                          : 0,
+                                 0))
+        << quarters;
+  }
+}
+
+TEST(ReadToml, HolesOfEitherWindingAreTakenOut) {
+  // 1 m^2 less two panes of 0.35 x 0.8.
+  EXPECT_NEAR(area(mesh(everything(), "window frame")), 1.0 - 2 * 0.35 * 0.8, 1e-12);
+}
+
+TEST(ReadToml, SaysWhatItSplits) {
+  const Scene& s = everything();
+  EXPECT_EQ(mesh(s, "surface4").facets.size(), 3u);
+  const bool noted = std::any_of(s.notes.begin(), s.notes.end(), [](const std::string& note) {
+    return note.find("polygon 2 of polygons of surface 'surface4'") != std::string::npos &&
+           note.find("2 triangles") != std::string::npos;
+  });
+  EXPECT_TRUE(noted);
+}
+
+TEST(ReadToml, MeshesComeWithTheirMaterialsUnlessReplaced) {
+  const Scene& s = everything();
+  EXPECT_EQ(material_of(s, "block").name, "door");
+  EXPECT_NEAR(volume(mesh(s, "block")), -0.3 * 0.3 * 0.3, 1e-9) << "turned over";
+  EXPECT_EQ(material_of(s, "model/box (wall)").name, "wall");
+  EXPECT_TRUE(material_of(s, "model/box (wall)").one_sided) << "the scene's wall, not the file's";
+  EXPECT_EQ(material_of(s, "model/fittings/right (lamp)").name, "lamp (room.obj)");
+  for (const std::string& note : s.notes) {
+    EXPECT_EQ(note.find("block"), std::string::npos)
+        << "its lack of materials is no news: " << note;
+  }
+}
+
+TEST(ReadToml, CamerasAreNormalisedAndNamed) {
+  const Scene& s = everything();
+  ASSERT_EQ(s.cameras.size(), 2u);
+  const Camera& first = s.cameras[0];
+  EXPECT_EQ(first.name, "entrance");
+  EXPECT_TRUE(first.position.isApprox(Eigen::Vector3d(0.2, 0.2, 1.6)));
+  EXPECT_TRUE(first.direction.isApprox(Eigen::Vector3d(2.3, 1.8, -0.6).normalized()));
+  EXPECT_NEAR(first.up.norm(), 1.0, 1e-12);
+  EXPECT_NEAR(first.up.dot(first.direction), 0.0, 1e-12);
+  EXPECT_GT(first.up.z(), 0.9);
+  EXPECT_EQ(first.width, 320);
+  EXPECT_EQ(first.height, 240);
+  EXPECT_DOUBLE_EQ(first.fov_degrees, 70.0);
+  EXPECT_EQ(s.cameras[1].name, "camera2");
+  EXPECT_EQ(s.cameras[1].direction, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(s.cameras[1].up, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(s.cameras[1].width, 512);
+}
+
+TEST(ReadToml, UnusedMaterialsAreNoted) {
+  const Scene s = read_text("[materials.white]\n[materials.grey]\npower = 5\n" + one_polygon);
+  ASSERT_EQ(s.notes.size(), 1u);
+  EXPECT_NE(s.notes[0].find("'grey'"), std::string::npos);
+}
+
+class SpectralBandCount : public testing::TestWithParam<int> {};
+
+TEST_P(SpectralBandCount, CutsASpectrumWithoutLosingAny) {
+  const int count = GetParam();
+  const std::string text = "[bands]\nkind = \"spectral\"\ncount = " + std::to_string(count) +
+                           "\n[materials.white]\nexitance = { wavelengths = [400, 500, 600, 700], "
+                           "values = [0.0, 8.0, 15.6, 18.4], per = \"nm\" }\n" +
+                           one_polygon;
+  const Scene s = read_text(text);
+  ASSERT_EQ(s.bands.count(), count);
+  // The integral of the broken line: 100 nm times (4 + 11.8 + 17).
+  EXPECT_NEAR(s.materials[0].emission.cast<double>().sum(), 3280.0, 3280.0 * 1e-6);
+}
+INSTANTIATE_TEST_SUITE_P(Bands, SpectralBandCount, testing::Values(1, 3, 7, 30, 96));
+
+TEST(ReadToml, StepAndCountMeanTheSameBands) {
+  const std::string rest = "[materials.white]\nreflectance = 0.5\n" + one_polygon;
+  const Scene by_step =
+      read_text("[bands]\nkind = \"spectral\"\nfrom = 380\nto = 730\nstep = 10\n" + rest);
+  const Scene by_count =
+      read_text("[bands]\nkind = \"spectral\"\nfrom = 380\nto = 730\ncount = 35\n" + rest);
+  EXPECT_EQ(by_step.bands.names, by_count.bands.names);
+  EXPECT_EQ(scene_hash(by_step), scene_hash(by_count));
+}
+
+TEST(ReadToml, ReadsFilesWithByteOrderMarkAndWindowsLineEnds) {
+  std::string text = "\xef\xbb\xbf[materials.white]\nreflectance = 0.5\n" + one_polygon, windows;
+  for (char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(read_text(windows).surfaces.size(), 1u);
+}
+
+TEST(ReadToml, TheExtensionMayBeInCapitals) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "lightwell_capitals.TOML";
+  std::ofstream(path) << "[materials.white]\n" << one_polygon;
+  EXPECT_EQ(read_scene(path).surfaces.size(), 1u);
+  std::filesystem::remove(path);
+}
+
+TEST(SceneFormatPage, ItsExampleIsAScene) {
+  std::ifstream page(LIGHTWELL_DOCS "/scene-format.md");
+  std::string text, line;
+  while (std::getline(page, line) && line != "```toml") {
+  }
+  while (std::getline(page, line) && line != "```") text += line + "\n";
+  ASSERT_FALSE(text.empty());
+  const Scene s = read_text(text);
+  EXPECT_TRUE(s.notes.empty());
+  EXPECT_EQ(s.surfaces.size(), 7u);
+  EXPECT_EQ(s.cameras.size(), 1u);
+  // The panel's 12 W leave its 1 m^2; floor and ceiling close the room, which faces inwards.
+  expect_spectrum(material_of(s, "panel").emission, {12, 12, 11});
+  const double shell = volume(mesh(s, "floor")) + volume(mesh(s, "ceiling")) +
+                       volume(mesh(s, "panel")) + volume(mesh(s, "walls"));
+  EXPECT_NEAR(shell, -4.0 * 3.0 * 2.5, 1e-9);
+}
+
+}  // namespace
+}  // namespace lightwell
