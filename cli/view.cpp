@@ -25,8 +25,14 @@ struct Arguments {
 int view(const Arguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
-  ViewOptions options{.cameras = scene.cameras, .exposure_ev = arguments.exposure_ev};
+  ViewOptions options{
+      .cameras = scene.cameras, .exposure_ev = arguments.exposure_ev, .materials = scene.materials};
   if (!arguments.camera.empty()) options.camera = choose_camera(scene, arguments.camera);
+  // Off screen, the picture that 'render' would make; a window is as large as suits a screen.
+  if (!arguments.offscreen.empty() && !scene.cameras.empty()) {
+    const Camera& camera = options.camera ? *options.camera : scene.cameras.front();
+    std::tie(options.width, options.height) = std::pair(camera.width, camera.height);
+  }
   if (arguments.size) std::tie(options.width, options.height) = *arguments.size;
   if (!arguments.offscreen.empty()) require_writable(arguments.offscreen);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
@@ -55,7 +61,7 @@ Action add_view(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.description(
       "Walk through a solved scene in a window: W A S D to walk, the mouse to look around,\n"
-      "1 to 9 for the scene's cameras, Q to leave.");
+      "1 to 9 for the scene's cameras, H for all keys, Esc to leave.");
   command.add_option("scene", arguments->scene, "the scene file the solution was made from")
       ->required()
       ->type_name("SCENE");
