@@ -15,6 +15,18 @@ double cross(const Vector2d& a, const Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
+void make_element(const std::vector<int>& loop, const std::vector<Vector3d>& points,
+                  FacetMesh& mesh) {
+  const int n = static_cast<int>(loop.size());
+  mesh.corners.push_back({0, 1, 2, n == 4 ? 3 : -1});
+  mesh.first_element.push_back(1);
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n;
+    mesh.position.push_back(points[loop[i]]);
+    mesh.border.push_back({{i, j}, {loop[i], loop[j]}});
+  }
+}
+
 // A facet no larger than an element.
 bool make_single_element(const FacetPlane& plane, const FacetOutline& outline,
                          const std::vector<Vector3d>& points, FacetMesh& mesh) {
@@ -27,13 +39,7 @@ bool make_single_element(const FacetPlane& plane, const FacetOutline& outline,
   constexpr double least_sine = 0.2;  // below 12 degrees or above 168 two triangles are better
   if (n == 3 && !(cross(q[1] - q[0], q[2] - q[0]) > 0.0)) return false;
   if (n == 4 && !(quad_quality(q[0], q[1], q[2], q[3]) > least_sine)) return false;
-  mesh.corners.push_back({0, 1, 2, n == 4 ? 3 : -1});
-  mesh.first_element.push_back(1);
-  for (int i = 0; i < n; ++i) {
-    const int j = (i + 1) % n;
-    mesh.position.push_back(points[loop[i]]);
-    mesh.border.push_back({{i, j}, {loop[i], loop[j]}});
-  }
+  make_element(loop, points, mesh);
   return true;
 }
 
@@ -136,18 +142,32 @@ bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
   return true;
 }
 
-bool covers_polygon(const FacetPlane& plane, const FacetMesh& mesh) {
+// The elements add up to the polygon and none is folded up by points that lie off the plane by the
+// welding tolerance.
+bool is_sound(const FacetPlane& plane, const FacetMesh& mesh) {
   double area = 0.0;
   for (const auto& c : mesh.corners) {
-    const Vector2d a = plane.project(mesh.position[c[0]]);
+    const Vector3d& a = mesh.position[c[0]];
     for (int i = 1; i < (c[3] < 0 ? 2 : 3); ++i) {
-      area += 0.5 * cross(plane.project(mesh.position[c[i]]) - a,
-                          plane.project(mesh.position[c[i + 1]]) - a);
+      const Vector3d part = (mesh.position[c[i]] - a).cross(mesh.position[c[i + 1]] - a);
+      const double upright = part.dot(plane.normal);
+      constexpr double least_cosine = 0.5;
+      if (!(upright > least_cosine * part.norm())) return false;
+      area += 0.5 * upright;
     }
   }
-  // Points on an edge may lie off it by the welding tolerance, no more.
-  constexpr double share = 1e-5;
+  // Welding moves the boundary a little; a lost part or one counted twice is far more than this.
+  constexpr double share = 1e-4;
   return std::abs(area - plane.area()) <= share * plane.area();
+}
+
+FacetOutline bare_outline(const FacetPlane& plane) {
+  FacetOutline bare;
+  for (int l = 0; l < plane.loop_count(); ++l) {
+    bare.loops.emplace_back(plane.point.begin() + plane.loop_begin[l],
+                            plane.point.begin() + plane.loop_begin[l + 1]);
+  }
+  return bare;
 }
 
 }  // namespace
@@ -168,15 +188,18 @@ FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
   if (make_single_element(plane, outline, points, mesh)) return mesh;
   if (make_grid(plane, outline, points, size, mesh)) return mesh;
   mesh = free_mesh(plane, outline, points, size);
-  if (covers_polygon(plane, mesh)) return mesh;
-  // Lines closer together than they are exact: the bare polygon still has to be there.
-  FacetOutline bare;
-  for (int l = 0; l < plane.loop_count(); ++l) {
-    bare.loops.emplace_back(plane.point.begin() + plane.loop_begin[l],
-                            plane.point.begin() + plane.loop_begin[l + 1]);
+  if (is_sound(plane, mesh)) return mesh;
+  // First give up the contact lines, then the points other facets put on the boundary.
+  const FacetOutline bare = bare_outline(plane);
+  for (const FacetOutline& less : {FacetOutline{.loops = outline.loops}, bare}) {
+    mesh = free_mesh(plane, less, points, size);
+    mesh.is_flawed = true;
+    if (is_sound(plane, mesh)) return mesh;
   }
-  mesh = free_mesh(plane, bare, points, size);
-  return covers_polygon(plane, mesh) ? mesh : FacetMesh{};
+  // A needle of a triangle can only stay what it is.
+  mesh = {};
+  if (plane.is_triangle()) make_element(bare.loops.front(), points, mesh);
+  return mesh;
 }
 
 }  // namespace lightwell

@@ -19,6 +19,8 @@ struct FacetMesh {
   std::vector<std::array<int, 4>> corners{};  ///< counter-clockwise; [3] is -1 for a triangle
   std::vector<int> first_element{0};          ///< patches + 1
   std::vector<BorderEdge> border{};
+  /// Contact lines had to be left out: they lie so close together that rounding folds elements up.
+  bool is_flawed = false;
 
   int patch_count() const { return static_cast<int>(first_element.size()) - 1; }
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -14,9 +15,10 @@
 namespace lightwell {
 namespace {
 
-// Points closer than this share of the scene's diagonal are one: the precision of a file written
-// with single-precision coordinates.
-constexpr double weld_share = 1e-7;
+// Points closer than this share of the scene's diagonal are one. The first is the precision of a
+// file with single-precision coordinates; the others are for rougher ones, where facets that should
+// touch miss each other by more, but not by enough to be two things.
+constexpr std::array<double, 3> weld_shares{1e-7, 1e-6, 1e-5};
 constexpr double most_elements = 20e6;
 
 int side_count(const Material& material) {
@@ -96,6 +98,46 @@ void check_count(const Scene& scene, double size, const CutSize& cut) {
       most_elements / 1e6));
 }
 
+// The polygon facets of a scene cut to size, points joined with one tolerance.
+struct FacetMeshes {
+  std::vector<FacetPlane> planes{};
+  std::vector<FacetMesh> meshes{};  ///< one per plane
+  int flawed = 0;
+};
+
+FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut,
+                        const Progress& progress) {
+  FacetMeshes result;
+  WeldedPoints points(tolerance);
+  result.planes = facet_planes(scene, points);
+  const ContactGraph graph(scene, result.planes, std::move(points), cut, progress);
+  const int count = static_cast<int>(result.planes.size());
+  result.meshes.resize(count);
+  constexpr int batch = 1024;  // facets between two looks at the stop request
+  for (int begin = 0; begin < count; begin += batch) {
+    report(progress, "mesh", 0.4 + 0.5 * begin / count);
+    parallel_for(std::min(batch, count - begin), 1, [&](int from, int to) {
+      for (int i = begin + from; i < begin + to; ++i) {
+        result.meshes[i] = mesh_facet(result.planes[i], graph.outline(i), graph.points(), cut);
+      }
+    });
+  }
+  for (const FacetMesh& mesh : result.meshes) result.flawed += mesh.is_flawed ? 1 : 0;
+  return result;
+}
+
+// The smallest tolerance with which all contact lines can be kept; else the one that keeps most.
+FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const Progress& progress) {
+  const double diagonal = scene_bounds(scene).diagonal();
+  FacetMeshes best;
+  for (const double share : weld_shares) {
+    FacetMeshes next = mesh_facets(scene, share * diagonal, cut, progress);
+    if (share == weld_shares.front() || next.flawed < best.flawed) best = std::move(next);
+    if (best.flawed == 0) break;
+  }
+  return best;
+}
+
 }  // namespace
 
 double patch_size(const Scene& scene, const MeshOptions& options) {
@@ -116,49 +158,29 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
   const CutSize cut{.patch_size = size, .elements_per_edge = options.elements_per_patch_edge};
   check_count(scene, size, cut);
   report(options.progress, "mesh", 0.0);
+  FacetMeshes facet_meshes = mesh_facets(scene, cut, options.progress);
 
-  WeldedPoints points(weld_share * scene_bounds(scene).diagonal());
-  const std::vector<FacetPlane> planes = facet_planes(scene, points);
-  const ContactGraph graph(scene, planes, std::move(points), cut, options.progress);
-
+  report(options.progress, "mesh", 0.9);
   PatchBuilder builder(scene, options.smooth_angle_degrees);
   const std::vector<FacetRef> facets = scene_facets(scene);
-  constexpr int batch = 1024;  // facets between two looks at the stop request
-  int next_plane = 0;
-  for (int begin = 0; begin < static_cast<int>(facets.size()); begin += batch) {
-    report(options.progress, "mesh", 0.4 + 0.5 * begin / static_cast<double>(facets.size()));
-    const int end = std::min<int>(begin + batch, static_cast<int>(facets.size()));
-    int plane_end = next_plane;
-    while (plane_end < static_cast<int>(planes.size()) && planes[plane_end].facet < end) {
-      ++plane_end;
+  int plane = 0;
+  for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+    const Surface& surface = scene.surfaces[facets[f].surface];
+    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+      builder.add_sphere(f, facets[f].surface, *sphere, sphere_elements(*sphere, cut));
+      continue;
     }
-    std::vector<FacetMesh> meshes(plane_end - next_plane);
-    parallel_for(plane_end - next_plane, 1, [&](int from, int to) {
-      for (int k = from; k < to; ++k) {
-        meshes[k] =
-            mesh_facet(planes[next_plane + k], graph.outline(next_plane + k), graph.points(), cut);
-      }
-    });
-    int plane = next_plane;
-    for (int f = begin; f < end; ++f) {
-      const Surface& surface = scene.surfaces[facets[f].surface];
-      if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-        builder.add_sphere(f, facets[f].surface, *sphere, sphere_elements(*sphere, cut));
-        continue;
-      }
-      FacetMesh& mesh = meshes[plane - next_plane];
-      if (mesh.corners.empty()) {
-        throw InputError(fmt::format(
-            "{}{}surface '{}', polygon {}: its boundary crosses or overlaps itself; correct the "
-            "order of its vertices or split it",
-            scene.file.string(), scene.file.empty() ? "" : ": ", surface.name, facets[f].facet));
-      }
-      builder.add_facet(f, facets[f].surface, planes[plane].normal, std::move(mesh));
-      ++plane;
+    FacetMesh& mesh = facet_meshes.meshes[plane];
+    if (mesh.corners.empty()) {
+      throw InputError(fmt::format(
+          "{}{}surface '{}', polygon {}: its boundary crosses or overlaps itself; correct the "
+          "order of its vertices or split it",
+          scene.file.string(), scene.file.empty() ? "" : ": ", surface.name, facets[f].facet));
     }
-    next_plane = plane_end;
+    builder.add_facet(f, facets[f].surface, facet_meshes.planes[plane].normal, std::move(mesh));
+    ++plane;
   }
-  report(options.progress, "mesh", 0.9);
+  facet_meshes = {};
   PatchMesh mesh = builder.finish();
   report(options.progress, "mesh", 1.0);
   return mesh;

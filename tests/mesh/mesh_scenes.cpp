@@ -251,23 +251,35 @@ int hanging_vertices(const PatchMesh& mesh) {
   };
   std::map<Cell, std::vector<int>> cells;
   for (int v = 0; v < mesh.vertex_count(); ++v) cells[cell_of(mesh.position(v))].push_back(v);
-  std::set<std::array<double, 3>> hanging;
+  // Facets that lie on one another have inner vertices and edges of their own: only lines where a
+  // facet ends, or is cut, must agree with everything there.
+  std::vector<std::set<int>> facets_of(mesh.vertex_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const auto q = corner_positions(mesh, e);
-    for (std::size_t i = 0; i < q.size(); ++i) {
-      const Vector3d a = q[i], d = q[(i + 1) % q.size()] - a;
-      const Cell home = cell_of(a + 0.5 * d);
-      for (long x = home[0] - 1; x <= home[0] + 1; ++x) {
-        for (long y = home[1] - 1; y <= home[1] + 1; ++y) {
-          for (long z = home[2] - 1; z <= home[2] + 1; ++z) {
-            const auto cell = cells.find({x, y, z});
-            if (cell == cells.end()) continue;
-            for (int v : cell->second) {
-              const Vector3d w = mesh.position(v) - a;
-              const double t = d.dot(w) / d.squaredNorm();
-              if (t > 1e-6 && t < 1 - 1e-6 && (w - t * d).norm() < 1e-9 * longest) {
-                hanging.insert({mesh.position(v).x(), mesh.position(v).y(), mesh.position(v).z()});
-              }
+    for (int i = 0; i < mesh.corner_count(e); ++i) {
+      facets_of[mesh.corners[e][i]].insert(mesh.facet[mesh.patch[e]]);
+    }
+  }
+  std::set<std::array<double, 3>> hanging;
+  for (auto h : mesh.elements.halfedges()) {
+    const auto face = mesh.elements.face_handle(h);
+    if (!face.is_valid()) continue;
+    const int facet = mesh.facet[mesh.patch[face.idx()]];
+    const auto across = mesh.elements.face_handle(mesh.elements.opposite_halfedge_handle(h));
+    const bool is_inner = across.is_valid() && mesh.facet[mesh.patch[across.idx()]] == facet;
+    const Vector3d a = mesh.position(mesh.elements.from_vertex_handle(h).idx());
+    const Vector3d d = mesh.position(mesh.elements.to_vertex_handle(h).idx()) - a;
+    const Cell home = cell_of(a + 0.5 * d);
+    for (long x = home[0] - 1; x <= home[0] + 1; ++x) {
+      for (long y = home[1] - 1; y <= home[1] + 1; ++y) {
+        for (long z = home[2] - 1; z <= home[2] + 1; ++z) {
+          const auto cell = cells.find({x, y, z});
+          if (cell == cells.end()) continue;
+          for (int v : cell->second) {
+            if (is_inner && !facets_of[v].contains(facet)) continue;
+            const Vector3d p = mesh.position(v), w = p - a;
+            const double t = d.dot(w) / d.squaredNorm();
+            if (t > 1e-6 && t < 1 - 1e-6 && (w - t * d).norm() < 1e-9 * longest) {
+              hanging.insert({p.x(), p.y(), p.z()});
             }
           }
         }

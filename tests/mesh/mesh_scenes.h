@@ -41,8 +41,8 @@ void expect_consistent(const PatchMesh& mesh);
 /// Sum of the areas of the elements of a facet on one side.
 double side_area(const PatchMesh& mesh, int facet, bool back);
 
-/// Number of vertices that lie inside an edge of some element, within 1e-9 of its length: brute
-/// force over a hash of boxes. Touching facets count, so this is conformity across facets as well.
+/// Number of places where a vertex lies inside an element's edge, to within 1e-9 of the longest
+/// edge; across facets as well, where one ends or is cut. 0 means the mesh conforms.
 int hanging_vertices(const PatchMesh& mesh);
 
 /// Smallest angle of all elements, degrees.
