@@ -49,7 +49,11 @@ SphereElements sphere_elements(const Sphere& sphere, const CutSize& size) {
                               ? 1.0
                               : std::max(std::sin(polar_angle(north, s.rings)),
                                          std::sin(polar_angle(south, s.rings)));
-    const int columns = std::clamp(size.patches(2.0 * pi * sphere.radius * widest), 4, s.sectors);
+    // As many whole sectors as fit into a patch's width, at least the usual number.
+    const double sector_width = dphi * sphere.radius * widest;
+    const int fit = std::max(size.elements_per_edge,
+                             static_cast<int>(size.patch_size / sector_width * (1.0 + 1e-9)));
+    const int columns = std::max(4, (s.sectors + fit - 1) / fit);
     for (int column = 0; column < columns; ++column) {
       const int west = block(column, columns, s.sectors);
       const int east = block(column + 1, columns, s.sectors);
