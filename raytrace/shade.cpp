@@ -36,6 +36,17 @@ std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
   return parent;
 }
 
+// Noise that weighs less may be larger: half the weight, half the rays. Powers of two stay ones,
+// which stratify best.
+ShadowOptions shadows_for(ShadowOptions shadows, float weight) {
+  constexpr int fewest = 4;
+  for (; weight <= 0.5f && shadows.min_rays >= 2 * fewest; weight *= 2.0f) {
+    shadows.min_rays /= 2;
+    shadows.max_rays /= 2;
+  }
+  return shadows;
+}
+
 }  // namespace
 
 RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
@@ -93,7 +104,8 @@ void RayTree::follow(const Branch& branch, Walk& walk) const {
   const SurfacePoint at = surface_point(branch.ray, hit);
   if (walk.shades && hit.element >= 0) {
     const std::uint64_t key = random_key(walk.key, branch.place, shadow_purpose);
-    sight.radiance += branch.weight * diffuse_radiance(hit, at, key);
+    const ShadowOptions shadows = shadows_for(options_.shadows, branch.weight.maxCoeff());
+    sight.radiance += branch.weight * diffuse_radiance(hit, at, key, shadows);
   }
   split(branch, hit, at, walk);
 }
@@ -152,8 +164,8 @@ RayTree::SurfacePoint RayTree::surface_point(const Ray& ray, const ElementHit& h
 }
 
 // L = (M + rho E) / pi.
-Spectrum RayTree::diffuse_radiance(const ElementHit& hit, const SurfacePoint& at,
-                                   std::uint64_t key) const {
+Spectrum RayTree::diffuse_radiance(const ElementHit& hit, const SurfacePoint& at, std::uint64_t key,
+                                   const ShadowOptions& shadows) const {
   const PatchMesh& mesh = caster_.mesh();
   const int patch = mesh.patch[hit.element];
   const Spectrum M = mesh.emission.row(patch).transpose();
@@ -170,8 +182,8 @@ Spectrum RayTree::diffuse_radiance(const ElementHit& hit, const SurfacePoint& at
   }
   const bool is_sphere = facets_[hit.facet].is_sphere;
   if (is_sphere || !(normal.norm() > 0.0)) normal = at.normal;
-  const Spectrum direct = direct_light_.irradiance(caster_, at.position, normal.normalized(),
-                                                   hit.facet, key, options_.shadows);
+  const Spectrum direct =
+      direct_light_.irradiance(caster_, at.position, normal.normalized(), hit.facet, key, shadows);
   return one_over_pi * (M + rho * (direct + interpolate(mesh, solution_.indirect_irradiance, hit)));
 }
 

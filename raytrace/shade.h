@@ -70,7 +70,8 @@ class RayTree {
   void grow(const Branch& parent, int child, const Eigen::Vector3d& direction,
             const Spectrum& share, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
   SurfacePoint surface_point(const Ray& ray, const ElementHit& hit) const;
-  Spectrum diffuse_radiance(const ElementHit& hit, const SurfacePoint& at, std::uint64_t key) const;
+  Spectrum diffuse_radiance(const ElementHit& hit, const SurfacePoint& at, std::uint64_t key,
+                            const ShadowOptions& shadows) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;
