@@ -49,6 +49,54 @@ double typical_luminance(std::vector<double> Y) {
   return std::exp(sum / count);
 }
 
+// Linear RGB after exposure, white = 1.
+class ScaledPicture {
+ public:
+  ScaledPicture(const Image& image, const Bands& bands, double scale)
+      : width_(image.width), height_(image.height), rgb_(image.radiance.rows()) {
+    parallel_for(static_cast<int>(rgb_.size()), pixel_grain, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        rgb_[i] = pixel_rgb(image, bands, i) * static_cast<float>(scale);
+      }
+    });
+  }
+
+  const Eigen::Array3f& at(int x, int y) const { return rgb_[std::size_t(y) * width_ + x]; }
+
+  // A pixel on the edge of a lamp is the mean of lamp and wall, which is still far above white: it
+  // would show as lamp, and the edge as a staircase. It is shown as the mean of what lamp and wall
+  // show: its brightest neighbour and the pixel opposite, in the proportion that makes its own
+  // luminance.
+  Eigen::Array3f shown_softly(int x, int y) const {
+    const Eigen::Array3f own = display_rgb(at(x, y), 1.0, true);
+    int dx = 0, dy = 0;
+    double brightest = luminance(at(x, y));
+    for (int j = -1; j <= 1; ++j) {
+      for (int i = -1; i <= 1; ++i) {
+        if (!contains(x + i, y + j) || !contains(x - i, y - j)) continue;
+        const double Y = luminance(at(x + i, y + j));
+        if (!(Y > brightest)) continue;
+        brightest = Y;
+        dx = i;
+        dy = j;
+      }
+    }
+    constexpr double lamp = 2.0;  // of white; below that the shoulder is not flat yet
+    const double darker = luminance(at(x - dx, y - dy)), Y = luminance(at(x, y));
+    if (!(brightest > lamp && brightest > Y && Y >= darker)) return own;
+    const auto covered = static_cast<float>((Y - darker) / (brightest - darker));
+    const Eigen::Array3f mixed = covered * display_rgb(at(x + dx, y + dy), 1.0, true) +
+                                 (1.0f - covered) * display_rgb(at(x - dx, y - dy), 1.0, true);
+    return mixed.min(own);
+  }
+
+ private:
+  bool contains(int x, int y) const { return x >= 0 && x < width_ && y >= 0 && y < height_; }
+
+  int width_, height_;
+  std::vector<Eigen::Array3f> rgb_;
+};
+
 }  // namespace
 
 float shoulder(float x) {
@@ -84,16 +132,17 @@ double exposure_scale(const Image& image, const Bands& bands, const ToneMapping&
 
 std::vector<std::uint8_t> tone_map(const Image& image, const Bands& bands,
                                    const ToneMapping& options) {
-  const double scale = exposure_scale(image, bands, options);
-  const int pixels = static_cast<int>(image.radiance.rows());
-  std::vector<std::uint8_t> bytes(std::size_t{3} * pixels);
-  parallel_for(pixels, pixel_grain, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      const Eigen::Array3f shown =
-          display_rgb(pixel_rgb(image, bands, i), scale, options.automatic);
-      for (int c = 0; c < 3; ++c) {
-        bytes[std::size_t{3} * i + c] =
-            static_cast<std::uint8_t>(255.0f * srgb_encode(shown[c]) + 0.5f);
+  const ScaledPicture picture(image, bands, exposure_scale(image, bands, options));
+  std::vector<std::uint8_t> bytes(std::size_t{3} * image.width * image.height);
+  parallel_for(image.height, 1, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        const Eigen::Array3f shown = options.automatic ? picture.shown_softly(x, y)
+                                                       : display_rgb(picture.at(x, y), 1.0, false);
+        std::uint8_t* pixel = bytes.data() + 3 * (std::size_t(y) * image.width + x);
+        for (int c = 0; c < 3; ++c) {
+          pixel[c] = static_cast<std::uint8_t>(255.0f * srgb_encode(shown[c]) + 0.5f);
+        }
       }
     }
   });

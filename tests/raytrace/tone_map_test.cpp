@@ -104,6 +104,22 @@ TEST(ToneMap, ColouredLampFarAboveWhiteShowsNearlyWhite) {
   EXPECT_GE(*std::min_element(bytes.begin(), bytes.begin() + 3), 250);
 }
 
+TEST(ToneMap, EdgePixelOfALampShowsTheMeanOfWhatLampAndWallShow) {
+  // Columns of wall, 30 % lamp, lamp. Shown linear: 0.3 of the lamp's white + 0.7 of the wall's.
+  Image image{.width = 101, .height = 3};
+  image.radiance.setConstant(303, 3, 1.0f);
+  for (int y = 0; y < 3; ++y) {
+    image.radiance.row(101 * y + 99) = 0.3f * 500.0f + 0.7f * 1.0f;
+    image.radiance.row(101 * y + 100) = 500.0f;
+  }
+  const auto bytes = tone_map(image, rgb_bands());
+  const float wall = shoulder(static_cast<float>(exposure_scale(image, rgb_bands())));
+  const float expected = 255.0f * srgb_encode(0.3f + 0.7f * wall);
+  EXPECT_NEAR(bytes[3 * (101 + 99)], expected, 1.0);  // the lamp itself is a hair below 1
+  EXPECT_NEAR(bytes[3 * (101 + 98)], 255.0f * srgb_encode(wall), 1.0);
+  EXPECT_EQ(bytes[3 * (101 + 100)], 255);
+}
+
 TEST(ToneMap, BlackAndBrokenPixelsShowBlack) {
   EXPECT_EQ(tone_map(flat_image(1, 1, {0, 0, 0}), rgb_bands()), std::vector<std::uint8_t>(3, 0));
   Image image = wall(8);
