@@ -54,7 +54,7 @@ class ProbeSurface {
     tangent_frame(probe.normal, frame.a, frame.b);
     const double hair = 0.1 * reach_;
     const auto straight = below(probe.position, probe.normal);
-    if (straight && is_inside(probe.position, frame, hair)) return straight;
+    if (straight && is_inside(*straight, probe.position, frame, hair)) return straight;
     std::optional<Place> behind;
     const Eigen::Vector3d &a = frame.a, &b = frame.b;
     for (const Eigen::Vector3d& step :
@@ -62,7 +62,7 @@ class ProbeSurface {
           Eigen::Vector3d(a - b), Eigen::Vector3d(b - a), Eigen::Vector3d(-a - b)}) {
       const Eigen::Vector3d moved = probe.position + hair * step;
       const auto place = below(moved, probe.normal);
-      if (!place || !is_inside(moved, frame, 0.5 * hair)) continue;
+      if (!place || !is_inside(*place, moved, frame, 0.5 * hair)) continue;
       if (!is_behind(moved, -hair * step, frame)) return place;
       if (!behind) behind = place;
     }
@@ -105,16 +105,21 @@ class ProbeSurface {
     return best;
   }
 
-  // Whether the surface goes on for `radius` around the point and nothing stands on it there.
-  bool is_inside(const Eigen::Vector3d& position, const Frame& frame, double radius) const {
+  // Whether the place's facet goes on for `radius` around the point and nothing stands on it there.
+  // A neighbour in nearly the same plane counts as an end: at their common edge it would shade.
+  bool is_inside(const Place& place, const Eigen::Vector3d& position, const Frame& frame,
+                 double radius) const {
+    const auto goes_on = [&](const Eigen::Vector3d& at) {
+      const auto other = below(at, frame.normal);
+      return other && other->hit.facet == place.hit.facet;
+    };
     for (const Eigen::Vector3d& along : {frame.a, frame.b}) {
       const Ray ray{.origin = position + reach_ * frame.normal - radius * along,
                     .direction = along,
                     .t_max = 2.0 * radius};
       std::uint8_t blocked = 0;
       caster_.occluded({&ray, 1}, {&blocked, 1});
-      if (blocked || !below(position - radius * along, frame.normal) ||
-          !below(position + radius * along, frame.normal)) {
+      if (blocked || !goes_on(position - radius * along) || !goes_on(position + radius * along)) {
         return false;
       }
     }

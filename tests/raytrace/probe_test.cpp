@@ -124,6 +124,22 @@ TEST(ProbeIrradiance, UnderASmallLampIsTheClosedForm) {
   EXPECT_EQ(E(2, 0), 0.0f);
 }
 
+TEST(ProbeIrradiance, OnTheFoldOfABentFloorIsShadedByNeitherHalf) {
+  // Two triangles that meet along the diagonal with a fold of 2 mm: a quad that is not quite
+  // planar.
+  LitScene lit(SceneBuilder()
+                   .polygon({.reflectance = 0.5f, .one_sided = true},
+                            {{-1, -1, 0}, {1, -1, 2e-3}, {1, 1, 0}})
+                   .polygon({.reflectance = 0.5f, .one_sided = true},
+                            {{-1, -1, 0}, {1, 1, 0}, {-1, 1, 2e-3}})
+                   .square({.exitance = 7.0f, .one_sided = true}, {0, 0, 2}, -up, 0.2)
+                   .build());
+  ASSERT_EQ(lit.direct_light.emitters().size(), 1u);
+  const BandArray E = gathered(lit, {{{0.1, 0.1, 0}, up}, {{0.11, 0.09, 1e-5}, up}});
+  EXPECT_GT(E(1, 0), 0.0f);
+  EXPECT_NEAR(E(0, 0), E(1, 0), 0.01 * E(1, 0));  // 14 mm apart under a lamp 2 m up
+}
+
 TEST(ProbeIrradiance, BelowAStackOfTwoFloorsSeesNeither) {
   // Two sheets in one plane: whichever the caster names, the other must not shade the probe.
   LitScene lit(SceneBuilder()
