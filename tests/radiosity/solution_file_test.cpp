@@ -1,117 +1,21 @@
 #include "radiosity/solution_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
-#include <vtkXMLPolyDataWriter.h>
 
 #include <bit>
 #include <cstring>
-#include <fstream>
-#include <functional>
 #include <sstream>
 
-#include "radiosity/solution_seal.h"
+#include "small_solution.h"
 
 namespace lightwell {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// A folder of its own that goes away with the test.
-class SolutionFile : public testing::Test {
- protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("lightwell-" + std::string(info->name()) + "-" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path file(const std::string& name = "s.vtp") const { return folder_ / name; }
-  std::size_t file_count() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
-
-  fs::path folder_;
-};
-
-/// Band values with every awkward bit pattern that must survive: signed zero, the smallest
-/// denormal, the largest number, infinity, no number, and thirds that no short decimal can hold.
-BandArray awkward(int rows, int bands, int seed) {
-  const float special[] = {-0.0f,
-                           std::numeric_limits<float>::denorm_min(),
-                           std::numeric_limits<float>::max(),
-                           std::numeric_limits<float>::infinity(),
-                           1.0f / 3.0f,
-                           std::numeric_limits<float>::quiet_NaN()};
-  BandArray values(rows, bands);
-  for (int i = 0; i < rows * bands; ++i) {
-    const int n = i + seed;
-    values.data()[i] = n % 3 == 0 ? special[n / 3 % 6] : static_cast<float>(n) / 7.0f;
-  }
-  return values;
-}
-
-/// One two-sided quad and a triangle beside it, in two patches a side, with a sphere grid that
-/// borrows their elements: small, and with something in every array.
-SolvedScene small_solution(int band_count) {
-  SolvedScene solved;
-  PatchMesh& mesh = solved.mesh;
-  const std::vector<Eigen::Vector3d> positions = {
-      {0, 0, 0.1}, {1, 0, 0.1}, {1, 1.0 / 3.0, 0.1}, {0, 1, 0.1}, {2, 0, 0.1},
-      {0, 0, 0.1}, {0, 1, 0.1}, {1, 1.0 / 3.0, 0.1}, {1, 0, 0.1}};
-  mesh.corners = {{0, 1, 2, 3}, {1, 4, 2, -1}, {5, 6, 7, 8}};
-  mesh.patch = {0, 0, 1};
-  mesh.element_area = Eigen::Array3d(2.0 / 3.0, 1.0 / 6.0, 2.0 / 3.0);
-  mesh.twin = {2, -1, 0};
-  mesh.first_element = {0, 2, 3};
-  mesh.area = Eigen::Array2d(5.0 / 6.0, 2.0 / 3.0);
-  mesh.reflectance = BandArray::Constant(2, band_count, 0.3f);
-  mesh.emission = awkward(2, band_count, 4);
-  mesh.surface = {4, 4};
-  mesh.material = {1, 2};
-  mesh.facet = {7, 7};
-  mesh.is_back = {0, 1};
-  mesh.sphere_grids = {
-      {.facet = 3,
-       .sphere = {{0.1, 0.2, 0.3}, 0.7},
-       .rings = 1,
-       .sectors = 3,
-       .element = {0, 1, 2}},
-      {.facet = 5, .sphere = {{1, 2, 3}, 0.1}, .rings = 2, .sectors = 1, .element = {2, 0}}};
-  build_topology(mesh, positions);
-
-  RadiositySolution& s = solved.solution;
-  if (band_count == 3) {
-    s.bands = rgb_bands(179.0);
-  } else {
-    s.bands = spectral_bands(400.0, 700.0, band_count);
-  }
-  s.bands.names[0] = "<\"a\" & 'b'>";
-  s.metres_per_unit = 0.0254;
-  s.unit_name = "in";
-  s.patch_radiosity = awkward(2, band_count, 0);
-  s.direct_irradiance = awkward(9, band_count, 1);
-  s.indirect_irradiance = awkward(9, band_count, 2);
-  s.history = {{1.0, 0.001}, {1.0 / 3.0, 0.002}, {1e-300, 0.003}};
-  s.outcome = Outcome::max_sweeps_reached;
-  s.residual = 0.1;
-  s.energy = {100.0, 1.0 / 3.0, 2.0 / 3.0, 1e-17};
-  s.error_estimate = 0.0123;
-  s.seconds = {{"mesh", 0.1}, {"form factors", 1.0 / 7.0}};
-  s.provenance = {"0.1.0", "räume/<box> ?> \"1\".toml", 0xfedcba9876543210u,
-                  "solve --accuracy 1% -- '&'\n"};
-  return solved;
-}
 
 template <class A>
 void expect_same_bits(const A& a, const A& b, const char* what) {
@@ -184,37 +88,6 @@ void expect_same_solution(const RadiositySolution& a, const RadiositySolution& b
   EXPECT_EQ(a.provenance.scene_file, b.provenance.scene_file);
   EXPECT_EQ(a.provenance.scene_hash, b.provenance.scene_hash);
   EXPECT_EQ(a.provenance.options, b.provenance.options);
-}
-
-std::string contents(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void put(const fs::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-/// What read_solution says about a file it must refuse; also checks that it is the only one to
-/// speak.
-std::string refusal(const fs::path& path) {
-  testing::internal::CaptureStderr();
-  std::string message;
-  try {
-    read_solution(path);
-  } catch (const InputError& e) {
-    message = e.what();
-  }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  if (!message.empty()) {
-    EXPECT_NE(message.find(path.string()), std::string::npos) << message;
-  }
-  return message;
-}
-
-void expect_refused(const fs::path& path, const std::string& reason) {
-  const std::string message = refusal(path);
-  EXPECT_NE(message.find(reason), std::string::npos) << "message: '" << message << "'";
 }
 
 class SolutionFileBands : public SolutionFile, public testing::WithParamInterface<int> {};
@@ -295,112 +168,6 @@ TEST_F(SolutionFile, BeginsWithTextForPeople) {
   EXPECT_EQ(line, "<?lightwell-solution format=\"1\"");
   EXPECT_NE(start.str().find("2 patches, 3 elements, 9 vertices"), std::string::npos);
   EXPECT_NE(start.str().find("options: solve --accuracy 1%"), std::string::npos);
-}
-
-TEST_F(SolutionFile, TornFilesAreRefusedWhereverTheyEnd) {
-  write_solution(file(), small_solution(3));
-  const std::string whole = contents(file());
-  for (std::size_t length = 0; length < whole.size(); length += length < 100 ? 7 : 97) {
-    put(file("torn.vtp"), whole.substr(0, length));
-    const std::string message = refusal(file("torn.vtp"));
-    EXPECT_NE(message, "") << length << " of " << whole.size() << " bytes were accepted";
-  }
-  put(file("torn.vtp"), whole.substr(0, whole.size() / 2));
-  expect_refused(file("torn.vtp"), "torn");
-}
-
-TEST_F(SolutionFile, OneChangedByteIsNoticedAnywhere) {
-  write_solution(file(), small_solution(3));
-  const std::string whole = contents(file());
-  for (std::size_t at = 0; at < whole.size(); at += 53) {
-    std::string changed = whole;
-    changed[at] = static_cast<char>(changed[at] ^ 0x10);
-    put(file("changed.vtp"), changed);
-    EXPECT_NE(refusal(file("changed.vtp")), "") << "byte " << at;
-  }
-}
-
-TEST_F(SolutionFile, ForeignFilesAreRefusedWithTheReason) {
-  expect_refused(file("none.vtp"), "no such file");
-  expect_refused(folder_, "folder");
-  put(file("empty.vtp"), "");
-  expect_refused(file("empty.vtp"), "empty");
-  put(file("scene.toml"), "[camera]\nposition = [0, 0, 0]\n");
-  expect_refused(file("scene.toml"), "not a Lightwell solution");
-  put(file("noise.vtp"), std::string(5000, '\xff'));
-  expect_refused(file("noise.vtp"), "not a Lightwell solution");
-  put(file("other.vtp"), "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\"></VTKFile>\n");
-  expect_refused(file("other.vtp"), "did not write");
-  put(file("newer.vtp"), "<?lightwell-solution format=\"2\"\n?>\n<VTKFile/>\n");
-  expect_refused(file("newer.vtp"), "solution format 2");
-}
-
-/// Someone who knows the format seals a file again after a change: its numbers are still checked.
-class ResealedSolution : public SolutionFile {
- protected:
-  void expect_refused_after(const std::function<void(vtkPolyData*)>& change,
-                            const std::string& reason) {
-    write_solution(file(), small_solution(3));
-    vtkNew<vtkXMLPolyDataReader> reader;
-    reader->SetFileName(file().c_str());
-    reader->Update();
-    change(reader->GetOutput());
-    vtkNew<vtkXMLPolyDataWriter> writer;
-    writer->SetInputData(reader->GetOutput());
-    writer->SetFileName(file("changed.vtp").c_str());
-    writer->SetEncodeAppendedData(0);
-    writer->Write();
-    put(file("changed.vtp"), solution_preamble("") + contents(file("changed.vtp")));
-    seal_solution(file("changed.vtp"));
-    expect_refused(file("changed.vtp"), reason);
-  }
-};
-
-TEST_F(ResealedSolution, IndicesOutOfRangeAreRefused) {
-  const auto set = [](vtkFieldData* data, const char* name, vtkIdType row, double value) {
-    data->GetArray(name)->SetComponent(row, 0, value);
-  };
-  using Poly = vtkPolyData*;
-  expect_refused_after([&](Poly p) { set(p->GetCellData(), "twin", 0, 3); }, "'twin' holds 3");
-  expect_refused_after([&](Poly p) { set(p->GetCellData(), "patch", 2, -1); }, "'patch' holds -1");
-  expect_refused_after([&](Poly p) { set(p->GetCellData(), "patch", 2, 0); }, "whose elements");
-  expect_refused_after([&](Poly p) { set(p->GetCellData(), "area", 1, 0.0); }, "not positive");
-  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "patch_material", 0, -4); },
-                       "'patch_material' holds -4");
-  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "patch_first_element", 1, 9); },
-                       "does not divide");
-  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "sphere_element", 1, 12); },
-                       "'sphere_element' holds 12");
-  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "sphere_facet_rings_sectors", 1, -5); },
-                       "sphere grid 1");
-  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "outcome", 0, 7); },
-                       "'outcome' holds 7");
-  expect_refused_after(
-      [&](Poly p) { p->GetPolys()->GetConnectivityArray()->SetComponent(2, 0, 9); },
-      "names point 9 of 9");
-  expect_refused_after(
-      [&](Poly p) { p->GetPolys()->GetConnectivityArray()->SetComponent(2, 0, 0); }, "twice");
-  expect_refused_after(
-      [&](Poly p) {
-        vtkNew<vtkCellArray> pentagon_first;
-        pentagon_first->InsertNextCell({0, 1, 4, 2, 3});
-        pentagon_first->InsertNextCell({1, 4, 2});
-        pentagon_first->InsertNextCell({5, 6, 7, 8});
-        p->SetPolys(pentagon_first);
-      },
-      "polygon 0 has neither 3 nor 4");
-}
-
-TEST_F(ResealedSolution, MissingArraysAreNamed) {
-  for (const char* name : {"patch_area", "patch_radiosity", "scene_hash",
-                           "energy_emitted_absorbed_"
-                           "escaped_unshot"}) {
-    expect_refused_after([&](vtkPolyData* p) { p->GetFieldData()->RemoveArray(name); }, name);
-  }
-  for (const char* name : {"direct_irradiance", "normal"}) {
-    expect_refused_after([&](vtkPolyData* p) { p->GetPointData()->RemoveArray(name); }, name);
-  }
-  expect_refused_after([](vtkPolyData* p) { p->Initialize(); }, "cannot read");
 }
 
 TEST_F(SolutionFile, AFailedWriteNamesTheFileAndKeepsTheOldOne) {
