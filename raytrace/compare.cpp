@@ -79,7 +79,8 @@ std::array<std::uint8_t, 3> false_colour(double share) {
   const double w = place - static_cast<double>(left);
   std::array<std::uint8_t, 3> colour{};
   for (int c = 0; c < 3; ++c) {
-    colour[c] = static_cast<std::uint8_t>((1 - w) * stops[left][c] + w * stops[left + 1][c] + 0.5);
+    colour[c] =
+        static_cast<std::uint8_t>(std::lround((1 - w) * stops[left][c] + w * stops[left + 1][c]));
   }
   return colour;
 }
@@ -93,7 +94,7 @@ ImageDifference compare_images(const Image& a, const Image& b) {
   result.rmse = std::sqrt((A - B).square().mean());
   result.mean_a = A.mean();
   result.mean_b = B.mean();
-  result.relative_rmse = result.rmse / result.mean_b;
+  result.relative_rmse = result.rmse > 0.0 ? result.rmse / result.mean_b : 0.0;
   result.max_difference = (A - B).abs().maxCoeff();
   result.perceptual = perceptual_difference(as_rgb(a), as_rgb(b));
   return result;

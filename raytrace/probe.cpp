@@ -53,7 +53,7 @@ class ProbeSurface {
     Frame frame{.normal = probe.normal};
     tangent_frame(probe.normal, frame.a, frame.b);
     const double hair = 0.1 * reach_;
-    const auto straight = below(probe.position, probe.normal);
+    auto straight = below(probe.position, probe.normal);
     if (straight && is_inside(*straight, probe.position, frame, hair)) return straight;
     std::optional<Place> behind;
     const Eigen::Vector3d &a = frame.a, &b = frame.b;
@@ -61,7 +61,7 @@ class ProbeSurface {
          {a, b, Eigen::Vector3d(-a), Eigen::Vector3d(-b), Eigen::Vector3d(a + b),
           Eigen::Vector3d(a - b), Eigen::Vector3d(b - a), Eigen::Vector3d(-a - b)}) {
       const Eigen::Vector3d moved = probe.position + hair * step;
-      const auto place = below(moved, probe.normal);
+      auto place = below(moved, probe.normal);
       if (!place || !is_inside(*place, moved, frame, 0.5 * hair)) continue;
       if (!is_behind(moved, -hair * step, frame)) return place;
       if (!behind) behind = place;

@@ -98,7 +98,7 @@ void RayTree::follow(const Branch& branch, Walk& walk) const {
   if (branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
     sight.fingerprint = random_key(sight.fingerprint, branch.place,
-                                   static_cast<std::uint64_t>(seen + 1), hit.from_back);
+                                   static_cast<std::uint64_t>(seen), hit.from_back);
   }
   if (hit.facet < 0) return;  // the world outside is black
   const SurfacePoint at = surface_point(branch.ray, hit);

@@ -68,7 +68,7 @@ class ScaledPicture {
   // show: its brightest neighbour and the pixel opposite, in the proportion that makes its own
   // luminance.
   Eigen::Array3f shown_softly(int x, int y) const {
-    const Eigen::Array3f own = display_rgb(at(x, y), 1.0, true);
+    Eigen::Array3f own = display_rgb(at(x, y), 1.0, true);
     int dx = 0, dy = 0;
     double brightest = luminance(at(x, y));
     for (int j = -1; j <= 1; ++j) {
@@ -141,7 +141,7 @@ std::vector<std::uint8_t> tone_map(const Image& image, const Bands& bands,
                                                        : display_rgb(picture.at(x, y), 1.0, false);
         std::uint8_t* pixel = bytes.data() + 3 * (std::size_t(y) * image.width + x);
         for (int c = 0; c < 3; ++c) {
-          pixel[c] = static_cast<std::uint8_t>(255.0f * srgb_encode(shown[c]) + 0.5f);
+          pixel[c] = static_cast<std::uint8_t>(std::lround(255.0f * srgb_encode(shown[c])));
         }
       }
     }
