@@ -46,9 +46,9 @@ class Eye {
   Eye(const CameraRays& rays, const RayTree& tree, Counters& counters)
       : rays_(rays), tree_(tree), counters_(counters) {}
 
-  Sight look(int x, int y) const {
+  Sight look(int x, int y, float effort = 1.0f) const {
     const auto key = random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));
-    Sight sight = tree_.look(ray(x, y), key);
+    Sight sight = tree_.look(ray(x, y), key, effort);
     counters_.eye_rays.fetch_add(1, std::memory_order_relaxed);
     counters_.depth_cut.fetch_add(sight.depth_cut, std::memory_order_relaxed);
     return sight;
@@ -102,7 +102,11 @@ class PixelMean {
 
   const Sight* sight(int i, int j) {
     if (!known_[slot(i, j)]) {
-      keep(i, j, eye_.look(x_ + i * steps_per_cell_, y_ + j * steps_per_cell_));
+      // Samples of a finer level are more to average.
+      int step = cells_;
+      while ((i | j) % step != 0) step /= 2;
+      const float effort = static_cast<float>(step) / static_cast<float>(cells_);
+      keep(i, j, eye_.look(x_ + i * steps_per_cell_, y_ + j * steps_per_cell_, effort));
     }
     return &sights_[slot(i, j)];
   }

@@ -39,7 +39,7 @@ std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
 // Noise that weighs less may be larger: half the weight, half the rays. Powers of two stay ones,
 // which stratify best.
 ShadowOptions shadows_for(ShadowOptions shadows, float weight) {
-  constexpr int fewest = 4;
+  constexpr int fewest = 8;
   for (; weight <= 0.5f && shadows.min_rays >= 2 * fewest; weight *= 2.0f) {
     shadows.min_rays /= 2;
     shadows.max_rays /= 2;
@@ -78,9 +78,9 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   contact_offset_ = contact_share * scene_bounds(scene).diagonal();
 }
 
-Sight RayTree::look(const Ray& ray, std::uint64_t key) const {
+Sight RayTree::look(const Ray& ray, std::uint64_t key, float effort) const {
   const int bands = scene_.bands.count();
-  Walk walk{.sight = {.radiance = Spectrum::Zero(bands)}, .key = key};
+  Walk walk{.sight = {.radiance = Spectrum::Zero(bands)}, .key = key, .effort = effort};
   follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
   return walk.sight;
 }
@@ -104,7 +104,8 @@ void RayTree::follow(const Branch& branch, Walk& walk) const {
   const SurfacePoint at = surface_point(branch.ray, hit);
   if (walk.shades && hit.element >= 0) {
     const std::uint64_t key = random_key(walk.key, branch.place, shadow_purpose);
-    const ShadowOptions shadows = shadows_for(options_.shadows, branch.weight.maxCoeff());
+    const ShadowOptions shadows =
+        shadows_for(options_.shadows, walk.effort * branch.weight.maxCoeff());
     sight.radiance += branch.weight * diffuse_radiance(hit, at, key, shadows);
   }
   split(branch, hit, at, walk);

@@ -33,8 +33,9 @@ class RayTree {
   RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
           const RadiositySolution& solution, const RenderOptions& options);
 
-  /// `key` decides the shadow samples.
-  Sight look(const Ray& ray, std::uint64_t key) const;
+  /// `key` decides the shadow samples; `effort`, (0, 1], scales their number, for looks that are
+  /// averaged with others.
+  Sight look(const Ray& ray, std::uint64_t key, float effort = 1.0f) const;
   /// The fingerprint alone, without shadow rays.
   std::uint64_t fingerprint(const Ray& ray) const;
 
@@ -62,6 +63,7 @@ class RayTree {
   struct Walk {
     Sight sight{};
     std::uint64_t key = 0;
+    float effort = 1.0f;
     bool shades = true;
   };
 
