@@ -156,9 +156,10 @@ bool is_sound(const FacetPlane& plane, const FacetMesh& mesh) {
       area += 0.5 * upright;
     }
   }
-  // Welding moves the boundary a little; a lost part or one counted twice is far more than this.
-  constexpr double share = 1e-4;
-  return std::abs(area - plane.area()) <= share * plane.area();
+  // Points that lie on the boundary to within the tolerance have become part of it.
+  constexpr double rounding = 1e-9;
+  const double moved = plane.weld_tolerance * plane.boundary_length();
+  return std::abs(area - plane.area()) <= moved + rounding * plane.area();
 }
 
 FacetOutline bare_outline(const FacetPlane& plane) {

@@ -105,6 +105,12 @@ double FacetPlane::area() const {
   return 0.5 * twice;
 }
 
+double FacetPlane::boundary_length() const {
+  double length = 0.0;
+  for_each_edge([&](int i, int j) { length += (xy[j] - xy[i]).norm(); });
+  return length;
+}
+
 double segment_distance(const Vector2d& q, const Vector2d& a, const Vector2d& b) {
   const Vector2d d = b - a;
   const double squared = d.squaredNorm();
@@ -137,7 +143,10 @@ std::vector<FacetPlane> facet_planes(const Scene& scene, WeldedPoints& points) {
     const std::vector<double> radius = weld_radii(*mesh, points.tolerance());
     std::vector<int> welded(mesh->vertices.size(), -1);
     for (const Facet& facet : mesh->facets) {
-      FacetPlane plane{.facet = number++, .surface = s, .normal = facet_normal(*mesh, facet)};
+      FacetPlane plane{.facet = number++,
+                       .surface = s,
+                       .normal = facet_normal(*mesh, facet),
+                       .weld_tolerance = points.tolerance()};
       for_each_loop(facet, [&](const std::vector<int>& loop) {
         for (int v : loop) {
           if (welded[v] < 0) welded[v] = points.add(mesh->vertices[v], radius[v]);

@@ -18,6 +18,7 @@ struct FacetPlane {
   Eigen::Vector3d axis_y = Eigen::Vector3d::UnitY();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the front
   Eigen::AlignedBox3d box{};
+  double weld_tolerance = 0.0;  ///< how far points of its boundary may have been moved, metres
 
   // Corners, one loop after another: the boundary, then the holes.
   std::vector<int> loop_begin{0};  ///< loop l is [loop_begin[l], loop_begin[l + 1])
@@ -48,6 +49,8 @@ struct FacetPlane {
 
   /// Area in the frame, m^2.
   double area() const;
+  /// Length of the boundary and of all holes, metres.
+  double boundary_length() const;
   /// Whether q lies inside the polygon, or within `tolerance` of its boundary.
   bool contains(const Eigen::Vector2d& q, double tolerance) const;
 };

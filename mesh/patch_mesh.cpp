@@ -132,7 +132,9 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const Progress& 
   FacetMeshes best;
   for (const double share : weld_shares) {
     FacetMeshes next = mesh_facets(scene, share * diagonal, cut, progress);
-    if (share == weld_shares.front() || next.flawed < best.flawed) best = std::move(next);
+    const bool is_first = share == weld_shares.front();
+    if (!is_first && next.flawed >= best.flawed) break;
+    best = std::move(next);
     if (best.flawed == 0) break;
   }
   return best;
