@@ -182,6 +182,12 @@ void SolveArguments::add_to(CLI::App& command) {
       ->type_name("T")
       ->check(positive())
       ->group(group);
+  command
+      .add_option("--max-sweeps", solve.max_sweeps,
+                  "sweeps after which the solver gives up (default 500)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000))
+      ->group(group);
 }
 
 SolveOptions SolveArguments::options(const Scene& scene) const {
@@ -193,10 +199,10 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
 std::string SolveArguments::text(const Scene& scene) const {
   return fmt::format(
       "--max-patch-size {:.6g} --elements-per-patch-edge {} --form-factors {} --solver {} --rays "
-      "{} --gather-rays {} --tolerance {:g}",
+      "{} --gather-rays {} --tolerance {:g} --max-sweeps {}",
       patch_size(scene, options(scene).mesh) / scene.metres_per_unit,
       solve.mesh.elements_per_patch_edge, form_factors, solver, solve.form_factors.rays_per_patch,
-      solve.gather.rays, solve.tolerance);
+      solve.gather.rays, solve.tolerance, solve.max_sweeps);
 }
 
 void RenderArguments::add_to(CLI::App& command) {

@@ -1,5 +1,6 @@
 // The lightwell command: arguments to options, results to files, exceptions to exit codes.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -81,18 +82,20 @@ std::optional<std::string> unknown_command(int argc, char** argv,
 }
 
 // CLI11's sentence, and for an option that does not exist the nearest that does.
-std::string usage_sentence(const CLI::ParseError& error, const CLI::App& command) {
-  std::string sentence = error.what();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return sentence;
+std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app,
+                           const CLI::App& command) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return error.what();
   std::vector<std::string> known;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   }
-  for (const std::string& word : command.remaining()) {
-    if (word.rfind("--", 0) == 0)
+  const std::vector<std::string> unknown = app.remaining(true);
+  for (const std::string& word : unknown) {
+    if (word.rfind("-", 0) == 0) {
       return fmt::format("there is no option '{}'.{}", word, did_you_mean(word, known));
+    }
   }
-  return sentence;
+  return fmt::format("'{}' is one argument too many", fmt::join(unknown, "' '"));
 }
 
 int fail(ExitCode code, const std::string& sentence) {
@@ -153,7 +156,7 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const auto parsed = app.get_subcommands();
     const CLI::App& at = parsed.empty() ? app : *parsed.front();
-    return wrong_usage(usage_sentence(error, at), parsed.empty() ? "" : at.get_name());
+    return wrong_usage(usage_sentence(error, app, at), parsed.empty() ? "" : at.get_name());
   }
   const auto parsed = app.get_subcommands();
   if (parsed.empty()) {

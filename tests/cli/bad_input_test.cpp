@@ -1,0 +1,211 @@
+// Every way to be wrong: the exit code, one clear sentence on standard error, nothing on standard
+// output, and no file that was not there before.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.h"
+
+namespace lightwell {
+namespace {
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+std::string without_camera() {
+  const std::string text = small_room();
+  return text.substr(0, text.find("[[cameras]]"));
+}
+
+struct Mistake {
+  std::string name;
+  std::vector<std::string> arguments;
+  int code;
+  std::vector<std::string> says;
+};
+
+std::ostream& operator<<(std::ostream& out, const Mistake& mistake) {
+  return out << mistake.name;
+}
+
+class Wrong : public testing::TestWithParam<Mistake> {
+ protected:
+  void SetUp() override {
+    folder.write("room.toml", small_room());
+    folder.write("torn.toml", "unit = \"m\"\n[materials.white\n");
+    folder.write("nan.toml", with(small_room(), "[1.5, 1, 2.4]", "[nan, 1, 2.4]"));
+    folder.write("flat.toml", with(small_room(), "[2.5, 2, 2.4], [2.5, 1, 2.4]",
+                                   "[1.5, 1.8, 2.4], [1.5, 1.2, 2.4]"));
+    folder.write("bright.toml", with(small_room(), "[0.7, 0.5, 0.3]", "1.2"));
+    folder.write("dark.toml", with(small_room(), "power = [12, 10, 8]", "reflectance = 0.5"));
+    folder.write("blind.toml", without_camera());
+    folder.write("scene.xyz", "what is this");
+    folder.write("points.csv", "x,y,z\n1,1,0\n");
+    folder.write("junk.vtp", "no solution");
+    folder.write("junk.exr", "no picture");
+    std::filesystem::create_directory(folder / "taken.vtp");
+  }
+  TemporaryFolder folder;
+};
+
+TEST_P(Wrong, IsRefusedWithASentenceAndLeavesNothing) {
+  const Mistake& mistake = GetParam();
+  const int files = folder.file_count();
+  const Ended ended = run_lightwell(folder / "", mistake.arguments);
+  EXPECT_EQ(ended.code, mistake.code) << ended.err;
+  EXPECT_EQ(ended.out, "");
+  for (const std::string& part : mistake.says) EXPECT_TRUE(says(ended.err, part));
+  EXPECT_EQ(folder.file_count(), files) << "something was left behind";
+  EXPECT_EQ(ended.err.rfind("error: ", 0), 0u) << ended.err;
+}
+
+const std::vector<std::string> solve_room = {"solve", "room.toml", "-o", "room.vtp"};
+
+const Mistake mistakes[] = {
+    {"MissingFile", {"solve", "nowhere.toml", "-o", "S.vtp"}, 3, {"nowhere.toml"}},
+    {"MissingMesh", {"run", "nowhere.obj"}, 3, {"nowhere.obj"}},
+    {"UnknownFormat", {"info", "scene.xyz"}, 3, {"scene.xyz", ".toml"}},
+    {"MalformedToml", {"solve", "torn.toml", "-o", "S.vtp"}, 3, {"torn.toml:2"}},
+    {"VertexThatIsNoNumber", {"solve", "nan.toml", "-o", "S.vtp"}, 3, {"nan.toml", "panel"}},
+    {"PolygonWithoutArea", {"solve", "flat.toml", "-o", "S.vtp"}, 3, {"flat.toml", "panel"}},
+    {"ReflectanceAboveOne", {"solve", "bright.toml", "-o", "S.vtp"}, 3, {"white", "1.2"}},
+    {"NothingEmits", {"solve", "dark.toml", "-o", "S.vtp"}, 3, {"dark.toml", "nothing emits"}},
+    {"NothingEmitsInRun", {"run", "dark.toml", "-o", "results"}, 3, {"nothing emits"}},
+    {"NoCamera", {"run", "blind.toml", "-o", "results"}, 3, {"blind.toml", "no camera"}},
+    {"OutputInNoFolder",
+     {"solve", "room.toml", "-o", "none/S.vtp"},
+     1,
+     {"none/S.vtp", "no folder 'none'"}},
+    {"OutputIsAFolder", {"solve", "room.toml", "-o", "taken.vtp"}, 1, {"taken.vtp", "folder"}},
+    {"OutputFolderIsAFile", {"run", "room.toml", "-o", "points.csv"}, 1, {"points.csv", "file"}},
+    {"OutputFolderBelowAFile", {"run", "room.toml", "-o", "points.csv/a"}, 1, {"points.csv/a"}},
+    {"OutputOfAnotherKind", {"solve", "room.toml", "-o", "S.png"}, 2, {"S.png", ".vtp"}},
+    {"TwoScenes", {"info", "room.toml", "dark.toml"}, 2, {"'dark.toml'", "too many"}},
+    {"NoOutput", {"solve", "room.toml"}, 2, {"--output", "lightwell solve --help"}},
+    {"NoScene", {"solve"}, 2, {"scene"}},
+    {"UnknownCommand", {"sovle", "room.toml"}, 2, {"'sovle'", "Did you mean 'solve'?"}},
+    {"UnknownCommandAfterASwitch", {"--threads", "1", "rendre"}, 2, {"Did you mean 'render'?"}},
+    {"UnknownOption",
+     solve_room + std::vector<std::string>{"--ray", "64"},
+     2,
+     {"'--ray'", "Did you mean '--rays'?"}},
+    {"UnknownSwitchBeforeTheCommand",
+     {"--quite", "info", "room.toml"},
+     2,
+     {"'--quite'", "'--quiet'"}},
+    {"RaysNoPowerOfTwo",
+     solve_room + std::vector<std::string>{"--rays", "100"},
+     2,
+     {"--rays", "100", "power of two"}},
+    {"PatchSizeThatIsNoNumber",
+     solve_room + std::vector<std::string>{"--max-patch-size", "nan"},
+     2,
+     {"--max-patch-size"}},
+    {"PatchSizeOfZero",
+     solve_room + std::vector<std::string>{"--max-patch-size", "0"},
+     2,
+     {"above 0"}},
+    {"ToleranceBelowZero",
+     solve_room + std::vector<std::string>{"--tolerance", "-1"},
+     2,
+     {"--tolerance"}},
+    {"MethodThatIsNotThere",
+     solve_room + std::vector<std::string>{"--form-factors", "hemicube"},
+     2,
+     {"hemicube", "ray-cast"}},
+    {"SolverThatIsNotThere",
+     solve_room + std::vector<std::string>{"--solver", "jacobi"},
+     2,
+     {"jacobi", "gauss-seidel"}},
+    {"SizeWithoutHeight", {"run", "room.toml", "--size", "640"}, 2, {"--size", "640x480"}},
+    {"ThreadsBelowZero", {"run", "room.toml", "--threads", "-1"}, 2, {"--threads"}},
+    {"TooManyElements",
+     solve_room + std::vector<std::string>{"--max-patch-size", "1e-5"},
+     3,
+     {"million"}},
+    {"SolutionThatIsNone", {"render", "room.toml", "junk.vtp", "-o", "a.png"}, 3, {"junk.vtp"}},
+    {"SolutionThatIsMissing", {"render", "room.toml", "no.vtp", "-o", "a.png"}, 3, {"no.vtp"}},
+    {"WrongCamera",
+     {"render", "room.toml", "junk.vtp", "--camera", "dor", "-o", "a.png"},
+     3,
+     {"'dor'", "Did you mean 'door'?"}},
+    {"PictureOfAnotherKind",
+     {"render", "room.toml", "junk.vtp", "-o", "a.jpg"},
+     2,
+     {"a.jpg", ".png"}},
+    {"PassThatIsNotThere",
+     {"render", "room.toml", "junk.vtp", "--pass", "gather", "-o", "a.png"},
+     2,
+     {"gather", "interpolate, direct"}},
+    {"PointsWithoutNormals",
+     {"probe", "room.toml", "junk.vtp", "--points", "points.csv", "-o", "E.csv"},
+     3,
+     {"points.csv", "nx"}},
+    {"PictureThatIsNone", {"compare", "junk.exr", "junk.exr"}, 3, {"junk.exr"}},
+    {"PictureThatIsMissing", {"info", "no.exr"}, 3, {"no.exr"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Use, Wrong, testing::ValuesIn(mistakes),
+                         [](const auto& each) { return each.param.name; });
+
+/// A solution of the small room, made once.
+class Solved : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder.write("room.toml", small_room());
+    const Ended ended = run_lightwell(
+        folder / "", std::vector<std::string>{"solve", "room.toml", "-o", "room.vtp"} + quick());
+    ASSERT_EQ(ended.code, 0) << ended.err;
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(Solved, SolutionOfAnotherSceneIsRefused) {
+  folder.write("other.toml", with(small_room(), "[0.7, 0.5, 0.3]", "[0.7, 0.5, 0.4]"));
+  const Ended ended =
+      run_lightwell(folder / "", {"render", "other.toml", "room.vtp", "-o", "a.png"});
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_EQ(ended.out, "");
+  EXPECT_TRUE(says(ended.err, "other.toml"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+TEST_F(Solved, ACameraMayChangeWithoutSolvingAgain) {
+  folder.write("moved.toml", with(small_room(), "fov = 75", "fov = 60"));
+  const Ended ended =
+      run_lightwell(folder / "", {"render", "moved.toml", "room.vtp", "-o", "a.png"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+}
+
+TEST_F(Solved, TornSolutionIsRefused) {
+  const auto file = folder / "room.vtp";
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", "room.vtp"},
+        std::vector<std::string>{"render", "room.toml", "room.vtp", "-o", "a.png"}}) {
+    const Ended ended = run_lightwell(folder / "", arguments);
+    EXPECT_EQ(ended.code, 3);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_TRUE(says(ended.err, "room.vtp"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+TEST_F(Solved, AFailedRenderKeepsTheOldPicture) {
+  folder.write("a.png", "the old picture");
+  const Ended ended = run_lightwell(folder / "", {"render", "room.toml", "no.vtp", "-o", "a.png"});
+  EXPECT_EQ(ended.code, 3);
+  std::ifstream in(folder / "a.png");
+  std::string text;
+  std::getline(in, text);
+  EXPECT_EQ(text, "the old picture");
+}
+
+}  // namespace
+}  // namespace lightwell

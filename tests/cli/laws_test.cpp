@@ -1,0 +1,96 @@
+// Laws, through the built program.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "radiosity/solution_file.h"
+#include "tests/cli/program.h"
+
+namespace lightwell {
+namespace {
+using Words = std::vector<std::string>;
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// A closed room whose every wall emits M and reflects rho: B = E = M / (1 - rho) everywhere.
+TEST(Furnace, IrradianceIsEmissionOverOneMinusReflectance) {
+  TemporaryFolder folder;
+  folder.write("furnace.toml", R"(
+unit = "cm"
+[materials.wall]
+reflectance = [0.0, 0.5, 0.8]
+exitance = [1, 2, 3]
+[[surfaces]]
+name = "room"
+material = "wall"
+box = { min = [0, 0, 0], max = [300, 400, 250], inward = true }
+)");
+  folder.write("points.csv",
+               "x,y,z,nx,ny,nz\n150,200,0,0,0,1\n1,1,0,0,0,1\n0,399,249,1,0,0\n60,90,250,0,0,-1\n");
+  ASSERT_EQ(
+      run_lightwell(folder / "", {"solve", "furnace.toml", "-o", "S.vtp", "--max-patch-size", "50"})
+          .code,
+      0);
+  for (const Words& how : {Words{"--interpolate"}, Words{}}) {
+    const Ended ended = run_lightwell(
+        folder / "",
+        Words{"probe", "furnace.toml", "S.vtp", "--points", "points.csv", "-o", "E.csv"} + how);
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    std::ifstream in(folder / "E.csv");
+    std::string line;
+    std::getline(in, line);
+    int probes = 0;
+    while (std::getline(in, line)) {
+      std::stringstream fields(line);
+      std::vector<double> values;
+      for (std::string field; std::getline(fields, field, ',');) values.push_back(std::stod(field));
+      ASSERT_EQ(values.size(), 10u);
+      // Every ray sees the same radiance, so nothing is left to chance: what remains is rounding to
+      // float, and the solver's tolerance of 1e-5 over 1 - rho.
+      const double exact[] = {1.0, 2.0 / 0.5, 3.0 / 0.2};
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(values[6 + k] / exact[k], 1.0, 1e-4) << line;
+      ++probes;
+    }
+    EXPECT_EQ(probes, 4);
+  }
+}
+
+TEST(Threads, OneAndTwoGiveTheSameBits) {
+  TemporaryFolder folder;
+  folder.write("room.toml", small_room());
+  for (const char* threads : {"1", "2"}) {
+    const std::string results = std::string("threads-") + threads;
+    ASSERT_EQ(run_lightwell(folder / "", Words{"run", "room.toml", "-o", results,
+                                               "--max-patch-size", "0.4", "--threads", threads})
+                  .code,
+              0);
+  }
+  const SolvedScene a = read_solution(folder / "threads-1/solution.vtp"),
+                    b = read_solution(folder / "threads-2/solution.vtp");
+  ASSERT_EQ(a.mesh.vertex_count(), b.mesh.vertex_count());
+  for (int v = 0; v < a.mesh.vertex_count(); ++v) {
+    ASSERT_EQ(a.mesh.position(v), b.mesh.position(v));
+  }
+  EXPECT_TRUE((a.solution.patch_radiosity == b.solution.patch_radiosity).all());
+  EXPECT_TRUE((a.solution.direct_irradiance == b.solution.direct_irradiance).all());
+  EXPECT_TRUE((a.solution.indirect_irradiance == b.solution.indirect_irradiance).all());
+  EXPECT_EQ(a.solution.residual, b.solution.residual);
+  EXPECT_EQ(a.solution.error_estimate, b.solution.error_estimate);
+  EXPECT_EQ(a.solution.energy.absorbed, b.solution.energy.absorbed);
+  for (const char* picture : {"door.exr", "door.png"}) {
+    const std::string bytes = bytes_of(folder / ("threads-1/" + std::string(picture)));
+    EXPECT_FALSE(bytes.empty());
+    EXPECT_TRUE(bytes == bytes_of(folder / ("threads-2/" + std::string(picture)))) << picture;
+  }
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,151 @@
+// What a script sees: files, standard output, JSON.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "raytrace/image.h"
+#include "tests/cli/program.h"
+
+namespace lightwell {
+namespace {
+using Words = std::vector<std::string>;
+
+class Output : public testing::Test {
+ protected:
+  void SetUp() override { folder.write("room.toml", small_room()); }
+  Ended run(const Words& arguments) { return run_lightwell(folder / "", arguments); }
+  nlohmann::json run_json(const Words& arguments) {
+    const Ended ended = run(arguments + Words{"--json"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);  // throws unless it is one value and nothing else
+  }
+  TemporaryFolder folder;
+};
+
+void expect_solution_keys(const nlohmann::json& json) {
+  for (const char* key : {"patches", "elements", "seconds", "peak_memory_mb", "energy",
+                          "error_estimate", "residual", "outcome", "version", "threads", "files"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  const auto& energy = json["energy"];
+  EXPECT_NEAR(energy["emitted"].get<double>(), 12.0 + 10.0 + 8.0, 30.0 * 1e-5);  // float areas
+  EXPECT_NEAR(energy["absorbed"].get<double>() + energy["escaped"].get<double>() +
+                  energy["unshot"].get<double>(),
+              30.0, 30.0 * 1e-4);
+  EXPECT_EQ(json["outcome"], "converged");
+  EXPECT_GT(json["seconds"]["total"].get<double>(), 0.0);
+}
+
+TEST_F(Output, SolvePrintsOneJsonObject) {
+  const auto json = run_json(Words{"solve", "room.toml", "-o", "S.vtp"} + quick());
+  expect_solution_keys(json);
+  EXPECT_EQ(json["files"], nlohmann::json::array({"S.vtp"}));
+  EXPECT_TRUE(std::filesystem::exists(folder / "S.vtp"));
+}
+
+TEST_F(Output, RunLeavesSolutionPicturesAndReport) {
+  const Ended ended = run(Words{"run", "room.toml", "-o", "made/results"} + quick());
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  for (const char* name : {"solution.vtp", "door.exr", "door.png", "report.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / "made/results" / name)) << name;
+  }
+  std::ifstream in(folder / "made/results/report.json");
+  expect_solution_keys(nlohmann::json::parse(in));
+  EXPECT_EQ(read_exr(folder / "made/results/door.exr").width, 48);
+  EXPECT_TRUE(says(ended.out, "30 W emitted"));
+}
+
+TEST_F(Output, RunWithoutAFolderTakesTheScenesName) {
+  ASSERT_EQ(run(Words{"run", "room.toml", "--quiet"} + quick()).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "room-output/door.png"));
+}
+
+TEST_F(Output, QuietSaysNothing) {
+  const Ended ended = run(Words{"solve", "room.toml", "-o", "S.vtp", "--quiet"} + quick());
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_EQ(ended.out + ended.err, "");
+}
+
+TEST_F(Output, RenderTakesSizeAndSeveralFiles) {
+  ASSERT_EQ(run(Words{"solve", "room.toml", "-o", "S.vtp"} + quick()).code, 0);
+  const auto json = run_json({"render", "room.toml", "S.vtp", "--size", "20x10", "--pass",
+                              "interpolate", "-o", "a.exr", "-o", "a.png"});
+  EXPECT_EQ(json["files"], nlohmann::json::array({"a.exr", "a.png"}));
+  const Image image = read_exr(folder / "a.exr");
+  EXPECT_EQ(image.width, 20);
+  EXPECT_EQ(image.height, 10);
+
+  const auto difference = run_json({"compare", "a.exr", "a.exr", "-o", "d.png"});
+  EXPECT_EQ(difference["rmse"].get<double>(), 0.0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "d.png"));
+}
+
+TEST_F(Output, ProbeWritesIrradianceAndLux) {
+  ASSERT_EQ(run(Words{"solve", "room.toml", "-o", "S.vtp"} + quick()).code, 0);
+  folder.write("points.csv", "x,y,z,nx,ny,nz\n2,1.5,0,0,0,1\n1.5,1,0,0,0,1\n");
+  for (const Words& how : {Words{}, Words{"--interpolate"}, Words{"--rays", "64"}}) {
+    const auto json = run_json(
+        Words{"probe", "room.toml", "S.vtp", "--points", "points.csv", "-o", "E.csv"} + how);
+    EXPECT_EQ(json["points"], 2);
+    std::ifstream in(folder / "E.csv");
+    std::string header, first;
+    std::getline(in, header);
+    std::getline(in, first);
+    EXPECT_EQ(header, "x,y,z,nx,ny,nz,E_r,E_g,E_b,lux");
+    EXPECT_EQ(first.rfind("2,1.5,0,0,0,1,", 0), 0u) << first;
+  }
+}
+
+TEST_F(Output, InfoTellsPowerInWattsAndLumens) {
+  const auto json = run_json({"info", "room.toml"});
+  ASSERT_EQ(json["emitters"].size(), 1u);
+  EXPECT_NEAR(json["emitters"][0]["watts"].get<double>(), 30.0, 1e-4);
+  // Rec. 709 luminance of (12, 10, 8) W at 683 lm/W.
+  const double lumens = 683.0 * (0.2126 * 12 + 0.7152 * 10 + 0.0722 * 8);
+  EXPECT_NEAR(json["emitters"][0]["lumens"].get<double>(), lumens, 1e-3 * lumens);
+  EXPECT_EQ(json["bounds"][1][0], 4.0);
+}
+
+TEST_F(Output, InfoTellsHowASolutionWasMade) {
+  ASSERT_EQ(run(Words{"solve", "room.toml", "-o", "S.vtp"} + quick()).code, 0);
+  const auto json = run_json({"info", "S.vtp"});
+  EXPECT_TRUE(says(json["options"], "--max-patch-size 1 "));
+  EXPECT_TRUE(says(json["options"], "--rays 64 "));
+  EXPECT_EQ(json["scene"], "room.toml");
+  EXPECT_FALSE(json["version"].get<std::string>().empty());
+}
+
+TEST_F(Output, HelpAndVersionEverywhere) {
+  for (const Words& command : {Words{}, Words{"run"}, Words{"solve"}, Words{"render"},
+                               Words{"probe"}, Words{"view"}, Words{"compare"}, Words{"info"}}) {
+    const Ended help = run(command + Words{"--help"});
+    EXPECT_EQ(help.code, 0);
+    EXPECT_EQ(help.err, "");
+    const std::string example = command.empty() ? "lightwell" : "Example: lightwell " + command[0];
+    EXPECT_TRUE(says(help.out, example));
+    // One screen.
+    EXPECT_LE(std::count(help.out.begin(), help.out.end(), '\n'), 40) << help.out;
+    EXPECT_TRUE(says(run(command + Words{"--version"}).out, "lightwell "));
+  }
+}
+
+TEST_F(Output, NoArgumentsShowRecipes) {
+  const Ended ended = run({});
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_TRUE(says(ended.out, "lightwell run"));
+}
+
+TEST_F(Output, StoppedBeforeTheToleranceIsCodeFourAndStillWritten) {
+  const Ended ended =
+      run(Words{"solve", "room.toml", "-o", "S.vtp", "--max-sweeps", "1"} + quick());
+  EXPECT_EQ(ended.code, 4);
+  EXPECT_TRUE(says(ended.err, "warning"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "S.vtp"));
+}
+
+}  // namespace
+}  // namespace lightwell

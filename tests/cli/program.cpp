@@ -1,0 +1,108 @@
+#include "tests/cli/program.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace lightwell {
+namespace {
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+Running::Running(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {
+  const std::string out = said_ / "out", err = said_ / "err";
+  std::vector<char*> words;
+  std::string program = LIGHTWELL_PROGRAM;
+  words.push_back(program.data());
+  std::vector<std::string> copies = arguments;
+  for (std::string& copy : copies) words.push_back(copy.data());
+  words.push_back(nullptr);
+
+  process_ = ::fork();
+  if (process_ < 0) throw std::runtime_error("fork failed");
+  if (process_ > 0) return;
+  // Only calls that are safe between fork and exec.
+  const int in = ::open("/dev/null", O_RDONLY);
+  const int to_out = ::open(out.c_str(), O_CREAT | O_WRONLY, 0600);
+  const int to_err = ::open(err.c_str(), O_CREAT | O_WRONLY, 0600);
+  ::dup2(in, 0);
+  ::dup2(to_out, 1);
+  ::dup2(to_err, 2);
+  if (::chdir(folder.c_str()) == 0) ::execv(words[0], words.data());
+  ::_exit(127);
+}
+
+Running::~Running() {
+  if (process_ < 0) return;
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+}
+
+void Running::signal(int number) const {
+  ::kill(process_, number);
+}
+
+std::string Running::err() const {
+  return read_text(said_ / "err");
+}
+
+Ended Running::wait() {
+  int status = 0;
+  ::waitpid(process_, &status, 0);
+  process_ = -1;
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  return {code, read_text(said_ / "out"), read_text(said_ / "err")};
+}
+
+Ended run_lightwell(const std::filesystem::path& folder,
+                    const std::vector<std::string>& arguments) {
+  return Running(folder, arguments).wait();
+}
+
+std::string small_room() {
+  return R"(
+unit = "m"
+[materials.white]
+reflectance = [0.7, 0.5, 0.3]
+[materials.panel]
+power = [12, 10, 8]
+[[surfaces]]
+name = "room"
+material = "white"
+box = { min = [0, 0, 0], max = [4, 3, 2.5], inward = true }
+[[surfaces]]
+name = "panel"
+material = "panel"
+polygon = [[1.5, 1, 2.4], [1.5, 2, 2.4], [2.5, 2, 2.4], [2.5, 1, 2.4]]
+[[cameras]]
+name = "door"
+position = [0.2, 0.2, 1.6]
+look_at = [3, 2, 0.8]
+up = [0, 0, 1]
+fov = 75
+size = [48, 32]
+)";
+}
+
+std::vector<std::string> quick() {
+  return {"--max-patch-size", "1", "--rays", "64", "--gather-rays", "32"};
+}
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+}  // namespace lightwell
