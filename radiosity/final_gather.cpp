@@ -100,10 +100,14 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
   const HemisphereGather hemisphere(scene, caster, radiosity, options);
   GatheredIrradiance result{.direct = BandArray::Zero(count, scene.bands.count()),
                             .indirect = BandArray::Zero(count, scene.bands.count())};
-  const int slice = std::max(64, count / 100);
+  // Slices keep progress and interruption on this thread: each a fraction of a second of rays.
+  constexpr int rays_per_slice = 1 << 20;
+  const int slice =
+      std::clamp(rays_per_slice / std::max(options.rays, 1), 2, std::max(64, count / 100));
+  const int grain = std::clamp(slice / 8, 1, 8);
   for (int begin = 0; begin < count; begin += slice) {
     report(options.progress, "gather", static_cast<double>(begin) / count);
-    parallel_for(std::min(slice, count - begin), 8, [&](int low, int high) {
+    parallel_for(std::min(slice, count - begin), grain, [&](int low, int high) {
       for (int i = begin + low; i < begin + high; ++i) {
         const GatherPoint& at = points[i];
         const std::uint64_t key = random_key(static_cast<std::uint64_t>(i), options.replica);

@@ -105,13 +105,17 @@ std::vector<RayCastRow> cast_rows(const ElementCaster& caster, const LightPaths&
                                   const std::vector<int>& rays_of, const Progress& progress) {
   const PatchMesh& mesh = caster.mesh();
   const int patches = mesh.patch_count();
-  const SobolPoints sobol(*std::max_element(rays_of.begin(), rays_of.end()));
+  const int most_rays = *std::max_element(rays_of.begin(), rays_of.end());
+  const SobolPoints sobol(most_rays);
   std::vector<RayCastRow> rows(patches);
-  // Slices keep progress and interruption on this thread.
-  const int slice = std::max(64, patches / 100);
+  // Slices keep progress and interruption on this thread: each a fraction of a second of rays.
+  constexpr int rays_per_slice = 1 << 20;
+  const int slice =
+      std::clamp(rays_per_slice / std::max(most_rays, 1), 2, std::max(64, patches / 100));
+  const int grain = std::clamp(slice / 16, 1, 16);
   for (int begin = 0; begin < patches; begin += slice) {
     report(progress, "form factors", static_cast<double>(begin) / patches);
-    parallel_for(std::min(slice, patches - begin), 16, [&](int low, int high) {
+    parallel_for(std::min(slice, patches - begin), grain, [&](int low, int high) {
       Counter counter(patches);
       for (int i = begin + low; i < begin + high; ++i) {
         if (paths.is_diffuse(mesh.facet[i])) {
