@@ -89,6 +89,18 @@ void set_vertex_normals(PatchMesh& mesh, int vertex_count) {
   for (Vector3d& n : mesh.vertex_normal) n.normalize();
 }
 
+// Whether a face can be added: OpenMesh refuses as well, but with a message on standard error.
+bool fits(const HalfedgeMesh& elements, const std::array<HalfedgeMesh::VertexHandle, 4>& face,
+          std::size_t corner_count) {
+  if (corner_count < 3) return false;
+  for (std::size_t i = 0; i < corner_count; ++i) {
+    if (!elements.is_boundary(face[i])) return false;
+    const auto edge = elements.find_halfedge(face[i], face[(i + 1) % corner_count]);
+    if (edge.is_valid() && !elements.is_boundary(edge)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 PatchPoint patch_point(const PatchMesh& mesh, int patch, double u, double v) {
@@ -141,7 +153,7 @@ void build_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
       }
       face[n++] = Vertex(v);
     }
-    if (n < 3 || !mesh.elements.add_face(face.data(), n).is_valid()) {
+    if (!fits(mesh.elements, face, n) || !mesh.elements.add_face(face.data(), n).is_valid()) {
       throw std::runtime_error("element " + std::to_string(e) +
                                " of the mesh does not fit its neighbours: more than two elements "
                                "share an edge, or two run along it in one direction");

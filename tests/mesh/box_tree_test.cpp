@@ -1,0 +1,41 @@
+#include "mesh/box_tree.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+BoxTree::Box random_box(std::uint64_t key, double largest) {
+  const Vector3d low(random_uniform(random_key(key, 0)), random_uniform(random_key(key, 1)),
+                     random_uniform(random_key(key, 2)));
+  const Vector3d extent(random_uniform(random_key(key, 3)), random_uniform(random_key(key, 4)),
+                        random_uniform(random_key(key, 5)));
+  return {low, low + largest * extent};
+}
+
+TEST(BoxTree, FindsWhatLookingAtEveryBoxFinds) {
+  for (const int count : {0, 1, 5, 700}) {
+    std::vector<BoxTree::Box> boxes;
+    for (int i = 0; i < count; ++i) boxes.push_back(random_box(i, i % 7 == 0 ? 0.9 : 0.05));
+    // Many boxes with one centre must not break the halving.
+    for (int i = 0; i < count / 2; ++i) boxes.push_back(boxes[0]);
+    const BoxTree tree(boxes);
+    std::vector<int> found;
+    for (int q = 0; q < 200; ++q) {
+      const BoxTree::Box query = random_box(100000 + q, 0.2);
+      tree.find_overlaps(query, found);
+      std::vector<int> expected;
+      for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
+        if (boxes[i].intersects(query)) expected.push_back(i);
+      }
+      ASSERT_EQ(found, expected);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lightwell
