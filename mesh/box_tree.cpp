@@ -1,6 +1,7 @@
 #include "mesh/box_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace lightwell {

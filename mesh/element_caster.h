@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -33,8 +34,19 @@ class ElementCaster {
   const PatchMesh& mesh() const { return mesh_; }
 
  private:
+  /// What a hit needs to know, together in memory.
+  struct Primitive {
+    int element = -1;  ///< front element; for a sphere the index of its grid
+    int facet = -1;
+    /// Quad: v2 - v0 = alpha (v1 - v0) + beta (v3 - v0); both 1 in a parallelogram.
+    float alpha = 0.0f, beta = 0.0f;
+    enum class Kind : std::uint8_t { triangle, quad, sphere } kind = Kind::triangle;
+  };
+  static CastGeometry cast_geometry(const PatchMesh& mesh, std::vector<Primitive>& primitives);
+  ElementHit element_hit(const Ray& ray, const Hit& hit) const;
+
   const PatchMesh& mesh_;
-  std::vector<int> element_of_primitive_;  ///< front element; for a sphere -1 - (index of its grid)
+  std::vector<Primitive> primitives_;
   RayCaster caster_;
 };
 

@@ -1,6 +1,7 @@
 #include "mesh/facet_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "mesh/free_mesh.h"

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "mesh/patch_mesh.h"
 #include "mesh/sphere_grid.h"

@@ -1,6 +1,7 @@
 #include "mesh/welded_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scene/sampling.h"
