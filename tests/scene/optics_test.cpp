@@ -50,7 +50,9 @@ INSTANTIATE_TEST_SUITE_P(AirAndGlass, Boundary,
                          testing::Values("fresnel-air-glass", "fresnel-glass-air"));
 
 TEST(Optics, VectorsFollowTheLawsInAnyFrame) {
-  for (const auto& item : reference("reflect-refract-vectors").at("expected")) {
+  const auto cases = reference("reflect-refract-vectors").at("expected");
+  ASSERT_EQ(cases.size(), 4u);
+  for (const auto& item : cases) {
     const Eigen::Vector3d d = vector(item.at("d")), n = vector(item.at("n"));
     EXPECT_LT((reflect(d, n) - vector(item.at("reflect"))).norm(), tolerance);
     const auto out = refract(d, n, item.at("n2").get<double>() / item.at("n1").get<double>());
