@@ -19,6 +19,18 @@ TEST(Appearance, MatteSurfacesShowRadiosityOverPi) {
   EXPECT_FLOAT_EQ(L(4, 0), red[0] / pi);
 }
 
+/// What a vertex shows is what the second pass's picture shows of the same radiance, byte for byte.
+TEST(Appearance, VerticesAreToneMappedAsPicturesAre) {
+  Image image{256, 1, BandArray(256, 3)};
+  for (int x = 0; x < 256; ++x) {
+    const auto L = static_cast<float>(x);
+    image.radiance.row(x) << 0.02f * L, 0.01f * L, 0.001f * L * L;
+  }
+  const Bands bands = rgb_bands();
+  EXPECT_EQ(display_colors(image.radiance, bands, exposure_scale(image, bands)),
+            tone_map(image, bands));
+}
+
 /// A mirror is drawn as a matte surface that reflects as much.
 TEST(Appearance, MirrorsShowTheirShareOfTheIrradiance) {
   SolvedScene box = solved_box();

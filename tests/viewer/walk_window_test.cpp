@@ -1,7 +1,9 @@
 #include "viewer/walk_window.h"
 
 #include <gtest/gtest.h>
+#include <vtkCallbackCommand.h>
 #include <vtkCommand.h>
+#include <vtkNew.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 
@@ -86,6 +88,11 @@ TEST_F(WalkWindowTest, NumbersGoToCamerasAndRGoesBack) {
   tap("2");
   EXPECT_EQ(window_.look().camera.position.z(), -1.0);
   EXPECT_EQ(window_.message(), "near");
+  // Each camera's picture is exposed for itself, as if the window had been opened there.
+  ViewOptions from_near = options();
+  from_near.camera = from_near.cameras[1];
+  EXPECT_EQ(window_.look().metered_scale, WalkWindow(box_, from_near).look().metered_scale);
+  EXPECT_NE(window_.look().metered_scale, WalkWindow(box_, options()).look().metered_scale);
   tap("7");
   EXPECT_EQ(window_.look().camera.position.z(), -1.0);
   EXPECT_NE(window_.message().find("2 cameras"), std::string::npos);
@@ -134,13 +141,19 @@ TEST_F(WalkWindowTest, AScreenshotThatCannotBeSavedIsReportedNotThrown) {
   EXPECT_NE(window.message().find("/nonexistent-folder"), std::string::npos) << window.message();
 }
 
+/// Left to VTK, 'e' and 'q' would end the event loop.
 TEST_F(WalkWindowTest, VtksOwnKeysDoNothing) {
-  // 'w' would switch to wireframe, 'e' and 'q' would end the program's event loop.
+  int exits = 0;
+  vtkNew<vtkCallbackCommand> count;
+  count->SetClientData(&exits);
+  count->SetCallback(
+      [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
+  window_.interactor()->AddObserver(vtkCommand::ExitEvent, count);
   for (const char* key : {"w", "s", "e", "q", "p", "f", "j", "3"}) {
     window_.interactor()->SetKeyCode(key[0]);
     send(vtkCommand::CharEvent, key);
   }
-  EXPECT_FALSE(window_.interactor()->GetDone());
+  EXPECT_EQ(exits, 0);
   EXPECT_EQ(window_.look().camera.position, box_camera().position);
 }
 
