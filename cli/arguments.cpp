@@ -65,6 +65,18 @@ std::pair<int, int> parse_size(const std::string& text) {
 
 }  // namespace
 
+CLI::Validator whole_number(int least, int most) {
+  return CLI::Validator(
+      [least, most](std::string& text) -> std::string {
+        const auto value = number(text);
+        return value && *value >= least && *value <= most && *value == std::floor(*value)
+                   ? std::string()
+                   : fmt::format("a whole number from {} to {} is needed, not '{}'", least, most,
+                                 text);
+      },
+      std::string{});
+}
+
 CLI::Validator positive() {
   return CLI::Validator(
       [](std::string& text) -> std::string {
@@ -154,7 +166,7 @@ void SolveArguments::add_to(CLI::App& command) {
       .add_option("--elements-per-patch-edge", solve.mesh.elements_per_patch_edge,
                   "detail of shadows within a patch (default 2)")
       ->type_name("N")
-      ->check(CLI::Range(1, 64))
+      ->check(whole_number(1, 64))
       ->group(group);
   command.add_option("--form-factors", form_factors, "how form factors are found: ray-cast")
       ->type_name("METHOD")
@@ -186,7 +198,7 @@ void SolveArguments::add_to(CLI::App& command) {
       .add_option("--max-sweeps", solve.max_sweeps,
                   "sweeps after which the solver gives up (default 500)")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000000))
+      ->check(whole_number(1, 1000000))
       ->group(group);
 }
 
@@ -220,7 +232,7 @@ void RenderArguments::add_to(CLI::App& command) {
       .add_option("--shadow-rays", shadow_rays,
                   "most shadow rays per emitter and point (default 64)")
       ->type_name("N")
-      ->check(CLI::Range(1, 65536))
+      ->check(whole_number(1, 65536))
       ->group(group);
 }
 

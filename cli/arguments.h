@@ -45,6 +45,8 @@ void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size);
 /// Adds --exposure EV.
 void add_exposure(CLI::App& command, double& exposure_ev);
 
+CLI::Validator whole_number(int least, int most);
+
 /// For numbers that must be above zero (a NaN is not).
 CLI::Validator positive();
 

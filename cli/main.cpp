@@ -54,7 +54,7 @@ void add_common(CLI::App& app, CommonOptions& options) {
   app.add_flag("--verbose", options.verbose, "also say which options are in force")->group(group);
   app.add_option("--threads", options.threads, "default: one per core")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024))
+      ->check(whole_number(0, 1024))
       ->group(group);
   app.set_version_flag("--version", "lightwell " LIGHTWELL_VERSION)->group(group);
   app.set_help_flag("-h,--help", "this text")->group(group);

@@ -60,8 +60,8 @@ int view(const Arguments&, Console&) {
 Action add_view(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.description(
-      "Walk through a solved scene in a window: W A S D to walk, the mouse to look around,\n"
-      "1 to 9 for the scene's cameras, H for all keys, Esc to leave.");
+      "Walk through a solved scene in a window: W A S D or arrows to walk, the mouse to look\n"
+      "around, 1 to 9 for the scene's cameras, H for all keys, Escape to leave.");
   command.add_option("scene", arguments->scene, "the scene file the solution was made from")
       ->required()
       ->type_name("SCENE");

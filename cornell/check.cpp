@@ -146,6 +146,75 @@ void check_diffuse_picture(const Subject& subject, Verdict& verdict) {
                  100.0 * relative_rmse(subject.picture, reference, reference, light));
 }
 
+// The share of a place in a pixel from which on it decides whether the pixel is left out.
+constexpr double least_weight = 0.02;
+
+PictureMask cells_that_show_the_light(const Sightlines& sightlines, const Camera& camera) {
+  const Scene& scene = sightlines.scene();
+  return cells(places(sightlines, camera, least_weight,
+                      [&scene](const SeenPlace& place) {
+                        const Surface& surface = scene.surfaces[place.surface];
+                        return scene.materials[surface.material].is_emitter();
+                      }),
+               cell_size);
+}
+
+// The floor under the glass sphere: where the cone of lines from the middle of the light past the
+// sphere ends, widened by half. In it lie the focus of the light and the sphere's shadow.
+PictureMask cells_that_show_the_focus(const Sightlines& sightlines, const Camera& camera) {
+  const Scene& scene = sightlines.scene();
+  const Eigen::Vector3d light(0.278, 0.5488, 0.2795), sphere(0.160, 0.100, 0.150);
+  constexpr double sphere_radius = 0.100;
+  const double stretch = light.y() / (light.y() - sphere.y());
+  const Eigen::Vector3d middle = light + stretch * (sphere - light);
+  const double radius = 1.5 * stretch * sphere_radius;
+  return cells(places(sightlines, camera, least_weight,
+                      [&](const SeenPlace& place) {
+                        return scene.surfaces[place.surface].name == "floor" &&
+                               (place.position - middle).norm() < radius;
+                      }),
+               cell_size);
+}
+
+// |mean P / mean (A + B) / 2 - 1| over what `within` holds and `mask` leaves in.
+double difference_of_means(const Image& P, const Image& A, const Image& B,
+                           const PictureMask& within, const PictureMask& mask) {
+  double p = 0.0, r = 0.0;
+  for (Eigen::Index i = 0; i < P.radiance.rows(); ++i) {
+    if (!within.out[i] || mask.out[i]) continue;
+    p += P.radiance.row(i).cast<double>().sum();
+    r += 0.5 * (A.radiance.row(i) + B.radiance.row(i)).cast<double>().sum();
+  }
+  return std::abs(p / r - 1.0);
+}
+
+void check_specular_picture(const std::string& name, const Subject& subject, Verdict& verdict) {
+  const Image A = read_exr(subject.folder / "reference" / (name + "-A.exr")),
+              B = read_exr(subject.folder / "reference" / (name + "-B.exr"));
+  const ElementCaster caster(subject.solved.mesh);
+  const Sightlines sightlines(subject.scene, caster);
+  const Camera& camera = subject.scene.cameras.front();
+  const Image P = cell_means(subject.picture, cell_size);
+  const PictureMask light = cells_that_show_the_light(sightlines, camera);
+  const auto kept = [](const PictureMask& mask) {
+    return fmt::format("({:.0f} % kept)", 100.0 * (1.0 - mask.share()));
+  };
+  const double off_light = 100.0 * relative_rmse(P, A, B, light);
+  if (name != "spheres") {
+    verdict.figure("picture: relative RMSE of 8 x 8 means, off the light " + kept(light), off_light,
+                   3.0);
+    return;
+  }
+  const PictureMask focus = cells_that_show_the_focus(sightlines, camera);
+  PictureMask both = light;
+  both |= focus;
+  verdict.figure("picture: relative RMSE of 8 x 8 means, off light and focus " + kept(both),
+                 100.0 * relative_rmse(P, A, B, both), 3.0);
+  verdict.figure("picture: difference of the means over the focus",
+                 100.0 * difference_of_means(P, A, B, focus, light), 3.0);
+  verdict.remark("picture: relative RMSE of 8 x 8 means, off the light " + kept(light), off_light);
+}
+
 int check(const std::string& name, const fs::path& folder, const fs::path& solution,
           const fs::path& picture) {
   const std::string file = name == "diffuse" ? "cornell.toml" : "cornell-" + name + ".toml";
@@ -157,6 +226,7 @@ int check(const std::string& name, const fs::path& folder, const fs::path& solut
     check_probes(subject, verdict);
     check_diffuse_picture(subject, verdict);
   } else {
+    check_specular_picture(name, subject, verdict);
   }
   return verdict.all_hold() ? 0 : 1;
 }
