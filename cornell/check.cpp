@@ -1,6 +1,7 @@
 // Compares what lightwell computed for a Cornell box with the references in cornell/reference.
 // cornell/README.md defines every figure.
-//   lightwell_cornell_check diffuse|mirror-block|spheres CORNELL_FOLDER SOLUTION.vtp PICTURE.exr
+//   lightwell_cornell_check diffuse|mirror-block|spheres|spectral CORNELL_FOLDER SOLUTION.vtp
+//   PICTURE.exr
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,9 +27,9 @@ namespace fs = std::filesystem;
 
 constexpr double light_radiance = 17.0;                     // W/(m^2 sr), the brightest band
 constexpr double light_width = 0.130, light_depth = 0.105;  // metres
-constexpr double light_band_sum = 17.0 + 11.8 + 4.0;
-constexpr double seen_light = 0.2 * light_radiance;  // above this a pixel shows the light itself
-constexpr int cell_size = 8;                         // pixels
+constexpr double light_band_sum = 17.0 + 11.8 + 4.0;  // W/(m^2 sr); the spectrum has the same sum
+constexpr double seen_light = 0.2 * light_radiance;   // above this a pixel shows the light itself
+constexpr int cell_size = 8;                          // pixels
 
 /// Prints figures beside their bounds, and remembers whether one was missed.
 class Verdict {
@@ -225,7 +226,7 @@ int check(const std::string& name, const fs::path& folder, const fs::path& solut
   if (name == "diffuse") {
     check_probes(subject, verdict);
     check_diffuse_picture(subject, verdict);
-  } else {
+  } else if (name != "spectral") {
     check_specular_picture(name, subject, verdict);
   }
   return verdict.all_hold() ? 0 : 1;
@@ -236,7 +237,9 @@ int check(const std::string& name, const fs::path& folder, const fs::path& solut
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 5) throw lightwell::InputError("four arguments are needed");
+    if (argc != 5)
+      throw lightwell::InputError(
+          "four arguments are needed: NAME CORNELL_FOLDER SOLUTION.vtp PICTURE.exr");
     return lightwell::check(argv[1], argv[2], argv[3], argv[4]);
   } catch (const std::exception& error) {
     fmt::print(stderr, "error: {}\n", error.what());
