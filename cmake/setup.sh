@@ -2,6 +2,7 @@
 # To be sourced by bash, with the repository root as the working directory.
 
 build_dir=build/release
+export CCACHE_BASEDIR="$PWD"  # what was compiled in one clone is not compiled again in the next
 
 # Everything the program, its viewer and its tests are compiled against (Debian's names).
 build_packages=(
