@@ -12,7 +12,8 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t error_point_key = 20;  // purpose of random keys
+constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
+constexpr std::uint64_t draft_replica = 1000;
 
 class Stopwatch {
  public:
@@ -60,18 +61,30 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
                  const SolveOptions& options, RadiositySolution& solution) {
   const PatchMesh& mesh = caster.mesh();
-  GatherOptions gather_options = options.gather;
-  gather_options.progress = options.progress;
-  const GatheredIrradiance gathered = gather_irradiance(
-      scene, caster, direct_light, patch_to_vertex(mesh, direct_light, solution.patch_radiosity),
-      vertex_gather_points(mesh), gather_options);
-  solution.direct_irradiance = gathered.direct;
-  solution.indirect_irradiance = gathered.indirect;
+  const std::vector<GatherPoint> points = vertex_gather_points(mesh);
   solution.caustic_irradiance = caustic_irradiance(
       scene, caster, direct_light, options.caustic_rays, options.form_factors.max_specular_depth);
-  if (solution.caustic_irradiance.size() > 0) {
-    solution.indirect_irradiance += solution.caustic_irradiance;
-  }
+  const bool has_caustics = solution.caustic_irradiance.size() > 0;
+  GatherOptions gather_options = options.gather;
+  gather_options.progress = options.progress;
+
+  // A first, cheap gather sharpens what patches hold as one value each (the dark foot of a block);
+  // the second one reads that.
+  GatherOptions draft_options = gather_options;
+  draft_options.rays = std::max(1, gather_options.rays / 4);
+  draft_options.replica = gather_options.replica + draft_replica;
+  draft_options.shadows = {.min_rays = 16, .max_rays = 64};
+  const GatheredIrradiance draft = gather_irradiance(
+      scene, caster, direct_light, patch_to_vertex(mesh, direct_light, solution.patch_radiosity),
+      points, draft_options);
+  BandArray irradiance = draft.direct + draft.indirect;
+  if (has_caustics) irradiance += solution.caustic_irradiance;
+  const GatheredIrradiance gathered = gather_irradiance(
+      scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
+      gather_options);
+  solution.direct_irradiance = gathered.direct;
+  solution.indirect_irradiance = gathered.indirect;
+  if (has_caustics) solution.indirect_irradiance += solution.caustic_irradiance;
 }
 
 // Uniform over the area that reflects: independent gathers against the interpolation.
@@ -111,7 +124,7 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
     }
   }
   GatherOptions gather_options = options.gather;
-  gather_options.rays = 4 * options.gather.rays;
+  gather_options.rays = 2 * options.gather.rays;
   gather_options.replica = options.gather.replica + 1;
   const GatheredIrradiance independent = gather_irradiance(
       scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,

@@ -11,7 +11,7 @@ struct SolveOptions {
   FormFactorOptions form_factors{};
   double tolerance = 1e-5;  ///< see GaussSeidelOptions
   int max_sweeps = 500;
-  GatherOptions gather{.rays = 256};
+  GatherOptions gather{.rays = 1024};
   int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
   int error_points = 512;      ///< random points that the error estimate looks at
   Progress progress{};
