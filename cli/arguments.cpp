@@ -184,7 +184,7 @@ void SolveArguments::add_to(CLI::App& command) {
       ->group(group);
   command
       .add_option("--gather-rays", solve.gather.rays,
-                  "final-gather rays per mesh vertex, a power of two (default 256)")
+                  "final-gather rays per mesh vertex, a power of two (default 1024)")
       ->type_name("N")
       ->check(power_of_two())
       ->group(group);

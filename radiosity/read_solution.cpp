@@ -252,6 +252,9 @@ void read_light(const SolutionArrays& in, const PatchMesh& mesh, RadiositySoluti
   s.patch_radiosity = in.bands(in.field(), "patch_radiosity", mesh.patch_count(), K);
   s.direct_irradiance = in.bands(in.points(), "direct_irradiance", mesh.vertex_count(), K);
   s.indirect_irradiance = in.bands(in.points(), "indirect_irradiance", mesh.vertex_count(), K);
+  if (in.points()->GetAbstractArray("caustic_irradiance")) {  // only where mirrors or glass are
+    s.caustic_irradiance = in.bands(in.points(), "caustic_irradiance", mesh.vertex_count(), K);
+  }
 }
 
 void read_record(const SolutionArrays& in, RadiositySolution& s) {

@@ -145,6 +145,7 @@ void add_vertex_light(vtkPointData* data, const SolvedScene& solved) {
   add_bands(data, "irradiance", E, s.bands);
   add_bands(data, "direct_irradiance", s.direct_irradiance, s.bands);
   add_bands(data, "indirect_irradiance", s.indirect_irradiance, s.bands);
+  add_bands(data, "caustic_irradiance", s.caustic_irradiance, s.bands);
   add_bands(data, "radiosity", B, s.bands);
   add_values(data, "illuminance_lux", lux.data(), E.rows());
   data->SetScalars(

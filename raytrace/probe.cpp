@@ -145,6 +145,11 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            std::span<const Probe> probes, const GatherOptions& options) {
   const ProbeSurface surface(caster);
+  const bool has_caustics = solution.caustic_irradiance.size() > 0;
+  // What emitters send by way of mirrors and glass is not found by rays from the probe: the mesh
+  // has it.
+  BandArray caustic =
+      BandArray::Zero(static_cast<Eigen::Index>(probes.size()), scene.bands.count());
   std::vector<GatherPoint> points;
   points.reserve(probes.size());
   for (const Probe& probe : probes) {
@@ -152,12 +157,16 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
     if (const auto place = surface.find(probe)) {
       point.position = place->position;
       point.facet = place->hit.facet;
+      if (has_caustics && place->hit.element >= 0) {
+        caustic.row(static_cast<Eigen::Index>(points.size())) =
+            interpolate(caster.mesh(), solution.caustic_irradiance, place->hit).transpose();
+      }
     }
     points.push_back(point);
   }
   const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance());
   const GatheredIrradiance E = gather_irradiance(scene, caster, direct_light, B, points, options);
-  return E.direct + E.indirect;
+  return E.direct + E.indirect + caustic;
 }
 
 BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySolution& solution,

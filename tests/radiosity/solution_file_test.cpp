@@ -67,6 +67,7 @@ void expect_same_solution(const RadiositySolution& a, const RadiositySolution& b
   expect_same_bits(a.patch_radiosity, b.patch_radiosity, "patch_radiosity");
   expect_same_bits(a.direct_irradiance, b.direct_irradiance, "direct_irradiance");
   expect_same_bits(a.indirect_irradiance, b.indirect_irradiance, "indirect_irradiance");
+  expect_same_bits(a.caustic_irradiance, b.caustic_irradiance, "caustic_irradiance");
   ASSERT_EQ(a.history.size(), b.history.size());
   for (std::size_t i = 0; i < a.history.size(); ++i) {
     EXPECT_EQ(a.history[i].residual, b.history[i].residual);
