@@ -52,9 +52,12 @@ std::vector<ContactSegment> shared_parts(std::vector<Vector3d> points, const Fac
                                          const FacetPlane& b, double tolerance) {
   if (points.size() < 2) return {};
   const auto farthest = [&](const Vector3d& from) {
-    return *std::max_element(points.begin(), points.end(), [&](const auto& p, const auto& q) {
-      return (p - from).squaredNorm() < (q - from).squaredNorm();
-    });
+    constexpr double clearly = 1.0 + 1e-9;  // ties go to the first, in every unit alike
+    Vector3d best = from;
+    for (const Vector3d& p : points) {
+      if ((p - from).norm() > clearly * (best - from).norm()) best = p;
+    }
+    return best;
   };
   // The two ends of the set give the best-conditioned direction, even for nearly parallel planes.
   const Vector3d low = farthest(points.front());

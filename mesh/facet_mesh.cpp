@@ -16,6 +16,11 @@ double cross(const Vector2d& a, const Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
+// Exact in a coordinate that both share, so that a wall at x = 1.9 has no vertex beyond it.
+Vector3d between(const Vector3d& a, const Vector3d& b, double t) {
+  return a + t * (b - a);
+}
+
 void make_element(const std::vector<int>& loop, const std::vector<Vector3d>& points,
                   FacetMesh& mesh) {
   const int n = static_cast<int>(loop.size());
@@ -103,10 +108,10 @@ bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
         continue;
       }
       const double s = static_cast<double>(i) / nx, t = static_cast<double>(j) / ny;
-      mesh.position.push_back((1 - t) * points[bottom(i)] + t * points[top(i)] +
-                              (1 - s) * points[left(j)] + s * points[right(j)] -
-                              ((1 - s) * ((1 - t) * points[bottom(0)] + t * points[top(0)]) +
-                               s * ((1 - t) * points[bottom(nx)] + t * points[top(nx)])));
+      mesh.position.push_back(between(points[bottom(i)], points[top(i)], t) +
+                              (between(points[left(j)], points[right(j)], s) -
+                               between(between(points[bottom(0)], points[top(0)], t),
+                                       between(points[bottom(nx)], points[top(nx)], t), s)));
     }
   }
   const int k = size.elements_per_edge;

@@ -86,8 +86,10 @@ Vector3d frame_direction(const FacetPlane& plane) {
 
 void set_frame(FacetPlane& plane) {
   const int boundary = plane.loop_begin[1];
-  plane.origin.setZero();
-  for (int i = 0; i < boundary; ++i) plane.origin += plane.corner[i] / boundary;
+  // Relative to a corner: a coordinate that all corners share stays exactly what it is.
+  Vector3d mean = Vector3d::Zero();
+  for (int i = 0; i < boundary; ++i) mean += (plane.corner[i] - plane.corner[0]) / boundary;
+  plane.origin = plane.corner[0] + mean;
   const Vector3d along = frame_direction(plane);
   plane.axis_x = (along - along.dot(plane.normal) * plane.normal).normalized();
   plane.axis_y = plane.normal.cross(plane.axis_x);

@@ -1,6 +1,7 @@
 #include "mesh/free_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
@@ -245,6 +246,29 @@ FacetMesh assemble(const FacetPlane& plane, const SplitTriangles& split, const L
   return mesh;
 }
 
+// Decides the triangles on coordinates rounded to a billionth of an element: the corners of a
+// square then lie on one circle whatever rounding has done to them, so that the mesh is the same in
+// every unit and every place. Where that turns a triangle over, the true places decide.
+PlanarTriangulation triangulate_places(const std::vector<Vector2d>& xy, const LocalLines& lines,
+                                       double element_size) {
+  const double unit = element_size * std::ldexp(1.0, -30);
+  std::vector<Vector2d> rounded;
+  for (const Vector2d& q : xy) {
+    const Eigen::Array2d cells = (q - lines.box.min()).array() / unit;
+    rounded.emplace_back(std::round(cells.x()), std::round(cells.y()));
+  }
+  PlanarTriangulation t = triangulate(rounded, lines.all);
+  if (!t.is_as_given) return triangulate(xy, lines.all);
+  t.points = xy;
+  const std::vector<char> inside = inside_by_parity(t, lines.boundary);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    const auto& [a, b, c] = t.triangles[i];
+    const Vector2d u = xy[b] - xy[a], v = xy[c] - xy[a];
+    if (inside[i] && !(u.x() * v.y() > u.y() * v.x())) return triangulate(xy, lines.all);
+  }
+  return t;
+}
+
 }  // namespace
 
 FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
@@ -253,7 +277,7 @@ FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
   std::vector<Vector2d> xy = lines.xy;
   const auto inner = inner_points(cell_grid(lines.box, size), lines.xy, lines.boundary, lines.all);
   xy.insert(xy.end(), inner.begin(), inner.end());
-  const PlanarTriangulation triangulation = triangulate(xy, lines.all);
+  const PlanarTriangulation triangulation = triangulate_places(xy, lines, size.element_size());
   const SplitTriangles split = split_at_lines(
       triangulation, triangulation.is_as_given ? inside_by_parity(triangulation, lines.boundary)
                                                : inside_by_place(plane, triangulation));

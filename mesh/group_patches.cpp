@@ -1,6 +1,7 @@
 #include "mesh/group_patches.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -64,19 +65,23 @@ std::vector<int> group_patches(const std::vector<PlacedElement>& elements,
     border[a][b] += c.length;
     border[b][a] += c.length;
   }
+  const auto share_of_cell = [&](int i) {
+    return std::round(1e6 * groups.area(i) / cell_size.prod());
+  };
   std::vector<int> small;
   for (int i = 0; i < count; ++i) {
     if (groups.root(i) == i && groups.area(i) < least) small.push_back(i);
   }
   std::stable_sort(small.begin(), small.end(),
-                   [&](int a, int b) { return groups.area(a) < groups.area(b); });
+                   [&](int a, int b) { return share_of_cell(a) < share_of_cell(b); });
   for (int i : small) {
     const int group = groups.root(i);
     if (group != i || !(groups.area(group) < least)) continue;
     int best = -1;
     double longest = 0.0;
+    constexpr double clearly = 1.0 + 1e-6;  // ties fall alike in every unit
     for (const auto& [other, length] : border[group]) {
-      if (length > longest && groups.fit_together(group, groups.root(other))) {
+      if (length > clearly * longest && groups.fit_together(group, groups.root(other))) {
         best = other;
         longest = length;
       }

@@ -27,7 +27,8 @@ std::vector<Vector2d> inner_points(const CellGrid& grid, const std::vector<Vecto
 
   // Half a spacing: nearer points make slivers against the line, leaving out farther ones makes
   // elements up to one and a half spacings long.
-  const double reach = 0.5 * std::min(dx, dy);
+  constexpr double half = 0.5 - 1e-6;  // a line midway between two rows leaves both
+  const double reach = half * std::min(dx, dy);
   std::vector<char> is_near(static_cast<std::size_t>(columns) * rows, 0);
   for (const auto& [a, b] : lines) {
     const Vector2d from = xy[a].cwiseMin(xy[b]) - low, to = xy[a].cwiseMax(xy[b]) - low;

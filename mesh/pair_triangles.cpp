@@ -1,6 +1,7 @@
 #include "mesh/pair_triangles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "mesh/facet_mesh.h"
@@ -29,7 +30,8 @@ std::vector<int> pair_triangles(const std::vector<Eigen::Vector2d>& xy,
       if (other <= t) continue;  // each pair once; -1 is out as well
       const auto q = joined_corners(triangles[t], triangles[other], i);
       const double quality = quad_quality(xy[q[0]], xy[q[1]], xy[q[2]], xy[q[3]]);
-      if (quality > least_quality) pairs.emplace_back(-quality, t, other);
+      // Equal but for rounding is equal: then the numbers decide, in every unit alike.
+      if (quality > least_quality) pairs.emplace_back(-std::round(1e6 * quality), t, other);
     }
   }
   std::sort(pairs.begin(), pairs.end());
