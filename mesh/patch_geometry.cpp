@@ -117,7 +117,11 @@ PatchPoint patch_point(const PatchMesh& mesh, int patch, double u, double v) {
     point.position = grid->sphere.center + grid->sphere.radius * direction;
     point.normal = mesh.is_back[patch] != 0 ? Vector3d(-direction) : direction;
   } else {
-    point.position = point_of_polygon(mesh, element, u, v);
+    // A hair inside the element: a point nearer to a contact line than float can tell lies, for a
+    // ray, on either side of what stands there, and would carry light through it.
+    constexpr double inset = 1e-4;
+    const Vector3d at = point_of_polygon(mesh, element, u, v);
+    point.position = at + inset * (mean_of_corners(mesh, element) - at);
     point.normal = element_area_vector(mesh, element).normalized();
   }
   return point;

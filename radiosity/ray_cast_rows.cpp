@@ -48,13 +48,16 @@ RayCastRow cast_row(const ElementCaster& caster, const LightPaths& paths, const 
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(patch), form_factor_rays);
   std::array<Ray, batch> ray;
   std::array<ElementHit, batch> hit;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero(), a, b;
   for (int begin = 0; begin < rays; begin += batch) {
     const int count = std::min(batch, rays - begin);
     for (int r = 0; r < count; ++r) {
       const Eigen::Array4f u = sobol.point(begin + r, key);
       const PatchPoint from = patch_point(mesh, patch, u[0], u[1]);
-      Eigen::Vector3d a, b;
-      tangent_frame(from.normal, a, b);
+      if (from.normal != normal) {  // the same all over a flat patch
+        normal = from.normal;
+        tangent_frame(normal, a, b);
+      }
       const Eigen::Vector3d d = cosine_direction(u[2], u[3]);
       ray[r] = {.origin = from.position,
                 .direction = d.x() * a + d.y() * b + d.z() * from.normal,

@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
+#include <vector>
 
 #include "scene/parallel.h"
 
@@ -36,27 +38,62 @@ void sweep(const PatchMesh& mesh, const FormFactors& form_factors, BandArray& B)
   }
 }
 
-// alpha per band with sum_i A_i (residual of B + alpha v)_i = 0, where v = rho / max rho: the shape
-// a room's interreflected light has at leisure.
-struct ConstantMode {
-  BandArray shape{};
-  Eigen::ArrayXd drain{};  // sum_i A_i (v - rho F v)_i per band
-
-  ConstantMode(const PatchMesh& mesh, const FormFactors& form_factors) {
-    shape = (mesh.reflectance > 0.0f).cast<float>();
-    const BandArray operated = shape - mesh.reflectance * gather(form_factors, shape);
-    drain = (operated.cast<double>().colwise() * mesh.area).colwise().sum().transpose();
+// Which patches exchange light with each other at all, directly or not: rooms without a door stay
+// apart.
+std::vector<int> exchanging_groups(const FormFactors& form_factors) {
+  std::vector<int> parent(form_factors.patch_count());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  const auto join = [&](int i, int j) {
+    const int a = root(i), b = root(j);
+    parent[std::max(a, b)] = std::min(a, b);
+  };
+  for (int i = 0; i < form_factors.patch_count(); ++i) {
+    for (const FormFactor& f : form_factors.row(i)) join(i, f.patch);
+    for (const int j : form_factors.specular_row(i).patch) join(i, j);
   }
+  std::vector<int> group(parent.size());
+  for (std::size_t i = 0; i < group.size(); ++i) group[i] = root(static_cast<int>(i));
+  return group;
+}
+
+// alpha per group of exchanging patches and band with sum_i A_i (residual of B + alpha v)_i = 0,
+// where v = 1 wherever light is reflected. A dark room has no residual and so stays exactly dark.
+class ConstantMode {
+ public:
+  ConstantMode(const PatchMesh& mesh, const FormFactors& form_factors)
+      : group_(exchanging_groups(form_factors)),
+        shape_((mesh.reflectance > 0.0f).cast<float>()),
+        drain_(sums(mesh, shape_ - mesh.reflectance * gather(form_factors, shape_))) {}
 
   void correct(const PatchMesh& mesh, const BandArray& residual, BandArray& B) const {
-    for (Eigen::Index k = 0; k < B.cols(); ++k) {
-      const double excess = (residual.col(k).cast<double>() * mesh.area).sum();
-      const double alpha = excess / drain[k];
-      // A nearly lossless room has nothing to divide by; the sweeps then converge alone.
-      if (!(drain[k] > 1e-9 * mesh.area.sum()) || !std::isfinite(alpha)) continue;
-      B.col(k) += static_cast<float>(alpha) * shape.col(k);
+    const Eigen::ArrayXXd alpha = sums(mesh, residual) / drain_;
+    // A nearly lossless room has nothing to divide by; the sweeps then converge alone.
+    const double least_drain = 1e-9 * mesh.area.sum();
+    for (Eigen::Index i = 0; i < B.rows(); ++i) {
+      const int g = group_[i];
+      for (Eigen::Index k = 0; k < B.cols(); ++k) {
+        if (drain_(g, k) > least_drain) B(i, k) += static_cast<float>(alpha(g, k)) * shape_(i, k);
+      }
     }
   }
+
+ private:
+  // sum_i A_i values_i over each group; rows are numbered by a group's first patch.
+  Eigen::ArrayXXd sums(const PatchMesh& mesh, const BandArray& values) const {
+    Eigen::ArrayXXd sum = Eigen::ArrayXXd::Zero(values.rows(), values.cols());
+    for (Eigen::Index i = 0; i < values.rows(); ++i) {
+      sum.row(group_[i]) += mesh.area[i] * values.row(i).cast<double>();
+    }
+    return sum;
+  }
+
+  std::vector<int> group_;
+  BandArray shape_;
+  Eigen::ArrayXXd drain_;
 };
 
 }  // namespace

@@ -158,6 +158,68 @@ void sphere_occluded(const RTCOccludedFunctionNArguments* args) {
 
 enum Kind { triangles, quads, spheres, kind_count };
 
+// The plane and extent of a group's triangles and quads.
+struct GroupPlane {
+  int group = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // first component that is not 0 is positive
+  double distance = 0.0;
+  Eigen::AlignedBox3d box{};
+};
+
+std::vector<GroupPlane> group_planes(const CastGeometry& geometry, int groups) {
+  std::vector<GroupPlane> planes(groups);
+  const auto add = [&](int group, const auto& polygon) {
+    GroupPlane& plane = planes[group];
+    for (const int v : polygon) plane.box.extend(geometry.vertices[v]);
+    if (!plane.normal.isZero()) return;
+    const Eigen::Vector3d& a = geometry.vertices[polygon[0]];
+    const Eigen::Vector3d n =
+        (geometry.vertices[polygon[1]] - a).cross(geometry.vertices[polygon[2]] - a);
+    if (!(n.norm() > 0.0)) return;
+    plane.group = group;
+    plane.normal = n.normalized();
+    constexpr double rounding = 1e-9;
+    for (int c = 0; c < 3; ++c) {
+      if (std::abs(plane.normal[c]) < rounding) continue;
+      if (plane.normal[c] < 0.0) plane.normal = -plane.normal;
+      break;
+    }
+    plane.distance = plane.normal.dot(a);
+  };
+  const int triangle_count = static_cast<int>(geometry.triangles.size());
+  for (int i = 0; i < triangle_count; ++i) add(geometry.group[i], geometry.triangles[i]);
+  for (std::size_t i = 0; i < geometry.quads.size(); ++i) {
+    add(geometry.group[triangle_count + static_cast<int>(i)], geometry.quads[i]);
+  }
+  std::erase_if(planes, [](const GroupPlane& p) { return p.normal.isZero(); });
+  return planes;
+}
+
+// Which groups have another in their own plane, within `tolerance`, whose box overlaps. Where very
+// many lie in one plane all count as touched: that only costs them the second query.
+std::vector<char> touched_groups(const CastGeometry& geometry, double tolerance) {
+  int groups = 0;
+  for (const int g : geometry.group) groups = std::max(groups, g + 1);
+  std::vector<GroupPlane> planes = group_planes(geometry, groups);
+  std::sort(planes.begin(), planes.end(), [](const GroupPlane& a, const GroupPlane& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.group < b.group;
+  });
+  std::vector<char> touched(groups, 0);
+  constexpr std::size_t many = 256;
+  constexpr double parallel = 1.0 - 1e-9;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const GroupPlane& a = planes[i];
+    for (std::size_t j = i + 1; j < planes.size(); ++j) {
+      const GroupPlane& b = planes[j];
+      if (b.distance - a.distance > tolerance) break;
+      const bool overlaps = a.normal.dot(b.normal) > parallel && a.box.intersects(b.box);
+      if (j - i > many || overlaps) touched[a.group] = touched[b.group] = 1;
+      if (j - i > many) break;
+    }
+  }
+  return touched;
+}
+
 }  // namespace
 
 struct RayCaster::Impl {
@@ -166,6 +228,7 @@ struct RayCaster::Impl {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double rounding = 0.0;  // how far float coordinates move a point at most, metres
   std::vector<int> group;
+  std::vector<char> is_touched;  // per group: another group lies in its plane, overlapping it
   SphereSet sphere_set;
   std::array<int, kind_count> count{};
   std::array<int, kind_count> first{};             // primitive number of a kind's first member
@@ -222,7 +285,20 @@ struct RayCaster::Impl {
     return ray;
   }
 
-  static RTCRay embree_ray(const Ray& ray) {
+  // An origin that lies exactly in its own plane, as on every axis-aligned wall, meets that plane
+  // at exactly 0, at the cost of a second query; so rays begin just above 0, unless another surface
+  // lies on their own and must be met there.
+  float nearest(const Ray& ray) const {
+    const bool alone = ray.origin_group >= 0 && !starts_touched(ray);
+    return alone ? std::numeric_limits<float>::min() : 0.0f;
+  }
+
+  bool starts_touched(const Ray& ray) const {
+    return ray.origin_group >= 0 && ray.origin_group < static_cast<int>(is_touched.size()) &&
+           is_touched[ray.origin_group] != 0;
+  }
+
+  RTCRay embree_ray(const Ray& ray) const {
     RTCRay r;
     r.org_x = static_cast<float>(ray.origin.x());
     r.org_y = static_cast<float>(ray.origin.y());
@@ -230,9 +306,7 @@ struct RayCaster::Impl {
     r.dir_x = static_cast<float>(ray.direction.x());
     r.dir_y = static_cast<float>(ray.direction.y());
     r.dir_z = static_cast<float>(ray.direction.z());
-    // Above 0: an origin that lies exactly in its own plane, as on every axis-aligned wall, would
-    // meet it at exactly 0 and cost a second query.
-    r.tnear = std::numeric_limits<float>::min();
+    r.tnear = nearest(ray);
     r.tfar = static_cast<float>(ray.t_max);
     r.time = 0.0f;
     r.mask = ~0u;
@@ -268,8 +342,8 @@ struct RayCaster::Impl {
     context.caster = this;
     RTCRayHit query;
     query.ray = embree_ray(ray);
-    const double own_reach = rounding / ray.direction.norm();
-    RTCFilterFunctionN filter = nullptr;
+    // Where another surface lies on the own one, stepping past the own would step past both.
+    RTCFilterFunctionN filter = starts_touched(ray) ? skip_own_plane : nullptr;
     constexpr int max_steps = 16;  // coincident own-plane primitives at one point
     for (int step = 0; step < max_steps; ++step) {
       query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -281,7 +355,7 @@ struct RayCaster::Impl {
       if (!own && (skipped_group < 0 || group[p] != skipped_group)) {
         return make_hit(ray, query, p, kind_of_geometry[query.hit.geomID] == spheres);
       }
-      if (own && query.ray.tfar > own_reach) {
+      if (own && query.ray.tfar * ray.direction.norm() > rounding) {
         filter = skip_own_plane;
       } else {
         // At least a normal number: Embree flushes denormals, and would meet the same place again.
@@ -387,6 +461,8 @@ RayCaster::RayCaster(const CastGeometry& geometry) : impl_(std::make_unique<Impl
   if (!box.isEmpty()) {
     m.rounding = roundings * 0.5 * box.diagonal().norm() * std::numeric_limits<float>::epsilon();
   }
+
+  m.is_touched = touched_groups(geometry, m.rounding);
 
   // One thread builds, whatever the user's limit: the order inside Embree's leaves, and with it
   // which of two primitives wins on a shared edge, must not depend on it.

@@ -94,8 +94,11 @@ Eigen::Vector3d cosine_direction(float u, float v) {
   constexpr double quarter_pi = std::numbers::pi / 4.0;
   const bool wide = std::abs(a) > std::abs(b);
   const double r = wide ? a : b;
-  const double phi = wide ? quarter_pi * (b / a) : quarter_pi * (2.0 - a / b);
-  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1.0 - r * r))};
+  // Float sine and cosine of an angle below 45 degrees; the third component makes the vector unit.
+  const auto phi = static_cast<float>(quarter_pi * (wide ? b / a : a / b));
+  const double near = r * std::cos(phi), far = r * std::sin(phi);
+  const double x = wide ? near : far, y = wide ? far : near;
+  return {x, y, std::sqrt(std::max(0.0, 1.0 - x * x - y * y))};
 }
 
 void tangent_frame(const Eigen::Vector3d& n, Eigen::Vector3d& first, Eigen::Vector3d& second) {

@@ -42,7 +42,9 @@ INSTANTIATE_TEST_SUITE_P(Rooms, Furnace,
 Scene lit_room() {
   Scene scene;
   const int white = test::add_material(scene, test::diffuse(scene.bands, 0.7f));
-  const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.1f, 20.0f));
+  Material lamp_material = test::diffuse(scene.bands, 0.1f, 20.0f);
+  lamp_material.one_sided = false;  // no black back that would count as escaped
+  const int lamp = test::add_material(scene, lamp_material);
   test::add_box(scene, {0, 0, 0}, {2, 3, 2.5}, {white, white, white, white, white, white}, true);
   test::add_polygon(scene, "lamp", lamp,
                     {{0.8, 1.2, 2.4}, {0.8, 1.8, 2.4}, {1.2, 1.8, 2.4}, {1.2, 1.2, 2.4}});
@@ -137,7 +139,7 @@ TEST(SolveScene, NoLightLeaksThroughAWallWithoutThickness) {
       (in_dark_room ? dark : lit) = std::max(in_dark_room ? dark : lit, E.row(e).maxCoeff());
     }
     EXPECT_EQ(dark, 0.0f) << "patch size " << patch;
-    EXPECT_GT(lit, 1.0f);
+    EXPECT_GT(lit, 0.1f);  // the other room is lit
   }
 }
 
