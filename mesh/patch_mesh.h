@@ -32,7 +32,7 @@ struct SphereGrid {
 /// One array per quantity. Conforming: no vertex lies inside another element's edge. Vertices are
 /// shared only where radiosity is continuous: within one side of one facet, or across facets of one
 /// surface whose normals differ by less than MeshOptions::smooth_angle_degrees; never across
-/// contact lines.
+/// contact lines, and not at reflex corners, where each element has a vertex of its own.
 struct PatchMesh {
   HalfedgeMesh elements{};
 

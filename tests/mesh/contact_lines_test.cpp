@@ -40,17 +40,18 @@ std::vector<int> elements_of(const PatchMesh& mesh, int facet, bool back = false
   return elements;
 }
 
-// No element of `facet` straddles the convex polygon, none shares a vertex with one on the other
-// side, and the covered part has the polygon's area.
+// No element and no patch of `facet` straddles the convex polygon, no vertex belongs to both sides,
+// and the covered part has the polygon's area.
 void expect_cut_by(const PatchMesh& mesh, int facet, const std::vector<Vector2d>& polygon,
                    double covered_area, int x, int y) {
   constexpr double rounding = 1e-9;
   const auto flat = [&](const Vector3d& p) { return Vector2d(p[x], p[y]); };
   double covered = 0.0;
-  std::map<int, std::set<bool>> sides_of_vertex;
+  std::map<int, std::set<bool>> sides_of_vertex, sides_of_patch;
   for (int e : elements_of(mesh, facet)) {
     const bool inside = depth_inside(polygon, flat(element_center(mesh, e).position)) > 0.0;
     if (inside) covered += mesh.element_area[e];
+    sides_of_patch[mesh.patch[e]].insert(inside);
     const int n = mesh.corner_count(e);
     for (int i = 0; i < n; ++i) {
       sides_of_vertex[mesh.corners[e][i]].insert(inside);
@@ -66,6 +67,7 @@ void expect_cut_by(const PatchMesh& mesh, int facet, const std::vector<Vector2d>
     }
   }
   for (const auto& [v, sides] : sides_of_vertex) ASSERT_EQ(sides.size(), 1u) << "vertex " << v;
+  for (const auto& [p, sides] : sides_of_patch) ASSERT_EQ(sides.size(), 1u) << "patch " << p;
   EXPECT_NEAR(covered, covered_area, 1e-12);
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -139,8 +140,18 @@ Scene terrain(int n) {
 
 namespace {
 
+// Whether two elements have an edge in common, judged by place: its ends may be split vertices.
+bool share_an_edge(const PatchMesh& mesh, int e, int f) {
+  int same_place = 0;
+  for (int i = 0; i < mesh.corner_count(e); ++i) {
+    for (int j = 0; j < mesh.corner_count(f); ++j) {
+      if (mesh.position(mesh.corners[e][i]) == mesh.position(mesh.corners[f][j])) ++same_place;
+    }
+  }
+  return same_place >= 2;
+}
+
 void expect_patches_connected(const PatchMesh& mesh) {
-  const auto face_patch = [&](HalfedgeMesh::FaceHandle f) { return mesh.patch[f.idx()]; };
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const int first = mesh.first_element[p], count = mesh.first_element[p + 1] - first;
     ASSERT_GT(count, 0) << "patch " << p << " has no elements";
@@ -149,13 +160,13 @@ void expect_patches_connected(const PatchMesh& mesh) {
     seen[0] = 1;
     int reached = 1;
     while (!open.empty()) {
-      const HalfedgeMesh::FaceHandle f(open.back());
+      const int e = open.back();
       open.pop_back();
-      for (auto it = mesh.elements.cff_iter(f); it.is_valid(); ++it) {
-        if (face_patch(*it) != p || seen[it->idx() - first]) continue;
-        seen[it->idx() - first] = 1;
+      for (int f = first; f < first + count; ++f) {
+        if (seen[f - first] || !share_an_edge(mesh, e, f)) continue;
+        seen[f - first] = 1;
         ++reached;
-        open.push_back(it->idx());
+        open.push_back(f);
       }
     }
     ASSERT_EQ(reached, count) << "patch " << p << " of facet " << mesh.facet[p]
@@ -252,7 +263,32 @@ int hanging_vertices(const PatchMesh& mesh) {
   std::map<Cell, std::vector<int>> cells;
   for (int v = 0; v < mesh.vertex_count(); ++v) cells[cell_of(mesh.position(v))].push_back(v);
   // Facets that lie on one another have inner vertices and edges of their own: only lines where a
-  // facet ends, or is cut, must agree with everything there.
+  // facet ends, or is cut, must agree with everything there. An edge is inner if the element across
+  // it has an end in common, or belongs to the same patch (both ends may be split reflex corners).
+  using Place = std::array<double, 3>;
+  const auto place = [&](int v) {
+    const Vector3d p = mesh.position(v);
+    return Place{p.x(), p.y(), p.z()};
+  };
+  std::map<std::pair<Place, Place>, std::vector<HalfedgeMesh::HalfedgeHandle>> edges_at;
+  for (auto h : mesh.elements.halfedges()) {
+    if (!mesh.elements.face_handle(h).is_valid()) continue;
+    const Place a = place(mesh.elements.from_vertex_handle(h).idx());
+    const Place b = place(mesh.elements.to_vertex_handle(h).idx());
+    edges_at[std::minmax(a, b)].push_back(h);
+  }
+  const auto patch_of = [&](HalfedgeMesh::HalfedgeHandle h) {
+    return mesh.patch[mesh.elements.face_handle(h).idx()];
+  };
+  const auto is_inner_edge = [&](HalfedgeMesh::HalfedgeHandle h) {
+    const auto from = mesh.elements.from_vertex_handle(h), to = mesh.elements.to_vertex_handle(h);
+    const auto& there = edges_at[std::minmax(place(from.idx()), place(to.idx()))];
+    return std::any_of(there.begin(), there.end(), [&](auto other) {
+      if (other == h || mesh.facet[patch_of(other)] != mesh.facet[patch_of(h)]) return false;
+      return patch_of(other) == patch_of(h) || mesh.elements.to_vertex_handle(other) == from ||
+             mesh.elements.from_vertex_handle(other) == to;
+    });
+  };
   std::vector<std::set<int>> facets_of(mesh.vertex_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
     for (int i = 0; i < mesh.corner_count(e); ++i) {
@@ -264,8 +300,7 @@ int hanging_vertices(const PatchMesh& mesh) {
     const auto face = mesh.elements.face_handle(h);
     if (!face.is_valid()) continue;
     const int facet = mesh.facet[mesh.patch[face.idx()]];
-    const auto across = mesh.elements.face_handle(mesh.elements.opposite_halfedge_handle(h));
-    const bool is_inner = across.is_valid() && mesh.facet[mesh.patch[across.idx()]] == facet;
+    const bool is_inner = is_inner_edge(h);
     const Vector3d a = mesh.position(mesh.elements.from_vertex_handle(h).idx());
     const Vector3d d = mesh.position(mesh.elements.to_vertex_handle(h).idx()) - a;
     const Cell home = cell_of(a + 0.5 * d);

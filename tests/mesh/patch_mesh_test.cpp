@@ -261,15 +261,50 @@ TEST(PatchMesh, AutomaticSizeMakesAboutTheAskedNumberOfPatches) {
   }
 }
 
-TEST(PatchMesh, SizeFollowsTheScale) {
-  Scene small = cornell_box(), large = small;
-  for (Surface& surface : large.surfaces) {
-    for (Vector3d& v : std::get<PolygonMesh>(surface.shape).vertices) v *= 1024.0;  // exact
+Scene moved(Scene scene, double scale, const Eigen::Matrix3d& turn, const Vector3d& shift) {
+  for (Surface& surface : scene.surfaces) {
+    for (Vector3d& v : std::get<PolygonMesh>(surface.shape).vertices) {
+      v = scale * (turn * v + shift);
+    }
   }
-  const PatchMesh a = build_patches(small), b = build_patches(large);
-  ASSERT_EQ(a.element_count(), b.element_count());
-  EXPECT_EQ(a.corners, b.corners);
-  EXPECT_EQ(a.patch, b.patch);
+  return scene;
+}
+
+TEST(PatchMesh, IsTheSameInEveryUnitAndPlace) {
+  Scene scene = cornell_box();
+  // A lattice of ties: a box whose foot runs midway between the floor's grid lines.
+  add_box(scene, "crate", {0.01, 0.2, 0.01}, {0.06, 0.4, 0.11});
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.05});
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  const auto expect_same = [&](double scale, const Eigen::Matrix3d& rotation,
+                               const Vector3d& shift) {
+    const PatchMesh other =
+        build_patches(moved(scene, scale, rotation, shift), {.max_patch_size = 0.05 * scale});
+    EXPECT_EQ(other.corners, mesh.corners);
+    EXPECT_EQ(other.patch, mesh.patch);
+  };
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Identity();
+  for (const double scale : {1e-3, 0.0254, 1.0 / 3.0, 10.0, 1e3}) {
+    expect_same(scale, none, Vector3d::Zero());
+  }
+  expect_same(1.0, none, {3.3, -1.7, 0.9});
+  expect_same(1.0, turn, {0, 0, 0});
+  expect_same(0.3048, turn, {1, 2, 3});
+}
+
+TEST(PatchMesh, WallOnACoordinatePlaneStaysExactlyOnIt) {
+  Scene scene = empty_scene();
+  add_polygon(scene, "plain", {{1.9, 0, 0}, {1.9, 2, 0}, {1.9, 2, 2}, {1.9, 0, 2}});
+  add_polygon(scene, "cut", {{0, 0, 0.7}, {3, 0, 0.7}, {3, 2, 0.7}, {0, 2, 0.7}});
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.15});
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const bool is_plain = mesh.facet[mesh.patch[e]] == 0;
+    for (int i = 0; i < mesh.corner_count(e); ++i) {
+      const Vector3d p = mesh.position(mesh.corners[e][i]);
+      ASSERT_EQ(is_plain ? p.x() : p.z(), is_plain ? 1.9 : 0.7);
+    }
+  }
 }
 
 TEST(PatchMesh, TwoBuildsAreIdenticalForAnyNumberOfThreads) {
