@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "radiosity/solve.h"
 
@@ -54,8 +55,7 @@ inline BandArray awkward(int rows, int bands, int seed) {
 /// One two-sided quad and a triangle beside it, in two patches a side, with a sphere grid that
 /// borrows their elements: small, and with something in every array.
 inline SolvedScene small_solution(int band_count) {
-  SolvedScene solved;
-  PatchMesh& mesh = solved.mesh;
+  PatchMesh mesh;
   const std::vector<Eigen::Vector3d> positions = {
       {0, 0, 0.1}, {1, 0, 0.1}, {1, 1.0 / 3.0, 0.1}, {0, 1, 0.1}, {2, 0, 0.1},
       {0, 0, 0.1}, {0, 1, 0.1}, {1, 1.0 / 3.0, 0.1}, {1, 0, 0.1}};
@@ -80,7 +80,7 @@ inline SolvedScene small_solution(int band_count) {
       {.facet = 5, .sphere = {{1, 2, 3}, 0.1}, .rings = 2, .sectors = 1, .element = {2, 0}}};
   build_topology(mesh, positions);
 
-  RadiositySolution& s = solved.solution;
+  RadiositySolution s;
   if (band_count == 3) {
     s.bands = rgb_bands(179.0);
   } else {
@@ -100,7 +100,7 @@ inline SolvedScene small_solution(int band_count) {
   s.seconds = {{"mesh", 0.1}, {"form factors", 1.0 / 7.0}};
   s.provenance = {"0.1.0", "räume/<box> ?> \"1\".toml", 0xfedcba9876543210u,
                   "solve --accuracy 1% -- '&'\n"};
-  return solved;
+  return {std::move(mesh), std::move(s)};
 }
 
 inline std::string contents(const fs::path& path) {
