@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "radiosity/vtk_messages.h"
@@ -22,7 +23,9 @@ namespace lightwell {
 namespace {
 
 constexpr int metering_width = 160;
-constexpr int largest_drawing = 8192;  ///< pixels along a side that every driver can draw
+/// Drawing sixteen times instead of sixteen times as large: text and lines keep their size, and no
+/// driver's largest picture or memory is the limit.
+constexpr int samples_along_pixel = 4;
 
 /// 1, 2 and 5 times the powers of ten of a range; the powers alone over more than two decades.
 std::vector<double> round_steps(const LuxRange& range) {
@@ -84,25 +87,18 @@ std::array<float, 256> srgb_table() {
   return table;
 }
 
-/// Box average over factor x factor pixels; turns VTK's rows, which begin at the bottom.
-std::vector<std::uint8_t> reduce(const unsigned char* pixels, int width, int height, int factor) {
-  const std::array<float, 256> linear = srgb_table();
+/// Bytes of the mean of `passes` sums of linear light; turns VTK's rows, which begin at the bottom.
+std::vector<std::uint8_t> encode(const std::vector<float>& sums, int width, int height,
+                                 int passes) {
   std::vector<std::uint8_t> picture;
-  picture.reserve(std::size_t{3} * width * height);
-  const std::size_t stride = std::size_t{3} * width * factor;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      Eigen::Array3f sum = Eigen::Array3f::Zero();
-      for (int row = (height - 1 - y) * factor; row < (height - y) * factor; ++row) {
-        const unsigned char* p = pixels + row * stride + std::size_t{3} * x * factor;
-        for (int i = 0; i < factor; ++i, p += 3) {
-          sum += Eigen::Array3f(linear[p[0]], linear[p[1]], linear[p[2]]);
-        }
-      }
-      for (const float mean : sum / static_cast<float>(factor * factor)) {
-        picture.push_back(static_cast<std::uint8_t>(255.0f * srgb_encode(mean) + 0.5f));
-      }
-    }
+  picture.reserve(sums.size());
+  const std::ptrdiff_t stride = std::ptrdiff_t{3} * width;
+  for (int y = height - 1; y >= 0; --y) {
+    const auto row = sums.begin() + y * stride;
+    std::transform(row, row + stride, std::back_inserter(picture), [&](float sum) {
+      return static_cast<std::uint8_t>(255.0f * srgb_encode(sum / static_cast<float>(passes)) +
+                                       0.5f);
+    });
   }
   return picture;
 }
@@ -187,27 +183,37 @@ void SolutionView::apply_camera() {
 }
 
 std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, int height) {
-  const int side = std::max(width, height);
-  const int factor = std::clamp(largest_drawing / side, 1, 3);
   const VtkMessages messages;
   vtkNew<vtkRenderWindow> window;
   window->OffScreenRenderingOn();
   window->SetMultiSamples(0);
-  window->SetSize(width * factor, height * factor);
+  window->SetSize(width, height);
   window->AddRenderer(view.renderer());
-  window->Render();
+  const std::size_t count = std::size_t{3} * width * height;
+  const std::array<float, 256> linear = srgb_table();
+  std::vector<float> sums(count, 0.0f);
   vtkNew<vtkUnsignedCharArray> pixels;
-  const int* drawn = window->GetActualSize();
-  const bool whole = drawn[0] == width * factor && drawn[1] == height * factor;
-  if (whole) {
-    window->GetPixelData(0, 0, width * factor - 1, height * factor - 1, 0, pixels);
+  vtkCamera* eye = view.renderer()->GetActiveCamera();
+  for (int sample = 0; sample < samples_along_pixel * samples_along_pixel; ++sample) {
+    // A subpixel's offset from the pixel's centre; the picture is 2 wide and 2 high.
+    const auto offset = [](int i) { return (i + 0.5) / samples_along_pixel - 0.5; };
+    eye->SetWindowCenter(2.0 * offset(sample % samples_along_pixel) / width,
+                         2.0 * offset(sample / samples_along_pixel) / height);
+    window->Render();
+    const int* drawn = window->GetActualSize();
+    if (drawn[0] == width && drawn[1] == height) {
+      window->GetPixelData(0, 0, width - 1, height - 1, 0, pixels);
+    }
+    if (static_cast<std::size_t>(pixels->GetNumberOfValues()) != count) {
+      throw std::runtime_error(
+          "the graphics driver could not draw the picture off screen; try a smaller size");
+    }
+    const unsigned char* bytes = pixels->GetPointer(0);
+    for (std::size_t i = 0; i < count; ++i) sums[i] += linear[bytes[i]];
   }
+  eye->SetWindowCenter(0.0, 0.0);
   window->RemoveRenderer(view.renderer());
-  if (!whole || pixels->GetNumberOfValues() != vtkIdType{3} * width * height * factor * factor) {
-    throw std::runtime_error(
-        "the graphics driver could not draw the picture off screen; try a smaller size");
-  }
-  return reduce(pixels->GetPointer(0), width, height, factor);
+  return encode(sums, width, height, samples_along_pixel * samples_along_pixel);
 }
 
 }  // namespace lightwell

@@ -7,10 +7,12 @@
 #include <vtkPNGReader.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <numbers>
 #include <thread>
 
+#include "raytrace/display.h"
 #include "raytrace/image.h"
 #include "solved_box.h"
 #include "viewer/solution_view.h"
@@ -124,6 +126,32 @@ TEST(Snapshot, QuadsAreSplitAlongTheSmootherDiagonal) {
     const Picture picture = draw(quad, options);
     expect_pixel(picture.at(100, 75), expected(quad, options, grey), "the middle of the quad");
   }
+}
+
+/// A quarter of pixel column 100 and of pixel row 74 is covered; light averages before it is
+/// encoded. At 2 m the picture is 4 tan 20 deg = 1.456 m wide and has 200 pixels; its right is -x.
+TEST(Snapshot, APixelShowsItsMeanLight) {
+  const double quarter = 0.25 * 4.0 * std::tan(20.0 * std::numbers::pi / 180.0) / 200.0;
+  const double right = 1.0 - quarter, top = 1.0 + quarter;
+  SolvedQuads quads;
+  quads.add({{{right, -3, 0}, {right, top, 0}, {5, top, 0}, {5, -3, 0}}}, grey);
+  const SolvedScene wall = quads.solved();
+  Camera camera = box_camera();
+  camera.position = {1, 1, -2};
+  const ViewOptions options = options_for(camera);
+  const Picture picture = draw(wall, options);
+  const SolutionView view(wall, options);
+  const float full =
+      display_rgb(grey / std::numbers::pi_v<float>, view.look().metered_scale, true)[0];
+  const auto byte = [](float linear) {
+    return static_cast<int>(255.0f * srgb_encode(linear) + 0.5f);
+  };
+  const int whole = byte(full), part = byte(0.25f * full), corner = byte(0.0625f * full);
+  expect_pixel(picture.at(99, 76), {whole, whole, whole}, "inside");
+  expect_pixel(picture.at(100, 76), {part, part, part}, "the right edge");
+  expect_pixel(picture.at(99, 74), {part, part, part}, "the upper edge");
+  expect_pixel(picture.at(100, 74), {corner, corner, corner}, "the corner");
+  expect_pixel(picture.at(101, 76), {0, 0, 0}, "outside");
 }
 
 TEST(Snapshot, OneStopDoublesTheLight) {
