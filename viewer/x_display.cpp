@@ -21,35 +21,37 @@ namespace {
       what));
 }
 
-using Library = std::unique_ptr<void, int (*)(void*)>;
+using Library = std::shared_ptr<void>;
 
 /// VTK has loaded this library already; asking it by name saves a build dependency on X11.
 Library load_x11() {
-  return {dlopen("libX11.so.6", RTLD_LAZY), &dlclose};
+  void* const library = dlopen("libX11.so.6", RTLD_LAZY);
+  return library ? Library(library, &dlclose) : nullptr;
 }
 
 }  // namespace
 
-void require_display() {
+std::shared_ptr<void> require_display() {
   // Making the window object says which back end VTK was built with; it opens nothing yet.
-  if (!vtkSmartPointer<vtkRenderWindow>::New()->IsA("vtkXOpenGLRenderWindow")) return;
+  if (!vtkSmartPointer<vtkRenderWindow>::New()->IsA("vtkXOpenGLRenderWindow")) return nullptr;
 
   const char* name = std::getenv("DISPLAY");
   if (!name || !*name) fail("there is no X display (DISPLAY is not set), and drawing needs one");
 
   const Library x11 = load_x11();
-  if (!x11) return;
+  if (!x11) return nullptr;
   const auto open = reinterpret_cast<void* (*)(const char*)>(dlsym(x11.get(), "XOpenDisplay"));
   const auto close = reinterpret_cast<int (*)(void*)>(dlsym(x11.get(), "XCloseDisplay"));
   const auto has_extension = reinterpret_cast<int (*)(void*, const char*, int*, int*, int*)>(
       dlsym(x11.get(), "XQueryExtension"));
-  if (!open || !close || !has_extension) return;
-  void* display = open(name);
-  if (!display) fail(fmt::format("the X display '{}' cannot be opened", name));
+  if (!open || !close || !has_extension) return nullptr;
+  void* const connection = open(name);
+  if (!connection) fail(fmt::format("the X display '{}' cannot be opened", name));
+  std::shared_ptr<void> display(connection, [x11, close](void* d) { close(d); });
   int opcode = 0, event = 0, error = 0;
-  const bool draws_gl = has_extension(display, "GLX", &opcode, &event, &error) != 0;
-  close(display);
-  if (!draws_gl) fail(fmt::format("the X display '{}' cannot draw OpenGL (no GLX)", name));
+  if (!has_extension(connection, "GLX", &opcode, &event, &error))
+    fail(fmt::format("the X display '{}' cannot draw OpenGL (no GLX)", name));
+  return display;
 }
 
 void report_held_keys_once(void* display) {
