@@ -17,9 +17,13 @@ constexpr double pi = std::numbers::pi;
 constexpr auto pi_f = static_cast<float>(pi);
 const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 
-nlohmann::json closed_forms(const std::string& name) {
-  std::ifstream file(LIGHTWELL_TEST_DATA "/raytrace/optics.json");
-  return nlohmann::json::parse(file).at(name);
+// Lives as long as the program: loops run over its members.
+const nlohmann::json& closed_forms(const std::string& name) {
+  static const nlohmann::json all = [] {
+    std::ifstream file(LIGHTWELL_TEST_DATA "/raytrace/optics.json");
+    return nlohmann::json::parse(file);
+  }();
+  return all.at(name);
 }
 
 Eigen::Vector3d vector(const nlohmann::json& xyz) {
