@@ -12,7 +12,7 @@
 namespace lightwell {
 
 void show_window(const SolvedScene& solved, const ViewOptions& options) {
-  const auto display = require_display();
+  const DisplayConnection display;
   WalkWindow(solved, options).run();
 }
 
@@ -26,7 +26,7 @@ void write_snapshot(const SolvedScene& solved, const ViewOptions& options,
                       options.width, options.height, largest));
     }
   }
-  const auto display = require_display();
+  const DisplayConnection display;
   const SolutionView view(solved, options);
   write_png(png, options.width, options.height,
             draw_offscreen(view, options.width, options.height));
