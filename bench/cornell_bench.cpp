@@ -79,9 +79,10 @@ std::vector<RTCRayHit> hemisphere_rays(const PatchMesh& mesh, int rays_per_patch
   std::vector<RTCRayHit> rays;
   const SobolPoints sobol(rays_per_patch);
   for (int i = 0; i < mesh.patch_count(); ++i) {
+    const PatchSampler sampler(mesh, i);
     for (int r = 0; r < rays_per_patch; ++r) {
       const Eigen::Array4f u = sobol.point(r, random_key(i, 99));
-      const PatchPoint from = patch_point(mesh, i, u[0], u[1]);
+      const PatchPoint from = sampler.point(u[0], u[1]);
       Eigen::Vector3d a, b;
       tangent_frame(from.normal, a, b);
       const Eigen::Vector3d local = cosine_direction(u[2], u[3]);

@@ -32,6 +32,10 @@ Eigen::Vector2d quad_shape(const PatchMesh& mesh, const std::array<int, 4>& c) {
 // the point is v0 + a (v1 - v0) + b (v3 - v0), and the bilinear (s, t) of that point solves
 //   a = s + (alpha - 1) s t,  b = t + (beta - 1) s t,   v2 - v0 = alpha (v1-v0) + beta (v3-v0).
 Array4f quad_weights(double alpha, double beta, double u, double v) {
+  constexpr double parallelogram = 1e-6;
+  if (std::abs(alpha - 1.0) + std::abs(beta - 1.0) < parallelogram) {
+    return Eigen::Array4d((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v).cast<float>();
+  }
   double a = u, b = v;
   if (u + v > 1.0) {
     const double w1 = 1.0 - v, w3 = 1.0 - u, w2 = 1.0 - w1 - w3;

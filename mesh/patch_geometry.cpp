@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -32,24 +33,6 @@ Vector3d mean_of_corners(const PatchMesh& mesh, int element) {
 
 const SphereGrid* sphere_of_element(const PatchMesh& mesh, int element) {
   return sphere_grid_of(mesh, mesh.facet[mesh.patch[element]]);
-}
-
-// Uniform over a triangle: the square root keeps density even towards corner a.
-Vector3d point_of_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c, double u,
-                           double v) {
-  const double s = std::sqrt(u);
-  return (1.0 - s) * a + s * (1.0 - v) * b + s * v * c;
-}
-
-Vector3d point_of_polygon(const PatchMesh& mesh, int element, double u, double v) {
-  const auto& c = mesh.corners[element];
-  const Vector3d p0 = mesh.position(c[0]), p1 = mesh.position(c[1]), p2 = mesh.position(c[2]);
-  if (c[3] < 0) return point_of_triangle(p0, p1, p2, u, v);
-  const Vector3d p3 = mesh.position(c[3]);
-  const double first = area_vector(p0, p1, p2).norm(), second = area_vector(p0, p2, p3).norm();
-  const double share = first / (first + second);
-  if (u < share) return point_of_triangle(p0, p1, p2, u / share, v);
-  return point_of_triangle(p0, p2, p3, (u - share) / (1.0 - share), v);
 }
 
 // Uniform over a sphere's element: even in longitude and in cos(theta) (Archimedes).
@@ -104,27 +87,54 @@ bool fits(const HalfedgeMesh& elements, const std::array<HalfedgeMesh::VertexHan
 
 }  // namespace
 
-PatchPoint patch_point(const PatchMesh& mesh, int patch, double u, double v) {
-  const int first = mesh.first_element[patch], last = mesh.first_element[patch + 1] - 1;
-  double rest = u * mesh.area[patch];
-  int element = first;
-  while (element < last && rest >= mesh.element_area[element]) rest -= mesh.element_area[element++];
-  u = std::clamp(rest / mesh.element_area[element], 0.0, 1.0);
-
-  PatchPoint point{.element = element};
-  if (const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[patch])) {
-    const Vector3d direction = direction_of_sphere(mesh, *grid, element, u, v);
-    point.position = grid->sphere.center + grid->sphere.radius * direction;
-    point.normal = mesh.is_back[patch] != 0 ? Vector3d(-direction) : direction;
-  } else {
-    // A hair inside the element: a point nearer to a contact line than float can tell lies, for a
-    // ray, on either side of what stands there, and would carry light through it.
-    constexpr double inset = 1e-4;
-    const Vector3d at = point_of_polygon(mesh, element, u, v);
-    point.position = at + inset * (mean_of_corners(mesh, element) - at);
-    point.normal = element_area_vector(mesh, element).normalized();
+PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
+    : mesh_(mesh), patch_(patch), sphere_(sphere_grid_of(mesh, mesh.facet[patch])) {
+  // A hair inside the element: a point nearer to a contact line than float can tell lies, for a
+  // ray, on either side of what stands there, and would carry light through it.
+  constexpr double inset = 1e-4;
+  for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
+    if (sphere_) {
+      area_ += mesh.element_area[e];
+      parts_.push_back({.element = e, .area_up_to = area_});
+      continue;
+    }
+    const Vector3d mean = mean_of_corners(mesh, e);
+    const Vector3d normal = element_area_vector(mesh, e).normalized();
+    std::array<Vector3d, 4> corner;
+    for (int i = 0; i < mesh.corner_count(e); ++i) {
+      const Vector3d at = mesh.position(mesh.corners[e][i]);
+      corner[i] = at + inset * (mean - at);
+    }
+    for (int i = 2; i < mesh.corner_count(e); ++i) {
+      area_ += 0.5 * area_vector(corner[0], corner[i - 1], corner[i]).norm();
+      parts_.push_back({.element = e,
+                        .area_up_to = area_,
+                        .corner = corner[0],
+                        .first_edge = corner[i - 1] - corner[0],
+                        .second_edge = corner[i] - corner[0],
+                        .normal = normal});
+    }
   }
-  return point;
+}
+
+PatchPoint PatchSampler::point(double u, double v) const {
+  const double area = u * area_;
+  std::size_t i = 0;
+  while (i + 1 < parts_.size() && area >= parts_[i].area_up_to) ++i;
+  const Part& part = parts_[i];
+  const double before = i == 0 ? 0.0 : parts_[i - 1].area_up_to;
+  u = std::clamp((area - before) / (part.area_up_to - before), 0.0, 1.0);
+  if (!sphere_) {
+    // The square root keeps density even towards the corner.
+    const double s = std::sqrt(u);
+    return {.element = part.element,
+            .position = part.corner + s * ((1.0 - v) * part.first_edge + v * part.second_edge),
+            .normal = part.normal};
+  }
+  const Vector3d direction = direction_of_sphere(mesh_, *sphere_, part.element, u, v);
+  return {.element = part.element,
+          .position = sphere_->sphere.center + sphere_->sphere.radius * direction,
+          .normal = mesh_.is_back[patch_] != 0 ? Vector3d(-direction) : direction};
 }
 
 PatchPoint element_center(const PatchMesh& mesh, int element) {

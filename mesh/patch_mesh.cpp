@@ -152,7 +152,11 @@ double patch_size(const Scene& scene, const MeshOptions& options) {
     all += area;
     if (!material.is_specular()) diffuse += area;
   }
-  return std::sqrt((diffuse > 0.0 ? diffuse : all) / options.auto_patch_count);
+  // Mirrors and glass need no patches, but are cut like everything: a great mirror in a scene with
+  // few diffuse surfaces must not make millions.
+  constexpr double most_of_all = 16.0;
+  const double area = std::max(diffuse, all / most_of_all);
+  return std::sqrt(area / options.auto_patch_count);
 }
 
 PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {

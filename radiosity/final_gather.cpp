@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "radiosity/light_path.h"
+#include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -26,33 +27,31 @@ class HemisphereGather {
         caster_(caster),
         radiosity_(radiosity),
         paths_(scene, caster, options.max_specular_depth),
-        sobol_(std::max(1, options.rays)) {}
+        sets_(std::max(1, options.rays)) {}
 
   // E = (1/N) sum B over cosine-distributed rays.
   Spectrum irradiance(const GatherPoint& at, std::uint64_t key) const {
     Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(radiosity_.cols());
-    Eigen::Vector3d a, b;
-    tangent_frame(at.normal, a, b);
+    const HemisphereSets::Draw draw = sets_.draw(random_key(key, gather_rays));
+    const Eigen::Matrix3d frame = draw.frame(at.normal);
     std::array<Ray, batch> ray;
     std::array<ElementHit, batch> hit;
-    const std::uint64_t ray_key = random_key(key, gather_rays);
-    for (int begin = 0; begin < sobol_.count(); begin += batch) {
-      const int count = std::min(batch, sobol_.count() - begin);
+    for (int begin = 0; begin < sets_.count(); begin += batch) {
+      const int count = std::min(batch, sets_.count() - begin);
+      const auto n = static_cast<std::size_t>(count);
+      const auto points = draw.points(begin, count);
       for (int r = 0; r < count; ++r) {
-        const Eigen::Array4f u = sobol_.point(begin + r, ray_key);
-        const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
         ray[r] = {.origin = at.position,
-                  .direction = d.x() * a + d.y() * b + d.z() * at.normal,
+                  .direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z),
                   .origin_group = at.facet};
       }
-      const auto n = static_cast<std::size_t>(count);
       caster_.closest_hits({ray.data(), n}, {hit.data(), n});
       for (int r = 0; r < count; ++r) {
         const auto index = static_cast<std::uint64_t>(begin + r);
         add(ray[r], hit[r], random_key(key, gather_branches, index), sum);
       }
     }
-    return (sum / sobol_.count()).cast<float>();
+    return (sum / sets_.count()).cast<float>();
   }
 
  private:
@@ -79,7 +78,7 @@ class HemisphereGather {
   const ElementCaster& caster_;
   const BandArray& radiosity_;
   LightPaths paths_;
-  SobolPoints sobol_;
+  HemisphereSets sets_;
 };
 
 std::vector<int> vertex_patches(const PatchMesh& mesh) {
@@ -165,12 +164,13 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
         mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
     const std::uint64_t key = random_key(static_cast<std::uint64_t>(p), caustic_rays);
     constexpr int piece = 2048;
+    const PatchSampler sampler(mesh, p);
     std::vector<std::vector<Deposit>> deposits((count + piece - 1) / piece);
     parallel_for(count, piece, [&](int begin, int end) {
       auto& list = deposits[begin / piece];
       for (int r = begin; r < end; ++r) {
         const Eigen::Array4f u = sobol.point(r, key);
-        const PatchPoint from = patch_point(mesh, p, u[0], u[1]);
+        const PatchPoint from = sampler.point(u[0], u[1]);
         Eigen::Vector3d a, b;
         tangent_frame(from.normal, a, b);
         const Eigen::Vector3d d = cosine_direction(u[2], u[3]);

@@ -155,9 +155,10 @@ class Assembly {
       for (int i = begin; i < end; ++i) {
         if (!paths_.is_diffuse(mesh_.facet[i])) continue;
         const std::uint64_t key = random_key(static_cast<std::uint64_t>(i), emitter_points_key);
+        const PatchSampler sampler(mesh_, i);
         for (int s = 0; s < options_.emitter_points; ++s) {
           const Eigen::Array4f u = sobol.point(s, key);
-          const PatchPoint at = patch_point(mesh_, i, u[0], u[1]);
+          const PatchPoint at = sampler.point(u[0], u[1]);
           for (int e = 0; e < emitter_count; ++e) {
             const Emitter& emitter = direct_light_.emitters()[e];
             const bool behind =

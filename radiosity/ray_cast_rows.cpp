@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -12,19 +13,17 @@ namespace {
 
 constexpr std::uint64_t form_factor_rays = 1;  // purposes of random keys
 constexpr std::uint64_t form_factor_branches = 2;
-constexpr int batch = 128;
+constexpr int batch = 64;
 
 // Scratch that a piece of the parallel loop reuses from patch to patch.
-struct Counter {
+class Counter {
+ public:
   explicit Counter(int patches) : count(patches, 0) {}
-  std::vector<int> count;
-  std::vector<int> touched;
-
   void add(int patch) {
     if (count[patch]++ == 0) touched.push_back(patch);
   }
   std::vector<RayCastRow::Count> take() {
-    std::sort(touched.begin(), touched.end());
+    put_in_order();
     std::vector<RayCastRow::Count> counts;
     counts.reserve(touched.size());
     for (int patch : touched) {
@@ -34,10 +33,27 @@ struct Counter {
     touched.clear();
     return counts;
   }
+
+ private:
+  // Where many of all patches were touched, looking through all is quicker than sorting.
+  void put_in_order() {
+    constexpr std::size_t few = 32;
+    if (touched.size() * few < count.size()) {
+      std::sort(touched.begin(), touched.end());
+      return;
+    }
+    touched.clear();
+    for (std::size_t i = 0; i < count.size(); ++i) {
+      if (count[i] > 0) touched.push_back(static_cast<int>(i));
+    }
+  }
+
+  std::vector<int> count;
+  std::vector<int> touched;
 };
 
-RayCastRow cast_row(const ElementCaster& caster, const LightPaths& paths, const SobolPoints& sobol,
-                    int patch, int rays, Counter& counter) {
+RayCastRow cast_row(const ElementCaster& caster, const LightPaths& paths,
+                    const HemisphereSets& sets, int patch, int rays, Counter& counter) {
   const PatchMesh& mesh = caster.mesh();
   const int bands = static_cast<int>(mesh.reflectance.cols());
   RayCastRow row{.rays = rays,
@@ -46,24 +62,27 @@ RayCastRow cast_row(const ElementCaster& caster, const LightPaths& paths, const 
                  .cut = Spectrum::Zero(bands)};
   std::map<int, Spectrum> by_way_of_specular;
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(patch), form_factor_rays);
+  const PatchSampler sampler(mesh, patch);
   std::array<Ray, batch> ray;
   std::array<ElementHit, batch> hit;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero(), a, b;
+  const HemisphereSets::Draw draw = sets.draw(key);
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
   for (int begin = 0; begin < rays; begin += batch) {
     const int count = std::min(batch, rays - begin);
+    const auto n = static_cast<std::size_t>(count);
+    const auto points = draw.points(begin, count);
     for (int r = 0; r < count; ++r) {
-      const Eigen::Array4f u = sobol.point(begin + r, key);
-      const PatchPoint from = patch_point(mesh, patch, u[0], u[1]);
+      const Eigen::Vector2d place = draw.place(points[r]);
+      const PatchPoint from = sampler.point(place.x(), place.y());
       if (from.normal != normal) {  // the same all over a flat patch
         normal = from.normal;
-        tangent_frame(normal, a, b);
+        frame = draw.frame(normal);
       }
-      const Eigen::Vector3d d = cosine_direction(u[2], u[3]);
       ray[r] = {.origin = from.position,
-                .direction = d.x() * a + d.y() * b + d.z() * from.normal,
+                .direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z),
                 .origin_group = mesh.facet[patch]};
     }
-    const auto n = static_cast<std::size_t>(count);
     caster.closest_hits({ray.data(), n}, {hit.data(), n});
     for (int r = 0; r < count; ++r) {
       const ElementHit& h = hit[r];
@@ -109,7 +128,7 @@ std::vector<RayCastRow> cast_rows(const ElementCaster& caster, const LightPaths&
   const PatchMesh& mesh = caster.mesh();
   const int patches = mesh.patch_count();
   const int most_rays = *std::max_element(rays_of.begin(), rays_of.end());
-  const SobolPoints sobol(most_rays);
+  const HemisphereSets sets(std::max(most_rays, 1));
   std::vector<RayCastRow> rows(patches);
   // Slices keep progress and interruption on this thread: each a fraction of a second of rays.
   constexpr int rays_per_slice = 1 << 20;
@@ -122,7 +141,7 @@ std::vector<RayCastRow> cast_rows(const ElementCaster& caster, const LightPaths&
       Counter counter(patches);
       for (int i = begin + low; i < begin + high; ++i) {
         if (paths.is_diffuse(mesh.facet[i])) {
-          rows[i] = cast_row(caster, paths, sobol, i, rays_of[i], counter);
+          rows[i] = cast_row(caster, paths, sets, i, rays_of[i], counter);
         }
       }
     });

@@ -109,7 +109,7 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
     const Eigen::Array4f u = sobol.point(i, error_point_key);
     const auto at = std::upper_bound(area_to.begin(), area_to.end() - 1, u[0] * total);
     const int p = static_cast<int>(at - area_to.begin());
-    const PatchPoint point = patch_point(mesh, p, u[1], u[2]);
+    const PatchPoint point = PatchSampler(mesh, p).point(u[1], u[2]);
     points[i] = {point.position, point.normal, mesh.facet[p]};
     // The element's own interpolation: look at the point from just above it.
     const double above = 1e-3 * std::sqrt(mesh.element_area[point.element]);

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scene/coplanar_groups.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -26,7 +27,7 @@ using EmbreeContext = RTCRayQueryContext;
 using EmbreeContext = RTCIntersectContext;
 #endif
 struct QueryContext : EmbreeContext {
-  const Ray* rays = nullptr;     // recentred; a lane's ray is rays[its id]
+  const Ray* rays = nullptr;     // a lane's ray is rays[its id]
   const void* caster = nullptr;  // RayCaster::Impl, for the filter
 };
 
@@ -90,6 +91,8 @@ void occlude(RTCScene scene, QueryContext& context, const int* valid, RTCRay16& 
 struct SphereSet {
   std::vector<Sphere> spheres;
   std::vector<int> group;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of Embree's coordinates
+  double rounding = 0.0;                             // of Embree's coordinates, metres
 };
 
 // The nearest root of |o + t d - c| = r in (0, t_max); for a ray that starts on this sphere the
@@ -112,13 +115,15 @@ double sphere_root(const Sphere& sphere, const Ray& ray, bool starts_here) {
 void sphere_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& set = *static_cast<const SphereSet*>(args->geometryUserPtr);
   const Sphere& s = set.spheres[args->primID];
-  const auto r = static_cast<float>(s.radius * (1.0 + 1e-6));
-  args->bounds_o->lower_x = static_cast<float>(s.center.x()) - r;
-  args->bounds_o->lower_y = static_cast<float>(s.center.y()) - r;
-  args->bounds_o->lower_z = static_cast<float>(s.center.z()) - r;
-  args->bounds_o->upper_x = static_cast<float>(s.center.x()) + r;
-  args->bounds_o->upper_y = static_cast<float>(s.center.y()) + r;
-  args->bounds_o->upper_z = static_cast<float>(s.center.z()) + r;
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(s.radius + set.rounding);
+  const Eigen::Vector3f lower = (s.center - set.center - reach).cast<float>();
+  const Eigen::Vector3f upper = (s.center - set.center + reach).cast<float>();
+  args->bounds_o->lower_x = lower.x();
+  args->bounds_o->lower_y = lower.y();
+  args->bounds_o->lower_z = lower.z();
+  args->bounds_o->upper_x = upper.x();
+  args->bounds_o->upper_y = upper.y();
+  args->bounds_o->upper_z = upper.z();
 }
 
 void sphere_intersect(const RTCIntersectFunctionNArguments* args) {
@@ -156,69 +161,8 @@ void sphere_occluded(const RTCOccludedFunctionNArguments* args) {
   }
 }
 
-enum Kind { triangles, quads, spheres, kind_count };
-
-// The plane and extent of a group's triangles and quads.
-struct GroupPlane {
-  int group = 0;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // first component that is not 0 is positive
-  double distance = 0.0;
-  Eigen::AlignedBox3d box{};
-};
-
-std::vector<GroupPlane> group_planes(const CastGeometry& geometry, int groups) {
-  std::vector<GroupPlane> planes(groups);
-  const auto add = [&](int group, const auto& polygon) {
-    GroupPlane& plane = planes[group];
-    for (const int v : polygon) plane.box.extend(geometry.vertices[v]);
-    if (!plane.normal.isZero()) return;
-    const Eigen::Vector3d& a = geometry.vertices[polygon[0]];
-    const Eigen::Vector3d n =
-        (geometry.vertices[polygon[1]] - a).cross(geometry.vertices[polygon[2]] - a);
-    if (!(n.norm() > 0.0)) return;
-    plane.group = group;
-    plane.normal = n.normalized();
-    constexpr double rounding = 1e-9;
-    for (int c = 0; c < 3; ++c) {
-      if (std::abs(plane.normal[c]) < rounding) continue;
-      if (plane.normal[c] < 0.0) plane.normal = -plane.normal;
-      break;
-    }
-    plane.distance = plane.normal.dot(a);
-  };
-  const int triangle_count = static_cast<int>(geometry.triangles.size());
-  for (int i = 0; i < triangle_count; ++i) add(geometry.group[i], geometry.triangles[i]);
-  for (std::size_t i = 0; i < geometry.quads.size(); ++i) {
-    add(geometry.group[triangle_count + static_cast<int>(i)], geometry.quads[i]);
-  }
-  std::erase_if(planes, [](const GroupPlane& p) { return p.normal.isZero(); });
-  return planes;
-}
-
-// Which groups have another in their own plane, within `tolerance`, whose box overlaps. Where very
-// many lie in one plane all count as touched: that only costs them the second query.
-std::vector<char> touched_groups(const CastGeometry& geometry, double tolerance) {
-  int groups = 0;
-  for (const int g : geometry.group) groups = std::max(groups, g + 1);
-  std::vector<GroupPlane> planes = group_planes(geometry, groups);
-  std::sort(planes.begin(), planes.end(), [](const GroupPlane& a, const GroupPlane& b) {
-    return a.distance != b.distance ? a.distance < b.distance : a.group < b.group;
-  });
-  std::vector<char> touched(groups, 0);
-  constexpr std::size_t many = 256;
-  constexpr double parallel = 1.0 - 1e-9;
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    const GroupPlane& a = planes[i];
-    for (std::size_t j = i + 1; j < planes.size(); ++j) {
-      const GroupPlane& b = planes[j];
-      if (b.distance - a.distance > tolerance) break;
-      const bool overlaps = a.normal.dot(b.normal) > parallel && a.box.intersects(b.box);
-      if (j - i > many || overlaps) touched[a.group] = touched[b.group] = 1;
-      if (j - i > many) break;
-    }
-  }
-  return touched;
-}
+// Embree's numbers of the two geometries.
+enum GeometryId : unsigned { polygons_id, spheres_id };
 
 }  // namespace
 
@@ -228,11 +172,9 @@ struct RayCaster::Impl {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double rounding = 0.0;  // how far float coordinates move a point at most, metres
   std::vector<int> group;
-  std::vector<char> is_touched;  // per group: another group lies in its plane, overlapping it
+  std::unique_ptr<CoplanarGroups> planes;
   SphereSet sphere_set;
-  std::array<int, kind_count> count{};
-  std::array<int, kind_count> first{};             // primitive number of a kind's first member
-  std::array<int, kind_count> kind_of_geometry{};  // geomID -> Kind
+  int triangles = 0, quads = 0;
 
   Impl() = default;
   Impl(const Impl&) = delete;
@@ -252,76 +194,107 @@ struct RayCaster::Impl {
     }
   }
 
-  void attach(RTCGeometry geometry, Kind kind) {
+  void attach(RTCGeometry geometry, GeometryId id) {
     rtcCommitGeometry(geometry);
-    kind_of_geometry[rtcAttachGeometry(scene, geometry)] = kind;
+    rtcAttachGeometryByID(scene, geometry, id);
     rtcReleaseGeometry(geometry);
   }
 
-  template <std::size_t N>
-  void add_polygons(const CastGeometry& source, const std::vector<std::array<int, N>>& polygons,
-                    Kind kind) {
-    if (polygons.empty()) return;
+  // Embree keeps a tree for every type of geometry, and a ray goes down each of them. So where
+  // there are quads, triangles are quads that end in their last corner twice; u and v remain the
+  // same.
+  void add_polygons(const CastGeometry& source) {
+    const std::size_t count = source.triangles.size() + source.quads.size();
+    if (count == 0) return;
+    const bool as_quads = !source.quads.empty();
+    const std::size_t corners = as_quads ? 4 : 3;
     const RTCGeometry geometry =
-        rtcNewGeometry(device, N == 3 ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_QUAD);
+        rtcNewGeometry(device, as_quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                           RTC_FORMAT_FLOAT3, 3 * sizeof(float),
                                                           source.vertices.size()));
     auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, N == 3 ? RTC_FORMAT_UINT3 : RTC_FORMAT_UINT4,
-        N * sizeof(unsigned), polygons.size()));
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, as_quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
+        corners * sizeof(unsigned), count));
     check();
     for (const Eigen::Vector3d& vertex : source.vertices) {
       for (int c = 0; c < 3; ++c) *v++ = static_cast<float>(vertex[c] - center[c]);
     }
-    for (const auto& polygon : polygons) {
-      for (int corner : polygon) *index++ = static_cast<unsigned>(corner);
+    for (const auto& triangle : source.triangles) {
+      for (std::size_t c = 0; c < corners; ++c) {
+        *index++ = static_cast<unsigned>(triangle[std::min<std::size_t>(c, 2)]);
+      }
     }
-    attach(geometry, kind);
+    for (const auto& quad : source.quads) {
+      for (const int corner : quad) *index++ = static_cast<unsigned>(corner);
+    }
+    attach(geometry, polygons_id);
   }
 
-  Ray recentred(Ray ray) const {
-    ray.origin -= center;
-    return ray;
+  void add_spheres(const CastGeometry& source) {
+    if (source.spheres.empty()) return;
+    sphere_set = {
+        .spheres = source.spheres,
+        .group = {group.end() - static_cast<std::ptrdiff_t>(source.spheres.size()), group.end()},
+        .center = center,
+        .rounding = rounding};
+    const RTCGeometry user = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(user, static_cast<unsigned>(source.spheres.size()));
+    rtcSetGeometryUserData(user, &sphere_set);
+    rtcSetGeometryBoundsFunction(user, sphere_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(user, sphere_intersect);
+    rtcSetGeometryOccludedFunction(user, sphere_occluded);
+    attach(user, spheres_id);
   }
 
-  // An origin that lies exactly in its own plane, as on every axis-aligned wall, meets that plane
-  // at exactly 0, at the cost of a second query; so rays begin just above 0, unless another surface
-  // lies on their own and must be met there.
-  float nearest(const Ray& ray) const {
-    const bool alone = ray.origin_group >= 0 && !starts_touched(ray);
-    return alone ? std::numeric_limits<float>::min() : 0.0f;
-  }
-
-  bool starts_touched(const Ray& ray) const {
-    return ray.origin_group >= 0 && ray.origin_group < static_cast<int>(is_touched.size()) &&
-           is_touched[ray.origin_group] != 0;
-  }
-
-  RTCRay embree_ray(const Ray& ray) const {
-    RTCRay r;
-    r.org_x = static_cast<float>(ray.origin.x());
-    r.org_y = static_cast<float>(ray.origin.y());
-    r.org_z = static_cast<float>(ray.origin.z());
+  // A ray that starts on a group begins off its plane by what rounding may move it, and a hair on,
+  // so that it rarely meets that plane and needs a second query; unless another surface may lie on
+  // the plane there and must be met.
+  void set_ray(RTCRay& r, const Ray& ray, unsigned id) const {
+    Eigen::Vector3d origin = ray.origin - center;
+    r.tnear = 0.0f;
+    if (ray.origin_group >= 0 && !starts_covered(ray)) {
+      const Eigen::Vector3d& normal = planes->normal(ray.origin_group);
+      origin += std::copysign(rounding, normal.dot(ray.direction)) * normal;
+      r.tnear = std::numeric_limits<float>::min();
+    }
+    r.org_x = static_cast<float>(origin.x());
+    r.org_y = static_cast<float>(origin.y());
+    r.org_z = static_cast<float>(origin.z());
     r.dir_x = static_cast<float>(ray.direction.x());
     r.dir_y = static_cast<float>(ray.direction.y());
     r.dir_z = static_cast<float>(ray.direction.z());
-    r.tnear = nearest(ray);
     r.tfar = static_cast<float>(ray.t_max);
     r.time = 0.0f;
     r.mask = ~0u;
-    r.id = 0;
+    r.id = id;
     r.flags = 0;
-    return r;
+  }
+
+  bool starts_covered(const Ray& ray) const {
+    return planes->may_be_covered(ray.origin_group, ray.origin);
   }
 
   int primitive(const RTCHit& hit) const {
-    return first[kind_of_geometry[hit.geomID]] + static_cast<int>(hit.primID);
+    return static_cast<int>(hit.primID) + (hit.geomID == spheres_id ? triangles + quads : 0);
   }
 
   // A sphere leaves its own origin out itself, and its far side does count.
   bool is_own_plane(const RTCHit& hit, const Ray& ray) const {
-    return kind_of_geometry[hit.geomID] != spheres && group[primitive(hit)] == ray.origin_group;
+    return hit.geomID != spheres_id && group[primitive(hit)] == ray.origin_group;
+  }
+
+  // Another surface that lies on the ray's own, both facing one way: which is on top cannot be
+  // told, so neither keeps the other in the dark. (Face to face they do: the floor under a block.)
+  bool lies_alike(const RTCHit& hit, float t, const Ray& ray) const {
+    const double squared_length = ray.direction.squaredNorm();
+    const double reach = 2.0 * rounding;
+    if (t * t * squared_length > reach * reach || hit.geomID == spheres_id) return false;
+    const Eigen::Vector3d facing(hit.Ng_x, hit.Ng_y, hit.Ng_z);
+    if (facing.dot(ray.direction) <= 0.0) return false;
+    constexpr double parallel = 1.0 - 1e-9;
+    const Eigen::Vector3d& own = planes->normal(ray.origin_group);
+    return std::abs(own.dot(planes->normal(group[primitive(hit)]))) > parallel;
   }
 
   static void skip_own_plane(const RTCFilterFunctionNArguments* args) {
@@ -329,31 +302,65 @@ struct RayCaster::Impl {
     const auto& context = *static_cast<const QueryContext*>(args->context);
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
     const auto& caster = *static_cast<const Impl*>(context.caster);
-    if (caster.is_own_plane(hit, *context.rays)) args->valid[0] = 0;
+    const Ray& ray = context.rays[RTCRayN_id(args->ray, 1, 0)];
+    const float t = RTCRayN_tfar(args->ray, 1, 0);
+    if (caster.is_own_plane(hit, ray) || caster.lies_alike(hit, t, ray)) args->valid[0] = 0;
+  }
+
+  static void clear(RTCHit& hit) {
+    hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  }
+
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const {
+    // All queries are written before Embree reads the first: a vector load from words just stored
+    // one by one would stall.
+    constexpr std::size_t batch = 32;
+    std::array<RTCRayHit, batch> queries;
+    QueryContext context;
+    init(context, nullptr);
+    for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
+      const std::size_t size = std::min(batch, rays.size() - begin);
+      context.rays = rays.data() + begin;
+      for (std::size_t i = 0; i < size; ++i) {
+        set_ray(queries[i].ray, context.rays[i], static_cast<unsigned>(i));
+        clear(queries[i].hit);
+      }
+      for (std::size_t i = 0; i < size; ++i) intersect(scene, context, queries[i]);
+      for (std::size_t i = 0; i < size; ++i) {
+        hits[begin + i] = answer(context.rays[i], queries[i]);
+      }
+    }
+  }
+
+  Hit answer(const Ray& ray, const RTCRayHit& query) const {
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    if (is_own_plane(query.hit, ray) || lies_alike(query.hit, query.ray.tfar, ray)) {
+      return closest(ray, -1);
+    }
+    return make_hit(ray, query);
   }
 
   // Own-plane hits are mostly rounding at the ray's very start; they are rare, so stepping past
   // them here is cheaper than a filter callback on every candidate (measured 15 % of the ray rate).
   // A ray that starts a little before its own plane is another matter: stepping would also pass
-  // what lies in that plane, the table under a block of glass. `ray` is recentred.
+  // what lies in that plane, the table under a block of glass.
   Hit closest(const Ray& ray, int skipped_group) const {
     QueryContext context;
     init(context, &ray);
     context.caster = this;
     RTCRayHit query;
-    query.ray = embree_ray(ray);
+    set_ray(query.ray, ray, 0);
     // Where another surface lies on the own one, stepping past the own would step past both.
-    RTCFilterFunctionN filter = starts_touched(ray) ? skip_own_plane : nullptr;
+    RTCFilterFunctionN filter = starts_covered(ray) ? skip_own_plane : nullptr;
     constexpr int max_steps = 16;  // coincident own-plane primitives at one point
     for (int step = 0; step < max_steps; ++step) {
-      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      clear(query.hit);
       intersect(scene, context, query, filter);
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-      const int p = primitive(query.hit);
       const bool own = is_own_plane(query.hit, ray);
-      if (!own && (skipped_group < 0 || group[p] != skipped_group)) {
-        return make_hit(ray, query, p, kind_of_geometry[query.hit.geomID] == spheres);
+      if (!own && (skipped_group < 0 || group[primitive(query.hit)] != skipped_group)) {
+        return make_hit(ray, query);
       }
       if (own && query.ray.tfar * ray.direction.norm() > rounding) {
         filter = skip_own_plane;
@@ -373,16 +380,17 @@ struct RayCaster::Impl {
   // down the tree together (measured 3 to 4 times the rate of single rays).
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
     const int lanes = static_cast<int>(rays.size());
-    std::array<Ray, packet_size> local;
     alignas(64) std::array<int, packet_size> valid{};
     RTCRayHit16 query;
     for (int i = 0; i < packet_size; ++i) {
-      if (i < lanes) local[i] = recentred(rays[i]);
+      const int from = std::min(i, lanes - 1);  // lanes without a ray hold numbers all the same
       valid[i] = i < lanes ? -1 : 0;
-      set_lane(query.ray, i, embree_ray(local[std::min(i, lanes - 1)]));
+      RTCRay ray;
+      set_ray(ray, rays[from], static_cast<unsigned>(from));
+      set_lane(query.ray, i, ray);
     }
     QueryContext context;
-    init(context, local.data());
+    init(context, rays.data());
     RTCRay16 shadow = query.ray;
     occlude(scene, context, valid.data(), shadow);
 
@@ -404,10 +412,15 @@ struct RayCaster::Impl {
         blocked[i] = 0;
         continue;
       }
-      const int p = first[kind_of_geometry[geometry]] + static_cast<int>(query.hit.primID[i]);
-      const bool own = kind_of_geometry[geometry] != spheres && group[p] == local[i].origin_group;
-      if (own || group[p] == local[i].target_group) {
-        blocked[i] = closest(local[i], local[i].target_group).primitive >= 0;
+      RTCHit hit;
+      hit.geomID = geometry;
+      hit.primID = query.hit.primID[i];
+      hit.Ng_x = query.hit.Ng_x[i];
+      hit.Ng_y = query.hit.Ng_y[i];
+      hit.Ng_z = query.hit.Ng_z[i];
+      if (is_own_plane(hit, rays[i]) || lies_alike(hit, query.ray.tfar[i], rays[i]) ||
+          group[primitive(hit)] == rays[i].target_group) {
+        blocked[i] = closest(rays[i], rays[i].target_group).primitive >= 0;
       }
     }
   }
@@ -423,13 +436,14 @@ struct RayCaster::Impl {
     packet.tfar[i] = ray.tfar;
     packet.time[i] = ray.time;
     packet.mask[i] = ray.mask;
-    packet.id[i] = static_cast<unsigned>(i);
+    packet.id[i] = ray.id;
     packet.flags[i] = ray.flags;
   }
 
-  Hit make_hit(const Ray& ray, const RTCRayHit& query, int p, bool is_sphere) const {
+  Hit make_hit(const Ray& ray, const RTCRayHit& query) const {
+    const int p = primitive(query.hit);
     Hit hit{.primitive = p, .t = query.ray.tfar, .u = query.hit.u, .v = query.hit.v};
-    if (is_sphere) {
+    if (query.hit.geomID == spheres_id) {
       const Sphere& sphere = sphere_set.spheres[query.hit.primID];
       hit.t = sphere_root(sphere, ray, group[p] == ray.origin_group);
       hit.from_back = (ray.origin + hit.t * ray.direction - sphere.center).dot(ray.direction) > 0.0;
@@ -443,10 +457,9 @@ struct RayCaster::Impl {
 
 RayCaster::RayCaster(const CastGeometry& geometry) : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
-  m.count = {static_cast<int>(geometry.triangles.size()), static_cast<int>(geometry.quads.size()),
-             static_cast<int>(geometry.spheres.size())};
-  m.first = {0, m.count[triangles], m.count[triangles] + m.count[quads]};
-  const int total = m.count[triangles] + m.count[quads] + m.count[spheres];
+  m.triangles = static_cast<int>(geometry.triangles.size());
+  m.quads = static_cast<int>(geometry.quads.size());
+  const int total = m.triangles + m.quads + static_cast<int>(geometry.spheres.size());
   if (static_cast<int>(geometry.group.size()) != total) {
     throw std::invalid_argument(
         fmt::format("RayCaster: {} groups given for {} primitives", geometry.group.size(), total));
@@ -455,14 +468,17 @@ RayCaster::RayCaster(const CastGeometry& geometry) : impl_(std::make_unique<Impl
 
   Eigen::AlignedBox3d box;
   for (const auto& v : geometry.vertices) box.extend(v);
-  for (const auto& s : geometry.spheres) box.extend(s.center);
+  for (const auto& s : geometry.spheres) {
+    box.extend(s.center - Eigen::Vector3d::Constant(s.radius));
+    box.extend(s.center + Eigen::Vector3d::Constant(s.radius));
+  }
   if (!box.isEmpty()) m.center = box.center();
   constexpr double roundings = 4.0;  // origin, vertices and the intersection's own arithmetic
   if (!box.isEmpty()) {
     m.rounding = roundings * 0.5 * box.diagonal().norm() * std::numeric_limits<float>::epsilon();
   }
 
-  m.is_touched = touched_groups(geometry, m.rounding);
+  m.planes = std::make_unique<CoplanarGroups>(geometry, m.rounding);
 
   // One thread builds, whatever the user's limit: the order inside Embree's leaves, and with it
   // which of two primitives wins on a shared edge, must not depend on it.
@@ -482,22 +498,8 @@ RayCaster::RayCaster(const CastGeometry& geometry) : impl_(std::make_unique<Impl
 #endif
   rtcSetSceneFlags(m.scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | filter_flag));
   rtcSetSceneBuildQuality(m.scene, RTC_BUILD_QUALITY_MEDIUM);
-  m.add_polygons(geometry, geometry.triangles, triangles);
-  m.add_polygons(geometry, geometry.quads, quads);
-  if (m.count[spheres] > 0) {
-    for (Sphere sphere : geometry.spheres) {
-      sphere.center -= m.center;
-      m.sphere_set.spheres.push_back(sphere);
-    }
-    m.sphere_set.group.assign(m.group.begin() + m.first[spheres], m.group.end());
-    const RTCGeometry user = rtcNewGeometry(m.device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(user, static_cast<unsigned>(m.count[spheres]));
-    rtcSetGeometryUserData(user, &m.sphere_set);
-    rtcSetGeometryBoundsFunction(user, sphere_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(user, sphere_intersect);
-    rtcSetGeometryOccludedFunction(user, sphere_occluded);
-    m.attach(user, spheres);
-  }
+  m.add_polygons(geometry);
+  m.add_spheres(geometry);
   rtcCommitScene(m.scene);
   m.check();
 }
@@ -508,9 +510,7 @@ RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 
 void RayCaster::closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const {
   assert(rays.size() == hits.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    hits[i] = impl_->closest(impl_->recentred(rays[i]), -1);
-  }
+  impl_->closest_hits(rays, hits);
 }
 
 void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
@@ -522,13 +522,13 @@ void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> bloc
 }
 
 int RayCaster::triangle_count() const {
-  return impl_->count[triangles];
+  return impl_->triangles;
 }
 int RayCaster::quad_count() const {
-  return impl_->count[quads];
+  return impl_->quads;
 }
 int RayCaster::sphere_count() const {
-  return impl_->count[spheres];
+  return static_cast<int>(impl_->sphere_set.spheres.size());
 }
 
 }  // namespace lightwell

@@ -14,7 +14,7 @@ namespace lightwell {
 /// What a RayCaster is built over. Primitives are numbered triangles first, then quads, then
 /// spheres. A *group* joins primitives that cannot see each other because they lie in one plane (a
 /// facet), or are one sphere; a ray never meets the group it starts from, whatever rounding does to
-/// its origin.
+/// its origin, nor a group that lies in the same plane at that place and faces the same way.
 struct CastGeometry {
   std::vector<Eigen::Vector3d> vertices{};
   std::vector<std::array<int, 3>> triangles{};

@@ -20,7 +20,7 @@ void for_each_sample(int n, Visit&& visit) {
   }
 }
 
-TEST(PatchPoint, IsUniformByAreaOnAnyPatch) {
+TEST(PatchSampler, IsUniformByAreaOnAnyPatch) {
   Scene scene = empty_scene();
   add_polygon(scene, "kite", {{0, 0, 1}, {2, 0.3, 1}, {2.5, 2, 1}, {0.2, 1.1, 1}}, {}, 1);
   add_polygon(scene, "triangle", {{5, 0, 0}, {7, 0.3, 0.5}, {5.5, 2, 1}}, {}, 1);
@@ -41,8 +41,9 @@ TEST(PatchPoint, IsUniformByAreaOnAnyPatch) {
     centroid /= mesh.area[p];
     Vector3d mean = Vector3d::Zero();
     std::vector<double> share(mesh.element_count(), 0.0);
+    const PatchSampler sampler(mesh, p);
     for_each_sample(n, [&](double u, double v) {
-      const PatchPoint point = patch_point(mesh, p, u, v);
+      const PatchPoint point = sampler.point(u, v);
       ASSERT_EQ(mesh.patch[point.element], p);
       share[point.element] += 1.0 / (n * n);
       mean += point.position / (n * n);
@@ -55,7 +56,7 @@ TEST(PatchPoint, IsUniformByAreaOnAnyPatch) {
   }
 }
 
-TEST(PatchPoint, OnASphereLiesOnTheSphereAndIsUniform) {
+TEST(PatchSampler, OnASphereLiesOnTheSphereAndIsUniform) {
   Scene scene = empty_scene();
   const Sphere ball{.center = {1, 2, 3}, .radius = 0.7};
   add_sphere(scene, "ball", ball);
@@ -65,8 +66,9 @@ TEST(PatchPoint, OnASphereLiesOnTheSphereAndIsUniform) {
   const int n = 60;
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const bool inner = mesh.is_back[p] != 0;
+    const PatchSampler sampler(mesh, p);
     for_each_sample(n, [&](double u, double v) {
-      const PatchPoint point = patch_point(mesh, p, u, v);
+      const PatchPoint point = sampler.point(u, v);
       const Vector3d d = (point.position - ball.center) / ball.radius;
       ASSERT_NEAR(d.norm(), 1.0, 1e-12);
       ASSERT_NEAR(point.normal.dot(d), inner ? -1.0 : 1.0, 1e-12);
@@ -80,13 +82,14 @@ TEST(PatchPoint, OnASphereLiesOnTheSphereAndIsUniform) {
   EXPECT_NEAR(mean_z2, 1.0 / 3.0, 1e-3);
 }
 
-TEST(PatchPoint, CoversTheEndsOfItsRange) {
+TEST(PatchSampler, CoversTheEndsOfItsRange) {
   const PatchMesh mesh = build_patches(cornell_box(), {.max_patch_size = 0.2});
   const double last = std::nextafter(1.0, 0.0);
   for (int p = 0; p < mesh.patch_count(); ++p) {
+    const PatchSampler sampler(mesh, p);
     for (double u : {0.0, 0.25, last}) {
       for (double v : {0.0, last}) {
-        const PatchPoint point = patch_point(mesh, p, u, v);
+        const PatchPoint point = sampler.point(u, v);
         ASSERT_EQ(mesh.patch[point.element], p);
         ASSERT_TRUE(point.position.allFinite());
       }

@@ -83,6 +83,15 @@ double rms_error(int n) {
   return std::sqrt(squares / 64);
 }
 
+TEST(SobolPoints, TogetherOrOneByOneAreTheSame) {
+  const SobolPoints sobol(64);
+  std::vector<Eigen::Array4f> together(20);
+  sobol.points(30, 99, together);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_TRUE((together[static_cast<std::size_t>(i)] == sobol.point(30 + i, 99)).all());
+  }
+}
+
 TEST(SobolPoints, ErrorFallsFasterThanOneOverRootN) {
   // 16 times the points: independent samples would gain 4; a scrambled net of a smooth function has
   // error O(N^-3/2) up to logarithms (Owen 1997), 64. Twice the former is required.

@@ -1,0 +1,103 @@
+#include "scene/coplanar_groups.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lightwell {
+
+struct CoplanarGroups::Plane {
+  int group = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // first component that is not 0 is positive
+  double distance = 0.0;
+  Eigen::AlignedBox3d box{};
+};
+
+// In order of distance.
+std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry& geometry) {
+  int groups = 0;
+  for (const int g : geometry.group) groups = std::max(groups, g + 1);
+  std::vector<Plane> planes(groups);
+  const auto add = [&](int group, const auto& polygon) {
+    Plane& plane = planes[group];
+    for (const int v : polygon) plane.box.extend(geometry.vertices[v]);
+    if (!plane.normal.isZero()) return;
+    const Eigen::Vector3d& a = geometry.vertices[polygon[0]];
+    const Eigen::Vector3d n =
+        (geometry.vertices[polygon[1]] - a).cross(geometry.vertices[polygon[2]] - a);
+    if (!(n.norm() > 0.0)) return;
+    plane.group = group;
+    plane.normal = n.normalized();
+    constexpr double rounding = 1e-9;
+    for (int c = 0; c < 3; ++c) {
+      if (std::abs(plane.normal[c]) < rounding) continue;
+      if (plane.normal[c] < 0.0) plane.normal = -plane.normal;
+      break;
+    }
+    plane.distance = plane.normal.dot(a);
+  };
+  const int triangle_count = static_cast<int>(geometry.triangles.size());
+  for (int i = 0; i < triangle_count; ++i) add(geometry.group[i], geometry.triangles[i]);
+  for (std::size_t i = 0; i < geometry.quads.size(); ++i) {
+    add(geometry.group[triangle_count + static_cast<int>(i)], geometry.quads[i]);
+  }
+  std::erase_if(planes, [](const Plane& p) { return p.normal.isZero(); });
+  std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.group < b.group;
+  });
+  return planes;
+}
+
+CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
+  std::vector<Plane> planes = planes_of(geometry);
+  for (Plane& plane : planes) {
+    // Boxes of flat things are flat: what rounding sets apart must meet. And a ray that starts a
+    // little off the plane must not be taken across by what the ray caster allows for rounding.
+    constexpr double margin = 4.0;
+    plane.box.min().array() -= margin * tolerance;
+    plane.box.max().array() += margin * tolerance;
+    if (plane.group >= static_cast<int>(groups_.size())) groups_.resize(plane.group + 1);
+    groups_[plane.group].normal = plane.normal;
+  }
+  for (std::size_t begin = 0, end = 0; begin < planes.size(); begin = end) {
+    end = begin + 1;
+    while (end < planes.size() && planes[end].distance - planes[end - 1].distance <= tolerance) {
+      ++end;
+    }
+    add_overlaps({planes.data() + begin, end - begin});
+  }
+}
+
+// Sweeps along x over planes at one distance from the origin.
+void CoplanarGroups::add_overlaps(std::span<CoplanarGroups::Plane> planes) {
+  std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) {
+    const double x = a.box.min().x(), y = b.box.min().x();
+    return x != y ? x < y : a.group < b.group;
+  });
+  constexpr double parallel = 1.0 - 1e-9;
+  // Where very many lie together all of them count as covered: that only costs their rays time.
+  std::size_t pairs_left = 1000 * planes.size();
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const Plane& a = planes[i];
+    for (std::size_t j = i + 1; j < planes.size(); ++j) {
+      const Plane& b = planes[j];
+      if (b.box.min().x() > a.box.max().x()) break;
+      if (pairs_left-- == 0) {
+        for (const Plane& plane : planes) groups_[plane.group].overlaps = {plane.box};
+        return;
+      }
+      if (a.normal.dot(b.normal) < parallel || !a.box.intersects(b.box)) continue;
+      for (const int g : {a.group, b.group}) {
+        groups_[g].overlaps.push_back(a.box.intersection(b.box));
+      }
+    }
+  }
+}
+
+bool CoplanarGroups::may_be_covered(int group, const Eigen::Vector3d& point) const {
+  if (!is_known(group)) return false;
+  const auto& overlaps = groups_[group].overlaps;
+  return std::any_of(overlaps.begin(), overlaps.end(),
+                     [&](const Eigen::AlignedBox3d& box) { return box.contains(point); });
+}
+
+}  // namespace lightwell

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lightwell {
+
+/// A place on a patch and a direction from it.
+struct HemispherePoint {
+  float u, v;     ///< in [0,1)^2
+  float x, y, z;  ///< unit, about +z with density cos(theta)/pi
+};
+
+/// Ready-made sets of places and directions, each an Owen-scrambled 4-D Sobol sequence of its own.
+/// Whoever casts from very many patches draws one for each and makes it its own by a shift of the
+/// places (Cranley & Patterson 1976) and a turn of the directions about the normal, which costs a
+/// fraction of making the points.
+class HemisphereSets {
+ public:
+  /// Sets of `count` >= 1 points.
+  explicit HemisphereSets(int count);
+  int count() const { return count_; }
+
+  class Draw {
+   public:
+    /// Points first, first + 1, ..., as they are in the set.
+    std::span<const HemispherePoint> points(int first, int size) const {
+      return points_.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(size));
+    }
+    /// The place of a point, shifted; in [0,1)^2.
+    Eigen::Vector2d place(const HemispherePoint& point) const {
+      const double u = point.u + shift_.x(), v = point.v + shift_.y();
+      return {u < 1.0 ? u : u - 1.0, v < 1.0 ? v : v - 1.0};
+    }
+    /// Columns: the frame about the unit vector `normal` in which the points' directions are meant.
+    Eigen::Matrix3d frame(const Eigen::Vector3d& normal) const;
+
+   private:
+    friend class HemisphereSets;
+    std::span<const HemispherePoint> points_{};
+    Eigen::Vector2d shift_ = Eigen::Vector2d::Zero();
+    double cosine_ = 1.0, sine_ = 0.0;  // of the turn
+  };
+  /// The same key draws the same set, shift and turn.
+  Draw draw(std::uint64_t key) const;
+
+ private:
+  int count_;
+  int sets_;
+  std::vector<HemispherePoint> points_;  // set by set
+};
+
+}  // namespace lightwell
