@@ -232,7 +232,7 @@ void RenderArguments::add_to(CLI::App& command) {
       .add_option("--shadow-rays", shadow_rays,
                   "most shadow rays per emitter and point (default 64)")
       ->type_name("N")
-      ->check(whole_number(1, 65536))
+      ->check(whole_number(1, most_shadow_rays))
       ->group(group);
 }
 

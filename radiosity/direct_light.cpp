@@ -9,7 +9,6 @@ namespace lightwell {
 namespace {
 
 constexpr double largest_direct_area = 0.25;  // share of the scene's area that counts as "small"
-constexpr int max_shadow_rays = 256;
 
 struct EmittingFacet {
   int facet = 0;
@@ -110,7 +109,7 @@ ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
 }  // namespace
 
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh)
-    : bands_(scene.bands.count()), samples_(max_shadow_rays) {
+    : bands_(scene.bands.count()), samples_(most_shadow_rays) {
   const std::vector<FacetRef> facets = scene_facets(scene);
   owned_.assign(facets.size(), 0);
   double scene_area = 0.0;
@@ -169,11 +168,11 @@ double DirectLight::visible_share(const Emitter& emitter, const ElementCaster& c
                                   const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                   int facet, std::uint64_t key,
                                   const ShadowOptions& options) const {
-  const int max_rays = std::clamp(options.max_rays, 1, max_shadow_rays);
+  const int max_rays = std::clamp(options.max_rays, 1, most_shadow_rays);
   const int min_rays = std::clamp(options.min_rays, 1, max_rays);
-  std::array<Ray, max_shadow_rays> rays;
-  std::array<double, max_shadow_rays> weights;
-  std::array<std::uint8_t, max_shadow_rays> blocked;
+  std::array<Ray, most_shadow_rays> rays;
+  std::array<double, most_shadow_rays> weights;
+  std::array<std::uint8_t, most_shadow_rays> blocked;
   double seen = 0.0, all = 0.0;
   for (int begin = 0, end = min_rays;;) {
     int count = 0;

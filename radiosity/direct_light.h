@@ -26,11 +26,13 @@ struct Emitter {
   std::vector<double> area_cdf{};  ///< running share of the area, one per triangle, last is 1
 };
 
+constexpr int most_shadow_rays = 256;
+
 /// Shadow rays per emitter and point: `min_rays` stratified ones first; where they disagree,
 /// `max_rays`.
 struct ShadowOptions {
   int min_rays = 16;
-  int max_rays = 64;  ///< at most 256
+  int max_rays = 64;  ///< 1 to most_shadow_rays
 };
 
 /// Light straight from the scene's emitters. Emitters are taken in order of falling exitance, all

@@ -73,9 +73,6 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   }
   const auto joined = smooth_surfaces(caster.mesh(), static_cast<int>(facets_.size()));
   for (std::size_t f = 0; f < facets_.size(); ++f) facets_[f].smooth_surface = joined[f];
-  // Sixteen float roundings of the scene's size.
-  constexpr double contact_share = 1e-6;
-  contact_offset_ = contact_share * scene_bounds(scene).diagonal();
 }
 
 Sight RayTree::look(const Ray& ray, std::uint64_t key, float effort) const {
@@ -140,14 +137,8 @@ void RayTree::grow(const Branch& parent, int child, const Eigen::Vector3d& direc
     ++walk.sight.depth_cut;
     return;
   }
-  // A facet may lie on another: glass on a table, a mirror on a wall. A hair before the surface,
-  // which the ray itself cannot meet again, the other one is still ahead of what is refracted, and
-  // behind what is reflected.
-  const bool is_flat = !facets_[hit.facet].is_sphere;
-  const Eigen::Vector3d offset = (is_flat ? contact_offset_ : 0.0) * at.normal;
-  branch.ray = {.origin = at.position + offset,
-                .direction = direction.normalized(),
-                .origin_group = hit.facet};
+  branch.ray = {
+      .origin = at.position, .direction = direction.normalized(), .origin_group = hit.facet};
   follow(branch, walk);
 }
 

@@ -82,7 +82,6 @@ class RayTree {
   const RenderOptions& options_;
   BandArray irradiance_{};  ///< direct + indirect at vertices, for Pass::interpolate
   std::vector<FacetShape> facets_{};
-  double contact_offset_ = 0.0;
 };
 
 }  // namespace lightwell

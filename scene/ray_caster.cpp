@@ -247,15 +247,16 @@ struct RayCaster::Impl {
     attach(user, spheres_id);
   }
 
-  // A ray that starts on a group begins off its plane by what rounding may move it, and a hair on,
-  // so that it rarely meets that plane and needs a second query; unless another surface may lie on
-  // the plane there and must be met.
+  // A ray that starts on a group begins past its plane by what rounding may move it, so that it
+  // rarely meets that plane and needs a second query. Where another surface may lie on the plane it
+  // begins as far before it, so that the other, the table under a block of glass, is still ahead.
   void set_ray(RTCRay& r, const Ray& ray, unsigned id) const {
     Eigen::Vector3d origin = ray.origin - center;
     r.tnear = 0.0f;
-    if (ray.origin_group >= 0 && !starts_covered(ray)) {
+    if (ray.origin_group >= 0) {
       const Eigen::Vector3d& normal = planes->normal(ray.origin_group);
-      origin += std::copysign(rounding, normal.dot(ray.direction)) * normal;
+      const double past = starts_covered(ray) ? -rounding : rounding;
+      origin += std::copysign(1.0, normal.dot(ray.direction)) * past * normal;
       r.tnear = std::numeric_limits<float>::min();
     }
     r.org_x = static_cast<float>(origin.x());
@@ -287,13 +288,13 @@ struct RayCaster::Impl {
   // Another surface that lies on the ray's own, both facing one way: which is on top cannot be
   // told, so neither keeps the other in the dark. (Face to face they do: the floor under a block.)
   bool lies_alike(const RTCHit& hit, float t, const Ray& ray) const {
-    const double squared_length = ray.direction.squaredNorm();
-    const double reach = 2.0 * rounding;
-    if (t * t * squared_length > reach * reach || hit.geomID == spheres_id) return false;
+    if (hit.geomID == spheres_id) return false;
+    const Eigen::Vector3d& own = planes->normal(ray.origin_group);
+    const double travelled_off_plane = std::abs(t * own.dot(ray.direction));
+    if (own.isZero() || travelled_off_plane > 4.0 * rounding) return false;
     const Eigen::Vector3d facing(hit.Ng_x, hit.Ng_y, hit.Ng_z);
     if (facing.dot(ray.direction) <= 0.0) return false;
     constexpr double parallel = 1.0 - 1e-9;
-    const Eigen::Vector3d& own = planes->normal(ray.origin_group);
     return std::abs(own.dot(planes->normal(group[primitive(hit)]))) > parallel;
   }
 
