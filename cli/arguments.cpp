@@ -138,6 +138,13 @@ const Camera& choose_camera(const Scene& scene, const std::string& name) {
                                did_you_mean(name, names)));
 }
 
+void add_solved_scene(CLI::App& command, std::string& scene, std::string& solution) {
+  command.add_option("scene", scene, "the scene file the solution was made from")
+      ->required()
+      ->type_name("SCENE");
+  command.add_option("solution", solution, "the solution, .vtp")->required()->type_name("SOLUTION");
+}
+
 void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size) {
   command
       .add_option_function<std::string>(

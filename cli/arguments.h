@@ -39,6 +39,9 @@ struct RenderArguments {
   Camera sized(Camera camera) const;
 };
 
+/// SCENE and SOLUTION, both required.
+void add_solved_scene(CLI::App& command, std::string& scene, std::string& solution);
+
 /// Adds --size WxH.
 void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size);
 

@@ -55,12 +55,7 @@ Action add_probe(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.description(
       "Irradiance (W/m2 per band) and illuminance (lx) at points of a solved scene.");
-  command.add_option("scene", arguments->scene, "the scene file the solution was made from")
-      ->required()
-      ->type_name("SCENE");
-  command.add_option("solution", arguments->solution, "the solution, .vtp")
-      ->required()
-      ->type_name("SOLUTION");
+  add_solved_scene(command, arguments->scene, arguments->solution);
   command
       .add_option("--points", arguments->points,
                   "CSV with columns x,y,z,nx,ny,nz in the scene file's unit")

@@ -38,12 +38,7 @@ Action add_render(CLI::App& command) {
   command.description(
       "Renders a picture of a solved scene: diffuse light from the solution,\n"
       "mirrors and glass by ray tracing.");
-  command.add_option("scene", arguments->scene, "the scene file the solution was made from")
-      ->required()
-      ->type_name("SCENE");
-  command.add_option("solution", arguments->solution, "the solution, .vtp")
-      ->required()
-      ->type_name("SOLUTION");
+  add_solved_scene(command, arguments->scene, arguments->solution);
   command
       .add_option("-o,--output", arguments->outputs, "the picture, .exr or .png; may be repeated")
       ->required()

@@ -4,10 +4,11 @@
 #include <fmt/ranges.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
 
-#include "raytrace/atomic_file.h"
+#include "scene/atomic_file.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -80,7 +81,9 @@ std::string Report::for_people() const {
     const Json& energy = facts_["energy"];
     const double emitted = energy["emitted"];
     const auto percent = [&](const char* key) {
-      return emitted > 0.0 ? 100.0 * energy[key].get<double>() / emitted : 0.0;
+      const double share = emitted > 0.0 ? 100.0 * energy[key].get<double>() / emitted : 0.0;
+      constexpr double printed_as_zero = 5e-5;
+      return std::abs(share) < printed_as_zero ? 0.0 : share;  // and not as -0
     };
     line("energy",
          fmt::format("{:.6g} W emitted = {:.4f} % absorbed + {:.4f} % escaped + {:.4f} % "

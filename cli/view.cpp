@@ -62,12 +62,7 @@ Action add_view(CLI::App& command) {
   command.description(
       "Walk through a solved scene in a window: W A S D or arrows to walk, the mouse to look\n"
       "around, 1 to 9 for the scene's cameras, H for all keys, Escape to leave.");
-  command.add_option("scene", arguments->scene, "the scene file the solution was made from")
-      ->required()
-      ->type_name("SCENE");
-  command.add_option("solution", arguments->solution, "the solution, .vtp")
-      ->required()
-      ->type_name("SOLUTION");
+  add_solved_scene(command, arguments->scene, arguments->solution);
   command
       .add_option("--offscreen", arguments->offscreen, "draw into this .png instead of a window")
       ->type_name("FILE")

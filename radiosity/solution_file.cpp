@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 #include <vtkAOSDataArrayTemplate.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -23,6 +22,7 @@
 
 #include "radiosity/solution_seal.h"
 #include "radiosity/vtk_messages.h"
+#include "scene/atomic_file.h"
 
 namespace lightwell {
 namespace {
@@ -262,33 +262,6 @@ std::string summary(const SolvedScene& solved) {
       fmt::format("cannot write the solution '{}': {}", path.string(), reason));
 }
 
-/// A file beside `path` that takes its name once it is complete, and is removed if it never is.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::filesystem::path& path)
-      : path_(path), name_(path.string() + fmt::format(".{}.part", ::getpid())) {
-    // VTK does not say why a file cannot be opened.
-    if (!std::ofstream(name_, std::ios::binary)) fail_write(path_, std::strerror(errno));
-  }
-  ~TemporaryFile() {
-    std::error_code ignored;
-    if (!name_.empty()) std::filesystem::remove(name_, ignored);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  const std::filesystem::path& name() const { return name_; }
-  void rename() {
-    std::error_code error;
-    std::filesystem::rename(name_, path_, error);
-    if (error) fail_write(path_, error.message());
-    name_.clear();
-  }
-
- private:
-  std::filesystem::path path_, name_;
-};
-
 }  // namespace
 
 void write_solution(const std::filesystem::path& path, const SolvedScene& solved) {
@@ -299,11 +272,13 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
   add_patches(poly->GetFieldData(), solved.mesh, solved.solution);
   add_record(poly->GetFieldData(), solved.solution);
 
-  TemporaryFile file(path);
+  AtomicFile file(path);
+  // VTK does not say why a file cannot be opened.
+  if (!std::ofstream(file.temporary(), std::ios::binary)) fail_write(path, std::strerror(errno));
   const VtkMessages messages;
   vtkNew<SealedWriter> writer;
   writer->set_preamble(solution_preamble(summary(solved)));
-  writer->SetFileName(file.name().c_str());
+  writer->SetFileName(file.temporary().c_str());
   writer->SetInputData(poly);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
@@ -312,8 +287,8 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
     const bool full = writer->GetErrorCode() == vtkErrorCode::OutOfDiskSpaceError;
     fail_write(path, std::strerror(full ? ENOSPC : EIO));
   }
-  seal_solution(file.name());
-  file.rename();
+  seal_solution(file.temporary());
+  file.commit();
 }
 
 void check_matches(const Scene& scene, const RadiositySolution& solution) {

@@ -14,8 +14,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "raytrace/atomic_file.h"
 #include "raytrace/image.h"
+#include "scene/atomic_file.h"
 #include "scene/errors.h"
 
 namespace lightwell {

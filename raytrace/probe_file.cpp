@@ -8,8 +8,8 @@
 #include <optional>
 #include <string_view>
 
-#include "raytrace/atomic_file.h"
 #include "raytrace/probe.h"
+#include "scene/atomic_file.h"
 #include "scene/errors.h"
 
 namespace lightwell {

@@ -1,4 +1,4 @@
-#include "raytrace/atomic_file.h"
+#include "scene/atomic_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
