@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "radiosity/estimated_row.h"
+#include "radiosity/light_path.h"
+#include "scene/progress.h"
+
+namespace lightwell {
+
+struct HemicubeOptions {
+  /// Cells along an edge of the top, even, 2 to 4096; time and memory grow with its square. At 256
+  /// the aliasing of a polygon that is not cut off by others is below 1e-3 of the hemisphere.
+  int resolution = 256;
+  /// How a cell finds what it sees. They agree but for cells at edges, and on spheres: rays meet
+  /// the exact sphere, scan conversion its elements.
+  enum class BackEnd {
+    scan_conversion,  ///< polygons are painted into a depth buffer: tens of times faster
+    rays              ///< a ray through each cell's centre
+  };
+  BackEnd back_end = BackEnd::scan_conversion;
+};
+
+/// Form factors by the hemicube (Cohen & Greenberg 1985): each patch looks around from one place,
+/// its centroid, and a cell's delta form factor goes to the patch seen through the cell's centre.
+/// Where that is a mirror or clear glass, a ray carries it on (Sillion & Puech 1989). One row per
+/// patch, closed but for rounding; those of patches that do not exchange light diffusely are empty.
+///
+/// trust = 1 / A_i: what is seen from one place is the truer the smaller the patch is, so of the
+/// two estimates of an exchange area the smaller patch's counts for more. The same bits for any
+/// number of threads. Throws std::invalid_argument for a resolution out of range, and Interrupted.
+std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const LightPaths& paths,
+                                        const HemicubeOptions& options = {},
+                                        const Progress& progress = {});
+
+}  // namespace lightwell

@@ -1,0 +1,299 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mesh/sphere_grid.h"
+#include "radiosity/hemicube_view.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+// Planes that bound the five faces' pyramids, as bits of "the vertex is beyond". A polygon all of
+// whose vertices are beyond one bounding plane of a face does not show on it.
+enum Beyond : std::uint16_t {
+  below_horizon = 1,
+  x_above_z = 1 << 1,
+  minus_x_above_z = 1 << 2,
+  y_above_z = 1 << 3,
+  minus_y_above_z = 1 << 4,
+  z_above_x = 1 << 5,
+  z_above_minus_x = 1 << 6,
+  z_above_y = 1 << 7,
+  z_above_minus_y = 1 << 8,
+  x_above_y = 1 << 9,
+  y_above_x = 1 << 10,
+  sum_positive = 1 << 11,  // x above -y, and y above -x
+  sum_negative = 1 << 12,
+};
+constexpr std::array<std::uint16_t, HemicubeCells::face_count> beyond_face = {
+    x_above_z | minus_x_above_z | y_above_z | minus_y_above_z,
+    below_horizon | z_above_x | y_above_x | sum_negative,
+    below_horizon | z_above_minus_x | x_above_y | sum_positive,
+    below_horizon | z_above_y | x_above_y | sum_negative,
+    below_horizon | z_above_minus_y | y_above_x | sum_positive};
+
+std::uint16_t beyond(const Vector3d& p) {
+  const double x = p.x(), y = p.y(), z = p.z();
+  const auto bit = [](bool is, unsigned mask) { return is ? mask : 0u; };
+  return static_cast<std::uint16_t>(
+      bit(!(z > 0), below_horizon) | bit(x > z, x_above_z) | bit(-x > z, minus_x_above_z) |
+      bit(y > z, y_above_z) | bit(-y > z, minus_y_above_z) | bit(z > x, z_above_x) |
+      bit(z > -x, z_above_minus_x) | bit(z > y, z_above_y) | bit(z > -y, z_above_minus_y) |
+      bit(x > y, x_above_y) | bit(y > x, y_above_x) | bit(x + y > 0, sum_positive) |
+      bit(x + y < 0, sum_negative));
+}
+
+// Normal of the plane through the eye and an edge. Its negative, to the last bit, for the edge the
+// other way round: neighbours must agree on which side a cell lies, whatever the compiler fuses.
+Vector3d edge_plane(const Vector3d& from, const Vector3d& to) {
+  const bool in_order =
+      std::lexicographical_compare(from.data(), from.data() + 3, to.data(), to.data() + 3);
+  if (in_order) return from.cross(to);
+  return -to.cross(from);
+}
+
+// The smallest whole number that is not less, held within [0, count].
+int first_cell_from(double x, int count) {
+  x = std::min(std::max(x, 0.0), static_cast<double>(count));
+  const int whole = static_cast<int>(x);
+  return whole < x ? whole + 1 : whole;
+}
+
+// Nearer by less than this counts as equally near: surfaces that coincide then show as one, the
+// first of them, instead of a speckle of rounding errors.
+constexpr float nearer = 1.0f + 1e-6f;
+
+void paint_span(float* inverse_distance, int* items, int count, float first, float step, int item) {
+  for (int i = 0; i < count; ++i) {
+    const float here = first + step * static_cast<float>(i);
+    const bool shows = here > inverse_distance[i] * nearer;
+    inverse_distance[i] = shows ? here : inverse_distance[i];
+    items[i] = shows ? item : items[i];
+  }
+}
+
+}  // namespace
+
+// Paints one hemicube.
+class HemicubeScan::Painter {
+ public:
+  Painter(const HemicubeScan& scan, const HemicubeEye& eye, const HemicubeCells& cells,
+          Scratch& scratch, std::span<int> items)
+      : scan_(scan), eye_(eye), cells_(cells), scratch_(scratch), items_(items) {}
+
+  void paint_group(const Group& group) {
+    if (group.facet == eye_.facet && !eye_.inside) return;
+    const double height = eye_.frame.col(2).dot(group.center - eye_.position);
+    if (height < -group.radius) return;
+    const Eigen::Matrix3d to_frame = eye_.frame.transpose();
+    for (int v = group.first_vertex; v < group.last_vertex; ++v) {
+      scratch_.vertex[v] = to_frame * (scan_.vertices_[v] - eye_.position);
+      scratch_.outside[v] = beyond(scratch_.vertex[v]);
+    }
+    for (int p = group.first_polygon; p < group.last_polygon; ++p) paint(scan_.polygons_[p]);
+  }
+
+ private:
+  void paint(const Polygon& polygon) {
+    std::uint16_t outside = 0xffff;
+    for (int v : polygon.vertex) outside &= scratch_.outside[v];
+    if (polygon.element == eye_.element || polygon.behind == eye_.element) return;
+    const Vector3d normal = eye_.frame.transpose() * polygon.normal;
+    const double distance = normal.dot(scratch_.vertex[polygon.vertex[0]]);
+    constexpr double parallel = 1.0 - 1e-9;
+    if (std::abs(distance) <= scan_.coplanar_ && std::abs(normal.z()) > parallel) {
+      paint_coplanar(polygon, normal.z());
+      return;
+    }
+    if ((outside & below_horizon) != 0 || distance == 0.0) return;
+    // The pyramid's inside is where d . edge plane has the sign that its own axis gives it.
+    const double inwards = distance < 0.0 ? -1.0 : 1.0;
+    std::array<Vector3d, 4> planes;
+    for (int k = 0; k < polygon.corner_count; ++k) {
+      const int next = k + 1 < polygon.corner_count ? k + 1 : 0;
+      planes[k] = inwards * edge_plane(scratch_.vertex[polygon.vertex[k]],
+                                       scratch_.vertex[polygon.vertex[next]]);
+    }
+    const int item = distance < 0.0 ? polygon.element : polygon.behind;
+    for (int f = 0; f < HemicubeCells::face_count; ++f) {
+      if ((outside & beyond_face[f]) != 0) continue;
+      paint_face(f, polygon, planes, normal / distance, item);
+    }
+  }
+
+  // Another surface on the eye's own plane. Face to face with it, it is all the eye sees (the floor
+  // under a block); facing the same way, which is on top cannot be told, and neither hides from
+  // the other: the rule of RayCaster.
+  void paint_coplanar(const Polygon& polygon, double normal_z) {
+    if (normal_z > 0.0) return;
+    for (int k = 0; k < polygon.corner_count; ++k) {
+      const int next = k + 1 < polygon.corner_count ? k + 1 : 0;
+      const Vector3d& a = scratch_.vertex[polygon.vertex[k]];
+      const Vector3d& b = scratch_.vertex[polygon.vertex[next]];
+      if (!(a.x() * b.y() - a.y() * b.x() <= 0.0)) return;  // clockwise from above the eye
+    }
+    std::fill(items_.begin(), items_.end(), polygon.element);
+    std::fill(scratch_.inverse_distance.begin(), scratch_.inverse_distance.end(),
+              std::numeric_limits<float>::infinity());
+  }
+
+  // The rows that the polygon's corners span; all, if one of them is beside or behind the eye.
+  std::array<int, 2> rows(int f, const Polygon& polygon) const {
+    const HemicubeCells::Face& face = HemicubeCells::face(f);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (int v : polygon.vertex) {
+      const Vector3d& p = scratch_.vertex[v];
+      const double outwards = face.outward_sign * p[face.outward_axis];
+      if (!(outwards > 0.0)) return {0, cells_.rows(f)};
+      low = std::min(low, p[face.row_axis] / outwards);
+      high = std::max(high, p[face.row_axis] / outwards);
+    }
+    // A row to spare for the roundings of the division.
+    const auto row = [&](double at) { return (at - cells_.row_offset(f)) / cells_.step(); };
+    return {first_cell_from(row(low) - 1.0, cells_.rows(f)),
+            first_cell_from(row(high) + 1.0, cells_.rows(f))};
+  }
+
+  // Where an edge crosses the rows: column = start + slope * row. A cell is left of it or right of
+  // it; one whose centre is on it belongs to the polygon on the right, in an edge along the rows to
+  // the one on the higher side.
+  struct Crossing {
+    double start, slope;
+  };
+
+  void paint_face(int f, const Polygon& polygon, const std::array<Vector3d, 4>& planes,
+                  const Vector3d& normal_over_distance, int item) {
+    const HemicubeCells::Face& face = HemicubeCells::face(f);
+    auto [first_row, last_row] = rows(f, polygon);
+    std::array<Crossing, 4> left, right;
+    int lefts = 0, rights = 0;
+    const double step = cells_.step(), v0 = cells_.row_offset(f), u0 = cells_.column_offset();
+    for (int k = 0; k < polygon.corner_count; ++k) {
+      const double a = planes[k][face.column_axis], b = planes[k][face.row_axis];
+      const double c = face.outward_sign * planes[k][face.outward_axis];
+      constexpr double along_rows =
+          1e-200;  // its crossings would overflow, far beyond every column
+      if (std::abs(a) < along_rows) {
+        const auto inside = [&](int row) {
+          const double e = b * (v0 + step * row) + c;
+          return e > 0.0 || (e == 0.0 && (b > 0.0 || b == 0.0));
+        };
+        while (first_row < last_row && !inside(first_row)) ++first_row;
+        while (first_row < last_row && !inside(last_row - 1)) --last_row;
+        continue;
+      }
+      const Crossing crossing{(-(b * v0 + c) / a - u0) / step, -b / a};
+      (a > 0.0 ? left[lefts++] : right[rights++]) = crossing;
+    }
+    const int n = cells_.resolution();
+    const double across = normal_over_distance[face.column_axis] * step;
+    const double along = normal_over_distance[face.row_axis] * step;
+    const double start = normal_over_distance[face.column_axis] * u0 +
+                         normal_over_distance[face.row_axis] * v0 +
+                         face.outward_sign * normal_over_distance[face.outward_axis];
+    for (int row = first_row; row < last_row; ++row) {
+      double from = 0.0, to = n;
+      for (int k = 0; k < lefts; ++k) from = std::max(from, left[k].start + left[k].slope * row);
+      for (int k = 0; k < rights; ++k) to = std::min(to, right[k].start + right[k].slope * row);
+      const int first = first_cell_from(from, n), last = first_cell_from(to, n);
+      if (first >= last) continue;
+      const int at = cells_.first_cell(f) + row * n + first;
+      paint_span(scratch_.inverse_distance.data() + at, items_.data() + at, last - first,
+                 static_cast<float>(start + along * row + across * first),
+                 static_cast<float>(across), item);
+    }
+  }
+
+  const HemicubeScan& scan_;
+  const HemicubeEye& eye_;
+  const HemicubeCells& cells_;
+  Scratch& scratch_;
+  std::span<int> items_;
+};
+
+HemicubeScan::HemicubeScan(const PatchMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (int v = 0; v < mesh.vertex_count(); ++v) box.extend(mesh.position(v));
+  // As RayCaster: what float coordinates of the scene cannot tell apart.
+  constexpr double roundings = 16.0;
+  if (!box.isEmpty()) {
+    coplanar_ = roundings * 0.5 * box.diagonal().norm() * std::numeric_limits<float>::epsilon();
+  }
+  constexpr int group_size = 32;  // elements: small enough to be rejected, large enough to pay
+  for (int p = 0; p < mesh.patch_count();) {
+    const int first = mesh.first_element[p], facet = mesh.facet[p];
+    if (mesh.is_back[p] != 0) {
+      ++p;
+      continue;
+    }
+    do {
+      ++p;
+    } while (p < mesh.patch_count() && mesh.facet[p] == facet && mesh.is_back[p] == 0 &&
+             mesh.first_element[p + 1] - first <= group_size);
+    add_facet_elements(mesh, first, mesh.first_element[p]);
+  }
+}
+
+void HemicubeScan::add_facet_elements(const PatchMesh& mesh, int first_element, int last_element) {
+  Group group{.first_polygon = static_cast<int>(polygons_.size()),
+              .first_vertex = static_cast<int>(vertices_.size()),
+              .facet = mesh.facet[mesh.patch[first_element]]};
+  std::vector<int> used;
+  for (int e = first_element; e < last_element; ++e) {
+    const int n = mesh.corner_count(e);
+    used.insert(used.end(), mesh.corners[e].begin(), mesh.corners[e].begin() + n);
+  }
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  Eigen::AlignedBox3d box;
+  for (int v : used) {
+    vertices_.push_back(mesh.position(v));
+    box.extend(vertices_.back());
+  }
+  Vector3d whole = Vector3d::Zero();
+  for (int e = first_element; e < last_element; ++e) {
+    Polygon polygon{
+        .corner_count = mesh.corner_count(e),
+        .element = e,
+        .behind = mesh.twin[e] >= 0 ? mesh.twin[e] : hemicube_item::black_back(group.facet),
+        .facet = group.facet};
+    for (int k = 0; k < 4; ++k) {
+      const int corner = mesh.corners[e][std::min(k, polygon.corner_count - 1)];
+      polygon.vertex[k] =
+          group.first_vertex +
+          static_cast<int>(std::lower_bound(used.begin(), used.end(), corner) - used.begin());
+    }
+    const auto& p = polygon.vertex;
+    const Vector3d area =
+        (vertices_[p[2]] - vertices_[p[0]]).cross(vertices_[p[3]] - vertices_[p[1]]);
+    polygon.normal = area.normalized();
+    whole += area;
+    polygons_.push_back(polygon);
+  }
+  if (!sphere_grid_of(mesh, group.facet)) {  // a sliver's own normal is a poor one
+    const Vector3d normal = whole.normalized();
+    for (auto p = group.first_polygon; p < static_cast<int>(polygons_.size()); ++p) {
+      polygons_[p].normal = normal;
+    }
+  }
+  group.last_polygon = static_cast<int>(polygons_.size());
+  group.last_vertex = static_cast<int>(vertices_.size());
+  group.center = box.center();
+  group.radius = 0.5 * box.diagonal().norm();
+  groups_.push_back(group);
+}
+
+void HemicubeScan::draw(const HemicubeEye& eye, const HemicubeCells& cells, Scratch& scratch,
+                        std::span<int> items) const {
+  scratch.vertex.resize(vertices_.size());
+  scratch.outside.resize(vertices_.size());
+  scratch.inverse_distance.assign(items.size(), 0.0f);
+  std::fill(items.begin(), items.end(), hemicube_item::nothing);
+  Painter painter(*this, eye, cells, scratch, items);
+  for (const Group& group : groups_) painter.paint_group(group);
+}
+
+}  // namespace lightwell
