@@ -46,7 +46,7 @@ void check_ply_header(const std::filesystem::path& path) {
 }
 
 PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, double metres_per_unit,
-                      Repairs& repairs) {
+                      Repairs& repairs, FilePolygons& polygons) {
   const auto position = [&](unsigned v) {
     if (v >= mesh.mNumVertices) {
       fail(path,
@@ -64,7 +64,11 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
     const aiFace& face = mesh.mFaces[f];
     Loop loop;
     for (unsigned i = 0; i < face.mNumIndices; ++i) loop.push_back(position(face.mIndices[i]));
+    const std::size_t facets_before = builder.mesh().facets.size();
     add_repaired(builder, std::move(loop), repairs);
+    polygons.of_facet.insert(polygons.of_facet.end(), builder.mesh().facets.size() - facets_before,
+                             polygons.count);
+    ++polygons.count;
   }
   return builder.mesh();
 }
@@ -72,7 +76,7 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
 }  // namespace
 
 Scene read_geometry_file(const std::filesystem::path& path, double metres_per_unit,
-                         MeshMaterials materials) {
+                         MeshMaterials materials, FilePolygons* polygons) {
   require_readable(path);
   if (lower_extension(path) == ".ply") check_ply_header(path);
   Assimp::Importer importer;
@@ -85,8 +89,9 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
         "The file has no materials; every surface gets a diffuse reflectance of 0.5.");
   }
   Repairs repairs;
+  FilePolygons found;
   for (unsigned m = 0; m < file->mNumMeshes; ++m) {
-    PolygonMesh mesh = read_mesh(path, *file->mMeshes[m], metres_per_unit, repairs);
+    PolygonMesh mesh = read_mesh(path, *file->mMeshes[m], metres_per_unit, repairs, found);
     if (mesh.facets.empty()) continue;
     const std::string stem = path.stem().string();
     scene.surfaces.push_back(
@@ -95,6 +100,7 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
   }
   if (scene.surfaces.empty()) fail(path, "the file has no polygons with an area");
   for (const std::string& note : repairs.notes()) scene.notes.push_back(note + ".");
+  if (polygons) *polygons = std::move(found);
   validate(scene);
   return scene;
 }

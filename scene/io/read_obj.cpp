@@ -234,10 +234,12 @@ std::map<int, int> take_materials(const ObjContent& content, std::vector<Materia
   return taken;
 }
 
-void build_surfaces(const ObjContent& content, const std::map<int, int>& materials, Scene& scene) {
+void build_surfaces(const ObjContent& content, const std::map<int, int>& materials, Scene& scene,
+                    FilePolygons& polygons) {
   std::map<std::pair<int, int>, std::size_t> surface_of;  // (group, material)
   std::vector<std::pair<int, int>> keys;
   std::vector<MeshBuilder> meshes;
+  std::vector<std::vector<int>> polygons_of;  // by mesh, then facet
   std::map<int, std::set<int>> materials_of_group;
   Repairs repairs;
   for (const ObjFace& face : content.faces) {
@@ -246,13 +248,17 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
     if (is_new) {
       keys.push_back(key);
       meshes.emplace_back();
+      polygons_of.emplace_back();
       materials_of_group[key.first].insert(key.second);
     }
     Loop loop;
     for (std::size_t i = 0; i < face.count; ++i) {
       loop.push_back(content.vertices[static_cast<std::size_t>(content.corners[face.first + i])]);
     }
-    add_repaired(meshes[entry->second], std::move(loop), repairs);
+    MeshBuilder& mesh = meshes[entry->second];
+    add_repaired(mesh, std::move(loop), repairs);
+    polygons_of[entry->second].resize(mesh.mesh().facets.size(), polygons.count);
+    ++polygons.count;
   }
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (meshes[i].empty()) continue;
@@ -263,14 +269,15 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
     scene.surfaces.push_back({.name = alone ? name : fmt::format("{} ({})", name, of),
                               .material = material,
                               .shape = meshes[i].mesh()});
+    polygons.of_facet.insert(polygons.of_facet.end(), polygons_of[i].begin(), polygons_of[i].end());
   }
   for (const std::string& note : repairs.notes()) scene.notes.push_back(note + ".");
 }
 
 }  // namespace
 
-Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit,
-                    MeshMaterials wanted) {
+Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, MeshMaterials wanted,
+                    FilePolygons* polygons) {
   const TextFile file(path);
   ObjContent content = ObjParser(file, metres_per_unit).parse();
   Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
@@ -285,7 +292,9 @@ Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit,
     for (ObjFace& face : content.faces) face.material = -1;
     scene.materials.push_back(default_material(scene.bands));
   }
-  build_surfaces(content, materials, scene);
+  FilePolygons found;
+  build_surfaces(content, materials, scene, found);
+  if (polygons) *polygons = std::move(found);
   if (scene.surfaces.empty()) {
     throw InputError(fmt::format("{}: the file has no polygons with an area", path.string()));
   }

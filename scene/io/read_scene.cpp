@@ -13,9 +13,10 @@ Scene read_scene(const std::filesystem::path& path) {
   if (extension == ".toml") return read_toml(path);
   if (extension == ".obj") return read_obj(path);
   if (extension == ".ply" || extension == ".stl") return read_geometry(path);
+  if (extension == ".vs3") return read_vs3(path);
   throw InputError(
       fmt::format("{}: the extension '{}' is of no known scene format; readable are "
-                  ".toml (native), .obj, .ply and .stl",
+                  ".toml (native), .obj, .ply and .stl, and View3D's .vs3",
                   path.string(), extension));
 }
 

@@ -7,7 +7,7 @@
 namespace lightwell {
 
 /// Reads a scene; the format is told by the extension: .toml (native, docs/scene-format.md), .obj,
-/// .ply, .stl. The result has passed validate(). Throws InputError naming file, line or object,
+/// .ply, .stl, .vs3. The result has passed validate(). Throws InputError naming file, line or object,
 /// value and remedy.
 Scene read_scene(const std::filesystem::path& path);
 
@@ -21,5 +21,10 @@ Scene read_obj(const std::filesystem::path& path, double metres_per_unit = 1.0);
 
 /// Geometry only (PLY, STL), one white-ish diffuse material (reflectance 0.5, noted).
 Scene read_geometry(const std::filesystem::path& path, double metres_per_unit = 1.0);
+
+/// View3D's three-dimensional geometry, formats 3 and 3a: one Surface per S record, one-sided and
+/// diffuse, reflectance 1 - emittance; parts taken up by subsurfaces are cut out of their base.
+/// Obstructions are black from both sides. See docs/scene-format.md.
+Scene read_vs3(const std::filesystem::path& path);
 
 }  // namespace lightwell
