@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lightwell {
@@ -13,6 +14,15 @@ struct SparseRows {
   std::vector<double> value{};
   int rows() const { return static_cast<int>(first.size()) - 1; }
 };
+
+struct SymmetricEntry {
+  int i = 0, j = 0;  ///< different
+  double value = 0.0;
+};
+
+/// The n x n matrix that has each entry at (i, j) and (j, i). Entries of one place replace those
+/// before them.
+SparseRows symmetric_rows(int n, std::span<const SymmetricEntry> entries);
 
 /// Scale factors d > 0 with sum_j d_i S_ij d_j + d_i open_i = target_i for a symmetric S >= 0: the
 /// symmetric scaling of Sinkhorn & Knopp 1967 in the square-root form of Knight, Ruiz & Ucar 2014.

@@ -18,7 +18,7 @@ struct EstimatedRow {
   std::vector<int> specular_patch{};  ///< reached by way of mirrors and glass, ordered
   BandArray specular_share{};         ///< one row per specular_patch
   Spectrum specular_escaped{}, absorbed{}, cut{};  ///< lost behind mirrors and glass
-  double rays = 0.0;                  ///< cast in all, for the report
+  double rays = 0.0;                               ///< cast in all, for the report
 };
 
 }  // namespace lightwell

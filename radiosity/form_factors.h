@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "mesh/element_caster.h"
 #include "radiosity/direct_light.h"
@@ -41,36 +42,60 @@ class FormFactors {
   virtual Spectrum absorbed_by_specular(int i) const = 0;
 };
 
+/// How form factors are found. All keep the promises of FormFactors.
+enum class FormFactorMethod {
+  /// Rays, and closed forms times fractional visibility where patches are near, large or bright.
+  automatic,
+  /// Cosine-distributed rays from all over each patch (Malley's method), counted where they end.
+  ray_cast,
+  /// Item buffers on half a cube about each patch's centre (Cohen & Greenberg 1985).
+  hemicube,
+  /// The closed form of every pair of polygons (Lambert; Schroeder & Hanrahan 1993) times
+  /// visibility sampled by shadow rays. Quadratic in the number of patches.
+  analytic
+};
+
 struct FormFactorOptions {
+  FormFactorMethod method = FormFactorMethod::automatic;
   int rays_per_patch = 512;  ///< a power of two stratifies best; noise falls nearly as 1/rays
+  /// Wanted standard error of every F_ij; rays are added to the rows that need them. 0: as many as
+  /// rays_per_patch says.
+  double target_error = 0.0;
+  int most_rays_per_patch = 1 << 18;  ///< what target_error may ask for
   /// From each facet DirectLight owns, in all, for what mirrors and glass throw; a power of two.
   int rays_per_emitter = 65536;
   int max_specular_depth = 8;  ///< mirror and glass events along one ray
   int emitter_points = 16;     ///< points of a patch at which an emitter's closed form is taken
   ShadowOptions shadows{.min_rays = 4, .max_rays = 16};
+  int hemicube_resolution = 256;  ///< cells along an edge of the hemicube's top
+  /// Scale rows so that they close and stay reciprocal; what that changed is reported.
+  bool enforce_closure = true;
   Progress progress{};
 };
 
 /// What was measured before and after closure was enforced.
 struct FormFactorReport {
   std::int64_t rays = 0;
+  std::int64_t closed_forms = 0;         ///< pairs of patches that have a closed form
   double mean_closure_correction = 0.0;  ///< mean |1 - row sum| of the joined estimates
   double max_closure_correction = 0.0;
-  double max_closure_error = 0.0;  ///< max |1 - row sum| that is left
+  double max_closure_error = 0.0;      ///< max |1 - row sum| that is left
+  double max_reciprocity_error = 0.0;  ///< max |A_i F_ij - A_j F_ji| / min(A_i, A_j), of floats
   double depth_cut = 0.0;  ///< mean share of a row lost to max_specular_depth (counted as absorbed)
+  std::vector<float> row_error{};  ///< estimated standard error of the worst F_ij of each row
 };
 
-/// Ray-cast form factors with closed-form emitters.
-///
-/// Cosine-distributed Owen-scrambled rays start all over each patch (Malley's method) and count
-/// where they end. The counts of i -> j and j -> i estimate the same A_i F_ij and are joined in
-/// proportion to their rays per area. Facets that DirectLight owns are small and bright: for them
-/// the closed form times visibility, averaged over points of the receiving patch, takes the place
-/// of the counts. The result is balanced by symmetric diagonal scaling (Sinkhorn & Knopp 1967;
-/// Knight, Ruiz & Ucar 2014), which keeps reciprocity and closes every row.
-std::unique_ptr<FormFactors> ray_cast_form_factors(const Scene& scene, const ElementCaster& caster,
-                                                   const DirectLight& direct_light,
-                                                   const FormFactorOptions& options = {},
-                                                   FormFactorReport* report = nullptr);
+/// Form factors of a meshed scene. What leaves a patch reaches others straight, by rays or closed
+/// forms, and by way of mirrors and glass, by rays alone. Estimates of i -> j and j -> i are
+/// estimates of the same A_i F_ij and are joined in proportion to what they can be trusted. Facets
+/// that `direct_light` owns are small and bright: but for `ray_cast` and `hemicube`, closed forms
+/// take the place of what was sampled for them. Rows are closed by symmetric diagonal scaling
+/// (Sinkhorn & Knopp 1967; Knight, Ruiz & Ucar 2014), which keeps reciprocity: what was sampled
+/// first, and closed forms only as far as that leaves a gap. Throws Interrupted when progress says
+/// stop.
+std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const ElementCaster& caster,
+                                                  const DirectLight& direct_light,
+                                                  const FormFactorOptions& options = {},
+                                                  FormFactorReport* report = nullptr);
 
 }  // namespace lightwell

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <map>
 
-#include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -15,63 +15,79 @@ constexpr std::uint64_t form_factor_rays = 1;  // purposes of random keys
 constexpr std::uint64_t form_factor_branches = 2;
 constexpr int batch = 64;
 
-// Scratch that a piece of the parallel loop reuses from patch to patch.
-class Counter {
- public:
-  explicit Counter(int patches) : count(patches, 0) {}
-  void add(int patch) {
-    if (count[patch]++ == 0) touched.push_back(patch);
-  }
-  std::vector<RayCastRow::Count> take() {
-    put_in_order();
-    std::vector<RayCastRow::Count> counts;
-    counts.reserve(touched.size());
-    for (int patch : touched) {
-      counts.push_back({patch, count[patch]});
-      count[patch] = 0;
-    }
-    touched.clear();
-    return counts;
-  }
+// Longer rows are made of several sets.
+constexpr int longest_set = 1 << 16;
 
- private:
-  // Where many of all patches were touched, looking through all is quicker than sorting.
-  void put_in_order() {
-    constexpr std::size_t few = 32;
-    if (touched.size() * few < count.size()) {
-      std::sort(touched.begin(), touched.end());
-      return;
-    }
-    touched.clear();
-    for (std::size_t i = 0; i < count.size(); ++i) {
-      if (count[i] > 0) touched.push_back(static_cast<int>(i));
-    }
+int set_size(int most_rays) {
+  const auto wanted = static_cast<unsigned>(std::max(most_rays, 1));
+  return std::min(static_cast<int>(std::bit_ceil(wanted)), longest_set);
+}
+
+}  // namespace
+
+RowCaster::Scratch::Scratch(const PatchMesh& mesh)
+    : count_(static_cast<std::size_t>(mesh.patch_count()), 0) {}
+
+void RowCaster::Scratch::add(int patch) {
+  if (count_[patch]++ == 0) touched_.push_back(patch);
+}
+
+// Counts in shares of `rays`; empties the counter.
+std::vector<FormFactor> RowCaster::Scratch::take(int rays) {
+  put_in_order();
+  std::vector<FormFactor> shares;
+  shares.reserve(touched_.size());
+  for (int patch : touched_) {
+    shares.push_back({patch, static_cast<float>(count_[patch]) / static_cast<float>(rays)});
+    count_[patch] = 0;
   }
+  touched_.clear();
+  return shares;
+}
 
-  std::vector<int> count;
-  std::vector<int> touched;
-};
+// Where many of all patches were touched, looking through all is quicker than sorting.
+void RowCaster::Scratch::put_in_order() {
+  constexpr std::size_t few = 32;
+  if (touched_.size() * few < count_.size()) {
+    std::sort(touched_.begin(), touched_.end());
+    return;
+  }
+  touched_.clear();
+  for (std::size_t i = 0; i < count_.size(); ++i) {
+    if (count_[i] > 0) touched_.push_back(static_cast<int>(i));
+  }
+}
 
-RayCastRow cast_row(const ElementCaster& caster, const LightPaths& paths,
-                    const HemisphereSets& sets, int patch, int rays, Counter& counter) {
-  const PatchMesh& mesh = caster.mesh();
+RowCaster::RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays)
+    : caster_(caster), paths_(paths), sets_(set_size(most_rays)) {}
+
+EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool keep_rays) const {
+  const PatchMesh& mesh = caster_.mesh();
+  scratch.rays_.clear();
+  if (!paths_.is_diffuse(mesh.facet[patch]) || rays <= 0) return {};
   const int bands = static_cast<int>(mesh.reflectance.cols());
-  RayCastRow row{.rays = rays,
-                 .specular_escaped = Spectrum::Zero(bands),
-                 .absorbed = Spectrum::Zero(bands),
-                 .cut = Spectrum::Zero(bands)};
+  EstimatedRow row{.trust = rays / mesh.area[patch],
+                   .specular_escaped = Spectrum::Zero(bands),
+                   .absorbed = Spectrum::Zero(bands),
+                   .cut = Spectrum::Zero(bands),
+                   .rays = static_cast<double>(rays)};
   std::map<int, Spectrum> by_way_of_specular;
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(patch), form_factor_rays);
   const PatchSampler sampler(mesh, patch);
   std::array<Ray, batch> ray;
   std::array<ElementHit, batch> hit;
-  const HemisphereSets::Draw draw = sets.draw(key);
+  HemisphereSets::Draw draw;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
   for (int begin = 0; begin < rays; begin += batch) {
-    const int count = std::min(batch, rays - begin);
+    const int in_set = begin % sets_.count();
+    if (in_set == 0) {
+      draw = sets_.draw(random_key(key, static_cast<std::uint64_t>(begin)));
+      normal.setZero();
+    }
+    const int count = std::min({batch, rays - begin, sets_.count() - in_set});
     const auto n = static_cast<std::size_t>(count);
-    const auto points = draw.points(begin, count);
+    const auto points = draw.points(in_set, count);
     for (int r = 0; r < count; ++r) {
       const Eigen::Vector2d place = draw.place(points[r]);
       const PatchPoint from = sampler.point(place.x(), place.y());
@@ -83,24 +99,28 @@ RayCastRow cast_row(const ElementCaster& caster, const LightPaths& paths,
                 .direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z),
                 .origin_group = mesh.facet[patch]};
     }
-    caster.closest_hits({ray.data(), n}, {hit.data(), n});
+    caster_.closest_hits({ray.data(), n}, {hit.data(), n});
     for (int r = 0; r < count; ++r) {
       const ElementHit& h = hit[r];
-      const bool specular = h.facet >= 0 && paths.is_specular(h.facet);
+      if (keep_rays) {
+        scratch.rays_.push_back({ray[r].origin, ray[r].direction, static_cast<float>(h.t),
+                                 h.element >= 0 ? mesh.patch[h.element] : -1});
+      }
+      const bool specular = h.facet >= 0 && paths_.is_specular(h.facet);
       if (!specular) {
         if (h.element >= 0) {
-          counter.add(mesh.patch[h.element]);
+          scratch.add(mesh.patch[h.element]);
         } else {
           ++row.escaped;
         }
         continue;
       }
-      if (paths.is_diffuse(h.facet) && h.element >= 0) {
-        counter.add(mesh.patch[h.element]);
+      if (paths_.is_diffuse(h.facet) && h.element >= 0) {
+        scratch.add(mesh.patch[h.element]);
       } else {
         ++row.specular;
       }
-      const PathLosses losses = paths.follow(
+      const PathLosses losses = paths_.follow(
           ray[r], h, random_key(key, form_factor_branches, static_cast<std::uint64_t>(begin + r)),
           [&](const ElementHit& end, const Spectrum& throughput) {
             auto [at, is_new] = by_way_of_specular.try_emplace(mesh.patch[end.element], throughput);
@@ -111,42 +131,49 @@ RayCastRow cast_row(const ElementCaster& caster, const LightPaths& paths,
       row.cut += losses.cut;
     }
   }
-  row.counts = counter.take();
-  row.specular_weight.resize(static_cast<Eigen::Index>(by_way_of_specular.size()), bands);
+  row.shares = scratch.take(rays);
+  row.specular_share.resize(static_cast<Eigen::Index>(by_way_of_specular.size()), bands);
+  const auto all = static_cast<float>(rays);
   for (const auto& [to, weight] : by_way_of_specular) {
-    row.specular_weight.row(static_cast<Eigen::Index>(row.specular_patch.size())) =
-        weight.transpose();
+    row.specular_share.row(static_cast<Eigen::Index>(row.specular_patch.size())) =
+        weight.transpose() / all;
     row.specular_patch.push_back(to);
   }
+  row.specular_escaped /= all;
+  row.absorbed /= all;
+  row.cut /= all;
+  row.escaped /= rays;
+  row.specular /= rays;
   return row;
 }
 
-}  // namespace
-
-std::vector<RayCastRow> cast_rows(const ElementCaster& caster, const LightPaths& paths,
-                                  const std::vector<int>& rays_of, const Progress& progress) {
-  const PatchMesh& mesh = caster.mesh();
+void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& progress,
+                  const std::function<void(int, RowCaster::Scratch&)>& work) {
   const int patches = mesh.patch_count();
-  const int most_rays = *std::max_element(rays_of.begin(), rays_of.end());
-  const HemisphereSets sets(std::max(most_rays, 1));
-  std::vector<RayCastRow> rows(patches);
   // Slices keep progress and interruption on this thread: each a fraction of a second of rays.
   constexpr int rays_per_slice = 1 << 20;
   const int slice =
-      std::clamp(rays_per_slice / std::max(most_rays, 1), 2, std::max(64, patches / 100));
+      std::clamp(rays_per_slice / std::max(rays_per_patch, 1), 2, std::max(64, patches / 100));
   const int grain = std::clamp(slice / 16, 1, 16);
   for (int begin = 0; begin < patches; begin += slice) {
     report(progress, "form factors", static_cast<double>(begin) / patches);
     parallel_for(std::min(slice, patches - begin), grain, [&](int low, int high) {
-      Counter counter(patches);
-      for (int i = begin + low; i < begin + high; ++i) {
-        if (paths.is_diffuse(mesh.facet[i])) {
-          rows[i] = cast_row(caster, paths, sets, i, rays_of[i], counter);
-        }
-      }
+      RowCaster::Scratch scratch(mesh);
+      for (int i = begin + low; i < begin + high; ++i) work(i, scratch);
     });
   }
   report(progress, "form factors", 1.0);
+}
+
+std::vector<EstimatedRow> cast_rows(const ElementCaster& caster, const LightPaths& paths,
+                                    const std::vector<int>& rays_of, const Progress& progress) {
+  const PatchMesh& mesh = caster.mesh();
+  const int most_rays = *std::max_element(rays_of.begin(), rays_of.end());
+  const RowCaster row_caster(caster, paths, most_rays);
+  std::vector<EstimatedRow> rows(static_cast<std::size_t>(mesh.patch_count()));
+  for_each_row(mesh, most_rays, progress, [&](int i, RowCaster::Scratch& scratch) {
+    rows[i] = row_caster.cast(i, rays_of[i], scratch);
+  });
   return rows;
 }
 

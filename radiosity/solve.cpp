@@ -170,7 +170,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
 
   FormFactorOptions form_factor_options = options.form_factors;
   form_factor_options.progress = options.progress;
-  const auto form_factors = ray_cast_form_factors(scene, caster, direct_light, form_factor_options,
+  const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
                                                   report ? &report->form_factors : nullptr);
   seconds.push_back({"form_factors", watch.lap()});
 

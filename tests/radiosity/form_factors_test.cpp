@@ -19,7 +19,7 @@ Solved cast(const Scene& scene, const FormFactorOptions& options, double patch_s
   s.mesh = build_patches(scene, {.max_patch_size = patch_size, .elements_per_patch_edge = 1});
   const ElementCaster caster(s.mesh);
   const DirectLight direct_light(scene, s.mesh);
-  s.form_factors = ray_cast_form_factors(scene, caster, direct_light, options, &s.report);
+  s.form_factors = compute_form_factors(scene, caster, direct_light, options, &s.report);
   return s;
 }
 
@@ -54,14 +54,14 @@ double worst_reciprocity(const Solved& s) {
   return worst;
 }
 
-TEST(RayCastFormFactors, ClosedRoomClosesAndIsReciprocal) {
+TEST(FormFactors, ClosedRoomClosesAndIsReciprocal) {
   const Solved s = cast(test::furnace(0.5f, 1.0f, true), {.rays_per_patch = 256});
   EXPECT_LT(worst_closure(s), 1e-6);                 // a few hundred float entries a row
   EXPECT_LT(worst_reciprocity(s), 1e-6);             // two float roundings
   EXPECT_GT(s.report.max_closure_correction, 1e-4);  // the raw estimate was a real, noisy one
 }
 
-TEST(RayCastFormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
+TEST(FormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
   Scene scene;
   const int m = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
   test::add_box(scene, {0, 0, 0}, {1, 1, 1}, {m, m, m, m, m, m}, true);
@@ -86,7 +86,7 @@ TEST(RayCastFormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
   }
 }
 
-TEST(RayCastFormFactors, OpenTopLetsOutWhatTheClosedFormSays) {
+TEST(FormFactors, OpenTopLetsOutWhatTheClosedFormSays) {
   Scene scene;
   const int m = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
   test::add_box(scene, {0, 0, 0}, {1, 1, 1}, {m, m, m, m, m, m}, true);
@@ -103,7 +103,7 @@ TEST(RayCastFormFactors, OpenTopLetsOutWhatTheClosedFormSays) {
 
 // A small lamp under the ceiling: its entries come from the closed form, and its own row closes
 // too.
-TEST(RayCastFormFactors, SmallEmitterIsExactAndCloses) {
+TEST(FormFactors, SmallEmitterIsExactAndCloses) {
   Scene scene;
   const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.6f));
   const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 10.0f));
@@ -129,7 +129,7 @@ TEST(RayCastFormFactors, SmallEmitterIsExactAndCloses) {
 }
 
 // Opposite a perfect mirror a patch sees the room's image: every ray comes back.
-TEST(RayCastFormFactors, PerfectMirrorPassesEverythingOn) {
+TEST(FormFactors, PerfectMirrorPassesEverythingOn) {
   Scene scene;
   const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
   Material mirror = test::diffuse(scene.bands, 0.0f);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mesh/patch_mesh.h"
+
+namespace lightwell {
+
+/// The polygon that a patch's elements tile.
+struct PatchOutline {
+  /// Boundary and holes, counter-clockwise and clockwise seen from the side the patch faces,
+  /// without vertices inside straight edges. Empty for patches of spheres.
+  std::vector<std::vector<Eigen::Vector3d>> loops{};
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, towards the side the patch faces
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of the vertices
+  double radius = 0.0;                               ///< about `center`, holds all vertices
+
+  bool is_polygon() const { return !loops.empty(); }
+};
+
+/// Of one's own loops; the normal is the one about which the first runs counter-clockwise.
+PatchOutline polygon_outline(std::vector<std::vector<Eigen::Vector3d>> loops);
+
+PatchOutline patch_outline(const PatchMesh& mesh, int patch);
+
+}  // namespace lightwell

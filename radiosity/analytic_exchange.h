@@ -1,0 +1,19 @@
+#pragma once
+
+#include "mesh/patch_outline.h"
+#include "radiosity/form_factor_assembly.h"
+
+namespace lightwell {
+
+/// The closed form of every pair of polygons times their visibility, which shadow rays between
+/// stratified points of both sample, weighted as the form factor is: 16 rays, and 64 where those
+/// disagree or the pair's share is large. No rays at all where every patch lies before every
+/// other's plane. Patches of spheres, and patches that
+/// lie on each other, are left to other methods. `row_error`: standard error of the
+/// worst F_ij of each row.
+KnownExchange analytic_exchange(const ElementCaster& caster,
+                                const std::vector<PatchOutline>& outlines,
+                                const std::vector<char>& receives, const Progress& progress,
+                                std::vector<float>& row_error);
+
+}  // namespace lightwell

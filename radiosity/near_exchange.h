@@ -1,0 +1,45 @@
+#pragma once
+
+#include "mesh/patch_outline.h"
+#include "radiosity/form_factor_assembly.h"
+#include "radiosity/ray_cast_rows.h"
+
+namespace lightwell {
+
+/// Closed forms times fractional visibility for the pairs that a row's rays meet often: those that
+/// are near or large.
+///
+/// Of a row's rays, `all` cross the polygon of another patch from its front, whatever stands
+/// between, and `first` of them meet it first. Their ratio estimates the visible part, weighted as
+/// the form factor is, so F_ij = (closed form) first / all: exact where nothing stands between, and
+/// never noisier than first / rays, the plain count.
+class NearExchange {
+ public:
+  explicit NearExchange(const PatchMesh& mesh);
+
+  struct Pair {
+    int i = 0, j = 0;  ///< i < j
+    int first = 0, all = 0;
+  };
+
+  /// Adds the pairs of a row with the rays that made it. Returns the standard error of its worst
+  /// F_ij, those that remain counts included. Safe to call from many threads.
+  double look(int patch, const EstimatedRow& row, std::span<const CastRay> rays,
+              std::vector<Pair>& pairs) const;
+
+  /// The pairs' exchange; both ends' counts of a pair are added.
+  std::vector<SymmetricEntry> exchange(std::vector<Pair> pairs, const Progress& progress) const;
+
+  const std::vector<PatchOutline>& outlines() const { return outlines_; }
+
+ private:
+  // Whether a point of the patch's plane lies in its polygon: crossings counted in the two
+  // coordinates that change most.
+  bool contains(int patch, const Eigen::Vector3d& point) const;
+
+  const PatchMesh& mesh_;
+  std::vector<PatchOutline> outlines_;
+  std::vector<std::array<int, 2>> axes_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,167 @@
+// All methods against the catalogue and the laws.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "radiosity/form_factors.h"
+#include "scene/parallel.h"
+#include "tests/radiosity/test_scenes.h"
+#include "tests/radiosity/view_factor_cases.h"
+
+namespace lightwell {
+namespace {
+
+using test::add_box;
+using test::add_material;
+using test::add_polygon;
+using test::diffuse;
+
+struct Method {
+  const char* name;
+  FormFactorMethod method;
+};
+constexpr Method methods[] = {{"auto", FormFactorMethod::automatic},
+                              {"ray-cast", FormFactorMethod::ray_cast},
+                              {"hemicube", FormFactorMethod::hemicube},
+                              {"analytic", FormFactorMethod::analytic}};
+
+std::string name_of(const testing::TestParamInfo<Method>& tested) {
+  std::string name = tested.param.name;
+  std::erase(name, '-');
+  return name;
+}
+
+struct Computed {
+  PatchMesh mesh;
+  std::unique_ptr<FormFactors> F;
+  FormFactorReport report;
+};
+
+Computed compute(const Scene& scene, double patch_size, const FormFactorOptions& options) {
+  Computed result;
+  result.mesh = build_patches(scene, {.max_patch_size = patch_size});
+  const ElementCaster caster(result.mesh);
+  const DirectLight direct_light(scene, result.mesh);
+  result.F = compute_form_factors(scene, caster, direct_light, options, &result.report);
+  return result;
+}
+
+// F from all patches of one surface to all of another.
+double between(const Computed& c, int from, int to) {
+  double exchanged = 0.0, area = 0.0;
+  for (int i = 0; i < c.mesh.patch_count(); ++i) {
+    if (c.mesh.surface[i] != from) continue;
+    area += c.mesh.area[i];
+    for (const FormFactor& f : c.F->row(i)) {
+      if (c.mesh.surface[f.patch] == to) exchanged += c.mesh.area[i] * f.value;
+    }
+  }
+  return exchanged / area;
+}
+
+Scene scene_of(const test::ViewFactorCase& c) {
+  Scene scene;
+  const int grey = add_material(scene, diffuse(scene.bands, 0.5f));
+  Material two_sided = diffuse(scene.bands, 0.5f);
+  two_sided.one_sided = false;
+  const int screen = add_material(scene, two_sided);
+  add_polygon(scene, "first", grey, c.first);
+  add_polygon(scene, "second", grey, c.second);
+  for (const auto& blocker : c.blockers) add_polygon(scene, "blocker", screen, blocker);
+  validate(scene);
+  return scene;
+}
+
+void expect_laws(const Computed& c, const std::string& name) {
+  for (int i = 0; i < c.mesh.patch_count(); ++i) {
+    float before = -1.0f;
+    for (const FormFactor& f : c.F->row(i)) {
+      ASSERT_TRUE(f.value >= 0.0f && f.value <= 1.0f + 1e-6f) << name;
+      ASSERT_GT(f.patch, before) << name << ": columns rise";
+      before = static_cast<float>(f.patch);
+    }
+  }
+  EXPECT_LT(c.report.max_closure_error, 1e-5) << name;
+  EXPECT_LT(c.report.max_reciprocity_error, 1e-6) << name;
+}
+
+// It takes many patches, so it meets one case of each sort.
+bool is_for_hemicube(const std::string& name) {
+  constexpr const char* names[] = {
+      "par_unit_squares", "par_squares_d0_1",       "par_offset_disjoint", "perp_unit_common_edge",
+      "perp_narrow",      "tri_tri_general",        "octa_edge",           "occ_square_corner_0_5",
+      "occ_tri_rotated",  "occ_square_unit_blocker"};
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+class Catalogue : public testing::TestWithParam<Method> {};
+
+TEST_P(Catalogue, IsMet) {
+  const auto [name, method] = GetParam();
+  const bool cast = method == FormFactorMethod::ray_cast;
+  double worst = 0.0, worst_occluded = 0.0;
+  for (const auto& c : test::view_factor_cases()) {
+    FormFactorOptions options{.method = method};
+    if (cast) options.rays_per_patch = 1 << 14;
+    if (method == FormFactorMethod::automatic) options.target_error = 1e-3;
+    const bool hemicube = method == FormFactorMethod::hemicube;
+    if (hemicube && !is_for_hemicube(c.name)) continue;
+    const Scene scene = scene_of(c);
+    // The hemicube looks from patches' centres, so those must be small.
+    const double patch = hemicube ? patch_size(scene, {.auto_patch_count = 1600}) : 1e3;
+    const Computed computed = compute(scene, patch, options);
+    expect_laws(computed, c.name);
+    const double error = std::abs(between(computed, 0, 1) - c.F12);
+    (c.blockers.empty() ? worst : worst_occluded) =
+        std::max(c.blockers.empty() ? worst : worst_occluded, error);
+    // Closed forms are exact where nothing stands between. Rays and cells are judged by what they
+    // are asked for.
+    const bool exact = c.blockers.empty() && (method == FormFactorMethod::analytic ||
+                                              method == FormFactorMethod::automatic);
+    const double allowed = exact ? 1e-6 : c.blockers.empty() && cast ? 1e-3 : 2e-3;
+    EXPECT_LE(error, allowed) << name << ", " << c.name << ": " << between(computed, 0, 1)
+                              << " for " << c.F12;
+  }
+  std::printf("%s: worst error %.1e unoccluded, %.1e occluded\n", name, worst, worst_occluded);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Catalogue, testing::ValuesIn(methods), name_of);
+
+class Room : public testing::TestWithParam<Method> {};
+
+TEST_P(Room, WithABlockClosesAndSeesNothingThroughIt) {
+  const auto [name, method] = GetParam();
+  const Scene scene = test::furnace(0.5f, 1.0f, true);
+  const Computed c = compute(scene, 0.3, {.method = method});
+  expect_laws(c, name);
+  for (int i = 0; i < c.mesh.patch_count(); ++i) {
+    double sum = c.F->escaped(i)[0];
+    for (const FormFactor& f : c.F->row(i)) sum += f.value;
+    ASSERT_NEAR(sum, 1.0, 1e-5) << name << ", patch " << i;
+    ASSERT_NEAR(c.F->escaped(i)[0], 0.0, 1e-6) << name << ": the room is closed";
+  }
+}
+
+TEST_P(Room, HasTheSameBitsForAnyNumberOfThreads) {
+  const auto [name, method] = GetParam();
+  const Scene scene = test::furnace(0.5f, 1.0f, true);
+  std::vector<std::vector<float>> results;
+  for (const int threads : {1, 2, 3}) {
+    const ThreadLimit limit(threads);
+    const Computed c = compute(scene, 0.4, {.method = method, .target_error = 4e-3});
+    std::vector<float> values;
+    for (int i = 0; i < c.mesh.patch_count(); ++i) {
+      for (const FormFactor& f : c.F->row(i)) values.push_back(f.value);
+    }
+    results.push_back(values);
+  }
+  EXPECT_EQ(results[0], results[1]) << name;
+  EXPECT_EQ(results[0], results[2]) << name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Room, testing::ValuesIn(methods), name_of);
+
+}  // namespace
+}  // namespace lightwell
