@@ -140,21 +140,39 @@ class HemicubeScan::Painter {
               std::numeric_limits<float>::infinity());
   }
 
-  // The rows that the polygon's corners span; all, if one of them is beside or behind the eye.
-  std::array<int, 2> rows(int f, const Polygon& polygon) const {
+  // Cells from `first` up to, not including, `last`.
+  struct Range {
+    int first, last;
+  };
+  struct Bounds {
+    Range rows, columns;
+  };
+
+  // The cells that the polygon's corners span; all, if one of them is beside or behind the eye.
+  Bounds bounds(int f, const Polygon& polygon) const {
     const HemicubeCells::Face& face = HemicubeCells::face(f);
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double bottom = infinity, top = -infinity, left = infinity, right = -infinity;
+    const int row_count = cells_.rows(f), column_count = cells_.resolution();
     for (int v : polygon.vertex) {
       const Vector3d& p = scratch_.vertex[v];
       const double outwards = face.outward_sign * p[face.outward_axis];
-      if (!(outwards > 0.0)) return {0, cells_.rows(f)};
-      low = std::min(low, p[face.row_axis] / outwards);
-      high = std::max(high, p[face.row_axis] / outwards);
+      if (!(outwards > 0.0)) return {{0, row_count}, {0, column_count}};
+      const double scale = 1.0 / (outwards * cells_.step());
+      bottom = std::min(bottom, p[face.row_axis] * scale);
+      top = std::max(top, p[face.row_axis] * scale);
+      left = std::min(left, p[face.column_axis] * scale);
+      right = std::max(right, p[face.column_axis] * scale);
     }
-    // A row to spare for the roundings of the division.
-    const auto row = [&](double at) { return (at - cells_.row_offset(f)) / cells_.step(); };
-    return {first_cell_from(row(low) - 1.0, cells_.rows(f)),
-            first_cell_from(row(high) + 1.0, cells_.rows(f))};
+    // Which of the cells within is covered the edges decide; bounds must only not be too narrow.
+    constexpr double rounding = 1e-6;  // of a cell, far more than a division's
+    const auto range = [&](double low, double high, double offset, int count) -> Range {
+      const double zero = offset / cells_.step();
+      return {first_cell_from(low - zero - rounding, count),
+              first_cell_from(high - zero + rounding, count)};
+    };
+    return {range(bottom, top, cells_.row_offset(f), row_count),
+            range(left, right, cells_.column_offset(), column_count)};
   }
 
   // Where an edge crosses the rows: column = start + slope * row. A cell is left of it or right of
@@ -167,22 +185,23 @@ class HemicubeScan::Painter {
   void paint_face(int f, const Polygon& polygon, const std::array<Vector3d, 4>& planes,
                   const Vector3d& normal_over_distance, int item) {
     const HemicubeCells::Face& face = HemicubeCells::face(f);
-    auto [first_row, last_row] = rows(f, polygon);
+    auto [rows, columns] = bounds(f, polygon);
+    if (rows.first >= rows.last || columns.first >= columns.last) return;
     std::array<Crossing, 4> left, right;
     int lefts = 0, rights = 0;
     const double step = cells_.step(), v0 = cells_.row_offset(f), u0 = cells_.column_offset();
     for (int k = 0; k < polygon.corner_count; ++k) {
       const double a = planes[k][face.column_axis], b = planes[k][face.row_axis];
       const double c = face.outward_sign * planes[k][face.outward_axis];
-      constexpr double along_rows =
-          1e-200;  // its crossings would overflow, far beyond every column
+      // Crossings of less would overflow; they are far beyond every column.
+      constexpr double along_rows = 1e-200;
       if (std::abs(a) < along_rows) {
         const auto inside = [&](int row) {
           const double e = b * (v0 + step * row) + c;
           return e > 0.0 || (e == 0.0 && (b > 0.0 || b == 0.0));
         };
-        while (first_row < last_row && !inside(first_row)) ++first_row;
-        while (first_row < last_row && !inside(last_row - 1)) --last_row;
+        while (rows.first < rows.last && !inside(rows.first)) ++rows.first;
+        while (rows.first < rows.last && !inside(rows.last - 1)) --rows.last;
         continue;
       }
       const Crossing crossing{(-(b * v0 + c) / a - u0) / step, -b / a};
@@ -194,8 +213,8 @@ class HemicubeScan::Painter {
     const double start = normal_over_distance[face.column_axis] * u0 +
                          normal_over_distance[face.row_axis] * v0 +
                          face.outward_sign * normal_over_distance[face.outward_axis];
-    for (int row = first_row; row < last_row; ++row) {
-      double from = 0.0, to = n;
+    for (int row = rows.first; row < rows.last; ++row) {
+      double from = columns.first, to = columns.last;
       for (int k = 0; k < lefts; ++k) from = std::max(from, left[k].start + left[k].slope * row);
       for (int k = 0; k < rights; ++k) to = std::min(to, right[k].start + right[k].slope * row);
       const int first = first_cell_from(from, n), last = first_cell_from(to, n);
@@ -258,8 +277,7 @@ void HemicubeScan::add_facet_elements(const PatchMesh& mesh, int first_element, 
     Polygon polygon{
         .corner_count = mesh.corner_count(e),
         .element = e,
-        .behind = mesh.twin[e] >= 0 ? mesh.twin[e] : hemicube_item::black_back(group.facet),
-        .facet = group.facet};
+        .behind = mesh.twin[e] >= 0 ? mesh.twin[e] : hemicube_item::black_back(group.facet)};
     for (int k = 0; k < 4; ++k) {
       const int corner = mesh.corners[e][std::min(k, polygon.corner_count - 1)];
       polygon.vertex[k] =

@@ -73,9 +73,8 @@ class HemicubeScan {
   struct Polygon {
     std::array<int, 4> vertex{};  // [3] = [2] in a triangle
     int corner_count = 3;
-    int element = -1;  // on the front
-    int behind = -1;   // item that is seen from behind
-    int facet = -1;
+    int element = -1;                                  // on the front
+    int behind = -1;                                   // item that is seen from behind
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // unit; counter-clockwise from there
   };
   /// Polygons of one facet near each other, rejected together.
