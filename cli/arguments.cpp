@@ -161,6 +161,12 @@ void add_exposure(CLI::App& command, double& exposure_ev) {
       ->check(finite());
 }
 
+std::vector<std::string> form_factor_method_names() {
+  std::vector<std::string> names;
+  for (const NamedFormFactorMethod& known : form_factor_methods) names.emplace_back(known.name);
+  return names;
+}
+
 void SolveArguments::add_to(CLI::App& command) {
   const std::string group = "How the light is solved";
   command
@@ -175,9 +181,11 @@ void SolveArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(whole_number(1, 64))
       ->group(group);
-  command.add_option("--form-factors", form_factors, "how form factors are found: ray-cast")
+  command
+      .add_option("--form-factors", form_factors,
+                  "how form factors are found: auto (default), ray-cast, hemicube, analytic")
       ->type_name("METHOD")
-      ->check(one_of("form-factor method", {"ray-cast"}))
+      ->check(one_of("form-factor method", form_factor_method_names()))
       ->group(group);
   command.add_option("--solver", solver, "how the equations are solved: gauss-seidel")
       ->type_name("METHOD")
@@ -212,6 +220,7 @@ void SolveArguments::add_to(CLI::App& command) {
 SolveOptions SolveArguments::options(const Scene& scene) const {
   SolveOptions options = solve;
   options.mesh.max_patch_size = max_patch_size * scene.metres_per_unit;
+  options.form_factors.method = form_factor_method(form_factors);
   return options;
 }
 

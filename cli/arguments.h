@@ -14,7 +14,7 @@ namespace lightwell {
 /// How the light is solved, as asked for on the command line.
 struct SolveArguments {
   double max_patch_size = 0.0;  ///< in the scene file's unit; 0: automatic
-  std::string form_factors = "ray-cast";
+  std::string form_factors = "auto";
   std::string solver = "gauss-seidel";
   SolveOptions solve{};
 
@@ -41,6 +41,8 @@ struct RenderArguments {
 
 /// SCENE and SOLUTION, both required.
 void add_solved_scene(CLI::App& command, std::string& scene, std::string& solution);
+
+std::vector<std::string> form_factor_method_names();
 
 /// Adds --size WxH.
 void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size);

@@ -34,7 +34,7 @@ SparseRows symmetric_rows(int n, std::span<const SymmetricEntry> entries) {
     for (std::int64_t k = first[i]; k < first[i + 1]; ++k) {
       if (k + 1 < first[i + 1] && cells[k + 1].column == cells[k].column) continue;
       rows.column.push_back(cells[k].column);
-      rows.value.push_back(cells[k].value);
+      rows.value.push_back(static_cast<float>(cells[k].value));
     }
     rows.first.push_back(static_cast<std::int64_t>(rows.column.size()));
   }
@@ -51,7 +51,8 @@ Eigen::ArrayXd symmetric_scaling(const SparseRows& S, const Eigen::ArrayXd& open
     parallel_for(n, 256, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         double s = open[i];
-        for (std::int64_t e = S.first[i]; e < S.first[i + 1]; ++e) s += S.value[e] * d[S.column[e]];
+        for (std::int64_t e = S.first[i]; e < S.first[i + 1]; ++e)
+          s += static_cast<double>(S.value[e]) * d[S.column[e]];
         sum[i] = s;
       }
     });

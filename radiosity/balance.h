@@ -11,7 +11,7 @@ namespace lightwell {
 struct SparseRows {
   std::vector<std::int64_t> first{};
   std::vector<int> column{};
-  std::vector<double> value{};
+  std::vector<float> value{};
   int rows() const { return static_cast<int>(first.size()) - 1; }
 };
 

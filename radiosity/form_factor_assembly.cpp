@@ -35,16 +35,17 @@ class StoredFormFactors final : public FormFactors {
 // mirrors and glass.
 class Assembly {
  public:
-  Assembly(const PatchMesh& mesh, int bands, const std::vector<EstimatedRow>& rows,
+  Assembly(const PatchMesh& mesh, int bands, std::vector<EstimatedRow> rows,
            const KnownExchange& known, bool enforce_closure)
       : mesh_(mesh),
-        rows_(rows),
+        rows_(std::move(rows)),
         n_(mesh.patch_count()),
         bands_(bands),
         known_(symmetric_rows(n_, known.S)),
         is_whole_(known.is_whole),
         enforce_closure_(enforce_closure) {
     is_whole_.resize(static_cast<std::size_t>(n_), 0);
+    closed_forms_ = known_.first.back() / 2;
   }
 
   std::unique_ptr<FormFactors> build(FormFactorReport* report) {
@@ -61,6 +62,8 @@ class Assembly {
   }
 
  private:
+  static void scale(float& value, double factor) { value = static_cast<float>(value * factor); }
+
   bool is_measured(int i) const { return rows_[i].trust > 0.0; }
   bool is_whole(int i) const { return is_whole_[i] != 0; }
   float weight(int i) const { return static_cast<float>(rows_[i].trust * mesh_.area[i]); }
@@ -73,7 +76,7 @@ class Assembly {
 
   // S of the pairs that are not known. Both ends estimate it; the sum that gives each its trust has
   // the least variance.
-  SparseRows sampled_exchange() const {
+  SparseRows sampled_exchange() {
     std::vector<std::vector<FormFactor>> arrivals(n_);  // transposed, ordered: weight times share
     for (int i = 0; i < n_; ++i) {
       if (is_whole(i)) continue;
@@ -81,17 +84,23 @@ class Assembly {
         if (!is_whole(f.patch)) arrivals[f.patch].push_back({i, weight(i) * f.value});
       }
     }
+    std::size_t most = 0;
+    for (const EstimatedRow& row : rows_) most += 2 * row.shares.size();
     SparseRows S;
+    S.column.reserve(most);
+    S.value.reserve(most);
     S.first.push_back(0);
     for (int i = 0; i < n_; ++i) {
       if (!is_whole(i)) {
         const auto add = [&](int j, double own, double other) {
           if (is_whole(j) || is_known(i, j)) return;
           S.column.push_back(j);
-          S.value.push_back((weight(i) * own + other) / (rows_[i].trust + rows_[j].trust));
+          S.value.push_back(
+              static_cast<float>((weight(i) * own + other) / (rows_[i].trust + rows_[j].trust)));
         };
         merge(rows_[i].shares, arrivals[i], add);
         arrivals[i] = {};
+        rows_[i].shares = {};  // by far the most of a row, and not needed again
       }
       S.first.push_back(static_cast<std::int64_t>(S.column.size()));
     }
@@ -127,11 +136,12 @@ class Assembly {
       close_sampled_rows(sampled, target, open);
     }
     SparseRows all = joined(sampled);
+    sampled = known_ = {};
     if (enforce_closure_) {
       const Eigen::ArrayXd d = symmetric_scaling(all, open, target);
       for (int i = 0; i < n_; ++i) {
         for (std::int64_t k = all.first[i]; k < all.first[i + 1]; ++k) {
-          all.value[k] *= d[i] * d[all.column[k]];
+          scale(all.value[k], d[i] * d[all.column[k]]);
         }
         open[i] *= d[i];
       }
@@ -161,8 +171,8 @@ class Assembly {
     const Eigen::ArrayXd c = symmetric_scaling(among, fixed, wanted);
     for (int i = 0; i < n_; ++i) {
       for (std::int64_t k = S.first[i]; k < S.first[i + 1]; ++k) {
-        if (is_whole(i)) S.value[k] *= c[i];
-        if (is_whole(S.column[k])) S.value[k] *= c[S.column[k]];
+        if (is_whole(i)) scale(S.value[k], c[i]);
+        if (is_whole(S.column[k])) scale(S.value[k], c[S.column[k]]);
       }
     }
   }
@@ -189,7 +199,7 @@ class Assembly {
     const Eigen::ArrayXd d = symmetric_scaling(sampled, sampled_open, left);
     for (int i = 0; i < n_; ++i) {
       for (std::int64_t k = sampled.first[i]; k < sampled.first[i + 1]; ++k) {
-        sampled.value[k] *= d[i] * d[sampled.column[k]];
+        scale(sampled.value[k], d[i] * d[sampled.column[k]]);
       }
       if (!is_whole(i)) open[i] *= d[i];
     }
@@ -319,7 +329,7 @@ class Assembly {
   void fill_report(const StoredFormFactors& result, FormFactorReport& report) const {
     report.mean_closure_correction = mean_correction_;
     report.max_closure_correction = max_correction_;
-    report.closed_forms = known_.first.back() / 2;
+    report.closed_forms = closed_forms_;
     report.rays = 0;
     report.max_closure_error = 0.0;
     double cut = 0.0;
@@ -359,21 +369,22 @@ class Assembly {
   }
 
   const PatchMesh& mesh_;
-  const std::vector<EstimatedRow>& rows_;
+  std::vector<EstimatedRow> rows_;
   int n_ = 0, bands_ = 0;
   SparseRows known_;
   std::vector<char> is_whole_;
   bool enforce_closure_ = true;
+  std::int64_t closed_forms_ = 0;
   double mean_correction_ = 0.0, max_correction_ = 0.0;
 };
 
 }  // namespace
 
 std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, int bands,
-                                                   const std::vector<EstimatedRow>& rows,
+                                                   std::vector<EstimatedRow> rows,
                                                    const KnownExchange& known, bool enforce_closure,
                                                    FormFactorReport* report) {
-  return Assembly(mesh, bands, rows, known, enforce_closure).build(report);
+  return Assembly(mesh, bands, std::move(rows), known, enforce_closure).build(report);
 }
 
 }  // namespace lightwell

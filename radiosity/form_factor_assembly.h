@@ -19,7 +19,7 @@ struct KnownExchange {
 /// Joins the two estimates of every pair, puts known exchange in its place, closes the rows if
 /// asked (what was sampled first, then everything), and stores the result.
 std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, int bands,
-                                                   const std::vector<EstimatedRow>& rows,
+                                                   std::vector<EstimatedRow> rows,
                                                    const KnownExchange& known, bool enforce_closure,
                                                    FormFactorReport* report);
 

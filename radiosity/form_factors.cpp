@@ -1,8 +1,12 @@
 #include "radiosity/form_factors.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <stdexcept>
 
 #include "radiosity/analytic_exchange.h"
 #include "radiosity/emitter_exchange.h"
@@ -52,7 +56,16 @@ class Estimator {
   }
 
  private:
-  int base_rays() const { return std::max(1, options_.rays_per_patch); }
+  // As many as the target takes in rows where nothing is partly hidden.
+  int base_rays() const {
+    const int asked = std::max(1, options_.rays_per_patch);
+    if (!(options_.target_error > 0.0)) return asked;
+    const double needed = NearExchange::worst_count_error / options_.target_error;
+    const double most = std::max(asked, options_.most_rays_per_patch);
+    return std::max(
+        asked,
+        static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(std::min(needed, most))))));
+  }
   int most_rays(int patch_rays) const {
     return options_.target_error > 0.0 ? std::max(patch_rays, options_.most_rays_per_patch)
                                        : patch_rays;
@@ -147,14 +160,24 @@ class Estimator {
 
 }  // namespace
 
+FormFactorMethod form_factor_method(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const NamedFormFactorMethod& known : form_factor_methods) {
+    if (known.name == name) return known.method;
+    names.push_back(known.name);
+  }
+  throw std::invalid_argument(fmt::format("there is no form-factor method '{}'; there are {}", name,
+                                          fmt::join(names, ", ")));
+}
+
 std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const ElementCaster& caster,
                                                   const DirectLight& direct_light,
                                                   const FormFactorOptions& options,
                                                   FormFactorReport* report) {
   Estimate estimate = Estimator(scene, caster, direct_light, options).estimate();
   if (report) report->row_error = std::move(estimate.row_error);
-  return assemble_form_factors(caster.mesh(), scene.bands.count(), estimate.rows, estimate.known,
-                               options.enforce_closure, report);
+  return assemble_form_factors(caster.mesh(), scene.bands.count(), std::move(estimate.rows),
+                               estimate.known, options.enforce_closure, report);
 }
 
 }  // namespace lightwell

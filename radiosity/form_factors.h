@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "mesh/element_caster.h"
@@ -54,6 +56,20 @@ enum class FormFactorMethod {
   /// visibility sampled by shadow rays. Quadratic in the number of patches.
   analytic
 };
+
+struct NamedFormFactorMethod {
+  std::string_view name;
+  FormFactorMethod method;
+};
+/// What the methods are called wherever one is asked for by name.
+inline constexpr std::array<NamedFormFactorMethod, 4> form_factor_methods = {
+    {{"auto", FormFactorMethod::automatic},
+     {"ray-cast", FormFactorMethod::ray_cast},
+     {"hemicube", FormFactorMethod::hemicube},
+     {"analytic", FormFactorMethod::analytic}}};
+
+/// Throws std::invalid_argument, naming all that there are, for a name that is none of them.
+FormFactorMethod form_factor_method(std::string_view name);
 
 struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;

@@ -11,6 +11,7 @@ namespace {
 
 // Fewer rays than this tell too little about what stands between.
 constexpr int fewest_rays = 12;
+static_assert(NearExchange::worst_count_error * NearExchange::worst_count_error > fewest_rays - 1);
 
 }  // namespace
 

@@ -17,6 +17,9 @@ class NearExchange {
  public:
   explicit NearExchange(const PatchMesh& mesh);
 
+  /// Standard error of the worst F_ij that remains a count, times the row's rays.
+  static constexpr double worst_count_error = 3.32;
+
   struct Pair {
     int i = 0, j = 0;  ///< i < j
     int first = 0, all = 0;

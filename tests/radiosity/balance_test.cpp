@@ -14,7 +14,7 @@ SparseRows dense(const Eigen::ArrayXXd& S) {
     for (int j = 0; j < S.cols(); ++j) {
       if (S(i, j) == 0.0) continue;
       rows.column.push_back(j);
-      rows.value.push_back(S(i, j));
+      rows.value.push_back(static_cast<float>(S(i, j)));
     }
     rows.first.push_back(static_cast<std::int64_t>(rows.column.size()));
   }

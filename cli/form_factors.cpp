@@ -1,0 +1,381 @@
+#include "radiosity/form_factors.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "radiosity/form_factor_file.h"
+#include "radiosity/view_factor_scene.h"
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace fs = std::filesystem;
+namespace {
+
+struct Arguments {
+  std::string scene, output, method = "auto", view3d, row_output;
+  double target_error = 1e-3;
+  double max_patch_size = 0.0;  // in the scene file's unit; 0: a row per facet
+  int show_row = 0;             // counted from 1; 0: none
+  bool two_sided = false;
+
+  std::string text() const;
+  fs::path json_file() const { return fs::path(output).replace_extension(".json"); }
+  fs::path row_file() const;
+};
+
+std::string Arguments::text() const {
+  return fmt::format("--method {} --target-error {:g} --max-patch-size {:g}{}", method,
+                     target_error, max_patch_size, two_sided ? " --two-sided" : "");
+}
+
+fs::path Arguments::row_file() const {
+  if (!row_output.empty()) return row_output;
+  return fs::path(output).replace_extension(fmt::format(".row{}.vtp", show_row));
+}
+
+/// How facets are cut when each is to be one row. Rays find all of a facet; what a hemicube sees
+/// from one place, or what few shadow rays say about two whole facets, is better summed over
+/// smaller patches. Facets are cut where others touch them in any case.
+MeshOptions mesh_for_facets(FormFactorMethod method, const Scene& scene) {
+  MeshOptions options{.elements_per_patch_edge = 1};
+  constexpr int patches_of_hemicubes = 2048, patches_of_closed_forms = 512;
+  if (method == FormFactorMethod::hemicube) {
+    options.auto_patch_count = patches_of_hemicubes;
+  } else if (method == FormFactorMethod::analytic) {
+    options.auto_patch_count = patches_of_closed_forms;
+  } else {
+    options.max_patch_size = 2.0 * scene_bounds(scene).diagonal();
+  }
+  return options;
+}
+
+/// What the rows of the matrix are.
+struct Rows {
+  std::vector<int> of_patch{};      // -1: none
+  std::vector<std::string> name{};  // of the surface
+  std::vector<int> facet{};         // of the file, counted from 1
+  std::vector<char> is_back{};
+  std::vector<double> emittance{};
+
+  int count() const { return static_cast<int>(name.size()); }
+  void add(const NumberedScene& numbered, int facet_row, bool back) {
+    const auto& row = numbered.rows[static_cast<std::size_t>(facet_row)];
+    name.push_back(row.name);
+    facet.push_back(facet_row + 1);
+    is_back.push_back(back ? 1 : 0);
+    emittance.push_back(row.emittance);
+  }
+};
+
+Rows rows_per_facet(const NumberedScene& numbered, const ViewFactorScene& view,
+                    const PatchMesh& mesh) {
+  Rows rows{.of_patch = rows_of_patches(view, mesh)};
+  const int facets = static_cast<int>(numbered.rows.size());
+  for (int row = 0; row < view.row_count; ++row) rows.add(numbered, row % facets, row >= facets);
+  return rows;
+}
+
+Rows rows_per_patch(const NumberedScene& numbered, const ViewFactorScene& view,
+                    const PatchMesh& mesh) {
+  Rows rows;
+  const int facets = static_cast<int>(numbered.rows.size());
+  for (const int facet_row : rows_of_patches(view, mesh)) {
+    rows.of_patch.push_back(facet_row < 0 ? -1 : rows.count());
+    if (facet_row >= 0) rows.add(numbered, facet_row % facets, facet_row >= facets);
+  }
+  return rows;
+}
+
+/// "5, 9 and 3 more", counted from 1.
+std::string some_of(const std::vector<int>& numbers) {
+  constexpr std::size_t most_named = 10;
+  std::vector<int> named;
+  for (const int number : numbers) {
+    if (named.size() < most_named) named.push_back(number + 1);
+  }
+  const std::string text = fmt::format("{}", fmt::join(named, ", "));
+  return numbers.size() > named.size()
+             ? fmt::format("{} and {} more", text, numbers.size() - named.size())
+             : text;
+}
+
+std::vector<int> seconds_of(const std::vector<FacetPair>& pairs, const NumberedScene& numbered) {
+  std::vector<int> rows;
+  for (const FacetPair& pair : pairs) {
+    const int row = numbered.row_of_facet[static_cast<std::size_t>(pair.second)];
+    if (row >= 0) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// What was found in the file and done about it, a sentence each.
+std::vector<std::string> findings(const NumberedScene& numbered, const FacetCheck& check) {
+  std::vector<std::string> notes = numbered.scene.notes;
+  std::vector<char> has_facet(numbered.rows.size(), 0);
+  for (const int row : numbered.row_of_facet) {
+    if (row >= 0) has_facet[static_cast<std::size_t>(row)] = 1;
+  }
+  std::vector<int> empty;
+  for (std::size_t r = 0; r < has_facet.size(); ++r) {
+    if (!has_facet[r]) empty.push_back(static_cast<int>(r));
+  }
+  if (!empty.empty()) {
+    notes.push_back(fmt::format(
+        "Facets without area, or that cross themselves, keep empty rows: {}.", some_of(empty)));
+  }
+  if (const auto rows = seconds_of(check.duplicates, numbered); !rows.empty()) {
+    notes.push_back(
+        fmt::format("Facets that lie on an earlier one and face the same way are left "
+                    "out and keep empty rows: {}.",
+                    some_of(rows)));
+  }
+  if (const auto rows = seconds_of(check.opposites, numbered); !rows.empty()) {
+    notes.push_back(fmt::format("Facets that are the back of an earlier one: {}.", some_of(rows)));
+  }
+  if (check.inconsistent_edges > 0) {
+    notes.push_back(
+        fmt::format("{} edges lie between facets that face opposite ways; facets see "
+                    "where their corners run counter-clockwise.",
+                    check.inconsistent_edges));
+  }
+  if (check.open_edges > 0) {
+    notes.push_back(
+        fmt::format("The surfaces are open along {} edges that belong to one facet "
+                    "only.",
+                    check.open_edges));
+  }
+  return notes;
+}
+
+struct Computed {
+  PatchMesh mesh{};
+  Rows rows{};
+  ViewFactors factors{};
+  FormFactorReport report{};
+  std::optional<double> error{};  // estimated, of the worst factor
+};
+
+Computed compute(const Arguments& arguments, const NumberedScene& numbered, const FacetCheck& check,
+                 Console& console, Report& report) {
+  Stopwatch watch;
+  const ViewFactorScene view = make_view_factor_scene(numbered, check, arguments.two_sided);
+  const FormFactorMethod method = form_factor_method(arguments.method);
+  const bool per_patch = arguments.max_patch_size > 0.0;
+  MeshOptions mesh_options = mesh_for_facets(method, view.scene);
+  if (per_patch) {
+    mesh_options.max_patch_size = arguments.max_patch_size * view.scene.metres_per_unit;
+  }
+  mesh_options.progress = console.progress();
+  Computed computed;
+  computed.mesh = build_patches(view.scene, mesh_options);
+  report.add_phase("mesh", watch.lap());
+  computed.rows = per_patch ? rows_per_patch(numbered, view, computed.mesh)
+                            : rows_per_facet(numbered, view, computed.mesh);
+  if (arguments.show_row > computed.rows.count()) {
+    throw InputError(fmt::format("{}: there is no row {} to show; there are {}",
+                                 view.scene.file.string(), arguments.show_row,
+                                 computed.rows.count()));
+  }
+  const ElementCaster caster(computed.mesh);
+  const DirectLight no_light(view.scene, computed.mesh);
+  FormFactorOptions options;
+  options.method = method;
+  options.target_error = arguments.target_error;
+  options.progress = console.progress();
+  const auto form_factors =
+      compute_form_factors(view.scene, caster, no_light, options, &computed.report);
+  console.finish_phase();
+  stop_if_interrupted();
+  computed.factors =
+      sum_form_factors(*form_factors, computed.mesh, computed.rows.of_patch, computed.rows.count());
+  report.add_phase("form_factors", watch.lap());
+  return computed;
+}
+
+Json facts(const Arguments& arguments, const NumberedScene& numbered, const Computed& computed) {
+  const ViewFactors& F = computed.factors;
+  double area = 0.0, most_open = 0.0;
+  for (int i = 0; i < F.row_count(); ++i) {
+    const auto r = static_cast<std::size_t>(i);
+    area += F.area[r];
+    most_open = std::max(most_open, F.open[r]);
+  }
+  return {{"scene", arguments.scene},
+          {"options", arguments.text()},
+          {"method", arguments.method},
+          {"target_error", arguments.target_error},
+          {"facets", numbered.rows.size()},
+          {"rows", F.row_count()},
+          {"patches", computed.mesh.patch_count()},
+          {"entries", F.factors.size()},
+          {"total_area", area},
+          {"closure_max_error", closure_error(F)},
+          {"reciprocity_max_error", reciprocity_error(F)},
+          {"error_estimate", computed.error ? Json(*computed.error) : Json()},
+          {"mean_closure_correction", computed.report.mean_closure_correction},
+          {"max_closure_correction", computed.report.max_closure_correction},
+          {"open_share", mean_open_share(F)},
+          {"most_open_share", most_open},
+          {"rays", computed.report.rays}};
+}
+
+/// The arrays that go beside the matrix, one value per row.
+Json row_facts(const Computed& computed) {
+  const Rows& rows = computed.rows;
+  Json side = Json::array();
+  for (const char back : rows.is_back) side.push_back(back ? "back" : "front");
+  return {{"area", computed.factors.area},
+          {"name", rows.name},
+          {"facet", rows.facet},
+          {"side", std::move(side)},
+          {"emittance", rows.emittance},
+          {"open", computed.factors.open},
+          {"blocked", computed.factors.blocked}};
+}
+
+std::string for_people(const Json& facts, const ViewFactors& F) {
+  std::string text;
+  const auto number = [&facts](const char* key) { return facts[key].get<double>(); };
+  text +=
+      fmt::format("{:<9} {} of {} facets, {} entries, {:.6g} m2 in all\n", "rows", F.row_count(),
+                  facts["facets"].get<int>(), F.factors.size(), number("total_area"));
+  text += fmt::format("{:<9} rows and what is open add up to 1 within {:.1e}\n", "closure",
+                      number("closure_max_error"));
+  text += fmt::format("{:<9} A_i F_ij = A_j F_ji within {:.1e} of the smaller area\n", "exchange",
+                      number("reciprocity_max_error"));
+  text += fmt::format("{:<9} {:.4f} % of what leaves the facets, {:.4f} % at most, meets none\n",
+                      "open", 100.0 * number("open_share"), 100.0 * number("most_open_share"));
+  const Json& error = facts["error_estimate"];
+  text += fmt::format(
+      "{:<9} {} in the worst factor; asked for {:.1e} ({})\n", "error",
+      error.is_null() ? "not estimated" : fmt::format("{:.1e}, estimated,", error.get<double>()),
+      number("target_error"), facts["method"].get<std::string>());
+  return text;
+}
+
+void write_files(const Arguments& arguments, const NumberedScene& numbered,
+                 const Computed& computed, Report& report) {
+  const ViewFactors& F = computed.factors;
+  write_matrix_market(
+      arguments.output, F,
+      fmt::format("View factors by lightwell {}: row i, column j, share of what leaves i that "
+                  "reaches j\nscene: {}\noptions: {}\nareas and names of the rows: {}",
+                  LIGHTWELL_VERSION, arguments.scene, arguments.text(),
+                  arguments.json_file().filename().string()));
+  report.add_file(arguments.output);
+  if (!arguments.view3d.empty()) {
+    write_view3d(arguments.view3d, F, computed.rows.emittance, numbered.scene.metres_per_unit,
+                 {.version = LIGHTWELL_VERSION, .is_enclosure = numbered.is_enclosure});
+    report.add_file(arguments.view3d);
+  }
+  if (arguments.show_row > 0) {
+    write_row(arguments.row_file(), computed.mesh, computed.rows.of_patch, F,
+              arguments.show_row - 1);
+    report.add_file(arguments.row_file());
+  }
+}
+
+int form_factors(const Arguments& arguments, Console& console) {
+  Report report(console.options());
+  Stopwatch watch;
+  const NumberedScene numbered = read_numbered_scene(arguments.scene);
+  if (arguments.show_row > 0) require_writable(arguments.row_file());
+  if (!arguments.view3d.empty()) require_writable(arguments.view3d);
+  require_writable(arguments.output);
+  require_writable(arguments.json_file());
+  const FacetCheck check = check_facets(numbered.scene);
+  std::vector<std::string> notes = findings(numbered, check);
+  report.add_phase("read_scene", watch.lap());
+
+  const Computed computed = compute(arguments, numbered, check, console, report);
+  if (computed.factors.factors.empty()) {
+    notes.push_back("No facet sees another; facets see where their corners run counter-clockwise.");
+  }
+  for (const std::string& note : notes) console.say("note: " + note);
+  const Json found = facts(arguments, numbered, computed);
+  for (const auto& [key, value] : found.items()) report.add(key, value);
+  report.add("notes", notes);
+
+  watch.lap();
+  write_files(arguments, numbered, computed, report);
+  report.add_phase("write", watch.lap());
+  report.add_file(arguments.json_file());
+  Json beside = report.json();
+  beside["row"] = row_facts(computed);
+  write_json(arguments.json_file(), beside);
+
+  const CommonOptions& common = console.options();
+  if (!common.json && !common.quiet) fmt::print("{}", for_people(found, computed.factors));
+  report.print();
+  return exit_done;
+}
+
+void add_how(CLI::App& command, Arguments& arguments) {
+  const std::string group = "How they are found";
+  command
+      .add_option("--method", arguments.method, "auto (default), ray-cast, hemicube or analytic")
+      ->type_name("METHOD")
+      ->check(CLI::IsMember(form_factor_method_names()))
+      ->group(group);
+  command
+      .add_option("--target-error", arguments.target_error,
+                  "wanted standard error of every factor (default 1e-3)")
+      ->type_name("E")
+      ->check(positive())
+      ->group(group);
+  command
+      .add_option("--max-patch-size", arguments.max_patch_size,
+                  "cut facets into patches of that edge, in the scene file's unit, with a row each "
+                  "(default: a row for each facet)")
+      ->type_name("L")
+      ->check(positive())
+      ->group(group);
+  command
+      .add_flag("--two-sided", arguments.two_sided,
+                "facets see with their backs as well: row n + i is the back of row i of n")
+      ->group(group);
+}
+
+}  // namespace
+
+Action add_form_factors(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.description(
+      "View factors between the facets of a file, as a sparse matrix; materials do not matter.");
+  command.add_option("scene", arguments->scene, "geometry: .obj, .stl, .ply, .toml, View3D's .vs3")
+      ->required()
+      ->type_name("SCENE");
+  command
+      .add_option("-o,--output", arguments->output,
+                  "the matrix, Matrix Market .mtx; areas and names go into a .json beside it")
+      ->required()
+      ->type_name("FILE")
+      ->check(with_extension({".mtx"}));
+  command.add_option("--view3d", arguments->view3d, "also View3D's text result")->type_name("FILE");
+  auto* const show_row =
+      command
+          .add_option("--show-row", arguments->show_row,
+                      "also a .vtp of the surfaces, coloured by the factors of row N in ParaView")
+          ->type_name("N")
+          ->check(whole_number(1, 2000000000));
+  command
+      .add_option("--row-output", arguments->row_output,
+                  "where that goes (default: beside the matrix)")
+      ->type_name("FILE")
+      ->check(with_extension({".vtp"}))
+      ->needs(show_row);
+  add_how(command, *arguments);
+  command.footer("Example: lightwell form-factors room.stl -o room.mtx --target-error 1e-3");
+  return [arguments](Console& console) { return form_factors(*arguments, console); };
+}
+
+}  // namespace lightwell

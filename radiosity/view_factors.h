@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "radiosity/form_factors.h"
+
+namespace lightwell {
+
+/// View factors between the things a user counts by (facets of a file, parts put together), which
+/// may be one patch or many. Area-weighted sums of form factors: for rows I, J of patches
+///
+///     F_IJ = sum_{i in I} A_i sum_{j in J} F_ij / A_I.
+///
+/// They keep what form factors keep: 0 <= F_IJ <= 1, A_I F_IJ = A_J F_JI, and rows that add up,
+/// with what is open and what is blocked, to 1.
+struct ViewFactors {
+  std::vector<double> area{};         ///< A_I, m^2; 0: nothing is left of that row
+  std::vector<std::size_t> first{0};  ///< rows + 1 entries: where a row begins in `factors`
+  std::vector<FormFactor> factors{};  ///< F_IJ > 0, ordered by J within a row
+  std::vector<double> open{};         ///< share that leaves the scene or meets a black back
+  std::vector<double> blocked{};      ///< share that meets patches of no row
+
+  int row_count() const { return static_cast<int>(area.size()); }
+  std::span<const FormFactor> row(int i) const {
+    const auto r = static_cast<std::size_t>(i);
+    return {factors.data() + first[r], first[r + 1] - first[r]};
+  }
+  float factor(int i, int j) const;
+};
+
+/// `row_of_patch` says for every patch which of `row_count` rows it belongs to, -1: to none.
+/// Scenes with mirrors or glass are taken in band 0.
+ViewFactors sum_form_factors(const FormFactors& form_factors, const PatchMesh& mesh,
+                             const std::vector<int>& row_of_patch, int row_count);
+
+/// max_I |1 - sum_J F_IJ - open_I - blocked_I| over rows with an area.
+double closure_error(const ViewFactors& view_factors);
+
+/// max_IJ |A_I F_IJ - A_J F_JI| / min(A_I, A_J).
+double reciprocity_error(const ViewFactors& view_factors);
+
+/// Estimated standard error of the worst F_IJ, from that of the worst F_ij of each patch, taken as
+/// independent: max_I sqrt(n sum_{i in I} (A_i / A_I)^2 e_i^2), n the most patches in any row.
+double error_estimate(const std::vector<float>& patch_error, const PatchMesh& mesh,
+                      const std::vector<int>& row_of_patch);
+
+/// Area-weighted mean of `open` over all rows.
+double mean_open_share(const ViewFactors& view_factors);
+
+}  // namespace lightwell

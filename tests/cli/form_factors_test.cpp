@@ -1,0 +1,302 @@
+// What a thermal engineer sees of 'lightwell form-factors'.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "tests/cli/program.h"
+
+namespace lightwell {
+namespace {
+using Words = std::vector<std::string>;
+
+// Unit squares that face each other at distance 1.
+const std::string plates = R"(T plates
+C encl=1
+F 3
+V 1  0 0 0
+V 2  1 0 0
+V 3  1 1 0
+V 4  0 1 0
+V 5  0 0 1
+V 6  1 0 1
+V 7  1 1 1
+V 8  0 1 1
+S 1  1 2 3 4  0 0 0.90 floor
+S 2  8 7 6 5  0 0 0.50 ceiling
+)";
+
+// The box between (0.3, 0.35, 0.2) and (0.6, 0.75, 0.6), seen from outside.
+const std::string box = R"(
+V  9  0.3 0.35 0.2
+V 10  0.6 0.35 0.2
+V 11  0.6 0.75 0.2
+V 12  0.3 0.75 0.2
+V 13  0.3 0.35 0.6
+V 14  0.6 0.35 0.6
+V 15  0.6 0.75 0.6
+V 16  0.3 0.75 0.6
+O 3   9 12 11 10
+O 4  13 14 15 16
+O 5   9 10 14 13
+O 6  10 11 15 14
+O 7  11 12 16 15
+O 8  12  9 13 16
+)";
+
+// Closed forms of the two, computed with mpmath for this project: the first by the double contour
+// integral, the second by clipping the visible region.
+constexpr double plates_F = 0.199824895698387, plates_and_box_F = 0.123862784216098;
+
+struct Matrix {
+  std::size_t rows = 0;
+  std::map<std::pair<int, int>, double> entry{};
+
+  double at(int i, int j) const {
+    const auto found = entry.find({i, j});
+    return found == entry.end() ? 0.0 : found->second;
+  }
+};
+
+class FormFactorsCommand : public testing::Test {
+ protected:
+  Ended run(const Words& arguments) { return run_lightwell(folder / "", arguments); }
+  nlohmann::json run_json(const Words& arguments) {
+    const Ended ended = run(arguments + Words{"--json"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+  }
+  nlohmann::json json_file(const std::string& name) const {
+    std::ifstream in(folder / name);
+    return nlohmann::json::parse(in);
+  }
+  // Every number in [0, 1], as promised for any input.
+  Matrix matrix(const std::string& name) const {
+    std::ifstream in(folder / name);
+    std::string line;
+    while (in.peek() == '%') std::getline(in, line);
+    Matrix matrix;
+    std::size_t columns = 0, entries = 0;
+    in >> matrix.rows >> columns >> entries;
+    EXPECT_EQ(matrix.rows, columns);
+    int i = 0, j = 0;
+    double F = 0.0;
+    while (in >> i >> j >> F) {
+      EXPECT_TRUE(F > 0.0 && F <= 1.0) << i << " " << j << " " << F;
+      matrix.entry[{i, j}] = F;
+    }
+    EXPECT_EQ(matrix.entry.size(), entries);
+    return matrix;
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(FormFactorsCommand, TwoPlatesAreRightWithinTheErrorAskedFor) {
+  folder.write("plates.vs3", plates);
+  const auto json = run_json({"form-factors", "plates.vs3", "-o", "F.mtx"});
+  const Matrix F = matrix("F.mtx");
+  ASSERT_EQ(F.rows, 2u);
+  EXPECT_NEAR(F.at(1, 2), plates_F, 1e-3);
+  EXPECT_NEAR(F.at(2, 1), plates_F, 1e-3);
+  EXPECT_EQ(F.entry.size(), 2u);
+  EXPECT_EQ(json["facets"], 2);
+  EXPECT_LT(json["closure_max_error"].get<double>(), 1e-6);
+  EXPECT_LT(json["reciprocity_max_error"].get<double>(), 1e-6);
+  EXPECT_NEAR(json["open_share"].get<double>(), 1.0 - plates_F, 1e-3);
+  EXPECT_DOUBLE_EQ(json["total_area"].get<double>(), 2.0);
+  EXPECT_GT(json["seconds"]["total"].get<double>(), 0.0);
+  EXPECT_GT(json["peak_memory_mb"].get<double>(), 0.0);
+  EXPECT_EQ(json["files"], nlohmann::json::array({"F.mtx", "F.json"}));
+  const auto beside = json_file("F.json");
+  EXPECT_EQ(beside["row"]["name"], nlohmann::json::array({"floor", "ceiling"}));
+  EXPECT_EQ(beside["row"]["facet"], nlohmann::json::array({1, 2}));
+  EXPECT_EQ(beside["row"]["area"].size(), 2u);
+  EXPECT_EQ(folder.file_count(), 3);
+}
+
+// The estimate is a standard error; four of them are passed once in 16 000 cases.
+TEST_F(FormFactorsCommand, AnObstructionTakesItsShareAndHasNoRow) {
+  folder.write("box.vs3", plates + box);
+  for (const char* method : {"auto", "ray-cast"}) {
+    const auto json = run_json({"form-factors", "box.vs3", "-o", "F.mtx", "--method", method});
+    const Matrix F = matrix("F.mtx");
+    EXPECT_EQ(F.rows, 2u);
+    EXPECT_NEAR(F.at(1, 2), plates_and_box_F, 4e-3) << method;
+    const auto row = json_file("F.json")["row"];
+    const double blocked = row["blocked"][0].get<double>();
+    EXPECT_GT(blocked, 0.05);
+    EXPECT_NEAR(F.at(1, 2) + blocked + row["open"][0].get<double>(), 1.0, 1e-6);
+  }
+}
+
+TEST_F(FormFactorsCommand, MethodsAgree) {
+  folder.write("plates.vs3", plates);
+  for (const char* method : {"auto", "ray-cast", "hemicube", "analytic"}) {
+    ASSERT_EQ(run({"form-factors", "plates.vs3", "-o", "F.mtx", "--method", method}).code, 0);
+    // Twice the error asked for: what hemicubes may leave at their resolution.
+    EXPECT_NEAR(matrix("F.mtx").at(1, 2), plates_F, 2e-3) << method;
+  }
+}
+
+TEST_F(FormFactorsCommand, AClosedBoxLosesNothing) {
+  // Faces inwards: STL without shared vertices, two triangles a side.
+  std::string obj;
+  for (int i = 0; i < 8; ++i) {
+    obj += "v " + std::to_string(i & 1) + " " + std::to_string((i >> 1) & 1) + " " +
+           std::to_string((i >> 2) & 1) + "\n";
+  }
+  obj += "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+  folder.write("cube.obj", obj);
+  const auto json = run_json({"form-factors", "cube.obj", "-o", "F.mtx"});
+  EXPECT_LT(json["closure_max_error"].get<double>(), 1e-6);
+  EXPECT_LT(json["open_share"].get<double>(), 1e-6);
+  EXPECT_TRUE(json["notes"].empty()) << json["notes"];
+  const Matrix F = matrix("F.mtx");
+  EXPECT_NEAR(F.at(1, 2), plates_F, 1e-3);
+  EXPECT_NEAR(F.at(1, 3), (1.0 - plates_F) / 4.0, 1e-3) << "by symmetry";
+}
+
+TEST_F(FormFactorsCommand, FacetsKeepTheirNumbersWhateverIsWrongWithOthers) {
+  folder.write("bad.obj", R"(
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+f 1 2 2
+f 1 2 3 4
+f 1 2 3 4
+f 8 7 6 5
+f 5 6 7 8
+)");
+  const auto json = run_json({"form-factors", "bad.obj", "-o", "F.mtx"});
+  const Matrix F = matrix("F.mtx");
+  EXPECT_EQ(F.rows, 5u);
+  EXPECT_NEAR(F.at(2, 4), plates_F, 1e-3);
+  EXPECT_EQ(F.entry.size(), 2u) << "facet 5 is the back of 4 and looks away";
+  const std::string notes = json["notes"].dump();
+  EXPECT_TRUE(says(notes, "empty rows: 1."));
+  EXPECT_TRUE(says(notes, "left out and keep empty rows: 3."));
+  EXPECT_TRUE(says(notes, "back of an earlier one: 5."));
+  EXPECT_EQ(json_file("F.json")["row"]["area"][0], 0.0);
+  EXPECT_EQ(json_file("F.json")["row"]["area"][4], 1.0);
+}
+
+TEST_F(FormFactorsCommand, OneFacetSeesNothing) {
+  folder.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto json = run_json({"form-factors", "one.obj", "-o", "F.mtx"});
+  EXPECT_EQ(matrix("F.mtx").entry.size(), 0u);
+  EXPECT_EQ(json["open_share"], 1.0);
+  EXPECT_TRUE(says(json["notes"].dump(), "No facet sees another"));
+}
+
+TEST_F(FormFactorsCommand, BacksHaveRowsWhereAskedFor) {
+  folder.write("plates.vs3", plates);
+  ASSERT_EQ(run({"form-factors", "plates.vs3", "-o", "F.mtx", "--two-sided"}).code, 0);
+  const Matrix F = matrix("F.mtx");
+  EXPECT_EQ(F.rows, 4u);
+  EXPECT_NEAR(F.at(1, 2), plates_F, 1e-3);
+  EXPECT_EQ(F.entry.size(), 2u) << "backs look outwards";
+  const auto row = json_file("F.json")["row"];
+  EXPECT_EQ(row["side"], nlohmann::json::array({"front", "front", "back", "back"}));
+  EXPECT_EQ(row["facet"], nlohmann::json::array({1, 2, 1, 2}));
+}
+
+TEST_F(FormFactorsCommand, SmallerPatchesAreRowsThatKnowTheirFacet) {
+  folder.write("plates.vs3", plates);
+  const auto json =
+      run_json({"form-factors", "plates.vs3", "-o", "F.mtx", "--max-patch-size", "0.5"});
+  EXPECT_EQ(json["rows"], 8) << "four squares of 0.5 on each plate";
+  EXPECT_EQ(json["facets"], 2);
+  const Matrix F = matrix("F.mtx");
+  const auto row = json_file("F.json")["row"];
+  double exchange = 0.0;  // A_1 F_12, added up again
+  for (int i = 1; i <= 8; ++i) {
+    for (int j = 1; j <= 8; ++j) {
+      const auto facet = [&](int r) { return row["facet"][static_cast<std::size_t>(r - 1)]; };
+      if (facet(i) == 1 && facet(j) == 2) exchange += 0.25 * F.at(i, j);
+    }
+  }
+  EXPECT_NEAR(exchange, plates_F, 1e-3);
+}
+
+TEST_F(FormFactorsCommand, WritesView3dsResultAndAPictureOfARow) {
+  folder.write("plates.vs3", plates);
+  const auto json = run_json(
+      {"form-factors", "plates.vs3", "-o", "F.mtx", "--view3d", "F.txt", "--show-row", "2"});
+  EXPECT_EQ(json["files"], nlohmann::json::array({"F.mtx", "F.txt", "F.row2.vtp", "F.json"}));
+  std::ifstream in(folder / "F.txt");
+  std::string program, version;
+  int format = -1, encl = -1, emit = -1, rows = -1;
+  in >> program >> version >> format >> encl >> emit >> rows;
+  EXPECT_EQ(format, 0);
+  EXPECT_EQ(encl, 1) << "as the file's control words say";
+  EXPECT_EQ(emit, 0);
+  EXPECT_EQ(rows, 2);
+  std::vector<double> numbers(8);
+  for (double& number : numbers) in >> number;
+  ASSERT_TRUE(in) << "areas, matrix, emittances";
+  EXPECT_EQ(numbers[0], 1.0);
+  EXPECT_NEAR(numbers[3], plates_F, 1e-3);
+  EXPECT_EQ(numbers[6], 0.9);
+  EXPECT_EQ(numbers[7], 0.5);
+}
+
+TEST_F(FormFactorsCommand, SaysForPeopleWhatWasFound) {
+  folder.write("plates.vs3", plates);
+  const Ended ended = run({"form-factors", "plates.vs3", "-o", "F.mtx"});
+  for (const char* part : {"2 of 2 facets, 2 entries, 2 m2", "closure", "open", "error", "F.mtx"}) {
+    EXPECT_TRUE(says(ended.out, part));
+  }
+  const Ended quiet = run({"form-factors", "plates.vs3", "-o", "F.mtx", "--quiet"});
+  EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+TEST_F(FormFactorsCommand, AnyNumberOfThreadsGivesTheSameFile) {
+  folder.write("box.vs3", plates + box);
+  const auto text = [&](const char* threads) {
+    EXPECT_EQ(run({"form-factors", "box.vs3", "-o", "F.mtx", "--threads", threads}).code, 0);
+    std::ostringstream out;
+    out << std::ifstream(folder / "F.mtx").rdbuf();
+    return out.str();
+  };
+  EXPECT_EQ(text("1"), text("3"));
+}
+
+TEST_F(FormFactorsCommand, MistakesHaveTheirExitCodesAndLeaveNothing) {
+  folder.write("plates.vs3", plates);
+  folder.write("flat.vs3", "F 2\n");
+  struct Mistake {
+    Words arguments;
+    int code;
+    const char* part;
+  };
+  const std::vector<Mistake> mistakes = {
+      {{"plates.vs3"}, 2, "--output"},
+      {{"plates.vs3", "-o", "F.csv"}, 2, ".mtx"},
+      {{"plates.vs3", "-o", "F.mtx", "--method", "guess"}, 2, "hemicube"},
+      {{"plates.vs3", "-o", "F.mtx", "--target-error", "nan"}, 2, "above 0"},
+      {{"plates.vs3", "-o", "F.mtx", "--row-output", "r.vtp"}, 2, "--show-row"},
+      {{"plates.vs3", "-o", "F.mtx", "--show-row", "3"}, 3, "there are 2"},
+      {{"missing.vs3", "-o", "F.mtx"}, 3, "missing.vs3"},
+      {{"flat.vs3", "-o", "F.mtx"}, 3, "three-dimensional"},
+      {{"plates.vs3", "-o", "no-folder/F.mtx"}, 1, "no-folder"},
+      {{"plates.vs3", "-o", "F.mtx", "--view3d", "no-folder/F.txt"}, 1, "no-folder"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    const Ended ended = run(Words{"form-factors"} + mistake.arguments);
+    EXPECT_EQ(ended.code, mistake.code) << mistake.part;
+    EXPECT_TRUE(says(ended.err, mistake.part));
+  }
+  EXPECT_EQ(folder.file_count(), 2) << "the two scenes";
+}
+
+}  // namespace
+}  // namespace lightwell
