@@ -16,7 +16,7 @@ struct HemicubeOptions {
   /// How a cell finds what it sees. They agree but for cells at edges, and on spheres: rays meet
   /// the exact sphere, scan conversion its elements.
   enum class BackEnd {
-    scan_conversion,  ///< polygons are painted into a depth buffer: tens of times faster
+    scan_conversion,  ///< polygons are painted into a depth buffer; 10 to 30 times as fast
     rays              ///< a ray through each cell's centre
   };
   BackEnd back_end = BackEnd::scan_conversion;
