@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "radiosity/polygon_exchange.h"
+#include "radiosity/pair_exchange.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -16,7 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::uint64_t shadow_rays_key = 21;  // purpose of random keys
-constexpr int few_rays = 16, most_rays = 256;
+constexpr int few_rays = 16, most_rays = 1024;
+constexpr double usual_target = 1e-3;
 
 struct Visibility {
   double share = 1.0;
@@ -25,14 +26,20 @@ struct Visibility {
 
 class PairVisibility {
  public:
-  PairVisibility(const ElementCaster& caster, const std::vector<PatchOutline>& outlines)
-      : mesh_(caster.mesh()), caster_(caster), outlines_(outlines), sobol_(most_rays) {
+  PairVisibility(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
+                 double target_error)
+      : mesh_(caster.mesh()),
+        caster_(caster),
+        outlines_(outlines),
+        target_(target_error > 0.0 ? target_error : usual_target),
+        sobol_(most_rays) {
     samplers_.reserve(outlines.size());
     for (int i = 0; i < mesh_.patch_count(); ++i) samplers_.emplace_back(mesh_, i);
     is_convex_ = has_nothing_between();
   }
 
-  // Kernel-weighted share of point pairs that see each other; more pairs while they disagree.
+  // Kernel-weighted share of point pairs that see each other; more pairs while they leave F_ij more
+  // uncertain than asked.
   Visibility between(int i, int j, double largest_form_factor) const {
     if (is_convex_) return {};
     std::array<Ray, most_rays> rays;
@@ -60,7 +67,7 @@ class PairVisibility {
       caster_.occluded({rays.data() + done, fresh}, {blocked.data() + done, fresh});
       done = count;
       result = weighed(weight, blocked, done);
-      if (result.share == 0.0 || result.share == 1.0) break;
+      if (largest_form_factor * std::sqrt(result.variance) <= target_) break;
     }
     return result;
   }
@@ -110,32 +117,22 @@ class PairVisibility {
   const PatchMesh& mesh_;
   const ElementCaster& caster_;
   const std::vector<PatchOutline>& outlines_;
+  double target_;
   SobolPoints sobol_;
   std::vector<PatchSampler> samplers_;
   bool is_convex_ = false;
 };
 
-bool reaches_before(const PatchOutline& plane, const PatchOutline& other) {
-  const double offset = plane.normal.dot(plane.loops[0][0]);
-  if (plane.normal.dot(other.center) + other.radius <= offset) return false;
-  constexpr double tolerance = 1e-9;
-  for (const auto& loop : other.loops) {
-    for (const Vector3d& v : loop) {
-      if (plane.normal.dot(v) - offset > tolerance * other.radius) return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 KnownExchange analytic_exchange(const ElementCaster& caster,
                                 const std::vector<PatchOutline>& outlines,
-                                const std::vector<char>& receives, const Progress& progress,
-                                std::vector<float>& row_error) {
+                                const std::vector<char>& receives, double target_error,
+                                const Progress& progress, std::vector<float>& row_error) {
   const PatchMesh& mesh = caster.mesh();
   const int n = mesh.patch_count();
-  const PairVisibility visibility(caster, outlines);
+  const PairVisibility visibility(caster, outlines, target_error);
+  const PairExchange closed_form(outlines);
   KnownExchange known;
   row_error.assign(static_cast<std::size_t>(n), 0.0f);
   // What visibility's noise does to S, by pair.
@@ -156,9 +153,7 @@ KnownExchange analytic_exchange(const ElementCaster& caster,
         if (!receives[i] || !outlines[i].is_polygon()) continue;
         for (int j = i + 1; j < n; ++j) {
           if (!receives[j] || !outlines[j].is_polygon()) continue;
-          if (!reaches_before(outlines[i], outlines[j])) continue;
-          if (!reaches_before(outlines[j], outlines[i])) continue;
-          const double unoccluded = polygon_exchange(outlines[i], outlines[j]);
+          const double unoccluded = closed_form.between(i, j);
           if (!(unoccluded > 0.0)) continue;
           const double F = unoccluded / std::min(mesh.area[i], mesh.area[j]);
           const Visibility seen = visibility.between(i, j, F);

@@ -52,10 +52,18 @@ class Estimator {
       case FormFactorMethod::automatic:
         break;
     }
-    return rays_and_closed_forms();
+    return all_pairs_are_cheap() ? closed_forms_alone() : rays_and_closed_forms();
   }
 
  private:
+  // Where an accuracy is asked for, closed forms of all pairs beat rays up to a few thousand
+  // patches.
+  bool all_pairs_are_cheap() const {
+    constexpr double pair_in_rays = 16.0;  // what a pair costs
+    return options_.target_error > 0.0 &&
+           0.5 * pair_in_rays * mesh_.patch_count() < 4.0 * base_rays();
+  }
+
   // As many as the target takes in rows where nothing is partly hidden.
   int base_rays() const {
     const int asked = std::max(1, options_.rays_per_patch);
@@ -72,8 +80,8 @@ class Estimator {
   }
 
   // Emitters cast more where mirrors and glass throw what they cast.
-  std::vector<int> rays_of(const EmitterExchange& emitters) const {
-    std::vector<int> counts(static_cast<std::size_t>(mesh_.patch_count()), base_rays());
+  std::vector<int> rays_of(const EmitterExchange& emitters, int base) const {
+    std::vector<int> counts(static_cast<std::size_t>(mesh_.patch_count()), base);
     if (!paths_.has_specular()) return counts;
     for (int i = 0; i < mesh_.patch_count(); ++i) {
       const int e = emitters.emitter_of(i);
@@ -81,7 +89,7 @@ class Estimator {
       const double share = mesh_.area[i] / direct_light_.emitters()[e].area;
       const auto wanted = static_cast<unsigned>(std::ceil(share * options_.rays_per_emitter));
       const auto even = static_cast<int>(std::bit_ceil(std::max(1u, wanted)));
-      counts[i] = std::max(base_rays(), even);
+      counts[i] = std::max(base, even);
     }
     return counts;
   }
@@ -107,7 +115,7 @@ class Estimator {
   // Counts are binomial at worst; stratified points do better.
   Estimate rays_alone() const {
     const EmitterExchange emitters(caster_, direct_light_);
-    return cast(rays_of(emitters), false,
+    return cast(rays_of(emitters, base_rays()), false,
                 [](int, const EstimatedRow& row, std::span<const CastRay>) {
                   double worst = 0.0;
                   for (const FormFactor& f : row.shares) {
@@ -122,7 +130,7 @@ class Estimator {
     const NearExchange near(mesh_);
     std::vector<std::vector<NearExchange::Pair>> pairs(
         static_cast<std::size_t>(mesh_.patch_count()));
-    Estimate result = cast(rays_of(emitters), true,
+    Estimate result = cast(rays_of(emitters, base_rays()), true,
                            [&](int i, const EstimatedRow& row, std::span<const CastRay> rays) {
                              pairs[i].clear();
                              return near.look(i, row, rays, pairs[i]);
@@ -143,9 +151,10 @@ class Estimator {
   // Rays still find what escapes, and what goes by way of mirrors and glass.
   Estimate closed_forms_alone() const {
     const EmitterExchange emitters(caster_, direct_light_);
-    Estimate result = cast(rays_of(emitters), false,
+    Estimate result = cast(rays_of(emitters, std::max(1, options_.rays_per_patch)), false,
                            [](int, const EstimatedRow&, std::span<const CastRay>) { return 0.0; });
-    result.known = analytic_exchange(caster_, NearExchange(mesh_).outlines(), receives_,
+    const NearExchange near(mesh_);
+    result.known = analytic_exchange(caster_, near.outlines(), receives_, options_.target_error,
                                      options_.progress, result.row_error);
     return result;
   }

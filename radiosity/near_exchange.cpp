@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "radiosity/polygon_exchange.h"
+#include "radiosity/pair_exchange.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -93,6 +93,7 @@ std::vector<SymmetricEntry> NearExchange::exchange(std::vector<Pair> pairs,
     }
   }
   pairs.resize(kept);
+  const PairExchange closed_form(outlines_);
   std::vector<SymmetricEntry> entries(pairs.size());
   const int count = static_cast<int>(pairs.size());
   constexpr int slice = 1 << 16;
@@ -101,7 +102,7 @@ std::vector<SymmetricEntry> NearExchange::exchange(std::vector<Pair> pairs,
     parallel_for(std::min(slice, count - begin), 64, [&](int low, int high) {
       for (int k = begin + low; k < begin + high; ++k) {
         const Pair& pair = pairs[k];
-        const double unoccluded = polygon_exchange(outlines_[pair.i], outlines_[pair.j]);
+        const double unoccluded = closed_form.between(pair.i, pair.j);
         entries[k] = {pair.i, pair.j, unoccluded * pair.first / pair.all};
       }
     });
