@@ -1,7 +1,6 @@
 #include "radiosity/form_factors.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
+#include "cli/view_factor_rows.h"
 #include "radiosity/form_factor_file.h"
 #include "radiosity/view_factor_scene.h"
 #include "scene/errors.h"
@@ -58,107 +58,9 @@ MeshOptions mesh_for_facets(FormFactorMethod method, const Scene& scene) {
   return options;
 }
 
-/// What the rows of the matrix are.
-struct Rows {
-  std::vector<int> of_patch{};      // -1: none
-  std::vector<std::string> name{};  // of the surface
-  std::vector<int> facet{};         // of the file, counted from 1
-  std::vector<char> is_back{};
-  std::vector<double> emittance{};
-
-  int count() const { return static_cast<int>(name.size()); }
-  void add(const NumberedScene& numbered, int facet_row, bool back) {
-    const auto& row = numbered.rows[static_cast<std::size_t>(facet_row)];
-    name.push_back(row.name);
-    facet.push_back(facet_row + 1);
-    is_back.push_back(back ? 1 : 0);
-    emittance.push_back(row.emittance);
-  }
-};
-
-Rows rows_per_facet(const NumberedScene& numbered, const ViewFactorScene& view,
-                    const PatchMesh& mesh) {
-  Rows rows{.of_patch = rows_of_patches(view, mesh)};
-  const int facets = static_cast<int>(numbered.rows.size());
-  for (int row = 0; row < view.row_count; ++row) rows.add(numbered, row % facets, row >= facets);
-  return rows;
-}
-
-Rows rows_per_patch(const NumberedScene& numbered, const ViewFactorScene& view,
-                    const PatchMesh& mesh) {
-  Rows rows;
-  const int facets = static_cast<int>(numbered.rows.size());
-  for (const int facet_row : rows_of_patches(view, mesh)) {
-    rows.of_patch.push_back(facet_row < 0 ? -1 : rows.count());
-    if (facet_row >= 0) rows.add(numbered, facet_row % facets, facet_row >= facets);
-  }
-  return rows;
-}
-
-/// "5, 9 and 3 more", counted from 1.
-std::string some_of(const std::vector<int>& numbers) {
-  constexpr std::size_t most_named = 10;
-  std::vector<int> named;
-  for (const int number : numbers) {
-    if (named.size() < most_named) named.push_back(number + 1);
-  }
-  const std::string text = fmt::format("{}", fmt::join(named, ", "));
-  return numbers.size() > named.size()
-             ? fmt::format("{} and {} more", text, numbers.size() - named.size())
-             : text;
-}
-
-std::vector<int> seconds_of(const std::vector<FacetPair>& pairs, const NumberedScene& numbered) {
-  std::vector<int> rows;
-  for (const FacetPair& pair : pairs) {
-    const int row = numbered.row_of_facet[static_cast<std::size_t>(pair.second)];
-    if (row >= 0) rows.push_back(row);
-  }
-  return rows;
-}
-
-/// What was found in the file and done about it, a sentence each.
-std::vector<std::string> findings(const NumberedScene& numbered, const FacetCheck& check) {
-  std::vector<std::string> notes = numbered.scene.notes;
-  std::vector<char> has_facet(numbered.rows.size(), 0);
-  for (const int row : numbered.row_of_facet) {
-    if (row >= 0) has_facet[static_cast<std::size_t>(row)] = 1;
-  }
-  std::vector<int> empty;
-  for (std::size_t r = 0; r < has_facet.size(); ++r) {
-    if (!has_facet[r]) empty.push_back(static_cast<int>(r));
-  }
-  if (!empty.empty()) {
-    notes.push_back(fmt::format(
-        "Facets without area, or that cross themselves, keep empty rows: {}.", some_of(empty)));
-  }
-  if (const auto rows = seconds_of(check.duplicates, numbered); !rows.empty()) {
-    notes.push_back(
-        fmt::format("Facets that lie on an earlier one and face the same way are left "
-                    "out and keep empty rows: {}.",
-                    some_of(rows)));
-  }
-  if (const auto rows = seconds_of(check.opposites, numbered); !rows.empty()) {
-    notes.push_back(fmt::format("Facets that are the back of an earlier one: {}.", some_of(rows)));
-  }
-  if (check.inconsistent_edges > 0) {
-    notes.push_back(
-        fmt::format("{} edges lie between facets that face opposite ways; facets see "
-                    "where their corners run counter-clockwise.",
-                    check.inconsistent_edges));
-  }
-  if (check.open_edges > 0) {
-    notes.push_back(
-        fmt::format("The surfaces are open along {} edges that belong to one facet "
-                    "only.",
-                    check.open_edges));
-  }
-  return notes;
-}
-
 struct Computed {
   PatchMesh mesh{};
-  Rows rows{};
+  ViewFactorRows rows{};
   ViewFactors factors{};
   FormFactorReport report{};
   std::optional<double> error{};  // estimated, of the worst factor
@@ -178,8 +80,8 @@ Computed compute(const Arguments& arguments, const NumberedScene& numbered, cons
   Computed computed;
   computed.mesh = build_patches(view.scene, mesh_options);
   report.add_phase("mesh", watch.lap());
-  computed.rows = per_patch ? rows_per_patch(numbered, view, computed.mesh)
-                            : rows_per_facet(numbered, view, computed.mesh);
+  computed.rows = per_patch ? patch_rows(numbered, view, computed.mesh)
+                            : facet_rows(numbered, view, computed.mesh);
   if (arguments.show_row > computed.rows.count()) {
     throw InputError(fmt::format("{}: there is no row {} to show; there are {}",
                                  view.scene.file.string(), arguments.show_row,
@@ -197,6 +99,10 @@ Computed compute(const Arguments& arguments, const NumberedScene& numbered, cons
   stop_if_interrupted();
   computed.factors =
       sum_form_factors(*form_factors, computed.mesh, computed.rows.of_patch, computed.rows.count());
+  if (!computed.report.row_error.empty()) {
+    computed.error =
+        error_estimate(computed.report.row_error, computed.mesh, computed.rows.of_patch);
+  }
   report.add_phase("form_factors", watch.lap());
   return computed;
 }
@@ -230,7 +136,7 @@ Json facts(const Arguments& arguments, const NumberedScene& numbered, const Comp
 
 /// The arrays that go beside the matrix, one value per row.
 Json row_facts(const Computed& computed) {
-  const Rows& rows = computed.rows;
+  const ViewFactorRows& rows = computed.rows;
   Json side = Json::array();
   for (const char back : rows.is_back) side.push_back(back ? "back" : "front");
   return {{"area", computed.factors.area},

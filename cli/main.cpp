@@ -29,22 +29,24 @@ constexpr const char* recipes =
   lightwell probe room.toml room.vtp --points desk.csv -o lux.csv
                                                          irradiance and lux at points
   lightwell compare mine.exr reference.exr               how far two pictures are apart
+  lightwell form-factors room.stl -o room.mtx            view factors between facets
   lightwell info room.toml                               what is in a scene, solution or picture
 
 'lightwell COMMAND --help' explains a command. A scene is a .toml file (docs/scene-format.md),
-.obj, .ply or .stl.
+.obj, .ply, .stl, or View3D's .vs3.
 )";
 
 struct NamedCommand {
   const char* name;
   Action (*add)(CLI::App&);
 };
-constexpr std::array<NamedCommand, 7> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 8> commands = {{{"run", add_run},
                                                    {"solve", add_solve},
                                                    {"render", add_render},
                                                    {"probe", add_probe},
                                                    {"view", add_view},
                                                    {"compare", add_compare},
+                                                   {"form-factors", add_form_factors},
                                                    {"info", add_info}}};
 
 void add_common(CLI::App& app, CommonOptions& options) {

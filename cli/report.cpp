@@ -75,7 +75,7 @@ std::string Report::for_people() const {
   const auto line = [&text](const char* head, const std::string& body) {
     text += fmt::format("{:<9} {}\n", head, body);
   };
-  if (facts_.contains("patches")) {
+  if (facts_.contains("energy")) {
     line("patches", fmt::format("{} ({} elements)", facts_["patches"].get<int>(),
                                 facts_["elements"].get<int>()));
     const Json& energy = facts_["energy"];
@@ -115,16 +115,20 @@ void Report::print() const {
 }
 
 void Report::write(const std::filesystem::path& file) const {
-  AtomicFile target(file);
-  std::ofstream out(target.temporary(), std::ios::binary);
-  out << to_text(json());
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: could not be written", file.string()));
-  target.commit();
+  write_json(file, json());
 }
 
 void print_json(const Json& json) {
   fmt::print("{}", to_text(json));
+}
+
+void write_json(const std::filesystem::path& file, const Json& json) {
+  AtomicFile target(file);
+  std::ofstream out(target.temporary(), std::ios::binary);
+  out << to_text(json);
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("{}: could not be written", file.string()));
+  target.commit();
 }
 
 std::string outcome_name(Outcome outcome) {

@@ -46,6 +46,9 @@ class Report {
 /// One JSON object on standard output.
 void print_json(const Json& json);
 
+/// A JSON object as a file; throws std::runtime_error naming it.
+void write_json(const std::filesystem::path& file, const Json& json);
+
 /// Watts by fate, for JSON.
 Json energy_json(const EnergyBalance& energy);
 

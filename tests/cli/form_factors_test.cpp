@@ -130,6 +130,8 @@ TEST_F(FormFactorsCommand, AnObstructionTakesItsShareAndHasNoRow) {
     const double blocked = row["blocked"][0].get<double>();
     EXPECT_GT(blocked, 0.05);
     EXPECT_NEAR(F.at(1, 2) + blocked + row["open"][0].get<double>(), 1.0, 1e-6);
+    EXPECT_GT(json["error_estimate"].get<double>(), 0.0);
+    EXPECT_LT(json["error_estimate"].get<double>(), 4e-3) << "near what was asked for";
   }
 }
 
