@@ -100,8 +100,8 @@ Computed compute(const Arguments& arguments, const NumberedScene& numbered, cons
   computed.factors =
       sum_form_factors(*form_factors, computed.mesh, computed.rows.of_patch, computed.rows.count());
   if (!computed.report.row_error.empty()) {
-    computed.error =
-        error_estimate(computed.report.row_error, computed.mesh, computed.rows.of_patch);
+    computed.error = error_estimate(computed.report.row_error, *form_factors, computed.mesh,
+                                    computed.rows.of_patch);
   }
   report.add_phase("form_factors", watch.lap());
   return computed;

@@ -128,26 +128,34 @@ double reciprocity_error(const ViewFactors& view_factors) {
   return worst;
 }
 
-double error_estimate(const std::vector<float>& patch_error, const PatchMesh& mesh,
-                      const std::vector<int>& row_of_patch) {
+double error_estimate(const std::vector<float>& patch_error, const FormFactors& form_factors,
+                      const PatchMesh& mesh, const std::vector<int>& row_of_patch) {
   int row_count = 0;
   for (const int row : row_of_patch) row_count = std::max(row_count, row + 1);
-  const PatchesOfRows rows = sort_patches(row_of_patch, row_count);
-  double worst = 0.0;
-  std::size_t most_patches = 1;
-  for (std::size_t row = 0; row + 1 < rows.first.size(); ++row) {
-    double area = 0.0, squares = 0.0;
-    for (std::size_t k = rows.first[row]; k < rows.first[row + 1]; ++k) {
-      const double A_i = mesh.area[rows.patch[k]];
-      const double error =
-          A_i * static_cast<double>(patch_error[static_cast<std::size_t>(rows.patch[k])]);
-      area += A_i;
-      squares += error * error;
-    }
-    most_patches = std::max(most_patches, rows.first[row + 1] - rows.first[row]);
-    if (area > 0.0) worst = std::max(worst, std::sqrt(squares) / area);
+  std::vector<double> area(static_cast<std::size_t>(row_count), 0.0), squares = area;
+  std::vector<int> in_row(static_cast<std::size_t>(row_count), 0);
+  for (int i = 0; i < form_factors.patch_count(); ++i) {
+    const int row = row_of_patch[static_cast<std::size_t>(i)];
+    if (row < 0) continue;
+    int most = 1;
+    const auto for_each_row = [&](auto visit) {
+      for (const auto [j, F] : form_factors.row(i)) {
+        const int to = row_of_patch[static_cast<std::size_t>(j)];
+        if (to >= 0) visit(in_row[static_cast<std::size_t>(to)]);
+      }
+    };
+    for_each_row([&](int& count) { most = std::max(most, ++count); });
+    for_each_row([](int& count) { count = 0; });
+    const double error =
+        mesh.area[i] * static_cast<double>(patch_error[static_cast<std::size_t>(i)]);
+    area[static_cast<std::size_t>(row)] += mesh.area[i];
+    squares[static_cast<std::size_t>(row)] += most * error * error;
   }
-  return std::sqrt(static_cast<double>(most_patches)) * worst;
+  double worst = 0.0;
+  for (std::size_t row = 0; row < area.size(); ++row) {
+    if (area[row] > 0.0) worst = std::max(worst, std::sqrt(squares[row]) / area[row]);
+  }
+  return worst;
 }
 
 double mean_open_share(const ViewFactors& view_factors) {

@@ -41,10 +41,11 @@ double closure_error(const ViewFactors& view_factors);
 /// max_IJ |A_I F_IJ - A_J F_JI| / min(A_I, A_J).
 double reciprocity_error(const ViewFactors& view_factors);
 
-/// Estimated standard error of the worst F_IJ, from that of the worst F_ij of each patch, taken as
-/// independent: max_I sqrt(n sum_{i in I} (A_i / A_I)^2 e_i^2), n the most patches in any row.
-double error_estimate(const std::vector<float>& patch_error, const PatchMesh& mesh,
-                      const std::vector<int>& row_of_patch);
+/// Estimated standard error of the worst F_IJ, from e_i, that of the worst F_ij of each patch,
+/// errors taken as independent: max_I sqrt(sum_{i in I} (A_i / A_I)^2 n_i e_i^2), n_i the most F_ij
+/// > 0 of patch i that belong to one and the same row.
+double error_estimate(const std::vector<float>& patch_error, const FormFactors& form_factors,
+                      const PatchMesh& mesh, const std::vector<int>& row_of_patch);
 
 /// Area-weighted mean of `open` over all rows.
 double mean_open_share(const ViewFactors& view_factors);
