@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "radiosity/pair_exchange.h"
 #include "scene/parallel.h"
@@ -16,7 +15,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::uint64_t shadow_rays_key = 21;  // purpose of random keys
-constexpr int few_rays = 16, most_rays = 1024;
+// Batches of rays, sets of points and goals are powers of 4, so that none straddles another.
+constexpr int few_rays = 16, batch = 64, points_in_set = 1 << 14, most_rays = 1 << 18;
 constexpr double usual_target = 1e-3;
 
 struct Visibility {
@@ -32,7 +32,7 @@ class PairVisibility {
         caster_(caster),
         outlines_(outlines),
         target_(target_error > 0.0 ? target_error : usual_target),
-        sobol_(most_rays) {
+        sobol_(points_in_set) {
     samplers_.reserve(outlines.size());
     for (int i = 0; i < mesh_.patch_count(); ++i) samplers_.emplace_back(mesh_, i);
     is_convex_ = has_nothing_between();
@@ -42,54 +42,62 @@ class PairVisibility {
   // uncertain than asked.
   Visibility between(int i, int j, double largest_form_factor) const {
     if (is_convex_) return {};
-    std::array<Ray, most_rays> rays;
-    std::array<double, most_rays> weight;
-    std::array<std::uint8_t, most_rays> blocked;
-    const std::uint64_t key =
-        random_key(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j), shadow_rays_key);
-    int done = 0;
-    Visibility result;
-    for (int count = first_count(largest_form_factor); count <= most_rays; count *= 4) {
-      for (int s = done; s < count; ++s) {
-        const Eigen::Array4f u = sobol_.point(s, key);
-        const PatchPoint a = samplers_[i].point(u[0], u[1]), b = samplers_[j].point(u[2], u[3]);
-        const Vector3d way = b.position - a.position;
-        const double squared = way.squaredNorm();
-        const double cosines = std::max(0.0, a.normal.dot(way)) * std::max(0.0, -b.normal.dot(way));
-        weight[s] = squared > 0.0 ? cosines / (squared * squared) : 0.0;
-        rays[s] = {.origin = a.position,
-                   .direction = way,
-                   .t_max = 1.0,
-                   .origin_group = mesh_.facet[i],
-                   .target_group = mesh_.facet[j]};
-      }
-      const auto fresh = static_cast<std::size_t>(count - done);
-      caster_.occluded({rays.data() + done, fresh}, {blocked.data() + done, fresh});
-      done = count;
-      result = weighed(weight, blocked, done);
-      if (largest_form_factor * std::sqrt(result.variance) <= target_) break;
+    Tally tally;
+    for (int goal = first_count(largest_form_factor); goal <= most_rays; goal *= 4) {
+      while (tally.count < goal) add_rays(i, j, std::min(goal, tally.count + batch), tally);
+      if (largest_form_factor * std::sqrt(tally.visibility().variance) <= target_) break;
     }
-    return result;
+    return tally.visibility();
   }
 
  private:
+  struct Tally {
+    int count = 0;
+    double all = 0.0, seen = 0.0, squares = 0.0;  // of the weights
+
+    Visibility visibility() const {
+      if (!(all > 0.0)) return {};
+      const double share = seen / all;
+      return {share, share * (1.0 - share) * squares / (all * all)};
+    }
+  };
+
   // A pair that matters little need not be looked at closely before it is found to be mixed.
   static int first_count(double largest_form_factor) {
     constexpr double matters = 0.01;
     return largest_form_factor > matters ? 4 * few_rays : few_rays;
   }
 
-  static Visibility weighed(const std::array<double, most_rays>& weight,
-                            const std::array<std::uint8_t, most_rays>& blocked, int count) {
-    double all = 0.0, seen = 0.0, squares = 0.0;
-    for (int s = 0; s < count; ++s) {
-      all += weight[s];
-      squares += weight[s] * weight[s];
-      if (!blocked[s]) seen += weight[s];
+  void add_rays(int i, int j, int up_to, Tally& tally) const {
+    std::array<Ray, batch> rays;
+    std::array<double, batch> weight;
+    std::array<std::uint8_t, batch> blocked;
+    const int set = tally.count / sobol_.count();
+    const std::uint64_t key =
+        random_key(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j), shadow_rays_key,
+                   static_cast<std::uint64_t>(set));
+    const auto size = static_cast<std::size_t>(up_to - tally.count);
+    for (std::size_t k = 0; k < size; ++k) {
+      const int s = tally.count + static_cast<int>(k) - set * sobol_.count();
+      const Eigen::Array4f u = sobol_.point(s, key);
+      const PatchPoint a = samplers_[i].point(u[0], u[1]), b = samplers_[j].point(u[2], u[3]);
+      const Vector3d way = b.position - a.position;
+      const double squared = way.squaredNorm();
+      const double cosines = std::max(0.0, a.normal.dot(way)) * std::max(0.0, -b.normal.dot(way));
+      weight[k] = squared > 0.0 ? cosines / (squared * squared) : 0.0;
+      rays[k] = {.origin = a.position,
+                 .direction = way,
+                 .t_max = 1.0,
+                 .origin_group = mesh_.facet[i],
+                 .target_group = mesh_.facet[j]};
     }
-    if (!(all > 0.0)) return {};
-    const double share = seen / all;
-    return {share, share * (1.0 - share) * squares / (all * all)};
+    caster_.occluded({rays.data(), size}, {blocked.data(), size});
+    for (std::size_t k = 0; k < size; ++k) {
+      tally.all += weight[k];
+      tally.squares += weight[k] * weight[k];
+      if (!blocked[k]) tally.seen += weight[k];
+    }
+    tally.count = up_to;
   }
 
   // True if all patches lie before each other's planes, so that nothing can stand between two.

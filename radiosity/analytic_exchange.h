@@ -7,7 +7,7 @@ namespace lightwell {
 
 /// The closed form of every pair of polygons times their visibility, which shadow rays between
 /// stratified points of both sample, weighted as the form factor is: 16 or 64 rays to begin with,
-/// up to 1024 while the standard error of F_ij is above `target_error` (0: 1e-3). No rays at all
+/// up to 2^18 while the standard error of F_ij is above `target_error` (0: 1e-3). No rays at all
 /// where every patch lies before every other's plane. Patches of spheres, and patches that lie on
 /// each other, are left to other methods. `row_error`: standard error of the worst F_ij of each
 /// row.

@@ -12,7 +12,10 @@ struct EstimatedRow {
   /// How much S_ij = A_i F_ij from this row counts against S_ji from the other end: the inverse of
   /// its variance, up to a factor common to all rows of a method. 0: the row is empty.
   double trust = 0.0;
-  std::vector<FormFactor> shares{};   ///< first arrivals at diffuse patches, ordered by patch
+  std::vector<FormFactor> shares{};  ///< first arrivals at diffuse patches, ordered by patch
+  /// Per share, if asked for: rays that would have met the front of the patch, had nothing stood
+  /// before it.
+  std::vector<int> hidden{};
   double escaped = 0.0;               ///< met nothing or a black back at once
   double specular = 0.0;              ///< first met something that is purely mirror or glass
   std::vector<int> specular_patch{};  ///< reached by way of mirrors and glass, ordered

@@ -94,17 +94,17 @@ class Estimator {
     return counts;
   }
 
-  // Casts each row, with four times the rays while `error_of(i, row, rays)` is above the target.
+  // Casts each row, with four times the rays while `error_of(i, row)` is above the target.
   template <class ErrorOf>
-  Estimate cast(const std::vector<int>& rays_of, bool keep_rays, ErrorOf error_of) const {
+  Estimate cast(const std::vector<int>& rays_of, bool look_behind, ErrorOf error_of) const {
     const auto n = static_cast<std::size_t>(mesh_.patch_count());
     Estimate result{.rows = std::vector<EstimatedRow>(n), .row_error = std::vector<float>(n)};
     const int longest = *std::max_element(rays_of.begin(), rays_of.end());
     const RowCaster caster(caster_, paths_, most_rays(longest));
     for_each_row(mesh_, longest, options_.progress, [&](int i, RowCaster::Scratch& scratch) {
       for (int rays = rays_of[i];; rays *= 4) {
-        result.rows[i] = caster.cast(i, rays, scratch, keep_rays);
-        const double error = error_of(i, result.rows[i], scratch.rays());
+        result.rows[i] = caster.cast(i, rays, scratch, look_behind);
+        const double error = error_of(i, result.rows[i]);
         result.row_error[i] = static_cast<float>(error);
         if (!(error > options_.target_error) || 4 * rays > most_rays(rays_of[i])) break;
       }
@@ -115,14 +115,13 @@ class Estimator {
   // Counts are binomial at worst; stratified points do better.
   Estimate rays_alone() const {
     const EmitterExchange emitters(caster_, direct_light_);
-    return cast(rays_of(emitters, base_rays()), false,
-                [](int, const EstimatedRow& row, std::span<const CastRay>) {
-                  double worst = 0.0;
-                  for (const FormFactor& f : row.shares) {
-                    worst = std::max(worst, static_cast<double>(f.value * (1.0f - f.value)));
-                  }
-                  return row.rays > 0.0 ? std::sqrt(worst / row.rays) : 0.0;
-                });
+    return cast(rays_of(emitters, base_rays()), false, [](int, const EstimatedRow& row) {
+      double worst = 0.0;
+      for (const FormFactor& f : row.shares) {
+        worst = std::max(worst, static_cast<double>(f.value * (1.0f - f.value)));
+      }
+      return row.rays > 0.0 ? std::sqrt(worst / row.rays) : 0.0;
+    });
   }
 
   Estimate rays_and_closed_forms() const {
@@ -130,11 +129,11 @@ class Estimator {
     const NearExchange near(mesh_);
     std::vector<std::vector<NearExchange::Pair>> pairs(
         static_cast<std::size_t>(mesh_.patch_count()));
-    Estimate result = cast(rays_of(emitters, base_rays()), true,
-                           [&](int i, const EstimatedRow& row, std::span<const CastRay> rays) {
-                             pairs[i].clear();
-                             return near.look(i, row, rays, pairs[i]);
-                           });
+    Estimate result =
+        cast(rays_of(emitters, base_rays()), true, [&](int i, const EstimatedRow& row) {
+          pairs[i].clear();
+          return near.look(i, row, pairs[i]);
+        });
     std::vector<NearExchange::Pair> all;
     for (auto& of_row : pairs) {
       for (const NearExchange::Pair& pair : of_row) {
@@ -152,7 +151,7 @@ class Estimator {
   Estimate closed_forms_alone() const {
     const EmitterExchange emitters(caster_, direct_light_);
     Estimate result = cast(rays_of(emitters, std::max(1, options_.rays_per_patch)), false,
-                           [](int, const EstimatedRow&, std::span<const CastRay>) { return 0.0; });
+                           [](int, const EstimatedRow&) { return 0.0; });
     const NearExchange near(mesh_);
     result.known = analytic_exchange(caster_, near.outlines(), receives_, options_.target_error,
                                      options_.progress, result.row_error);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "radiosity/pair_exchange.h"
 #include "scene/parallel.h"
@@ -16,63 +17,26 @@ static_assert(NearExchange::worst_count_error * NearExchange::worst_count_error 
 }  // namespace
 
 NearExchange::NearExchange(const PatchMesh& mesh)
-    : mesh_(mesh), outlines_(static_cast<std::size_t>(mesh.patch_count())) {
+    : outlines_(static_cast<std::size_t>(mesh.patch_count())) {
   parallel_for(mesh.patch_count(), 256, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) outlines_[i] = patch_outline(mesh, i);
   });
-  for (const PatchOutline& outline : outlines_) {
-    int steepest = 0;
-    outline.normal.cwiseAbs().maxCoeff(&steepest);
-    axes_.push_back({(steepest + 1) % 3, (steepest + 2) % 3});
-  }
 }
 
-bool NearExchange::contains(int patch, const Eigen::Vector3d& point) const {
-  const auto [x, y] = axes_[patch];
-  bool inside = false;
-  for (const auto& loop : outlines_[patch].loops) {
-    const Eigen::Vector3d* before = &loop.back();
-    for (const Eigen::Vector3d& at : loop) {
-      const Eigen::Vector3d &a = *before, &b = at;
-      before = &at;
-      if ((a[y] > point[y]) == (b[y] > point[y])) continue;
-      if (point[x] < a[x] + (point[y] - a[y]) / (b[y] - a[y]) * (b[x] - a[x])) inside = !inside;
-    }
-  }
-  return inside;
-}
-
-double NearExchange::look(int patch, const EstimatedRow& row, std::span<const CastRay> rays,
-                          std::vector<Pair>& pairs) const {
-  if (rays.empty()) return 0.0;
-  const auto count = static_cast<double>(rays.size());
-  const bool has_outline = outlines_[patch].is_polygon();
+double NearExchange::look(int patch, const EstimatedRow& row, std::vector<Pair>& pairs) const {
   double worst_variance = 0.0;
-  for (const FormFactor& share : row.shares) {
-    const int j = share.patch;
-    const PatchOutline& other = outlines_[j];
-    const int first = static_cast<int>(std::lround(share.value * count));
-    if (first < fewest_rays || !has_outline || !other.is_polygon()) {
-      worst_variance = std::max(worst_variance, first / (count * count));
+  for (std::size_t k = 0; k < row.shares.size(); ++k) {
+    const int j = row.shares[k].patch;
+    const int first = static_cast<int>(std::lround(row.shares[k].value * row.rays));
+    if (first < fewest_rays || !outlines_[patch].is_polygon() || !outlines_[j].is_polygon()) {
+      worst_variance = std::max(worst_variance, first / (row.rays * row.rays));
       continue;
     }
-    int blocked = 0;
-    const double offset = other.normal.dot(other.loops[0][0]);
-    const double squared_radius = other.radius * other.radius;
-    for (const CastRay& ray : rays) {
-      if (ray.patch == j) continue;
-      const double facing = other.normal.dot(ray.direction);
-      if (!(facing < 0.0)) continue;
-      const double t = (offset - other.normal.dot(ray.origin)) / facing;
-      if (!(t > ray.t)) continue;
-      const Eigen::Vector3d at = ray.origin + t * ray.direction;
-      if ((at - other.center).squaredNorm() > squared_radius || !contains(j, at)) continue;
-      ++blocked;
-    }
-    const int all = first + blocked;
-    // U^2 V (1 - V) / all with U = all / count.
+    const int hidden = row.hidden.empty() ? 0 : row.hidden[k];
+    const int all = first + hidden;
+    // U^2 V (1 - V) / all with U = all / rays.
     worst_variance =
-        std::max(worst_variance, static_cast<double>(first) * blocked / (all * count * count));
+        std::max(worst_variance, static_cast<double>(first) * hidden / (all * row.rays * row.rays));
     pairs.push_back({.i = std::min(patch, j), .j = std::max(patch, j), .first = first, .all = all});
   }
   return std::sqrt(worst_variance);

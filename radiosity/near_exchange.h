@@ -2,7 +2,7 @@
 
 #include "mesh/patch_outline.h"
 #include "radiosity/form_factor_assembly.h"
-#include "radiosity/ray_cast_rows.h"
+#include "scene/progress.h"
 
 namespace lightwell {
 
@@ -25,10 +25,9 @@ class NearExchange {
     int first = 0, all = 0;
   };
 
-  /// Adds the pairs of a row with the rays that made it. Returns the standard error of its worst
-  /// F_ij, those that remain counts included. Safe to call from many threads.
-  double look(int patch, const EstimatedRow& row, std::span<const CastRay> rays,
-              std::vector<Pair>& pairs) const;
+  /// Adds the pairs of a row that was cast with `look_behind`. Returns the standard error of its
+  /// worst F_ij, those that remain counts included. Safe to call from many threads.
+  double look(int patch, const EstimatedRow& row, std::vector<Pair>& pairs) const;
 
   /// The pairs' exchange; both ends' counts of a pair are added.
   std::vector<SymmetricEntry> exchange(std::vector<Pair> pairs, const Progress& progress) const;
@@ -36,13 +35,7 @@ class NearExchange {
   const std::vector<PatchOutline>& outlines() const { return outlines_; }
 
  private:
-  // Whether a point of the patch's plane lies in its polygon: crossings counted in the two
-  // coordinates that change most.
-  bool contains(int patch, const Eigen::Vector3d& point) const;
-
-  const PatchMesh& mesh_;
   std::vector<PatchOutline> outlines_;
-  std::vector<std::array<int, 2>> axes_;
 };
 
 }  // namespace lightwell

@@ -26,23 +26,30 @@ int set_size(int most_rays) {
 }  // namespace
 
 RowCaster::Scratch::Scratch(const PatchMesh& mesh)
-    : count_(static_cast<std::size_t>(mesh.patch_count()), 0) {}
+    : count_(static_cast<std::size_t>(mesh.patch_count()), 0), hidden_(count_) {}
 
 void RowCaster::Scratch::add(int patch) {
   if (count_[patch]++ == 0) touched_.push_back(patch);
 }
 
-// Counts in shares of `rays`; empties the counter.
-std::vector<FormFactor> RowCaster::Scratch::take(int rays) {
+void RowCaster::Scratch::add_hidden(int patch) {
+  if (hidden_[patch]++ == 0) hidden_touched_.push_back(patch);
+}
+
+// Counts in shares of `rays`; empties the counters.
+void RowCaster::Scratch::take(int rays, EstimatedRow& row) {
   put_in_order();
-  std::vector<FormFactor> shares;
-  shares.reserve(touched_.size());
+  row.shares.reserve(touched_.size());
   for (int patch : touched_) {
-    shares.push_back({patch, static_cast<float>(count_[patch]) / static_cast<float>(rays)});
+    row.shares.push_back({patch, static_cast<float>(count_[patch]) / static_cast<float>(rays)});
     count_[patch] = 0;
   }
+  if (!hidden_touched_.empty()) {
+    for (int patch : touched_) row.hidden.push_back(hidden_[patch]);
+  }
+  for (int patch : hidden_touched_) hidden_[patch] = 0;
   touched_.clear();
-  return shares;
+  hidden_touched_.clear();
 }
 
 // Where many of all patches were touched, looking through all is quicker than sorting.
@@ -61,9 +68,8 @@ void RowCaster::Scratch::put_in_order() {
 RowCaster::RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays)
     : caster_(caster), paths_(paths), sets_(set_size(most_rays)) {}
 
-EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool keep_rays) const {
+EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind) const {
   const PatchMesh& mesh = caster_.mesh();
-  scratch.rays_.clear();
   if (!paths_.is_diffuse(mesh.facet[patch]) || rays <= 0) return {};
   const int bands = static_cast<int>(mesh.reflectance.cols());
   EstimatedRow row{.trust = rays / mesh.area[patch],
@@ -102,10 +108,6 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool keep_ra
     caster_.closest_hits({ray.data(), n}, {hit.data(), n});
     for (int r = 0; r < count; ++r) {
       const ElementHit& h = hit[r];
-      if (keep_rays) {
-        scratch.rays_.push_back({ray[r].origin, ray[r].direction, static_cast<float>(h.t),
-                                 h.element >= 0 ? mesh.patch[h.element] : -1});
-      }
       const bool specular = h.facet >= 0 && paths_.is_specular(h.facet);
       if (!specular) {
         if (h.element >= 0) {
@@ -130,8 +132,9 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool keep_ra
       row.absorbed += losses.absorbed;
       row.cut += losses.cut;
     }
+    if (behind) look_behind({ray.data(), n}, {hit.data(), n}, scratch);
   }
-  row.shares = scratch.take(rays);
+  scratch.take(rays, row);
   row.specular_share.resize(static_cast<Eigen::Index>(by_way_of_specular.size()), bands);
   const auto all = static_cast<float>(rays);
   for (const auto& [to, weight] : by_way_of_specular) {
@@ -145,6 +148,27 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool keep_ra
   row.escaped /= rays;
   row.specular /= rays;
   return row;
+}
+
+// Sends the rays on through what they met, again and again, until they leave the scene.
+void RowCaster::look_behind(std::span<Ray> rays, std::span<ElementHit> hits,
+                            Scratch& scratch) const {
+  constexpr int most_layers = 256;
+  const PatchMesh& mesh = caster_.mesh();
+  std::size_t left = rays.size();
+  for (int layer = 0; layer < most_layers && left > 0; ++layer) {
+    std::size_t going_on = 0;
+    for (std::size_t r = 0; r < left; ++r) {
+      const ElementHit& hit = hits[r];
+      if (hit.facet < 0) continue;
+      if (layer > 0 && hit.element >= 0) scratch.add_hidden(mesh.patch[hit.element]);
+      rays[going_on++] = {.origin = rays[r].origin + hit.t * rays[r].direction,
+                          .direction = rays[r].direction,
+                          .origin_group = hit.facet};
+    }
+    left = going_on;
+    caster_.closest_hits(rays.first(left), hits.first(left));
+  }
 }
 
 void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& progress,

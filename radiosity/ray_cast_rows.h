@@ -10,13 +10,6 @@
 
 namespace lightwell {
 
-/// A ray of a row, and where it ended.
-struct CastRay {
-  Eigen::Vector3d origin, direction;  ///< the direction is unit
-  float t;                            ///< metres; infinite if it met nothing
-  int patch;                          ///< first met, diffuse or not; -1: nothing or a black back
-};
-
 /// Casts the rays of one row after another.
 class RowCaster {
  public:
@@ -27,24 +20,25 @@ class RowCaster {
   class Scratch {
    public:
     explicit Scratch(const PatchMesh& mesh);
-    /// The last row's rays, if they were to be kept.
-    std::span<const CastRay> rays() const { return rays_; }
 
    private:
     friend class RowCaster;
     void add(int patch);
-    std::vector<FormFactor> take(int rays);
+    void add_hidden(int patch);
+    void take(int rays, EstimatedRow& row);
     void put_in_order();
 
-    std::vector<int> count_, touched_;
-    std::vector<CastRay> rays_;
+    std::vector<int> count_, touched_, hidden_, hidden_touched_;
   };
 
   /// `rays` cosine-distributed rays from all over the patch. Empty for patches that take no part in
-  /// diffuse exchange.
-  EstimatedRow cast(int patch, int rays, Scratch& scratch, bool keep_rays = false) const;
+  /// diffuse exchange. `look_behind`: rays go on through whatever they meet, to fill
+  /// EstimatedRow::hidden.
+  EstimatedRow cast(int patch, int rays, Scratch& scratch, bool look_behind = false) const;
 
  private:
+  void look_behind(std::span<Ray> rays, std::span<ElementHit> hits, Scratch& scratch) const;
+
   const ElementCaster& caster_;
   const LightPaths& paths_;
   HemisphereSets sets_;
