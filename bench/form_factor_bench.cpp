@@ -131,7 +131,7 @@ std::vector<Curve> measure_all(const Prepared& p, const Eigen::MatrixXd& referen
 // Logarithmic axes, one line per curve.
 void draw(const std::string& file, const std::vector<Curve>& curves) {
   constexpr double left = 70, top = 20, width = 520, height = 340;
-  constexpr double low_x = 1.5, high_x = 5.5, low_y = -5.5, high_y = -1.5;  // powers of ten
+  constexpr double low_x = 1.5, high_x = 5.5, low_y = -6.0, high_y = -1.5;  // powers of ten
   const auto x = [&](double v) {
     return left + width * (std::log10(v) - low_x) / (high_x - low_x);
   };
@@ -147,14 +147,13 @@ void draw(const std::string& file, const std::vector<Curve>& curves) {
         << fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">10^{}</text>\n", at,
                        top + height + 18, p);
   }
-  for (int p = -5; p <= -2; ++p) {
+  for (int p = -6; p <= -2; ++p) {
     const double at = y(std::pow(10.0, p));
     out << fmt::format("<path d=\"M{} {:.1f} H{}\" stroke=\"#ddd\"/>", left, at, left + width)
         << fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">10^{}</text>\n", left - 6,
                        at + 4, p);
   }
-  const std::vector<std::string> colors = {"#c0392b", "#2471a3", "#229954",
-                                           "#7d3c98", "#b9770e", "#566573"};
+  const std::vector<std::string> colors = {"#c0392b", "#2471a3", "#229954"};
   for (std::size_t c = 0; c < curves.size(); ++c) {
     std::string path;
     for (const Point& point : curves[c].points) {
@@ -163,11 +162,12 @@ void draw(const std::string& file, const std::vector<Curve>& curves) {
     }
     const Point& last = curves[c].points.back();
     const auto& color = colors[c % colors.size()];
+    const bool dashed = c >= colors.size();
     out << fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}/>", path,
-                       color, c >= 3 ? " stroke-dasharray=\"6 4\"" : "")
+                       color, dashed ? " stroke-dasharray=\"6 4\"" : "")
         << fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>\n",
                        x(last.effort) + 6, y(std::max(last.error, 1e-12)) + 4, color,
-                       curves[c].name);
+                       dashed ? "" : curves[c].name);
   }
   out << fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">rays or cells per row</text>",
                      left + width / 2, top + height + 40)

@@ -10,7 +10,51 @@ struct CoplanarGroups::Plane {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // first component that is not 0 is positive
   double distance = 0.0;
   Eigen::AlignedBox3d box{};
+  std::vector<int> vertices{};                 // of the geometry
+  std::vector<Eigen::Vector2d> convex_hull{};  // counter-clockwise, once asked for
 };
+
+namespace {
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+// Andrew's monotone chain.
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  });
+  std::vector<Eigen::Vector2d> hull;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t start = hull.size();
+    for (const Eigen::Vector2d& p : points) {
+      while (hull.size() >= start + 2 &&
+             cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0) {
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+// Whether a line along an edge of `a` keeps `b` off, by less than `tolerance` of overlap.
+bool is_apart(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b,
+              double tolerance) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Vector2d edge = (a[(i + 1) % a.size()] - a[i]).normalized();
+    const bool all_outside = std::all_of(b.begin(), b.end(), [&](const Eigen::Vector2d& p) {
+      return cross(edge, p - a[i]) <= tolerance;
+    });
+    if (all_outside) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 // In order of distance.
 std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry& geometry) {
@@ -20,6 +64,7 @@ std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry&
   const auto add = [&](int group, const auto& polygon) {
     Plane& plane = planes[group];
     for (const int v : polygon) plane.box.extend(geometry.vertices[v]);
+    plane.vertices.insert(plane.vertices.end(), polygon.begin(), polygon.end());
     if (!plane.normal.isZero()) return;
     const Eigen::Vector3d& a = geometry.vertices[polygon[0]];
     const Eigen::Vector3d n =
@@ -63,12 +108,27 @@ CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
     while (end < planes.size() && planes[end].distance - planes[end - 1].distance <= tolerance) {
       ++end;
     }
-    add_overlaps({planes.data() + begin, end - begin});
+    add_overlaps(geometry, {planes.data() + begin, end - begin}, tolerance);
   }
 }
 
 // Sweeps along x over planes at one distance from the origin.
-void CoplanarGroups::add_overlaps(std::span<CoplanarGroups::Plane> planes) {
+void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
+                                  std::span<CoplanarGroups::Plane> planes, double tolerance) {
+  // Facets that share an edge have boxes that meet, but do not lie on each other.
+  const auto hull_of = [&](Plane& plane) -> const std::vector<Eigen::Vector2d>& {
+    if (plane.convex_hull.empty()) {
+      int steepest = 0;
+      plane.normal.cwiseAbs().maxCoeff(&steepest);
+      std::vector<Eigen::Vector2d> points;
+      for (const int v : plane.vertices) {
+        const Eigen::Vector3d& p = geometry.vertices[v];
+        points.emplace_back(p[(steepest + 1) % 3], p[(steepest + 2) % 3]);
+      }
+      plane.convex_hull = convex_hull(std::move(points));
+    }
+    return plane.convex_hull;
+  };
   std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) {
     const double x = a.box.min().x(), y = b.box.min().x();
     return x != y ? x < y : a.group < b.group;
@@ -77,15 +137,19 @@ void CoplanarGroups::add_overlaps(std::span<CoplanarGroups::Plane> planes) {
   // Where very many lie together all of them count as covered: that only costs their rays time.
   std::size_t pairs_left = 1000 * planes.size();
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    const Plane& a = planes[i];
+    Plane& a = planes[i];
     for (std::size_t j = i + 1; j < planes.size(); ++j) {
-      const Plane& b = planes[j];
+      Plane& b = planes[j];
       if (b.box.min().x() > a.box.max().x()) break;
       if (pairs_left-- == 0) {
         for (const Plane& plane : planes) groups_[plane.group].overlaps = {plane.box};
         return;
       }
       if (a.normal.dot(b.normal) < parallel || !a.box.intersects(b.box)) continue;
+      if (is_apart(hull_of(a), hull_of(b), tolerance) ||
+          is_apart(hull_of(b), hull_of(a), tolerance)) {
+        continue;
+      }
       for (const int g : {a.group, b.group}) {
         groups_[g].overlaps.push_back(a.box.intersection(b.box));
       }

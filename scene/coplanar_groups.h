@@ -31,7 +31,7 @@ class CoplanarGroups {
   };
   struct Plane;
   static std::vector<Plane> planes_of(const CastGeometry& geometry);
-  void add_overlaps(std::span<Plane> planes);
+  void add_overlaps(const CastGeometry& geometry, std::span<Plane> planes, double tolerance);
   bool is_known(int group) const { return group >= 0 && group < static_cast<int>(groups_.size()); }
 
   std::vector<Group> groups_;
