@@ -7,8 +7,8 @@
 namespace lightwell {
 
 /// Reads a scene; the format is told by the extension: .toml (native, docs/scene-format.md), .obj,
-/// .ply, .stl, .vs3. The result has passed validate(). Throws InputError naming file, line or object,
-/// value and remedy.
+/// .ply, .stl, .vs3. The result has passed validate(). Throws InputError naming file, line or
+/// object, value and remedy.
 Scene read_scene(const std::filesystem::path& path);
 
 /// The native format. See docs/scene-format.md for the grammar.
