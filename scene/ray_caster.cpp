@@ -1,11 +1,5 @@
 #include "scene/ray_caster.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -14,152 +8,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scene/cast_spheres.h"
 #include "scene/coplanar_groups.h"
+#include "scene/embree_queries.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
 namespace {
-
-// Embree hands this back to the sphere callback, which needs the origin in double and its group.
-#if RTC_VERSION_MAJOR >= 4
-using EmbreeContext = RTCRayQueryContext;
-#else
-using EmbreeContext = RTCIntersectContext;
-#endif
-struct QueryContext : EmbreeContext {
-  const Ray* rays = nullptr;     // a lane's ray is rays[its id]
-  const void* caster = nullptr;  // RayCaster::Impl, for the filter
-};
-
-void init(QueryContext& context, const Ray* rays) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcInitRayQueryContext(&context);
-#else
-  rtcInitIntersectContext(&context);
-#endif
-  context.rays = rays;
-}
-
-void intersect(RTCScene scene, QueryContext& context, RTCRayHit& query,
-               RTCFilterFunctionN filter = nullptr) {
-#if RTC_VERSION_MAJOR >= 4
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
-  if (filter) {
-    arguments.flags =
-        static_cast<RTCRayQueryFlags>(arguments.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
-  }
-  arguments.filter = filter;
-  arguments.context = &context;
-  rtcIntersect1(scene, &query, &arguments);
-#else
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  context.filter = filter;
-  rtcIntersect1(scene, &context, &query);
-#endif
-}
-
-constexpr int packet_size = 16;
-
-void intersect(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit16& query) {
-#if RTC_VERSION_MAJOR >= 4
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  arguments.context = &context;
-  rtcIntersect16(valid, scene, &query, &arguments);
-#else
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(valid, scene, &context, &query);
-#endif
-}
-
-void occlude(RTCScene scene, QueryContext& context, const int* valid, RTCRay16& query) {
-#if RTC_VERSION_MAJOR >= 4
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  arguments.context = &context;
-  rtcOccluded16(valid, scene, &query, &arguments);
-#else
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded16(valid, scene, &context, &query);
-#endif
-}
-
-struct SphereSet {
-  std::vector<Sphere> spheres;
-  std::vector<int> group;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of Embree's coordinates
-  double rounding = 0.0;                             // of Embree's coordinates, metres
-};
-
-// The nearest root of |o + t d - c| = r in (0, t_max); for a ray that starts on this sphere the
-// root at its own origin is the one of smaller magnitude and does not count. Negative: none.
-double sphere_root(const Sphere& sphere, const Ray& ray, bool starts_here) {
-  const Eigen::Vector3d oc = ray.origin - sphere.center;
-  const double a = ray.direction.squaredNorm();
-  const double half_b = oc.dot(ray.direction);
-  // The perpendicular distance form keeps digits when the origin is far away (Haines et al. 2019,
-  // "Precision improvements for ray/sphere intersection").
-  const Eigen::Vector3d perpendicular = oc - (half_b / a) * ray.direction;
-  const double discriminant = a * (sphere.radius * sphere.radius - perpendicular.squaredNorm());
-  if (!(discriminant > 0.0)) return -1.0;
-  const double root = std::sqrt(discriminant);
-  const double low = (-half_b - root) / a, high = (-half_b + root) / a;
-  if (starts_here) return std::abs(low) > std::abs(high) ? low : high;
-  return low > 0.0 ? low : high;
-}
-
-void sphere_bounds(const RTCBoundsFunctionArguments* args) {
-  const auto& set = *static_cast<const SphereSet*>(args->geometryUserPtr);
-  const Sphere& s = set.spheres[args->primID];
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(s.radius + set.rounding);
-  const Eigen::Vector3f lower = (s.center - set.center - reach).cast<float>();
-  const Eigen::Vector3f upper = (s.center - set.center + reach).cast<float>();
-  args->bounds_o->lower_x = lower.x();
-  args->bounds_o->lower_y = lower.y();
-  args->bounds_o->lower_z = lower.z();
-  args->bounds_o->upper_x = upper.x();
-  args->bounds_o->upper_y = upper.y();
-  args->bounds_o->upper_z = upper.z();
-}
-
-void sphere_intersect(const RTCIntersectFunctionNArguments* args) {
-  const auto& set = *static_cast<const SphereSet*>(args->geometryUserPtr);
-  const Ray* rays = static_cast<const QueryContext*>(args->context)->rays;
-  RTCRayN* query = RTCRayHitN_RayN(args->rayhit, args->N);
-  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
-  for (unsigned lane = 0; lane < args->N; ++lane) {
-    if (!args->valid[lane]) continue;
-    const Ray& ray = rays[RTCRayN_id(query, args->N, lane)];
-    const double t =
-        sphere_root(set.spheres[args->primID], ray, set.group[args->primID] == ray.origin_group);
-    if (!(t > RTCRayN_tnear(query, args->N, lane) && t < RTCRayN_tfar(query, args->N, lane))) {
-      continue;
-    }
-    RTCRayN_tfar(query, args->N, lane) = static_cast<float>(t);
-    RTCHitN_geomID(hit, args->N, lane) = args->geomID;
-    RTCHitN_primID(hit, args->N, lane) = args->primID;
-    RTCHitN_u(hit, args->N, lane) = RTCHitN_v(hit, args->N, lane) = 0.0f;
-  }
-}
-
-void sphere_occluded(const RTCOccludedFunctionNArguments* args) {
-  const auto& set = *static_cast<const SphereSet*>(args->geometryUserPtr);
-  const Ray* rays = static_cast<const QueryContext*>(args->context)->rays;
-  const int group = set.group[args->primID];
-  for (unsigned lane = 0; lane < args->N; ++lane) {
-    if (!args->valid[lane]) continue;
-    const Ray& ray = rays[RTCRayN_id(args->ray, args->N, lane)];
-    if (group == ray.target_group) continue;
-    const double t = sphere_root(set.spheres[args->primID], ray, group == ray.origin_group);
-    if (t > RTCRayN_tnear(args->ray, args->N, lane) && t < RTCRayN_tfar(args->ray, args->N, lane)) {
-      RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
-    }
-  }
-}
 
 // Embree's numbers of the two geometries.
 enum GeometryId : unsigned { polygons_id, spheres_id };
@@ -238,13 +93,7 @@ struct RayCaster::Impl {
         .group = {group.end() - static_cast<std::ptrdiff_t>(source.spheres.size()), group.end()},
         .center = center,
         .rounding = rounding};
-    const RTCGeometry user = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(user, static_cast<unsigned>(source.spheres.size()));
-    rtcSetGeometryUserData(user, &sphere_set);
-    rtcSetGeometryBoundsFunction(user, sphere_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(user, sphere_intersect);
-    rtcSetGeometryOccludedFunction(user, sphere_occluded);
-    attach(user, spheres_id);
+    attach(sphere_geometry(device, sphere_set), spheres_id);
   }
 
   // A ray that starts on a group begins past its plane by what rounding may move it, so that it
