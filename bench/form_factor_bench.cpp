@@ -4,9 +4,10 @@
 //
 // A closed box of 600 patches (where every pair has an exact closed form) and the same with a block
 // in it (where the reference is the analytic method with many shadow rays). Prints, per method and
-// effort: seconds per row, RMS and worst error of F_ij; and closed forms per second. With PLOT.svg
-// it draws error over rays or cells per row.
+// effort: seconds per row, RMS and worst error of F_ij; closed forms per second; and time and
+// memory of cities of growing size. With PLOT.svg it draws error over rays or cells per row.
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +21,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/pair_exchange.h"
 #include "scene/parallel.h"
+#include "scene/sampling.h"
 
 namespace {
 
@@ -195,6 +197,68 @@ void count_pairs(const Prepared& p) {
              0.5e-6 * n * n / seconds);
 }
 
+// A city of n x n blocks on a plain, in triangles.
+Scene city(int n) {
+  Scene scene;
+  Material grey;
+  grey.name = "grey";
+  grey.reflectance = constant_spectrum(scene.bands, 0.5f);
+  grey.specular = grey.emission = constant_spectrum(scene.bands, 0.0f);
+  grey.one_sided = true;
+  scene.materials = {grey};
+  PolygonMesh mesh;
+  const auto add_rectangle = [&](const Eigen::Vector3d& corner, const Eigen::Vector3d& u,
+                                 const Eigen::Vector3d& v, int cells) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (int b = 0; b <= cells; ++b) {
+      for (int a = 0; a <= cells; ++a) mesh.vertices.push_back(corner + (a * u + b * v) / cells);
+    }
+    for (int b = 0; b < cells; ++b) {
+      for (int a = 0; a < cells; ++a) {
+        const int at = first + b * (cells + 1) + a, above = at + cells + 1;
+        mesh.facets.push_back({.boundary = {at, at + 1, above + 1}});
+        mesh.facets.push_back({.boundary = {at, above + 1, above}});
+      }
+    }
+  };
+  const Eigen::Vector3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  for (int i = 0; i < n * n; ++i) {
+    const auto size = [&](std::uint64_t what, double least, double most) {
+      return least +
+             (most - least) * random_uniform(random_key(static_cast<std::uint64_t>(i), what));
+    };
+    const double w = size(1, 12, 20), d = size(2, 12, 20), h = size(3, 8, 60);
+    const Eigen::Vector3d o(30.0 * (i % n) + 5.0, 30.0 * (i / n) + 5.0, 0.0);
+    constexpr int cells = 2;
+    add_rectangle(o, w * x, h * z, cells);
+    add_rectangle(o + w * x, d * y, h * z, cells);
+    add_rectangle(o + w * x + d * y, -w * x, h * z, cells);
+    add_rectangle(o + d * y, -d * y, h * z, cells);
+    add_rectangle(o + h * z, w * x, d * y, cells);
+  }
+  const double side = 30.0 * n + 20.0;
+  add_rectangle({-10, -10, 0}, side * x, side * y, 2 * n);
+  scene.surfaces.push_back({.name = "city", .material = 0, .shape = std::move(mesh)});
+  validate(scene);
+  return scene;
+}
+
+void measure_city(int blocks, double target_error) {
+  const Prepared p(city(blocks), 1e4);
+  const auto start = std::chrono::steady_clock::now();
+  FormFactorReport report;
+  const auto F = compute_form_factors(p.scene, p.caster, p.direct_light,
+                                      {.target_error = target_error}, &report);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  fmt::print(
+      "city of {} facets to {:.0e}: {:.1f} s, {:.0f} us/row, {:.0f} rays/row, {:.0f} MB at most\n",
+      p.mesh.patch_count(), target_error, seconds, 1e6 * seconds / p.mesh.patch_count(),
+      static_cast<double>(report.rays) / p.mesh.patch_count(), usage.ru_maxrss / 1024.0);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -219,4 +283,7 @@ int main(int argc, char** argv) {
   FormFactorOptions usual{.method = FormFactorMethod::analytic, .target_error = 1e-3};
   measure(blocked, blocked_reference, "analytic", {usual}, [](const auto&) { return 0.0; });
   if (argc > 1) draw(argv[1], curves);
+
+  for (const int blocks : {6, 12, 24, 48}) measure_city(blocks, 1e-2);
+  measure_city(22, 1e-3);
 }
