@@ -115,6 +115,7 @@ CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh,
   return geometry;
 }
 
+template <bool with_weights>
 ElementHit ElementCaster::element_hit(const Ray& ray, const Hit& hit) const {
   if (hit.primitive < 0) return {};
   const Primitive& primitive = primitives_[hit.primitive];
@@ -123,7 +124,9 @@ ElementHit ElementCaster::element_hit(const Ray& ray, const Hit& hit) const {
                     .from_back = hit.from_back,
                     .t = hit.t};
   bool is_triangle = primitive.kind == Primitive::Kind::triangle;
-  if (is_triangle) {
+  if (!with_weights && primitive.kind != Primitive::Kind::sphere) {
+    // Nothing more to find out.
+  } else if (is_triangle) {
     result.weights = {1.0f - hit.u - hit.v, hit.u, hit.v, 0.0f};
   } else if (primitive.kind == Primitive::Kind::quad) {
     result.weights = quad_weights(primitive.alpha, primitive.beta, hit.u, hit.v);
@@ -137,12 +140,14 @@ ElementHit ElementCaster::element_hit(const Ray& ray, const Hit& hit) const {
   }
   if (!hit.from_back) return result;
   result.element = mesh_.twin[result.element];
+  if (!with_weights) return result;
   result.weights =
       result.element < 0 ? Array4f(Array4f::Zero()) : turned(result.weights, is_triangle);
   return result;
 }
 
-void ElementCaster::closest_hits(std::span<const Ray> rays, std::span<ElementHit> hits) const {
+template <bool with_weights>
+void ElementCaster::cast(std::span<const Ray> rays, std::span<ElementHit> hits) const {
   assert(rays.size() == hits.size());
   constexpr std::size_t batch = 64;  // fits the stack and the first-level cache
   std::array<Hit, batch> buffer;
@@ -150,9 +155,17 @@ void ElementCaster::closest_hits(std::span<const Ray> rays, std::span<ElementHit
     const std::size_t count = std::min(batch, rays.size() - begin);
     caster_.closest_hits(rays.subspan(begin, count), std::span(buffer).first(count));
     for (std::size_t i = 0; i < count; ++i) {
-      hits[begin + i] = element_hit(rays[begin + i], buffer[i]);
+      hits[begin + i] = element_hit<with_weights>(rays[begin + i], buffer[i]);
     }
   }
+}
+
+void ElementCaster::closest_hits(std::span<const Ray> rays, std::span<ElementHit> hits) const {
+  cast<true>(rays, hits);
+}
+
+void ElementCaster::closest_elements(std::span<const Ray> rays, std::span<ElementHit> hits) const {
+  cast<false>(rays, hits);
 }
 
 Spectrum interpolate(const PatchMesh& mesh, const BandArray& vertex_values, const ElementHit& hit) {

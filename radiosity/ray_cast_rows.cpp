@@ -105,7 +105,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
                 .direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z),
                 .origin_group = mesh.facet[patch]};
     }
-    caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+    caster_.closest_elements({ray.data(), n}, {hit.data(), n});
     for (int r = 0; r < count; ++r) {
       const ElementHit& h = hit[r];
       const bool specular = h.facet >= 0 && paths_.is_specular(h.facet);
@@ -167,7 +167,7 @@ void RowCaster::look_behind(std::span<Ray> rays, std::span<ElementHit> hits,
                           .origin_group = hit.facet};
     }
     left = going_on;
-    caster_.closest_hits(rays.first(left), hits.first(left));
+    caster_.closest_elements(rays.first(left), hits.first(left));
   }
 }
 
