@@ -167,6 +167,26 @@ std::vector<std::string> form_factor_method_names() {
   return names;
 }
 
+CLI::Option* add_hemicube_resolution(CLI::App& command, int& resolution) {
+  constexpr int finest = 4096;
+  return command
+      .add_option("--hemicube-resolution", resolution,
+                  "cells along an edge of the hemicube's top, even (default 256)")
+      ->type_name("N")
+      ->check(whole_number(2, finest))
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return text.find_last_of("02468") + 1 == text.size()
+                       ? std::string()
+                       : "an even number is needed, not '" + text + "'";
+          },
+          std::string{}));
+}
+
+std::string hemicube_text(const std::string& method, int resolution) {
+  return method == "hemicube" ? fmt::format(" --hemicube-resolution {}", resolution) : "";
+}
+
 void SolveArguments::add_to(CLI::App& command) {
   const std::string group = "How the light is solved";
   command
@@ -187,6 +207,7 @@ void SolveArguments::add_to(CLI::App& command) {
       ->type_name("METHOD")
       ->check(one_of("form-factor method", form_factor_method_names()))
       ->group(group);
+  add_hemicube_resolution(command, solve.form_factors.hemicube_resolution)->group(group);
   command.add_option("--solver", solver, "how the equations are solved: gauss-seidel")
       ->type_name("METHOD")
       ->check(one_of("solver", {"gauss-seidel"}))
@@ -226,11 +247,12 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
 
 std::string SolveArguments::text(const Scene& scene) const {
   return fmt::format(
-      "--max-patch-size {:.6g} --elements-per-patch-edge {} --form-factors {} --solver {} --rays "
+      "--max-patch-size {:.6g} --elements-per-patch-edge {} --form-factors {}{} --solver {} --rays "
       "{} --gather-rays {} --tolerance {:g} --max-sweeps {}",
       patch_size(scene, options(scene).mesh) / scene.metres_per_unit,
-      solve.mesh.elements_per_patch_edge, form_factors, solver, solve.form_factors.rays_per_patch,
-      solve.gather.rays, solve.tolerance, solve.max_sweeps);
+      solve.mesh.elements_per_patch_edge, form_factors,
+      hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
+      solve.form_factors.rays_per_patch, solve.gather.rays, solve.tolerance, solve.max_sweeps);
 }
 
 void RenderArguments::add_to(CLI::App& command) {

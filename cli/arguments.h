@@ -44,6 +44,12 @@ void add_solved_scene(CLI::App& command, std::string& scene, std::string& soluti
 
 std::vector<std::string> form_factor_method_names();
 
+/// The option --hemicube-resolution spelled out where it matters, with a space before it.
+std::string hemicube_text(const std::string& method, int resolution);
+
+/// Adds --hemicube-resolution N.
+CLI::Option* add_hemicube_resolution(CLI::App& command, int& resolution);
+
 /// Adds --size WxH.
 void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size);
 

@@ -24,7 +24,8 @@ struct Arguments {
   std::string scene, output, method = "auto", view3d, row_output;
   double target_error = 1e-3;
   double max_patch_size = 0.0;  // in the scene file's unit; 0: a row per facet
-  int show_row = 0;             // counted from 1; 0: none
+  int hemicube_resolution = 256;
+  int show_row = 0;  // counted from 1; 0: none
   bool two_sided = false;
 
   std::string text() const;
@@ -33,8 +34,9 @@ struct Arguments {
 };
 
 std::string Arguments::text() const {
-  return fmt::format("--method {} --target-error {:g} --max-patch-size {:g}{}", method,
-                     target_error, max_patch_size, two_sided ? " --two-sided" : "");
+  return fmt::format("--method {}{} --target-error {:g} --max-patch-size {:g}{}", method,
+                     hemicube_text(method, hemicube_resolution), target_error, max_patch_size,
+                     two_sided ? " --two-sided" : "");
 }
 
 fs::path Arguments::row_file() const {
@@ -92,6 +94,7 @@ Computed compute(const Arguments& arguments, const NumberedScene& numbered, cons
   FormFactorOptions options;
   options.method = method;
   options.target_error = arguments.target_error;
+  options.hemicube_resolution = arguments.hemicube_resolution;
   options.progress = console.progress();
   const auto form_factors =
       compute_form_factors(view.scene, caster, no_light, options, &computed.report);
@@ -232,6 +235,7 @@ void add_how(CLI::App& command, Arguments& arguments) {
       ->type_name("METHOD")
       ->check(CLI::IsMember(form_factor_method_names()))
       ->group(group);
+  add_hemicube_resolution(command, arguments.hemicube_resolution);
   command
       .add_option("--target-error", arguments.target_error,
                   "wanted standard error of every factor (default 1e-3)")
