@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "radiosity/pair_exchange.h"
@@ -10,14 +11,24 @@
 namespace lightwell {
 namespace {
 
-// Fewer rays than this tell too little about what stands between.
+// Rays that a pair should expect to be worth a closed form.
 constexpr int fewest_rays = 12;
+// As many that the count itself may decide.
+constexpr int plenty_of_rays = 128;
+
+// Of a disk of the same area, seen from centre to centre.
+double rough_form_factor(const PatchOutline& from, const PatchOutline& to, double area_to) {
+  const Eigen::Vector3d way = to.center - from.center;
+  const double squared = way.squaredNorm();
+  const double cosines = std::max(0.0, from.normal.dot(way)) * std::max(0.0, -to.normal.dot(way));
+  return cosines * area_to / (squared * (std::numbers::pi * squared + area_to));
+}
 static_assert(NearExchange::worst_count_error * NearExchange::worst_count_error > fewest_rays - 1);
 
 }  // namespace
 
 NearExchange::NearExchange(const PatchMesh& mesh)
-    : outlines_(static_cast<std::size_t>(mesh.patch_count())) {
+    : area_(mesh.area), outlines_(static_cast<std::size_t>(mesh.patch_count())) {
   parallel_for(mesh.patch_count(), 256, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) outlines_[i] = patch_outline(mesh, i);
   });
@@ -28,7 +39,14 @@ double NearExchange::look(int patch, const EstimatedRow& row, std::vector<Pair>&
   for (std::size_t k = 0; k < row.shares.size(); ++k) {
     const int j = row.shares[k].patch;
     const int first = static_cast<int>(std::lround(row.shares[k].value * row.rays));
-    if (first < fewest_rays || !outlines_[patch].is_polygon() || !outlines_[j].is_polygon()) {
+    const bool polygons = outlines_[patch].is_polygon() && outlines_[j].is_polygon();
+    // Geometry picks the pairs. If counts did, those that came out high by chance would be put
+    // right and those that came out low would not, and all rows would be too small.
+    const bool is_worth_it =
+        polygons &&
+        (first >= plenty_of_rays ||
+         row.rays * rough_form_factor(outlines_[patch], outlines_[j], area_[j]) >= fewest_rays);
+    if (!is_worth_it) {
       worst_variance = std::max(worst_variance, first / (row.rays * row.rays));
       continue;
     }

@@ -35,6 +35,7 @@ class NearExchange {
   const std::vector<PatchOutline>& outlines() const { return outlines_; }
 
  private:
+  Eigen::ArrayXd area_;
   std::vector<PatchOutline> outlines_;
 };
 
