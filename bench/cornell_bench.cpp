@@ -19,6 +19,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include "mesh/patch_sampler.h"
 #include "radiosity/ray_cast_rows.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"

@@ -35,22 +35,6 @@ const SphereGrid* sphere_of_element(const PatchMesh& mesh, int element) {
   return sphere_grid_of(mesh, mesh.facet[mesh.patch[element]]);
 }
 
-// Uniform over a sphere's element: even in longitude and in cos(theta) (Archimedes).
-Vector3d direction_of_sphere(const PatchMesh& mesh, const SphereGrid& grid, int element, double u,
-                             double v) {
-  SpherePlace place = sphere_place(grid, mean_of_corners(mesh, element) - grid.sphere.center);
-  place.u = 0.0;
-  place.v = 0.0;
-  const double south = sphere_direction(grid, place).z();
-  place.v = 1.0;
-  const double north = sphere_direction(grid, place).z();
-  const double z = std::clamp(south + v * (north - south), -1.0, 1.0);
-  place.u = u;
-  const Vector3d around = sphere_direction(grid, {place.ring, place.sector, u, 0.5});
-  const double across = std::hypot(around.x(), around.y()), r = std::sqrt(1.0 - z * z);
-  return {r * around.x() / across, r * around.y() / across, z};
-}
-
 // Radial on spheres, inwards for inner elements; elsewhere the mean of the faces around.
 void set_vertex_normals(PatchMesh& mesh, int vertex_count) {
   mesh.vertex_normal.assign(vertex_count, Vector3d::Zero());
@@ -86,59 +70,6 @@ bool fits(const HalfedgeMesh& elements, const std::array<HalfedgeMesh::VertexHan
 }
 
 }  // namespace
-
-PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
-    : mesh_(mesh), patch_(patch), sphere_(sphere_grid_of(mesh, mesh.facet[patch])) {
-  // A hair inside the element: a point nearer to a contact line than float can tell lies, for a
-  // ray, on either side of what stands there, and would carry light through it.
-  constexpr double inset = 1e-4;
-  for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
-    if (sphere_) {
-      area_ += mesh.element_area[e];
-      parts_.push_back({.element = e, .area_up_to = area_});
-      continue;
-    }
-    const Vector3d mean = mean_of_corners(mesh, e);
-    const Vector3d normal = element_area_vector(mesh, e).normalized();
-    std::array<Vector3d, 4> corner;
-    for (int i = 0; i < mesh.corner_count(e); ++i) {
-      const Vector3d at = mesh.position(mesh.corners[e][i]);
-      corner[i] = at + inset * (mean - at);
-    }
-    for (int i = 2; i < mesh.corner_count(e); ++i) {
-      area_ += 0.5 * area_vector(corner[0], corner[i - 1], corner[i]).norm();
-      parts_.push_back({.element = e,
-                        .area_up_to = area_,
-                        .corner = corner[0],
-                        .first_edge = corner[i - 1] - corner[0],
-                        .second_edge = corner[i] - corner[0],
-                        .normal = normal});
-    }
-  }
-}
-
-PatchPoint PatchSampler::point(double u, double v) const {
-  const double area = u * area_;
-  // Parts are mostly of one size, so a guess saves the search.
-  std::size_t i =
-      std::min(static_cast<std::size_t>(u * static_cast<double>(parts_.size())), parts_.size() - 1);
-  while (i > 0 && area < parts_[i - 1].area_up_to) --i;
-  while (i + 1 < parts_.size() && area >= parts_[i].area_up_to) ++i;
-  const Part& part = parts_[i];
-  const double before = i == 0 ? 0.0 : parts_[i - 1].area_up_to;
-  u = std::clamp((area - before) / (part.area_up_to - before), 0.0, 1.0);
-  if (!sphere_) {
-    // The square root keeps density even towards the corner.
-    const double s = std::sqrt(u);
-    return {.element = part.element,
-            .position = part.corner + s * ((1.0 - v) * part.first_edge + v * part.second_edge),
-            .normal = part.normal};
-  }
-  const Vector3d direction = direction_of_sphere(mesh_, *sphere_, part.element, u, v);
-  return {.element = part.element,
-          .position = sphere_->sphere.center + sphere_->sphere.radius * direction,
-          .normal = mesh_.is_back[patch_] != 0 ? Vector3d(-direction) : direction};
-}
 
 PatchPoint element_center(const PatchMesh& mesh, int element) {
   PatchPoint point{.element = element, .position = mean_of_corners(mesh, element)};

@@ -96,31 +96,6 @@ struct PatchPoint {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the side the patch faces
 };
 
-/// Draws points of one patch. Keeps a reference to the mesh.
-class PatchSampler {
- public:
-  PatchSampler(const PatchMesh& mesh, int patch);
-
-  /// Uniform over the patch's area for (u, v) uniform in [0,1)^2 (u also picks the element, in
-  /// proportion to area); on a sphere the point lies on the exact sphere.
-  PatchPoint point(double u, double v) const;
-
- private:
-  // A triangle of an element; an element of a sphere whole.
-  struct Part {
-    int element = -1;
-    double area_up_to = 0.0;  // of this and all parts before
-    Eigen::Vector3d corner = Eigen::Vector3d::Zero();
-    Eigen::Vector3d first_edge = Eigen::Vector3d::Zero(), second_edge = Eigen::Vector3d::Zero();
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  };
-  const PatchMesh& mesh_;
-  int patch_;
-  const SphereGrid* sphere_;
-  double area_ = 0.0;
-  std::vector<Part> parts_;
-};
-
 /// Mean of the element's corners (on spheres moved out to the exact sphere) and its unit normal.
 PatchPoint element_center(const PatchMesh& mesh, int element);
 

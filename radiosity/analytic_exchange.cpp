@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "mesh/patch_sampler.h"
 #include "radiosity/pair_exchange.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"

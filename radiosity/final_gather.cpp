@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "mesh/patch_sampler.h"
 #include "radiosity/light_path.h"
 #include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <map>
 
+#include "mesh/patch_sampler.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -26,43 +26,16 @@ int set_size(int most_rays) {
 }  // namespace
 
 RowCaster::Scratch::Scratch(const PatchMesh& mesh)
-    : count_(static_cast<std::size_t>(mesh.patch_count()), 0), hidden_(count_) {}
-
-void RowCaster::Scratch::add(int patch) {
-  if (count_[patch]++ == 0) touched_.push_back(patch);
-}
-
-void RowCaster::Scratch::add_hidden(int patch) {
-  if (hidden_[patch]++ == 0) hidden_touched_.push_back(patch);
-}
+    : first_(static_cast<std::size_t>(mesh.patch_count())), hidden_(first_) {}
 
 // Counts in shares of `rays`; empties the counters.
-void RowCaster::Scratch::take(int rays, EstimatedRow& row) {
-  put_in_order();
-  row.shares.reserve(touched_.size());
-  for (int patch : touched_) {
-    row.shares.push_back({patch, static_cast<float>(count_[patch]) / static_cast<float>(rays)});
-    count_[patch] = 0;
-  }
-  if (!hidden_touched_.empty()) {
-    for (int patch : touched_) row.hidden.push_back(hidden_[patch]);
-  }
-  for (int patch : hidden_touched_) hidden_[patch] = 0;
-  touched_.clear();
-  hidden_touched_.clear();
-}
-
-// Where many of all patches were touched, looking through all is quicker than sorting.
-void RowCaster::Scratch::put_in_order() {
-  constexpr std::size_t few = 32;
-  if (touched_.size() * few < count_.size()) {
-    std::sort(touched_.begin(), touched_.end());
-    return;
-  }
-  touched_.clear();
-  for (std::size_t i = 0; i < count_.size(); ++i) {
-    if (count_[i] > 0) touched_.push_back(static_cast<int>(i));
-  }
+void RowCaster::Scratch::take(int rays, bool with_hidden, EstimatedRow& row) {
+  row.shares.reserve(first_.size());
+  first_.take([&](int patch, int count) {
+    row.shares.push_back({patch, static_cast<float>(count) / static_cast<float>(rays)});
+    if (with_hidden) row.hidden.push_back(hidden_.count(patch));
+  });
+  if (with_hidden) hidden_.take([](int, int) {});
 }
 
 RowCaster::RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays)
@@ -81,15 +54,15 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(patch), form_factor_rays);
   const PatchSampler sampler(mesh, patch);
   std::array<Ray, batch> ray;
+  ray.fill({.origin_group = mesh.facet[patch]});
   std::array<ElementHit, batch> hit;
   HemisphereSets::Draw draw;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
   for (int begin = 0; begin < rays; begin += batch) {
     const int in_set = begin % sets_.count();
     if (in_set == 0) {
       draw = sets_.draw(random_key(key, static_cast<std::uint64_t>(begin)));
-      normal.setZero();
+      if (sampler.is_flat()) frame = draw.frame(sampler.point(0.5, 0.5).normal);
     }
     const int count = std::min({batch, rays - begin, sets_.count() - in_set});
     const auto n = static_cast<std::size_t>(count);
@@ -97,44 +70,30 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
     for (int r = 0; r < count; ++r) {
       const Eigen::Vector2d place = draw.place(points[r]);
       const PatchPoint from = sampler.point(place.x(), place.y());
-      if (from.normal != normal) {  // the same all over a flat patch
-        normal = from.normal;
-        frame = draw.frame(normal);
-      }
-      ray[r] = {.origin = from.position,
-                .direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z),
-                .origin_group = mesh.facet[patch]};
+      if (!sampler.is_flat()) frame = draw.frame(from.normal);
+      ray[r].origin = from.position;
+      ray[r].direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z);
     }
     caster_.closest_elements({ray.data(), n}, {hit.data(), n});
     for (int r = 0; r < count; ++r) {
       const ElementHit& h = hit[r];
-      const bool specular = h.facet >= 0 && paths_.is_specular(h.facet);
-      if (!specular) {
-        if (h.element >= 0) {
-          scratch.add(mesh.patch[h.element]);
-        } else {
-          ++row.escaped;
-        }
-        continue;
-      }
-      if (paths_.is_diffuse(h.facet) && h.element >= 0) {
-        scratch.add(mesh.patch[h.element]);
+      const bool specular = paths_.has_specular() && h.facet >= 0 && paths_.is_specular(h.facet);
+      if (specular) {
+        const std::uint64_t branch =
+            random_key(key, form_factor_branches, static_cast<std::uint64_t>(begin + r));
+        pass_on(ray[r], h, branch, scratch, row, by_way_of_specular);
+      } else if (h.element >= 0) {
+        scratch.first_.add(mesh.patch[h.element]);
       } else {
-        ++row.specular;
+        ++row.escaped;
       }
-      const PathLosses losses = paths_.follow(
-          ray[r], h, random_key(key, form_factor_branches, static_cast<std::uint64_t>(begin + r)),
-          [&](const ElementHit& end, const Spectrum& throughput) {
-            auto [at, is_new] = by_way_of_specular.try_emplace(mesh.patch[end.element], throughput);
-            if (!is_new) at->second += throughput;
-          });
-      row.specular_escaped += losses.escaped;
-      row.absorbed += losses.absorbed;
-      row.cut += losses.cut;
     }
-    if (behind) look_behind({ray.data(), n}, {hit.data(), n}, scratch);
+    if (behind) {
+      look_behind({ray.data(), n}, {hit.data(), n}, scratch);
+      ray.fill({.origin_group = mesh.facet[patch]});
+    }
   }
-  scratch.take(rays, row);
+  scratch.take(rays, behind, row);
   row.specular_share.resize(static_cast<Eigen::Index>(by_way_of_specular.size()), bands);
   const auto all = static_cast<float>(rays);
   for (const auto& [to, weight] : by_way_of_specular) {
@@ -150,6 +109,26 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   return row;
 }
 
+// A ray that met a mirror or glass, which may scatter a share of its own besides.
+void RowCaster::pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch,
+                        Scratch& scratch, EstimatedRow& row,
+                        std::map<int, Spectrum>& by_way_of_specular) const {
+  const PatchMesh& mesh = caster_.mesh();
+  if (paths_.is_diffuse(hit.facet) && hit.element >= 0) {
+    scratch.first_.add(mesh.patch[hit.element]);
+  } else {
+    ++row.specular;
+  }
+  const PathLosses losses =
+      paths_.follow(ray, hit, branch, [&](const ElementHit& end, const Spectrum& throughput) {
+        auto [at, is_new] = by_way_of_specular.try_emplace(mesh.patch[end.element], throughput);
+        if (!is_new) at->second += throughput;
+      });
+  row.specular_escaped += losses.escaped;
+  row.absorbed += losses.absorbed;
+  row.cut += losses.cut;
+}
+
 // Sends the rays on through what they met, again and again, until they leave the scene.
 void RowCaster::look_behind(std::span<Ray> rays, std::span<ElementHit> hits,
                             Scratch& scratch) const {
@@ -161,7 +140,7 @@ void RowCaster::look_behind(std::span<Ray> rays, std::span<ElementHit> hits,
     for (std::size_t r = 0; r < left; ++r) {
       const ElementHit& hit = hits[r];
       if (hit.facet < 0) continue;
-      if (layer > 0 && hit.element >= 0) scratch.add_hidden(mesh.patch[hit.element]);
+      if (layer > 0 && hit.element >= 0) scratch.hidden_.add(mesh.patch[hit.element]);
       rays[going_on++] = {.origin = rays[r].origin + hit.t * rays[r].direction,
                           .direction = rays[r].direction,
                           .origin_group = hit.facet};

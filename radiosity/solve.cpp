@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "mesh/patch_sampler.h"
 #include "radiosity/solve_gauss_seidel.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
@@ -171,7 +172,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   FormFactorOptions form_factor_options = options.form_factors;
   form_factor_options.progress = options.progress;
   const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
-                                                  report ? &report->form_factors : nullptr);
+                                                 report ? &report->form_factors : nullptr);
   seconds.push_back({"form_factors", watch.lap()});
 
   solved.solution = solve_gauss_seidel(solved.mesh, *form_factors,

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "mesh/patch_mesh.h"
+#include "mesh/patch_sampler.h"
 #include "mesh_scenes.h"
 
 namespace lightwell {
