@@ -80,6 +80,7 @@ bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, cons
   const double slack = flat * (target.box.merged(from.box).merged(occluder.box)).diagonal().norm();
   const auto near = blocker.polygon.corners();
   blocker.reach.push_back(blocker.plane);
+  if (from.parts.empty()) return true;  // one point has no penumbra
   add_parting_planes(near, far_corners, near, far_corners, from.corners, slack, blocker.reach);
   for (const ConvexPolygon& part : far_parts) {
     add_parting_planes(part.corners(), near, near, far_corners, from.corners, slack, blocker.reach);
