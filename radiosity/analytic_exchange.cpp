@@ -84,7 +84,11 @@ class PairVisibility {
     Visibility visibility() const {
       if (!(all > 0.0)) return {};
       const double share = seen / all;
-      return {share, share * (1.0 - share) * squares / (all * all)};
+      const double variance = share * (1.0 - share) * squares / (all * all);
+      // Rays that all agree may all have missed the rest: the spread of a share of which n draws of
+      // n came out alike (Laplace's rule of succession).
+      const double unanimous = 1.0 / (count + 2.0);
+      return {share, std::max(variance, unanimous * unanimous)};
     }
   };
 

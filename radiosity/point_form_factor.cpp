@@ -88,6 +88,39 @@ void PointFormFactors::by_discs(int shooter, int n, std::span<const ReceivingPoi
   });
 }
 
+// F where no ray is needed, all but visibility where rays are.
+PointFormFactors::Unsampled PointFormFactors::without_rays(const ShaftEnd& target,
+                                                           const ReceivingPoint& point) const {
+  const Occluders& occluders = shafts_.occluders();
+  if (!(target.plane.height(point.position) > occluders.tolerance)) return {};
+  Unsampled result;
+  for (const ConvexPolygon& part : target.parts) {
+    result.F += point_to_polygon(point.position, point.normal, part.corners());
+  }
+  if (!(result.F > nothing)) return {};
+  result.F = std::min(result.F, 1.0);
+  const ShaftEnd from = shafts_.end(point.position, point.normal, point.facet);
+  Between between;
+  shafts_.find(from, target, between);
+  constexpr std::size_t most_clipped = 16;
+  result.needs_rays =
+      between.may_be_sphere || between.pieces.size() > most_clipped || shafts_.is_covered(from);
+  if (result.needs_rays) return result;
+  std::vector<Blocker> blockers;
+  for (const int piece : between.pieces) {
+    const Occluder& occluder = occluders.pieces[piece];
+    const int side = occluder.plane.height(point.position) > 0.0 ? 1 : -1;
+    Blocker blocker;
+    if (make_blocker(occluder, side, from, target, occluders.tolerance, blocker)) {
+      blockers.push_back(blocker);
+    }
+  }
+  if (blockers.empty()) return result;
+  const auto view = ShadowedPolygon(target.parts, blockers).look(point.position, point.normal);
+  result.F = view.all - view.hidden;
+  return result;
+}
+
 void PointFormFactors::by_closed_form(int shooter, std::span<const ReceivingPoint> points,
                                       std::span<double> F,
                                       const PointFormFactorOptions& options) const {
@@ -101,41 +134,12 @@ void PointFormFactors::by_closed_form(int shooter, std::span<const ReceivingPoin
   }
   const Shooter samples(mesh, shooter, most);
   const bool is_covered = shafts_.is_covered(target);
-  const Occluders& occluders = shafts_.occluders();
   parallel_for(static_cast<int>(points.size()), points_at_once, [&](int begin, int stop) {
     std::vector<int> sampled;
-    Between between;
-    std::vector<Blocker> blockers;
     for (int p = begin; p < stop; ++p) {
-      const ReceivingPoint& point = points[p];
-      F[p] = 0.0;
-      if (!(target.plane.height(point.position) > occluders.tolerance)) continue;
-      for (const ConvexPolygon& part : target.parts) {
-        F[p] += point_to_polygon(point.position, point.normal, part.corners());
-      }
-      F[p] = F[p] > nothing ? std::min(F[p], 1.0) : 0.0;
-      if (F[p] == 0.0) continue;
-      const ShaftEnd from = shafts_.end(point.position, point.normal, point.facet);
-      shafts_.find(from, target, between);
-      constexpr std::size_t most_clipped = 16;
-      if (is_covered || between.may_be_sphere || between.pieces.size() > most_clipped ||
-          shafts_.is_covered(from)) {
-        sampled.push_back(p);
-        continue;
-      }
-      blockers.clear();
-      for (const int piece : between.pieces) {
-        const Occluder& occluder = occluders.pieces[piece];
-        const int side = occluder.plane.height(point.position) > 0.0 ? 1 : -1;
-        Blocker blocker;
-        if (make_blocker(occluder, side, from, target, occluders.tolerance, blocker)) {
-          blockers.push_back(blocker);
-        }
-      }
-      if (blockers.empty()) continue;
-      const ShadowedPolygon::View view =
-          ShadowedPolygon(target.parts, blockers).look(point.position, point.normal);
-      F[p] = view.all - view.hidden;
+      const Unsampled found = without_rays(target, points[p]);
+      F[p] = found.F;
+      if (found.F > 0.0 && (found.needs_rays || is_covered)) sampled.push_back(p);
     }
     std::array<ShadowTally, points_at_once> tallies{};
     ShadowBatch batch(caster_, tallies);
@@ -145,12 +149,11 @@ void PointFormFactors::by_closed_form(int shooter, std::span<const ReceivingPoin
       }
       batch.flush();
       done = goal;
-      goal = std::min(4 * goal, most);
+      goal = goal > most / 4 ? most : 4 * goal;
       std::erase_if(sampled, [&](int p) {
         const ShadowTally& tally = tallies[p - begin];
-        const bool is_enough =
-            !tally.is_mixed() || F[p] * std::sqrt(tally.variance()) <= options.target_error;
-        if (!is_enough && done < most) return false;
+        const double error = F[p] * std::sqrt(tally.variance());
+        if (done < most && tally.is_mixed() && error > options.target_error) return false;
         F[p] *= tally.share();
         return true;
       });

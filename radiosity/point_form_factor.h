@@ -61,6 +61,12 @@ class PointFormFactors {
                       const PointFormFactorOptions& options = {}) const;
 
  private:
+  struct Unsampled {
+    double F = 0.0;
+    bool needs_rays = false;
+  };
+  Unsampled without_rays(const ShaftEnd& target, const ReceivingPoint& point) const;
+
   const ElementCaster& caster_;
   Shafts shafts_;
 };
