@@ -15,13 +15,11 @@ struct VisibleExchange {
 ///
 ///   S = S_unoccluded - int_{A_i} F_hidden(x) dA,
 ///
-/// F_hidden exact (ShadowedPolygon) and the integral over `from` adaptive: triangles are halved
-/// where Radon's rule of degree 5 (7 points) differs most from the rule of degree 2 within it,
-/// until the differences add up to `tolerance` (m^2). Only the part of `from` is integrated over
+/// F_hidden exact (ShadowedPolygon) and the integral over `from` adaptive (HiddenIntegral), until
+/// its estimated error is at most `tolerance` (m^2). Only the part of `from` is integrated over
 /// from which anything is hidden; it is cut first where the integrand may jump, along the planes of
 /// occluders, and, if it takes that, where it bends most, along the lines on which an edge of an
-/// occluder covers a parallel edge of `to`. 0 without rays or integral where one occluder hides
-/// all.
+/// occluder covers a parallel edge of `to`. 0 without an integral where one occluder hides all.
 ///
 /// `pieces` of shafts.occluders() are what shafts.find() found. Nothing if they are more than this
 /// does quicker than rays.
