@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 #include "mesh/sphere_grid.h"
@@ -23,11 +24,11 @@ struct Edge {
   }
 };
 
-// Edges of the patch's elements that have no counterpart. Compared by place, for vertices are not
-// shared across contact lines.
-std::vector<Edge> free_edges(const PatchMesh& mesh, int patch) {
+// Edges of the elements that have no counterpart. Compared by place, for vertices are not shared
+// across contact lines.
+std::vector<Edge> free_edges(const PatchMesh& mesh, std::span<const int> elements) {
   std::vector<Edge> edges;
-  for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
+  for (const int e : elements) {
     const int n = mesh.corner_count(e);
     for (int k = 0; k < n; ++k) {
       edges.push_back(
@@ -98,15 +99,22 @@ PatchOutline polygon_outline(std::vector<std::vector<Vector3d>> loops) {
   return outline;
 }
 
+std::vector<std::vector<Vector3d>> boundary_loops(const PatchMesh& mesh,
+                                                  std::span<const int> elements) {
+  std::vector<std::vector<Vector3d>> loops;
+  for (const auto& loop : chained(free_edges(mesh, elements))) {
+    auto corners = without_straight_corners(loop);
+    if (corners.size() >= 3) loops.push_back(std::move(corners));
+  }
+  return loops;
+}
+
 PatchOutline patch_outline(const PatchMesh& mesh, int patch) {
   PatchOutline outline;
   if (!sphere_grid_of(mesh, mesh.facet[patch])) {
-    std::vector<std::vector<Vector3d>> loops;
-    for (const auto& loop : chained(free_edges(mesh, patch))) {
-      auto corners = without_straight_corners(loop);
-      if (corners.size() >= 3) loops.push_back(std::move(corners));
-    }
-    outline = polygon_outline(std::move(loops));
+    std::vector<int> elements(mesh.first_element[patch + 1] - mesh.first_element[patch]);
+    std::iota(elements.begin(), elements.end(), mesh.first_element[patch]);
+    outline = polygon_outline(boundary_loops(mesh, elements));
     // A patch may be in pieces, of which polygon_outline looks at the first.
     for (const auto& loop : outline.loops) {
       for (const Vector3d& v : loop) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "mesh/patch_mesh.h"
@@ -23,5 +24,10 @@ struct PatchOutline {
 PatchOutline polygon_outline(std::vector<std::vector<Eigen::Vector3d>> loops);
 
 PatchOutline patch_outline(const PatchMesh& mesh, int patch);
+
+/// The outline of any elements of one plane that face one way, without vertices inside straight
+/// edges: edges that two of them share cancel, in whatever patch or facet they are.
+std::vector<std::vector<Eigen::Vector3d>> boundary_loops(const PatchMesh& mesh,
+                                                         std::span<const int> elements);
 
 }  // namespace lightwell

@@ -7,6 +7,7 @@
 
 #include "mesh/patch_sampler.h"
 #include "radiosity/pair_exchange.h"
+#include "radiosity/visible_exchange.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -19,6 +20,7 @@ constexpr std::uint64_t shadow_rays_key = 21;  // purpose of random keys
 // Batches of rays, sets of points and goals are powers of 4, so that none straddles another.
 constexpr int few_rays = 16, batch = 64, points_in_set = 1 << 14, most_rays = 1 << 18;
 constexpr double usual_target = 1e-3;
+constexpr double exact_target = 1e-6;  // of F, where visibility is exact
 
 struct Visibility {
   double share = 1.0;
@@ -31,18 +33,43 @@ class PairVisibility {
                  double target_error)
       : mesh_(caster.mesh()),
         caster_(caster),
-        outlines_(outlines),
         target_(target_error > 0.0 ? target_error : usual_target),
-        sobol_(points_in_set) {
+        sobol_(points_in_set),
+        shafts_(mesh_) {
     samplers_.reserve(outlines.size());
     for (int i = 0; i < mesh_.patch_count(); ++i) samplers_.emplace_back(mesh_, i);
-    is_convex_ = has_nothing_between();
+    ends_.resize(outlines.size());
+    is_covered_.resize(outlines.size());
+    parallel_for(mesh_.patch_count(), 64, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        ends_[i] = shafts_.end(outlines[i], mesh_.facet[i]);
+        is_covered_[i] = shafts_.is_covered(ends_[i]);
+      }
+    });
   }
 
+  // None needed, exact or sampled: whichever is the first that does.
+  Visibility between(int i, int j, double largest_form_factor) const {
+    if (is_covered_[i] || is_covered_[j]) return sampled(i, j, largest_form_factor);
+    Between between;
+    shafts_.find(ends_[i], ends_[j], between);
+    if (between.is_nothing()) return {};
+    if (!between.may_be_sphere) {
+      const double area = std::min(mesh_.area[i], mesh_.area[j]);
+      const double S = largest_form_factor * area;
+      const bool i_is_smaller = mesh_.area[i] <= mesh_.area[j];
+      const auto exact =
+          visible_exchange(shafts_, ends_[i_is_smaller ? i : j], ends_[i_is_smaller ? j : i],
+                           between.pieces, S, std::min(exact_target, 0.1 * target_) * area);
+      if (exact) return {exact->value / S, exact->error * exact->error / (S * S)};
+    }
+    return sampled(i, j, largest_form_factor);
+  }
+
+ private:
   // Kernel-weighted share of point pairs that see each other; more pairs while they leave F_ij more
   // uncertain than asked.
-  Visibility between(int i, int j, double largest_form_factor) const {
-    if (is_convex_) return {};
+  Visibility sampled(int i, int j, double largest_form_factor) const {
     Tally tally;
     for (int goal = first_count(largest_form_factor); goal <= most_rays; goal *= 4) {
       while (tally.count < goal) add_rays(i, j, std::min(goal, tally.count + batch), tally);
@@ -51,7 +78,6 @@ class PairVisibility {
     return tally.visibility();
   }
 
- private:
   struct Tally {
     int count = 0;
     double all = 0.0, seen = 0.0, squares = 0.0;  // of the weights
@@ -59,7 +85,11 @@ class PairVisibility {
     Visibility visibility() const {
       if (!(all > 0.0)) return {};
       const double share = seen / all;
-      return {share, share * (1.0 - share) * squares / (all * all)};
+      const double variance = share * (1.0 - share) * squares / (all * all);
+      // Rays that all agree may all have missed the rest: the spread of a share of which n draws of
+      // n came out alike (Laplace's rule of succession).
+      const double unanimous = 1.0 / (count + 2.0);
+      return {share, std::max(variance, unanimous * unanimous)};
     }
   };
 
@@ -101,35 +131,14 @@ class PairVisibility {
     tally.count = up_to;
   }
 
-  // True if all patches lie before each other's planes, so that nothing can stand between two.
-  bool has_nothing_between() const {
-    if (std::any_of(outlines_.begin(), outlines_.end(),
-                    [](const PatchOutline& o) { return !o.is_polygon(); })) {
-      return false;
-    }
-    Eigen::AlignedBox3d box;
-    for (const PatchOutline& o : outlines_) {
-      for (const Vector3d& v : o.loops[0]) box.extend(v);
-    }
-    const double tolerance = 1e-7 * box.diagonal().norm();
-    for (const PatchOutline& o : outlines_) {
-      const double offset = o.normal.dot(o.loops[0][0]);
-      for (const PatchOutline& other : outlines_) {
-        for (const Vector3d& v : other.loops[0]) {
-          if (o.normal.dot(v) < offset - tolerance) return false;
-        }
-      }
-    }
-    return true;
-  }
-
   const PatchMesh& mesh_;
   const ElementCaster& caster_;
-  const std::vector<PatchOutline>& outlines_;
   double target_;
   SobolPoints sobol_;
+  Shafts shafts_;
+  std::vector<ShaftEnd> ends_;
+  std::vector<char> is_covered_;
   std::vector<PatchSampler> samplers_;
-  bool is_convex_ = false;
 };
 
 }  // namespace

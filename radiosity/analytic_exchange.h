@@ -5,12 +5,14 @@
 
 namespace lightwell {
 
-/// The closed form of every pair of polygons times their visibility, which shadow rays between
-/// stratified points of both sample, weighted as the form factor is: 16 or 64 rays to begin with,
-/// up to 2^18 while the standard error of F_ij is above `target_error` (0: 1e-3). No rays at all
-/// where every patch lies before every other's plane. Patches of spheres, and patches that lie on
-/// each other, are left to other methods. `row_error`: standard error of the worst F_ij of each
-/// row.
+/// The closed form of every pair of polygons times their visibility. That is 1 where the shaft
+/// between the two (Shafts) holds nothing; exact where it holds a few polygons (visible_exchange):
+/// F_ij is good to 1e-6, or to a tenth of `target_error` if that is less. Where spheres or very
+/// many polygons stand between, or something lies on one of the two, shadow rays between stratified
+/// points of both sample it, weighted as the form factor is: 16 or 64 rays to begin with, up to
+/// 2^18 while the standard error of F_ij is above `target_error` (0: 1e-3). Patches of spheres, and
+/// patches that lie on each other, are left to other methods. `row_error`: standard error of the
+/// worst F_ij of each row.
 KnownExchange analytic_exchange(const ElementCaster& caster,
                                 const std::vector<PatchOutline>& outlines,
                                 const std::vector<char>& receives, double target_error,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "radiosity/shadow_rays.h"
+
 namespace lightwell {
 namespace {
 
@@ -69,12 +71,7 @@ Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
   return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
 }
 
-// A shadow ray to a sample of the emitter, and the sample's share of the unoccluded kernel.
-struct ShadowSample {
-  Ray ray{};
-  double weight = 0.0;
-};
-
+// Shadow rays to samples of the emitter, and their shares of the unoccluded kernel.
 ShadowSample polygon_sample(const Emitter& emitter, const Eigen::Vector3d& point,
                             const Eigen::Vector3d& normal, double u, double v) {
   const Eigen::Vector3d to = emitter_point(emitter, u, v) - point;
@@ -170,33 +167,23 @@ double DirectLight::visible_share(const Emitter& emitter, const ElementCaster& c
                                   const ShadowOptions& options) const {
   const int max_rays = std::clamp(options.max_rays, 1, most_shadow_rays);
   const int min_rays = std::clamp(options.min_rays, 1, max_rays);
-  std::array<Ray, most_shadow_rays> rays;
-  std::array<double, most_shadow_rays> weights;
-  std::array<std::uint8_t, most_shadow_rays> blocked;
-  double seen = 0.0, all = 0.0;
+  ShadowTally tally;
+  ShadowBatch batch(caster, {&tally, 1});
   for (int begin = 0, end = min_rays;;) {
-    int count = 0;
     for (int s = begin; s < end; ++s) {
       const Eigen::Array4f u = samples_.point(s, key);
       ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u[0], u[1])
                                               : polygon_sample(emitter, point, normal, u[0], u[1]);
-      if (!(sample.weight > 0.0)) continue;
       sample.ray.origin_group = facet;
       sample.ray.target_group = emitter.facet;
-      rays[count] = sample.ray;
-      weights[count++] = sample.weight;
+      batch.add(0, sample);
     }
-    caster.occluded({rays.data(), static_cast<std::size_t>(count)},
-                    {blocked.data(), static_cast<std::size_t>(count)});
-    for (int i = 0; i < count; ++i) {
-      all += weights[i];
-      if (!blocked[i]) seen += weights[i];
-    }
-    if (end == max_rays || seen == 0.0 || seen == all) break;
+    batch.flush();
+    if (end == max_rays || !tally.is_mixed()) break;
     begin = end;
     end = max_rays;
   }
-  return all > 0.0 ? seen / all : 0.0;
+  return tally.share();
 }
 
 double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& caster,

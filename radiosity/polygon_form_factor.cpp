@@ -21,7 +21,8 @@ double edge_term(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 
 // Sum over the part of the loop above the horizon (Sutherland & Hodgman against one plane, without
 // storing it).
-double loop_term(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, const Loop& loop) {
+double loop_term(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                 std::span<const Eigen::Vector3d> loop) {
   double sum = 0.0;
   bool started = false;
   Eigen::Vector3d first, previous;
@@ -58,6 +59,11 @@ double point_to_polygon(const Eigen::Vector3d& point, const Eigen::Vector3d& nor
   for (const Loop& loop : loops) sum += loop_term(point, normal, loop);
   // Counter-clockwise seen from the element winds about -n as seen from behind it.
   return -sum / (2.0 * std::numbers::pi);
+}
+
+double point_to_polygon(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                        std::span<const Eigen::Vector3d> loop) {
+  return -loop_term(point, normal, loop) / (2.0 * std::numbers::pi);
 }
 
 double point_to_sphere(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,

@@ -16,6 +16,9 @@ using Loop = std::vector<Eigen::Vector3d>;
 /// element, negative when clockwise. |F| <= 1. Relative error about 1e-12.
 double point_to_polygon(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                         std::span<const Loop> loops);
+/// The same for a polygon without holes.
+double point_to_polygon(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                        std::span<const Eigen::Vector3d> loop);
 
 /// Form factor from a differential element to an unoccluded sphere of `radius` about `center`, the
 /// part below the horizon taken off (Snyder 1996, "Area light sources for real-time graphics",

@@ -1,0 +1,177 @@
+#include "radiosity/occluders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "mesh/sphere_grid.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+double area_of(const PatchMesh& mesh, const std::vector<int>& elements) {
+  double area = 0.0;
+  for (const int e : elements) area += mesh.element_area[e];
+  return area;
+}
+
+class Sheets {
+ public:
+  explicit Sheets(const PatchMesh& mesh, double tolerance) : mesh_(mesh), tolerance_(tolerance) {
+    int facets = 0;
+    for (const int f : mesh.facet) facets = std::max(facets, f + 1);
+    elements_.resize(static_cast<std::size_t>(facets));
+    plane_.resize(elements_.size());
+    sheet_.resize(elements_.size());
+    std::iota(sheet_.begin(), sheet_.end(), 0);
+    for (int p = 0; p < mesh.patch_count(); ++p) {
+      const int f = mesh.facet[p];
+      if (mesh.is_back[p] || sphere_grid_of(mesh, f)) continue;
+      for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+        elements_[f].push_back(e);
+      }
+    }
+    for (std::size_t f = 0; f < elements_.size(); ++f) {
+      if (!elements_[f].empty()) plane_[f] = plane_through(elements_[f]);
+    }
+    join_neighbours();
+  }
+
+  int facet_count() const { return static_cast<int>(elements_.size()); }
+  bool is_polygon(int facet) const { return !elements_[facet].empty(); }
+  int sheet(int facet) const {
+    while (sheet_[facet] != facet) facet = sheet_[facet];
+    return facet;
+  }
+  const std::vector<int>& elements(int facet) const { return elements_[facet]; }
+  const HalfSpace& plane(int facet) const { return plane_[facet]; }
+
+ private:
+  HalfSpace plane_through(const std::vector<int>& elements) const {
+    Vector3d normal = Vector3d::Zero();
+    for (const int e : elements) {
+      const auto& c = mesh_.corners[e];
+      const Vector3d a = mesh_.position(c[0]);
+      for (int k = 2; k < mesh_.corner_count(e); ++k) {
+        normal += (mesh_.position(c[k - 1]) - a).cross(mesh_.position(c[k]) - a);
+      }
+    }
+    normal.normalize();
+    return {normal, normal.dot(mesh_.position(mesh_.corners[elements[0]][0]))};
+  }
+
+  bool holds(const HalfSpace& plane, int facet) const {
+    return std::all_of(elements_[facet].begin(), elements_[facet].end(), [&](int e) {
+      for (int k = 0; k < mesh_.corner_count(e); ++k) {
+        if (std::abs(plane.height(mesh_.position(mesh_.corners[e][k]))) > tolerance_) return false;
+      }
+      return true;
+    });
+  }
+
+  // Edges of elements, by place, so that two facets' meet.
+  struct Edge {
+    Vector3d low, high;
+    int facet;
+    bool is_reversed;
+    auto key() const { return std::tuple(low.x(), low.y(), low.z(), high.x(), high.y(), high.z()); }
+  };
+
+  void join_neighbours() {
+    std::vector<Edge> edges;
+    for (int f = 0; f < facet_count(); ++f) {
+      for (const int e : elements_[f]) {
+        const int n = mesh_.corner_count(e);
+        for (int k = 0; k < n; ++k) {
+          const Vector3d a = mesh_.position(mesh_.corners[e][k]);
+          const Vector3d b = mesh_.position(mesh_.corners[e][(k + 1) % n]);
+          const bool is_reversed =
+              std::tuple(b.x(), b.y(), b.z()) < std::tuple(a.x(), a.y(), a.z());
+          edges.push_back({is_reversed ? b : a, is_reversed ? a : b, f, is_reversed});
+        }
+      }
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+      return std::tuple(a.key(), a.facet, a.is_reversed) <
+             std::tuple(b.key(), b.facet, b.is_reversed);
+    });
+    for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+      while (end < edges.size() && edges[end].key() == edges[begin].key()) ++end;
+      for (std::size_t a = begin; a < end; ++a) {
+        for (std::size_t b = a + 1; b < end; ++b) {
+          if (edges[a].is_reversed != edges[b].is_reversed) join(edges[a].facet, edges[b].facet);
+        }
+      }
+    }
+  }
+
+  // A sheet's plane is that of its lowest facet, so that planes do not drift.
+  void join(int a, int b) {
+    const int root_a = sheet(a), root_b = sheet(b);
+    if (root_a == root_b) return;
+    const int low = std::min(root_a, root_b), high = std::max(root_a, root_b);
+    if (!(plane_[low].normal.dot(plane_[high].normal) > 0.0)) return;
+    if (!holds(plane_[low], a) || !holds(plane_[low], b) || !holds(plane_[low], high)) return;
+    sheet_[high] = low;
+  }
+
+  const PatchMesh& mesh_;
+  double tolerance_;
+  std::vector<std::vector<int>> elements_;  // of a facet's front
+  std::vector<HalfSpace> plane_;
+  std::vector<int> sheet_;
+};
+
+std::vector<ConvexPolygon> pieces_of(const PatchMesh& mesh, const std::vector<int>& elements,
+                                     const Vector3d& normal) {
+  std::vector<ConvexPolygon> pieces = convex_pieces(boundary_loops(mesh, elements), normal);
+  double area = 0.0;
+  for (const ConvexPolygon& piece : pieces) area += piece.area();
+  const double wanted = area_of(mesh, elements);
+  constexpr double all_of_it = 1e-6;
+  if (std::abs(area - wanted) <= all_of_it * wanted) return pieces;
+  // Parts that cover each other, or outlines that touch themselves.
+  pieces.clear();
+  for (const int e : elements) {
+    ConvexPolygon polygon;
+    for (int k = 0; k < mesh.corner_count(e); ++k) {
+      polygon.add(mesh.position(mesh.corners[e][k]));
+    }
+    pieces.push_back(polygon);
+  }
+  return pieces;
+}
+
+}  // namespace
+
+Occluders::Occluders(const PatchMesh& mesh) {
+  Eigen::AlignedBox3d bounds;
+  for (int v = 0; v < mesh.vertex_count(); ++v) bounds.extend(mesh.position(v));
+  constexpr double touching = 1e-7;
+  tolerance = touching * bounds.diagonal().norm();
+  for (const SphereGrid& grid : mesh.sphere_grids) spheres.push_back(grid.sphere);
+
+  const Sheets sheets(mesh, tolerance);
+  std::vector<std::vector<int>> facets_of(static_cast<std::size_t>(sheets.facet_count()));
+  for (int f = 0; f < sheets.facet_count(); ++f) {
+    sheet_of_facet.push_back(sheets.is_polygon(f) ? sheets.sheet(f) : -1);
+    if (sheets.is_polygon(f)) facets_of[sheets.sheet(f)].push_back(f);
+  }
+  for (int s = 0; s < sheets.facet_count(); ++s) {
+    std::vector<int> elements;
+    for (const int f : facets_of[s]) {
+      elements.insert(elements.end(), sheets.elements(f).begin(), sheets.elements(f).end());
+    }
+    if (elements.empty()) continue;
+    for (const ConvexPolygon& polygon : pieces_of(mesh, elements, sheets.plane(s).normal)) {
+      Occluder piece{.polygon = polygon, .plane = sheets.plane(s), .sheet = s};
+      for (const Vector3d& v : polygon.corners()) piece.box.extend(v);
+      pieces.push_back(piece);
+    }
+  }
+}
+
+}  // namespace lightwell
