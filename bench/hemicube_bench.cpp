@@ -129,7 +129,7 @@ void print_speed(const Scene& scene, int patch_count) {
   const ElementCaster caster(mesh);
   const LightPaths paths(scene, caster, 8);
   const EmbreeScene embree(mesh);
-  const HemicubeScan scan(mesh);
+  const HemicubeScan scan(caster);
   HemicubeScan::Scratch scratch;
   fmt::print("\n{} patches, {} elements\n", mesh.patch_count(), mesh.element_count());
   fmt::print(
@@ -195,7 +195,8 @@ void print_aliasing(const nlohmann::json& catalogue) {
       Scene scene;
       add_polygon(scene, add_grey(scene), points_of(geometry["polygon"]));
       const PatchMesh mesh = build_patches(scene, {.max_patch_size = 1e3});
-      const HemicubeScan scan(mesh);
+      const ElementCaster caster(mesh);
+      const HemicubeScan scan(caster);
       const auto& p = geometry["point"];
       const auto& normal = geometry["normal"];
       const Vector3d z(normal[0], normal[1], normal[2]);

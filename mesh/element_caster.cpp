@@ -68,7 +68,17 @@ Array4f turned(const Array4f& w, bool is_triangle) {
 }  // namespace
 
 ElementCaster::ElementCaster(const PatchMesh& mesh)
-    : mesh_(mesh), caster_(cast_geometry(mesh, primitives_)) {}
+    : mesh_(mesh),
+      caster_(cast_geometry(mesh, primitives_)),
+      hidden_(static_cast<std::size_t>(mesh.element_count()), 0) {
+  for (std::size_t p = 0; p < primitives_.size(); ++p) {
+    if (primitives_[p].kind == Primitive::Kind::sphere) continue;
+    const int primitive = static_cast<int>(p);
+    hidden_[primitives_[p].element] =
+        static_cast<std::uint8_t>((caster_.is_hidden(primitive, false) ? 1 : 0) |
+                                  (caster_.is_hidden(primitive, true) ? 2 : 0));
+  }
+}
 
 // Primitives in RayCaster's order: triangles, quads, spheres.
 CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh,

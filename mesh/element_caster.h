@@ -33,6 +33,15 @@ class ElementCaster {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
     caster_.occluded(rays, blocked);
   }
+  /// As RayCaster::meets_first, of scene-wide facets.
+  bool meets_first(int facet, int other, const Eigen::Vector3d& direction) const {
+    return caster_.meets_first(facet, other, direction);
+  }
+  /// Whether another surface that lies on an element of a facet's front hides it from the front, or
+  /// from behind.
+  bool is_hidden(int front_element, bool from_back) const {
+    return (hidden_[static_cast<std::size_t>(front_element)] & (from_back ? 2 : 1)) != 0;
+  }
   const PatchMesh& mesh() const { return mesh_; }
 
  private:
@@ -53,6 +62,7 @@ class ElementCaster {
   const PatchMesh& mesh_;
   std::vector<Primitive> primitives_;
   RayCaster caster_;
+  std::vector<std::uint8_t> hidden_;  // per element, a bit per side
 };
 
 /// Value at a hit from values at vertices (vertices x bands).

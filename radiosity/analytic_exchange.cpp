@@ -40,16 +40,21 @@ class PairVisibility {
     for (int i = 0; i < mesh_.patch_count(); ++i) samplers_.emplace_back(mesh_, i);
     ends_.resize(outlines.size());
     is_covered_.resize(outlines.size());
+    is_hidden_.resize(outlines.size());
     parallel_for(mesh_.patch_count(), 64, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         ends_[i] = shafts_.end(outlines[i], mesh_.facet[i]);
-        is_covered_[i] = shafts_.is_covered(ends_[i]);
+        const int hidden = hidden_elements(i),
+                  all = mesh_.first_element[i + 1] - mesh_.first_element[i];
+        is_hidden_[i] = hidden == all;
+        is_covered_[i] = hidden > 0 || shafts_.is_covered(ends_[i]);
       }
     });
   }
 
   // None needed, exact or sampled: whichever is the first that does.
   Visibility between(int i, int j, double largest_form_factor) const {
+    if (is_hidden_[i] || is_hidden_[j]) return {.share = 0.0};
     if (is_covered_[i] || is_covered_[j]) return sampled(i, j, largest_form_factor);
     Between between;
     shafts_.find(ends_[i], ends_[j], between);
@@ -67,6 +72,15 @@ class PairVisibility {
   }
 
  private:
+  int hidden_elements(int patch) const {
+    const bool is_back = mesh_.is_back[patch] != 0;
+    int count = 0;
+    for (int e = mesh_.first_element[patch]; e < mesh_.first_element[patch + 1]; ++e) {
+      count += caster_.is_hidden(is_back ? mesh_.twin[e] : e, is_back) ? 1 : 0;
+    }
+    return count;
+  }
+
   // Kernel-weighted share of point pairs that see each other; more pairs while they leave F_ij more
   // uncertain than asked.
   Visibility sampled(int i, int j, double largest_form_factor) const {
@@ -137,7 +151,7 @@ class PairVisibility {
   SobolPoints sobol_;
   Shafts shafts_;
   std::vector<ShaftEnd> ends_;
-  std::vector<char> is_covered_;
+  std::vector<char> is_covered_, is_hidden_;  // by what lies on it: in part, whole
   std::vector<PatchSampler> samplers_;
 };
 

@@ -130,7 +130,7 @@ std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const Light
                                         const HemicubeOptions& options, const Progress& progress) {
   const PatchMesh& mesh = caster.mesh();
   const HemicubeCells cells(options.resolution);
-  const HemicubeScan scan(mesh);
+  const HemicubeScan scan(caster);
   const bool by_rays = options.back_end == HemicubeOptions::BackEnd::rays;
   const int patches = mesh.patch_count();
   std::vector<EstimatedRow> rows(patches);

@@ -65,6 +65,8 @@ int first_cell_from(double x, int count) {
 // Nearer by less than this counts as equally near: surfaces that coincide then show as one, the
 // first of them, instead of a speckle of rounding errors.
 constexpr float nearer = 1.0f + 1e-6f;
+// Inverse distance of what lies on the eye.
+constexpr float covered = std::numeric_limits<float>::infinity();
 
 void paint_span(float* inverse_distance, int* items, int count, float first, float step, int item) {
   for (int i = 0; i < count; ++i) {
@@ -93,11 +95,13 @@ class HemicubeScan::Painter {
       scratch_.vertex[v] = to_frame * (scan_.vertices_[v] - eye_.position);
       scratch_.outside[v] = beyond(scratch_.vertex[v]);
     }
-    for (int p = group.first_polygon; p < group.last_polygon; ++p) paint(scan_.polygons_[p]);
+    for (int p = group.first_polygon; p < group.last_polygon; ++p) {
+      paint(scan_.polygons_[p], group.facet);
+    }
   }
 
  private:
-  void paint(const Polygon& polygon) {
+  void paint(const Polygon& polygon, int facet) {
     std::uint16_t outside = 0xffff;
     for (int v : polygon.vertex) outside &= scratch_.outside[v];
     if (polygon.element == eye_.element || polygon.behind == eye_.element) return;
@@ -105,9 +109,10 @@ class HemicubeScan::Painter {
     const double distance = normal.dot(scratch_.vertex[polygon.vertex[0]]);
     constexpr double parallel = 1.0 - 1e-9;
     if (std::abs(distance) <= scan_.coplanar_ && std::abs(normal.z()) > parallel) {
-      paint_coplanar(polygon, normal.z());
+      paint_coplanar(polygon, facet, normal.z());
       return;
     }
+    if (distance < 0.0 ? polygon.front_hidden : polygon.back_hidden) return;
     if ((outside & below_horizon) != 0 || distance == 0.0) return;
     // The pyramid's inside is where d . edge plane has the sign that its own axis gives it.
     const double inwards = distance < 0.0 ? -1.0 : 1.0;
@@ -124,20 +129,28 @@ class HemicubeScan::Painter {
     }
   }
 
-  // Another surface on the eye's own plane. Face to face with it, it is all the eye sees (the floor
-  // under a block); facing the same way, which is on top cannot be told, and neither hides from
-  // the other: the rule of RayCaster.
-  void paint_coplanar(const Polygon& polygon, double normal_z) {
-    if (normal_z > 0.0) return;
+  // Another surface on the eye's own plane. One that lies on it is all the eye sees (the floor
+  // under a block).
+  void paint_coplanar(const Polygon& polygon, int facet, double normal_z) {
+    const Vector3d upwards = eye_.frame.col(2);
+    const bool lies_on_eye =
+        eye_.facet < 0 ? normal_z < 0.0 : scan_.caster_.meets_first(eye_.facet, facet, upwards);
+    if (!lies_on_eye) return;
+    const bool covered_before = scratch_.inverse_distance[0] == covered;
+    if (covered_before &&
+        !scan_.caster_.meets_first(facet, hemicube_item::facet(scan_.caster_.mesh(), items_[0]),
+                                   upwards)) {
+      return;
+    }
+    const double counter_clockwise = normal_z > 0.0 ? 1.0 : -1.0;
     for (int k = 0; k < polygon.corner_count; ++k) {
       const int next = k + 1 < polygon.corner_count ? k + 1 : 0;
       const Vector3d& a = scratch_.vertex[polygon.vertex[k]];
       const Vector3d& b = scratch_.vertex[polygon.vertex[next]];
-      if (!(a.x() * b.y() - a.y() * b.x() <= 0.0)) return;  // clockwise from above the eye
+      if (!(counter_clockwise * (a.x() * b.y() - a.y() * b.x()) >= 0.0)) return;
     }
-    std::fill(items_.begin(), items_.end(), polygon.element);
-    std::fill(scratch_.inverse_distance.begin(), scratch_.inverse_distance.end(),
-              std::numeric_limits<float>::infinity());
+    std::fill(items_.begin(), items_.end(), normal_z > 0.0 ? polygon.behind : polygon.element);
+    std::fill(scratch_.inverse_distance.begin(), scratch_.inverse_distance.end(), covered);
   }
 
   // Cells from `first` up to, not including, `last`.
@@ -233,7 +246,8 @@ class HemicubeScan::Painter {
   std::span<int> items_;
 };
 
-HemicubeScan::HemicubeScan(const PatchMesh& mesh) {
+HemicubeScan::HemicubeScan(const ElementCaster& caster) : caster_(caster) {
+  const PatchMesh& mesh = caster.mesh();
   Eigen::AlignedBox3d box;
   for (int v = 0; v < mesh.vertex_count(); ++v) box.extend(mesh.position(v));
   // As RayCaster: what float coordinates of the scene cannot tell apart.
@@ -252,11 +266,12 @@ HemicubeScan::HemicubeScan(const PatchMesh& mesh) {
       ++p;
     } while (p < mesh.patch_count() && mesh.facet[p] == facet && mesh.is_back[p] == 0 &&
              mesh.first_element[p + 1] - first <= group_size);
-    add_facet_elements(mesh, first, mesh.first_element[p]);
+    add_facet_elements(first, mesh.first_element[p]);
   }
 }
 
-void HemicubeScan::add_facet_elements(const PatchMesh& mesh, int first_element, int last_element) {
+void HemicubeScan::add_facet_elements(int first_element, int last_element) {
+  const PatchMesh& mesh = caster_.mesh();
   Group group{.first_polygon = static_cast<int>(polygons_.size()),
               .first_vertex = static_cast<int>(vertices_.size()),
               .facet = mesh.facet[mesh.patch[first_element]]};
@@ -277,7 +292,9 @@ void HemicubeScan::add_facet_elements(const PatchMesh& mesh, int first_element, 
     Polygon polygon{
         .corner_count = mesh.corner_count(e),
         .element = e,
-        .behind = mesh.twin[e] >= 0 ? mesh.twin[e] : hemicube_item::black_back(group.facet)};
+        .behind = mesh.twin[e] >= 0 ? mesh.twin[e] : hemicube_item::black_back(group.facet),
+        .front_hidden = caster_.is_hidden(e, false),
+        .back_hidden = caster_.is_hidden(e, true)};
     for (int k = 0; k < 4; ++k) {
       const int corner = mesh.corners[e][std::min(k, polygon.corner_count - 1)];
       polygon.vertex[k] =

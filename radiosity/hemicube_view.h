@@ -57,7 +57,8 @@ void cast_hemicube(const ElementCaster& caster, const HemicubeEye& eye, const He
 /// the inverse distance is affine.
 class HemicubeScan {
  public:
-  explicit HemicubeScan(const PatchMesh& mesh);
+  /// Keeps a reference to the caster, which knows what lies on what.
+  explicit HemicubeScan(const ElementCaster& caster);
 
   /// Reused from call to call by one thread.
   struct Scratch {
@@ -75,6 +76,7 @@ class HemicubeScan {
     int corner_count = 3;
     int element = -1;                                  // on the front
     int behind = -1;                                   // item that is seen from behind
+    bool front_hidden = false, back_hidden = false;    // by what lies on it
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // unit; counter-clockwise from there
   };
   /// Polygons of one facet near each other, rejected together.
@@ -86,8 +88,9 @@ class HemicubeScan {
     double radius = 0.0;
   };
   class Painter;
-  void add_facet_elements(const PatchMesh& mesh, int first_element, int last_element);
+  void add_facet_elements(int first_element, int last_element);
 
+  const ElementCaster& caster_;
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<Polygon> polygons_;
   std::vector<Group> groups_;

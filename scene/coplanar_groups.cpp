@@ -1,7 +1,11 @@
 #include "scene/coplanar_groups.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <unordered_map>
+
+#include "scene/sampling.h"
 
 namespace lightwell {
 
@@ -9,6 +13,7 @@ struct CoplanarGroups::Plane {
   int group = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // first component that is not 0 is positive
   double distance = 0.0;
+  int facing = 1;
   Eigen::AlignedBox3d box{};
   std::vector<int> vertices{};                 // of the geometry
   std::vector<Eigen::Vector2d> convex_hull{};  // counter-clockwise, once asked for
@@ -54,6 +59,38 @@ bool is_apart(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Ve
   return false;
 }
 
+struct DirectedEdge {
+  Eigen::Vector3d from, to;
+  bool operator==(const DirectedEdge& other) const { return from == other.from && to == other.to; }
+};
+
+struct EdgeHash {
+  std::size_t operator()(const DirectedEdge& edge) const {
+    std::uint64_t key = 0;
+    for (int c = 0; c < 3; ++c) {
+      // -0 and 0 are one place.
+      key = random_key(key, std::bit_cast<std::uint64_t>(edge.from[c] + 0.0),
+                       std::bit_cast<std::uint64_t>(edge.to[c] + 0.0));
+    }
+    return static_cast<std::size_t>(key);
+  }
+};
+
+template <class Visit>
+void for_each_polygon(const CastGeometry& geometry, Visit visit) {
+  std::size_t primitive = 0;
+  for (const auto& triangle : geometry.triangles) visit(geometry.group[primitive++], triangle);
+  for (const auto& quad : geometry.quads) visit(geometry.group[primitive++], quad);
+}
+
+template <class Visit>
+void for_each_edge(const CastGeometry& geometry, std::span<const int> polygon, Visit visit) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    visit(DirectedEdge{geometry.vertices[polygon[i]],
+                       geometry.vertices[polygon[(i + 1) % polygon.size()]]});
+  }
+}
+
 }  // namespace
 
 // In order of distance.
@@ -75,7 +112,10 @@ std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry&
     constexpr double rounding = 1e-9;
     for (int c = 0; c < 3; ++c) {
       if (std::abs(plane.normal[c]) < rounding) continue;
-      if (plane.normal[c] < 0.0) plane.normal = -plane.normal;
+      if (plane.normal[c] < 0.0) {
+        plane.normal = -plane.normal;
+        plane.facing = -1;
+      }
       break;
     }
     plane.distance = plane.normal.dot(a);
@@ -101,7 +141,10 @@ CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
     plane.box.min().array() -= margin * tolerance;
     plane.box.max().array() += margin * tolerance;
     if (plane.group >= static_cast<int>(groups_.size())) groups_.resize(plane.group + 1);
-    groups_[plane.group].normal = plane.normal;
+    Group& group = groups_[plane.group];
+    group.normal = plane.normal;
+    group.distance = plane.distance;
+    group.facing = plane.facing;
   }
   for (std::size_t begin = 0, end = 0; begin < planes.size(); begin = end) {
     end = begin + 1;
@@ -110,6 +153,56 @@ CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
     }
     add_overlaps(geometry, {planes.data() + begin, end - begin}, tolerance);
   }
+  const bool has_any = std::any_of(groups_.begin(), groups_.end(),
+                                   [](const Group& g) { return !g.overlaps.empty(); });
+  if (has_any) find_bodies(geometry, tolerance);
+}
+
+// A group's body are the faces that meet it along an edge, going on over the edge as faces of one
+// surface do: in the opposite direction. So the next room's walls are not taken for this one's.
+void CoplanarGroups::find_bodies(const CastGeometry& geometry, double tolerance) {
+  std::unordered_map<DirectedEdge, std::vector<int>, EdgeHash> groups_at;
+  for_each_polygon(geometry, [&](int group, std::span<const int> polygon) {
+    if (!has_overlaps(group)) return;
+    for_each_edge(geometry, polygon,
+                  [&](const DirectedEdge& edge) { groups_at[edge].push_back(group); });
+  });
+  std::vector<double> side(groups_.size(), 0.0);  // length of the edges on either
+  for_each_polygon(geometry, [&](int group, std::span<const int> polygon) {
+    for_each_edge(geometry, polygon, [&](const DirectedEdge& edge) {
+      const auto found = groups_at.find({edge.to, edge.from});
+      if (found == groups_at.end()) return;
+      for (const int other : found->second) {
+        if (other == group) continue;
+        double above = 0.0, below = 0.0;
+        for (const int v : polygon) {
+          const double h = height(other, geometry.vertices[v]);
+          above = std::max(above, h);
+          below = std::max(below, -h);
+        }
+        if (std::max(above, below) <= tolerance) continue;
+        const double length = (edge.to - edge.from).norm();
+        side[other] += above > below ? length : -length;
+      }
+    });
+  });
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    groups_[g].body = side[g] > 0.0 ? 1 : side[g] < 0.0 ? -1 : 0;
+  }
+}
+
+int CoplanarGroups::order(int a, int b) const {
+  const Group &first = groups_[a], &second = groups_[b];
+  if (first.body != 0 && second.body != 0) {
+    // Away from the plane: a room's wall first, then what is inside of the room.
+    const auto level = [](const Group& g) {
+      const bool is_solid = g.body != g.facing;
+      return g.body * (is_solid ? 2 : 1);
+    };
+    const int difference = level(first) - level(second);
+    return difference > 0 ? 1 : difference < 0 ? -1 : 0;
+  }
+  return first.facing == second.facing ? 0 : -first.facing;
 }
 
 // Sweeps along x over planes at one distance from the origin.

@@ -8,8 +8,15 @@
 
 namespace lightwell {
 
-/// Where the groups of a CastGeometry lie, and where one lies on another in the same plane: what a
-/// ray that starts on a group needs to know.
+/// Where the groups of a CastGeometry lie, where one lies on another in the same plane, and which
+/// of the two is then met first.
+///
+/// Two surfaces in one plane are as near as can be, but seldom meant to be one: the floor and the
+/// block that stands on it, the wall of a room and the wall of the next. Each belongs to a body,
+/// the faces that share its edges, and lies on that body's side. Where both bodies are on one side,
+/// one holds the other: the block, whose faces lie behind its bottom, is inside of the room, whose
+/// walls rise before its floor. Where a body is not known (a sheet), surfaces that face each other
+/// are taken to touch with their fronts. Of those that face one way nothing is known then.
 class CoplanarGroups {
  public:
   /// Planes closer than `tolerance`, metres, are one.
@@ -20,6 +27,18 @@ class CoplanarGroups {
     return is_known(group) ? groups_[group].normal : none_;
   }
 
+  /// Of two groups that lie on each other: 1 if `a` lies above `b` along normal(a), -1 if below, 0
+  /// if that cannot be told.
+  int order(int a, int b) const;
+
+  /// Whether the group lies on any other.
+  bool has_overlaps(int group) const { return is_known(group) && !groups_[group].overlaps.empty(); }
+
+  /// How far `point` lies off the group's plane, along its normal.
+  double height(int group, const Eigen::Vector3d& point) const {
+    return normal(group).dot(point) - groups_[group].distance;
+  }
+
   /// Whether another group may lie on this one at `point`. Never wrong with "no"; a "yes" may be,
   /// for boxes stand for the groups.
   bool may_be_covered(int group, const Eigen::Vector3d& point) const;
@@ -27,11 +46,15 @@ class CoplanarGroups {
  private:
   struct Group {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    double distance = 0.0;                        // of the plane from the origin
     std::vector<Eigen::AlignedBox3d> overlaps{};  // with others of its plane
+    int facing = 0;                               // of the front: 1 along the normal, -1 against it
+    int body = 0;  // 1: its body lies on the side of the normal, -1: on the other, 0: not known
   };
   struct Plane;
   static std::vector<Plane> planes_of(const CastGeometry& geometry);
   void add_overlaps(const CastGeometry& geometry, std::span<Plane> planes, double tolerance);
+  void find_bodies(const CastGeometry& geometry, double tolerance);
   bool is_known(int group) const { return group >= 0 && group < static_cast<int>(groups_.size()); }
 
   std::vector<Group> groups_;

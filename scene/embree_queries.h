@@ -21,6 +21,7 @@ using EmbreeContext = RTCIntersectContext;
 struct QueryContext : EmbreeContext {
   const Ray* rays = nullptr;     // a lane's ray is rays[its id]
   const void* caster = nullptr;  // RayCaster::Impl, for the filter
+  int target = -1;               // group that the filter lets pass
 };
 
 inline void init(QueryContext& context, const Ray* rays) {

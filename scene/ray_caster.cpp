@@ -28,6 +28,9 @@ struct RayCaster::Impl {
   double rounding = 0.0;  // how far float coordinates move a point at most, metres
   std::vector<int> group;
   std::unique_ptr<CoplanarGroups> planes;
+  // Per triangle and quad: sides from which another surface that lies on it hides it.
+  enum Hidden : std::uint8_t { from_front = 1, from_back = 2 };
+  std::vector<std::uint8_t> hidden;
   SphereSet sphere_set;
   int triangles = 0, quads = 0;
 
@@ -129,32 +132,103 @@ struct RayCaster::Impl {
     return static_cast<int>(hit.primID) + (hit.geomID == spheres_id ? triangles + quads : 0);
   }
 
-  // A sphere leaves its own origin out itself, and its far side does count.
-  bool is_own_plane(const RTCHit& hit, const Ray& ray) const {
-    return hit.geomID != spheres_id && group[primitive(hit)] == ray.origin_group;
-  }
-
-  // Another surface that lies on the ray's own, both facing one way: which is on top cannot be
-  // told, so neither keeps the other in the dark. (Face to face they do: the floor under a block.)
-  bool lies_alike(const RTCHit& hit, float t, const Ray& ray) const {
-    if (hit.geomID == spheres_id) return false;
-    const Eigen::Vector3d& own = planes->normal(ray.origin_group);
-    const double travelled_off_plane = std::abs(t * own.dot(ray.direction));
-    if (own.isZero() || travelled_off_plane > 4.0 * rounding) return false;
-    const Eigen::Vector3d facing(hit.Ng_x, hit.Ng_y, hit.Ng_z);
-    if (facing.dot(ray.direction) <= 0.0) return false;
+  // Whether the plane of a hit is one with a group's, there where the ray meets it.
+  bool is_coplanar(const RTCHit& hit, double off_plane, int with) const {
+    const Eigen::Vector3d& own = planes->normal(with);
+    if (own.isZero() || !(std::abs(off_plane) <= 4.0 * rounding)) return false;
     constexpr double parallel = 1.0 - 1e-9;
     return std::abs(own.dot(planes->normal(group[primitive(hit)]))) > parallel;
   }
 
-  static void skip_own_plane(const RTCFilterFunctionNArguments* args) {
+  // Whether a hit is what the ray meets: not its own plane, nor what lies on that before it or
+  // cannot be told to lie after it; not what another surface hides; and nothing on its target.
+  bool counts(const RTCHit& hit, float t, const Ray& ray, int target) const {
+    if (hit.geomID == spheres_id) return group[primitive(hit)] != target || target < 0;
+    const int p = primitive(hit), g = group[p];
+    if (g == ray.origin_group || (target >= 0 && g == target)) return false;
+    if (ray.origin_group >= 0) {
+      const double along = planes->normal(ray.origin_group).dot(ray.direction);
+      if (is_coplanar(hit, t * along, ray.origin_group)) {
+        return planes->order(g, ray.origin_group) * along > 0.0;
+      }
+    }
+    if (hidden[p] != 0) {
+      const Eigen::Vector3d facing(hit.Ng_x, hit.Ng_y, hit.Ng_z);
+      const bool is_back = facing.dot(ray.direction) > 0.0;
+      if ((hidden[p] & (is_back ? from_back : from_front)) != 0) return false;
+    }
+    if (target >= 0 && planes->has_overlaps(target)) {
+      const Eigen::Vector3d at = ray.origin + static_cast<double>(t) * ray.direction;
+      if (is_coplanar(hit, planes->height(target, at), target)) {
+        return planes->order(g, target) * planes->normal(target).dot(ray.direction) < 0.0;
+      }
+    }
+    return true;
+  }
+
+  static void skip_what_does_not_count(const RTCFilterFunctionNArguments* args) {
     assert(args->N == 1);
     const auto& context = *static_cast<const QueryContext*>(args->context);
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
     const auto& caster = *static_cast<const Impl*>(context.caster);
     const Ray& ray = context.rays[RTCRayN_id(args->ray, 1, 0)];
     const float t = RTCRayN_tfar(args->ray, 1, 0);
-    if (caster.is_own_plane(hit, ray) || caster.lies_alike(hit, t, ray)) args->valid[0] = 0;
+    if (!caster.counts(hit, t, ray, context.target)) args->valid[0] = 0;
+  }
+
+  // Groups that lie on a place of a plane, itself included.
+  std::vector<int> groups_at(const Eigen::Vector3d& place, int on) const {
+    struct Search : QueryContext {
+      std::vector<int> found;
+    } search;
+    init(search, nullptr);
+    search.caster = this;
+    const Eigen::Vector3d& normal = planes->normal(on);
+    const Eigen::Vector3d from = place - center - 8.0 * rounding * normal;
+    RTCRayHit query{};
+    query.ray.org_x = static_cast<float>(from.x());
+    query.ray.org_y = static_cast<float>(from.y());
+    query.ray.org_z = static_cast<float>(from.z());
+    query.ray.dir_x = static_cast<float>(normal.x());
+    query.ray.dir_y = static_cast<float>(normal.y());
+    query.ray.dir_z = static_cast<float>(normal.z());
+    query.ray.tfar = static_cast<float>(16.0 * rounding);
+    query.ray.mask = ~0u;
+    clear(query.hit);
+    intersect(scene, search, query, [](const RTCFilterFunctionNArguments* args) {
+      auto& here = *static_cast<Search*>(args->context);
+      const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+      const auto& caster = *static_cast<const Impl*>(here.caster);
+      here.found.push_back(caster.group[caster.primitive(hit)]);
+      args->valid[0] = 0;  // go on to the next
+    });
+    return search.found;
+  }
+
+  // Primitives are asked at their centre: whoever wants this exact cuts them where others end.
+  void find_hidden(const CastGeometry& source) {
+    hidden.assign(static_cast<std::size_t>(triangles + quads), 0);
+    constexpr double parallel = 1.0 - 1e-9;
+    const auto look_at = [&](int p, std::span<const int> polygon) {
+      const int g = group[p];
+      if (!planes->has_overlaps(g)) return;
+      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+      for (const int v : polygon) mean += source.vertices[v] / static_cast<double>(polygon.size());
+      if (!planes->may_be_covered(g, mean)) return;
+      const Eigen::Vector3d front =
+          (source.vertices[polygon[1]] - source.vertices[polygon[0]])
+              .cross(source.vertices[polygon[2]] - source.vertices[polygon[0]]);
+      const int facing = front.dot(planes->normal(g)) > 0.0 ? 1 : -1;
+      for (const int other : groups_at(mean, g)) {
+        if (other == g || std::abs(planes->normal(g).dot(planes->normal(other))) <= parallel) {
+          continue;
+        }
+        const int above = planes->order(other, g);
+        if (above != 0) hidden[p] |= above == facing ? from_front : from_back;
+      }
+    };
+    for (int i = 0; i < triangles; ++i) look_at(i, source.triangles[i]);
+    for (int i = 0; i < quads; ++i) look_at(triangles + i, source.quads[i]);
   }
 
   static void clear(RTCHit& hit) {
@@ -185,41 +259,34 @@ struct RayCaster::Impl {
 
   Hit answer(const Ray& ray, const RTCRayHit& query) const {
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    if (is_own_plane(query.hit, ray) || lies_alike(query.hit, query.ray.tfar, ray)) {
-      return closest(ray, -1);
-    }
-    return make_hit(ray, query);
+    constexpr int no_target = -1;
+    return counts(query.hit, query.ray.tfar, ray, no_target) ? make_hit(ray, query)
+                                                             : closest(ray, no_target);
   }
 
-  // Own-plane hits are mostly rounding at the ray's very start; they are rare, so stepping past
-  // them here is cheaper than a filter callback on every candidate (measured 15 % of the ray rate).
-  // A ray that starts a little before its own plane is another matter: stepping would also pass
-  // what lies in that plane, the table under a block of glass.
-  Hit closest(const Ray& ray, int skipped_group) const {
+  // Hits that do not count are rare, so asking again with a filter is cheaper than a filter on
+  // every candidate of every ray (measured 15 % of the ray rate). Stepping past them would also
+  // pass what lies in their plane, the table under a block of glass.
+  Hit closest(const Ray& ray, int target) const {
     QueryContext context;
     init(context, &ray);
     context.caster = this;
+    context.target = target;
     RTCRayHit query;
     set_ray(query.ray, ray, 0);
-    // Where another surface lies on the own one, stepping past the own would step past both.
-    RTCFilterFunctionN filter = starts_covered(ray) ? skip_own_plane : nullptr;
-    constexpr int max_steps = 16;  // coincident own-plane primitives at one point
+    constexpr int max_steps = 16;
     for (int step = 0; step < max_steps; ++step) {
       clear(query.hit);
-      intersect(scene, context, query, filter);
+      intersect(scene, context, query, skip_what_does_not_count);
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-      const bool own = is_own_plane(query.hit, ray);
-      if (!own && (skipped_group < 0 || group[primitive(query.hit)] != skipped_group)) {
+      if (query.hit.geomID != spheres_id || target < 0 || group[primitive(query.hit)] != target) {
         return make_hit(ray, query);
       }
-      if (own && query.ray.tfar * ray.direction.norm() > rounding) {
-        filter = skip_own_plane;
-      } else {
-        // At least a normal number: Embree flushes denormals, and would meet the same place again.
-        query.ray.tnear =
-            std::max(std::numeric_limits<float>::min(),
-                     std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity()));
-      }
+      // Spheres know no filter. At least a normal number: Embree flushes denormals, and would meet
+      // the same place again.
+      query.ray.tnear =
+          std::max(std::numeric_limits<float>::min(),
+                   std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity()));
       query.ray.tfar = static_cast<float>(ray.t_max);
       if (!(query.ray.tnear < query.ray.tfar)) return {};
     }
@@ -268,8 +335,7 @@ struct RayCaster::Impl {
       hit.Ng_x = query.hit.Ng_x[i];
       hit.Ng_y = query.hit.Ng_y[i];
       hit.Ng_z = query.hit.Ng_z[i];
-      if (is_own_plane(hit, rays[i]) || lies_alike(hit, query.ray.tfar[i], rays[i]) ||
-          group[primitive(hit)] == rays[i].target_group) {
+      if (!counts(hit, query.ray.tfar[i], rays[i], rays[i].target_group)) {
         blocked[i] = closest(rays[i], rays[i].target_group).primitive >= 0;
       }
     }
@@ -352,6 +418,7 @@ RayCaster::RayCaster(const CastGeometry& geometry) : impl_(std::make_unique<Impl
   m.add_spheres(geometry);
   rtcCommitScene(m.scene);
   m.check();
+  m.find_hidden(geometry);
 }
 
 RayCaster::~RayCaster() = default;
@@ -369,6 +436,16 @@ void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> bloc
     const std::size_t count = std::min<std::size_t>(packet_size, rays.size() - begin);
     impl_->occluded(rays.subspan(begin, count), blocked.subspan(begin, count));
   }
+}
+
+bool RayCaster::meets_first(int group, int other, const Eigen::Vector3d& direction) const {
+  const CoplanarGroups& planes = *impl_->planes;
+  return planes.order(group, other) * planes.normal(group).dot(direction) < 0.0;
+}
+
+bool RayCaster::is_hidden(int primitive, bool from_back) const {
+  if (primitive >= static_cast<int>(impl_->hidden.size())) return false;
+  return (impl_->hidden[primitive] & (from_back ? Impl::from_back : Impl::from_front)) != 0;
 }
 
 int RayCaster::triangle_count() const {

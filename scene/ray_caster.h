@@ -14,7 +14,9 @@ namespace lightwell {
 /// What a RayCaster is built over. Primitives are numbered triangles first, then quads, then
 /// spheres. A *group* joins primitives that cannot see each other because they lie in one plane (a
 /// facet), or are one sphere; a ray never meets the group it starts from, whatever rounding does to
-/// its origin, nor a group that lies in the same plane at that place and faces the same way.
+/// its origin. Where groups lie on each other, the one that is met first hides the others (see
+/// CoplanarGroups for which that is); where that cannot be told, neither hides the other from a ray
+/// that starts on them.
 struct CastGeometry {
   std::vector<Eigen::Vector3d> vertices{};
   std::vector<std::array<int, 3>> triangles{};
@@ -61,6 +63,13 @@ class RayCaster {
 
   /// blocked[i] = 1 if anything but the origin's and the target's group lies in (0, t_max), else 0.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
+
+  /// Of two groups that lie on each other, whether a ray in `direction` meets `group` first. False
+  /// as well where that cannot be told.
+  bool meets_first(int group, int other, const Eigen::Vector3d& direction) const;
+
+  /// Whether another surface that lies on this triangle or quad hides it from its front or back.
+  bool is_hidden(int primitive, bool from_back) const;
 
   int triangle_count() const;
   int quad_count() const;

@@ -29,7 +29,8 @@ std::vector<int> scanned(const PatchMesh& mesh, const HemicubeEye& eye,
                          const HemicubeCells& cells) {
   std::vector<int> items(cells.cell_count());
   HemicubeScan::Scratch scratch;
-  HemicubeScan(mesh).draw(eye, cells, scratch, items);
+  const ElementCaster caster(mesh);
+  HemicubeScan(caster).draw(eye, cells, scratch, items);
   return items;
 }
 
@@ -198,7 +199,8 @@ TEST(HemicubeScan, CentresOnASharedEdgeBelongToOneSide) {
 
 TEST(HemicubeScan, ClosedRoomLeavesNoCellEmpty) {
   const PatchMesh mesh = build_patches(test::furnace(0.5f, 1.0f, true), {.max_patch_size = 0.15});
-  const HemicubeScan scan(mesh);
+  const ElementCaster caster(mesh);
+  const HemicubeScan scan(caster);
   HemicubeScan::Scratch scratch;
   for (const int n : {2, 30, 128}) {
     const HemicubeCells cells(n);
@@ -253,7 +255,7 @@ Scene room_with_plates() {
 TEST(HemicubeScan, AgreesWithRaysButForCellsAtEdges) {
   const PatchMesh mesh = build_patches(room_with_plates(), {.max_patch_size = 0.2});
   const ElementCaster caster(mesh);
-  const HemicubeScan scan(mesh);
+  const HemicubeScan scan(caster);
   HemicubeScan::Scratch scratch;
   const HemicubeCells cells(128);
   const int n = cells.resolution();
