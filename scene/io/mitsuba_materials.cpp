@@ -3,44 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <numbers>
 
 #include "scene/io/glossy.h"
+#include "scene/io/mitsuba_presets.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/obj_materials.h"
 
 namespace lightwell {
 namespace {
-
-struct NamedIndex {
-  std::string_view name;
-  double index;
-};
-
-// Refractive indices in the visible that Mitsuba knows by name.
-constexpr std::array named_indices = {
-    NamedIndex{"vacuum", 1.0},         NamedIndex{"air", 1.000277},
-    NamedIndex{"water ice", 1.31},     NamedIndex{"water", 1.333},
-    NamedIndex{"acetone", 1.36},       NamedIndex{"ethanol", 1.361},
-    NamedIndex{"fused quartz", 1.458}, NamedIndex{"pyrex", 1.47},
-    NamedIndex{"acrylic glass", 1.49}, NamedIndex{"polypropylene", 1.49},
-    NamedIndex{"bk7", 1.5046},         NamedIndex{"sodium chloride", 1.544},
-    NamedIndex{"amber", 1.55},         NamedIndex{"pet", 1.575},
-    NamedIndex{"diamond", 2.419},
-};
-
-struct NamedMetal {
-  std::string_view name;
-  std::array<float, 3> reflectance;  // r, g, b at normal incidence
-};
-
-// From the metals' optical constants; "none" is the perfect mirror.
-constexpr std::array named_metals = {
-    NamedMetal{"none", {1.0f, 1.0f, 1.0f}},  NamedMetal{"Ag", {0.97f, 0.96f, 0.92f}},
-    NamedMetal{"Al", {0.91f, 0.91f, 0.92f}}, NamedMetal{"Au", {0.99f, 0.78f, 0.34f}},
-    NamedMetal{"Cu", {0.95f, 0.64f, 0.54f}}, NamedMetal{"Cr", {0.55f, 0.56f, 0.55f}},
-};
 
 constexpr double bk7 = 1.5046, polypropylene = 1.49, air = 1.000277;  // Mitsuba's defaults
 
@@ -157,13 +128,12 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf) {
     reflectance = metal_reflectance(*eta, *k);
   } else if (bsdf.type != "mirror") {
     const std::string name = bsdf.string_or("material", eta || k ? "none" : "Cu");
-    const auto* const found = std::ranges::find(named_metals, name, &NamedMetal::name);
-    if (found == named_metals.end()) {
+    if (const auto known = metal_preset(name)) {
+      reflectance = *known;
+    } else {
       remarks_.add(fmt::format("Metal '{}' is not known and got a reflectance of 0.6", name),
                    bsdf.label());
       reflectance.setConstant(0.6f);
-    } else {
-      for (int c = 0; c < 3; ++c) reflectance[c] = found->reflectance[static_cast<std::size_t>(c)];
     }
   }
   reflectance *= colors_.share_or(bsdf, "specular_reflectance", 1.0f);
@@ -185,14 +155,11 @@ double MitsubaMaterials::index_ratio(const MitsubaNode& bsdf, double inside) {
     if (!node) return otherwise;
     if (node->tag != "string") return bsdf.number_or(property, otherwise);
     const std::string name = bsdf.string_or(property, "");
-    const auto* const found = std::ranges::find(named_indices, name, &NamedIndex::name);
-    if (found != named_indices.end()) return found->index;
-    std::vector<std::string> known;
-    for (const NamedIndex& each : named_indices) known.emplace_back(each.name);
+    if (const auto known = index_preset(name)) return *known;
     node->fail(
         fmt::format("is '{}', a material whose index of refraction is not known; give a "
                     "number.{}",
-                    name, did_you_mean(name, known)));
+                    name, did_you_mean(name, index_preset_names())));
   };
   const double ratio = index("int_ior", inside) / index("ext_ior", air);
   constexpr double extreme = 100.0;
