@@ -1,5 +1,7 @@
 #include "scene/io/glossy.h"
 
+#include <cmath>
+
 #include "scene/optics.h"
 
 namespace lightwell {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scene/io/placed_mesh.h"
 
 namespace lightwell {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "scene/errors.h"
