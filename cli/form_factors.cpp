@@ -261,7 +261,9 @@ Action add_form_factors(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.description(
       "View factors between the facets of a file, as a sparse matrix; materials do not matter.");
-  command.add_option("scene", arguments->scene, "geometry: .obj, .stl, .ply, .toml, View3D's .vs3")
+  command
+      .add_option("scene", arguments->scene,
+                  "geometry: .obj, .stl, .ply, .toml, .gltf, .glb, .xml, .vs3")
       ->required()
       ->type_name("SCENE");
   command

@@ -7,6 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "mesh/mesh_quality.h"
 #include "radiosity/solution_file.h"
 #include "raytrace/image.h"
 #include "scene/io/read_scene.h"
@@ -32,14 +33,20 @@ Json emitters_json(const Scene& scene) {
     const Material& material = scene.materials[surface.material];
     if (!material.is_emitter()) continue;
     const double area = emitting_area(scene, surface);
-    emitters.push_back({{"surface", surface.name},
-                        {"watts", area * material.emission.cast<double>().sum()},
-                        {"lumens", area * luminous(scene.bands, material.emission)}});
+    const double exitance = material.emission.cast<double>().sum();
+    Json emitter = {{"surface", surface.name}, {"area", area}, {"exitance", exitance}};
+    if (scene.relative_units) {
+      emitter["power"] = area * exitance;
+    } else {
+      emitter["watts"] = area * exitance;
+      emitter["lumens"] = area * luminous(scene.bands, material.emission);
+    }
+    emitters.push_back(std::move(emitter));
   }
   return emitters;
 }
 
-std::string kind_of(const Material& material) {
+std::string kind_of(const Material& material, bool relative_units) {
   std::vector<std::string> words;
   if (material.dielectric) {
     words.push_back(fmt::format("glass {:.4g}", material.dielectric->index_of_refraction));
@@ -52,15 +59,28 @@ std::string kind_of(const Material& material) {
     words.push_back(fmt::format("mirror {:.3g}", mean(material.specular)));
   }
   if (material.is_emitter()) {
-    words.push_back(fmt::format("exitance {:.4g} W/m2", material.emission.cast<double>().sum()));
+    words.push_back(fmt::format("exitance {:.4g}{}{}", material.emission.cast<double>().sum(),
+                                relative_units ? "" : " W/m2",
+                                material.emits_both_sides ? " on both sides" : ""));
   }
   if (words.empty()) words.push_back("black");
+  if (material.one_sided) words.push_back("one-sided");
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
 Json corner_json(const Eigen::Vector3d& metres, const Scene& scene) {
   const Eigen::Vector3d p = metres / scene.metres_per_unit;
   return {p.x(), p.y(), p.z()};
+}
+
+Json quality_json(const Scene& scene) {
+  const MeshQuality quality = mesh_quality(scene);
+  return {{"triangles", quality.triangles},
+          {"dropped", scene.dropped_polygons},
+          {"slivers", quality.slivers},
+          {"open_edges", quality.open_edges},
+          {"non_manifold_edges", quality.non_manifold_edges},
+          {"inconsistent_edges", quality.inconsistent_edges}};
 }
 
 Json scene_json(const Scene& scene) {
@@ -71,7 +91,7 @@ Json scene_json(const Scene& scene) {
   const Bounds bounds = scene_bounds(scene);
   Json materials = Json::array(), cameras = Json::array();
   for (const Material& material : scene.materials) {
-    materials.push_back({{"name", material.name}, {"is", kind_of(material)}});
+    materials.push_back({{"name", material.name}, {"is", kind_of(material, scene.relative_units)}});
   }
   for (const Camera& camera : scene.cameras) {
     cameras.push_back({{"name", camera.name},
@@ -83,11 +103,13 @@ Json scene_json(const Scene& scene) {
           {"title", scene.title},
           {"unit", scene.unit_name},
           {"metres_per_unit", scene.metres_per_unit},
+          {"light", scene.relative_units ? "in relative units" : "in watts"},
           {"bounds", {corner_json(bounds.low, scene), corner_json(bounds.high, scene)}},
           {"bands", scene.bands.names},
           {"surfaces", scene.surfaces.size()},
           {"facets", scene_facets(scene).size()},
           {"spheres", spheres},
+          {"quality", quality_json(scene)},
           {"materials", std::move(materials)},
           {"emitters", emitters_json(scene)},
           {"cameras", std::move(cameras)},
@@ -167,7 +189,8 @@ void print_for_people(const Json& facts) {
 Action add_info(CLI::App& command) {
   const auto file = std::make_shared<std::string>();
   command.description(
-      "What is in a scene (.toml, .obj, .ply, .stl), a solution (.vtp) or a picture (.exr).");
+      "What is in a scene (.toml, .obj, .ply, .stl, .gltf, .glb, .xml, .vs3), a solution (.vtp) or "
+      "a picture (.exr).");
   command.add_option("file", *file, "the file")->required()->type_name("FILE");
   command.footer("Example: lightwell info cornell/cornell.toml");
   return [file](Console& console) {

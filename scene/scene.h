@@ -81,7 +81,10 @@ struct Scene {
   std::vector<Surface> surfaces{};
   std::vector<Camera> cameras{};
   std::vector<std::string>
-      notes{};  ///< what the reader assumed, repaired or dropped: one sentence each
+      notes{};               ///< what the reader assumed, repaired or dropped: one sentence each
+  int dropped_polygons = 0;  ///< of the file, without area or crossing themselves: left out
+  /// Emission is in no known unit: a figure of light means something only beside another of it.
+  bool relative_units = false;
 };
 
 /// A facet's place in the Scene: facets are numbered through all surfaces in order; a sphere is one

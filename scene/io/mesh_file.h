@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "scene/io/polygon.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -11,17 +12,25 @@ namespace lightwell {
 /// its MTL file nor its lack of one is spoken of.
 enum class MeshMaterials { from_file, ignored };
 
+/// What tells a polygon's front: the order of its corners, or the side that the vertex normals the
+/// file gives lie on, where it gives any.
+enum class MeshFronts { from_winding, from_normals };
+
 /// Which polygon of a mesh file, counted from 0 in the file's order, each facet of the scene is or
 /// is a piece of. Polygons that were dropped have no facet.
 struct FilePolygons {
   int count = 0;
   std::vector<int> of_facet{};  ///< by scene-wide facet number
+  Repairs repairs{};
+  bool has_normals = false;  ///< known if fronts were asked for from normals
 };
 
 /// What read_obj() and read_geometry() do, but for the choice.
 Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit,
-                    MeshMaterials materials, FilePolygons* polygons = nullptr);
+                    MeshMaterials materials, FilePolygons* polygons = nullptr,
+                    MeshFronts fronts = MeshFronts::from_winding);
 Scene read_geometry_file(const std::filesystem::path& path, double metres_per_unit,
-                         MeshMaterials materials, FilePolygons* polygons = nullptr);
+                         MeshMaterials materials, FilePolygons* polygons = nullptr,
+                         MeshFronts fronts = MeshFronts::from_winding);
 
 }  // namespace lightwell

@@ -59,6 +59,12 @@ struct Repairs {
   int thin = 0;      ///< without area: dropped
   int crossing = 0;  ///< crossing themselves: dropped
 
+  int dropped() const { return thin + crossing; }
+  void add(const Repairs& other) {
+    split += other.split;
+    thin += other.thin;
+    crossing += other.crossing;
+  }
   /// One sentence for each count that is not zero.
   std::vector<std::string> notes() const;
 };

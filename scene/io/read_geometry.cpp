@@ -3,11 +3,13 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <fstream>
 #include <string_view>
 
 #include "scene/errors.h"
+#include "scene/io/convex_cut.h"
 #include "scene/io/mesh_file.h"
 #include "scene/io/obj_materials.h"
 #include "scene/io/polygon.h"
@@ -46,7 +48,7 @@ void check_ply_header(const std::filesystem::path& path) {
 }
 
 PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, double metres_per_unit,
-                      Repairs& repairs, FilePolygons& polygons) {
+                      MeshFronts fronts, FilePolygons& polygons) {
   const auto position = [&](unsigned v) {
     if (v >= mesh.mNumVertices) {
       fail(path,
@@ -59,13 +61,25 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
     }
     return result;
   };
+  const bool use_normals = fronts == MeshFronts::from_normals && mesh.HasNormals();
+  polygons.has_normals = polygons.has_normals || use_normals;
   MeshBuilder builder;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     Loop loop;
-    for (unsigned i = 0; i < face.mNumIndices; ++i) loop.push_back(position(face.mIndices[i]));
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    for (unsigned i = 0; i < face.mNumIndices; ++i) {
+      const unsigned v = face.mIndices[i];
+      loop.push_back(position(v));
+      if (!use_normals) continue;
+      const aiVector3D& n = mesh.mNormals[v];
+      normal += Eigen::Vector3d(n.x, n.y, n.z);
+    }
+    if (loop.size() >= 3 && area_vector(loop).dot(normal) < 0.0) {
+      std::reverse(loop.begin(), loop.end());
+    }
     const std::size_t facets_before = builder.mesh().facets.size();
-    add_repaired(builder, std::move(loop), repairs);
+    add_repaired(builder, std::move(loop), polygons.repairs);
     polygons.of_facet.insert(polygons.of_facet.end(), builder.mesh().facets.size() - facets_before,
                              polygons.count);
     ++polygons.count;
@@ -76,7 +90,7 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
 }  // namespace
 
 Scene read_geometry_file(const std::filesystem::path& path, double metres_per_unit,
-                         MeshMaterials materials, FilePolygons* polygons) {
+                         MeshMaterials materials, FilePolygons* polygons, MeshFronts fronts) {
   require_readable(path);
   if (lower_extension(path) == ".ply") check_ply_header(path);
   Assimp::Importer importer;
@@ -88,10 +102,9 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
     scene.notes.push_back(
         "The file has no materials; every surface gets a diffuse reflectance of 0.5.");
   }
-  Repairs repairs;
   FilePolygons found;
   for (unsigned m = 0; m < file->mNumMeshes; ++m) {
-    PolygonMesh mesh = read_mesh(path, *file->mMeshes[m], metres_per_unit, repairs, found);
+    PolygonMesh mesh = read_mesh(path, *file->mMeshes[m], metres_per_unit, fronts, found);
     if (mesh.facets.empty()) continue;
     const std::string stem = path.stem().string();
     scene.surfaces.push_back(
@@ -99,7 +112,8 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
          .shape = std::move(mesh)});
   }
   if (scene.surfaces.empty()) fail(path, "the file has no polygons with an area");
-  for (const std::string& note : repairs.notes()) scene.notes.push_back(note + ".");
+  for (const std::string& note : found.repairs.notes()) scene.notes.push_back(note + ".");
+  scene.dropped_polygons = found.repairs.dropped();
   if (polygons) *polygons = std::move(found);
   validate(scene);
   return scene;

@@ -14,9 +14,12 @@ Scene read_scene(const std::filesystem::path& path) {
   if (extension == ".obj") return read_obj(path);
   if (extension == ".ply" || extension == ".stl") return read_geometry(path);
   if (extension == ".vs3") return read_vs3(path);
+  if (extension == ".xml") return read_mitsuba(path);
+  if (extension == ".gltf" || extension == ".glb") return read_gltf(path);
   throw InputError(
       fmt::format("{}: the extension '{}' is of no known scene format; readable are "
-                  ".toml (native), .obj, .ply and .stl, and View3D's .vs3",
+                  ".toml (native), .obj, .ply and .stl, .gltf and .glb, Mitsuba's .xml, "
+                  "and View3D's .vs3",
                   path.string(), extension));
 }
 

@@ -7,8 +7,8 @@
 namespace lightwell {
 
 /// Reads a scene; the format is told by the extension: .toml (native, docs/scene-format.md), .obj,
-/// .ply, .stl, .vs3. The result has passed validate(). Throws InputError naming file, line or
-/// object, value and remedy.
+/// .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb. The result has passed validate(). Throws
+/// InputError naming file, line or object, value and remedy.
 Scene read_scene(const std::filesystem::path& path);
 
 /// The native format. See docs/scene-format.md for the grammar.
@@ -26,5 +26,15 @@ Scene read_geometry(const std::filesystem::path& path, double metres_per_unit = 
 /// diffuse, reflectance 1 - emittance; parts taken up by subsurfaces are cut out of their base.
 /// Obstructions are black from both sides. See docs/scene-format.md.
 Scene read_vs3(const std::filesystem::path& path);
+
+/// Mitsuba's XML, of 0.5 and 0.6 and of 2 and 3: shapes, BSDFs, area emitters and perspective
+/// cameras. One metre per unit; radiance in no known unit (Scene::relative_units). What else the
+/// file holds is named in the notes. See docs/scene-format.md.
+Scene read_mitsuba(const std::filesystem::path& path);
+
+/// glTF 2.0, text or binary: the default scene's triangles, materials, emission and perspective
+/// cameras. Metres, y upwards; emission in no known unit (Scene::relative_units). What else the
+/// file holds is named in the notes. See docs/scene-format.md.
+Scene read_gltf(const std::filesystem::path& path);
 
 }  // namespace lightwell

@@ -110,6 +110,22 @@ TEST_F(Output, InfoTellsPowerInWattsAndLumens) {
   EXPECT_EQ(json["bounds"][1][0], 4.0);
 }
 
+TEST_F(Output, InfoCallsNothingLuxWhereTheFileNamesNoUnit) {
+  folder.write("box.xml", R"(<scene version="3.0.0"><shape type="cube" id="lamp">
+      <transform name="to_world"><scale value="0.5"/></transform>
+      <emitter type="area"><rgb name="radiance" value="1, 2, 3"/></emitter></shape></scene>)");
+  const auto json = run_json({"info", "box.xml"});
+  EXPECT_EQ(json["light"], "in relative units");
+  ASSERT_EQ(json["emitters"].size(), 1u);
+  const auto& lamp = json["emitters"][0];
+  EXPECT_FALSE(lamp.contains("lumens") || lamp.contains("watts"));
+  EXPECT_NEAR(lamp["area"].get<double>(), 6.0, 1e-12);
+  EXPECT_NEAR(lamp["power"].get<double>(), 6.0 * 6.0 * 3.14159265, 1e-4);  // float exitance
+  EXPECT_EQ(json["quality"]["triangles"], 12);
+  EXPECT_EQ(json["quality"]["open_edges"], 0);
+  EXPECT_EQ(json["notes"].size(), 2u);  // no units, no BSDF
+}
+
 TEST_F(Output, InfoTellsHowASolutionWasMade) {
   ASSERT_EQ(run(Words{"solve", "room.toml", "-o", "S.vtp"} + quick()).code, 0);
   const auto json = run_json({"info", "S.vtp"});

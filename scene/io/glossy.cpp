@@ -1,0 +1,46 @@
+#include "scene/io/glossy.h"
+
+#include <cmath>
+
+#include "scene/optics.h"
+
+namespace lightwell {
+
+double diffuse_fresnel(double index) {
+  // Midpoint rule in cos^2: 2 cos dcos = d(cos^2), so the weights are equal.
+  constexpr int steps = 1000;
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    sum += fresnel_reflectance(std::sqrt((i + 0.5) / steps), index);
+  }
+  return sum / steps;
+}
+
+Spectrum coated_reflectance(const Spectrum& rho, double index, bool saturating,
+                            const Spectrum& specular) {
+  const auto outside = static_cast<float>(diffuse_fresnel(index));
+  const auto inside = static_cast<float>(diffuse_fresnel(1.0 / index));
+  const Spectrum returned = saturating ? rho : Spectrum(Spectrum::Ones(rho.size()));
+  return (specular * outside +
+          (1.0f - outside) * (1.0f - inside) * rho / (1.0f - inside * returned))
+      .min(1.0f);
+}
+
+Spectrum metal_reflectance(const Spectrum& eta, const Spectrum& k) {
+  const Spectrum absorbed = k.square();
+  return ((eta - 1.0f).square() + absorbed) / ((eta + 1.0f).square() + absorbed);
+}
+
+double pane_transmittance(double index) {
+  const double F = fresnel_reflectance(1.0, index);
+  return (1.0 - F) / (1.0 + F);
+}
+
+void set_metallic(Material& material, const Spectrum& color, double metallic, double alpha) {
+  const Spectrum metal = static_cast<float>(metallic) * color;
+  const bool is_mirror = alpha <= mirror_alpha;
+  material.specular = is_mirror ? metal : Spectrum(Spectrum::Zero(color.size()));
+  material.reflectance = is_mirror ? Spectrum(color - metal) : color;
+}
+
+}  // namespace lightwell

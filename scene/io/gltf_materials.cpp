@@ -1,0 +1,207 @@
+#include "scene/io/gltf_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/io/glossy.h"
+#include "scene/io/obj_materials.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double mostly = 0.5;
+
+// Factors of a colour; white where they are missing.
+Spectrum color(const std::optional<GltfObject>& owner, const char* key, std::size_t count) {
+  Spectrum result = Spectrum::Ones(3);
+  if (!owner) return result;
+  const std::vector<double> factors = owner->numbers(key, count);
+  for (std::size_t c = 0; c < std::min<std::size_t>(3, factors.size()); ++c) {
+    result[static_cast<int>(c)] = static_cast<float>(factors[c]);
+  }
+  return result;
+}
+
+double number_or(const std::optional<GltfObject>& owner, const char* key, double otherwise) {
+  return owner ? owner->number_or(key, otherwise) : otherwise;
+}
+
+double share_or(const std::optional<GltfObject>& owner, const char* key, double otherwise) {
+  return std::clamp(number_or(owner, key, otherwise), 0.0, 1.0);
+}
+
+// Share of light that an absorbing body passes on a straight way through it, for each of the two
+// crossings of its surface.
+Spectrum absorption(const std::optional<GltfObject>& volume, double thickness) {
+  const double distance = number_or(volume, "attenuationDistance", 0.0);
+  if (!(distance > 0.0 && thickness > 0.0)) return Spectrum::Ones(3);
+  const Spectrum passed = color(volume, "attenuationColor", 3).max(0.0f).min(1.0f);
+  return passed.pow(static_cast<float>(0.5 * thickness / distance));
+}
+
+bool is_cut_by_alpha(const GltfObject& from) {
+  const std::string mode = from.string_or("alphaMode", "OPAQUE");
+  return mode == "MASK" || mode == "BLEND";
+}
+
+}  // namespace
+
+int GltfMaterials::of_primitive(const GltfObject& primitive, bool is_closed) {
+  const auto index = primitive.index("material");
+  const auto [entry, is_new] =
+      index_of_.emplace(std::pair(index, is_closed), static_cast<int>(scene_.materials.size()));
+  if (!is_new) return entry->second;
+  Material material = default_material(scene_.bands);
+  if (index) {
+    material = read(file_.at("materials", *index, primitive), is_closed);
+  } else {
+    remarks_.add("Surfaces without a material got a diffuse reflectance of 0.5", primitive.place());
+  }
+  // Closed or not is often the same: one material is enough then.
+  const auto other = index_of_.find({index, !is_closed});
+  if (other != index_of_.end()) {
+    const Material& known = scene_.materials[static_cast<std::size_t>(other->second)];
+    if (!material.dielectric && material.emits_both_sides == known.emits_both_sides) {
+      return entry->second = other->second;
+    }
+  }
+  scene_.materials.push_back(std::move(material));
+  return entry->second;
+}
+
+Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
+  Material material = default_material(scene_.bands);
+  material.name = from.name();
+  const bool is_double_sided = from.boolean_or("doubleSided", false);
+  material.one_sided = !is_double_sided;
+  set_surface(from, is_closed, material);
+  material.emission = emission(from);
+  material.emits_both_sides = material.is_emitter() && is_double_sided && !is_closed;
+  if (material.dielectric && material.is_emitter()) {
+    remarks_.add("Clear materials that shine were read as black ones that shine", material.name);
+    material.dielectric.reset();
+  }
+  if (from.has("normalTexture")) remarks_.add("Normal maps were left out", material.name);
+  if (is_cut_by_alpha(from)) {
+    remarks_.add("Transparency by alpha was left out, so the whole surface is opaque",
+                 material.name);
+  }
+  return material;
+}
+
+PictureMean GltfMaterials::texture_mean(const std::optional<GltfObject>& owner, const char* key,
+                                        PictureCode code, const GltfObject& from) {
+  PictureMean white;
+  white.color.setOnes();
+  white.covered_color.setOnes();
+  const auto info = owner ? owner->object(key) : std::nullopt;
+  if (!info) return white;
+  const auto texture = info->index("index");
+  if (!texture) info->fail("lacks the index of a texture");
+  auto known = textures_.find({*texture, code});
+  if (known == textures_.end()) {
+    const auto mean = file_.texture_mean(*texture, code, *info);
+    known = textures_.emplace(std::pair(*texture, code), mean).first;
+  }
+  if (known->second) {
+    remarks_.add("Textures were read as their mean colour", from.name());
+    return *known->second;
+  }
+  remarks_.add("Textures of a format that is not read became a grey of 0.5", from.name());
+  white.color.setConstant(0.5);
+  white.covered_color.setConstant(0.5);
+  return white;
+}
+
+Spectrum GltfMaterials::base_color(const GltfObject& from) {
+  const auto old = from.extension("KHR_materials_pbrSpecularGlossiness");
+  const auto owner = old ? old : from.object("pbrMetallicRoughness");
+  Spectrum result = color(owner, old ? "diffuseFactor" : "baseColorFactor", 4);
+  const PictureMean mean =
+      texture_mean(owner, old ? "diffuseTexture" : "baseColorTexture", PictureCode::srgb, from);
+  result *= (is_cut_by_alpha(from) ? mean.covered_color : mean.color).cast<float>();
+  if (!((result >= 0.0f).all() && (result <= 1.0f).all())) {
+    remarks_.add("Colours outside [0, 1] were cut off there", from.name());
+    result = result.max(0.0f).min(1.0f);
+  }
+  return result;
+}
+
+void GltfMaterials::set_surface(const GltfObject& from, bool is_closed, Material& material) {
+  const Spectrum base = base_color(from);
+  if (from.extension("KHR_materials_pbrSpecularGlossiness") ||
+      from.extension("KHR_materials_unlit")) {
+    remarks_.add("Unlit and specular-glossy materials were read as diffuse, of their base colour",
+                 material.name);
+    return set_metallic(material, base, 0.0, 1.0);
+  }
+  const auto pbr = from.object("pbrMetallicRoughness");
+  const auto transmission = from.extension("KHR_materials_transmission");
+  // A metal passes no light; but who asks for transmission and leaves metallic at its default of 1
+  // means glass.
+  const double otherwise = transmission && !(pbr && pbr->has("metallicFactor")) ? 0.0 : 1.0;
+  const auto mean = texture_mean(pbr, "metallicRoughnessTexture", PictureCode::linear, from).color;
+  const double roughness = share_or(pbr, "roughnessFactor", 1.0) * mean[1];
+  const double metallic = share_or(pbr, "metallicFactor", otherwise) * mean[2];
+  const double alpha = roughness * roughness;
+  double passed = (1.0 - metallic) * share_or(transmission, "transmissionFactor", 0.0);
+  if (passed > 0.0) {
+    passed *= texture_mean(transmission, "transmissionTexture", PictureCode::linear, from).color[0];
+  }
+  if (passed >= mostly) {
+    if (passed < 1.0) {
+      remarks_.add("Materials at least half clear were read as wholly clear", material.name);
+    }
+    if (alpha > mirror_alpha) remarks_.add("Frosted glass was read as clear", material.name);
+    return set_clear(from, base, is_closed, material);
+  }
+  if (passed > 0.0) {
+    remarks_.add("Materials less than half clear were read as opaque", material.name);
+  }
+  if (metallic > 0.0) {
+    remarks_.add("Metals were read as perfect mirrors (roughness up to 0.45) or as diffuse",
+                 material.name);
+  }
+  set_metallic(material, base, metallic, alpha);
+}
+
+void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, bool is_closed,
+                              Material& material) {
+  double index = number_or(from.extension("KHR_materials_ior"), "ior", 1.5);
+  if (index == 0.0) index = 1.5;  // a mode of old, without an index
+  if (!(index >= 1.0 && index < 100.0))
+    from.fail("has an index of refraction below 1 or beyond all");
+  const auto volume = from.extension("KHR_materials_volume");
+  const double thickness = number_or(volume, "thicknessFactor", 0.0);
+  const bool is_solid = is_closed || thickness > 0.0;
+  Dielectric glass{.index_of_refraction = static_cast<float>(index),
+                   .tint = base * absorption(volume, thickness)};
+  if (!is_solid) {
+    remarks_.add("Thin panes let light straight through and absorb what they would reflect",
+                 material.name);
+    glass = {.index_of_refraction = 1.0f,
+             .tint = base * static_cast<float>(pane_transmittance(index))};
+  }
+  material.dielectric = glass;
+  material.reflectance.setZero();
+  material.specular.setZero();
+  material.one_sided = false;
+}
+
+Spectrum GltfMaterials::emission(const GltfObject& from) {
+  if (!from.has("emissiveFactor")) return Spectrum::Zero(3);
+  Spectrum radiance = color(from, "emissiveFactor", 3);
+  radiance *= static_cast<float>(
+      number_or(from.extension("KHR_materials_emissive_strength"), "emissiveStrength", 1.0));
+  if ((radiance > 0.0f).any()) {
+    radiance *= texture_mean(from, "emissiveTexture", PictureCode::srgb, from).color.cast<float>();
+  }
+  const Spectrum M = static_cast<float>(std::numbers::pi) * radiance;
+  if (!((M >= 0.0f).all() && M.isFinite().all())) {
+    from.fail("has an emission that is negative or too large");
+  }
+  return M;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,239 @@
+#include "scene/io/mitsuba_colors.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "scene/io/spectrum_samples.h"
+#include "scene/io/text_file.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int deepest = 32;  // textures of textures
+const BandEdges rgb_edges = {{600.0, 700.0}, {500.0, 600.0}, {400.0, 500.0}};
+
+Spectrum grey(double value) {
+  return Spectrum::Constant(3, static_cast<float>(value));
+}
+
+Spectrum spectrum_of(const Eigen::Array3d& rgb) {
+  return rgb.cast<float>();
+}
+
+// Samples hold their end values beyond their ends.
+Spectrum band_means(const MitsubaNode& node, SpectrumSamples samples) {
+  for (std::size_t i = 1; i < samples.values.size(); ++i) {
+    if (!(samples.wavelengths_nm[i] > samples.wavelengths_nm[i - 1])) {
+      node.fail(fmt::format("has the wavelength {} after {}; wavelengths must rise",
+                            samples.wavelengths_nm[i], samples.wavelengths_nm[i - 1]));
+    }
+  }
+  if (samples.values.empty()) node.fail("has no samples");
+  if (samples.wavelengths_nm.front() > rgb_edges.back()[0]) {
+    samples.wavelengths_nm.insert(samples.wavelengths_nm.begin(), rgb_edges.back()[0]);
+    samples.values.insert(samples.values.begin(), samples.values.front());
+  }
+  if (samples.wavelengths_nm.back() < rgb_edges.front()[1]) {
+    samples.wavelengths_nm.push_back(rgb_edges.front()[1]);
+    samples.values.push_back(samples.values.back());
+  }
+  Spectrum result(3);
+  for (int k = 0; k < 3; ++k) {
+    const auto [low, high] = rgb_edges[static_cast<std::size_t>(k)];
+    result[k] = static_cast<float>(mean(samples, low, high));
+  }
+  return result;
+}
+
+// "400:0.1, 500:0.2"
+SpectrumSamples samples_in_place(const MitsubaNode& node, std::string text) {
+  for (char& c : text) {
+    if (c == ':') c = ' ';
+  }
+  const auto numbers = parse_numbers(node, text);
+  if (numbers.size() % 2 != 0) node.fail("has a wavelength without a value");
+  SpectrumSamples samples;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) {
+    samples.wavelengths_nm.push_back(numbers[i]);
+    samples.values.push_back(numbers[i + 1]);
+  }
+  return samples;
+}
+
+// Lines of a wavelength (nm) and a value; # begins a comment.
+SpectrumSamples samples_of_file(const std::filesystem::path& path) {
+  const TextFile file(path);
+  SpectrumSamples samples;
+  file.for_each_line([&](int line, std::string_view text) {
+    text = text.substr(0, text.find('#'));
+    const std::string_view first = next_word(text);
+    if (first.empty()) return;
+    const auto wavelength = parse_finite(first), value = parse_finite(next_word(text));
+    if (!wavelength || !value) file.fail(line, "this is no wavelength (nm) followed by a value");
+    samples.wavelengths_nm.push_back(*wavelength);
+    samples.values.push_back(*value);
+  });
+  return samples;
+}
+
+// Planck's law, W/(m^2 sr nm).
+double planck(double nm, double kelvin) {
+  constexpr double h = 6.62607015e-34, c = 299792458.0, k = 1.380649e-23;
+  const double metres = 1e-9 * nm;
+  return 1e-9 * 2.0 * h * c * c / std::pow(metres, 5.0) / std::expm1(h * c / (metres * k * kelvin));
+}
+
+}  // namespace
+
+Spectrum MitsubaColors::share_or(const MitsubaNode& owner, std::string_view property,
+                                 float otherwise) {
+  const Spectrum values = positive_or(owner, property, otherwise);
+  if ((values > 1.0f).any()) {
+    remarks_.add(fmt::format("'{}' exceeds 1 and was cut off there in", property), owner.label());
+  }
+  return values.min(1.0f);
+}
+
+Spectrum MitsubaColors::positive_or(const MitsubaNode& owner, std::string_view property,
+                                    float otherwise) {
+  return positive(owner, property).value_or(grey(otherwise));
+}
+
+std::optional<Spectrum> MitsubaColors::positive(const MitsubaNode& owner,
+                                                std::string_view property) {
+  const MitsubaNode* node = owner.property(property);
+  if (!node) return std::nullopt;
+  const Spectrum values = read(*node, 0);
+  if (!values.isFinite().all()) node->fail("is too large a number");
+  if (!(values >= 0.0f).all()) {
+    node->fail(fmt::format("is {}; it must be at least 0", values.minCoeff()));
+  }
+  return values;
+}
+
+Spectrum MitsubaColors::read(const MitsubaNode& given, int depth) {
+  const MitsubaNode& node = tree_.resolved(given);
+  if (depth > deepest) node.fail("refers to itself, or is nested beyond all measure");
+  if (node.tag == "rgb" || node.tag == "color") return read_rgb(node);
+  if (node.tag == "srgb") return read_srgb(node);
+  if (node.tag == "float" || node.tag == "integer") return grey(node.number_attribute("value"));
+  if (node.tag == "spectrum") return read_spectrum(node, depth);
+  if (node.tag == "blackbody") return read_blackbody(node);
+  if (node.tag == "texture") return read_texture(node, depth);
+  node.fail("is no colour, spectrum or texture");
+}
+
+Spectrum MitsubaColors::read_rgb(const MitsubaNode& node) const {
+  const std::string* value = node.attribute("value");
+  if (!value) node.fail("lacks the attribute 'value'");
+  if (value->starts_with('#')) return read_srgb(node);
+  const auto numbers = parse_numbers(node, *value);
+  if (numbers.size() == 1) return grey(numbers[0]);
+  if (numbers.size() != 3) node.fail(fmt::format("has {} numbers; give three", numbers.size()));
+  return spectrum_of({numbers[0], numbers[1], numbers[2]});
+}
+
+// "#rrggbb", or three numbers in [0,1], with the sRGB curve.
+Spectrum MitsubaColors::read_srgb(const MitsubaNode& node) const {
+  const std::string* value = node.attribute("value");
+  if (!value) node.fail("lacks the attribute 'value'");
+  Eigen::Array3d code;
+  if (value->starts_with('#')) {
+    unsigned hex = 0;
+    const auto [end, error] =
+        std::from_chars(value->data() + 1, value->data() + value->size(), hex, 16);
+    if (value->size() != 7 || error != std::errc() || end != value->data() + value->size()) {
+      node.fail(fmt::format("has '{}', which is no colour; write #rrggbb", *value));
+    }
+    code = Eigen::Array3d(hex >> 16, hex >> 8 & 255, hex & 255) / 255.0;
+  } else {
+    const auto numbers = parse_numbers(node, *value);
+    if (numbers.size() != 3) node.fail(fmt::format("has {} numbers; give three", numbers.size()));
+    code = {numbers[0], numbers[1], numbers[2]};
+  }
+  return spectrum_of(code.unaryExpr(&linear_from_srgb));
+}
+
+Spectrum MitsubaColors::read_spectrum(const MitsubaNode& node, int depth) {
+  if (const std::string* name = node.attribute("filename")) {
+    return band_means(node, samples_of_file(tree_.file_named(node, *name)));
+  }
+  if (const std::string* value = node.attribute("value")) {
+    if (value->find(':') != std::string::npos) {
+      return band_means(node, samples_in_place(node, *value));
+    }
+    const auto numbers = parse_numbers(node, *value);
+    if (numbers.size() == 1) return grey(numbers[0]);
+    if (numbers.size() == 3) return spectrum_of({numbers[0], numbers[1], numbers[2]});
+    node.fail(fmt::format("has {} numbers; give one, or wavelength:value pairs", numbers.size()));
+  }
+  if (node.type == "d65")
+    return part_or(node, "color", 1.0f, depth) * part_or(node, "scale", 1.0f, depth);
+  if (node.type == "uniform") return part_or(node, "value", 1.0f, depth);
+  if (node.type == "blackbody") return read_blackbody(node);
+  if (node.type == "irregular" || node.type == "regular") {
+    node.fail("gives its samples in a way that is not read; write value=\"400:0.1, 500:0.2, ...\"");
+  }
+  return read_texture(node, depth);
+}
+
+Spectrum MitsubaColors::read_blackbody(const MitsubaNode& node) const {
+  const std::string* temperature = node.attribute("temperature");
+  double kelvin = node.number_or("temperature", 6500.0);
+  if (temperature) {
+    std::string_view text = trimmed(*temperature);
+    if (text.ends_with('K')) text.remove_suffix(1);
+    const auto numbers = parse_numbers(node, text);
+    if (numbers.size() != 1) node.fail("has a temperature that is no number of kelvins");
+    kelvin = numbers[0];
+  }
+  if (!(kelvin > 0.0 && kelvin < 1e6)) node.fail(fmt::format("has {} K; give 1 to 1e6", kelvin));
+  const double scale =
+      node.attribute("scale") ? node.number_attribute("scale") : node.number_or("scale", 1.0);
+  SpectrumSamples samples;
+  for (double nm = 400.0; nm <= 700.0; nm += 5.0) {
+    samples.wavelengths_nm.push_back(nm);
+    samples.values.push_back(scale * planck(nm, kelvin));
+  }
+  return band_means(node, std::move(samples));
+}
+
+Spectrum MitsubaColors::part_or(const MitsubaNode& texture, std::string_view property,
+                                float otherwise, int depth) {
+  const MitsubaNode* node = texture.property(property);
+  return node ? read(*node, depth + 1) : grey(otherwise);
+}
+
+Spectrum MitsubaColors::read_texture(const MitsubaNode& node, int depth) {
+  if (node.type == "bitmap") return read_bitmap(node);
+  if (node.type == "checkerboard") {
+    remarks_.add("Checkerboards were read as the mean of their colours", node.label());
+    return 0.5f * (part_or(node, "color0", 0.4f, depth) + part_or(node, "color1", 0.2f, depth));
+  }
+  if (node.type == "scale") {
+    const auto inner = tree_.children(node, "texture");
+    const Spectrum base = inner.empty() ? grey(1.0) : read(*inner.front(), depth + 1);
+    return base * part_or(node, "scale", 1.0f, depth) * part_or(node, "value", 1.0f, depth);
+  }
+  remarks_.add(fmt::format("Textures of the plugin '{}' were read as a grey of 0.5", node.type),
+               node.label());
+  return grey(0.5);
+}
+
+Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node) {
+  const std::string name = node.string_or("filename", "");
+  const auto path = tree_.file_named(node, name);
+  // 0.5 and 0.6 say "gamma", 2 and 3 "raw".
+  const bool is_linear = node.boolean_or("raw", false) || node.number_or("gamma", 0.0) == 1.0;
+  const auto mean = pictures_.mean(path, is_linear ? PictureCode::linear : PictureCode::srgb);
+  if (!mean) {
+    remarks_.add("Pictures of a format that is not read became a grey of 0.5", name);
+    return grey(0.5);
+  }
+  remarks_.add("Pictures on surfaces were read as their mean colour", name);
+  return spectrum_of(masks_ > 0 ? mean->covered_color : mean->color);
+}
+
+}  // namespace lightwell

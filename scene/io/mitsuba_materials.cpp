@@ -1,0 +1,271 @@
+#include "scene/io/mitsuba_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "scene/io/glossy.h"
+#include "scene/io/mitsuba_presets.h"
+#include "scene/io/nearest_name.h"
+#include "scene/io/obj_materials.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double bk7 = 1.5046, polypropylene = 1.49, air = 1.000277;  // Mitsuba's defaults
+
+Spectrum zero() {
+  return Spectrum::Zero(3);
+}
+
+Material opaque(const Spectrum& reflectance) {
+  return {.reflectance = reflectance, .specular = zero(), .emission = zero(), .one_sided = true};
+}
+
+Material clear(double index, const Spectrum& tint) {
+  Material material = opaque(zero());
+  material.one_sided = false;
+  material.dielectric = Dielectric{.index_of_refraction = static_cast<float>(index), .tint = tint};
+  return material;
+}
+
+const char* const rough_metal =
+    "Rough metals were read as perfect mirrors (alpha up to 0.2) or as diffuse";
+
+}  // namespace
+
+int MitsubaMaterials::of_shape(const MitsubaNode& shape, const std::string& shape_name) {
+  const auto bsdfs = tree_.children(shape, "bsdf");
+  const MitsubaNode* bsdf = bsdfs.empty() ? nullptr : bsdfs.front();
+  const MitsubaNode* emitter = nullptr;
+  for (const char* tag : {"emitter", "luminaire"}) {
+    for (const MitsubaNode* node : tree_.children(shape, tag)) {
+      if (node->type == "area") {
+        emitter = node;
+      } else {
+        remarks_.add(fmt::format("Emitters of the plugin '{}' give no light here", node->type),
+                     shape_name);
+      }
+    }
+  }
+  const auto [entry, is_new] =
+      index_of_.emplace(std::pair(bsdf, emitter), static_cast<int>(scene_.materials.size()));
+  if (!is_new) return entry->second;
+  Material material = default_material(scene_.bands);
+  if (bsdf) {
+    material = read(*bsdf);
+    material.name = bsdf->id.empty() ? fmt::format("material of {}", shape_name) : bsdf->id;
+  } else {
+    remarks_.add("Shapes without a BSDF got a diffuse reflectance of 0.5", shape_name);
+    material.name = emitter ? fmt::format("material of {}", shape_name) : "default";
+  }
+  if (emitter) {
+    if (bsdf && !bsdf->id.empty()) material.name = fmt::format("{} ({})", bsdf->id, shape_name);
+    add_emission(*emitter, shape_name, material);
+  }
+  scene_.materials.push_back(std::move(material));
+  return entry->second;
+}
+
+void MitsubaMaterials::add_emission(const MitsubaNode& emitter, const std::string& name,
+                                    Material& material) {
+  const auto intensity = colors_.positive(emitter, "intensity");  // its name in Mitsuba 0.3
+  const Spectrum radiance = intensity ? *intensity : colors_.positive_or(emitter, "radiance", 1.0f);
+  material.emission = static_cast<float>(std::numbers::pi) * radiance;
+  if (!material.emission.isFinite().all()) emitter.fail("has a radiance that is too large");
+  if (material.dielectric && material.is_emitter()) {
+    remarks_.add("Clear materials that shine were read as black ones that shine", name);
+    material.dielectric.reset();
+  }
+}
+
+Material MitsubaMaterials::read(const MitsubaNode& bsdf) {
+  const auto known = known_.find(&bsdf);
+  if (known != known_.end()) return known->second;
+  if (!open_.insert(&bsdf).second) bsdf.fail("refers to itself");
+  constexpr std::size_t deepest = 64;
+  if (open_.size() > deepest) bsdf.fail("is nested beyond all measure");
+  const Material material = read_new(bsdf);
+  open_.erase(&bsdf);
+  return known_.emplace(&bsdf, material).first->second;
+}
+
+Material MitsubaMaterials::read_new(const MitsubaNode& bsdf) {
+  const std::string& type = bsdf.type;
+  const auto is = [&](std::initializer_list<const char*> types) {
+    return std::ranges::find(types, type) != types.end();
+  };
+  if (is({"diffuse", "lambertian", "roughdiffuse"})) return diffuse(bsdf, "reflectance");
+  if (is({"conductor", "roughconductor", "mirror"})) return conductor(bsdf);
+  if (is({"dielectric", "roughdielectric", "thindielectric"})) return dielectric(bsdf);
+  if (is({"plastic", "roughplastic"})) return plastic(bsdf);
+  if (is({"principled", "principledthin", "disney"})) return principled(bsdf);
+  if (type == "twosided") return two_sided(bsdf);
+  if (is({"mask", "bumpmap", "bump", "normalmap", "coating", "roughcoating"})) return wrapped(bsdf);
+  if (is({"blendbsdf", "mixturebsdf"})) return blend(bsdf);
+  if (type == "null") return clear(1.0, Spectrum::Ones(3));
+  if (is({"phong", "ward", "modified_phong"})) {
+    remarks_.add(fmt::format("BSDF '{}': its highlight was left out in", type), bsdf.label());
+    return diffuse(bsdf, "diffuse_reflectance");
+  }
+  remarks_.add(
+      fmt::format("BSDF plugin '{}' is not known and got a diffuse reflectance of 0.5", type),
+      bsdf.label());
+  Material material = opaque(Spectrum::Constant(3, 0.5f));
+  material.one_sided = false;
+  return material;
+}
+
+Material MitsubaMaterials::diffuse(const MitsubaNode& bsdf, std::string_view property) {
+  return opaque(colors_.share_or(bsdf, property, 0.5f));
+}
+
+Material MitsubaMaterials::conductor(const MitsubaNode& bsdf) {
+  Spectrum reflectance = Spectrum::Ones(3);
+  const auto eta = colors_.positive(bsdf, "eta"), k = colors_.positive(bsdf, "k");
+  if (eta && k) {
+    reflectance = metal_reflectance(*eta, *k);
+  } else if (bsdf.type != "mirror") {
+    const std::string name = bsdf.string_or("material", eta || k ? "none" : "Cu");
+    if (const auto known = metal_preset(name)) {
+      reflectance = *known;
+    } else {
+      remarks_.add(fmt::format("Metal '{}' is not known and got a reflectance of 0.6", name),
+                   bsdf.label());
+      reflectance.setConstant(0.6f);
+    }
+  }
+  reflectance *= colors_.share_or(bsdf, "specular_reflectance", 1.0f);
+  double alpha = 0.0;
+  if (bsdf.type == "roughconductor") {
+    alpha = std::max(bsdf.number_or("alpha_u", 0.0), bsdf.number_or("alpha_v", 0.0));
+    alpha = bsdf.number_or("alpha", alpha > 0.0 ? alpha : 0.1);
+    remarks_.add(rough_metal, bsdf.label());
+  }
+  Material material = opaque(zero());
+  set_metallic(material, reflectance, 1.0, alpha);
+  return material;
+}
+
+// Of the inside over the outside.
+double MitsubaMaterials::index_ratio(const MitsubaNode& bsdf, double inside) {
+  const auto index = [&](const char* property, double otherwise) {
+    const MitsubaNode* node = bsdf.property(property);
+    if (!node) return otherwise;
+    if (node->tag != "string") return bsdf.number_or(property, otherwise);
+    const std::string name = bsdf.string_or(property, "");
+    if (const auto known = index_preset(name)) return *known;
+    node->fail(
+        fmt::format("is '{}', a material whose index of refraction is not known; give a "
+                    "number.{}",
+                    name, did_you_mean(name, index_preset_names())));
+  };
+  const double ratio = index("int_ior", inside) / index("ext_ior", air);
+  constexpr double extreme = 100.0;
+  if (!(ratio > 1.0 / extreme && ratio < extreme)) {
+    bsdf.fail(fmt::format("has a ratio of refractive indices of {}; glass has 1.5", ratio));
+  }
+  return ratio;
+}
+
+Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf) {
+  const double index = index_ratio(bsdf, bk7);
+  const Spectrum tint = colors_.share_or(bsdf, "specular_transmittance", 1.0f);
+  if (bsdf.type == "thindielectric") {
+    remarks_.add("Thin panes let light straight through and absorb what they would reflect",
+                 bsdf.label());
+    return clear(1.0, tint * static_cast<float>(pane_transmittance(index)));
+  }
+  if (bsdf.type == "roughdielectric") {
+    remarks_.add("Frosted glass was read as clear", bsdf.label());
+  }
+  return clear(index, tint);
+}
+
+Material MitsubaMaterials::plastic(const MitsubaNode& bsdf) {
+  const Spectrum rho = colors_.share_or(bsdf, "diffuse_reflectance", 0.5f);
+  const Spectrum specular = colors_.share_or(bsdf, "specular_reflectance", 1.0f);
+  remarks_.add("Plastics were read as diffuse, with what their gloss reflects in the mean",
+               bsdf.label());
+  return opaque(coated_reflectance(rho, index_ratio(bsdf, polypropylene),
+                                   bsdf.boolean_or("nonlinear", false), specular));
+}
+
+Material MitsubaMaterials::principled(const MitsubaNode& bsdf) {
+  const Spectrum color = colors_.share_or(bsdf, "base_color", 0.5f);
+  const auto share = [&](const char* property, double otherwise) {
+    return std::clamp(bsdf.number_or(property, otherwise), 0.0, 1.0);
+  };
+  constexpr double mostly = 0.5;
+  if (share("spec_trans", 0.0) >= mostly) {
+    remarks_.add("Principled BSDFs that are mostly clear were read as clear glass", bsdf.label());
+    const double index = bsdf.number_or("eta", 1.5);
+    if (!(index > 0.0 && index < 100.0)) bsdf.fail("has no index of refraction that glass has");
+    return clear(index, color);
+  }
+  remarks_.add("Principled BSDFs were read by their base colour, metallic and roughness",
+               bsdf.label());
+  const double roughness = share("roughness", 0.5);
+  Material material = opaque(zero());
+  set_metallic(material, color, share("metallic", 0.0), roughness * roughness);
+  return material;
+}
+
+Material MitsubaMaterials::wrapped(const MitsubaNode& bsdf) {
+  const auto inner = tree_.children(bsdf, "bsdf");
+  if (inner.empty()) bsdf.fail("holds no BSDF");
+  if (bsdf.type != "mask") {
+    remarks_.add(fmt::format("BSDF '{}' was read as what it covers", bsdf.type), bsdf.label());
+    return read(*inner.front());
+  }
+  remarks_.add("Masks were left out, so the whole surface is opaque", bsdf.label());
+  const MitsubaColors::Masked masked(colors_);
+  return read(*inner.front());
+}
+
+Material MitsubaMaterials::two_sided(const MitsubaNode& bsdf) {
+  const auto inner = tree_.children(bsdf, "bsdf");
+  if (inner.empty()) bsdf.fail("holds no BSDF");
+  if (inner.size() > 1) {
+    remarks_.add("Surfaces whose sides differ got the front's BSDF on both", bsdf.label());
+  }
+  Material material = read(*inner.front());
+  material.one_sided = false;
+  return material;
+}
+
+Material MitsubaMaterials::blend(const MitsubaNode& bsdf) {
+  const auto inner = tree_.children(bsdf, "bsdf");
+  if (inner.empty()) bsdf.fail("holds no BSDF");
+  std::vector<float> weights;
+  if (bsdf.type == "blendbsdf" && inner.size() == 2) {
+    const float second = colors_.share_or(bsdf, "weight", 0.5f).mean();
+    weights = {1.0f - second, second};
+  } else if (const MitsubaNode* given = bsdf.property("weights")) {
+    for (const double weight : parse_numbers(*given, bsdf.string_or("weights", ""))) {
+      if (!(weight >= 0.0 && weight <= 1.0)) given->fail("has a weight outside [0, 1]");
+      weights.push_back(static_cast<float>(weight));
+    }
+  }
+  if (weights.size() != inner.size()) bsdf.fail("needs one weight for each BSDF it blends");
+  remarks_.add("Blended BSDFs were read as the mean of their parts", bsdf.label());
+  Material sum = opaque(zero());
+  sum.one_sided = std::ranges::all_of(inner, [&](const auto* b) { return read(*b).one_sided; });
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    const Material part = read(*inner[i]);
+    if (part.dielectric) {
+      if (weights[i] >= 0.5f) return part;
+      continue;
+    }
+    sum.reflectance += weights[i] * part.reflectance;
+    sum.specular += weights[i] * part.specular;
+  }
+  // Weights of a mixture may add up to more than 1; light must not.
+  const Spectrum excess = (sum.reflectance + sum.specular).max(1.0f);
+  sum.reflectance /= excess;
+  sum.specular /= excess;
+  return sum;
+}
+
+}  // namespace lightwell

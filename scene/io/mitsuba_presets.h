@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/bands.h"
+
+namespace lightwell {
+
+/// Refractive index in the visible of a material that Mitsuba knows by name ("bk7", "water").
+std::optional<double> index_preset(std::string_view name);
+std::vector<std::string> index_preset_names();
+
+/// Reflectance at normal incidence (r, g, b) of a metal that Mitsuba knows by name ("Au"); "none"
+/// is the perfect mirror.
+std::optional<Spectrum> metal_preset(std::string_view name);
+
+}  // namespace lightwell

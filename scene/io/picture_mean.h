@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace lightwell {
+
+/// How the numbers of a picture stand for light.
+enum class PictureCode { srgb, linear };
+
+/// Mean of a picture's pixels: what a texture amounts to for the light in a room.
+struct PictureMean {
+  Eigen::Array3d color = Eigen::Array3d::Zero();  ///< r, g, b, linear, [0,1]
+  /// The same, each pixel weighted by its alpha; `color` if the picture is transparent throughout.
+  Eigen::Array3d covered_color = Eigen::Array3d::Zero();
+  double alpha = 1.0;
+};
+
+/// Decodes a PNG or JPEG of at most 1e8 pixels; sRGB is made linear (IEC 61966-2-1). Empty for
+/// other formats (OpenEXR, Radiance HDR ...). Throws InputError "`called` ..." for a
+/// picture that is damaged or too large.
+std::optional<PictureMean> picture_mean(std::string_view bytes, PictureCode code,
+                                        const std::string& called);
+
+/// Means of picture files, each decoded once.
+class PictureFiles {
+ public:
+  /// Throws InputError naming the file if it is missing or damaged.
+  std::optional<PictureMean> mean(const std::filesystem::path& path, PictureCode code);
+
+ private:
+  std::map<std::pair<std::filesystem::path, PictureCode>, std::optional<PictureMean>> known_;
+};
+
+/// Linear value of an sRGB one, both [0,1].
+double linear_from_srgb(double value);
+
+}  // namespace lightwell

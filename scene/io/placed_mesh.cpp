@@ -1,0 +1,143 @@
+#include "scene/io/placed_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "scene/io/convex_cut.h"
+
+namespace lightwell {
+namespace {
+
+// Sides of a round shape: the outline of a disk then stays within 0.5 % of its radius.
+constexpr int sides = 32;
+constexpr int rings = 16;
+
+Eigen::Vector2d on_circle(int side, double radius) {
+  const double angle = 2.0 * std::numbers::pi * (side % sides) / sides;
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+Loop loop_of(const PolygonMesh& mesh, const std::vector<int>& indices) {
+  Loop loop;
+  for (const int v : indices) loop.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+  return loop;
+}
+
+// Twice the area over the squared size, as for the polygons of files.
+bool is_flattened(const PolygonMesh& mesh, const Facet& facet) {
+  const Loop loop = loop_of(mesh, facet.boundary);
+  const double size = size_of(loop);
+  return !(area_vector(loop).norm() > 0.5 * flatness * size * size);
+}
+
+void turn_over(Facet& facet) {
+  std::reverse(facet.boundary.begin(), facet.boundary.end());
+  for (auto& hole : facet.holes) std::reverse(hole.begin(), hole.end());
+}
+
+}  // namespace
+
+std::vector<Loop> rectangle_loops() {
+  return {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}};
+}
+
+std::vector<Loop> cube_loops() {
+  // Corner number bits: x, y, z at 1.
+  constexpr std::array<std::array<int, 4>, 6> faces = {
+      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+  std::vector<Loop> loops;
+  for (const auto& face : faces) {
+    Loop loop;
+    for (const int corner : face) {
+      loop.emplace_back(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+std::vector<Loop> disk_loops() {
+  // n triangles of area r^2 sin(2 pi / n) / 2 add up to pi.
+  const double turn = 2.0 * std::numbers::pi / sides;
+  const double radius = std::sqrt(turn / std::sin(turn));
+  Loop loop;
+  for (int i = 0; i < sides; ++i) {
+    const Eigen::Vector2d p = on_circle(i, radius);
+    loop.emplace_back(p.x(), p.y(), 0.0);
+  }
+  return {loop};
+}
+
+std::vector<Loop> cylinder_loops() {
+  // n chords of length 2 r sin(pi / n) add up to 2 pi.
+  const double half = std::numbers::pi / sides;
+  const double radius = half / std::sin(half);
+  std::vector<Loop> loops;
+  for (int i = 0; i < sides; ++i) {
+    const Eigen::Vector2d a = on_circle(i, radius), b = on_circle(i + 1, radius);
+    loops.push_back({{a.x(), a.y(), 0}, {b.x(), b.y(), 0}, {b.x(), b.y(), 1}, {a.x(), a.y(), 1}});
+  }
+  return loops;
+}
+
+std::vector<Loop> sphere_loops() {
+  std::vector<Loop> loops;
+  double area = 0.0;
+  const auto point = [](int ring, int side) {
+    const double latitude = std::numbers::pi * (static_cast<double>(ring) / rings - 0.5);
+    // Poles exactly on the axis, so that the triangles there share one vertex.
+    const bool is_pole = ring == 0 || ring == rings;
+    const Eigen::Vector2d p = on_circle(side, is_pole ? 0.0 : std::cos(latitude));
+    return Eigen::Vector3d(p.x(), p.y(), std::sin(latitude));
+  };
+  for (int ring = 0; ring < rings; ++ring) {
+    for (int i = 0; i < sides; ++i) {
+      Loop loop = {point(ring, i)};
+      if (ring > 0) loop.push_back(point(ring, i + 1));
+      loop.push_back(point(ring + 1, i + 1));
+      if (ring + 1 < rings) loop.push_back(point(ring + 1, i));
+      area += area_vector(loop).norm();
+      loops.push_back(std::move(loop));
+    }
+  }
+  const double scale = std::sqrt(4.0 * std::numbers::pi / area);
+  for (Loop& loop : loops) {
+    for (Eigen::Vector3d& p : loop) p *= scale;
+  }
+  return loops;
+}
+
+bool keeps_angles(const Eigen::Affine3d& transform) {
+  const Eigen::Matrix3d gram = transform.linear().transpose() * transform.linear();
+  const double scale = gram.trace() / 3.0;
+  constexpr double exactly = 1e-6;
+  return (gram - scale * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= exactly * scale;
+}
+
+PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& transform,
+                         bool flip, Repairs& repairs) {
+  const bool turned = (transform.linear().determinant() < 0.0) != flip;
+  MeshBuilder mesh;
+  for (Loop loop : loops) {
+    for (Eigen::Vector3d& p : loop) p = transform * p;
+    if (turned) std::reverse(loop.begin(), loop.end());
+    add_repaired(mesh, std::move(loop), repairs);
+  }
+  return mesh.mesh();
+}
+
+PolygonMesh placed_mesh(PolygonMesh mesh, const Eigen::Affine3d& transform, bool flip,
+                        bool mirror_turns, Repairs& repairs) {
+  const bool turned = (mirror_turns && transform.linear().determinant() < 0.0) != flip;
+  if (!turned && transform.matrix().isIdentity(0.0)) return mesh;
+  for (Eigen::Vector3d& p : mesh.vertices) p = transform * p;
+  if (turned) std::ranges::for_each(mesh.facets, turn_over);
+  const auto flattened =
+      std::erase_if(mesh.facets, [&](const Facet& facet) { return is_flattened(mesh, facet); });
+  repairs.thin += static_cast<int>(flattened);
+  return mesh;
+}
+
+}  // namespace lightwell

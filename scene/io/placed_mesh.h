@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "scene/io/polygon.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Loops of simple shapes, counter-clockwise seen from outside or from +z, as formats define them.
+std::vector<Loop> rectangle_loops();  ///< x and y from -1 to 1, z = 0
+std::vector<Loop> cube_loops();       ///< all coordinates from -1 to 1
+/// A regular polygon about the origin, z = 0, of the area of the disk of radius 1.
+std::vector<Loop> disk_loops();
+/// Rectangles round the z axis from z = 0 to 1, with the area of the cylinder of radius 1; no caps.
+std::vector<Loop> cylinder_loops();
+/// Quadrilaterals and triangles between circles of latitude, of the area of the sphere of radius 1.
+std::vector<Loop> sphere_loops();
+
+/// Whether a transformation keeps angles: it turns, moves, mirrors and scales evenly, to 1e-6.
+bool keeps_angles(const Eigen::Affine3d& transform);
+
+/// The loops where `transform` puts them, turned over if `flip` says so. Normals keep their side of
+/// the surface even where the transformation mirrors. Polygons that it flattens are dropped.
+PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& transform,
+                         bool flip, Repairs& repairs);
+
+/// The same for a mesh that is sound already; with `mirror_turns` false the order of the corners
+/// alone says where the front is, so that a mirrored mesh is turned inside out.
+PolygonMesh placed_mesh(PolygonMesh mesh, const Eigen::Affine3d& transform, bool flip,
+                        bool mirror_turns, Repairs& repairs);
+
+}  // namespace lightwell

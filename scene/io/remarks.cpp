@@ -1,0 +1,41 @@
+#include "scene/io/remarks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lightwell {
+namespace {
+
+constexpr std::size_t listed = 5;
+
+}  // namespace
+
+void Remarks::add(std::string_view what, std::string_view name) {
+  auto found = std::find_if(remarks_.begin(), remarks_.end(),
+                            [&](const Remark& remark) { return remark.what == what; });
+  if (found == remarks_.end()) {
+    found = remarks_.insert(remarks_.end(), Remark{.what = std::string(what)});
+  }
+  const auto& names = found->names;
+  if (found->count > 0 && (found->last == name || std::ranges::find(names, name) != names.end())) {
+    return;
+  }
+  found->last = name;
+  if (found->count++ < listed) found->names.emplace_back(name);
+}
+
+std::vector<std::string> Remarks::sentences() const {
+  std::vector<std::string> result;
+  for (const Remark& remark : remarks_) {
+    std::string sentence = remark.what + ": ";
+    for (std::size_t i = 0; i < remark.names.size(); ++i) {
+      sentence += fmt::format("{}'{}'", i ? ", " : "", remark.names[i]);
+    }
+    if (remark.count > listed) sentence += fmt::format(" and {} more", remark.count - listed);
+    result.push_back(sentence + ".");
+  }
+  return result;
+}
+
+}  // namespace lightwell

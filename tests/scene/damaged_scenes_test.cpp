@@ -1,0 +1,132 @@
+// Files that were damaged on their way: whatever stands in them, a reader answers with a scene or
+// with an InputError, soon, and never with a crash.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "scene/errors.h"
+#include "scene/io/read_scene.h"
+#include "tests/raytrace/temporary_folder.h"
+#include "tests/scene/gltf_text.h"
+
+namespace lightwell {
+namespace {
+
+const std::filesystem::path folder = LIGHTWELL_TEST_DATA "/scene";
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// One to eight changes: a byte replaced, a range removed or doubled, a digit made large, the end
+// cut off.
+std::string damaged(std::string bytes, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto below = [&](std::size_t n) {
+    return static_cast<std::size_t>(random()) % std::max<std::size_t>(n, 1);
+  };
+  for (std::size_t changes = 1 + below(8); changes > 0 && !bytes.empty(); --changes) {
+    const std::size_t at = below(bytes.size()),
+                      length = below(std::min<std::size_t>(40, bytes.size() - at));
+    switch (below(6)) {
+      case 0:
+        bytes[at] = static_cast<char>(random());
+        break;
+      case 1:
+        bytes.erase(at, length);
+        break;
+      case 2:
+        bytes.insert(at, bytes.substr(at, length));
+        break;
+      case 3:
+        bytes.insert(at, std::string(1 + below(12), '9'));
+        break;
+      case 4:
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
+        break;
+      default:
+        if (below(4) == 0) bytes.resize(at);
+    }
+  }
+  return bytes;
+}
+
+void expect_answers(const TemporaryFolder& where, const std::string& name, const std::string& sound,
+                    unsigned count) {
+  int read = 0, refused = 0;
+  for (unsigned seed = 0; seed < count; ++seed) {
+    const auto path = where.write(name, damaged(sound, seed));
+    const auto start = std::chrono::steady_clock::now();
+    try {
+      validate(read_scene(path));
+      ++read;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("damaged"), std::string::npos) << error.what();
+      ++refused;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << name << ", seed " << seed << ": " << error.what();
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    EXPECT_LT(seconds.count(), 10.0) << name << ", seed " << seed;
+  }
+  // Both happen, so the damage is neither too small to matter nor too large to get past the start.
+  EXPECT_GT(read, 0) << name;
+  EXPECT_GT(refused, 0) << name;
+}
+
+TEST(DamagedScenes, OfMitsubaAreReadOrRefused) {
+  const TemporaryFolder where;
+  expect_answers(where, "damaged.xml", content_of(folder / "mitsuba/cornell-box.xml"), 400);
+}
+
+TEST(DamagedScenes, OfGltfAreReadOrRefused) {
+  const TemporaryFolder where;
+  std::filesystem::copy(folder / "gltf/17_ior.bin", where / "17_ior.bin");
+  expect_answers(where, "damaged.gltf", content_of(folder / "gltf/17_ior.gltf"), 400);
+}
+
+TEST(DamagedScenes, OfBinaryGltfAreReadOrRefused) {
+  const TemporaryFolder where;
+  const std::string png = content_of(folder / "two-pixels.png");
+  std::string json = square_gltf(
+      R"(,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"images":[{"uri":"data:image/png;base64,)" +
+          base64(png) + R"("}],"textures":[{"source":0}],"materials":[{"emissiveFactor":[1,1,1],)" +
+          R"("emissiveTexture":{"index":0}}])",
+      R"(,"material":0)");
+  while (json.size() % 4) json += ' ';
+  const auto word = [](std::size_t n) {
+    return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(n)});
+  };
+  expect_answers(where, "damaged.glb",
+                 "glTF" + word(2) + word(20 + json.size()) + word(json.size()) + "JSON" + json,
+                 400);
+}
+
+TEST(DamagedScenes, PicturesAreDecodedOrRefused) {
+  const TemporaryFolder where;
+  for (const std::string name : {"two-pixels.png", "grey.jpg"}) {
+    const std::string sound = content_of(folder / name);
+    for (unsigned seed = 0; seed < 300; ++seed) {
+      where.write(name, damaged(sound, seed));
+      const auto scene =
+          where.write("scene.xml",
+                      "<scene version='3.0.0'><shape type='cube'><bsdf type='diffuse'>"
+                      "<texture type='bitmap' name='reflectance'><string name='filename' value='" +
+                          name + "'/></texture></bsdf></shape></scene>");
+      try {
+        read_scene(scene);
+      } catch (const InputError&) {
+        continue;
+      } catch (const std::exception& error) {
+        ADD_FAILURE() << name << ", seed " << seed << ": " << error.what();
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lightwell

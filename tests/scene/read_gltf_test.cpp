@@ -1,0 +1,262 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "scene/errors.h"
+#include "scene/io/read_scene.h"
+#include "tests/raytrace/temporary_folder.h"
+#include "tests/scene/gltf_text.h"
+
+namespace lightwell {
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+const std::string one_node = R"(,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}])";
+
+class Gltf : public testing::Test {
+ protected:
+  Scene read(const std::string& text) const { return read_scene(folder.write("it.gltf", text)); }
+  Material material(const std::string& json) const {
+    const Scene scene =
+        read(square_gltf(one_node + R"(,"materials":[)" + json + "]", R"(,"material":0)"));
+    return scene.materials.at(0);
+  }
+  void expect_error(const std::string& text, std::initializer_list<const char*> parts) const {
+    try {
+      read(text);
+      ADD_FAILURE() << "nothing was refused";
+    } catch (const InputError& refused) {
+      const std::string message = refused.what();
+      for (const char* part : parts) {
+        EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
+      }
+    }
+  }
+  TemporaryFolder folder;
+};
+
+const PolygonMesh& mesh_of(const Scene& scene, std::size_t surface = 0) {
+  return std::get<PolygonMesh>(scene.surfaces.at(surface).shape);
+}
+
+double area_of(const PolygonMesh& mesh) {
+  double area = 0.0;
+  for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
+  return area;
+}
+
+Eigen::Vector3d normal_of(const Scene& scene, std::size_t surface = 0) {
+  return facet_normal(mesh_of(scene, surface), mesh_of(scene, surface).facets.at(0));
+}
+
+bool has_note(const Scene& scene, const std::string& text) {
+  for (const std::string& note : scene.notes) {
+    if (note.find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+const Material& material_called(const Scene& scene, const std::string& name) {
+  for (const Material& m : scene.materials) {
+    if (m.name == name) return m;
+  }
+  throw std::runtime_error("no material " + name);
+}
+
+TEST(GltfFile, StrengthMultipliesEmissionInBothMaterialModels) {
+  const Scene scene = read_scene(LIGHTWELL_TEST_DATA "/scene/gltf/14_emission_strength.gltf");
+  EXPECT_EQ(scene.surfaces.size(), 18u);
+  EXPECT_TRUE(scene.relative_units);
+  for (const std::string model : {"pbr", "SpecGloss"}) {
+    const Spectrum weak = material_called(scene, model + "EmissiveGray").emission;
+    const Spectrum strong = material_called(scene, model + "EmissiveGrayStrength").emission;
+    const float factor = model == "pbr" ? 0.9f : 0.3f;
+    EXPECT_NEAR(weak[0], pi * factor, 1e-6f);
+    EXPECT_NEAR(strong[2], pi * 0.9f * 5.0f, 1e-5f);
+    // The same picture dims both alike.
+    const float dim = material_called(scene, model + "EmissiveGrayTexture").emission[0];
+    EXPECT_GT(dim, 0.0f);
+    EXPECT_LT(dim, pi * 0.9f);
+    EXPECT_NEAR(material_called(scene, model + "EmissiveGrayStrengthTexture").emission[0],
+                5.0f * dim, 1e-5f * dim * 5.0f);
+  }
+}
+
+TEST(GltfFile, ClosedBodiesOfClearMaterialKeepTheirIndex) {
+  const Scene scene = read_scene(LIGHTWELL_TEST_DATA "/scene/gltf/17_ior.gltf");
+  EXPECT_EQ(scene.surfaces.size(), 5u);
+  EXPECT_FALSE(material_called(scene, "ior_2_no_transmission").dielectric.has_value());
+  ASSERT_TRUE(material_called(scene, "ior_2").dielectric.has_value());
+  EXPECT_FLOAT_EQ(material_called(scene, "ior_2").dielectric->index_of_refraction, 2.0f);
+  EXPECT_FLOAT_EQ(material_called(scene, "ior_1.45").dielectric->index_of_refraction, 1.45f);
+  EXPECT_NEAR(material_called(scene, "ior_2").dielectric->tint[0], 0.8f, 1e-6f);
+}
+
+TEST_F(Gltf, NodesPlaceTheirChildren) {
+  // Scaled by 2, turned by 90 degrees about z, then moved by its parent.
+  const Scene scene = read(square_gltf(
+      R"(,"scenes":[{"nodes":[0]}],"nodes":[{"translation":[10,0,0],"children":[1,2]},
+      {"mesh":0,"name":"turned","rotation":[0,0,0.70710678118654752,0.70710678118654752],"scale":[2,2,2]},
+      {"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,7,1]}])"));
+  ASSERT_EQ(scene.surfaces.size(), 2u);
+  EXPECT_EQ(scene.surfaces[0].name, "turned");
+  EXPECT_LT((mesh_of(scene).vertices.at(1) - Eigen::Vector3d(10, 2, 0)).norm(), 1e-12);
+  EXPECT_NEAR(area_of(mesh_of(scene)), 4.0, 1e-12);
+  EXPECT_LT((mesh_of(scene, 1).vertices.at(0) - Eigen::Vector3d(10, 0, 7)).norm(), 1e-12);
+}
+
+TEST_F(Gltf, MirroredNodesKeepTheirFront) {
+  const Scene scene =
+      read(square_gltf(R"(,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":[-1,1,1]}])"));
+  EXPECT_EQ(normal_of(scene).z(), 1.0);
+}
+
+TEST_F(Gltf, StripsAndFansAndPlainCornersAreOneSquare) {
+  for (const auto& [primitive, indices] :
+       std::vector<std::pair<std::string, std::vector<std::uint16_t>>>{
+           {"", {0, 1, 2, 0, 2, 3}},
+           {R"(,"mode":5)", {0, 1, 3, 2}},
+           {R"(,"mode":6)", {0, 1, 2, 3}}}) {
+    const Scene scene = read(square_gltf(one_node, primitive, indices));
+    EXPECT_EQ(mesh_of(scene).facets.size(), 2u) << primitive;
+    EXPECT_NEAR(area_of(mesh_of(scene)), 1.0, 1e-12) << primitive;
+    for (const Facet& facet : mesh_of(scene).facets) {
+      EXPECT_EQ(facet_normal(mesh_of(scene), facet).z(), 1.0) << primitive;
+    }
+  }
+}
+
+TEST_F(Gltf, BinaryFilesSayTheSame) {
+  std::string json = square_gltf(one_node);
+  const Scene text = read(json);
+  while (json.size() % 4) json += ' ';
+  const auto word = [](std::size_t n) {
+    return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(n)});
+  };
+  const std::string glb =
+      "glTF" + word(2) + word(20 + json.size()) + word(json.size()) + "JSON" + json;
+  EXPECT_EQ(scene_hash(read_scene(folder.write("it.glb", glb))), scene_hash(text));
+}
+
+TEST_F(Gltf, MetalsAreMirrorsWhereTheyAreSmooth) {
+  const Material smooth = material(
+      R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":1,"roughnessFactor":0.1}})");
+  EXPECT_FLOAT_EQ(smooth.specular[0], 0.5f);
+  EXPECT_FLOAT_EQ(smooth.reflectance[0], 0.0f);
+  const Material rough = material(
+      R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":1,"roughnessFactor":0.9}})");
+  EXPECT_FLOAT_EQ(rough.reflectance[2], 0.7f);
+  EXPECT_FALSE(rough.is_specular());
+}
+
+TEST_F(Gltf, SheetsShineToBothSidesWhereTheyAreDoubleSided) {
+  const std::string shines = R"("emissiveFactor":[1,1,1])";
+  EXPECT_TRUE(material("{\"doubleSided\":true," + shines + "}").emits_both_sides);
+  const Material front = material("{" + shines + "}");
+  EXPECT_FALSE(front.emits_both_sides);
+  EXPECT_TRUE(front.one_sided);
+  EXPECT_FLOAT_EQ(front.emission[0], pi);
+}
+
+// Transmittance of a pane of index 1.5: 0.96 / 1.04, times its colour.
+TEST_F(Gltf, ClearSheetsAreThinPanesUnlessTheyHaveAThickness) {
+  const std::string base =
+      R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,1,1,1],"metallicFactor":0,"roughnessFactor":0},
+      "extensions":{"KHR_materials_transmission":{"transmissionFactor":1})";
+  const Material pane = material(base + "}}");
+  ASSERT_TRUE(pane.dielectric.has_value());
+  EXPECT_FLOAT_EQ(pane.dielectric->index_of_refraction, 1.0f);
+  EXPECT_NEAR(pane.dielectric->tint[0], 0.5 * 0.96 / 1.04, 1e-6);
+  // Half of the light is left after 1 m; 2 m leave a quarter, so each crossing passes a half.
+  const Material solid = material(base + R"(,"KHR_materials_ior":{"ior":1.3},"KHR_materials_volume":
+      {"thicknessFactor":2,"attenuationDistance":1,"attenuationColor":[0.5,0.5,0.5]}}})");
+  ASSERT_TRUE(solid.dielectric.has_value());
+  EXPECT_FLOAT_EQ(solid.dielectric->index_of_refraction, 1.3f);
+  EXPECT_NEAR(solid.dielectric->tint[1], 0.5, 1e-6);
+  EXPECT_NEAR(solid.dielectric->tint[0], 0.25, 1e-6);
+}
+
+TEST_F(Gltf, PicturesWithinTheFileBecomeTheirMean) {
+  std::ifstream stream(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", std::ios::binary);
+  const std::string png(std::istreambuf_iterator<char>(stream), {});
+  const auto color = [&](const char* mode) {
+    const Scene scene = read(square_gltf(
+        one_node + R"(,"images":[{"uri":"data:image/png;base64,)" + base64(png) +
+            R"("}],"textures":[{"source":0}],"materials":[{"alphaMode":")" + mode +
+            R"(","pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0},
+            "baseColorFactor":[0.8,0.8,0.8,1]}}])",
+        R"(,"material":0)"));
+    return scene.materials.at(0).reflectance[0];
+  };
+  EXPECT_FLOAT_EQ(color("OPAQUE"), 0.4f);
+  EXPECT_FLOAT_EQ(color("MASK"), 0.8f);  // the black half is transparent
+}
+
+// tan(h/2) = aspect tan(v/2)
+TEST_F(Gltf, CamerasLookAlongTheirMinusZ) {
+  const Scene scene = read(square_gltf(
+      R"(,"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"camera":0,"translation":[1,2,3]}],
+      "cameras":[{"name":"a/b","type":"perspective","perspective":{"yfov":1.0,"aspectRatio":2,"znear":0.1}}])"));
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  const Camera& camera = scene.cameras[0];
+  EXPECT_EQ(camera.name, "a_b");
+  EXPECT_NEAR(std::tan(camera.fov_degrees * std::numbers::pi / 360), 2 * std::tan(0.5), 1e-12);
+  EXPECT_EQ(camera.width, 2 * camera.height);
+  EXPECT_LT((camera.direction - Eigen::Vector3d(0, 0, -1)).norm(), 1e-12);
+  EXPECT_LT((camera.position - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
+}
+
+TEST_F(Gltf, WhatIsNotUsedIsNamed) {
+  const Scene scene = read(square_gltf(
+      one_node +
+      R"(,"extensionsUsed":["KHR_lights_punctual","ACME_fur"],"animations":[{"name":"spin"}],
+      "extensions":{"KHR_lights_punctual":{"lights":[{"name":"bulb","type":"point"}]}})"));
+  for (const char* name : {"'bulb'", "'ACME_fur'", "'spin'", "the scene is dark"}) {
+    EXPECT_TRUE(has_note(scene, name)) << name;
+  }
+}
+
+TEST_F(Gltf, MistakesAreToldWithTheirPlace) {
+  expect_error("{\n\"asset\":{\"version\":\"2.0\"},\n\"nodes\":[}", {"it.gltf:3:", "JSON"});
+  expect_error(R"({"asset":{"version":"1.0"}})", {"version '1.0'"});
+  expect_error(square_gltf(R"(,"scenes":[{"nodes":[4]}],"nodes":[{"mesh":0}])"),
+               {"nodes[4]", "only 1"});
+  expect_error(square_gltf(R"(,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":9}])"),
+               {"nodes[0]", "meshes[9]"});
+  expect_error(
+      square_gltf(
+          R"(,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"mesh":0,"children":[0]}])"),
+      {"nodes[0]", "tree"});
+  expect_error(square_gltf(one_node, "", {0, 1, 4}),
+               {"accessors[1]", "index 2 is 4", "4 vertices"});
+  expect_error(square_gltf(one_node, "", {0, 1}), {"no multiple of three"});
+  expect_error(square_gltf(one_node, R"(,"material":3)"), {"materials[3]"});
+  expect_error(square_gltf(one_node, R"(,"mode":9)"), {"mode 9"});
+  expect_error(
+      square_gltf(R"(,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":[1e308,1e308,1e308]}])"),
+      {"it.gltf"});
+  expect_error(square_gltf(R"(,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":[1,1]}])"),
+               {"nodes[0]", "'scale' has 2 numbers"});
+  expect_error(
+      square_gltf(one_node + R"(,"materials":[{"emissiveFactor":[-1,0,0]}])", R"(,"material":0)"),
+      {"materials[0]", "negative"});
+  expect_error(square_gltf(one_node + R"(,"extensionsUsed":["KHR_draco_mesh_compression"])"),
+               {"KHR_draco_mesh_compression", "export it without"});
+  std::string huge = square_gltf(one_node);
+  huge.replace(huge.find("\"count\":4"), 9, "\"count\":9007199254740991");
+  expect_error(huge, {"accessors[0]", "do not fit"});
+  std::string nan = square_gltf(one_node);
+  nan.replace(nan.find("base64,") + 7, 6, "AADAf/");  // the first float becomes 0x7fc00000
+  expect_error(nan, {"accessors[0]", "finite"});
+  expect_error(
+      R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":"gone%20away.bin"}]})",
+      {"buffers[0]", "gone away.bin", "no such file"});
+  expect_error(std::string(200000, '['), {"JSON"});
+  expect_error("glTF", {"cut off"});
+}
+
+}  // namespace
+}  // namespace lightwell

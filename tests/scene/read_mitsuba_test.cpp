@@ -1,0 +1,383 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "scene/errors.h"
+#include "scene/io/glossy.h"
+#include "scene/io/read_scene.h"
+#include "tests/raytrace/temporary_folder.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+const std::string square = R"(<shape type="rectangle"><bsdf type="diffuse"/></shape>)";
+
+class Mitsuba : public testing::Test {
+ protected:
+  Scene read(const std::string& content) const {
+    return read_scene(
+        folder.write("scene.xml", "<scene version=\"3.0.0\">\n" + content + "</scene>"));
+  }
+  // The material of a rectangle with that BSDF.
+  Material material(const std::string& bsdf) const {
+    const Scene scene = read("<shape type=\"rectangle\">" + bsdf + "</shape>");
+    return scene.materials.at(static_cast<std::size_t>(scene.surfaces.at(0).material));
+  }
+  std::string error(const std::string& content) const {
+    try {
+      read(content);
+    } catch (const InputError& refused) {
+      return refused.what();
+    }
+    return "nothing was refused";
+  }
+  TemporaryFolder folder;
+};
+
+const PolygonMesh& mesh_of(const Scene& scene, std::size_t surface = 0) {
+  return std::get<PolygonMesh>(scene.surfaces.at(surface).shape);
+}
+
+double area_of(const PolygonMesh& mesh) {
+  double area = 0.0;
+  for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
+  return area;
+}
+
+Eigen::Vector3d normal_of(const Scene& scene, std::size_t surface = 0) {
+  return facet_normal(mesh_of(scene, surface), mesh_of(scene, surface).facets.at(0));
+}
+
+bool has_note(const Scene& scene, const std::string& text) {
+  for (const std::string& note : scene.notes) {
+    if (note.find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+void expect_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance = 1e-12) {
+  EXPECT_LT((a - b).norm(), tolerance) << a.transpose() << " is not " << b.transpose();
+}
+
+TEST(MitsubaFile, TheCornellBoxIsReadWhole) {
+  const Scene scene = read_scene(LIGHTWELL_TEST_DATA "/scene/mitsuba/cornell-box.xml");
+  EXPECT_EQ(scene.surfaces.size(), 8u);
+  EXPECT_EQ(scene_facets(scene).size(), 6u + 2u * 6u);
+  EXPECT_TRUE(scene.relative_units);
+  const Surface& light = scene.surfaces.at(7);
+  EXPECT_EQ(light.name, "Light");
+  const Material& shining = scene.materials.at(static_cast<std::size_t>(light.material));
+  const std::array radiance = {17.0f, 12.0f, 4.0f};
+  for (int k = 0; k < 3; ++k)
+    EXPECT_FLOAT_EQ(shining.emission[k], static_cast<float>(pi) * radiance[k]);
+  EXPECT_FALSE(shining.emits_both_sides);
+  expect_near(normal_of(scene, 7), {0, -1, 0}, 1e-6);  // six digits in the file
+  EXPECT_NEAR(area_of(mesh_of(scene, 7)), 4 * 0.235 * 0.19, 1e-6);
+  // Five sides of a cube of edge 2 about (0, 1, 0), at distance 1 from it; some of the file's
+  // matrices turn the front outwards, which its two-sided materials do not mind.
+  const Eigen::Vector3d middle(0, 1, 0);
+  for (std::size_t wall = 0; wall < 5; ++wall) {
+    EXPECT_NEAR(area_of(mesh_of(scene, wall)), 4.0, 1e-5);
+    const double distance = normal_of(scene, wall).dot(middle - mesh_of(scene, wall).vertices[0]);
+    EXPECT_NEAR(std::abs(distance), 1.0, 1e-6);
+  }
+  expect_near(normal_of(scene, 0), {0, 1, 0}, 1e-6);
+  expect_near(normal_of(scene, 2), {0, 0, -1}, 1e-6);
+  for (const Material& material : scene.materials) EXPECT_FALSE(material.one_sided);
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_DOUBLE_EQ(scene.cameras[0].fov_degrees, 19.5);
+  EXPECT_EQ(scene.cameras[0].width, 1024);
+  expect_near(scene.cameras[0].position, {0, 1, 6.8});
+  expect_near(scene.cameras[0].direction, {0, 0, -1});
+  expect_near(scene.cameras[0].up, {0, 1, 0});
+  EXPECT_TRUE(has_note(scene, "path_guiding_integrator"));
+}
+
+TEST_F(Mitsuba, BothDialectsSayTheSame) {
+  const auto scene = [&](const char* version, const char* to_world, const char* int_ior,
+                         const char* fov_axis) {
+    return read_scene(folder.write(
+        "dialect.xml",
+        std::string("<scene version='") + version +
+            "'><sensor type='perspective'><float name='fov' value='50'/><string name='" + fov_axis +
+            "' value='y'/><transform name='" + to_world +
+            "'><lookat origin='1,2,3' target='0,0,0' up='0,1,0'/></transform></sensor>"
+            "<shape type='sphere'><transform name='" +
+            to_world + "'><scale value='2'/></transform><bsdf type='dielectric'><float name='" +
+            int_ior + "' value='1.7'/></bsdf></shape></scene>"));
+  };
+  const Scene old = scene("0.6.0", "toWorld", "intIOR", "fovAxis");
+  const Scene recent = scene("3.0.0", "to_world", "int_ior", "fov_axis");
+  EXPECT_EQ(scene_hash(old), scene_hash(recent));
+  EXPECT_EQ(old.cameras.at(0).fov_degrees, recent.cameras.at(0).fov_degrees);
+  EXPECT_DOUBLE_EQ(std::get<Sphere>(old.surfaces.at(0).shape).radius, 2.0);
+}
+
+TEST_F(Mitsuba, TransformationsApplyInTheirOrder) {
+  const Scene scene = read(R"(<shape type="rectangle"><transform name="to_world">
+      <scale x="2"/><rotate z="1" angle="90"/><translate x="10"/></transform></shape>)");
+  // (1, -1, 0) -> (2, -1, 0) -> (1, 2, 0) -> (11, 2, 0)
+  expect_near(mesh_of(scene).vertices.at(1), {11, 2, 0});
+  EXPECT_NEAR(area_of(mesh_of(scene)), 8.0, 1e-12);
+}
+
+TEST_F(Mitsuba, LookAtAndItsMatrixAreOneCamera) {
+  const std::string sensor = R"(<sensor type="perspective"><transform name="to_world">)";
+  const Scene scene =
+      read(square + sensor +
+           R"(<lookat origin="0,0,5" target="0,0,0" up="0,1,0"/></transform></sensor>)" + sensor +
+           R"(<matrix value="-1 0 0 0 0 1 0 0 0 0 -1 5 0 0 0 1"/></transform></sensor>)");
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  expect_near(scene.cameras[0].direction, scene.cameras[1].direction);
+  expect_near(scene.cameras[0].up, scene.cameras[1].up);
+  expect_near(scene.cameras[0].position, {0, 0, 5});
+}
+
+// tan(h/2) / tan(v/2) = width / height; 50 mm before a film of diagonal sqrt(36^2 + 24^2) mm.
+TEST_F(Mitsuba, FieldsOfViewBecomeHorizontalOnes) {
+  const auto tangent = [&](const std::string& properties) {
+    const Scene scene = read(square + "<sensor type=\"perspective\">" + properties +
+                             R"(<film type="hdrfilm"><integer name="width" value="200"/>
+                                <integer name="height" value="100"/></film></sensor>)");
+    return std::tan(scene.cameras.at(0).fov_degrees * pi / 360.0);
+  };
+  const std::string right_angle = R"(<float name="fov" value="90"/>)";
+  const auto axis = [](const std::string& name) {
+    return R"(<string name="fov_axis" value=")" + name + "\"/>";
+  };
+  EXPECT_NEAR(tangent(right_angle), 1.0, 1e-12);
+  EXPECT_NEAR(tangent(right_angle + axis("y")), 2.0, 1e-12);
+  EXPECT_NEAR(tangent(right_angle + axis("smaller")), 2.0, 1e-12);
+  EXPECT_NEAR(tangent(right_angle + axis("larger")), 1.0, 1e-12);
+  EXPECT_NEAR(tangent(right_angle + axis("diagonal")), 2.0 / std::sqrt(5.0), 1e-12);
+  EXPECT_NEAR(tangent(""), 0.5 * std::hypot(36, 24) / 50.0 * 2.0 / std::sqrt(5.0), 1e-12);
+}
+
+TEST_F(Mitsuba, MirroredShapesKeepTheirFront) {
+  const auto mirrored = [&](const char* type, const char* more) {
+    return read(std::string("<shape type='") + type +
+                "'><transform name='to_world'><scale x='-1'/></transform>" + more + "</shape>");
+  };
+  expect_near(normal_of(mirrored("rectangle", "")), {0, 0, 1});
+  expect_near(normal_of(mirrored("disk", "")), {0, 0, 1});
+  expect_near(normal_of(mirrored("rectangle", "<boolean name='flip_normals' value='true'/>")),
+              {0, 0, -1});
+  const Scene cube = mirrored("cube", "");
+  for (const Facet& facet : mesh_of(cube).facets) {
+    EXPECT_GT(facet_normal(mesh_of(cube), facet).dot(mesh_of(cube).vertices[facet.boundary[0]]),
+              0.9);
+  }
+}
+
+// Where a mesh gives normals they tell the front, else the order of its corners does.
+TEST_F(Mitsuba, NormalsOfAMeshTellItsFront) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  folder.write("plain.obj", corners + "f 1 2 3\n");
+  folder.write("down.obj", corners + "vn 0 0 -1\nf 1//1 2//1 3//1\n");
+  const auto up = [&](const std::string& file, const std::string& more) {
+    return normal_of(read("<shape type=\"obj\"><string name=\"filename\" value=\"" + file + "\"/>" +
+                          more + "<bsdf type=\"diffuse\"/></shape>"))
+        .z();
+  };
+  const std::string mirror = R"(<transform name="to_world"><scale x="-1"/></transform>)";
+  EXPECT_EQ(up("plain.obj", ""), 1.0);
+  EXPECT_EQ(up("plain.obj", mirror), -1.0);
+  EXPECT_EQ(up("down.obj", ""), -1.0);
+  EXPECT_EQ(up("down.obj", mirror), -1.0);
+  EXPECT_EQ(up("down.obj", R"(<boolean name="face_normals" value="true"/>)"), 1.0);
+}
+
+TEST_F(Mitsuba, RoundShapesKeepTheirArea) {
+  const std::string stretched = R"(<transform name="to_world"><scale value="3"/></transform>)";
+  EXPECT_NEAR(area_of(mesh_of(read("<shape type='disk'>" + stretched + "</shape>"))), 9 * pi, 1e-9);
+  const std::string tube = R"(<shape type="cylinder"><point name="p0" x="1"/>
+      <point name="p1" x="1" y="2"/><float name="radius" value="0.5"/></shape>)";
+  EXPECT_NEAR(area_of(mesh_of(read(tube))), 2 * pi * 0.5 * 2, 1e-9);
+  // Inside out, so that it is a polygon mesh, its normals towards the middle.
+  const Scene hollow = read(R"(<shape type="sphere"><float name="radius" value="2"/>
+      <boolean name="flip_normals" value="true"/></shape>)");
+  EXPECT_NEAR(area_of(mesh_of(hollow)), 16 * pi, 1e-9);
+  EXPECT_LT(normal_of(hollow).dot(mesh_of(hollow).vertices[mesh_of(hollow).facets[0].boundary[0]]),
+            0.0);
+  const Scene ball =
+      read(R"(<shape type="sphere"><point name="center" x="1"/><transform name="to_world">
+      <rotate y="1" angle="30"/><scale value="2"/></transform></shape>)");
+  const auto& sphere = std::get<Sphere>(ball.surfaces.at(0).shape);
+  EXPECT_NEAR(sphere.radius, 2.0, 1e-12);
+  expect_near(sphere.center, {2 * std::cos(pi / 6), 0, -2 * std::sin(pi / 6)});
+}
+
+TEST_F(Mitsuba, InstancesPlaceTheirGroup) {
+  const Scene scene = read(R"(
+      <shape type="shapegroup" id="pair">
+        <shape type="rectangle" id="one"/>
+        <shape type="rectangle" id="two"><transform name="to_world"><translate z="1"/></transform></shape>
+      </shape>
+      <shape type="instance" id="here"><ref id="pair"/></shape>
+      <shape type="instance" id="there"><ref id="pair"/>
+        <transform name="to_world"><translate x="5"/></transform></shape>)");
+  ASSERT_EQ(scene.surfaces.size(), 4u);
+  EXPECT_EQ(scene.surfaces[3].name, "there/two");
+  expect_near(mesh_of(scene, 3).vertices.at(0), {4, -1, 1});
+  EXPECT_EQ(scene.surfaces[1].material, scene.surfaces[3].material);
+}
+
+TEST_F(Mitsuba, OneSidedUnlessTheFileSaysTwosided) {
+  EXPECT_TRUE(material(R"(<bsdf type="diffuse"/>)").one_sided);
+  EXPECT_FALSE(material(R"(<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>)").one_sided);
+  EXPECT_TRUE(material(R"(<bsdf type="bumpmap"><bsdf type="diffuse"/></bsdf>)").one_sided);
+  EXPECT_FALSE(
+      material(R"(<bsdf type="mask"><bsdf type="twosided"><bsdf type="plastic"/></bsdf></bsdf>)")
+          .one_sided);
+}
+
+TEST_F(Mitsuba, MetalsBecomeMirrorsAndGlassStaysGlass) {
+  const Material chrome = material(R"(<bsdf type="conductor"><rgb name="eta" value="1.5"/>
+      <rgb name="k" value="0"/><rgb name="specular_reflectance" value="0.5"/></bsdf>)");
+  EXPECT_NEAR(chrome.specular[1], 0.5 * 0.04, 1e-7);
+  EXPECT_FLOAT_EQ(
+      material(R"(<bsdf type="conductor"><string name="material" value="none"/></bsdf>)")
+          .specular[0],
+      1.0f);
+  const Material brushed = material(R"(<bsdf type="roughconductor"><float name="alpha" value="0.4"/>
+      <string name="material" value="none"/></bsdf>)");
+  EXPECT_FLOAT_EQ(brushed.reflectance[0], 1.0f);
+  EXPECT_FALSE(brushed.is_specular());
+  const Material water = material(R"(<bsdf type="dielectric"><string name="int_ior" value="water"/>
+      <float name="ext_ior" value="1"/></bsdf>)");
+  ASSERT_TRUE(water.dielectric.has_value());
+  EXPECT_FLOAT_EQ(water.dielectric->index_of_refraction, 1.333f);
+  const Material pane = material(R"(<bsdf type="thindielectric"><float name="int_ior" value="1.5"/>
+      <float name="ext_ior" value="1"/></bsdf>)");
+  ASSERT_TRUE(pane.dielectric.has_value());
+  EXPECT_FLOAT_EQ(pane.dielectric->index_of_refraction, 1.0f);
+  EXPECT_NEAR(pane.dielectric->tint[0], 0.96 / 1.04, 1e-6);
+}
+
+TEST_F(Mitsuba, PlasticsReflectByBaseAndGloss) {
+  const Material plastic =
+      material(R"(<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.8"/>
+      <float name="int_ior" value="1.5"/><float name="ext_ior" value="1"/>
+      <boolean name="nonlinear" value="true"/></bsdf>)");
+  const double F_o = diffuse_fresnel(1.5), F_i = diffuse_fresnel(1.0 / 1.5);
+  EXPECT_NEAR(plastic.reflectance[0], F_o + (1 - F_o) * (1 - F_i) * 0.8 / (1 - 0.8 * F_i), 1e-6);
+}
+
+TEST_F(Mitsuba, ColoursComeInEveryForm) {
+  const auto reflectance = [&](const std::string& value) {
+    return material("<bsdf type=\"diffuse\">" + value + "</bsdf>").reflectance;
+  };
+  EXPECT_FLOAT_EQ(reflectance(R"(<rgb name="reflectance" value="0.1, 0.2 0.3"/>)")[2], 0.3f);
+  EXPECT_FLOAT_EQ(reflectance(R"(<spectrum name="reflectance" value="0.4"/>)")[1], 0.4f);
+  EXPECT_FLOAT_EQ(reflectance(R"(<float name="reflectance" value="0.25"/>)")[0], 0.25f);
+  // 128/255 = 0.50196 -> 0.21586 (IEC 61966-2-1).
+  EXPECT_NEAR(reflectance(R"(<srgb name="reflectance" value="#8000ff"/>)")[0], 0.21586, 1e-5);
+  // A ramp from 0 at 400 nm to 0.6 at 700 nm: means over 600-700, 500-600 and 400-500 nm.
+  const Spectrum ramp = reflectance(R"(<spectrum name="reflectance" value="400:0, 700:0.6"/>)");
+  EXPECT_NEAR(ramp[0], 0.5, 1e-6);
+  EXPECT_NEAR(ramp[1], 0.3, 1e-6);
+  EXPECT_NEAR(ramp[2], 0.1, 1e-6);
+  const Spectrum checks = reflectance(R"(<texture type="checkerboard" name="reflectance">
+      <rgb name="color0" value="0.2"/><rgb name="color1" value="0.6"/></texture>)");
+  EXPECT_FLOAT_EQ(checks[0], 0.4f);
+}
+
+TEST_F(Mitsuba, PicturesBecomeTheirMeanColour) {
+  std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", folder / "my picture.png");
+  const std::string picture = R"(<texture type="bitmap" name="reflectance">
+      <string name="filename" value="my picture.png"/></texture>)";
+  EXPECT_FLOAT_EQ(material("<bsdf type='diffuse'>" + picture + "</bsdf>").reflectance[0], 0.5f);
+  // A mask cuts the black, transparent half away.
+  EXPECT_FLOAT_EQ(material("<bsdf type='mask'><bsdf type='diffuse'>" + picture + "</bsdf></bsdf>")
+                      .reflectance[0],
+                  1.0f);
+}
+
+TEST_F(Mitsuba, DefaultsAndReferencesAndIncludesArePutInPlace) {
+  folder.write("walls.xml", R"(<scene version="3.0.0"><bsdf type="diffuse" id="wall">
+      <rgb name="reflectance" value="$shade"/></bsdf></scene>)");
+  const Scene scene = read(R"(<default name="shade" value="0.3"/><default name="shade" value="0.9"/>
+      <include filename="walls.xml"/><shape type="rectangle"><ref id="wall"/></shape>)");
+  EXPECT_EQ(scene.materials.at(0).name, "wall");
+  EXPECT_FLOAT_EQ(scene.materials.at(0).reflectance[0], 0.3f);  // the first one counts
+}
+
+TEST_F(Mitsuba, WhatIsNotKnownIsNamedOnceAndPassedOver) {
+  const Scene scene = read(square + R"(<emitter type="envmap"/><emitter type="envmap"/>
+      <integrator type="magic"/><shape type="hair"/><medium type="fog"/>
+      <shape type="rectangle"><bsdf type="velvet"/></shape>)");
+  EXPECT_EQ(scene.surfaces.size(), 2u);
+  for (const char* name :
+       {"'envmap' give no light", "'magic'", "plugin 'hair'", "<medium", "'velvet'"}) {
+    int times = 0;
+    for (const std::string& note : scene.notes) times += note.find(name) != std::string::npos;
+    EXPECT_EQ(times, 1) << name;
+  }
+  EXPECT_TRUE(has_note(scene, "the scene is dark"));
+}
+
+TEST_F(Mitsuba, FlattenedFacesAreDroppedWithACount) {
+  const Scene scene = read(square + R"(<shape type="cube"><transform name="to_world">
+      <scale z="0"/></transform></shape>)");
+  EXPECT_EQ(mesh_of(scene, 1).facets.size(), 2u);
+  EXPECT_EQ(scene.dropped_polygons, 4);
+}
+
+TEST_F(Mitsuba, MistakesAreToldWithTheirLine) {
+  const auto expect = [&](const std::string& content, std::initializer_list<const char*> parts) {
+    const std::string message = error(content);
+    for (const char* part : parts) {
+      EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
+    }
+  };
+  expect("<shape type='rectangle'>", {"scene.xml:2:", "XML"});
+  expect("\n<shape type='rectangle'><ref id='wal'/></shape><bsdf type='diffuse' id='wall'/>",
+         {"scene.xml:3:", "'wal'", "Did you mean 'wall'?"});
+  expect(
+      "<bsdf type='bumpmap' id='a'><ref id='b'/></bsdf>\n<bsdf type='mask' id='b'><ref "
+      "id='a'/></bsdf>"
+      "<shape type='cube'><ref id='a'/></shape>",
+      {"refers to itself"});
+  expect("<shape type='cube' id='a'/><shape type='cube' id='a'/>", {"the id 'a'"});
+  expect(
+      "<shape type='cube'><transform name='to_world'>\n<matrix value='nan 0 0 0 0 1 0 0 0 0 1 0 0 "
+      "0 0 1'/>"
+      "</transform></shape>",
+      {"scene.xml:3:", "'nan'", "finite"});
+  expect(
+      "<shape type='cube'><transform name='to_world'><matrix value='1 2 3'/></transform></shape>",
+      {"3 numbers", "16"});
+  expect("<shape type='cube'><transform name='to_world'><scale value='0'/></transform></shape>",
+         {"shrinks"});
+  expect("<shape type='obj'><string name='filename' value='gone.obj'/></shape>",
+         {"gone.obj", "no such file"});
+  expect("<shape type='sphere'><float name='radius' value='-1'/></shape>", {"radius -1"});
+  expect(
+      "<shape type='cube'><bsdf type='diffuse'><rgb name='reflectance' value='-1'/></bsdf></shape>",
+      {"reflectance", "-1"});
+  expect(
+      "<shape type='cube'><bsdf type='diffuse'><rgb name='reflectance' "
+      "value='$shade'/></bsdf></shape>",
+      {"$shade", "<default>"});
+  expect("<include filename='scene.xml'/>", {"includes"});
+  expect("<shape type='instance'/>", {"shapegroup"});
+  expect(
+      "<default name='a' value='xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx'/>"
+      "<default name='b' "
+      "value='$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a$a'/>"
+      "<default name='c' "
+      "value='$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b$b'/>",
+      {"grows beyond"});
+  std::string deep;
+  for (int i = 0; i < 10000; ++i) deep += "<bsdf type='mask'>";
+  for (int i = 0; i < 10000; ++i) deep += "</bsdf>";
+  expect(deep, {"nested more than"});
+  expect("", {"no shapes"});
+}
+
+}  // namespace
+}  // namespace lightwell
