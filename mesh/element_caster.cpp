@@ -80,6 +80,15 @@ ElementCaster::ElementCaster(const PatchMesh& mesh)
   }
 }
 
+int ElementCaster::hidden_elements(int patch) const {
+  const bool is_back = mesh_.is_back[patch] != 0;
+  int count = 0;
+  for (int e = mesh_.first_element[patch]; e < mesh_.first_element[patch + 1]; ++e) {
+    count += is_hidden(is_back ? mesh_.twin[e] : e, is_back) ? 1 : 0;
+  }
+  return count;
+}
+
 // Primitives in RayCaster's order: triangles, quads, spheres.
 CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh,
                                           std::vector<Primitive>& primitives) {

@@ -42,6 +42,8 @@ class ElementCaster {
   bool is_hidden(int front_element, bool from_back) const {
     return (hidden_[static_cast<std::size_t>(front_element)] & (from_back ? 2 : 1)) != 0;
   }
+  /// How many of a patch's elements another surface that lies on them hides.
+  int hidden_elements(int patch) const;
   const PatchMesh& mesh() const { return mesh_; }
 
  private:

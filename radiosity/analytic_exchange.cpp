@@ -44,7 +44,7 @@ class PairVisibility {
     parallel_for(mesh_.patch_count(), 64, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         ends_[i] = shafts_.end(outlines[i], mesh_.facet[i]);
-        const int hidden = hidden_elements(i),
+        const int hidden = caster_.hidden_elements(i),
                   all = mesh_.first_element[i + 1] - mesh_.first_element[i];
         is_hidden_[i] = hidden == all;
         is_covered_[i] = hidden > 0 || shafts_.is_covered(ends_[i]);
@@ -72,15 +72,6 @@ class PairVisibility {
   }
 
  private:
-  int hidden_elements(int patch) const {
-    const bool is_back = mesh_.is_back[patch] != 0;
-    int count = 0;
-    for (int e = mesh_.first_element[patch]; e < mesh_.first_element[patch + 1]; ++e) {
-      count += caster_.is_hidden(is_back ? mesh_.twin[e] : e, is_back) ? 1 : 0;
-    }
-    return count;
-  }
-
   // Kernel-weighted share of point pairs that see each other; more pairs while they leave F_ij more
   // uncertain than asked.
   Visibility sampled(int i, int j, double largest_form_factor) const {

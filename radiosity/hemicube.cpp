@@ -4,6 +4,7 @@
 #include <map>
 
 #include "radiosity/hemicube_view.h"
+#include "radiosity/ray_cast_rows.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -131,6 +132,10 @@ std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const Light
   const PatchMesh& mesh = caster.mesh();
   const HemicubeCells cells(options.resolution);
   const HemicubeScan scan(caster);
+  // What lies on a patch is all that it sees, a different part of it from every place: one place
+  // says nothing about the others.
+  constexpr int rays_where_covered = 1024;
+  const RowCaster row_caster(caster, paths, rays_where_covered);
   const bool by_rays = options.back_end == HemicubeOptions::BackEnd::rays;
   const int patches = mesh.patch_count();
   std::vector<EstimatedRow> rows(patches);
@@ -144,9 +149,15 @@ std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const Light
     parallel_for(std::min(slice, patches - begin), grain, [&](int low, int high) {
       Tally tally(caster, paths, cells);
       HemicubeScan::Scratch scratch;
+      RowCaster::Scratch ray_scratch(mesh);
       std::vector<int> items(cells.cell_count());
       for (int i = begin + low; i < begin + high; ++i) {
         if (!paths.is_diffuse(mesh.facet[i])) continue;
+        if (caster.hidden_elements(i) > 0) {
+          rows[i] = row_caster.cast(i, rays_where_covered, ray_scratch);
+          rows[i].trust = 1.0 / mesh.area[i];
+          continue;
+        }
         const HemicubeEye eye = hemicube_eye(mesh, i, !by_rays);
         if (by_rays) {
           cast_hemicube(caster, eye, cells, items);

@@ -96,7 +96,9 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
   std::vector<double> area_to(mesh.patch_count());
   double total = 0.0;
   for (int p = 0; p < mesh.patch_count(); ++p) {
-    if ((mesh.reflectance.row(p) > 0.0f).any()) total += mesh.area[p];
+    // Nobody sees what another surface lies on; looking from above would find that surface.
+    const bool is_seen = caster.hidden_elements(p) == 0;
+    if (is_seen && (mesh.reflectance.row(p) > 0.0f).any()) total += mesh.area[p];
     area_to[p] = total;
   }
   if (!(total > 0.0) || options.error_points < 1) return 0.0;

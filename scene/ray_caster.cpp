@@ -1,103 +1,16 @@
 #include "scene/ray_caster.h"
 
-#include <fmt/format.h>
-
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <stdexcept>
 
-#include "scene/cast_spheres.h"
-#include "scene/coplanar_groups.h"
-#include "scene/embree_queries.h"
-#include "scene/parallel.h"
+#include "scene/embree_scene.h"
 
 namespace lightwell {
-namespace {
 
-// Embree's numbers of the two geometries.
-enum GeometryId : unsigned { polygons_id, spheres_id };
-
-}  // namespace
-
-struct RayCaster::Impl {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double rounding = 0.0;  // how far float coordinates move a point at most, metres
-  std::vector<int> group;
-  std::unique_ptr<CoplanarGroups> planes;
-  // Per triangle and quad: sides from which another surface that lies on it hides it.
-  enum Hidden : std::uint8_t { from_front = 1, from_back = 2 };
-  std::vector<std::uint8_t> hidden;
-  SphereSet sphere_set;
-  int triangles = 0, quads = 0;
-
-  Impl() = default;
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-  ~Impl() {
-    if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
-  }
-
-  void check() const {
-    const RTCError error = rtcGetDeviceError(device);
-    if (error != RTC_ERROR_NONE) {
-      throw std::runtime_error(fmt::format(
-          "Embree could not build the ray-casting scene (error {}): {}", static_cast<int>(error),
-          error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory; use a larger patch size"
-                                           : "please report the scene"));
-    }
-  }
-
-  void attach(RTCGeometry geometry, GeometryId id) {
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, id);
-    rtcReleaseGeometry(geometry);
-  }
-
-  // Embree keeps a tree for every type of geometry, and a ray goes down each of them. So where
-  // there are quads, triangles are quads that end in their last corner twice; u and v remain the
-  // same.
-  void add_polygons(const CastGeometry& source) {
-    const std::size_t count = source.triangles.size() + source.quads.size();
-    if (count == 0) return;
-    const bool as_quads = !source.quads.empty();
-    const std::size_t corners = as_quads ? 4 : 3;
-    const RTCGeometry geometry =
-        rtcNewGeometry(device, as_quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                          RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                          source.vertices.size()));
-    auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, as_quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
-        corners * sizeof(unsigned), count));
-    check();
-    for (const Eigen::Vector3d& vertex : source.vertices) {
-      for (int c = 0; c < 3; ++c) *v++ = static_cast<float>(vertex[c] - center[c]);
-    }
-    for (const auto& triangle : source.triangles) {
-      for (std::size_t c = 0; c < corners; ++c) {
-        *index++ = static_cast<unsigned>(triangle[std::min<std::size_t>(c, 2)]);
-      }
-    }
-    for (const auto& quad : source.quads) {
-      for (const int corner : quad) *index++ = static_cast<unsigned>(corner);
-    }
-    attach(geometry, polygons_id);
-  }
-
-  void add_spheres(const CastGeometry& source) {
-    if (source.spheres.empty()) return;
-    sphere_set = {
-        .spheres = source.spheres,
-        .group = {group.end() - static_cast<std::ptrdiff_t>(source.spheres.size()), group.end()},
-        .center = center,
-        .rounding = rounding};
-    attach(sphere_geometry(device, sphere_set), spheres_id);
-  }
+struct RayCaster::Impl : EmbreeScene {
+  using EmbreeScene::EmbreeScene;
 
   // A ray that starts on a group begins past its plane by what rounding may move it, so that it
   // rarely meets that plane and needs a second query. Where another surface may lie on the plane it
@@ -126,10 +39,6 @@ struct RayCaster::Impl {
 
   bool starts_covered(const Ray& ray) const {
     return planes->may_be_covered(ray.origin_group, ray.origin);
-  }
-
-  int primitive(const RTCHit& hit) const {
-    return static_cast<int>(hit.primID) + (hit.geomID == spheres_id ? triangles + quads : 0);
   }
 
   // Whether the plane of a hit is one with a group's, there where the ray meets it.
@@ -174,66 +83,6 @@ struct RayCaster::Impl {
     const Ray& ray = context.rays[RTCRayN_id(args->ray, 1, 0)];
     const float t = RTCRayN_tfar(args->ray, 1, 0);
     if (!caster.counts(hit, t, ray, context.target)) args->valid[0] = 0;
-  }
-
-  // Groups that lie on a place of a plane, itself included.
-  std::vector<int> groups_at(const Eigen::Vector3d& place, int on) const {
-    struct Search : QueryContext {
-      std::vector<int> found;
-    } search;
-    init(search, nullptr);
-    search.caster = this;
-    const Eigen::Vector3d& normal = planes->normal(on);
-    const Eigen::Vector3d from = place - center - 8.0 * rounding * normal;
-    RTCRayHit query{};
-    query.ray.org_x = static_cast<float>(from.x());
-    query.ray.org_y = static_cast<float>(from.y());
-    query.ray.org_z = static_cast<float>(from.z());
-    query.ray.dir_x = static_cast<float>(normal.x());
-    query.ray.dir_y = static_cast<float>(normal.y());
-    query.ray.dir_z = static_cast<float>(normal.z());
-    query.ray.tfar = static_cast<float>(16.0 * rounding);
-    query.ray.mask = ~0u;
-    clear(query.hit);
-    intersect(scene, search, query, [](const RTCFilterFunctionNArguments* args) {
-      auto& here = *static_cast<Search*>(args->context);
-      const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-      const auto& caster = *static_cast<const Impl*>(here.caster);
-      here.found.push_back(caster.group[caster.primitive(hit)]);
-      args->valid[0] = 0;  // go on to the next
-    });
-    return search.found;
-  }
-
-  // Primitives are asked at their centre: whoever wants this exact cuts them where others end.
-  void find_hidden(const CastGeometry& source) {
-    hidden.assign(static_cast<std::size_t>(triangles + quads), 0);
-    constexpr double parallel = 1.0 - 1e-9;
-    const auto look_at = [&](int p, std::span<const int> polygon) {
-      const int g = group[p];
-      if (!planes->has_overlaps(g)) return;
-      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-      for (const int v : polygon) mean += source.vertices[v] / static_cast<double>(polygon.size());
-      if (!planes->may_be_covered(g, mean)) return;
-      const Eigen::Vector3d front =
-          (source.vertices[polygon[1]] - source.vertices[polygon[0]])
-              .cross(source.vertices[polygon[2]] - source.vertices[polygon[0]]);
-      const int facing = front.dot(planes->normal(g)) > 0.0 ? 1 : -1;
-      for (const int other : groups_at(mean, g)) {
-        if (other == g || std::abs(planes->normal(g).dot(planes->normal(other))) <= parallel) {
-          continue;
-        }
-        const int above = planes->order(other, g);
-        if (above != 0) hidden[p] |= above == facing ? from_front : from_back;
-      }
-    };
-    for (int i = 0; i < triangles; ++i) look_at(i, source.triangles[i]);
-    for (int i = 0; i < quads; ++i) look_at(triangles + i, source.quads[i]);
-  }
-
-  static void clear(RTCHit& hit) {
-    hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   }
 
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -371,56 +220,7 @@ struct RayCaster::Impl {
   }
 };
 
-RayCaster::RayCaster(const CastGeometry& geometry) : impl_(std::make_unique<Impl>()) {
-  Impl& m = *impl_;
-  m.triangles = static_cast<int>(geometry.triangles.size());
-  m.quads = static_cast<int>(geometry.quads.size());
-  const int total = m.triangles + m.quads + static_cast<int>(geometry.spheres.size());
-  if (static_cast<int>(geometry.group.size()) != total) {
-    throw std::invalid_argument(
-        fmt::format("RayCaster: {} groups given for {} primitives", geometry.group.size(), total));
-  }
-  m.group = geometry.group;
-
-  Eigen::AlignedBox3d box;
-  for (const auto& v : geometry.vertices) box.extend(v);
-  for (const auto& s : geometry.spheres) {
-    box.extend(s.center - Eigen::Vector3d::Constant(s.radius));
-    box.extend(s.center + Eigen::Vector3d::Constant(s.radius));
-  }
-  if (!box.isEmpty()) m.center = box.center();
-  constexpr double roundings = 4.0;  // origin, vertices and the intersection's own arithmetic
-  if (!box.isEmpty()) {
-    m.rounding = roundings * 0.5 * box.diagonal().norm() * std::numeric_limits<float>::epsilon();
-  }
-
-  m.planes = std::make_unique<CoplanarGroups>(geometry, m.rounding);
-
-  // One thread builds, whatever the user's limit: the order inside Embree's leaves, and with it
-  // which of two primitives wins on a shared edge, must not depend on it.
-  const ThreadLimit one(1);
-#ifdef LIGHTWELL_STD_THREADS
-  m.device = rtcNewDevice("threads=1");
-#else
-  m.device = rtcNewDevice(nullptr);
-#endif
-  if (!m.device) throw std::runtime_error("Embree could not be started on this processor.");
-  m.scene = rtcNewScene(m.device);
-  // Allows the filter; costs nothing measurable where none is given.
-#if RTC_VERSION_MAJOR >= 4
-  constexpr int filter_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
-#else
-  constexpr int filter_flag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
-#endif
-  rtcSetSceneFlags(m.scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | filter_flag));
-  rtcSetSceneBuildQuality(m.scene, RTC_BUILD_QUALITY_MEDIUM);
-  m.add_polygons(geometry);
-  m.add_spheres(geometry);
-  rtcCommitScene(m.scene);
-  m.check();
-  m.find_hidden(geometry);
-}
-
+RayCaster::RayCaster(const CastGeometry& geometry) : impl_(std::make_unique<Impl>(geometry)) {}
 RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;

@@ -1,4 +1,5 @@
 #include "radiosity/shaft.h"
+#include "mesh/patch_sampler.h"
 
 #include <gtest/gtest.h>
 

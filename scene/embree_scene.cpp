@@ -1,0 +1,182 @@
+#include "scene/embree_scene.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "scene/parallel.h"
+
+namespace lightwell {
+
+EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
+  triangles = static_cast<int>(geometry.triangles.size());
+  quads = static_cast<int>(geometry.quads.size());
+  const int total = triangles + quads + static_cast<int>(geometry.spheres.size());
+  if (static_cast<int>(geometry.group.size()) != total) {
+    throw std::invalid_argument(
+        fmt::format("RayCaster: {} groups given for {} primitives", geometry.group.size(), total));
+  }
+  group = geometry.group;
+
+  Eigen::AlignedBox3d box;
+  for (const auto& v : geometry.vertices) box.extend(v);
+  for (const auto& s : geometry.spheres) {
+    box.extend(s.center - Eigen::Vector3d::Constant(s.radius));
+    box.extend(s.center + Eigen::Vector3d::Constant(s.radius));
+  }
+  if (!box.isEmpty()) center = box.center();
+  constexpr double roundings = 4.0;  // origin, vertices and the intersection's own arithmetic
+  if (!box.isEmpty()) {
+    rounding = roundings * 0.5 * box.diagonal().norm() * std::numeric_limits<float>::epsilon();
+  }
+
+  planes = std::make_unique<CoplanarGroups>(geometry, rounding);
+
+  // One thread builds, whatever the user's limit: the order inside Embree's leaves, and with it
+  // which of two primitives wins on a shared edge, must not depend on it.
+  const ThreadLimit one(1);
+#ifdef LIGHTWELL_STD_THREADS
+  device = rtcNewDevice("threads=1");
+#else
+  device = rtcNewDevice(nullptr);
+#endif
+  if (!device) throw std::runtime_error("Embree could not be started on this processor.");
+  scene = rtcNewScene(device);
+  // Allows the filter; costs nothing measurable where none is given.
+#if RTC_VERSION_MAJOR >= 4
+  constexpr int filter_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+#else
+  constexpr int filter_flag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+#endif
+  rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | filter_flag));
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+  add_polygons(geometry);
+  add_spheres(geometry);
+  rtcCommitScene(scene);
+  check();
+  find_hidden(geometry);
+}
+
+EmbreeScene::~EmbreeScene() {
+  if (scene) rtcReleaseScene(scene);
+  if (device) rtcReleaseDevice(device);
+}
+
+void EmbreeScene::check() const {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error != RTC_ERROR_NONE) {
+    throw std::runtime_error(fmt::format(
+        "Embree could not build the ray-casting scene (error {}): {}", static_cast<int>(error),
+        error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory; use a larger patch size"
+                                         : "please report the scene"));
+  }
+}
+
+void EmbreeScene::attach(RTCGeometry geometry, GeometryId id) {
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+// Embree keeps a tree for every type of geometry, and a ray goes down each of them. So where
+// there are quads, triangles are quads that end in their last corner twice; u and v remain the
+// same.
+void EmbreeScene::add_polygons(const CastGeometry& source) {
+  const std::size_t count = source.triangles.size() + source.quads.size();
+  if (count == 0) return;
+  const bool as_quads = !source.quads.empty();
+  const std::size_t corners = as_quads ? 4 : 3;
+  const RTCGeometry geometry =
+      rtcNewGeometry(device, as_quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                        RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                        source.vertices.size()));
+  auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, as_quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
+      corners * sizeof(unsigned), count));
+  check();
+  for (const Eigen::Vector3d& vertex : source.vertices) {
+    for (int c = 0; c < 3; ++c) *v++ = static_cast<float>(vertex[c] - center[c]);
+  }
+  for (const auto& triangle : source.triangles) {
+    for (std::size_t c = 0; c < corners; ++c) {
+      *index++ = static_cast<unsigned>(triangle[std::min<std::size_t>(c, 2)]);
+    }
+  }
+  for (const auto& quad : source.quads) {
+    for (const int corner : quad) *index++ = static_cast<unsigned>(corner);
+  }
+  attach(geometry, polygons_id);
+}
+
+void EmbreeScene::add_spheres(const CastGeometry& source) {
+  if (source.spheres.empty()) return;
+  sphere_set = {
+      .spheres = source.spheres,
+      .group = {group.end() - static_cast<std::ptrdiff_t>(source.spheres.size()), group.end()},
+      .center = center,
+      .rounding = rounding};
+  attach(sphere_geometry(device, sphere_set), spheres_id);
+}
+
+// Groups that lie on a place of a plane, itself included.
+std::vector<int> EmbreeScene::groups_at(const Eigen::Vector3d& place, int on) const {
+  struct Search : QueryContext {
+    std::vector<int> found;
+  } search;
+  const Eigen::Vector3d& normal = planes->normal(on);
+  const Ray ray{.origin = place - 8.0 * rounding * normal, .direction = normal};
+  init(search, &ray);  // spheres ask for it
+  search.caster = this;
+  const Eigen::Vector3d from = ray.origin - center;
+  RTCRayHit query{};
+  query.ray.org_x = static_cast<float>(from.x());
+  query.ray.org_y = static_cast<float>(from.y());
+  query.ray.org_z = static_cast<float>(from.z());
+  query.ray.dir_x = static_cast<float>(normal.x());
+  query.ray.dir_y = static_cast<float>(normal.y());
+  query.ray.dir_z = static_cast<float>(normal.z());
+  query.ray.tfar = static_cast<float>(16.0 * rounding);
+  query.ray.mask = ~0u;
+  clear(query.hit);
+  intersect(scene, search, query, [](const RTCFilterFunctionNArguments* args) {
+    auto& here = *static_cast<Search*>(args->context);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+    const auto& caster = *static_cast<const EmbreeScene*>(here.caster);
+    here.found.push_back(caster.group[caster.primitive(hit)]);
+    args->valid[0] = 0;  // go on to the next
+  });
+  return search.found;
+}
+
+// Primitives are asked at their centre: whoever wants this exact cuts them where others end.
+void EmbreeScene::find_hidden(const CastGeometry& source) {
+  hidden.assign(static_cast<std::size_t>(triangles + quads), 0);
+  constexpr double parallel = 1.0 - 1e-9;
+  const auto look_at = [&](int p, std::span<const int> polygon) {
+    const int g = group[p];
+    if (!planes->has_overlaps(g)) return;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const int v : polygon) mean += source.vertices[v] / static_cast<double>(polygon.size());
+    if (!planes->may_be_covered(g, mean)) return;
+    const Eigen::Vector3d front =
+        (source.vertices[polygon[1]] - source.vertices[polygon[0]])
+            .cross(source.vertices[polygon[2]] - source.vertices[polygon[0]]);
+    const int facing = front.dot(planes->normal(g)) > 0.0 ? 1 : -1;
+    for (const int other : groups_at(mean, g)) {
+      if (other == g || std::abs(planes->normal(g).dot(planes->normal(other))) <= parallel) {
+        continue;
+      }
+      const int above = planes->order(other, g);
+      if (above != 0) hidden[p] |= above == facing ? from_front : from_back;
+    }
+  };
+  for (int i = 0; i < triangles; ++i) look_at(i, source.triangles[i]);
+  for (int i = 0; i < quads; ++i) look_at(triangles + i, source.quads[i]);
+}
+
+}  // namespace lightwell

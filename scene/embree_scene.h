@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scene/cast_spheres.h"
+#include "scene/coplanar_groups.h"
+#include "scene/embree_queries.h"
+
+namespace lightwell {
+
+/// What RayCaster asks: Embree's tree over a CastGeometry, and what is known about its planes.
+struct EmbreeScene {
+  // Embree's numbers of the two geometries.
+  enum GeometryId : unsigned { polygons_id, spheres_id };
+  enum Hidden : std::uint8_t { from_front = 1, from_back = 2 };
+
+  explicit EmbreeScene(const CastGeometry& geometry);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // Embree's origin
+  double rounding = 0.0;  // how far float coordinates move a point at most, metres
+  std::vector<int> group;
+  std::unique_ptr<CoplanarGroups> planes;
+  std::vector<std::uint8_t> hidden;  // per triangle and quad: sides that what lies on it hides
+  SphereSet sphere_set;
+  int triangles = 0, quads = 0;
+
+  int primitive(const RTCHit& hit) const {
+    return static_cast<int>(hit.primID) + (hit.geomID == spheres_id ? triangles + quads : 0);
+  }
+
+  static void clear(RTCHit& hit) {
+    hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  }
+
+ private:
+  EmbreeScene() = default;
+  void check() const;
+  void attach(RTCGeometry geometry, GeometryId id);
+  void add_polygons(const CastGeometry& source);
+  void add_spheres(const CastGeometry& source);
+  void find_hidden(const CastGeometry& source);
+  std::vector<int> groups_at(const Eigen::Vector3d& place, int on) const;
+};
+
+}  // namespace lightwell
