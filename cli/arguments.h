@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@ struct SolveArguments {
   double max_patch_size = 0.0;  ///< in the scene file's unit; 0: automatic
   std::string form_factors = "auto";
   std::string solver = "gauss-seidel";
+  std::int64_t memory = 0;  ///< bytes; 0: no limit given
   SolveOptions solve{};
 
   void add_to(CLI::App& command);
@@ -49,6 +51,13 @@ std::string hemicube_text(const std::string& method, int resolution);
 
 /// Adds --hemicube-resolution N.
 CLI::Option* add_hemicube_resolution(CLI::App& command, int& resolution);
+
+/// Adds --memory SIZE, in bytes.
+CLI::Option* add_memory(CLI::App& command, std::int64_t& bytes);
+
+/// "500M", "1.5G", "2GiB", "800 kB" in bytes: powers of 1024, whatever the case and with or without
+/// B or iB; without a unit, bytes. Nothing for anything else, and for less than a megabyte.
+std::optional<std::int64_t> parse_memory(const std::string& text);
 
 /// Adds --size WxH.
 void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size);

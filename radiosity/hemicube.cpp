@@ -126,14 +126,14 @@ class Tally {
 
 }  // namespace
 
-std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const LightPaths& paths,
-                                        const HemicubeOptions& options, const Progress& progress) {
+void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
+                           const HemicubeOptions& options, const Progress& progress,
+                           const std::function<void(int, const EstimatedRow&)>& take) {
   const PatchMesh& mesh = caster.mesh();
   const HemicubeCells cells(options.resolution);
   const HemicubeScan scan(mesh);
   const bool by_rays = options.back_end == HemicubeOptions::BackEnd::rays;
   const int patches = mesh.patch_count();
-  std::vector<EstimatedRow> rows(patches);
   // Slices keep progress and interruption on this thread, each a fraction of a second of work.
   const int cells_per_slice = by_rays ? 1 << 20 : 1 << 24;
   const int slice =
@@ -153,12 +153,20 @@ std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const Light
         } else {
           scan.draw(eye, cells, scratch, items);
         }
-        rows[i] = tally.row(i, eye, items);
-        if (by_rays) rows[i].rays += cells.cell_count();
+        EstimatedRow row = tally.row(i, eye, items);
+        if (by_rays) row.rays += cells.cell_count();
+        take(i, row);
       }
     });
   }
   report(progress, "form factors", 1.0);
+}
+
+std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const LightPaths& paths,
+                                        const HemicubeOptions& options, const Progress& progress) {
+  std::vector<EstimatedRow> rows(static_cast<std::size_t>(caster.mesh().patch_count()));
+  for_each_hemicube_row(caster, paths, options, progress,
+                        [&](int i, const EstimatedRow& row) { rows[i] = row; });
   return rows;
 }
 
