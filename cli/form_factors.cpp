@@ -155,12 +155,12 @@ Json row_facts(const Computed& computed) {
           {"blocked", computed.factors.blocked}};
 }
 
-std::string for_people(const Json& facts, const ViewFactors& F) {
+std::string for_people(const Json& facts) {
   std::string text;
   const auto number = [&facts](const char* key) { return facts[key].get<double>(); };
-  text +=
-      fmt::format("{:<9} {} of {} facets, {} entries, {:.6g} m2 in all\n", "rows", F.row_count(),
-                  facts["facets"].get<int>(), F.entry_count(), number("total_area"));
+  text += fmt::format("{:<9} {} of {} facets, {} entries, {:.6g} m2 in all\n", "rows",
+                      facts["rows"].get<int>(), facts["facets"].get<int>(),
+                      facts["entries"].get<std::int64_t>(), number("total_area"));
   text += fmt::format("{:<9} rows and what is open add up to 1 within {:.1e}\n", "closure",
                       number("closure_max_error"));
   text += fmt::format("{:<9} A_i F_ij = A_j F_ji within {:.1e} of the smaller area\n", "exchange",
@@ -209,7 +209,7 @@ int form_factors(const Arguments& arguments, Console& console) {
   std::vector<std::string> notes = findings(numbered, check);
   report.add_phase("read_scene", watch.lap());
 
-  const Computed computed = compute(arguments, numbered, check, console, report);
+  Computed computed = compute(arguments, numbered, check, console, report);
   if (computed.factors.entry_count() == 0) {
     notes.push_back("No facet sees another; facets see where their corners run counter-clockwise.");
   }
@@ -222,12 +222,13 @@ int form_factors(const Arguments& arguments, Console& console) {
   write_files(arguments, numbered, computed, report);
   report.add_phase("write", watch.lap());
   report.add_file(arguments.json_file());
+  computed.factors.release_rows();  // the arrays beside the matrix take memory, too
   Json beside = report.json();
   beside["row"] = row_facts(computed);
   write_json(arguments.json_file(), beside);
 
   const CommonOptions& common = console.options();
-  if (!common.json && !common.quiet) fmt::print("{}", for_people(found, computed.factors));
+  if (!common.json && !common.quiet) fmt::print("{}", for_people(found));
   report.print();
   return exit_done;
 }

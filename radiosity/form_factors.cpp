@@ -31,7 +31,7 @@ struct Estimate {
 // What is still to come beside rows: numbers for each patch here and in what is done with the
 // result, and what each thread counts in.
 std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters) {
-  constexpr std::int64_t per_patch = 1500, per_band = 64, per_thread = 48;
+  constexpr std::int64_t per_patch = 900, per_band = 64, per_thread = 48;
   const std::int64_t bands = mesh.reflectance.cols();
   return mesh.patch_count() *
          (per_patch + per_band * bands + per_thread * thread_count() + 16 * emitters);

@@ -34,6 +34,10 @@ struct ViewFactors {
   std::span<const FormFactor> row(int i) const { return factors.row(i); }
   /// How many F_IJ are above 0.
   std::int64_t entry_count() const { return factors.record_count(); }
+  /// Gives up all F_IJ, to make room; rows are empty afterwards.
+  void release_rows() {
+    for (int i = 0; i < row_count(); ++i) factors.release(i);
+  }
   float factor(int i, int j) const;
 };
 
