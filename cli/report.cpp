@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/resource.h>
 
 #include <cmath>
 #include <fstream>
@@ -15,9 +14,7 @@ namespace lightwell {
 namespace {
 
 double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts KiB
+  return static_cast<double>(resident_memory().most) / (1 << 20);
 }
 
 std::string size_text(double megabytes) {

@@ -69,9 +69,10 @@ void MemoryBudget::plan(std::int64_t other) {
   const std::int64_t needed = memory.now + other + least_room;
   if (options_.limit > 0 && std::max(needed, memory.most) > limit_) {
     throw InputError(fmt::format(
-        "a memory budget of {} MB is too small: {} MB are in use before the first form factor, {} "
-        "MB have been, work takes {} MB and rows {} MB at least. Allow {} MB or more, or make "
-        "patches larger",
+        "a memory budget of {} MB is too small: the scene, its mesh and its tree take {} MB ({} MB "
+        "while they were made), work {} MB more, and a slice of rows {} MB. Allow {} MB or more, "
+        "or "
+        "make patches larger",
         limit_ / MiB, in_megabytes(memory.now), in_megabytes(memory.most), in_megabytes(other),
         in_megabytes(least_room), in_megabytes(std::max(needed, memory.most))));
   }

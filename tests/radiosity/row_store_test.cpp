@@ -249,7 +249,7 @@ TEST(MemoryBudget, OneThatIsTooSmallSaysWhatIsNeeded) {
   MemoryBudget budget({.limit = megabyte});
   const std::string message = message_of<InputError>([&] { budget.plan(100 * megabyte); });
   EXPECT_TRUE(says(message, "a memory budget of 1 MB is too small"));
-  EXPECT_TRUE(says(message, "work takes 100 MB"));
+  EXPECT_TRUE(says(message, "work 100 MB more"));
   MemoryBudget unlimited;
   unlimited.plan(std::int64_t{1} << 50);  // nobody asked for a limit: it does what it can
 }
