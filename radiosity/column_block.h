@@ -1,7 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
+#include <limits>
 #include <vector>
 
 #include "radiosity/row_store.h"

@@ -1,9 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
 
 #include "radiosity/symmetric_rows.h"
 

@@ -15,13 +15,14 @@ using Eigen::ArrayXd;
 class Assembly {
  public:
   Assembly(const PatchMesh& mesh, RowEstimates rows, KnownExchange known, bool enforce_closure,
-           std::shared_ptr<MemoryBudget> budget)
+           std::shared_ptr<MemoryBudget> budget, const Progress& progress)
       : mesh_(mesh),
         n_(mesh.patch_count()),
         rows_(std::move(rows)),
         known_(std::move(known)),
         enforce_closure_(enforce_closure),
         budget_(std::move(budget)),
+        progress_(progress),
         S_(budget_, n_),
         weight_(PerKind::Ones(n_, 2)),
         target_(ArrayXd::Zero(n_)),
@@ -50,6 +51,7 @@ class Assembly {
     }
     result->rows.close();
     result->specular.close();
+    lightwell::report(progress_, "balance", 1.0);
     note_rays(found);
     if (report) {
       found.row_error = std::move(report->row_error);
@@ -59,6 +61,8 @@ class Assembly {
   }
 
  private:
+  static constexpr double join_share = 0.3;  // of the time, roughly
+
   bool is_whole(int i) const { return known_.is_whole[static_cast<std::size_t>(i)] != 0; }
 
   // Both ends of a pair estimate S; the sum that gives each its trust has the least variance.
@@ -88,7 +92,10 @@ class Assembly {
           add_known_before(n_);
           S_.append(i, joined);
         },
-        [&](int i) { known_.S.release(i); });
+        [&](int i) {
+          known_.S.release(i);
+          report(progress_, "balance", join_share * i / n_);
+        });
     S_.close();
   }
   static float share(const std::byte* record) {
@@ -96,20 +103,24 @@ class Assembly {
   }
 
   // Sampled and known exchange of every row, as scaled up to now, with patches that count `x`.
-  PerKind sums(const ArrayXd& x) const { return weight_ * S_.product(weight_.colwise() * x); }
+  PerKind sums(const ArrayXd& x) {
+    constexpr double most = 3 * 200;  // steps that the scalings may take
+    report(progress_, "balance", join_share + (1.0 - join_share) * std::min(1.0, ++steps_ / most));
+    return weight_ * S_.product(weight_.colwise() * x);
+  }
 
-  void note_corrections(FormFactorReport& report) const {
+  void note_corrections(FormFactorReport& found) {
     const ArrayXd sum = open_ + sums(ArrayXd::Ones(n_)).rowwise().sum();
     double total = 0.0;
     int counted = 0;
     for (int i = 0; i < n_; ++i) {
       if (!(target_[i] > 0.0)) continue;
       const double correction = std::abs(1.0 - sum[i] / target_[i]);
-      report.max_closure_correction = std::max(report.max_closure_correction, correction);
+      found.max_closure_correction = std::max(found.max_closure_correction, correction);
       total += correction;
       ++counted;
     }
-    report.mean_closure_correction = counted > 0 ? total / counted : 0.0;
+    found.mean_closure_correction = counted > 0 ? total / counted : 0.0;
   }
 
   // A row of closed forms alone; one factor per patch closes it. Patches of that kind that see each
@@ -154,7 +165,7 @@ class Assembly {
     open_ *= d;
   }
 
-  void store(StoredFormFactors& result, FormFactorReport& report) {
+  void store(StoredFormFactors& result, FormFactorReport& found) {
     ArrayXd closure_error = ArrayXd::Zero(n_), reciprocity_error = closure_error;
     S_.consume([&](int i, std::span<const Exchange> row) {
       std::vector<FormFactor> factors;
@@ -178,20 +189,20 @@ class Assembly {
       result.escaped_share.row(i) = escaped;
       if (rows_.is_measured(i)) closure_error[i] = std::abs(1.0 - sum);
     });
-    report.max_closure_error = closure_error.maxCoeff();
-    report.max_reciprocity_error = reciprocity_error.maxCoeff();
+    found.max_closure_error = closure_error.maxCoeff();
+    found.max_reciprocity_error = reciprocity_error.maxCoeff();
   }
 
-  void note_rays(FormFactorReport& report) const {
+  void note_rays(FormFactorReport& found) const {
     double cut = 0.0;
     int counted = 0;
     for (int i = 0; i < n_; ++i) {
       if (!rows_.is_measured(i)) continue;
-      report.rays += static_cast<std::int64_t>(rows_.rays(i));
+      found.rays += static_cast<std::int64_t>(rows_.rays(i));
       if (rows_.has_specular()) cut += static_cast<double>(rows_.cut(i).mean());
       ++counted;
     }
-    report.depth_cut = counted > 0 ? cut / counted : 0.0;
+    found.depth_cut = counted > 0 ? cut / counted : 0.0;
   }
 
   const PatchMesh& mesh_;
@@ -200,6 +211,8 @@ class Assembly {
   KnownExchange known_;
   bool enforce_closure_ = true;
   std::shared_ptr<MemoryBudget> budget_;
+  const Progress& progress_;
+  int steps_ = 0;
   ExchangeMatrix S_;
   PerKind weight_;         // S_ij is scaled by those of i and j
   ArrayXd target_, open_;  // what a row is to add up to; what of it leaves the scene
@@ -210,8 +223,10 @@ class Assembly {
 std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, RowEstimates rows,
                                                    KnownExchange known, bool enforce_closure,
                                                    std::shared_ptr<MemoryBudget> budget,
+                                                   const Progress& progress,
                                                    FormFactorReport* report) {
-  return Assembly(mesh, std::move(rows), std::move(known), enforce_closure, std::move(budget))
+  return Assembly(mesh, std::move(rows), std::move(known), enforce_closure, std::move(budget),
+                  progress)
       .build(report);
 }
 

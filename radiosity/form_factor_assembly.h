@@ -24,6 +24,7 @@ struct KnownExchange {
 std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, RowEstimates rows,
                                                    KnownExchange known, bool enforce_closure,
                                                    std::shared_ptr<MemoryBudget> budget,
+                                                   const Progress& progress,
                                                    FormFactorReport* report);
 
 }  // namespace lightwell

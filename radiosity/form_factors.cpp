@@ -244,7 +244,7 @@ std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const Elem
   Estimate estimate = Estimator(scene, caster, direct_light, options, budget).estimate();
   if (report) report->row_error = std::move(estimate.row_error);
   return assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
-                               options.enforce_closure, budget, report);
+                               options.enforce_closure, budget, options.progress, report);
 }
 
 }  // namespace lightwell
