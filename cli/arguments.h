@@ -52,13 +52,6 @@ std::string hemicube_text(const std::string& method, int resolution);
 /// Adds --hemicube-resolution N.
 CLI::Option* add_hemicube_resolution(CLI::App& command, int& resolution);
 
-/// Adds --memory SIZE, in bytes.
-CLI::Option* add_memory(CLI::App& command, std::int64_t& bytes);
-
-/// "500M", "1.5G", "2GiB", "800 kB" in bytes: powers of 1024, whatever the case and with or without
-/// B or iB; without a unit, bytes. Nothing for anything else, and for less than a megabyte.
-std::optional<std::int64_t> parse_memory(const std::string& text);
-
 /// Adds --size WxH.
 void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size);
 

@@ -9,6 +9,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/memory_size.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/view_factor_rows.h"

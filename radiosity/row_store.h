@@ -62,7 +62,8 @@ class RecordStore {
   std::size_t row_size(int i) const;
   /// Valid until the row is released. Empty for rows that were not added.
   RecordSpan row(int i) const;
-  /// Row i is not needed any more. Memory is given back once that is true of all of a chunk.
+  /// Row i is not needed any more. Memory is given back once that is true of all of a chunk. Not
+  /// from two threads at a time.
   void release(int i);
 
   Count counted() const;
