@@ -12,13 +12,13 @@ PerKind ExchangeMatrix::product(const PerKind& x) const {
       [&](int i, RecordSpan row) {
         std::array<double, 2> sum = {0.0, 0.0};
         for (const Exchange e : row.as<Exchange>()) {
-          sum[e.kind()] += static_cast<double>(e.S()) * x(e.patch(), e.kind());
+          sum[e.kind()] += static_cast<double>(e.value()) * x(e.patch(), e.kind());
         }
         own.row(i) << sum[0], sum[1];
       },
       [&](int i, std::size_t k, RecordSpan row) {
         const Exchange e = row.as<Exchange>()[k];
-        below(e.patch(), e.kind()) += static_cast<double>(e.S()) * x(i, e.kind());
+        below(e.patch(), e.kind()) += static_cast<double>(e.value()) * x(i, e.kind());
       });
   return own + below;
 }

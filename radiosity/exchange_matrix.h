@@ -18,16 +18,18 @@ namespace lightwell {
 class Exchange {
  public:
   enum Kind { sampled = 0, known = 1 };
-  static Exchange of(int patch, Kind kind, float S) { return {patch, kind == known ? -S : S}; }
+  static Exchange of(int patch, Kind kind, float value) {
+    return {patch, kind == known ? -value : value};
+  }
 
   int patch() const { return patch_; }
-  float S() const { return std::abs(signed_S_); }
-  Kind kind() const { return static_cast<Kind>(std::bit_cast<std::uint32_t>(signed_S_) >> 31); }
+  float value() const { return std::abs(signed_value_); }
+  Kind kind() const { return static_cast<Kind>(std::bit_cast<std::uint32_t>(signed_value_) >> 31); }
 
  private:
-  Exchange(int patch, float signed_S) : patch_(patch), signed_S_(signed_S) {}
+  Exchange(int patch, float signed_value) : patch_(patch), signed_value_(signed_value) {}
   int patch_ = 0;
-  float signed_S_ = 0.0f;
+  float signed_value_ = 0.0f;
 };
 
 /// A number for each patch and kind of exchange.

@@ -174,7 +174,7 @@ class Assembly {
       double sum = rows_.specular(i) + escaped;
       for (const Exchange& e : row) {
         const int j = e.patch();
-        const double S = e.S() * (weight_(i, e.kind()) * weight_(j, e.kind()));
+        const double S = e.value() * (weight_(i, e.kind()) * weight_(j, e.kind()));
         const auto F = static_cast<float>(S / mesh_.area[i]);
         if (!(F > 0.0f)) continue;
         factors.push_back({j, F});

@@ -14,13 +14,13 @@
 namespace lightwell {
 namespace {
 
-constexpr std::int64_t KiB = 1 << 10, MiB = 1 << 20;
+constexpr std::int64_t kibibyte = 1 << 10, mebibyte = 1 << 20;
 // With less room than this rows would be moved to and fro a page at a time.
-constexpr std::int64_t least_room = 16 * MiB;
-constexpr std::int64_t largest_chunk = 4 * MiB, largest_block = 64 * MiB;
+constexpr std::int64_t least_room = 16 * mebibyte;
+constexpr std::int64_t largest_chunk = 4 * mebibyte, largest_block = 64 * mebibyte;
 
 std::int64_t in_megabytes(std::int64_t bytes) {
-  return (bytes + MiB - 1) / MiB;
+  return (bytes + mebibyte - 1) / mebibyte;
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ ResidentMemory resident_memory() {
     getrusage(RUSAGE_SELF, &usage);
     memory.now = memory.most = usage.ru_maxrss;
   }
-  return {.now = memory.now * KiB, .most = memory.most * KiB};
+  return {.now = memory.now * kibibyte, .most = memory.most * kibibyte};
 }
 
 std::int64_t usable_memory() {
@@ -73,7 +73,7 @@ void MemoryBudget::plan(std::int64_t other) {
         "while they were made), work {} MB more, and a slice of rows {} MB. Allow {} MB or more, "
         "or "
         "make patches larger",
-        limit_ / MiB, in_megabytes(memory.now), in_megabytes(memory.most), in_megabytes(other),
+        limit_ / mebibyte, in_megabytes(memory.now), in_megabytes(memory.most), in_megabytes(other),
         in_megabytes(least_room), in_megabytes(std::max(needed, memory.most))));
   }
   share_out(memory.now, other);

@@ -4,7 +4,7 @@
 
 namespace lightwell {
 
-RowEstimates::RowEstimates(std::shared_ptr<MemoryBudget> budget, int patches, int bands)
+RowEstimates::RowEstimates(const std::shared_ptr<MemoryBudget>& budget, int patches, int bands)
     : bands_(bands),
       shares_(budget, patches, sizeof(FormFactor), RecordStore::Count::below_diagonal),
       specular_shares_(budget, patches,

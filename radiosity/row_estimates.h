@@ -11,7 +11,7 @@ namespace lightwell {
 /// one number a row as arrays.
 class RowEstimates {
  public:
-  RowEstimates(std::shared_ptr<MemoryBudget> budget, int patches, int bands);
+  RowEstimates(const std::shared_ptr<MemoryBudget>& budget, int patches, int bands);
 
   /// Row i, at most once. From many threads.
   void add(int i, const EstimatedRow& row);
