@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "cli/memory_size.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 
@@ -218,6 +219,7 @@ void SolveArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(power_of_two())
       ->group(group);
+  add_memory(command, memory)->group(group);
   command
       .add_option("--gather-rays", solve.gather.rays,
                   "final-gather rays per mesh vertex, a power of two (default 1024)")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@ struct SolveArguments {
   double max_patch_size = 0.0;  ///< in the scene file's unit; 0: automatic
   std::string form_factors = "auto";
   std::string solver = "gauss-seidel";
+  std::int64_t memory = 0;  ///< bytes; 0: no limit given
   SolveOptions solve{};
 
   void add_to(CLI::App& command);

@@ -9,6 +9,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/memory_size.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/view_factor_rows.h"
@@ -27,6 +28,7 @@ struct Arguments {
   int hemicube_resolution = 256;
   int show_row = 0;  // counted from 1; 0: none
   bool two_sided = false;
+  std::int64_t memory = 0;  // bytes; 0: no limit given
 
   std::string text() const;
   fs::path json_file() const { return fs::path(output).replace_extension(".json"); }
@@ -63,7 +65,7 @@ MeshOptions mesh_for_facets(FormFactorMethod method, const Scene& scene) {
 struct Computed {
   PatchMesh mesh{};
   ViewFactorRows rows{};
-  ViewFactors factors{};
+  ViewFactors factors{0};
   FormFactorReport report{};
   std::optional<double> error{};  // estimated, of the worst factor
 };
@@ -95,17 +97,20 @@ Computed compute(const Arguments& arguments, const NumberedScene& numbered, cons
   options.method = method;
   options.target_error = arguments.target_error;
   options.hemicube_resolution = arguments.hemicube_resolution;
+  options.memory = std::make_shared<MemoryBudget>(
+      MemoryOptions{.limit = arguments.memory, .folder = fs::path(arguments.output).parent_path()});
   options.progress = console.progress();
   const auto form_factors =
       compute_form_factors(view.scene, caster, no_light, options, &computed.report);
   console.finish_phase();
   stop_if_interrupted();
-  computed.factors =
-      sum_form_factors(*form_factors, computed.mesh, computed.rows.of_patch, computed.rows.count());
   if (!computed.report.row_error.empty()) {
     computed.error = error_estimate(computed.report.row_error, *form_factors, computed.mesh,
                                     computed.rows.of_patch);
   }
+  computed.factors = sum_form_factors(*form_factors, computed.mesh, computed.rows.of_patch,
+                                      computed.rows.count(), options.memory);
+  report.add_storage(options.memory->report());
   report.add_phase("form_factors", watch.lap());
   return computed;
 }
@@ -125,7 +130,7 @@ Json facts(const Arguments& arguments, const NumberedScene& numbered, const Comp
           {"facets", numbered.rows.size()},
           {"rows", F.row_count()},
           {"patches", computed.mesh.patch_count()},
-          {"entries", F.factors.size()},
+          {"entries", F.entry_count()},
           {"total_area", area},
           {"closure_max_error", closure_error(F)},
           {"reciprocity_max_error", reciprocity_error(F)},
@@ -151,12 +156,12 @@ Json row_facts(const Computed& computed) {
           {"blocked", computed.factors.blocked}};
 }
 
-std::string for_people(const Json& facts, const ViewFactors& F) {
+std::string for_people(const Json& facts) {
   std::string text;
   const auto number = [&facts](const char* key) { return facts[key].get<double>(); };
-  text +=
-      fmt::format("{:<9} {} of {} facets, {} entries, {:.6g} m2 in all\n", "rows", F.row_count(),
-                  facts["facets"].get<int>(), F.factors.size(), number("total_area"));
+  text += fmt::format("{:<9} {} of {} facets, {} entries, {:.6g} m2 in all\n", "rows",
+                      facts["rows"].get<int>(), facts["facets"].get<int>(),
+                      facts["entries"].get<std::int64_t>(), number("total_area"));
   text += fmt::format("{:<9} rows and what is open add up to 1 within {:.1e}\n", "closure",
                       number("closure_max_error"));
   text += fmt::format("{:<9} A_i F_ij = A_j F_ji within {:.1e} of the smaller area\n", "exchange",
@@ -205,8 +210,8 @@ int form_factors(const Arguments& arguments, Console& console) {
   std::vector<std::string> notes = findings(numbered, check);
   report.add_phase("read_scene", watch.lap());
 
-  const Computed computed = compute(arguments, numbered, check, console, report);
-  if (computed.factors.factors.empty()) {
+  Computed computed = compute(arguments, numbered, check, console, report);
+  if (computed.factors.entry_count() == 0) {
     notes.push_back("No facet sees another; facets see where their corners run counter-clockwise.");
   }
   for (const std::string& note : notes) console.say("note: " + note);
@@ -218,12 +223,13 @@ int form_factors(const Arguments& arguments, Console& console) {
   write_files(arguments, numbered, computed, report);
   report.add_phase("write", watch.lap());
   report.add_file(arguments.json_file());
+  computed.factors.release_rows();  // the arrays beside the matrix take memory, too
   Json beside = report.json();
   beside["row"] = row_facts(computed);
   write_json(arguments.json_file(), beside);
 
   const CommonOptions& common = console.options();
-  if (!common.json && !common.quiet) fmt::print("{}", for_people(found, computed.factors));
+  if (!common.json && !common.quiet) fmt::print("{}", for_people(found));
   report.print();
   return exit_done;
 }
@@ -242,6 +248,7 @@ void add_how(CLI::App& command, Arguments& arguments) {
       ->type_name("E")
       ->check(positive())
       ->group(group);
+  add_memory(command, arguments.memory)->group(group);
   command
       .add_option("--max-patch-size", arguments.max_patch_size,
                   "cut facets into patches of that edge, in the scene file's unit, with a row each "

@@ -21,6 +21,8 @@ void catch_interrupts() {
   action.sa_flags = SA_RESTART | SA_RESETHAND;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // A file that may not grow is an error to report, like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupt_requested() {

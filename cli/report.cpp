@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/resource.h>
 
 #include <cmath>
 #include <fstream>
@@ -15,9 +14,23 @@ namespace lightwell {
 namespace {
 
 double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts KiB
+  return static_cast<double>(resident_memory().most) / (1 << 20);
+}
+
+std::string size_text(double megabytes) {
+  constexpr double large = 1000.0;
+  return megabytes < large ? fmt::format("{:.0f} MB", megabytes)
+                           : fmt::format("{:.1f} GB", megabytes / 1024.0);
+}
+
+std::string storage_text(const Json& storage) {
+  const auto size = [&](const char* key) { return size_text(storage[key].get<double>()); };
+  const bool is_on_disk = storage["disk_mb"].get<double>() > 0.0;
+  return fmt::format("rows {} in memory{} (budget {})", size("memory_mb"),
+                     is_on_disk ? fmt::format(", {} on disk in {}", size("disk_mb"),
+                                              storage["folder"].get<std::string>())
+                                : "",
+                     size("budget_mb"));
 }
 
 std::string to_text(const Json& json) {
@@ -43,6 +56,14 @@ void Report::add_solution(const SolvedScene& solved, bool solved_now) {
   facts_["outcome"] = outcome_name(solution.outcome);
   if (!solved_now) return;
   for (const PhaseSeconds& phase : solution.seconds) phases_.push_back(phase);
+}
+
+void Report::add_storage(const StorageReport& storage) {
+  constexpr double megabyte = 1 << 20;
+  facts_["storage"] = {{"budget_mb", static_cast<double>(storage.limit) / megabyte},
+                       {"memory_mb", static_cast<double>(storage.most_in_memory) / megabyte},
+                       {"disk_mb", static_cast<double>(storage.most_on_disk) / megabyte},
+                       {"folder", storage.folder.string()}};
 }
 
 void Report::add_phase(const std::string& phase, double seconds) {
@@ -101,6 +122,7 @@ std::string Report::for_people() const {
   }
   line("seconds", fmt::format("{:.1f} ({}), {} {}", total_.seconds(), fmt::join(phases, ", "),
                               thread_count(), thread_count() == 1 ? "thread" : "threads"));
+  if (facts_.contains("storage")) line("storage", storage_text(facts_["storage"]));
   line("memory", fmt::format("{:.0f} MB at most", peak_memory_mb()));
   for (const std::string& file : files_) line("wrote", file);
   return text;

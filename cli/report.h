@@ -22,6 +22,8 @@ class Report {
 
   /// Sizes, energy balance, residual, error estimate, and the solver's own phases if it ran now.
   void add_solution(const SolvedScene& solved, bool solved_now);
+  /// What memory was allowed for and where rows of form factors were.
+  void add_storage(const StorageReport& storage);
   void add_phase(const std::string& phase, double seconds);
   void add_file(const std::filesystem::path& file);
   void add(const std::string& key, Json value);

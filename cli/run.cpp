@@ -35,7 +35,7 @@ int run(const Arguments& arguments, Console& console) {
   require_writable(solution_file);
   require_writable(report_file);
 
-  const SolvedScene solved = solve_step(scene, arguments.solve, console, report);
+  const SolvedScene solved = solve_step(scene, arguments.solve, solution_file, console, report);
   write_solution_step(solution_file, solved, console, report);
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     render_step(scene, solved, scene.cameras[i], arguments.render, pictures[i], console, report);

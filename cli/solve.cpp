@@ -23,7 +23,7 @@ int solve(const Arguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   require_writable(arguments.output);
-  const SolvedScene solved = solve_step(scene, arguments.solve, console, report);
+  const SolvedScene solved = solve_step(scene, arguments.solve, arguments.output, console, report);
   write_solution_step(arguments.output, solved, console, report);
   report.print();
   return exit_code(solved.solution);

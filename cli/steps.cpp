@@ -35,16 +35,19 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report) {
   return scene;
 }
 
-SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, Console& console,
-                       Report& report) {
+SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, const fs::path& output,
+                       Console& console, Report& report) {
   SolveOptions options = arguments.options(scene);
   options.progress = console.progress();
+  options.form_factors.memory = std::make_shared<MemoryBudget>(
+      MemoryOptions{.limit = arguments.memory, .folder = output.parent_path()});
   console.say_verbose("solving with " + arguments.text(scene));
   SolvedScene solved = solve_scene(scene, options);
   console.finish_phase();
   solved.solution.provenance.version = LIGHTWELL_VERSION;
   solved.solution.provenance.options = arguments.text(scene);
   report.add_solution(solved, true);
+  report.add_storage(options.form_factors.memory->report());
   if (solved.solution.outcome != Outcome::converged) {
     console.say(
         fmt::format("warning: the solver stopped after {} sweeps at a residual of {:.2g}, "

@@ -18,8 +18,9 @@ namespace lightwell {
 
 Scene read_scene_step(const std::filesystem::path& file, Console& console, Report& report);
 
-SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, Console& console,
-                       Report& report);
+/// Form factors that do not fit into memory go beside `output`.
+SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments,
+                       const std::filesystem::path& output, Console& console, Report& report);
 
 void write_solution_step(const std::filesystem::path& file, const SolvedScene& solved,
                          Console& console, Report& report);

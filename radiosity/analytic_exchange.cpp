@@ -148,22 +148,22 @@ class PairVisibility {
 
 }  // namespace
 
-KnownExchange analytic_exchange(const ElementCaster& caster,
-                                const std::vector<PatchOutline>& outlines,
-                                const std::vector<char>& receives, double target_error,
-                                const Progress& progress, std::vector<float>& row_error) {
+void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
+                       const std::vector<char>& receives, double target_error,
+                       const Progress& progress, std::vector<float>& row_error,
+                       const std::function<void(int, std::vector<FormFactor>&)>& take) {
   const PatchMesh& mesh = caster.mesh();
   const int n = mesh.patch_count();
   const PairVisibility visibility(caster, outlines, target_error);
   const PairExchange closed_form(outlines);
-  KnownExchange known;
   row_error.assign(static_cast<std::size_t>(n), 0.0f);
   // What visibility's noise does to S, by pair.
   struct Row {
-    std::vector<SymmetricEntry> entries;
+    std::vector<FormFactor> entries;
     std::vector<float> error;
   };
-  constexpr int slice = 64;
+  // Rows are as long as there are patches; of many, few are kept at a time.
+  const int slice = std::clamp((1 << 21) / std::max(n, 1), 4, 64);
   for (int begin = 0; begin < n; begin += slice) {
     // Row i has n - i pairs.
     const double left = static_cast<double>(n - begin) / n;
@@ -181,24 +181,25 @@ KnownExchange analytic_exchange(const ElementCaster& caster,
           const double F = unoccluded / std::min(mesh.area[i], mesh.area[j]);
           const Visibility seen = visibility.between(i, j, F);
           if (!(seen.share > 0.0)) continue;
-          rows[k].entries.push_back({i, j, unoccluded * seen.share});
+          const auto S = static_cast<float>(unoccluded * seen.share);
+          if (!(S > 0.0f)) continue;
+          rows[k].entries.push_back({j, S});
           rows[k].error.push_back(static_cast<float>(unoccluded * std::sqrt(seen.variance)));
         }
       }
     });
-    for (const Row& row : rows) {
+    for (int k = 0; k < size; ++k) {
+      Row& row = rows[k];
       for (std::size_t e = 0; e < row.entries.size(); ++e) {
-        const auto [i, j, S] = row.entries[e];
-        for (const int end : {i, j}) {
+        for (const int end : {begin + k, row.entries[e].patch}) {
           const float error = row.error[e] / static_cast<float>(mesh.area[end]);
           row_error[end] = std::max(row_error[end], error);
         }
       }
-      known.S.insert(known.S.end(), row.entries.begin(), row.entries.end());
+      take(begin + k, row.entries);
     }
   }
   report(progress, "form factors", 1.0);
-  return known;
 }
 
 }  // namespace lightwell

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
+
 #include "mesh/patch_outline.h"
-#include "radiosity/form_factor_assembly.h"
+#include "radiosity/form_factors.h"
 
 namespace lightwell {
 
@@ -12,10 +14,11 @@ namespace lightwell {
 /// points of both sample it, weighted as the form factor is: 16 or 64 rays to begin with, up to
 /// 2^18 while the standard error of F_ij is above `target_error` (0: 1e-3). Patches of spheres, and
 /// patches that lie on each other, are left to other methods. `row_error`: standard error of the
-/// worst F_ij of each row.
-KnownExchange analytic_exchange(const ElementCaster& caster,
-                                const std::vector<PatchOutline>& outlines,
-                                const std::vector<char>& receives, double target_error,
-                                const Progress& progress, std::vector<float>& row_error);
+/// worst F_ij of each row. `take(i, row)` gets the exchange of
+/// patch i with patches j > i, one row after another.
+void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
+                       const std::vector<char>& receives, double target_error,
+                       const Progress& progress, std::vector<float>& row_error,
+                       const std::function<void(int, std::vector<FormFactor>&)>& take);
 
 }  // namespace lightwell

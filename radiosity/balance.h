@@ -1,35 +1,19 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
-#include <span>
-#include <vector>
+#include <functional>
 
 namespace lightwell {
 
-/// Sparse matrix by rows; row i is [first[i], first[i+1]) of column and value, columns rising.
-struct SparseRows {
-  std::vector<std::int64_t> first{};
-  std::vector<int> column{};
-  std::vector<float> value{};
-  int rows() const { return static_cast<int>(first.size()) - 1; }
-};
-
-struct SymmetricEntry {
-  int i = 0, j = 0;  ///< different
-  double value = 0.0;
-};
-
-/// The n x n matrix that has each entry at (i, j) and (j, i). Entries of one place replace those
-/// before them.
-SparseRows symmetric_rows(int n, std::span<const SymmetricEntry> entries);
-
 /// Scale factors d > 0 with sum_j d_i S_ij d_j + d_i open_i = target_i for a symmetric S >= 0: the
 /// symmetric scaling of Sinkhorn & Knopp 1967 in the square-root form of Knight, Ruiz & Ucar 2014.
-/// Rows with nothing in them, or with target <= 0, keep d = 1 or go to 0 and are not counted in the
-/// error. Ends when every row is within `tolerance` (relative) or after `max_iterations`.
-Eigen::ArrayXd symmetric_scaling(const SparseRows& S, const Eigen::ArrayXd& open,
-                                 const Eigen::ArrayXd& target, double tolerance = 1e-8,
-                                 int max_iterations = 200);
+/// `product(x)` is S x. One problem for each column of `open` and `target`; they do not touch each
+/// other. Rows with nothing in them, or with target <= 0, keep d = 1 or go to 0 and are not counted
+/// in the error. A column ends when every row is within `tolerance` (relative), all end after
+/// `max_iterations`.
+Eigen::ArrayXXd symmetric_scaling(
+    const std::function<Eigen::ArrayXXd(const Eigen::ArrayXXd&)>& product,
+    const Eigen::ArrayXXd& open, const Eigen::ArrayXXd& target, double tolerance = 1e-8,
+    int max_iterations = 200);
 
 }  // namespace lightwell

@@ -27,15 +27,15 @@ EmitterExchange::EmitterExchange(const ElementCaster& caster, const DirectLight&
     const auto facet = static_cast<std::size_t>(mesh_.facet[i]);
     if (facet >= emitter_of_facet.size() || emitter_of_facet[facet] < 0) continue;
     const int e = emitter_of_facet[facet];
-    if (!mesh_.is_back[i] || emitters[e].emits_both_sides) emitter_of_[i] = e;
+    if (mesh_.is_back[i] && !emitters[e].emits_both_sides) continue;
+    emitter_of_[i] = e;
+    lit_.push_back(i);
   }
 }
 
-// exchange(2 e + side, i): from patch i to the front (0) or back (1) of emitter e, square metres.
-Eigen::ArrayXXd EmitterExchange::from_points(const std::vector<char>& receives,
-                                             const FormFactorOptions& options) const {
+void EmitterExchange::compute(const std::vector<char>& receives, const FormFactorOptions& options) {
   const auto emitter_count = static_cast<int>(direct_light_.emitters().size());
-  Eigen::ArrayXXd exchange = Eigen::ArrayXXd::Zero(2 * emitter_count, mesh_.patch_count());
+  exchange_.setZero(2 * emitter_count, mesh_.patch_count());
   const SobolPoints sobol(options.emitter_points);
   parallel_for(mesh_.patch_count(), 16, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
@@ -49,7 +49,7 @@ Eigen::ArrayXXd EmitterExchange::from_points(const std::vector<char>& receives,
           const Emitter& emitter = direct_light_.emitters()[e];
           const bool behind =
               !emitter.is_sphere && (at.position - emitter.loops[0][0]).dot(emitter.normal) < 0.0;
-          exchange(2 * e + behind, i) +=
+          exchange_(2 * e + behind, i) +=
               mesh_.area[i] / options.emitter_points *
               direct_light_.form_factor(emitter, caster_, at.position, at.normal, mesh_.facet[i],
                                         random_key(key, s, e), options.shadows);
@@ -57,37 +57,34 @@ Eigen::ArrayXXd EmitterExchange::from_points(const std::vector<char>& receives,
       }
     }
   });
-  return exchange;
 }
 
 // An emitter's light is even, so its patches share it in proportion to their area.
-KnownExchange EmitterExchange::exchange(const std::vector<char>& receives,
-                                        const FormFactorOptions& options) const {
-  const Eigen::ArrayXXd exchange = from_points(receives, options);
-  const int n = mesh_.patch_count();
-  const auto share_of_emitter = [&](int p) {
-    return mesh_.area[p] / direct_light_.emitters()[emitter_of_[p]].area;
+double EmitterExchange::share_of_emitter(int patch) const {
+  return mesh_.area[patch] / direct_light_.emitters()[emitter_of_[patch]].area;
+}
+
+// Of patches of which one or both are emitters'.
+double EmitterExchange::between(int i, int j) const {
+  const auto from = [&](int patch, int lit) {
+    return exchange_(2 * emitter_of_[lit] + mesh_.is_back[lit], patch) * share_of_emitter(lit);
   };
-  KnownExchange known;
-  std::vector<int> lit;
-  for (int p = 0; p < n; ++p) {
-    known.is_whole.push_back(emitter_of_[p] >= 0);
-    if (emitter_of_[p] >= 0) lit.push_back(p);
+  if (emitter_of_[i] == emitter_of_[j]) return 0.0;
+  if (emitter_of_[i] < 0) return from(i, j);
+  if (emitter_of_[j] < 0) return from(j, i);
+  return 0.5 * (from(i, j) + from(j, i));  // both ends were computed, keep them equal
+}
+
+void EmitterExchange::add_row(int i, std::vector<FormFactor>& row) const {
+  const auto add = [&](int j) {
+    const auto S = static_cast<float>(between(i, j));
+    if (S > 0.0f) row.push_back({j, S});
+  };
+  if (emitter_of_[i] >= 0) {
+    for (int j = i + 1; j < mesh_.patch_count(); ++j) add(j);
+  } else {
+    for (auto j = std::upper_bound(lit_.begin(), lit_.end(), i); j != lit_.end(); ++j) add(*j);
   }
-  for (int i = 0; i < n; ++i) {
-    for (const int p : lit) {
-      const int e = emitter_of_[p];
-      if (e == emitter_of_[i]) continue;
-      double value = exchange(2 * e + mesh_.is_back[p], i) * share_of_emitter(p);
-      if (emitter_of_[i] >= 0) {  // two emitters: both ends were computed, keep them equal
-        if (p < i) continue;
-        const double back = exchange(2 * emitter_of_[i] + mesh_.is_back[i], p);
-        value = 0.5 * (value + back * share_of_emitter(i));
-      }
-      if (value > 0.0) known.S.push_back({i, p, value});
-    }
-  }
-  return known;
 }
 
 }  // namespace lightwell

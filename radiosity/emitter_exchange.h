@@ -1,6 +1,6 @@
 #pragma once
 
-#include "radiosity/form_factor_assembly.h"
+#include "radiosity/form_factors.h"
 
 namespace lightwell {
 
@@ -14,17 +14,23 @@ class EmitterExchange {
   /// Number of the emitter on whose lit side a patch lies; -1: none.
   int emitter_of(int patch) const { return emitter_of_[patch]; }
 
-  /// `receives[i]`: whether patch i takes part in diffuse exchange at all.
-  KnownExchange exchange(const std::vector<char>& receives, const FormFactorOptions& options) const;
+  /// Computes what row() takes from. `receives[i]`: whether patch i takes part in diffuse exchange
+  /// at all.
+  void compute(const std::vector<char>& receives, const FormFactorOptions& options);
+
+  /// Appends S_ij with patches j > i where i or j is an emitter's, j rising.
+  void add_row(int i, std::vector<FormFactor>& row) const;
 
  private:
-  Eigen::ArrayXXd from_points(const std::vector<char>& receives,
-                              const FormFactorOptions& options) const;
+  double share_of_emitter(int patch) const;
+  double between(int i, int j) const;
 
   const PatchMesh& mesh_;
   const ElementCaster& caster_;
   const DirectLight& direct_light_;
   std::vector<int> emitter_of_;
+  std::vector<int> lit_;      // patches of emitters, rising
+  Eigen::ArrayXXd exchange_;  // (2 e + side, i): from patch i to the front or back of emitter e
 };
 
 }  // namespace lightwell

@@ -3,24 +3,28 @@
 #include <memory>
 #include <vector>
 
-#include "radiosity/balance.h"
-#include "radiosity/estimated_row.h"
+#include "radiosity/row_estimates.h"
 
 namespace lightwell {
 
-/// Exchange areas S_ij = A_i F_ij that closed forms give, symmetric. They take the place of what
-/// the rows estimate for those pairs.
+/// Exchange areas S_ij = A_i F_ij that closed forms give. They take the place of what the rows
+/// estimate for those pairs.
 struct KnownExchange {
-  std::vector<SymmetricEntry> S{};
+  KnownExchange(std::shared_ptr<MemoryBudget> budget, int patches)
+      : S(std::move(budget), patches), is_whole(static_cast<std::size_t>(patches), 0) {}
+
+  RowStore<FormFactor> S;  ///< of pairs j > i, in row i, columns rising
   /// Per patch: 1 if they are all that the patch exchanges with any other, 0 if only some pairs.
-  std::vector<char> is_whole{};
+  std::vector<char> is_whole;
 };
 
 /// Joins the two estimates of every pair, puts known exchange in its place, closes the rows if
-/// asked (what was sampled first, then everything), and stores the result.
-std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, int bands,
-                                                   std::vector<EstimatedRow> rows,
-                                                   const KnownExchange& known, bool enforce_closure,
+/// asked (what was sampled first, then everything), and stores the result. What it is given is
+/// given up piece by piece while the result grows.
+std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, RowEstimates rows,
+                                                   KnownExchange known, bool enforce_closure,
+                                                   std::shared_ptr<MemoryBudget> budget,
+                                                   const Progress& progress,
                                                    FormFactorReport* report);
 
 }  // namespace lightwell

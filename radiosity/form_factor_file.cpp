@@ -103,7 +103,7 @@ void write_matrix_market(const std::filesystem::path& path, const ViewFactors& v
   out.add("%%MatrixMarket matrix coordinate real general\n");
   add_comment(out, comment);
   const int n = view_factors.row_count();
-  out.add("{} {} {}\n", n, n, view_factors.factors.size());
+  out.add("{} {} {}\n", n, n, view_factors.entry_count());
   for (int i = 0; i < n; ++i) {
     for (const auto [j, F] : view_factors.row(i)) out.add("{} {} {:.9g}\n", i + 1, j + 1, F);
   }

@@ -15,22 +15,34 @@
 #include "radiosity/light_path.h"
 #include "radiosity/near_exchange.h"
 #include "radiosity/ray_cast_rows.h"
+#include "radiosity/row_estimates.h"
+#include "scene/parallel.h"
 
 namespace lightwell {
 namespace {
 
 // What a method finds out before the rows are joined.
 struct Estimate {
-  std::vector<EstimatedRow> rows{};
-  KnownExchange known{};
+  RowEstimates rows;
+  KnownExchange known;
   std::vector<float> row_error{};
 };
+
+// What is still to come beside rows: numbers for each patch here and in what is done with the
+// result, and what each thread counts in.
+std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters) {
+  constexpr std::int64_t per_patch = 900, per_band = 64, per_thread = 48;
+  const std::int64_t bands = mesh.reflectance.cols();
+  return mesh.patch_count() *
+         (per_patch + per_band * bands + per_thread * thread_count() + 16 * emitters);
+}
 
 class Estimator {
  public:
   Estimator(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-            const FormFactorOptions& options)
+            const FormFactorOptions& options, std::shared_ptr<MemoryBudget> budget)
       : mesh_(caster.mesh()),
+        budget_(std::move(budget)),
         caster_(caster),
         direct_light_(direct_light),
         options_(options),
@@ -45,8 +57,7 @@ class Estimator {
       case FormFactorMethod::ray_cast:
         return rays_alone();
       case FormFactorMethod::hemicube:
-        return {.rows = hemicube_rows(caster_, paths_, {.resolution = options_.hemicube_resolution},
-                                      options_.progress)};
+        return hemicubes_alone();
       case FormFactorMethod::analytic:
         return closed_forms_alone();
       case FormFactorMethod::automatic:
@@ -94,71 +105,116 @@ class Estimator {
     return counts;
   }
 
+  Estimate nothing_yet() const {
+    const int n = mesh_.patch_count();
+    return {.rows = RowEstimates(budget_, n, static_cast<int>(mesh_.reflectance.cols())),
+            .known = KnownExchange(budget_, n)};
+  }
+
   // Casts each row, with four times the rays while `error_of(i, row)` is above the target.
-  template <class ErrorOf>
-  Estimate cast(const std::vector<int>& rays_of, bool look_behind, ErrorOf error_of) const {
-    const auto n = static_cast<std::size_t>(mesh_.patch_count());
-    Estimate result{.rows = std::vector<EstimatedRow>(n), .row_error = std::vector<float>(n)};
+  // It may leave pairs, which `done(i, pairs)` gets when there are enough.
+  template <class ErrorOf, class Done>
+  void cast(Estimate& estimate, const std::vector<int>& rays_of, bool look_behind, ErrorOf error_of,
+            Done done) const {
+    estimate.row_error.assign(static_cast<std::size_t>(mesh_.patch_count()), 0.0f);
     const int longest = *std::max_element(rays_of.begin(), rays_of.end());
     const RowCaster caster(caster_, paths_, most_rays(longest));
     for_each_row(mesh_, longest, options_.progress, [&](int i, RowCaster::Scratch& scratch) {
+      std::vector<NearExchange::Pair> pairs;
       for (int rays = rays_of[i];; rays *= 4) {
-        result.rows[i] = caster.cast(i, rays, scratch, look_behind);
-        const double error = error_of(i, result.rows[i]);
-        result.row_error[i] = static_cast<float>(error);
-        if (!(error > options_.target_error) || 4 * rays > most_rays(rays_of[i])) break;
+        const EstimatedRow row = caster.cast(i, rays, scratch, look_behind);
+        pairs.clear();
+        const double error = error_of(i, row, pairs);
+        if (error > options_.target_error && 4 * rays <= most_rays(rays_of[i])) continue;
+        estimate.row_error[i] = static_cast<float>(error);
+        estimate.rows.add(i, row);
+        done(i, pairs);
+        break;
       }
     });
-    return result;
+    estimate.rows.close();
+  }
+  template <class ErrorOf>
+  void cast(Estimate& estimate, const std::vector<int>& rays_of, ErrorOf error_of) const {
+    cast(
+        estimate, rays_of, false,
+        [&](int, const EstimatedRow& row, auto&) { return error_of(row); }, [](int, auto&) {});
   }
 
   // Counts are binomial at worst; stratified points do better.
   Estimate rays_alone() const {
     const EmitterExchange emitters(caster_, direct_light_);
-    return cast(rays_of(emitters, base_rays()), false, [](int, const EstimatedRow& row) {
+    Estimate estimate = nothing_yet();
+    cast(estimate, rays_of(emitters, base_rays()), [](const EstimatedRow& row) {
       double worst = 0.0;
       for (const FormFactor& f : row.shares) {
         worst = std::max(worst, static_cast<double>(f.value * (1.0f - f.value)));
       }
       return row.rays > 0.0 ? std::sqrt(worst / row.rays) : 0.0;
     });
+    estimate.known.S.close();
+    return estimate;
+  }
+
+  Estimate hemicubes_alone() const {
+    Estimate estimate = nothing_yet();
+    for_each_hemicube_row(caster_, paths_, {.resolution = options_.hemicube_resolution},
+                          options_.progress,
+                          [&](int i, const EstimatedRow& row) { estimate.rows.add(i, row); });
+    estimate.rows.close();
+    estimate.known.S.close();
+    return estimate;
   }
 
   Estimate rays_and_closed_forms() const {
-    const EmitterExchange emitters(caster_, direct_light_);
+    EmitterExchange emitters(caster_, direct_light_);
     const NearExchange near(mesh_);
-    std::vector<std::vector<NearExchange::Pair>> pairs(
-        static_cast<std::size_t>(mesh_.patch_count()));
-    Estimate result =
-        cast(rays_of(emitters, base_rays()), true, [&](int i, const EstimatedRow& row) {
-          pairs[i].clear();
-          return near.look(i, row, pairs[i]);
+    Estimate estimate = nothing_yet();
+    const int n = mesh_.patch_count();
+    RecordStore pairs(budget_, n, sizeof(NearExchange::Pair), RecordStore::Count::below_diagonal);
+    cast(
+        estimate, rays_of(emitters, base_rays()), true,
+        [&](int i, const EstimatedRow& row, std::vector<NearExchange::Pair>& found) {
+          return near.look(i, row, found);
+        },
+        [&](int i, std::vector<NearExchange::Pair>& found) {
+          std::erase_if(found, [&](const NearExchange::Pair& pair) {
+            return emitters.emitter_of(i) >= 0 || emitters.emitter_of(pair.patch) >= 0;
+          });
+          pairs.append(i, found.data(), found.size());
         });
-    std::vector<NearExchange::Pair> all;
-    for (auto& of_row : pairs) {
-      for (const NearExchange::Pair& pair : of_row) {
-        if (emitters.emitter_of(pair.i) < 0 && emitters.emitter_of(pair.j) < 0) all.push_back(pair);
-      }
-      of_row = {};
-    }
-    result.known = emitters.exchange(receives_, options_);
-    const auto exchanged = near.exchange(std::move(all), options_.progress);
-    result.known.S.insert(result.known.S.end(), exchanged.begin(), exchanged.end());
-    return result;
+    pairs.close();
+    KnownExchange& known = estimate.known;
+    for (int i = 0; i < n; ++i) known.is_whole[i] = emitters.emitter_of(i) >= 0 ? 1 : 0;
+    emitters.compute(receives_, options_);
+    near.exchange(std::move(pairs), options_.progress, [&](int i, std::vector<FormFactor>& row) {
+      const auto near_count = static_cast<std::ptrdiff_t>(row.size());
+      emitters.add_row(i, row);
+      std::inplace_merge(row.begin(), row.begin() + near_count, row.end(), by_patch);
+      known.S.append(i, row);
+    });
+    known.S.close();
+    return estimate;
   }
+  static bool by_patch(const FormFactor& a, const FormFactor& b) { return a.patch < b.patch; }
 
   // Rays still find what escapes, and what goes by way of mirrors and glass.
   Estimate closed_forms_alone() const {
     const EmitterExchange emitters(caster_, direct_light_);
-    Estimate result = cast(rays_of(emitters, std::max(1, options_.rays_per_patch)), false,
-                           [](int, const EstimatedRow&) { return 0.0; });
+    Estimate estimate = nothing_yet();
+    cast(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)),
+         [](const EstimatedRow&) { return 0.0; });
     const NearExchange near(mesh_);
-    result.known = analytic_exchange(caster_, near.outlines(), receives_, options_.target_error,
-                                     options_.progress, result.row_error);
-    return result;
+    analytic_exchange(caster_, near.outlines(), receives_, options_.target_error, options_.progress,
+                      estimate.row_error, [&](int i, std::vector<FormFactor>& row) {
+                        estimate.known.S.append(i, row);
+                      });
+    estimate.known.S.close();
+    return estimate;
   }
 
   const PatchMesh& mesh_;
+  std::shared_ptr<MemoryBudget> budget_;
   const ElementCaster& caster_;
   const DirectLight& direct_light_;
   const FormFactorOptions& options_;
@@ -182,10 +238,13 @@ std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const Elem
                                                   const DirectLight& direct_light,
                                                   const FormFactorOptions& options,
                                                   FormFactorReport* report) {
-  Estimate estimate = Estimator(scene, caster, direct_light, options).estimate();
+  const auto budget = options.memory ? options.memory : std::make_shared<MemoryBudget>();
+  const PatchMesh& mesh = caster.mesh();
+  budget->plan(bytes_beside_rows(mesh, static_cast<std::int64_t>(direct_light.emitters().size())));
+  Estimate estimate = Estimator(scene, caster, direct_light, options, budget).estimate();
   if (report) report->row_error = std::move(estimate.row_error);
-  return assemble_form_factors(caster.mesh(), scene.bands.count(), std::move(estimate.rows),
-                               estimate.known, options.enforce_closure, report);
+  return assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
+                               options.enforce_closure, budget, options.progress, report);
 }
 
 }  // namespace lightwell

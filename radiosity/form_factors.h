@@ -9,6 +9,7 @@
 
 #include "mesh/element_caster.h"
 #include "radiosity/direct_light.h"
+#include "radiosity/memory_budget.h"
 #include "scene/progress.h"
 
 namespace lightwell {
@@ -42,6 +43,8 @@ class FormFactors {
   virtual Spectrum escaped(int i) const = 0;
   /// Share per band that mirrors and glass take up on the way.
   virtual Spectrum absorbed_by_specular(int i) const = 0;
+  /// Row i is not needed any more: its memory may go to something else, and it may be empty now.
+  virtual void release([[maybe_unused]] int i) {}
 };
 
 /// How form factors are found. All keep the promises of FormFactors.
@@ -86,6 +89,9 @@ struct FormFactorOptions {
   int hemicube_resolution = 256;  ///< cells along an edge of the hemicube's top
   /// Scale rows so that they close and stay reciprocal; what that changed is reported.
   bool enforce_closure = true;
+  /// What the process may have in memory; rows that do not fit go to disk. Shared because the
+  /// result's rows stay where it put them. Null: a budget of its own, with MemoryOptions' defaults.
+  std::shared_ptr<MemoryBudget> memory{};
   Progress progress{};
 };
 
@@ -107,8 +113,9 @@ struct FormFactorReport {
 /// that `direct_light` owns are small and bright: but for `ray_cast` and `hemicube`, closed forms
 /// take the place of what was sampled for them. Rows are closed by symmetric diagonal scaling
 /// (Sinkhorn & Knopp 1967; Knight, Ruiz & Ucar 2014), which keeps reciprocity: what was sampled
-/// first, and closed forms only as far as that leaves a gap. Throws Interrupted when progress says
-/// stop.
+/// first, and closed forms only as far as that leaves a gap. The result is the same, bit for bit,
+/// for any number of threads and any memory. Throws Interrupted when progress says stop, InputError
+/// if the memory allowed is too little, and std::runtime_error if rows go to disk and it is full.
 std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const ElementCaster& caster,
                                                   const DirectLight& direct_light,
                                                   const FormFactorOptions& options = {},

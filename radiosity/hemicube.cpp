@@ -127,8 +127,9 @@ class Tally {
 
 }  // namespace
 
-std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const LightPaths& paths,
-                                        const HemicubeOptions& options, const Progress& progress) {
+void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
+                           const HemicubeOptions& options, const Progress& progress,
+                           const std::function<void(int, const EstimatedRow&)>& take) {
   const PatchMesh& mesh = caster.mesh();
   const HemicubeCells cells(options.resolution);
   const HemicubeScan scan(caster);
@@ -138,7 +139,6 @@ std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const Light
   const RowCaster row_caster(caster, paths, rays_where_covered);
   const bool by_rays = options.back_end == HemicubeOptions::BackEnd::rays;
   const int patches = mesh.patch_count();
-  std::vector<EstimatedRow> rows(patches);
   // Slices keep progress and interruption on this thread, each a fraction of a second of work.
   const int cells_per_slice = by_rays ? 1 << 20 : 1 << 24;
   const int slice =
@@ -154,8 +154,9 @@ std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const Light
       for (int i = begin + low; i < begin + high; ++i) {
         if (!paths.is_diffuse(mesh.facet[i])) continue;
         if (caster.hidden_elements(i) > 0) {
-          rows[i] = row_caster.cast(i, rays_where_covered, ray_scratch);
-          rows[i].trust = 1.0 / mesh.area[i];
+          EstimatedRow row = row_caster.cast(i, rays_where_covered, ray_scratch);
+          row.trust = 1.0 / mesh.area[i];
+          take(i, row);
           continue;
         }
         const HemicubeEye eye = hemicube_eye(mesh, i, !by_rays);
@@ -164,12 +165,20 @@ std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const Light
         } else {
           scan.draw(eye, cells, scratch, items);
         }
-        rows[i] = tally.row(i, eye, items);
-        if (by_rays) rows[i].rays += cells.cell_count();
+        EstimatedRow row = tally.row(i, eye, items);
+        if (by_rays) row.rays += cells.cell_count();
+        take(i, row);
       }
     });
   }
   report(progress, "form factors", 1.0);
+}
+
+std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const LightPaths& paths,
+                                        const HemicubeOptions& options, const Progress& progress) {
+  std::vector<EstimatedRow> rows(static_cast<std::size_t>(caster.mesh().patch_count()));
+  for_each_hemicube_row(caster, paths, options, progress,
+                        [&](int i, const EstimatedRow& row) { rows[i] = row; });
   return rows;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "mesh/element_caster.h"
@@ -31,6 +32,13 @@ struct HemicubeOptions {
 /// trust = 1 / A_i: what is seen from one place is the truer the smaller the patch is, so of the
 /// two estimates of an exchange area the smaller patch's counts for more. The same bits for any
 /// number of threads. Throws std::invalid_argument for a resolution out of range, and Interrupted.
+///
+/// `take(i, row)` gets the rows as they are done, from many threads.
+void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
+                           const HemicubeOptions& options, const Progress& progress,
+                           const std::function<void(int, const EstimatedRow&)>& take);
+
+/// All of them.
 std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const LightPaths& paths,
                                         const HemicubeOptions& options = {},
                                         const Progress& progress = {});

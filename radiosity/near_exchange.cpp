@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 
+#include "radiosity/column_block.h"
 #include "radiosity/pair_exchange.h"
 #include "scene/parallel.h"
 
@@ -23,6 +23,23 @@ double rough_form_factor(const PatchOutline& from, const PatchOutline& to, doubl
   const double cosines = std::max(0.0, from.normal.dot(way)) * std::max(0.0, -to.normal.dot(way));
   return cosines * area_to / (squared * (std::numbers::pi * squared + area_to));
 }
+
+void add_row(const PairExchange& closed_form, int i, RecordSpan row, RecordSpan column,
+             std::vector<FormFactor>& exchange) {
+  using Pair = NearExchange::Pair;
+  for_each_pair(i, row, column, [&](int j, const std::byte* own, const std::byte* other) {
+    int first = 0, all = 0;
+    for (const std::byte* record : {own, other}) {
+      if (!record) continue;
+      first += reinterpret_cast<const Pair*>(record)->first;
+      all += reinterpret_cast<const Pair*>(record)->all;
+    }
+    const auto S = static_cast<float>(closed_form.between(i, j) * first / all);
+    // Patches that lie on each other, face to face, have no closed form; their counts are exact.
+    if (S > 0.0f) exchange.push_back({j, S});
+  });
+}
+
 static_assert(NearExchange::worst_count_error * NearExchange::worst_count_error > fewest_rays - 1);
 
 }  // namespace
@@ -55,44 +72,35 @@ double NearExchange::look(int patch, const EstimatedRow& row, std::vector<Pair>&
     // U^2 V (1 - V) / all with U = all / rays.
     worst_variance =
         std::max(worst_variance, static_cast<double>(first) * hidden / (all * row.rays * row.rays));
-    pairs.push_back({.i = std::min(patch, j), .j = std::max(patch, j), .first = first, .all = all});
+    pairs.push_back({.patch = j, .first = first, .all = all});
   }
   return std::sqrt(worst_variance);
 }
 
-std::vector<SymmetricEntry> NearExchange::exchange(std::vector<Pair> pairs,
-                                                   const Progress& progress) const {
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
-    return std::tie(a.i, a.j, a.first, a.all) < std::tie(b.i, b.j, b.first, b.all);
-  });
-  std::size_t kept = 0;
-  for (const Pair& pair : pairs) {
-    if (kept > 0 && pairs[kept - 1].i == pair.i && pairs[kept - 1].j == pair.j) {
-      pairs[kept - 1].first += pair.first;
-      pairs[kept - 1].all += pair.all;
-    } else {
-      pairs[kept++] = pair;
+void NearExchange::exchange(RecordStore pairs, const Progress& progress,
+                            const std::function<void(int, std::vector<FormFactor>&)>& take) const {
+  const PairExchange closed_form(outlines_);
+  const int n = pairs.row_count();
+  for (const ColumnRange range : column_ranges(pairs, pairs.budget().block_bytes())) {
+    const ColumnBlock block(pairs, range.first, range.last);
+    constexpr int slice = 256;  // of rows: a fraction of a second
+    for (int begin = range.first; begin < range.last; begin += slice) {
+      report(progress, "closed forms", static_cast<double>(begin) / n);
+      const int size = std::min(slice, range.last - begin);
+      std::vector<std::vector<FormFactor>> rows(static_cast<std::size_t>(size));
+      parallel_for(size, 1, [&](int low, int high) {
+        for (int k = low; k < high; ++k) {
+          add_row(closed_form, begin + k, pairs.row(begin + k), block.column(begin + k),
+                  rows[static_cast<std::size_t>(k)]);
+        }
+      });
+      for (int k = 0; k < size; ++k) {
+        take(begin + k, rows[static_cast<std::size_t>(k)]);
+        pairs.release(begin + k);
+      }
     }
   }
-  pairs.resize(kept);
-  const PairExchange closed_form(outlines_);
-  std::vector<SymmetricEntry> entries(pairs.size());
-  const int count = static_cast<int>(pairs.size());
-  constexpr int slice = 1 << 16;
-  for (int begin = 0; begin < count; begin += slice) {
-    report(progress, "closed forms", static_cast<double>(begin) / count);
-    parallel_for(std::min(slice, count - begin), 64, [&](int low, int high) {
-      for (int k = begin + low; k < begin + high; ++k) {
-        const Pair& pair = pairs[k];
-        const double unoccluded = closed_form.between(pair.i, pair.j);
-        entries[k] = {pair.i, pair.j, unoccluded * pair.first / pair.all};
-      }
-    });
-  }
   report(progress, "closed forms", 1.0);
-  // Patches that lie on each other, face to face, have no closed form; their counts are exact.
-  std::erase_if(entries, [](const SymmetricEntry& entry) { return !(entry.value > 0.0); });
-  return entries;
 }
 
 }  // namespace lightwell

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
+
 #include "mesh/patch_outline.h"
-#include "radiosity/form_factor_assembly.h"
+#include "radiosity/estimated_row.h"
+#include "radiosity/row_store.h"
 #include "scene/progress.h"
 
 namespace lightwell {
@@ -20,8 +23,9 @@ class NearExchange {
   /// Standard error of the worst F_ij that remains a count, times the row's rays.
   static constexpr double worst_count_error = 3.32;
 
+  /// What a row says of patch j: how many of its rays cross it, and how many meet it first.
   struct Pair {
-    int i = 0, j = 0;  ///< i < j
+    int patch = 0;
     int first = 0, all = 0;
   };
 
@@ -29,8 +33,11 @@ class NearExchange {
   /// worst F_ij, those that remain counts included. Safe to call from many threads.
   double look(int patch, const EstimatedRow& row, std::vector<Pair>& pairs) const;
 
-  /// The pairs' exchange; both ends' counts of a pair are added.
-  std::vector<SymmetricEntry> exchange(std::vector<Pair> pairs, const Progress& progress) const;
+  /// Takes rows of pairs, kept so that columns below the diagonal are counted. `take(i, row)` gets
+  /// the exchange of patch i with patches j > i, one row after another; both ends' counts of a pair
+  /// are added.
+  void exchange(RecordStore pairs, const Progress& progress,
+                const std::function<void(int, std::vector<FormFactor>&)>& take) const;
 
   const std::vector<PatchOutline>& outlines() const { return outlines_; }
 

@@ -173,8 +173,8 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
 
   FormFactorOptions form_factor_options = options.form_factors;
   form_factor_options.progress = options.progress;
-  const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
-                                                 report ? &report->form_factors : nullptr);
+  auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
+                                           report ? &report->form_factors : nullptr);
   seconds.push_back({"form_factors", watch.lap()});
 
   solved.solution = solve_gauss_seidel(solved.mesh, *form_factors,
@@ -186,6 +186,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   solution.metres_per_unit = scene.metres_per_unit;
   solution.unit_name = scene.unit_name;
   solution.energy = energy_balance(scene, solved.mesh, *form_factors, solution.patch_radiosity);
+  form_factors.reset();  // what follows needs the memory
   seconds.push_back({"solve", watch.lap()});
 
   reconstruct(scene, caster, direct_light, options, solution);

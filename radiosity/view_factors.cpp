@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "radiosity/column_block.h"
+#include "scene/parallel.h"
+
 namespace lightwell {
 namespace {
 
@@ -65,11 +68,16 @@ float ViewFactors::factor(int i, int j) const {
   return found != entries.end() && found->patch == j ? found->value : 0.0f;
 }
 
-ViewFactors sum_form_factors(const FormFactors& form_factors, const PatchMesh& mesh,
-                             const std::vector<int>& row_of_patch, int row_count) {
+ViewFactors sum_form_factors(FormFactors& form_factors, const PatchMesh& mesh,
+                             const std::vector<int>& row_of_patch, int row_count,
+                             std::shared_ptr<MemoryBudget> budget) {
   const PatchesOfRows rows = sort_patches(row_of_patch, row_count);
-  ViewFactors result;
+  ViewFactors result(row_count, std::move(budget));
   RowSum sum(row_count);
+  std::vector<FormFactor> factors;
+  for (std::size_t p = 0; p < row_of_patch.size(); ++p) {
+    if (row_of_patch[p] < 0) form_factors.release(static_cast<int>(p));
+  }
   for (int r = 0; r < row_count; ++r) {
     const auto row = static_cast<std::size_t>(r);
     double area = 0.0, open = 0.0, blocked = 0.0;
@@ -92,13 +100,16 @@ ViewFactors sum_form_factors(const FormFactors& form_factors, const PatchMesh& m
       for (std::size_t s = 0; s < specular.patch.size(); ++s) {
         add(A_i, specular.patch[s], specular.value(static_cast<Eigen::Index>(s), 0));
       }
+      form_factors.release(i);
     }
-    sum.move_to(result.factors, area);
-    result.area.push_back(area);
-    result.first.push_back(result.factors.size());
-    result.open.push_back(area > 0.0 ? open / area : 0.0);
-    result.blocked.push_back(area > 0.0 ? blocked / area : 0.0);
+    factors.clear();
+    sum.move_to(factors, area);
+    result.factors.append(r, factors);
+    result.area[row] = area;
+    result.open[row] = area > 0.0 ? open / area : 0.0;
+    result.blocked[row] = area > 0.0 ? blocked / area : 0.0;
   }
+  result.factors.close();
   return result;
 }
 
@@ -115,17 +126,27 @@ double closure_error(const ViewFactors& view_factors) {
 }
 
 double reciprocity_error(const ViewFactors& view_factors) {
-  double worst = 0.0;
-  for (int i = 0; i < view_factors.row_count(); ++i) {
-    const double A_i = view_factors.area[static_cast<std::size_t>(i)];
-    for (const auto [j, F] : view_factors.row(i)) {
-      const double A_j = view_factors.area[static_cast<std::size_t>(j)];
-      const double back = static_cast<double>(view_factors.factor(j, i));
-      const double difference = std::abs(A_i * static_cast<double>(F) - A_j * back);
-      worst = std::max(worst, difference / std::min(A_i, A_j));
-    }
+  const RecordStore& rows = view_factors.factors.records();
+  const auto share = [](const std::byte* record) {
+    return record ? static_cast<double>(reinterpret_cast<const FormFactor*>(record)->value) : 0.0;
+  };
+  std::vector<double> worst(view_factors.area.size(), 0.0);
+  for (const ColumnRange range : column_ranges(rows, rows.budget().block_bytes())) {
+    const ColumnBlock block(rows, range.first, range.last);
+    parallel_for(range.last - range.first, 16, [&](int low, int high) {
+      for (int i = range.first + low; i < range.first + high; ++i) {
+        const double A_i = view_factors.area[static_cast<std::size_t>(i)];
+        double& worst_of_row = worst[static_cast<std::size_t>(i)];
+        for_each_pair(i, rows.row(i), block.column(i),
+                      [&](int j, const std::byte* there, const std::byte* back) {
+                        const double A_j = view_factors.area[static_cast<std::size_t>(j)];
+                        const double difference = std::abs(A_i * share(there) - A_j * share(back));
+                        worst_of_row = std::max(worst_of_row, difference / std::min(A_i, A_j));
+                      });
+      }
+    });
   }
-  return worst;
+  return worst.empty() ? 0.0 : *std::max_element(worst.begin(), worst.end());
 }
 
 double error_estimate(const std::vector<float>& patch_error, const FormFactors& form_factors,

@@ -45,11 +45,24 @@ PatchMesh mesh_of_areas() {
   mesh.area << 1.0, 3.0, 2.0, 1.0;
   return mesh;
 }
-const GivenFactors given(
-    {{{2, 0.25f}}, {{2, 0.25f}}, {{0, 0.125f}, {1, 0.375f}, {3, 0.25f}}, {{2, 0.5f}}});
+GivenFactors given() {
+  return GivenFactors(
+      {{{2, 0.25f}}, {{2, 0.25f}}, {{0, 0.125f}, {1, 0.375f}, {3, 0.25f}}, {{2, 0.5f}}});
+}
+
+/// View factors given outright.
+ViewFactors view_factors(const std::vector<double>& area,
+                         const std::vector<std::vector<FormFactor>>& rows) {
+  ViewFactors F(static_cast<int>(area.size()));
+  F.area = area;
+  for (std::size_t i = 0; i < rows.size(); ++i) F.factors.append(static_cast<int>(i), rows[i]);
+  F.factors.close();
+  return F;
+}
 
 TEST(ViewFactors, PatchesOfARowAreAddedByArea) {
-  const ViewFactors F = sum_form_factors(given, mesh_of_areas(), {0, 0, 1, -1}, 3);
+  GivenFactors factors = given();
+  const ViewFactors F = sum_form_factors(factors, mesh_of_areas(), {0, 0, 1, -1}, 3);
   ASSERT_EQ(F.row_count(), 3);
   EXPECT_EQ(F.area, (std::vector<double>{4.0, 2.0, 0.0}));
   EXPECT_FLOAT_EQ(F.factor(0, 1), (0.25f + 0.75f) / 4.0f);
@@ -63,18 +76,22 @@ TEST(ViewFactors, PatchesOfARowAreAddedByArea) {
 }
 
 TEST(ViewFactors, ErrorsOfClosureAndReciprocityAreSeen) {
-  ViewFactors F = sum_form_factors(given, mesh_of_areas(), {0, 0, 1, -1}, 2);
-  F.factors[0].value += 0.125f;
+  // A_0 F_01 = 1 and A_1 F_10 = 1, but for what is added to the first.
+  ViewFactors F = view_factors({4.0, 2.0}, {{{1, 0.25f + 0.125f}}, {{0, 0.5f}}});
+  F.open = {0.75, 0.5};
   EXPECT_NEAR(closure_error(F), 0.125, 1e-7);
   EXPECT_NEAR(reciprocity_error(F), 0.125 * 4.0 / 2.0, 1e-7) << "over the smaller area";
+  EXPECT_NEAR(reciprocity_error(view_factors({4.0, 2.0}, {{}, {{0, 0.5f}}})), 0.5, 1e-7)
+      << "one of the two is missing";
+  EXPECT_NEAR(reciprocity_error(view_factors({4.0, 2.0}, {{{1, 0.25f}}, {}})), 0.5, 1e-7);
 }
 
 TEST(ViewFactors, ErrorsOfIndependentPatchesAddUpAsSquares) {
   // Row 0 holds two patches of one factor each, row 1 one patch with two factors to row 0.
   const double row_0 = 1e-3 * std::sqrt(1.0 + 9.0) / 4.0, row_1 = 1e-3 * std::sqrt(2.0);
-  EXPECT_NEAR(error_estimate({1e-3f, 1e-3f, 0.0f, 1.0f}, given, mesh_of_areas(), {0, 0, 1, -1}),
+  EXPECT_NEAR(error_estimate({1e-3f, 1e-3f, 0.0f, 1.0f}, given(), mesh_of_areas(), {0, 0, 1, -1}),
               row_0, 1e-9);
-  EXPECT_NEAR(error_estimate({0.0f, 0.0f, 1e-3f, 1.0f}, given, mesh_of_areas(), {0, 0, 1, -1}),
+  EXPECT_NEAR(error_estimate({0.0f, 0.0f, 1e-3f, 1.0f}, given(), mesh_of_areas(), {0, 0, 1, -1}),
               row_1, 1e-9);
 }
 
@@ -86,14 +103,10 @@ std::string content(const std::filesystem::path& path) {
 
 // Numbers that no short decimal holds.
 ViewFactors thirds() {
-  ViewFactors F;
-  F.area = {1.0, 2.0, 0.0, 0.5};
-  F.factors = {
-      {1, 2.0f / 3.0f}, {3, 1e-30f}, {0, 1.0f / 3.0f}, {3, std::nextafter(0.1f, 1.0f)}, {1, 1.0f}};
-  F.first = {0, 2, 4, 4, 5};
-  F.open = {0.0, 0.0, 0.0, 0.0};
-  F.blocked = F.open;
-  return F;
+  return view_factors({1.0, 2.0, 0.0, 0.5}, {{{1, 2.0f / 3.0f}, {3, 1e-30f}},
+                                             {{0, 1.0f / 3.0f}, {3, std::nextafter(0.1f, 1.0f)}},
+                                             {},
+                                             {{1, 1.0f}}});
 }
 
 TEST(MatrixMarket, NumbersComeBackBitForBit) {
@@ -112,7 +125,8 @@ TEST(MatrixMarket, NumbersComeBackBitForBit) {
   in >> rows >> columns >> entries;
   EXPECT_EQ(rows, 4u);
   EXPECT_EQ(columns, 4u);
-  ASSERT_EQ(entries, F.factors.size());
+  ASSERT_EQ(entries, 5u);
+  ASSERT_EQ(F.entry_count(), 5);
   std::size_t last_row = 0;
   for (std::size_t k = 0; k < entries; ++k) {
     std::size_t i = 0, j = 0;
@@ -128,9 +142,7 @@ TEST(MatrixMarket, NumbersComeBackBitForBit) {
 
 TEST(MatrixMarket, NoFactorsAreAMatrixOfZeros) {
   const TemporaryFolder folder;
-  ViewFactors F;
-  F.area = {1.0};
-  F.first = {0, 0};
+  const ViewFactors F = view_factors({1.0}, {});
   write_matrix_market(folder / "F.mtx", F, "");
   EXPECT_EQ(content(folder / "F.mtx"), "%%MatrixMarket matrix coordinate real general\n1 1 0\n");
 }
@@ -151,9 +163,7 @@ TEST(View3dResult, IsTheHeaderAreasMatrixAndEmittances) {
 
 TEST(View3dResult, TooManyRowsAreRefusedBeforeAnythingIsWritten) {
   const TemporaryFolder folder;
-  ViewFactors F;
-  F.area.assign(most_view3d_rows + 1, 1.0);
-  F.first.assign(F.area.size() + 1, 0);
+  const ViewFactors F(most_view3d_rows + 1);
   const std::string message = message_of<InputError>(
       [&] { write_view3d(folder / "F.txt", F, std::vector<double>(F.area.size()), 1.0, {}); });
   EXPECT_TRUE(says(message, "30001"));
@@ -177,10 +187,7 @@ PatchMesh two_squares() {
 
 TEST(RowPicture, HoldsTheRowsFactorsForEveryElement) {
   const TemporaryFolder folder;
-  ViewFactors F;
-  F.area = {1.0, 1.0};
-  F.factors = {{1, 0.2f}, {0, 0.2f}};
-  F.first = {0, 1, 2};
+  const ViewFactors F = view_factors({1.0, 1.0}, {{{1, 0.2f}}, {{0, 0.2f}}});
   write_row(folder / "row.vtp", two_squares(), {0, 1}, F, 1);
   EXPECT_EQ(folder.file_count(), 1);
   vtkNew<vtkXMLPolyDataReader> reader;

@@ -1,0 +1,103 @@
+#include "radiosity/specular_assembly.h"
+
+#include <cstring>
+
+#include "radiosity/balance.h"
+#include "radiosity/symmetric_rows.h"
+
+namespace lightwell {
+namespace {
+
+using Values = Eigen::Map<const Eigen::Array<float, 1, Eigen::Dynamic>>;
+
+// What follows a record's patch.
+Values values_of(const std::byte* record, int bands) {
+  return {reinterpret_cast<const float*>(record + sizeof(int)), bands};
+}
+
+// S_ij, j >= i, per band: the sum that gives each end its trust.
+RecordStore joined(const PatchMesh& mesh, RowEstimates& rows,
+                   const std::shared_ptr<MemoryBudget>& budget) {
+  const int bands = rows.bands();
+  const auto weight = [&](int i) { return static_cast<float>(rows.trust(i) * mesh.area[i]); };
+  RecordStore S(budget, rows.patch_count(), rows.specular_shares().record_bytes(),
+                RecordStore::Count::above_diagonal);
+  fold_symmetric(
+      rows.specular_shares(),
+      [&](int i, RecordSpan row, RecordSpan column) {
+        std::vector<std::byte> records;
+        std::size_t count = 0;
+        for_each_pair(i, row, column, [&](int j, const std::byte* own, const std::byte* other) {
+          Spectrum sum = Spectrum::Zero(bands);
+          if (own) sum += values_of(own, bands).transpose() * weight(i);
+          if (other) sum += values_of(other, bands).transpose() * weight(j);
+          sum /= static_cast<float>(rows.trust(i) + rows.trust(j));
+          records.resize(++count * S.record_bytes());
+          std::byte* const to = records.data() + records.size() - S.record_bytes();
+          std::memcpy(to, &j, sizeof j);
+          std::memcpy(to + sizeof j, sum.data(), S.record_bytes() - sizeof j);
+        });
+        S.append(i, records.data(), count);
+      },
+      [](int) {});
+  S.close();
+  return S;
+}
+
+// S x, each band by itself.
+Eigen::ArrayXXd product(const RecordStore& S, const Eigen::ArrayXXd& x) {
+  const int bands = static_cast<int>(x.cols());
+  using RowMajor = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const RowMajor from = x;
+  RowMajor own = RowMajor::Zero(x.rows(), x.cols()), below = own;
+  read_symmetric(
+      S,
+      [&](int i, RecordSpan row) {
+        for (std::size_t k = 0; k < row.size(); ++k) {
+          own.row(i) += values_of(row[k], bands).cast<double>() * from.row(row.patch(k));
+        }
+      },
+      [&](int i, std::size_t k, RecordSpan row) {
+        below.row(row.patch(k)) += values_of(row[k], bands).cast<double>() * from.row(i);
+      });
+  return own + below;
+}
+
+Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const RecordStore& S) {
+  Eigen::ArrayXXd target = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
+  for (int i = 0; i < rows.patch_count(); ++i) target.row(i) = mesh.area[i] * rows.specular_sum(i);
+  return symmetric_scaling([&](const Eigen::ArrayXXd& x) { return product(S, x); },
+                           Eigen::ArrayXXd::Zero(target.rows(), target.cols()), target);
+}
+
+}  // namespace
+
+void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_closure,
+                       const std::shared_ptr<MemoryBudget>& budget, StoredFormFactors& result) {
+  RecordStore S = joined(mesh, rows, budget);
+  Eigen::ArrayXXd d = Eigen::ArrayXXd::Ones(rows.patch_count(), rows.bands());
+  if (enforce_closure) d = balance(mesh, rows, S);
+  unfold_symmetric(S, [&](int i, RecordSpan below, RecordSpan upper) {
+    std::vector<int> patches;
+    std::vector<float> values;
+    for (const RecordSpan part : {below, upper}) {
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        const int j = part.patch(k);
+        const Values S_ij = values_of(part[k], rows.bands());
+        patches.push_back(j);
+        for (int band = 0; band < rows.bands(); ++band) {
+          values.push_back(
+              static_cast<float>(S_ij[band] * (d(i, band) * d(j, band)) / mesh.area[i]));
+        }
+      }
+    }
+    result.append_specular(i, patches, values);
+  });
+  for (int i = 0; i < rows.patch_count(); ++i) {
+    if (!rows.is_measured(i)) continue;
+    result.escaped_share.row(i) += rows.specular_escaped(i);
+    result.absorbed_share.row(i) = rows.absorbed(i) + rows.cut(i);
+  }
+}
+
+}  // namespace lightwell

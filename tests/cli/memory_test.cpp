@@ -1,0 +1,135 @@
+// --memory: what the process may have resident, and what becomes of rows that do not fit.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+#include <string>
+
+#include "tests/cli/program.h"
+
+namespace lightwell {
+namespace {
+using Words = std::vector<std::string>;
+
+// Sanitizers keep notes and what is freed.
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+constexpr bool memory_is_its_own = false;
+#else
+constexpr bool memory_is_its_own = true;
+#endif
+
+class Memory : public testing::Test {
+ protected:
+  // The unit cube from inside: cut finely enough, every row sees hundreds of patches.
+  void SetUp() override {
+    std::string obj;
+    for (int i = 0; i < 8; ++i) {
+      obj += "v " + std::to_string(i & 1) + " " + std::to_string((i >> 1) & 1) + " " +
+             std::to_string((i >> 2) & 1) + "\n";
+    }
+    obj += "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+    folder.write("cube.obj", obj);
+    folder.write("room.toml", small_room());
+  }
+  Ended run(const Words& arguments) { return run_lightwell(folder / "", arguments); }
+  Ended factors(const std::string& output, const Words& more) {
+    return run(Words{"form-factors", "cube.obj", "-o", output, "--json", "--target-error", "0.02",
+                     "--max-patch-size", "0.04"} +
+               more);
+  }
+  std::string content(const std::string& file) const {
+    std::ostringstream out;
+    out << std::ifstream(folder / file, std::ios::binary).rdbuf();
+    return out.str();
+  }
+  TemporaryFolder folder;
+};
+
+// The budget that a refusal asks for.
+int needed_mb(const std::string& refusal) {
+  std::smatch found;
+  return std::regex_search(refusal, found, std::regex("Allow (\\d+) MB")) ? std::stoi(found[1]) : 0;
+}
+
+TEST_F(Memory, TheLeastThatIsEnoughIsSaidAndKept) {
+  if (!memory_is_its_own) GTEST_SKIP();
+  const Ended unlimited = factors("F.mtx", {});
+  ASSERT_EQ(unlimited.code, 0) << unlimited.err;
+  const auto free = nlohmann::json::parse(unlimited.out);
+  EXPECT_EQ(free["storage"]["disk_mb"], 0.0);
+  const std::string matrix = content("F.mtx");
+  ASSERT_GT(matrix.size(), 1u << 20);
+
+  const Ended refused = factors("F.mtx", {"--memory", "2M"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_TRUE(says(refused.err, "a memory budget of 2 MB is too small"));
+  EXPECT_EQ(content("F.mtx"), matrix) << "the old file stays";
+  const int needed = needed_mb(refused.err);
+  ASSERT_GT(needed, 20) << refused.err;
+  ASSERT_LT(needed, free["peak_memory_mb"].get<double>()) << "the case is large enough";
+
+  // A megabyte or two: what a process has resident is not the same from one run to the next.
+  const int budget = needed + 2;
+  const Ended kept = factors("F.mtx", {"--memory", std::to_string(budget) + "M", "--threads", "3"});
+  ASSERT_EQ(kept.code, 0) << kept.err;
+  const auto small = nlohmann::json::parse(kept.out);
+  EXPECT_GT(small["storage"]["disk_mb"].get<double>(), 1.0);
+  EXPECT_EQ(small["storage"]["budget_mb"], budget);
+  EXPECT_LT(small["peak_memory_mb"].get<double>(), 1.15 * budget);
+  EXPECT_TRUE(content("F.mtx") == matrix) << "the same bits";
+  EXPECT_EQ(folder.file_count(), 4) << "two scenes and two results; no file of rows";
+}
+
+TEST_F(Memory, PeopleAreToldWhereRowsWere) {
+  const Ended ended = run({"form-factors", "cube.obj", "-o", "F.mtx", "--memory", "1.5 GiB"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(says(ended.out, "in memory (budget 1.5 GB)"));
+}
+
+TEST_F(Memory, SolveAndRunKeepToItToo) {
+  const auto json = nlohmann::json::parse(
+      run(Words{"solve", "room.toml", "-o", "S.vtp", "--memory", "1G", "--json"} + quick()).out);
+  EXPECT_EQ(json["storage"]["budget_mb"], 1024.0);
+  for (const Words& command :
+       {Words{"solve", "room.toml", "-o", "T.vtp"}, Words{"run", "room.toml", "-o", "results"}}) {
+    const Ended refused = run(command + Words{"--memory", "1M"} + quick());
+    EXPECT_EQ(refused.code, 3);
+    EXPECT_TRUE(says(refused.err, "too small"));
+  }
+  EXPECT_EQ(folder.file_count(), 3) << "two scenes and the solution";
+}
+
+TEST_F(Memory, AmountsThatAreNoneAreRefused) {
+  for (const char* wrong : {"", "much", "G", "-1G", "0", "100", "512K", "5X", "2GG", "nan", "inf",
+                            "1e400", "9999999999T", "1,5G"}) {
+    const Ended ended =
+        run({"form-factors", "cube.obj", "-o", "F.mtx", std::string("--memory=") + wrong});
+    EXPECT_EQ(ended.code, 2) << wrong;
+    EXPECT_TRUE(says(ended.err, "--memory")) << wrong;
+  }
+  for (const char* right : {"2G", "2g", "2GB", "2gib", "2048M", "2147483648", "0.5t", "4e3 MiB"}) {
+    const Ended ended = run({"form-factors", "cube.obj", "-o", "F.mtx", "--memory", right});
+    EXPECT_EQ(ended.code, 0) << right << ": " << ended.err;
+  }
+}
+
+// The program inherits the limit, and would be ended by a signal if it did not see to that.
+TEST_F(Memory, AFileThatMayNotGrowIsAnError) {
+  if (!memory_is_its_own) GTEST_SKIP();
+  const int needed = needed_mb(factors("F.mtx", {"--memory", "2M"}).err);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit limit{.rlim_cur = 1 << 20, .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  const Ended ended = factors("F.mtx", {"--memory", std::to_string(needed + 2) + "M"});
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(says(ended.err, "rows that do not fit into memory could not be written"));
+  EXPECT_EQ(folder.file_count(), 2) << "the two scenes";
+}
+
+}  // namespace
+}  // namespace lightwell
