@@ -24,6 +24,9 @@ struct Arguments {
 int probe(const Arguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
+  if (scene.relative_units) {
+    console.say("note: the scene's light is in no known unit; irradiance and lux are relative.");
+  }
   const std::vector<Probe> probes = read_probes(arguments.points, scene.metres_per_unit);
   require_writable(arguments.output);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);

@@ -106,10 +106,12 @@ std::string Report::for_people() const {
       constexpr double printed_as_zero = 5e-5;
       return std::abs(share) < printed_as_zero ? 0.0 : share;  // and not as -0
     };
-    line("energy",
-         fmt::format("{:.6g} W emitted = {:.4f} % absorbed + {:.4f} % escaped + {:.4f} % "
-                     "unshot",
-                     emitted, percent("absorbed"), percent("escaped"), percent("unshot")));
+    line(
+        "energy",
+        fmt::format("{:.6g} {} emitted = {:.4f} % absorbed + {:.4f} % escaped + {:.4f} % "
+                    "unshot",
+                    emitted, facts_.value("light", "watts") == "relative" ? "(no known unit)" : "W",
+                    percent("absorbed"), percent("escaped"), percent("unshot")));
     line("residual",
          fmt::format("{:.2g} after {} sweeps ({})", facts_["residual"].get<double>(),
                      facts_["sweeps"].get<int>(), facts_["outcome"].get<std::string>()));

@@ -53,7 +53,9 @@ Action add_run(CLI::App& command) {
   command.description(
       "Solves a scene and renders each of its cameras: solution.vtp, a .exr and a .png per\n"
       "camera, report.json.");
-  command.add_option("scene", arguments->scene, "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml")
+  command
+      .add_option("scene", arguments->scene,
+                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml")
       ->required()
       ->type_name("SCENE");
   command.add_option("-o,--output", arguments->output, "folder for the results (SCENE-output)")

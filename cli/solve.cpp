@@ -34,7 +34,9 @@ int solve(const Arguments& arguments, Console& console) {
 Action add_solve(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.description("Meshes a scene, solves for the light on all its surfaces, and saves it.");
-  command.add_option("scene", arguments->scene, "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml")
+  command
+      .add_option("scene", arguments->scene,
+                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml")
       ->required()
       ->type_name("SCENE");
   command.add_option("-o,--output", arguments->output, "the solution, .vtp (opens in ParaView)")

@@ -30,6 +30,7 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report) {
   const Stopwatch watch;
   Scene scene = read_scene(file);
   console.say_notes(scene);
+  report.add("light", scene.relative_units ? "relative" : "watts");
   report.add_phase("read_scene", watch.seconds());
   stop_if_interrupted();
   return scene;

@@ -27,6 +27,7 @@ int view(const Arguments& arguments, Console& console) {
   const Scene scene = read_scene_step(arguments.scene, console, report);
   ViewOptions options{
       .cameras = scene.cameras, .exposure_ev = arguments.exposure_ev, .materials = scene.materials};
+  options.relative_units = scene.relative_units;
   if (!arguments.camera.empty()) options.camera = choose_camera(scene, arguments.camera);
   // Off screen, the picture that 'render' would make; a window is as large as suits a screen.
   if (!arguments.offscreen.empty() && !scene.cameras.empty()) {

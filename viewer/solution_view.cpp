@@ -43,7 +43,7 @@ std::vector<double> round_steps(const LuxRange& range) {
   return steps;
 }
 
-vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range) {
+vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char* unit) {
   constexpr int entries = 256;
   vtkNew<vtkLookupTable> table;
   table->SetNumberOfTableValues(entries);
@@ -55,7 +55,7 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range) {
   }
   auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
   legend->SetLookupTable(table);
-  legend->SetTitle("lx");
+  legend->SetTitle(unit);
   vtkNew<vtkDoubleArray> labels;
   for (const double value : round_steps(range)) labels->InsertNextValue(value);
   legend->SetCustomLabels(labels);
@@ -116,7 +116,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       up_axis_(guess_up_axis(options.cameras, bounds_)),
       actor_(solved.mesh, kinds_, radiance_),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
-      legend_(make_legend(lux_range_)) {
+      legend_(make_legend(lux_range_, options.relative_units ? "relative" : "lx")) {
   if (options.camera) {
     start_camera_ = *options.camera;
   } else if (!options.cameras.empty()) {
