@@ -237,7 +237,8 @@ int form_factors(const Arguments& arguments, Console& console) {
 void add_how(CLI::App& command, Arguments& arguments) {
   const std::string group = "How they are found";
   command
-      .add_option("--method", arguments.method, "auto (default), ray-cast, hemicube or analytic")
+      .add_option("--method,--form-factors", arguments.method,
+                  "auto (default), ray-cast, hemicube or analytic")
       ->type_name("METHOD")
       ->check(CLI::IsMember(form_factor_method_names()))
       ->group(group);
