@@ -7,7 +7,7 @@
 
 #include "mesh/patch_sampler.h"
 #include "radiosity/pair_exchange.h"
-#include "radiosity/visible_exchange.h"
+#include "radiosity/pair_shafts.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -35,39 +35,21 @@ class PairVisibility {
         caster_(caster),
         target_(target_error > 0.0 ? target_error : usual_target),
         sobol_(points_in_set),
-        shafts_(mesh_) {
+        shafts_(caster, outlines) {
     samplers_.reserve(outlines.size());
     for (int i = 0; i < mesh_.patch_count(); ++i) samplers_.emplace_back(mesh_, i);
-    ends_.resize(outlines.size());
-    is_covered_.resize(outlines.size());
-    is_hidden_.resize(outlines.size());
-    parallel_for(mesh_.patch_count(), 64, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) {
-        ends_[i] = shafts_.end(outlines[i], mesh_.facet[i]);
-        const int hidden = caster_.hidden_elements(i),
-                  all = mesh_.first_element[i + 1] - mesh_.first_element[i];
-        is_hidden_[i] = hidden == all;
-        is_covered_[i] = hidden > 0 || shafts_.is_covered(ends_[i]);
-      }
-    });
   }
 
   // None needed, exact or sampled: whichever is the first that does.
   Visibility between(int i, int j, double largest_form_factor) const {
-    if (is_hidden_[i] || is_hidden_[j]) return {.share = 0.0};
-    if (is_covered_[i] || is_covered_[j]) return sampled(i, j, largest_form_factor);
+    if (shafts_.is_hidden(i) || shafts_.is_hidden(j)) return {.share = 0.0};
+    if (shafts_.is_covered(i) || shafts_.is_covered(j)) return sampled(i, j, largest_form_factor);
     Between between;
-    shafts_.find(ends_[i], ends_[j], between);
+    shafts_.find(i, j, between);
     if (between.is_nothing()) return {};
-    if (!between.may_be_sphere) {
-      const double area = std::min(mesh_.area[i], mesh_.area[j]);
-      const double S = largest_form_factor * area;
-      const bool i_is_smaller = mesh_.area[i] <= mesh_.area[j];
-      const auto exact =
-          visible_exchange(shafts_, ends_[i_is_smaller ? i : j], ends_[i_is_smaller ? j : i],
-                           between.pieces, S, std::min(exact_target, 0.1 * target_) * area);
-      if (exact) return {exact->value / S, exact->error * exact->error / (S * S)};
-    }
+    const double S = largest_form_factor * std::min(mesh_.area[i], mesh_.area[j]);
+    const auto exact = shafts_.visible(i, j, between, S, std::min(exact_target, 0.1 * target_));
+    if (exact) return {exact->value / S, exact->error * exact->error / (S * S)};
     return sampled(i, j, largest_form_factor);
   }
 
@@ -140,9 +122,7 @@ class PairVisibility {
   const ElementCaster& caster_;
   double target_;
   SobolPoints sobol_;
-  Shafts shafts_;
-  std::vector<ShaftEnd> ends_;
-  std::vector<char> is_covered_, is_hidden_;  // by what lies on it: in part, whole
+  PairShafts shafts_;
   std::vector<PatchSampler> samplers_;
 };
 

@@ -53,8 +53,8 @@ bool clip(ConvexPolygon& polygon, const HalfSpace& half_space);
 std::vector<ConvexPolygon> convex_pieces(const std::vector<std::vector<Eigen::Vector3d>>& loops,
                                          const Eigen::Vector3d& normal);
 
-/// Of points in one plane, counter-clockwise about `normal`, to 1e-9 of its size. Empty if they have
-/// no area, or if more than 16 of them are corners.
+/// Of points in one plane, counter-clockwise about `normal`, to 1e-9 of its size. Empty if they
+/// have no area, or if more than 16 of them are corners.
 ConvexPolygon convex_hull(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& normal);
 
 }  // namespace lightwell

@@ -168,7 +168,7 @@ class Estimator {
 
   Estimate rays_and_closed_forms() const {
     EmitterExchange emitters(caster_, direct_light_);
-    const NearExchange near(mesh_);
+    const NearExchange near(caster_, options_.target_error);
     Estimate estimate = nothing_yet();
     const int n = mesh_.patch_count();
     RecordStore pairs(budget_, n, sizeof(NearExchange::Pair), RecordStore::Count::below_diagonal);
@@ -204,7 +204,7 @@ class Estimator {
     Estimate estimate = nothing_yet();
     cast(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)),
          [](const EstimatedRow&) { return 0.0; });
-    const NearExchange near(mesh_);
+    const NearExchange near(caster_, 0.0);  // for the outlines
     analytic_exchange(caster_, near.outlines(), receives_, options_.target_error, options_.progress,
                       estimate.row_error, [&](int i, std::vector<FormFactor>& row) {
                         estimate.known.S.append(i, row);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "radiosity/column_block.h"
-#include "radiosity/pair_exchange.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -16,43 +14,42 @@ constexpr int fewest_rays = 12;
 // As many that the count itself may decide.
 constexpr int plenty_of_rays = 128;
 
-// Of a disk of the same area, seen from centre to centre.
+// Of a disk of the same area, seen from centre to centre; rather too large where one reaches beyond
+// the other's plane.
 double rough_form_factor(const PatchOutline& from, const PatchOutline& to, double area_to) {
   const Eigen::Vector3d way = to.center - from.center;
   const double squared = way.squaredNorm();
-  const double cosines = std::max(0.0, from.normal.dot(way)) * std::max(0.0, -to.normal.dot(way));
+  const double cosines = std::max(0.0, from.normal.dot(way) + to.radius) *
+                         std::max(0.0, from.radius - to.normal.dot(way));
   return cosines * area_to / (squared * (std::numbers::pi * squared + area_to));
-}
-
-void add_row(const PairExchange& closed_form, int i, RecordSpan row, RecordSpan column,
-             std::vector<FormFactor>& exchange) {
-  using Pair = NearExchange::Pair;
-  for_each_pair(i, row, column, [&](int j, const std::byte* own, const std::byte* other) {
-    int first = 0, all = 0;
-    for (const std::byte* record : {own, other}) {
-      if (!record) continue;
-      first += reinterpret_cast<const Pair*>(record)->first;
-      all += reinterpret_cast<const Pair*>(record)->all;
-    }
-    const auto S = static_cast<float>(closed_form.between(i, j) * first / all);
-    // Patches that lie on each other, face to face, have no closed form; their counts are exact.
-    if (S > 0.0f) exchange.push_back({j, S});
-  });
 }
 
 static_assert(NearExchange::worst_count_error * NearExchange::worst_count_error > fewest_rays - 1);
 
 }  // namespace
 
-NearExchange::NearExchange(const PatchMesh& mesh)
-    : area_(mesh.area), outlines_(static_cast<std::size_t>(mesh.patch_count())) {
+NearExchange::NearExchange(const ElementCaster& caster, double target_error)
+    : area_(caster.mesh().area),
+      target_error_(target_error),
+      outlines_(static_cast<std::size_t>(caster.mesh().patch_count())) {
+  const PatchMesh& mesh = caster.mesh();
   parallel_for(mesh.patch_count(), 256, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) outlines_[i] = patch_outline(mesh, i);
   });
+  if (target_error > 0.0) shafts_.emplace(caster, outlines_);
+}
+
+// Whether counts leave too much variance in F_ij, and polygons can be clipped instead.
+bool NearExchange::is_exact_due(int i, int j, double variance, Between& between) const {
+  if (!shafts_ || !(variance > target_error_ * target_error_)) return false;
+  if (shafts_->is_covered(i) || shafts_->is_covered(j)) return false;
+  shafts_->find(i, j, between);
+  return shafts_->has_exact(i, j, between);
 }
 
 double NearExchange::look(int patch, const EstimatedRow& row, std::vector<Pair>& pairs) const {
   double worst_variance = 0.0;
+  Between between;
   for (std::size_t k = 0; k < row.shares.size(); ++k) {
     const int j = row.shares[k].patch;
     const int first = static_cast<int>(std::lround(row.shares[k].value * row.rays));
@@ -70,11 +67,38 @@ double NearExchange::look(int patch, const EstimatedRow& row, std::vector<Pair>&
     const int hidden = row.hidden.empty() ? 0 : row.hidden[k];
     const int all = first + hidden;
     // U^2 V (1 - V) / all with U = all / rays.
-    worst_variance =
-        std::max(worst_variance, static_cast<double>(first) * hidden / (all * row.rays * row.rays));
+    const double variance = static_cast<double>(first) * hidden / (all * row.rays * row.rays);
+    if (!is_exact_due(patch, j, variance, between)) {
+      worst_variance = std::max(worst_variance, variance);
+    }
     pairs.push_back({.patch = j, .first = first, .all = all});
   }
   return std::sqrt(worst_variance);
+}
+
+void NearExchange::add_row(const PairExchange& closed_form, int i, RecordSpan row,
+                           RecordSpan column, std::vector<FormFactor>& exchange) const {
+  Between between;
+  for_each_pair(i, row, column, [&](int j, const std::byte* own, const std::byte* other) {
+    int first = 0, all = 0;
+    for (const std::byte* record : {own, other}) {
+      if (!record) continue;
+      first += reinterpret_cast<const Pair*>(record)->first;
+      all += reinterpret_cast<const Pair*>(record)->all;
+    }
+    const double unoccluded = closed_form.between(i, j);
+    const double seen = static_cast<double>(first) / all;
+    const double F = unoccluded / std::min(area_[i], area_[j]);
+    double S = unoccluded * seen;
+    if (is_exact_due(i, j, F * F * seen * (1.0 - seen) / all, between)) {
+      constexpr double share_of_target = 0.1;
+      const auto exact =
+          shafts_->visible(i, j, between, unoccluded, share_of_target * target_error_);
+      if (exact) S = exact->value;
+    }
+    // Patches that lie on each other, face to face, have no closed form; their counts are exact.
+    if (S > 0.0) exchange.push_back({j, static_cast<float>(S)});
+  });
 }
 
 void NearExchange::exchange(RecordStore pairs, const Progress& progress,

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
-#include "mesh/patch_outline.h"
+#include "radiosity/column_block.h"
 #include "radiosity/estimated_row.h"
+#include "radiosity/pair_exchange.h"
+#include "radiosity/pair_shafts.h"
 #include "radiosity/row_store.h"
 #include "scene/progress.h"
 
@@ -15,10 +18,12 @@ namespace lightwell {
 /// Of a row's rays, `all` cross the polygon of another patch from its front, whatever stands
 /// between, and `first` of them meet it first. Their ratio estimates the visible part, weighted as
 /// the form factor is, so F_ij = (closed form) first / all: exact where nothing stands between, and
-/// never noisier than first / rays, the plain count.
+/// never noisier than first / rays, the plain count. Where it is noisier than a wanted accuracy and
+/// only a few polygons stand between, their shadow is clipped off instead (visible_exchange).
 class NearExchange {
  public:
-  explicit NearExchange(const PatchMesh& mesh);
+  /// `target_error`: wanted standard error of F_ij; 0: what the rays give.
+  NearExchange(const ElementCaster& caster, double target_error);
 
   /// Standard error of the worst F_ij that remains a count, times the row's rays.
   static constexpr double worst_count_error = 3.32;
@@ -42,8 +47,14 @@ class NearExchange {
   const std::vector<PatchOutline>& outlines() const { return outlines_; }
 
  private:
+  bool is_exact_due(int i, int j, double variance, Between& between) const;
+  void add_row(const PairExchange& closed_form, int i, RecordSpan row, RecordSpan column,
+               std::vector<FormFactor>& exchange) const;
+
   Eigen::ArrayXd area_;
+  double target_error_;
   std::vector<PatchOutline> outlines_;
+  std::optional<PairShafts> shafts_;
 };
 
 }  // namespace lightwell

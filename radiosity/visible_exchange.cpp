@@ -104,8 +104,8 @@ std::vector<HiddenTriangle> over_cells(const std::vector<ConvexPolygon>& cells,
 std::optional<VisibleExchange> visible_exchange(const Shafts& shafts, const ShaftEnd& from,
                                                 const ShaftEnd& to, std::span<const int> pieces,
                                                 double unoccluded, double tolerance) {
-  constexpr std::size_t most_pieces = ShadowedPolygon::most_blockers / 2;
-  if (pieces.size() > most_pieces || from.parts.empty() || to.parts.empty()) return {};
+  static_assert(2 * most_pieces_between <= ShadowedPolygon::most_blockers);
+  if (pieces.size() > most_pieces_between || from.parts.empty() || to.parts.empty()) return {};
   std::vector<Blocker> blockers;
   for (const int p : pieces) {
     for (const int side : {1, -1}) {

@@ -6,6 +6,9 @@
 
 namespace lightwell {
 
+/// More convex pieces between two patches are left to rays, which are quicker then.
+inline constexpr std::size_t most_pieces_between = 16;
+
 struct VisibleExchange {
   double value = 0.0;  ///< S_ij, m^2
   double error = 0.0;  ///< estimated, m^2; above the tolerance where the work ran out

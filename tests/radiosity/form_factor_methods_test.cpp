@@ -200,6 +200,36 @@ TEST_P(Room, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(results[0], results[2]) << name;
 }
 
+// Too many patches for closed forms of all pairs; partly hidden near ones must not ask for ever
+// more rays.
+TEST(AutomaticFormFactors, MeetATargetWithFewRaysWherePolygonsHideEachOther) {
+  const Scene scene = test::furnace(0.5f, 1.0f, true);
+  constexpr double target = 5e-3, patch = 0.09;
+  const Computed automatic = compute(scene, patch, {.target_error = target});
+  const Computed exact =
+      compute(scene, patch, {.method = FormFactorMethod::analytic, .target_error = target});
+  const int n = exact.mesh.patch_count();
+  ASSERT_GT(automatic.report.rays, 0);
+  EXPECT_LE(automatic.report.rays, 1.5 * 1024 * n);  // 3.32 / target, to a power of two
+  double worst = 0.0, signed_sum = 0.0, squares = 0.0;
+  for (int i = 0; i < n; ++i) {
+    EXPECT_LE(automatic.report.row_error[i], target) << "row " << i;
+    std::vector<double> difference(static_cast<std::size_t>(n), 0.0);
+    for (const FormFactor& f : automatic.F->row(i)) difference[f.patch] += f.value;
+    for (const FormFactor& f : exact.F->row(i)) difference[f.patch] -= f.value;
+    for (const double d : difference) {
+      worst = std::max(worst, std::abs(d));
+      squares += d * d;
+      signed_sum += d;
+    }
+  }
+  const double rms = std::sqrt(squares / (static_cast<double>(n) * n));
+  std::printf("auto against analytic, %d patches: RMS %.1e, worst %.1e\n", n, rms, worst);
+  EXPECT_LT(rms, 0.2 * target);            // few pairs are as uncertain as the worst
+  EXPECT_LT(worst, 5.0 * target);          // of 1e6 normal draws of the worst kind
+  EXPECT_NEAR(signed_sum / n, 0.0, 1e-6);  // both close
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Room, testing::ValuesIn(methods), name_of);
 
 }  // namespace
