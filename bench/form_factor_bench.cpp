@@ -133,7 +133,7 @@ std::vector<Curve> measure_all(const Prepared& p, const Eigen::MatrixXd& referen
 // Logarithmic axes, one line per curve.
 void draw(const std::string& file, const std::vector<Curve>& curves) {
   constexpr double left = 70, top = 20, width = 520, height = 340;
-  constexpr double low_x = 1.5, high_x = 5.5, low_y = -6.0, high_y = -1.5;  // powers of ten
+  constexpr double low_x = 1.5, high_x = 5.5, low_y = -7.0, high_y = -1.5;  // powers of ten
   const auto x = [&](double v) {
     return left + width * (std::log10(v) - low_x) / (high_x - low_x);
   };
@@ -149,7 +149,7 @@ void draw(const std::string& file, const std::vector<Curve>& curves) {
         << fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">10^{}</text>\n", at,
                        top + height + 18, p);
   }
-  for (int p = -6; p <= -2; ++p) {
+  for (int p = -7; p <= -2; ++p) {
     const double at = y(std::pow(10.0, p));
     out << fmt::format("<path d=\"M{} {:.1f} H{}\" stroke=\"#ddd\"/>", left, at, left + width)
         << fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">10^{}</text>\n", left - 6,
