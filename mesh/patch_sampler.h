@@ -22,6 +22,10 @@ class PatchSampler {
   PatchPoint point(double u, double v) const {
     return grid_ ? point_on_grid(u, v) : point_on_part(u, v);
   }
+  /// Its position alone, for who draws very many.
+  Eigen::Vector3d position(double u, double v) const {
+    return grid_ ? position_on_grid(u, v) : point_on_part(u, v).position;
+  }
 
  private:
   // A triangle of an element; an element of a sphere whole.
@@ -33,11 +37,14 @@ class PatchSampler {
   };
   void add_parts();
   PatchPoint point_on_part(double u, double v) const;
+  Eigen::Vector3d position_on_grid(double u, double v) const {
+    return corner_ + u * along_row_ + v * across_;
+  }
   PatchPoint point_on_grid(double u, double v) const {
     const int column = std::min(static_cast<int>(u * grid_->columns), grid_->columns - 1);
     const int row = std::min(static_cast<int>(v * grid_->rows), grid_->rows - 1);
     return {.element = grid_->element[static_cast<std::size_t>(row * grid_->columns + column)],
-            .position = corner_ + u * along_row_ + v * across_,
+            .position = position_on_grid(u, v),
             .normal = normal_};
   }
 

@@ -69,9 +69,13 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
     const auto points = draw.points(in_set, count);
     for (int r = 0; r < count; ++r) {
       const Eigen::Vector2d place = draw.place(points[r]);
-      const PatchPoint from = sampler.point(place.x(), place.y());
-      if (!sampler.is_flat()) frame = draw.frame(from.normal);
-      ray[r].origin = from.position;
+      if (sampler.is_flat()) {
+        ray[r].origin = sampler.position(place.x(), place.y());
+      } else {
+        const PatchPoint from = sampler.point(place.x(), place.y());
+        frame = draw.frame(from.normal);
+        ray[r].origin = from.position;
+      }
       ray[r].direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z);
     }
     caster_.closest_elements({ray.data(), n}, {hit.data(), n});

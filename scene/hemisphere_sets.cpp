@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/parallel.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -18,16 +19,20 @@ constexpr int most_sets = 64, fewest_sets = 8, points_in_cache = 1 << 16;
 HemisphereSets::HemisphereSets(int count)
     : count_(count), sets_(std::clamp(points_in_cache / count, fewest_sets, most_sets)) {
   const SobolPoints sobol(count);
-  std::vector<Eigen::Array4f> points(static_cast<std::size_t>(count));
-  points_.reserve(static_cast<std::size_t>(count) * static_cast<std::size_t>(sets_));
-  for (int set = 0; set < sets_; ++set) {
-    sobol.points(0, random_key(static_cast<std::uint64_t>(set), set_key), points);
-    for (const Eigen::Array4f& p : points) {
-      // The first two dimensions are stratified best; directions gain most by it.
-      const Eigen::Vector3f d = cosine_direction(p[0], p[1]).cast<float>();
-      points_.push_back({p[2], p[3], d.x(), d.y(), d.z()});
+  const auto size = static_cast<std::size_t>(count);
+  points_.resize(size * static_cast<std::size_t>(sets_));
+  parallel_for(sets_, 1, [&](int begin, int end) {
+    std::vector<Eigen::Array4f> points(size);
+    for (int set = begin; set < end; ++set) {
+      sobol.points(0, random_key(static_cast<std::uint64_t>(set), set_key), points);
+      HemispherePoint* at = points_.data() + static_cast<std::size_t>(set) * size;
+      for (const Eigen::Array4f& p : points) {
+        // The first two dimensions are stratified best; directions gain most by it.
+        const Eigen::Vector3f d = cosine_direction(p[0], p[1]).cast<float>();
+        *at++ = {p[2], p[3], d.x(), d.y(), d.z()};
+      }
     }
-  }
+  });
 }
 
 HemisphereSets::Draw HemisphereSets::draw(std::uint64_t key) const {

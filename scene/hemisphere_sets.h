@@ -31,14 +31,15 @@ class HemisphereSets {
     }
     /// The place of a point, shifted; in [0,1)^2.
     Eigen::Vector2d place(const HemispherePoint& point) const {
-      const double u = point.u + shift_.x(), v = point.v + shift_.y();
-      return {u < 1.0 ? u : u - 1.0, v < 1.0 ? v : v - 1.0};
+      return {wrapped(point.u + shift_.x()), wrapped(point.v + shift_.y())};
     }
     /// Columns: the frame about the unit vector `normal` in which the points' directions are meant.
     Eigen::Matrix3d frame(const Eigen::Vector3d& normal) const;
 
    private:
     friend class HemisphereSets;
+    // Half of all sums pass 1, and no processor foresees which: no branch.
+    static double wrapped(double x) { return x - static_cast<int>(x); }
     std::span<const HemispherePoint> points_{};
     Eigen::Vector2d shift_ = Eigen::Vector2d::Zero();
     double cosine_ = 1.0, sine_ = 0.0;  // of the turn
