@@ -5,6 +5,8 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <algorithm>
+#include <numeric>
 #include <set>
 
 namespace lightwell {
@@ -20,6 +22,96 @@ using Delaunay =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::Exact_predicates_tag>;
 
 constexpr int unnumbered = -1;
+
+// Four points on one circle have two Delaunay triangulations, and which of them CGAL ends with
+// depends on where in memory its faces lie. The one kept is that whose diagonal ends in the lowest
+// of the four: a fan from the lowest of all points on the circle.
+class CocircularFans {
+ public:
+  explicit CocircularFans(PlanarTriangulation& mesh) : mesh_(mesh) {}
+
+  void settle() {
+    for (bool has_changed = true; has_changed;) {
+      has_changed = false;
+      for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
+        for (int i = 0; i < 3; ++i) {
+          if (!is_wrong(t, i)) continue;
+          flip(t, i);
+          has_changed = true;
+        }
+      }
+    }
+  }
+
+ private:
+  int opposite(int triangle, int neighbor) const {
+    const auto& around = mesh_.neighbor[triangle];
+    return static_cast<int>(std::find(around.begin(), around.end(), neighbor) - around.begin());
+  }
+
+  bool is_wrong(int t, int i) const {
+    const int u = mesh_.neighbor[t][i];
+    if (u < 0 || mesh_.constrained[t][i]) return false;
+    const int a = mesh_.triangles[t][i], b = mesh_.triangles[t][(i + 1) % 3],
+              c = mesh_.triangles[t][(i + 2) % 3], d = mesh_.triangles[u][opposite(u, t)];
+    if (std::min(b, c) < std::min(a, d)) return false;
+    const auto point = [&](int v) {
+      return Kernel::Point_2(mesh_.points[v].x(), mesh_.points[v].y());
+    };
+    return CGAL::side_of_oriented_circle(point(a), point(b), point(c), point(d)) ==
+           CGAL::ON_ORIENTED_BOUNDARY;
+  }
+
+  // (a, b, c) and (d, c, b) become (a, b, d) and (a, d, c).
+  void flip(int t, int i) {
+    const int u = mesh_.neighbor[t][i], k = opposite(u, t);
+    const auto at = [](int corner) { return corner % 3; };
+    const int a = mesh_.triangles[t][i], b = mesh_.triangles[t][at(i + 1)],
+              c = mesh_.triangles[t][at(i + 2)], d = mesh_.triangles[u][k];
+    const int past_ca = mesh_.neighbor[t][at(i + 1)], past_ab = mesh_.neighbor[t][at(i + 2)];
+    const int past_bd = mesh_.neighbor[u][at(k + 1)], past_dc = mesh_.neighbor[u][at(k + 2)];
+    const bool fixed_ca = mesh_.constrained[t][at(i + 1)],
+               fixed_ab = mesh_.constrained[t][at(i + 2)];
+    const bool fixed_bd = mesh_.constrained[u][at(k + 1)],
+               fixed_dc = mesh_.constrained[u][at(k + 2)];
+    if (past_ca >= 0) mesh_.neighbor[past_ca][opposite(past_ca, t)] = u;
+    if (past_bd >= 0) mesh_.neighbor[past_bd][opposite(past_bd, u)] = t;
+    mesh_.triangles[t] = {a, b, d};
+    mesh_.neighbor[t] = {past_bd, u, past_ab};
+    mesh_.constrained[t] = {fixed_bd, false, fixed_ab};
+    mesh_.triangles[u] = {a, d, c};
+    mesh_.neighbor[u] = {past_dc, past_ca, t};
+    mesh_.constrained[u] = {fixed_dc, fixed_ca, false};
+  }
+
+  PlanarTriangulation& mesh_;
+};
+
+// Triangles in the order of their corners, lowest first.
+void put_in_order(PlanarTriangulation& mesh) {
+  const std::size_t n = mesh.triangles.size();
+  for (std::size_t t = 0; t < n; ++t) {
+    auto& corner = mesh.triangles[t];
+    const auto turn = std::min_element(corner.begin(), corner.end()) - corner.begin();
+    std::rotate(corner.begin(), corner.begin() + turn, corner.end());
+    std::rotate(mesh.neighbor[t].begin(), mesh.neighbor[t].begin() + turn, mesh.neighbor[t].end());
+    std::rotate(mesh.constrained[t].begin(), mesh.constrained[t].begin() + turn,
+                mesh.constrained[t].end());
+  }
+  std::vector<int> order(n), number(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return mesh.triangles[a] < mesh.triangles[b]; });
+  for (std::size_t k = 0; k < n; ++k) number[order[k]] = static_cast<int>(k);
+  PlanarTriangulation sorted{.points = std::move(mesh.points), .is_as_given = mesh.is_as_given};
+  for (const int t : order) {
+    sorted.triangles.push_back(mesh.triangles[t]);
+    sorted.constrained.push_back(mesh.constrained[t]);
+    auto& around = sorted.neighbor.emplace_back(mesh.neighbor[t]);
+    for (int& neighbor : around) neighbor = neighbor < 0 ? neighbor : number[neighbor];
+  }
+  mesh = std::move(sorted);
+}
 
 }  // namespace
 
@@ -66,6 +158,8 @@ PlanarTriangulation triangulate(const std::vector<Eigen::Vector2d>& points,
       constrained[i] = face->is_constrained(i);
     }
   }
+  CocircularFans(result).settle();
+  put_in_order(result);
   return result;
 }
 

@@ -19,7 +19,9 @@ struct PlanarTriangulation {
 };
 
 /// Constrained Delaunay triangulation of the convex hull of `points` that has every constraint (a
-/// pair of point numbers) as an edge; predicates are exact (CGAL). Equal points become one.
+/// pair of point numbers) as an edge; predicates are exact (CGAL). Equal points become one. Of
+/// points on one circle the lowest is joined with all others, and triangles are in the order of
+/// their corners, so that the same input gives the same triangles.
 PlanarTriangulation triangulate(const std::vector<Eigen::Vector2d>& points,
                                 const std::vector<std::array<int, 2>>& constraints);
 

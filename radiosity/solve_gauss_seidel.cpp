@@ -141,6 +141,10 @@ RadiositySolution solve_gauss_seidel(const PatchMesh& mesh, const FormFactors& f
     BandArray residual = mesh.emission + mesh.reflectance * gather(form_factors, B) - B;
     constant_mode.correct(mesh, residual, B);
     residual = mesh.emission + mesh.reflectance * gather(form_factors, B) - B;
+    if (!B.allFinite()) {
+      throw std::runtime_error(
+          "The radiosities are no longer finite numbers; please report the scene.");
+    }
     const double largest = B.abs().maxCoeff();
     solution.residual = largest > 0.0 ? residual.abs().maxCoeff() / largest : 0.0;
     solution.history.push_back(

@@ -21,7 +21,8 @@ BandArray gather(const FormFactors& form_factors, const BandArray& radiosity);
 /// section 5.3.2). After each sweep the constant mode, which converges slowest in a bright closed
 /// room, is solved for exactly (a two-level correction with one coarse unknown per band), so that
 /// sweeps hardly depend on the reflectance. Fills patch_radiosity, history, residual and outcome of
-/// the result. Throws std::invalid_argument if a patch has no area.
+/// the result. Throws std::invalid_argument if a patch has no area, std::runtime_error rather than
+/// return what is not finite.
 RadiositySolution solve_gauss_seidel(const PatchMesh& mesh, const FormFactors& form_factors,
                                      const GaussSeidelOptions& options = {});
 

@@ -66,8 +66,18 @@ Eigen::ArrayXXd product(const RecordStore& S, const Eigen::ArrayXXd& x) {
 Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const RecordStore& S) {
   Eigen::ArrayXXd target = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
   for (int i = 0; i < rows.patch_count(); ++i) target.row(i) = mesh.area[i] * rows.specular_sum(i);
+  // A row's few own rays may have found nothing of what others sent it, and some wishes exclude
+  // each other: factors that fulfilled them would grow without bound.
+  constexpr double most_stretch = 2.0, largest_factor = 4.0;
+  constexpr int most_iterations = 50;
+  const Eigen::ArrayXXd has = product(S, Eigen::ArrayXXd::Ones(target.rows(), target.cols()));
+  target = target.max(has / most_stretch).min(has * most_stretch);
+  constexpr double tolerance = 1e-8;
   return symmetric_scaling([&](const Eigen::ArrayXXd& x) { return product(S, x); },
-                           Eigen::ArrayXXd::Zero(target.rows(), target.cols()), target);
+                           Eigen::ArrayXXd::Zero(target.rows(), target.cols()), target, tolerance,
+                           most_iterations)
+      .max(1.0 / largest_factor)
+      .min(largest_factor);
 }
 
 }  // namespace
@@ -77,6 +87,7 @@ void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_c
   RecordStore S = joined(mesh, rows, budget);
   Eigen::ArrayXXd d = Eigen::ArrayXXd::Ones(rows.patch_count(), rows.bands());
   if (enforce_closure) d = balance(mesh, rows, S);
+  Eigen::ArrayXXd kept = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
   unfold_symmetric(S, [&](int i, RecordSpan below, RecordSpan upper) {
     std::vector<int> patches;
     std::vector<float> values;
@@ -91,12 +102,28 @@ void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_c
         }
       }
     }
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      kept(i, static_cast<Eigen::Index>(k) % rows.bands()) += values[k];
+    }
     result.append_specular(i, patches, values);
   });
   for (int i = 0; i < rows.patch_count(); ++i) {
     if (!rows.is_measured(i)) continue;
-    result.escaped_share.row(i) += rows.specular_escaped(i);
-    result.absorbed_share.row(i) = rows.absorbed(i) + rows.cut(i);
+    // What balancing took from a row, or gave it, is set off against its losses: rows add up to 1.
+    const auto as_row = [](const auto& spectrum) {
+      return spectrum.template cast<double>().eval();
+    };
+    const Eigen::Array<double, 1, Eigen::Dynamic> change =
+        enforce_closure
+            ? Eigen::Array<double, 1, Eigen::Dynamic>(as_row(rows.specular_sum(i)) - kept.row(i))
+            : Eigen::Array<double, 1, Eigen::Dynamic>::Zero(rows.bands());
+    const Eigen::Array<double, 1, Eigen::Dynamic> absorbed =
+        as_row(rows.absorbed(i) + rows.cut(i)) + change;
+    result.absorbed_share.row(i) = absorbed.max(0.0).cast<float>();
+    result.escaped_share.row(i) =
+        (as_row(result.escaped_share.row(i)) + as_row(rows.specular_escaped(i)) + absorbed.min(0.0))
+            .max(0.0)
+            .cast<float>();
   }
 }
 
