@@ -80,6 +80,30 @@ TEST(PairTriangles, FlatPairsStayTriangles) {
   EXPECT_EQ(partner, (std::vector<int>{-1, -1}));
 }
 
+TEST(Triangulate, OfPointsOnOneCircleTheLowestIsJoinedWithAll) {
+  // Corners of a regular polygon that floats hold exactly: 5^2 = 3^2 + 4^2, in an order of its own.
+  const std::vector<Vector2d> circle{{3, 4},  {-5, 0}, {4, 3}, {0, -5},  {-3, 4}, {5, 0},
+                                     {4, -3}, {-4, 3}, {0, 5}, {-4, -3}, {3, -4}, {-3, -4}};
+  const auto fan = triangulate(circle, {});
+  ASSERT_EQ(fan.triangles.size(), circle.size() - 2);
+  for (std::size_t t = 0; t < fan.triangles.size(); ++t) {
+    EXPECT_EQ(fan.triangles[t][0], 0);
+    EXPECT_GT(twice_area(fan, static_cast<int>(t)), 0.0);
+    EXPECT_TRUE(t == 0 || fan.triangles[t - 1] < fan.triangles[t]);
+    for (int i = 0; i < 3; ++i) {
+      const int n = fan.neighbor[t][i];
+      if (n < 0) continue;
+      const auto& around = fan.neighbor[n];
+      EXPECT_EQ(std::count(around.begin(), around.end(), static_cast<int>(t)), 1);
+    }
+  }
+  // A constraint stays, whatever its points.
+  const auto split = triangulate(circle, {{5, 1}});
+  int fixed = 0;
+  for (const auto& edges : split.constrained) fixed += edges[0] + edges[1] + edges[2];
+  EXPECT_EQ(fixed, 2);
+}
+
 PlacedElement element(int cell, double x, double width) {
   return {.cell = cell, .area = width, .box = {Vector2d(x, 0), Vector2d(x + width, 1)}};
 }

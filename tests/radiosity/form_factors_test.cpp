@@ -159,5 +159,29 @@ TEST(FormFactors, PerfectMirrorPassesEverythingOn) {
   EXPECT_NEAR(back / area, exact, 4 * std::sqrt(exact * (1 - exact) / (16.0 * 1024)));
 }
 
+// Rows of so few rays ask for what others' rows exclude; nothing may grow without bound.
+TEST(FormFactors, FewRaysAmongMirrorsStayFiniteShares) {
+  Scene scene;
+  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
+  Material mirror = test::diffuse(scene.bands, 0.0f);
+  mirror.specular = constant_spectrum(scene.bands, 0.9f);
+  const int m = test::add_material(scene, mirror);
+  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, {m, wall, wall, wall, wall, wall}, true);
+  test::add_box(scene, {0.3, 0.3, 0.3}, {0.31, 0.7, 0.7}, {m, m, m, m, m, m}, false);
+  for (const int rays : {1, 2, 8}) {
+    const Solved s = cast(scene, {.rays_per_patch = rays});
+    for (int i = 0; i < s.mesh.patch_count(); ++i) {
+      const SpecularRow row = s.form_factors->specular_row(i);
+      if (row.patch.empty()) continue;
+      ASSERT_TRUE(row.value.allFinite()) << "patch " << i;
+      ASSERT_GE(row.value.minCoeff(), 0.0f) << "patch " << i;
+      // Twice what the two ends measured, at most 1, is what balancing may make of a share.
+      ASSERT_LE(row.value.maxCoeff(), 2.0f) << "patch " << i;
+      ASSERT_GE(s.form_factors->absorbed_by_specular(i).minCoeff(), 0.0f) << "patch " << i;
+      ASSERT_GE(s.form_factors->escaped(i).minCoeff(), 0.0f) << "patch " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lightwell
