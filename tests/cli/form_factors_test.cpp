@@ -52,6 +52,11 @@ O 8  12  9 13 16
 // integral, the second by clipping the visible region.
 constexpr double plates_F = 0.199824895698387, plates_and_box_F = 0.123862784216098;
 
+// What keeping a factor or share below 1 as a float costs, at most.
+constexpr double rounding = 6e-8;
+// A closed form is stored as a float, and scaled by a float's rounding when its row is closed.
+constexpr double closed_form = 2 * rounding;
+
 struct Matrix {
   std::size_t rows = 0;
   std::map<std::pair<int, int>, double> entry{};
@@ -100,13 +105,13 @@ TEST_F(FormFactorsCommand, TwoPlatesAreRightWithinTheErrorAskedFor) {
   const auto json = run_json({"form-factors", "plates.vs3", "-o", "F.mtx"});
   const Matrix F = matrix("F.mtx");
   ASSERT_EQ(F.rows, 2u);
-  EXPECT_NEAR(F.at(1, 2), plates_F, 1e-3);
-  EXPECT_NEAR(F.at(2, 1), plates_F, 1e-3);
+  EXPECT_NEAR(F.at(1, 2), plates_F, closed_form);
+  EXPECT_NEAR(F.at(2, 1), plates_F, closed_form);
   EXPECT_EQ(F.entry.size(), 2u);
   EXPECT_EQ(json["facets"], 2);
-  EXPECT_LT(json["closure_max_error"].get<double>(), 1e-6);
-  EXPECT_LT(json["reciprocity_max_error"].get<double>(), 1e-6);
-  EXPECT_NEAR(json["open_share"].get<double>(), 1.0 - plates_F, 1e-3);
+  EXPECT_LE(json["closure_max_error"].get<double>(), 2 * rounding) << "one factor, one open share";
+  EXPECT_LE(json["reciprocity_max_error"].get<double>(), 2 * rounding) << "two factors";
+  EXPECT_NEAR(json["open_share"].get<double>(), 1.0 - plates_F, closed_form);
   EXPECT_DOUBLE_EQ(json["total_area"].get<double>(), 2.0);
   EXPECT_GT(json["seconds"]["total"].get<double>(), 0.0);
   EXPECT_GT(json["peak_memory_mb"].get<double>(), 0.0);
@@ -118,20 +123,23 @@ TEST_F(FormFactorsCommand, TwoPlatesAreRightWithinTheErrorAskedFor) {
   EXPECT_EQ(folder.file_count(), 3);
 }
 
-// The estimate is a standard error; four of them are passed once in 16 000 cases.
+// Polygons are clipped exactly, to 1e-6. Rays have a standard error of at most what is asked for,
+// 1e-3; four of them are passed once in 16 000 cases.
 TEST_F(FormFactorsCommand, AnObstructionTakesItsShareAndHasNoRow) {
   folder.write("box.vs3", plates + box);
-  for (const char* method : {"auto", "ray-cast"}) {
+  const std::map<std::string, double> allowed{{"auto", 1e-6}, {"ray-cast", 4e-3}};
+  for (const auto& [method, error] : allowed) {
     const auto json = run_json({"form-factors", "box.vs3", "-o", "F.mtx", "--method", method});
     const Matrix F = matrix("F.mtx");
     EXPECT_EQ(F.rows, 2u);
-    EXPECT_NEAR(F.at(1, 2), plates_and_box_F, 4e-3) << method;
+    EXPECT_NEAR(F.at(1, 2), plates_and_box_F, error) << method;
     const auto row = json_file("F.json")["row"];
     const double blocked = row["blocked"][0].get<double>();
     EXPECT_GT(blocked, 0.05);
-    EXPECT_NEAR(F.at(1, 2) + blocked + row["open"][0].get<double>(), 1.0, 1e-6);
+    EXPECT_NEAR(F.at(1, 2) + blocked + row["open"][0].get<double>(), 1.0, 14 * rounding)
+        << "a factor, an open share, and 12 patches of the box";
     EXPECT_GT(json["error_estimate"].get<double>(), 0.0);
-    EXPECT_LT(json["error_estimate"].get<double>(), 4e-3) << "near what was asked for";
+    EXPECT_LE(json["error_estimate"].get<double>(), 1e-3) << "what was asked for";
   }
 }
 
@@ -140,7 +148,8 @@ TEST_F(FormFactorsCommand, MethodsAgree) {
   for (const char* method : {"auto", "ray-cast", "hemicube", "analytic"}) {
     ASSERT_EQ(run({"form-factors", "plates.vs3", "-o", "F.mtx", "--method", method}).code, 0);
     // Twice the error asked for: what hemicubes may leave at their resolution.
-    EXPECT_NEAR(matrix("F.mtx").at(1, 2), plates_F, 2e-3) << method;
+    const bool is_exact = method == std::string("auto") || method == std::string("analytic");
+    EXPECT_NEAR(matrix("F.mtx").at(1, 2), plates_F, is_exact ? closed_form : 2e-3) << method;
   }
 }
 
@@ -154,12 +163,12 @@ TEST_F(FormFactorsCommand, AClosedBoxLosesNothing) {
   obj += "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
   folder.write("cube.obj", obj);
   const auto json = run_json({"form-factors", "cube.obj", "-o", "F.mtx"});
-  EXPECT_LT(json["closure_max_error"].get<double>(), 1e-6);
-  EXPECT_LT(json["open_share"].get<double>(), 1e-6);
+  EXPECT_LE(json["closure_max_error"].get<double>(), 5 * rounding) << "five factors a row";
+  EXPECT_EQ(json["open_share"].get<double>(), 0.0);
   EXPECT_TRUE(json["notes"].empty()) << json["notes"];
   const Matrix F = matrix("F.mtx");
-  EXPECT_NEAR(F.at(1, 2), plates_F, 1e-3);
-  EXPECT_NEAR(F.at(1, 3), (1.0 - plates_F) / 4.0, 1e-3) << "by symmetry";
+  EXPECT_NEAR(F.at(1, 2), plates_F, closed_form);
+  EXPECT_NEAR(F.at(1, 3), (1.0 - plates_F) / 4.0, closed_form) << "by symmetry";
 }
 
 TEST_F(FormFactorsCommand, FacetsKeepTheirNumbersWhateverIsWrongWithOthers) {
@@ -181,7 +190,7 @@ f 5 6 7 8
   const auto json = run_json({"form-factors", "bad.obj", "-o", "F.mtx"});
   const Matrix F = matrix("F.mtx");
   EXPECT_EQ(F.rows, 5u);
-  EXPECT_NEAR(F.at(2, 4), plates_F, 1e-3);
+  EXPECT_NEAR(F.at(2, 4), plates_F, closed_form);
   EXPECT_EQ(F.entry.size(), 2u) << "facet 5 is the back of 4 and looks away";
   const std::string notes = json["notes"].dump();
   EXPECT_TRUE(says(notes, "empty rows: 1."));
@@ -204,7 +213,7 @@ TEST_F(FormFactorsCommand, BacksHaveRowsWhereAskedFor) {
   ASSERT_EQ(run({"form-factors", "plates.vs3", "-o", "F.mtx", "--two-sided"}).code, 0);
   const Matrix F = matrix("F.mtx");
   EXPECT_EQ(F.rows, 4u);
-  EXPECT_NEAR(F.at(1, 2), plates_F, 1e-3);
+  EXPECT_NEAR(F.at(1, 2), plates_F, closed_form);
   EXPECT_EQ(F.entry.size(), 2u) << "backs look outwards";
   const auto row = json_file("F.json")["row"];
   EXPECT_EQ(row["side"], nlohmann::json::array({"front", "front", "back", "back"}));
@@ -226,7 +235,7 @@ TEST_F(FormFactorsCommand, SmallerPatchesAreRowsThatKnowTheirFacet) {
       if (facet(i) == 1 && facet(j) == 2) exchange += 0.25 * F.at(i, j);
     }
   }
-  EXPECT_NEAR(exchange, plates_F, 1e-3);
+  EXPECT_NEAR(exchange, plates_F, closed_form);
 }
 
 TEST_F(FormFactorsCommand, WritesView3dsResultAndAPictureOfARow) {
@@ -246,7 +255,7 @@ TEST_F(FormFactorsCommand, WritesView3dsResultAndAPictureOfARow) {
   for (double& number : numbers) in >> number;
   ASSERT_TRUE(in) << "areas, matrix, emittances";
   EXPECT_EQ(numbers[0], 1.0);
-  EXPECT_NEAR(numbers[3], plates_F, 1e-3);
+  EXPECT_NEAR(numbers[3], plates_F, 0.5e-6) << "six decimals";
   EXPECT_EQ(numbers[6], 0.9);
   EXPECT_EQ(numbers[7], 0.5);
 }
