@@ -9,16 +9,10 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <vector>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
+#include "bench/raw_embree.h"
 #include "mesh/patch_sampler.h"
 #include "radiosity/ray_cast_rows.h"
 #include "radiosity/solve.h"
@@ -31,12 +25,6 @@ namespace {
 
 using namespace lightwell;
 
-double seconds_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 // The median of some runs: machines are shared and noisy.
 double median_seconds(int runs, const std::function<void()>& work) {
   std::vector<double> seconds;
@@ -44,37 +32,6 @@ double median_seconds(int runs, const std::function<void()>& work) {
   std::sort(seconds.begin(), seconds.end());
   return seconds[runs / 2];
 }
-
-struct EmbreeScene {
-  RTCDevice device = rtcNewDevice(nullptr);
-  RTCScene scene = rtcNewScene(device);
-
-  explicit EmbreeScene(const PatchMesh& mesh) {
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.vertex_count()));
-    for (int i = 0; i < mesh.vertex_count(); ++i) {
-      for (int c = 0; c < 3; ++c) v[3 * i + c] = static_cast<float>(mesh.position(i)[c]);
-    }
-    auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, mesh.element_count()));
-    for (int e = 0; e < mesh.element_count(); ++e) {
-      const auto& c = mesh.corners[e];  // a repeated last corner is Embree's way to say triangle
-      for (int k = 0; k < 4; ++k) index[4 * e + k] = static_cast<unsigned>(c[k] < 0 ? c[2] : c[k]);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-  }
-  ~EmbreeScene() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
-};
 
 std::vector<RTCRayHit> hemisphere_rays(const PatchMesh& mesh, int rays_per_patch) {
   std::vector<RTCRayHit> rays;
@@ -161,7 +118,7 @@ int main(int argc, char** argv) {
              render_seconds, solve_seconds + render_seconds, peak_memory_mb());
 
   constexpr int rays_per_patch = 512, runs = 5;
-  const EmbreeScene embree(mesh);
+  const RawScene embree(mesh);
   std::vector<RTCRayHit> raw = hemisphere_rays(mesh, rays_per_patch);
   const double raw_seconds = median_seconds(runs, [&] { trace_raw(embree.scene, raw); });
   const LightPaths paths(scene, caster, 8);

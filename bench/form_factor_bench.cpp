@@ -27,7 +27,8 @@ namespace {
 
 using namespace lightwell;
 
-Scene room(bool with_block) {
+// Without surfaces yet.
+Scene grey_scene() {
   Scene scene;
   Material grey;
   grey.name = "grey";
@@ -35,6 +36,11 @@ Scene room(bool with_block) {
   grey.specular = grey.emission = constant_spectrum(scene.bands, 0.0f);
   grey.one_sided = true;
   scene.materials = {grey};
+  return scene;
+}
+
+Scene room(bool with_block) {
+  Scene scene = grey_scene();
   const auto add_box = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& size, bool inwards) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const int side : {0, 1}) {
@@ -199,13 +205,7 @@ void count_pairs(const Prepared& p) {
 
 // A city of n x n blocks on a plain, in triangles.
 Scene city(int n) {
-  Scene scene;
-  Material grey;
-  grey.name = "grey";
-  grey.reflectance = constant_spectrum(scene.bands, 0.5f);
-  grey.specular = grey.emission = constant_spectrum(scene.bands, 0.0f);
-  grey.one_sided = true;
-  scene.materials = {grey};
+  Scene scene = grey_scene();
   PolygonMesh mesh;
   const auto add_rectangle = [&](const Eigen::Vector3d& corner, const Eigen::Vector3d& u,
                                  const Eigen::Vector3d& v, int cells) {

@@ -11,20 +11,13 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <vector>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
+#include "bench/raw_embree.h"
 #include "radiosity/hemicube.h"
 #include "radiosity/hemicube_view.h"
 #include "radiosity/polygon_form_factor.h"
@@ -36,46 +29,6 @@ namespace {
 
 using namespace lightwell;
 using Eigen::Vector3d;
-
-double seconds_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-struct EmbreeScene {
-  RTCDevice device = rtcNewDevice("threads=1");
-  RTCScene scene = rtcNewScene(device);
-
-  explicit EmbreeScene(const PatchMesh& mesh) {
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.vertex_count()));
-    for (int i = 0; i < mesh.vertex_count(); ++i) {
-      for (int c = 0; c < 3; ++c) v[3 * i + c] = static_cast<float>(mesh.position(i)[c]);
-    }
-    int fronts = 0;
-    for (int e = 0; e < mesh.element_count(); ++e) fronts += mesh.is_back[mesh.patch[e]] == 0;
-    auto* index = static_cast<unsigned*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, fronts));
-    for (int e = 0; e < mesh.element_count(); ++e) {
-      if (mesh.is_back[mesh.patch[e]] != 0) continue;
-      const auto& c = mesh.corners[e];  // a repeated last corner is Embree's way to say triangle
-      for (int k = 0; k < 4; ++k) *index++ = static_cast<unsigned>(c[k] < 0 ? c[2] : c[k]);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-  }
-  ~EmbreeScene() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
-};
 
 // The cells of a hemicube in packets of 16 along the rows: Embree's fastest way to answer them.
 int trace_packets(RTCScene scene, const HemicubeEye& eye, const HemicubeCells& cells) {
@@ -128,7 +81,7 @@ void print_speed(const Scene& scene, int patch_count) {
       build_patches(scene, {.auto_patch_count = patch_count, .elements_per_patch_edge = 1});
   const ElementCaster caster(mesh);
   const LightPaths paths(scene, caster, 8);
-  const EmbreeScene embree(mesh);
+  const RawScene embree(mesh, "threads=1");
   const HemicubeScan scan(caster);
   HemicubeScan::Scratch scratch;
   fmt::print("\n{} patches, {} elements\n", mesh.patch_count(), mesh.element_count());

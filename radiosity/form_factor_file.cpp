@@ -1,12 +1,8 @@
 #include "radiosity/form_factor_file.h"
 
 #include <fmt/format.h>
-#include <vtkAOSDataArrayTemplate.h>
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkErrorCode.h>
 #include <vtkNew.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataWriter.h>
 
@@ -16,7 +12,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "radiosity/vtk_messages.h"
+#include "radiosity/vtk_output.h"
 #include "scene/atomic_file.h"
 #include "scene/errors.h"
 
@@ -69,30 +65,6 @@ void add_comment(TextOutput& out, std::string_view comment) {
     out.add("% {}\n", comment.substr(0, end));
     comment.remove_prefix(std::min(end + 1, comment.size()));
   }
-}
-
-template <class T>
-void add_cells(vtkCellData* data, const char* name, const std::vector<T>& values) {
-  vtkNew<vtkAOSDataArrayTemplate<T>> array;
-  array->SetName(name);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  data->AddArray(array);
-}
-
-void add_polygons(vtkPolyData* poly, const PatchMesh& mesh) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(mesh.vertex_count());
-  for (int v = 0; v < mesh.vertex_count(); ++v) points->SetPoint(v, mesh.position(v).data());
-  vtkNew<vtkCellArray> polygons;
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int corner_count = mesh.corner_count(e);
-    polygons->InsertNextCell(corner_count);
-    for (int c = 0; c < corner_count; ++c) polygons->InsertCellPoint(mesh.corners[e][c]);
-  }
-  poly->SetPoints(points);
-  poly->SetPolys(polygons);
 }
 
 }  // namespace
@@ -166,26 +138,18 @@ void write_row(const std::filesystem::path& path, const PatchMesh& mesh,
     area[e] = view_factors.area[static_cast<std::size_t>(j)];
   }
   vtkNew<vtkPolyData> poly;
-  add_polygons(poly, mesh);
-  add_cells(poly->GetCellData(), "view_factor", factor);
-  add_cells(poly->GetCellData(), "row", row);
-  add_cells(poly->GetCellData(), "is_row", is_row);
-  add_cells(poly->GetCellData(), "area", area);
-  poly->GetCellData()->SetActiveScalars("view_factor");
+  set_element_polygons(poly, mesh);
+  vtkCellData* cells = poly->GetCellData();
+  add_values(cells, "view_factor", factor.data(), mesh.element_count());
+  add_values(cells, "row", row.data(), mesh.element_count());
+  add_values(cells, "is_row", is_row.data(), mesh.element_count());
+  add_values(cells, "area", area.data(), mesh.element_count());
+  cells->SetActiveScalars("view_factor");
 
   AtomicFile file(path);
-  // VTK does not say why a file cannot be opened.
-  if (!std::ofstream(file.temporary(), std::ios::binary)) fail_write(path, std::strerror(errno));
-  const VtkMessages messages;
   vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetFileName(file.temporary().c_str());
-  writer->SetInputData(poly);
-  writer->SetDataModeToAppended();
-  writer->SetHeaderTypeToUInt64();
-  if (writer->Write() == 0 || writer->GetErrorCode() != vtkErrorCode::NoError) {
-    const bool full = writer->GetErrorCode() == vtkErrorCode::OutOfDiskSpaceError;
-    fail_write(path, std::strerror(full ? ENOSPC : EIO));
-  }
+  const std::string failure = write_appended(writer, poly, file.temporary());
+  if (!failure.empty()) fail_write(path, failure);
   file.commit();
 }
 

@@ -2,26 +2,20 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <vtkAOSDataArrayTemplate.h>
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkErrorCode.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 
 #include "radiosity/solution_seal.h"
-#include "radiosity/vtk_messages.h"
+#include "radiosity/vtk_output.h"
 #include "scene/atomic_file.h"
 
 namespace lightwell {
@@ -47,21 +41,6 @@ class SealedWriter : public vtkXMLPolyDataWriter {
   std::string preamble_;
 };
 
-/// VTK's files cannot hold arrays without values; read_solution takes a missing array for an empty
-/// one.
-template <class T>
-vtkAOSDataArrayTemplate<T>* add_values(vtkFieldData* data, const std::string& name, const T* values,
-                                       std::ptrdiff_t rows, int columns = 1) {
-  if (rows == 0 || columns == 0) return nullptr;
-  vtkNew<vtkAOSDataArrayTemplate<T>> array;
-  array->SetName(name.c_str());
-  array->SetNumberOfComponents(columns);
-  array->SetNumberOfTuples(rows);
-  std::copy_n(values, rows * columns, array->GetPointer(0));
-  data->AddArray(array);
-  return array;
-}
-
 void add_strings(vtkFieldData* data, const char* name, const std::vector<std::string>& values) {
   if (values.empty()) return;
   vtkNew<vtkStringArray> array;
@@ -85,23 +64,12 @@ void add_bands(vtkFieldData* data, const char* name, const BandArray& values, co
 }
 
 void add_geometry(vtkPolyData* poly, const PatchMesh& mesh) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(mesh.vertex_count());
+  set_element_polygons(poly, mesh);
   std::vector<double> normals;
   normals.reserve(3 * mesh.vertex_normal.size());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    points->SetPoint(v, mesh.position(v).data());
     normals.insert(normals.end(), mesh.vertex_normal[v].data(), mesh.vertex_normal[v].data() + 3);
   }
-  vtkNew<vtkCellArray> polygons;
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int corner_count = mesh.corner_count(e);
-    polygons->InsertNextCell(corner_count);
-    for (int c = 0; c < corner_count; ++c) polygons->InsertCellPoint(mesh.corners[e][c]);
-  }
-  poly->SetPoints(points);
-  poly->SetPolys(polygons);
   poly->GetPointData()->SetNormals(
       add_values(poly->GetPointData(), "normal", normals.data(), mesh.vertex_count(), 3));
 }
@@ -273,20 +241,10 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
   add_record(poly->GetFieldData(), solved.solution);
 
   AtomicFile file(path);
-  // VTK does not say why a file cannot be opened.
-  if (!std::ofstream(file.temporary(), std::ios::binary)) fail_write(path, std::strerror(errno));
-  const VtkMessages messages;
   vtkNew<SealedWriter> writer;
   writer->set_preamble(solution_preamble(summary(solved)));
-  writer->SetFileName(file.temporary().c_str());
-  writer->SetInputData(poly);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetHeaderTypeToUInt64();
-  if (writer->Write() == 0 || writer->GetErrorCode() != vtkErrorCode::NoError) {
-    const bool full = writer->GetErrorCode() == vtkErrorCode::OutOfDiskSpaceError;
-    fail_write(path, std::strerror(full ? ENOSPC : EIO));
-  }
+  const std::string failure = write_appended(writer, poly, file.temporary());
+  if (!failure.empty()) fail_write(path, failure);
   seal_solution(file.temporary());
   file.commit();
 }

@@ -1,0 +1,60 @@
+#pragma once
+
+// What the programs compare with: plain Embree over the same elements, and a clock.
+
+#include <chrono>
+#include <functional>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "mesh/patch_mesh.h"
+
+namespace lightwell {
+
+inline double seconds_of(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The fronts of a mesh as Embree itself would have them. `configuration`: of rtcNewDevice.
+struct RawScene {
+  RTCDevice device;
+  RTCScene scene;
+
+  explicit RawScene(const PatchMesh& mesh, const char* configuration = nullptr)
+      : device(rtcNewDevice(configuration)), scene(rtcNewScene(device)) {
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
+    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.vertex_count()));
+    for (int i = 0; i < mesh.vertex_count(); ++i) {
+      for (int c = 0; c < 3; ++c) v[3 * i + c] = static_cast<float>(mesh.position(i)[c]);
+    }
+    int fronts = 0;
+    for (int e = 0; e < mesh.element_count(); ++e) fronts += mesh.is_back[mesh.patch[e]] == 0;
+    auto* index = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, fronts));
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      if (mesh.is_back[mesh.patch[e]] != 0) continue;
+      const auto& c = mesh.corners[e];  // a repeated last corner is Embree's way to say triangle
+      for (int k = 0; k < 4; ++k) *index++ = static_cast<unsigned>(c[k] < 0 ? c[2] : c[k]);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+  }
+  ~RawScene() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+  RawScene(const RawScene&) = delete;
+  RawScene& operator=(const RawScene&) = delete;
+};
+
+}  // namespace lightwell
