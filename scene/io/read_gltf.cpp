@@ -254,9 +254,7 @@ Scene read_gltf(const std::filesystem::path& path) {
       "Emission was read as relative: glTF files seldom mean a unit of light.");
   GltfReader(file, scene).read();
   if (scene.surfaces.empty()) file.root().fail("the scene has no triangles with an area");
-  const bool shines =
-      std::ranges::any_of(scene.materials, [](const Material& m) { return m.is_emitter(); });
-  if (!shines) scene.notes.emplace_back("No surface shines, so the scene is dark.");
+  note_if_dark(scene);
   validate(scene);
   return scene;
 }

@@ -51,9 +51,7 @@ Scene read_mitsuba(const std::filesystem::path& path) {
   for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);
   for (const std::string& note : shapes.repairs().notes()) scene.notes.push_back(note + ".");
   scene.dropped_polygons = shapes.repairs().dropped();
-  const bool shines =
-      std::ranges::any_of(scene.materials, [](const Material& m) { return m.is_emitter(); });
-  if (!shines) scene.notes.emplace_back("No surface shines, so the scene is dark.");
+  note_if_dark(scene);
   validate(scene);
   return scene;
 }

@@ -38,4 +38,10 @@ std::vector<std::string> Remarks::sentences() const {
   return result;
 }
 
+void note_if_dark(Scene& scene) {
+  const bool shines =
+      std::ranges::any_of(scene.materials, [](const Material& m) { return m.is_emitter(); });
+  if (!shines) scene.notes.emplace_back("No surface shines, so the scene is dark.");
+}
+
 }  // namespace lightwell

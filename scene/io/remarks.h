@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/scene.h"
+
 namespace lightwell {
 
 /// What a reader left out or approximated, told once however often it happens: a sentence and the
@@ -24,5 +26,8 @@ class Remarks {
   };
   std::vector<Remark> remarks_;
 };
+
+/// Adds a note to a scene without an emitter.
+void note_if_dark(Scene& scene);
 
 }  // namespace lightwell

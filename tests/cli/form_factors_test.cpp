@@ -154,14 +154,7 @@ TEST_F(FormFactorsCommand, MethodsAgree) {
 }
 
 TEST_F(FormFactorsCommand, AClosedBoxLosesNothing) {
-  // Faces inwards: STL without shared vertices, two triangles a side.
-  std::string obj;
-  for (int i = 0; i < 8; ++i) {
-    obj += "v " + std::to_string(i & 1) + " " + std::to_string((i >> 1) & 1) + " " +
-           std::to_string((i >> 2) & 1) + "\n";
-  }
-  obj += "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
-  folder.write("cube.obj", obj);
+  folder.write("cube.obj", unit_cube());
   const auto json = run_json({"form-factors", "cube.obj", "-o", "F.mtx"});
   EXPECT_LE(json["closure_max_error"].get<double>(), 5 * rounding) << "five factors a row";
   EXPECT_EQ(json["open_share"].get<double>(), 0.0);

@@ -23,15 +23,9 @@ constexpr bool memory_is_its_own = true;
 
 class Memory : public testing::Test {
  protected:
-  // The unit cube from inside: cut finely enough, every row sees hundreds of patches.
+  // Cut finely enough, every row of the cube sees hundreds of patches.
   void SetUp() override {
-    std::string obj;
-    for (int i = 0; i < 8; ++i) {
-      obj += "v " + std::to_string(i & 1) + " " + std::to_string((i >> 1) & 1) + " " +
-             std::to_string((i >> 2) & 1) + "\n";
-    }
-    obj += "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
-    folder.write("cube.obj", obj);
+    folder.write("cube.obj", unit_cube());
     folder.write("room.toml", small_room());
   }
   Ended run(const Words& arguments) { return run_lightwell(folder / "", arguments); }
@@ -55,7 +49,7 @@ int needed_mb(const std::string& refusal) {
 }
 
 TEST_F(Memory, TheLeastThatIsEnoughIsSaidAndKept) {
-  if (!memory_is_its_own) GTEST_SKIP();
+  if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
   const Ended unlimited = factors("F.mtx", {});
   ASSERT_EQ(unlimited.code, 0) << unlimited.err;
   const auto free = nlohmann::json::parse(unlimited.out);
@@ -118,7 +112,7 @@ TEST_F(Memory, AmountsThatAreNoneAreRefused) {
 
 // The program inherits the limit, and would be ended by a signal if it did not see to that.
 TEST_F(Memory, AFileThatMayNotGrowIsAnError) {
-  if (!memory_is_its_own) GTEST_SKIP();
+  if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
   const int needed = needed_mb(factors("F.mtx", {"--memory", "2M"}).err);
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);

@@ -96,6 +96,16 @@ size = [48, 32]
 )";
 }
 
+std::string unit_cube() {
+  std::string obj;
+  for (int i = 0; i < 8; ++i) {
+    obj += "v " + std::to_string(i & 1) + " " + std::to_string((i >> 1) & 1) + " " +
+           std::to_string((i >> 2) & 1) + "\n";
+  }
+  obj += "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+  return obj;
+}
+
 std::vector<std::string> quick() {
   return {"--max-patch-size", "1", "--rays", "64", "--gather-rays", "32"};
 }

@@ -39,7 +39,10 @@ Ended run_lightwell(const std::filesystem::path& folder, const std::vector<std::
 /// A room 4 m x 3 m x 2.5 m with a luminous panel under its ceiling and the camera "door"; small
 /// enough to solve in a moment with `quick`.
 std::string small_room();
-/// Coarse options for it.
+/// The unit cube from inside, as an OBJ file of six squares.
+std::string unit_cube();
+
+/// Coarse options for small_room().
 std::vector<std::string> quick();
 
 /// `a` followed by `b`.

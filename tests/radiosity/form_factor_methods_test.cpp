@@ -8,6 +8,7 @@
 
 #include "radiosity/form_factors.h"
 #include "scene/parallel.h"
+#include "tests/radiosity/named_methods.h"
 #include "tests/radiosity/test_scenes.h"
 #include "tests/radiosity/view_factor_cases.h"
 
@@ -18,21 +19,6 @@ using test::add_box;
 using test::add_material;
 using test::add_polygon;
 using test::diffuse;
-
-struct Method {
-  const char* name;
-  FormFactorMethod method;
-};
-constexpr Method methods[] = {{"auto", FormFactorMethod::automatic},
-                              {"ray-cast", FormFactorMethod::ray_cast},
-                              {"hemicube", FormFactorMethod::hemicube},
-                              {"analytic", FormFactorMethod::analytic}};
-
-std::string name_of(const testing::TestParamInfo<Method>& tested) {
-  std::string name = tested.param.name;
-  std::erase(name, '-');
-  return name;
-}
 
 struct Computed {
   PatchMesh mesh;
@@ -75,7 +61,7 @@ Scene scene_of(const test::ViewFactorCase& c) {
   return scene;
 }
 
-void expect_laws(const Computed& c, const std::string& name) {
+void expect_laws(const Computed& c, std::string_view name) {
   for (int i = 0; i < c.mesh.patch_count(); ++i) {
     float before = -1.0f;
     for (const FormFactor& f : c.F->row(i)) {
@@ -89,7 +75,7 @@ void expect_laws(const Computed& c, const std::string& name) {
 }
 
 // It takes many patches, so it meets one case of each sort.
-bool is_for_hemicube(const std::string& name) {
+bool is_for_hemicube(std::string_view name) {
   constexpr const char* names[] = {
       "par_unit_squares", "par_squares_d0_1",       "par_offset_disjoint", "perp_unit_common_edge",
       "perp_narrow",      "tri_tri_general",        "octa_edge",           "occ_square_corner_0_5",
@@ -97,7 +83,7 @@ bool is_for_hemicube(const std::string& name) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-class Catalogue : public testing::TestWithParam<Method> {};
+class Catalogue : public testing::TestWithParam<NamedFormFactorMethod> {};
 
 TEST_P(Catalogue, IsMet) {
   const auto [name, method] = GetParam();
@@ -125,12 +111,14 @@ TEST_P(Catalogue, IsMet) {
     EXPECT_LE(error, allowed) << name << ", " << c.name << ": " << between(computed, 0, 1)
                               << " for " << c.F12;
   }
-  std::printf("%s: worst error %.1e unoccluded, %.1e occluded\n", name, worst, worst_occluded);
+  std::printf("%s: worst error %.1e unoccluded, %.1e occluded\n", name.data(), worst,
+              worst_occluded);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Catalogue, testing::ValuesIn(methods), name_of);
+INSTANTIATE_TEST_SUITE_P(Methods, Catalogue, testing::ValuesIn(form_factor_methods),
+                         test::name_of_method);
 
-class Room : public testing::TestWithParam<Method> {};
+class Room : public testing::TestWithParam<NamedFormFactorMethod> {};
 
 TEST_P(Room, WithABlockClosesAndSeesNothingThroughIt) {
   const auto [name, method] = GetParam();
@@ -230,7 +218,8 @@ TEST(AutomaticFormFactors, MeetATargetWithFewRaysWherePolygonsHideEachOther) {
   EXPECT_NEAR(signed_sum / n, 0.0, 1e-6);  // both close
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Room, testing::ValuesIn(methods), name_of);
+INSTANTIATE_TEST_SUITE_P(Methods, Room, testing::ValuesIn(form_factor_methods),
+                         test::name_of_method);
 
 }  // namespace
 }  // namespace lightwell

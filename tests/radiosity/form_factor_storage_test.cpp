@@ -7,6 +7,7 @@
 #include "radiosity/solve.h"
 #include "radiosity/view_factors.h"
 #include "scene/parallel.h"
+#include "tests/radiosity/named_methods.h"
 #include "tests/radiosity/test_scenes.h"
 #include "tests/raytrace/temporary_folder.h"
 
@@ -17,15 +18,6 @@ using test::add_box;
 using test::add_material;
 using test::add_polygon;
 using test::diffuse;
-
-struct Method {
-  const char* name;
-  FormFactorMethod method;
-};
-constexpr Method methods[] = {{"auto", FormFactorMethod::automatic},
-                              {"raycast", FormFactorMethod::ray_cast},
-                              {"hemicube", FormFactorMethod::hemicube},
-                              {"analytic", FormFactorMethod::analytic}};
 
 // Walls, a lamp of its own rows, a floor that both mirrors and scatters, a tinted mirror, a block
 // of glass and a ball that sees itself: all that makes rows differ in kind.
@@ -82,7 +74,7 @@ struct Computed {
   StorageReport storage{};
 };
 
-class Storage : public testing::TestWithParam<Method> {
+class Storage : public testing::TestWithParam<NamedFormFactorMethod> {
  protected:
   Computed compute(const Scene& scene, std::int64_t rows, int threads, double target_error) const {
     const ThreadLimit limit(threads);
@@ -131,8 +123,8 @@ TEST_P(Storage, ChangesNoBit) {
   expect_same(compute(scene, -1, 1, 0.02), compute(scene, 40000, 3, 0.02));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Storage, testing::ValuesIn(methods),
-                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(Methods, Storage, testing::ValuesIn(form_factor_methods),
+                         test::name_of_method);
 
 // Reciprocity as it is stored, not as it was computed; and again once rows that are one patch each
 // have been taken over one by one.

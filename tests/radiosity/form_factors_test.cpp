@@ -130,12 +130,7 @@ TEST(FormFactors, SmallEmitterIsExactAndCloses) {
 
 // Opposite a perfect mirror a patch sees the room's image: every ray comes back.
 TEST(FormFactors, PerfectMirrorPassesEverythingOn) {
-  Scene scene;
-  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
-  Material mirror = test::diffuse(scene.bands, 0.0f);
-  mirror.specular = constant_spectrum(scene.bands, 1.0f);
-  const int m = test::add_material(scene, mirror);
-  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, {m, wall, wall, wall, wall, wall}, true);
+  const Scene scene = test::room_with_mirror(1.0f);
   const Solved s = cast(scene, {.rays_per_patch = 1024});
   EXPECT_LT(worst_closure(s), 1e-5);
   // Face x1 sees x0 under F = 0.19982..., all of which returns; the image of x1 itself is the
@@ -161,12 +156,8 @@ TEST(FormFactors, PerfectMirrorPassesEverythingOn) {
 
 // Rows of so few rays ask for what others' rows exclude; nothing may grow without bound.
 TEST(FormFactors, FewRaysAmongMirrorsStayFiniteShares) {
-  Scene scene;
-  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
-  Material mirror = test::diffuse(scene.bands, 0.0f);
-  mirror.specular = constant_spectrum(scene.bands, 0.9f);
-  const int m = test::add_material(scene, mirror);
-  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, {m, wall, wall, wall, wall, wall}, true);
+  int m = 0;
+  Scene scene = test::room_with_mirror(0.9f, &m);
   test::add_box(scene, {0.3, 0.3, 0.3}, {0.31, 0.7, 0.7}, {m, m, m, m, m, m}, false);
   for (const int rays : {1, 2, 8}) {
     const Solved s = cast(scene, {.rays_per_patch = rays});

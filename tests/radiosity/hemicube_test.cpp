@@ -96,12 +96,7 @@ TEST_P(Hemicube, BlackBackBlocks) {
 }
 
 TEST_P(Hemicube, PerfectMirrorPassesEverythingOn) {
-  Scene scene;
-  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
-  Material mirror = test::diffuse(scene.bands, 0.0f);
-  mirror.specular = constant_spectrum(scene.bands, 1.0f);
-  const int m = test::add_material(scene, mirror);
-  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, {m, wall, wall, wall, wall, wall}, true);
+  const Scene scene = test::room_with_mirror(1.0f);
   const Rows rows =
       rows_of(scene, {.max_patch_size = 0.25}, {.resolution = 64, .back_end = GetParam()});
   double back = 0.0;

@@ -196,7 +196,7 @@ TEST(SymmetricRows, MultiplyAsTheWholeMatrixDoes) {
 
 // Pages of what was read long ago leave memory: 64 MB are read through a window of 16 MB / 8.
 TEST(SpilledRows, DoNotStayResidentOnceRead) {
-  if (!memory_is_our_own) GTEST_SKIP();
+  if (!memory_is_our_own) GTEST_SKIP() << "the thread sanitizer uses memory too";
   const TemporaryFolder folder;
   RowStore<FormFactor> rows(budget_of(16 * megabyte, folder), 1000);
   const std::vector<FormFactor> row(8192, FormFactor{1, 0.5f});
@@ -273,7 +273,7 @@ TEST(MemoryBudget, LeavesRoomForWhatElseIsThere) {
 }
 
 TEST(MemoryBudget, KnowsWhatThisProcessUses) {
-  if (!memory_is_our_own) GTEST_SKIP();
+  if (!memory_is_our_own) GTEST_SKIP() << "the thread sanitizer uses memory too";
   const ResidentMemory before = resident_memory();
   EXPECT_GT(before.now, megabyte);
   EXPECT_GE(before.most, before.now);

@@ -61,4 +61,17 @@ inline Scene furnace(float rho, float M, bool with_block) {
   return scene;
 }
 
+/// The unit cube from inside; its face x0 is a mirror, the others scatter half and shine.
+/// `mirror`: what the mirror was added as.
+inline Scene room_with_mirror(float specular, int* mirror = nullptr) {
+  Scene scene;
+  const int wall = add_material(scene, diffuse(scene.bands, 0.5f, 1.0f));
+  Material material = diffuse(scene.bands, 0.0f);
+  material.specular = constant_spectrum(scene.bands, specular);
+  const int m = add_material(scene, material);
+  if (mirror) *mirror = m;
+  add_box(scene, {0, 0, 0}, {1, 1, 1}, {m, wall, wall, wall, wall, wall}, true);
+  return scene;
+}
+
 }  // namespace lightwell::test

@@ -9,9 +9,16 @@
 #include "scene/io/read_scene.h"
 #include "tests/raytrace/temporary_folder.h"
 #include "tests/scene/gltf_text.h"
+#include "tests/scene/scene_questions.h"
 
 namespace lightwell {
 namespace {
+
+using test::area_of;
+using test::has_note;
+using test::material_called;
+using test::mesh_of;
+using test::normal_of;
 
 constexpr float pi = std::numbers::pi_v<float>;
 const std::string one_node = R"(,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}])";
@@ -37,34 +44,6 @@ class Gltf : public testing::Test {
   }
   TemporaryFolder folder;
 };
-
-const PolygonMesh& mesh_of(const Scene& scene, std::size_t surface = 0) {
-  return std::get<PolygonMesh>(scene.surfaces.at(surface).shape);
-}
-
-double area_of(const PolygonMesh& mesh) {
-  double area = 0.0;
-  for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
-  return area;
-}
-
-Eigen::Vector3d normal_of(const Scene& scene, std::size_t surface = 0) {
-  return facet_normal(mesh_of(scene, surface), mesh_of(scene, surface).facets.at(0));
-}
-
-bool has_note(const Scene& scene, const std::string& text) {
-  for (const std::string& note : scene.notes) {
-    if (note.find(text) != std::string::npos) return true;
-  }
-  return false;
-}
-
-const Material& material_called(const Scene& scene, const std::string& name) {
-  for (const Material& m : scene.materials) {
-    if (m.name == name) return m;
-  }
-  throw std::runtime_error("no material " + name);
-}
 
 TEST(GltfFile, StrengthMultipliesEmissionInBothMaterialModels) {
   const Scene scene = read_scene(LIGHTWELL_TEST_DATA "/scene/gltf/14_emission_strength.gltf");

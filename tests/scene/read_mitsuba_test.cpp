@@ -9,9 +9,15 @@
 #include "scene/io/glossy.h"
 #include "scene/io/read_scene.h"
 #include "tests/raytrace/temporary_folder.h"
+#include "tests/scene/scene_questions.h"
 
 namespace lightwell {
 namespace {
+
+using test::area_of;
+using test::has_note;
+using test::mesh_of;
+using test::normal_of;
 
 constexpr double pi = std::numbers::pi;
 const std::string square = R"(<shape type="rectangle"><bsdf type="diffuse"/></shape>)";
@@ -37,27 +43,6 @@ class Mitsuba : public testing::Test {
   }
   TemporaryFolder folder;
 };
-
-const PolygonMesh& mesh_of(const Scene& scene, std::size_t surface = 0) {
-  return std::get<PolygonMesh>(scene.surfaces.at(surface).shape);
-}
-
-double area_of(const PolygonMesh& mesh) {
-  double area = 0.0;
-  for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
-  return area;
-}
-
-Eigen::Vector3d normal_of(const Scene& scene, std::size_t surface = 0) {
-  return facet_normal(mesh_of(scene, surface), mesh_of(scene, surface).facets.at(0));
-}
-
-bool has_note(const Scene& scene, const std::string& text) {
-  for (const std::string& note : scene.notes) {
-    if (note.find(text) != std::string::npos) return true;
-  }
-  return false;
-}
 
 void expect_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance = 1e-12) {
   EXPECT_LT((a - b).norm(), tolerance) << a.transpose() << " is not " << b.transpose();
