@@ -17,8 +17,8 @@ bool is_front_polygon(const PatchMesh& mesh, int patch) {
   return mesh.is_back[patch] == 0 && sphere_grid_of(mesh, mesh.facet[patch]) == nullptr;
 }
 
-// (alpha, beta) of Primitive.
-Eigen::Vector2d quad_shape(const PatchMesh& mesh, const std::array<int, 4>& c) {
+// (alpha, beta) of QuadShape.
+Eigen::Vector2d shape_of_quad(const PatchMesh& mesh, const std::array<int, 4>& c) {
   const Vector3d p0 = mesh.position(c[0]);
   const Vector3d x = mesh.position(c[1]) - p0, y = mesh.position(c[3]) - p0,
                  d = mesh.position(c[2]) - p0;
@@ -69,12 +69,11 @@ Array4f turned(const Array4f& w, bool is_triangle) {
 
 ElementCaster::ElementCaster(const PatchMesh& mesh)
     : mesh_(mesh),
-      caster_(cast_geometry(mesh, primitives_)),
+      caster_(cast_geometry(mesh, elements_, quad_shapes_)),
       hidden_(static_cast<std::size_t>(mesh.element_count()), 0) {
-  for (std::size_t p = 0; p < primitives_.size(); ++p) {
-    if (primitives_[p].kind == Primitive::Kind::sphere) continue;
-    const int primitive = static_cast<int>(p);
-    hidden_[primitives_[p].element] =
+  const int polygons = caster_.triangle_count() + caster_.quad_count();
+  for (int primitive = 0; primitive < polygons; ++primitive) {
+    hidden_[elements_[primitive]] =
         static_cast<std::uint8_t>((caster_.is_hidden(primitive, false) ? 1 : 0) |
                                   (caster_.is_hidden(primitive, true) ? 2 : 0));
   }
@@ -90,8 +89,8 @@ int ElementCaster::hidden_elements(int patch) const {
 }
 
 // Primitives in RayCaster's order: triangles, quads, spheres.
-CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh,
-                                          std::vector<Primitive>& primitives) {
+CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh, std::vector<int>& elements,
+                                          std::vector<QuadShape>& quad_shapes) {
   CastGeometry geometry;
   std::vector<int> number(mesh.vertex_count(), -1);
   const auto vertex = [&](int v) {
@@ -101,35 +100,30 @@ CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh,
     }
     return number[v];
   };
-  const auto add = [&](Primitive primitive) {
-    geometry.group.push_back(primitive.facet);
-    primitives.push_back(primitive);
+  const auto add = [&](int element, int facet) {
+    geometry.group.push_back(facet);
+    elements.push_back(element);
   };
   for (const int corner_count : {3, 4}) {
     for (int p = 0; p < mesh.patch_count(); ++p) {
       if (!is_front_polygon(mesh, p)) continue;
       for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
         if (mesh.corner_count(e) != corner_count) continue;
-        Primitive primitive{.element = e, .facet = mesh.facet[p]};
         const auto& c = mesh.corners[e];
         if (corner_count == 3) {
           geometry.triangles.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2])});
         } else {
           geometry.quads.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])});
-          const Eigen::Vector2d shape = quad_shape(mesh, c);
-          primitive.kind = Primitive::Kind::quad;
-          primitive.alpha = static_cast<float>(shape.x());
-          primitive.beta = static_cast<float>(shape.y());
+          const Eigen::Vector2f shape = shape_of_quad(mesh, c).cast<float>();
+          quad_shapes.push_back({shape.x(), shape.y()});
         }
-        add(primitive);
+        add(e, mesh.facet[p]);
       }
     }
   }
   for (std::size_t g = 0; g < mesh.sphere_grids.size(); ++g) {
     geometry.spheres.push_back(mesh.sphere_grids[g].sphere);
-    add({.element = static_cast<int>(g),
-         .facet = mesh.sphere_grids[g].facet,
-         .kind = Primitive::Kind::sphere});
+    add(static_cast<int>(g), mesh.sphere_grids[g].facet);
   }
   return geometry;
 }
@@ -137,20 +131,22 @@ CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh,
 template <bool with_weights>
 ElementHit ElementCaster::element_hit(const Ray& ray, const Hit& hit) const {
   if (hit.primitive < 0) return {};
-  const Primitive& primitive = primitives_[hit.primitive];
-  ElementHit result{.facet = primitive.facet,
-                    .element = primitive.element,
+  ElementHit result{.facet = hit.group,
+                    .element = elements_[hit.primitive],
                     .from_back = hit.from_back,
                     .t = hit.t};
-  bool is_triangle = primitive.kind == Primitive::Kind::triangle;
-  if (!with_weights && primitive.kind != Primitive::Kind::sphere) {
+  const int triangles = caster_.triangle_count();
+  const bool is_polygon = hit.primitive < triangles + caster_.quad_count();
+  bool is_triangle = hit.primitive < triangles;
+  if (!with_weights && is_polygon) {
     // Nothing more to find out.
   } else if (is_triangle) {
     result.weights = {1.0f - hit.u - hit.v, hit.u, hit.v, 0.0f};
-  } else if (primitive.kind == Primitive::Kind::quad) {
-    result.weights = quad_weights(primitive.alpha, primitive.beta, hit.u, hit.v);
+  } else if (is_polygon) {
+    const QuadShape& shape = quad_shapes_[static_cast<std::size_t>(hit.primitive - triangles)];
+    result.weights = quad_weights(shape.alpha, shape.beta, hit.u, hit.v);
   } else {
-    const SphereGrid& grid = mesh_.sphere_grids[primitive.element];
+    const SphereGrid& grid = mesh_.sphere_grids[result.element];
     const SpherePlace place =
         sphere_place(grid, ray.origin + hit.t * ray.direction - grid.sphere.center);
     result.element = grid.element[place.ring * grid.sectors + place.sector];

@@ -47,22 +47,21 @@ class ElementCaster {
   const PatchMesh& mesh() const { return mesh_; }
 
  private:
-  /// What a hit needs to know, together in memory.
-  struct Primitive {
-    int element = -1;  ///< front element; for a sphere the index of its grid
-    int facet = -1;
-    /// Quad: v2 - v0 = alpha (v1 - v0) + beta (v3 - v0); both 1 in a parallelogram.
-    float alpha = 0.0f, beta = 0.0f;
-    enum class Kind : std::uint8_t { triangle, quad, sphere } kind = Kind::triangle;
+  /// v2 - v0 = alpha (v1 - v0) + beta (v3 - v0); both 1 in a parallelogram.
+  struct QuadShape {
+    float alpha = 1.0f, beta = 1.0f;
   };
-  static CastGeometry cast_geometry(const PatchMesh& mesh, std::vector<Primitive>& primitives);
+  static CastGeometry cast_geometry(const PatchMesh& mesh, std::vector<int>& elements,
+                                    std::vector<QuadShape>& quad_shapes);
   template <bool with_weights>
   void cast(std::span<const Ray> rays, std::span<ElementHit> hits) const;
   template <bool with_weights>
   ElementHit element_hit(const Ray& ray, const Hit& hit) const;
 
   const PatchMesh& mesh_;
-  std::vector<Primitive> primitives_;
+  /// Of RayCaster's primitives, on their front; of a sphere, the index of its grid.
+  std::vector<int> elements_;
+  std::vector<QuadShape> quad_shapes_;
   RayCaster caster_;
   std::vector<std::uint8_t> hidden_;  // per element, a bit per side
 };

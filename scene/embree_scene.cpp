@@ -177,6 +177,7 @@ void EmbreeScene::find_hidden(const CastGeometry& source) {
   };
   for (int i = 0; i < triangles; ++i) look_at(i, source.triangles[i]);
   for (int i = 0; i < quads; ++i) look_at(triangles + i, source.quads[i]);
+  is_any_hidden = std::any_of(hidden.begin(), hidden.end(), [](auto sides) { return sides != 0; });
 }
 
 }  // namespace lightwell

@@ -27,6 +27,7 @@ struct EmbreeScene {
   std::vector<int> group;
   std::unique_ptr<CoplanarGroups> planes;
   std::vector<std::uint8_t> hidden;  // per triangle and quad: sides that what lies on it hides
+  bool is_any_hidden = false;        // saves rays a look at `hidden`
   SphereSet sphere_set;
   int triangles = 0, quads = 0;
 

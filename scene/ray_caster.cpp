@@ -38,7 +38,8 @@ struct RayCaster::Impl : EmbreeScene {
   }
 
   bool starts_covered(const Ray& ray) const {
-    return planes->may_be_covered(ray.origin_group, ray.origin);
+    return planes->has_overlaps(ray.origin_group) &&
+           planes->may_be_covered(ray.origin_group, ray.origin);
   }
 
   // Whether the plane of a hit is one with a group's, there where the ray meets it.
@@ -61,7 +62,7 @@ struct RayCaster::Impl : EmbreeScene {
         return planes->order(g, ray.origin_group) * along > 0.0;
       }
     }
-    if (hidden[p] != 0) {
+    if (is_any_hidden && hidden[p] != 0) {
       const Eigen::Vector3d facing(hit.Ng_x, hit.Ng_y, hit.Ng_z);
       const bool is_back = facing.dot(ray.direction) > 0.0;
       if ((hidden[p] & (is_back ? from_back : from_front)) != 0) return false;
@@ -101,16 +102,20 @@ struct RayCaster::Impl : EmbreeScene {
       }
       for (std::size_t i = 0; i < size; ++i) intersect(scene, context, queries[i]);
       for (std::size_t i = 0; i < size; ++i) {
-        hits[begin + i] = answer(context.rays[i], queries[i]);
+        answer(context.rays[i], queries[i], hits[begin + i]);
       }
     }
   }
 
-  Hit answer(const Ray& ray, const RTCRayHit& query) const {
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  void answer(const Ray& ray, const RTCRayHit& query, Hit& hit) const {
     constexpr int no_target = -1;
-    return counts(query.hit, query.ray.tfar, ray, no_target) ? make_hit(ray, query)
-                                                             : closest(ray, no_target);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+      hit = {};
+    } else if (counts(query.hit, query.ray.tfar, ray, no_target)) {
+      set_hit(ray, query, hit);
+    } else {
+      hit = closest(ray, no_target);
+    }
   }
 
   // Hits that do not count are rare, so asking again with a filter is cheaper than a filter on
@@ -129,7 +134,9 @@ struct RayCaster::Impl : EmbreeScene {
       intersect(scene, context, query, skip_what_does_not_count);
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
       if (query.hit.geomID != spheres_id || target < 0 || group[primitive(query.hit)] != target) {
-        return make_hit(ray, query);
+        Hit hit;
+        set_hit(ray, query, hit);
+        return hit;
       }
       // Spheres know no filter. At least a normal number: Embree flushes denormals, and would meet
       // the same place again.
@@ -205,18 +212,22 @@ struct RayCaster::Impl : EmbreeScene {
     packet.flags[i] = ray.flags;
   }
 
-  Hit make_hit(const Ray& ray, const RTCRayHit& query) const {
+  // In place: a copy would wait for the parts just stored one by one.
+  void set_hit(const Ray& ray, const RTCRayHit& query, Hit& hit) const {
     const int p = primitive(query.hit);
-    Hit hit{.primitive = p, .t = query.ray.tfar, .u = query.hit.u, .v = query.hit.v};
+    hit.primitive = p;
+    hit.group = group[p];
+    hit.u = query.hit.u;
+    hit.v = query.hit.v;
     if (query.hit.geomID == spheres_id) {
       const Sphere& sphere = sphere_set.spheres[query.hit.primID];
       hit.t = sphere_root(sphere, ray, group[p] == ray.origin_group);
       hit.from_back = (ray.origin + hit.t * ray.direction - sphere.center).dot(ray.direction) > 0.0;
     } else {
       const Eigen::Vector3d normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+      hit.t = query.ray.tfar;
       hit.from_back = normal.dot(ray.direction) > 0.0;
     }
-    return hit;
   }
 };
 

@@ -37,6 +37,7 @@ struct Ray {
 
 struct Hit {
   int primitive = -1;  ///< -1: nothing was hit
+  int group = -1;      ///< of the primitive
   double t = std::numeric_limits<double>::infinity();
   /// Triangle (v0,v1,v2): weights (1-u-v, u, v). Quad (v0..v3): bilinear, u along v0-v1, v along
   /// v0-v3. Sphere: 0.
