@@ -188,6 +188,27 @@ TEST_F(Gltf, CamerasLookAlongTheirMinusZ) {
   EXPECT_LT((camera.position - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
 }
 
+TEST_F(Gltf, PicturesAreNotMirrored) {
+  const auto with_scale = [&](const std::string& scale) {
+    return read(
+        square_gltf(R"(,"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"camera":0,"scale":)" +
+                    scale + R"(}],"cameras":[{"name":"eye","type":"perspective",
+                            "perspective":{"yfov":1.0,"znear":0.1}}])"));
+  };
+  const Scene mirrored = with_scale("[-1,1,1]");
+  EXPECT_LT((mirrored.cameras.at(0).up - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_TRUE(has_note(mirrored, "turned the right way round: 'eye'"));
+  EXPECT_FALSE(has_note(with_scale("[1,1,1]"), "turned the right way round"));
+}
+
+TEST_F(Gltf, SurfacesOfOneNameAreNumbered) {
+  const Scene scene = read(square_gltf(R"(,"scenes":[{"nodes":[0,1,2]}],"nodes":[
+      {"mesh":0,"name":"lamp"},{"mesh":0,"name":"lamp 2"},{"mesh":0,"name":"lamp"}])"));
+  std::vector<std::string> names;
+  for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"lamp", "lamp 2", "lamp 3"}));
+}
+
 TEST_F(Gltf, WhatIsNotUsedIsNamed) {
   const Scene scene = read(square_gltf(
       one_node +
