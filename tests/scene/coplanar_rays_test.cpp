@@ -269,7 +269,7 @@ INSTANTIATE_TEST_SUITE_P(
         Place{.name = "UndecidedTheOtherWay",
               .of_both = undecided(),
               .turns_second = -Vector3d::UnitZ()}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& place) { return std::string(place.param.name); });
 
 }  // namespace
 }  // namespace lightwell
