@@ -140,9 +140,8 @@ TEST_F(Output, NothingSaysWattsWhereTheFileNamesNoUnit) {
     EXPECT_EQ(run_json({"info", "S.vtp"})["light"], light);
     run_json({"render", scene, "S.vtp", "--size", "8x8", "-o", "P.exr", "-o", "P.png"});
     for (const char* picture : {"P.exr", "P.png"}) {
-      std::ifstream in(folder / picture, std::ios::binary);
-      const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-      EXPECT_NE(bytes.find(unit), std::string::npos) << picture << " of " << scene;
+      EXPECT_NE(content_of(folder / picture).find(unit), std::string::npos)
+          << picture << " of " << scene;
     }
   }
 }
