@@ -25,13 +25,13 @@ std::vector<Loop> sphere_loops();
 /// Whether a transformation keeps angles: it turns, moves, mirrors and scales evenly, to 1e-6.
 bool keeps_angles(const Eigen::Affine3d& transform);
 
+/// Turns every facet's front to the other side.
+void turn_over(PolygonMesh& mesh);
+
 /// The loops where `transform` puts them, turned over if `flip` says so. Normals keep their side of
 /// the surface even where the transformation mirrors. Polygons that it flattens are dropped.
 PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& transform,
                          bool flip, Repairs& repairs);
-
-/// Turns every facet's front to the other side.
-void turn_over(PolygonMesh& mesh);
 
 /// The same for a mesh of sound facets without holes; with `mirror_turns` false the order of the
 /// corners alone says where the front is, so that a mirrored mesh is turned inside out.
