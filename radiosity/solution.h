@@ -16,7 +16,8 @@ struct StepRecord {
   double seconds = 0.0;   ///< since the solver started
 };
 
-/// Watts (relative where the scene's light is), all bands added. emitted = absorbed + escaped + unshot.
+/// Watts (relative where the scene's light is), all bands added. emitted = absorbed + escaped +
+/// unshot.
 struct EnergyBalance {
   double emitted = 0.0;
   double absorbed = 0.0;  ///< by diffuse surfaces and, on the way, by mirrors and glass

@@ -1,6 +1,7 @@
 // What a script sees: files, standard output, JSON.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
