@@ -4,13 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
 #include "cli/memory_size.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
+#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace {
@@ -22,18 +22,6 @@ std::optional<double> number(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-// Only what exists may be asked for; the sentence says what that is.
-CLI::Validator one_of(std::string what, std::vector<std::string> known) {
-  return CLI::Validator(
-      [what, known](std::string& given) -> std::string {
-        if (std::find(known.begin(), known.end(), given) != known.end()) return {};
-        return fmt::format("there is no {} '{}' in this version; there {}: {}.{}", what, given,
-                           known.size() == 1 ? "is one" : "are", fmt::join(known, ", "),
-                           did_you_mean(given, known));
-      },
-      std::string{});
 }
 
 CLI::Validator finite() {
@@ -104,21 +92,25 @@ CLI::Validator power_of_two() {
       std::string{});
 }
 
-CLI::Validator with_extension(std::vector<std::string> extensions) {
+CLI::Validator one_of(std::string what, std::vector<std::string> known) {
   return CLI::Validator(
-      [extensions](std::string& file) -> std::string {
-        const std::string given = extension_of(file);
-        if (std::find(extensions.begin(), extensions.end(), given) != extensions.end()) return {};
-        return fmt::format("'{}' must end in {}", file, fmt::join(extensions, " or "));
+      [what, known](std::string& given) -> std::string {
+        if (std::find(known.begin(), known.end(), given) != known.end()) return {};
+        return fmt::format("there is no {} '{}' in this version; there {}: {}.{}", what, given,
+                           known.size() == 1 ? "is one" : "are", fmt::join(known, ", "),
+                           did_you_mean(given, known));
       },
       std::string{});
 }
 
-std::string extension_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+CLI::Validator with_extension(std::vector<std::string> extensions) {
+  return CLI::Validator(
+      [extensions](std::string& file) -> std::string {
+        const std::string given = lower_extension(file);
+        if (std::find(extensions.begin(), extensions.end(), given) != extensions.end()) return {};
+        return fmt::format("'{}' must end in {}", file, fmt::join(extensions, " or "));
+      },
+      std::string{});
 }
 
 const Camera& choose_camera(const Scene& scene, const std::string& name) {

@@ -66,11 +66,11 @@ CLI::Validator positive();
 /// For ray counts: the sample points are stratified in powers of two.
 CLI::Validator power_of_two();
 
+/// Only what exists may be asked for; `what` ("solver") names its kind to who asks for another.
+CLI::Validator one_of(std::string what, std::vector<std::string> known);
+
 /// A file name that ends in one of `extensions` (".png"), whatever its case.
 CLI::Validator with_extension(std::vector<std::string> extensions);
-
-/// The file's extension in lower case, dot included.
-std::string extension_of(const std::filesystem::path& file);
 
 /// The scene's camera of that name, or its first if `name` is empty. Throws InputError that lists
 /// the names there are.

@@ -36,9 +36,12 @@ struct Arguments {
 };
 
 std::string Arguments::text() const {
-  return fmt::format("--method {}{} --target-error {:g} --max-patch-size {:g}{}", method,
-                     hemicube_text(method, hemicube_resolution), target_error, max_patch_size,
-                     two_sided ? " --two-sided" : "");
+  // Without the option there is a row for each facet, which no size says.
+  return fmt::format(
+      "--method {}{} --target-error {:g}{}{}", method, hemicube_text(method, hemicube_resolution),
+      target_error,
+      max_patch_size > 0.0 ? fmt::format(" --max-patch-size {:g}", max_patch_size) : "",
+      two_sided ? " --two-sided" : "");
 }
 
 fs::path Arguments::row_file() const {
@@ -240,9 +243,9 @@ void add_how(CLI::App& command, Arguments& arguments) {
       .add_option("--method,--form-factors", arguments.method,
                   "auto (default), ray-cast, hemicube or analytic")
       ->type_name("METHOD")
-      ->check(CLI::IsMember(form_factor_method_names()))
+      ->check(one_of("form-factor method", form_factor_method_names()))
       ->group(group);
-  add_hemicube_resolution(command, arguments.hemicube_resolution);
+  add_hemicube_resolution(command, arguments.hemicube_resolution)->group(group);
   command
       .add_option("--target-error", arguments.target_error,
                   "wanted standard error of every factor (default 1e-3)")

@@ -11,6 +11,7 @@
 #include "radiosity/solution_file.h"
 #include "raytrace/image.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace {
@@ -103,7 +104,7 @@ Json scene_json(const Scene& scene) {
           {"title", scene.title},
           {"unit", scene.unit_name},
           {"metres_per_unit", scene.metres_per_unit},
-          {"light", scene.relative_units ? "in relative units" : "in watts"},
+          {"light", light_name(scene.relative_units)},
           {"bounds", {corner_json(bounds.low, scene), corner_json(bounds.high, scene)}},
           {"bands", scene.bands.names},
           {"surfaces", scene.surfaces.size()},
@@ -125,6 +126,7 @@ Json solution_json(const SolvedScene& solved) {
           {"scene_hash", fmt::format("{:016x}", solution.provenance.scene_hash)},
           {"options", solution.provenance.options},
           {"unit", solution.unit_name},
+          {"light", light_name(solution.relative_units)},
           {"bands", solution.bands.names},
           {"patches", solved.mesh.patch_count()},
           {"elements", solved.mesh.element_count()},
@@ -145,7 +147,7 @@ Json picture_json(const Image& image) {
 }
 
 Json describe(const std::string& file) {
-  const std::string extension = extension_of(file);
+  const std::string extension = lower_extension(file);
   if (extension == ".vtp") return solution_json(read_solution(file));
   if (extension == ".exr") return picture_json(read_exr(file));
   return scene_json(read_scene(file));

@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace lightwell {
+namespace {
 
+// Nothing for what is no amount, and for less than a megabyte.
 std::optional<std::int64_t> parse_memory(const std::string& text) {
   double value = 0.0;
   const char* const last = text.data() + text.size();
@@ -34,6 +38,8 @@ std::optional<std::int64_t> parse_memory(const std::string& text) {
   }
   return std::nullopt;
 }
+
+}  // namespace
 
 CLI::Option* add_memory(CLI::App& command, std::int64_t& bytes) {
   return command

@@ -49,6 +49,7 @@ void Report::add_solution(const SolvedScene& solved, bool solved_now) {
   facts_["patches"] = solved.mesh.patch_count();
   facts_["elements"] = solved.mesh.element_count();
   facts_["bands"] = solution.bands.count();
+  facts_["light"] = light_name(solution.relative_units);
   facts_["energy"] = energy_json(solution.energy);
   facts_["residual"] = solution.residual;
   facts_["sweeps"] = solution.history.size();
@@ -106,12 +107,11 @@ std::string Report::for_people() const {
       constexpr double printed_as_zero = 5e-5;
       return std::abs(share) < printed_as_zero ? 0.0 : share;  // and not as -0
     };
-    line(
-        "energy",
-        fmt::format("{:.6g} {} emitted = {:.4f} % absorbed + {:.4f} % escaped + {:.4f} % "
-                    "unshot",
-                    emitted, facts_.value("light", "watts") == "relative" ? "(no known unit)" : "W",
-                    percent("absorbed"), percent("escaped"), percent("unshot")));
+    line("energy",
+         fmt::format("{:.6g} {} emitted = {:.4f} % absorbed + {:.4f} % escaped + {:.4f} % "
+                     "unshot",
+                     emitted, facts_["light"] == light_name(true) ? "(no known unit)" : "W",
+                     percent("absorbed"), percent("escaped"), percent("unshot")));
     line("residual",
          fmt::format("{:.2g} after {} sweeps ({})", facts_["residual"].get<double>(),
                      facts_["sweeps"].get<int>(), facts_["outcome"].get<std::string>()));
@@ -159,6 +159,10 @@ std::string outcome_name(Outcome outcome) {
   return outcome == Outcome::converged ? "converged" : "max_sweeps_reached";
 }
 
+std::string light_name(bool relative_units) {
+  return relative_units ? "relative" : "watts";
+}
+
 Json energy_json(const EnergyBalance& energy) {
   return {{"emitted", energy.emitted},
           {"absorbed", energy.absorbed},
@@ -175,7 +179,7 @@ ImageMetadata picture_metadata(const RadiositySolution& solution, const Camera& 
           {"camera", camera.name},
           {"renderOptions", options},
           {"solveOptions", made.options},
-          {"unit", "W/(m^2 sr) per band"}};
+          {"unit", solution.relative_units ? "relative radiance per band" : "W/(m^2 sr) per band"}};
 }
 
 }  // namespace lightwell

@@ -51,7 +51,10 @@ void print_json(const Json& json);
 /// A JSON object as a file; throws std::runtime_error naming it.
 void write_json(const std::filesystem::path& file, const Json& json);
 
-/// Watts by fate, for JSON.
+/// What light is in, for the key "light" of JSON: "watts" or "relative".
+std::string light_name(bool relative_units);
+
+/// Watts by fate, or their relative amounts, for JSON.
 Json energy_json(const EnergyBalance& energy);
 
 /// "converged" or "max_sweeps_reached".

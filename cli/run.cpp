@@ -55,7 +55,7 @@ Action add_run(CLI::App& command) {
       "camera, report.json.");
   command
       .add_option("scene", arguments->scene,
-                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml")
+                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .vs3")
       ->required()
       ->type_name("SCENE");
   command.add_option("-o,--output", arguments->output, "folder for the results (SCENE-output)")

@@ -6,6 +6,7 @@
 #include "cli/interrupt.h"
 #include "radiosity/solution_file.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace fs = std::filesystem;
@@ -13,7 +14,7 @@ namespace {
 
 void write_picture(const fs::path& file, const Image& image, const RadiositySolution& solution,
                    const Camera& camera, const RenderArguments& arguments) {
-  if (extension_of(file) == ".png") {
+  if (lower_extension(file) == ".png") {
     const ToneMapping tones{.exposure_ev = arguments.exposure_ev};
     write_png(
         file, image.width, image.height, tone_map(image, solution.bands, tones),
@@ -30,7 +31,7 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report) {
   const Stopwatch watch;
   Scene scene = read_scene(file);
   console.say_notes(scene);
-  report.add("light", scene.relative_units ? "relative" : "watts");
+  report.add("light", light_name(scene.relative_units));
   report.add_phase("read_scene", watch.seconds());
   stop_if_interrupted();
   return scene;
@@ -73,6 +74,7 @@ SolvedScene read_solution_step(const fs::path& file, const Scene& scene, Console
   const Stopwatch watch;
   SolvedScene solved = read_solution(file);
   check_matches(scene, solved.solution);
+  solved.solution.relative_units = scene.relative_units;  // old files do not say
   report.add_solution(solved, false);
   report.add_phase("read_solution", watch.seconds());
   console.say_verbose("the solution was made with " + solved.solution.provenance.options);

@@ -260,6 +260,8 @@ void read_light(const SolutionArrays& in, const PatchMesh& mesh, RadiositySoluti
 void read_record(const SolutionArrays& in, RadiositySolution& s) {
   s.metres_per_unit = in.number("metres_per_unit");
   s.unit_name = in.text("unit_name");
+  const auto light = in.strings("light");  // files of before do not say
+  s.relative_units = !light.empty() && light.front() == "relative";
   const auto history = in.optional<double>(in.field(), "history_residual_seconds", 2);
   for (int i = 0; i < history.rows; ++i) {
     s.history.push_back({history.data[2 * i], history.data[2 * i + 1]});

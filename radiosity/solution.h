@@ -16,7 +16,8 @@ struct StepRecord {
   double seconds = 0.0;   ///< since the solver started
 };
 
-/// Watts, all bands added. emitted = absorbed + escaped + unshot.
+/// Watts (relative where the scene's light is), all bands added. emitted = absorbed + escaped +
+/// unshot.
 struct EnergyBalance {
   double emitted = 0.0;
   double absorbed = 0.0;  ///< by diffuse surfaces and, on the way, by mirrors and glass
@@ -41,6 +42,8 @@ struct RadiositySolution {
   Bands bands{};
   double metres_per_unit = 1.0;  ///< of the scene file, for coordinates shown to people
   std::string unit_name = "m";
+  /// Light is in no known unit: watts and lux here and in what is made of this are relative.
+  bool relative_units = false;
 
   BandArray patch_radiosity{};  ///< B_i, W/m^2, patches x bands
 

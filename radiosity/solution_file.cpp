@@ -190,6 +190,7 @@ void add_record(vtkFieldData* data, const RadiositySolution& s) {
   add_values(data, "residual", &s.residual, 1);
   add_values(data, "error_estimate", &s.error_estimate, 1);
   add_strings(data, "unit_name", {s.unit_name});
+  add_strings(data, "light", {s.relative_units ? "relative" : "watts"});
   add_strings(data, "version", {s.provenance.version});
   add_strings(data, "scene_file", {s.provenance.scene_file});
   add_strings(data, "scene_hash", {fmt::format("{:016x}", s.provenance.scene_hash)});
@@ -214,15 +215,15 @@ std::string summary(const SolvedScene& solved) {
       "mesh: {} patches, {} elements, {} vertices\n"
       "bands: {}, {} lm/W\n"
       "outcome: {} after {} sweeps, residual {:.3g}\n"
-      "energy: {:.6g} W emitted, {:.6g} absorbed, {:.6g} escaped, {:.3g} unshot\n"
+      "energy: {:.6g} {} emitted, {:.6g} absorbed, {:.6g} escaped, {:.3g} unshot\n"
       "error estimate: {:.3g} % of irradiance\n"
       "seconds: {:.3g}\n",
       s.provenance.version, s.provenance.scene_file, s.provenance.scene_hash, s.unit_name,
       s.metres_per_unit, s.provenance.options, mesh.patch_count(), mesh.element_count(),
       mesh.vertex_count(), band_list, s.bands.lumens_per_watt,
       s.outcome == Outcome::converged ? "converged" : "stopped at the most sweeps allowed",
-      s.history.size(), s.residual, s.energy.emitted, s.energy.absorbed, s.energy.escaped,
-      s.energy.unshot, 100.0 * s.error_estimate, total);
+      s.history.size(), s.residual, s.energy.emitted, s.relative_units ? "(no known unit)" : "W",
+      s.energy.absorbed, s.energy.escaped, s.energy.unshot, 100.0 * s.error_estimate, total);
 }
 
 [[noreturn]] void fail_write(const std::filesystem::path& path, const std::string& reason) {

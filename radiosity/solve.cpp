@@ -185,6 +185,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   solution.bands = scene.bands;
   solution.metres_per_unit = scene.metres_per_unit;
   solution.unit_name = scene.unit_name;
+  solution.relative_units = scene.relative_units;
   solution.energy = energy_balance(scene, solved.mesh, *form_factors, solution.patch_radiosity);
   form_factors.reset();  // what follows needs the memory
   seconds.push_back({"solve", watch.lap()});

@@ -12,8 +12,9 @@ struct SphereSet {
   double rounding = 0.0;                             // of Embree's coordinates, metres
 };
 
-/// The nearest root of |o + t d - c| = r in (0, t_max); for a ray that starts on this sphere the
-/// root at its own origin is the one of smaller magnitude and does not count. Negative: none.
+/// The nearest root of |o + t d - c| = r above 0, also beyond the ray's t_max; for a ray that
+/// starts on this sphere the root at its own origin is the one of smaller magnitude and does not
+/// count. Negative: none.
 double sphere_root(const Sphere& sphere, const Ray& ray, bool starts_here);
 
 /// A geometry of Embree's, not yet committed, over `set`, which must outlive it.

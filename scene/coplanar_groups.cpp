@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <unordered_map>
 
 #include "scene/sampling.h"
@@ -11,15 +12,18 @@ namespace lightwell {
 
 struct CoplanarGroups::Plane {
   int group = 0;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // first component that is not 0 is positive
-  double distance = 0.0;
-  int facing = 1;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // to the front
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // the first
+  double distance = 0.0;                             // from the middle of the geometry, >= 0
   Eigen::AlignedBox3d box{};
   std::vector<int> vertices{};                 // of the geometry
   std::vector<Eigen::Vector2d> convex_hull{};  // counter-clockwise, once asked for
+  int seen_along = -1;                         // the axis along which that is flattened
 };
 
 namespace {
+
+constexpr double margin = 4.0;  // tolerances by which what lies together may seem apart
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -93,39 +97,36 @@ void for_each_edge(const CastGeometry& geometry, std::span<const int> polygon, V
 
 }  // namespace
 
+// Rounding the vertices to float turns a facet by less than this, 4.5e-5, unless it is a sliver.
+bool CoplanarGroups::lie_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  constexpr double cosine = 1.0 - 1e-9;
+  return std::abs(a.dot(b)) > cosine;
+}
+
 // In order of distance.
 std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry& geometry) {
   int groups = 0;
   for (const int g : geometry.group) groups = std::max(groups, g + 1);
   std::vector<Plane> planes(groups);
-  const auto add = [&](int group, const auto& polygon) {
+  Eigen::AlignedBox3d all;
+  for_each_polygon(geometry, [&](int group, std::span<const int> polygon) {
     Plane& plane = planes[group];
     for (const int v : polygon) plane.box.extend(geometry.vertices[v]);
+    all.extend(plane.box);
     plane.vertices.insert(plane.vertices.end(), polygon.begin(), polygon.end());
     if (!plane.normal.isZero()) return;
-    const Eigen::Vector3d& a = geometry.vertices[polygon[0]];
+    const Eigen::Vector3d& corner = geometry.vertices[polygon[0]];
     const Eigen::Vector3d n =
-        (geometry.vertices[polygon[1]] - a).cross(geometry.vertices[polygon[2]] - a);
+        (geometry.vertices[polygon[1]] - corner).cross(geometry.vertices[polygon[2]] - corner);
     if (!(n.norm() > 0.0)) return;
     plane.group = group;
     plane.normal = n.normalized();
-    constexpr double rounding = 1e-9;
-    for (int c = 0; c < 3; ++c) {
-      if (std::abs(plane.normal[c]) < rounding) continue;
-      if (plane.normal[c] < 0.0) {
-        plane.normal = -plane.normal;
-        plane.facing = -1;
-      }
-      break;
-    }
-    plane.distance = plane.normal.dot(a);
-  };
-  const int triangle_count = static_cast<int>(geometry.triangles.size());
-  for (int i = 0; i < triangle_count; ++i) add(geometry.group[i], geometry.triangles[i]);
-  for (std::size_t i = 0; i < geometry.quads.size(); ++i) {
-    add(geometry.group[triangle_count + static_cast<int>(i)], geometry.quads[i]);
-  }
+    plane.corner = corner;
+  });
   std::erase_if(planes, [](const Plane& p) { return p.normal.isZero(); });
+  for (Plane& plane : planes) {
+    plane.distance = std::abs(plane.normal.dot(plane.corner - all.center()));
+  }
   std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.group < b.group;
   });
@@ -137,25 +138,57 @@ CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
   for (Plane& plane : planes) {
     // Boxes of flat things are flat: what rounding sets apart must meet. And a ray that starts a
     // little off the plane must not be taken across by what the ray caster allows for rounding.
-    constexpr double margin = 4.0;
     plane.box.min().array() -= margin * tolerance;
     plane.box.max().array() += margin * tolerance;
     if (plane.group >= static_cast<int>(groups_.size())) groups_.resize(plane.group + 1);
     Group& group = groups_[plane.group];
-    group.normal = plane.normal;
-    group.distance = plane.distance;
-    group.facing = plane.facing;
+    // Seldom in any plane of a scene: planes that are one have normals of one sign.
+    const Eigen::Vector3d askew(0.8191, 0.4927, 0.2937);
+    group.facing = plane.normal.dot(askew) < 0.0 ? -1 : 1;
+    group.normal = group.facing * plane.normal;
+    group.corner = plane.corner;
   }
+  std::vector<Pair> pairs;
   for (std::size_t begin = 0, end = 0; begin < planes.size(); begin = end) {
     end = begin + 1;
     while (end < planes.size() && planes[end].distance - planes[end - 1].distance <= tolerance) {
       ++end;
     }
-    add_overlaps(geometry, {planes.data() + begin, end - begin}, tolerance);
+    add_overlaps(geometry, {planes.data() + begin, end - begin}, tolerance, pairs);
   }
+  align_normals(pairs);
   const bool has_any = std::any_of(groups_.begin(), groups_.end(),
                                    [](const Group& g) { return !g.overlaps.empty(); });
   if (has_any) find_bodies(geometry, tolerance);
+}
+
+// Rounding may still have turned two normals of one plane to either side.
+void CoplanarGroups::align_normals(const std::vector<Pair>& pairs) {
+  const bool are_aligned = std::ranges::all_of(
+      pairs, [&](const Pair& pair) { return normal(pair[0]).dot(normal(pair[1])) > 0.0; });
+  if (are_aligned) return;
+  std::map<int, std::vector<int>> others;
+  for (const auto& [a, b] : pairs) {
+    others[a].push_back(b);
+    others[b].push_back(a);
+  }
+  std::vector<char> is_done(groups_.size(), 0);
+  for (const auto& entry : others) {
+    std::vector<int> open = {entry.first};
+    is_done[entry.first] = 1;
+    while (!open.empty()) {
+      const int a = open.back();
+      open.pop_back();
+      for (const int b : others[a]) {
+        if (is_done[b]) continue;
+        is_done[b] = 1;
+        open.push_back(b);
+        if (normal(a).dot(normal(b)) > 0.0) continue;
+        groups_[b].normal = -groups_[b].normal;
+        groups_[b].facing = -groups_[b].facing;
+      }
+    }
+  }
 }
 
 // A group's body are the faces that meet it along an edge, going on over the edge as faces of one
@@ -205,28 +238,14 @@ int CoplanarGroups::order(int a, int b) const {
   return first.facing == second.facing ? 0 : -first.facing;
 }
 
-// Sweeps along x over planes at one distance from the origin.
+// Sweeps along x over planes at one distance from the middle.
 void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
-                                  std::span<CoplanarGroups::Plane> planes, double tolerance) {
-  // Facets that share an edge have boxes that meet, but do not lie on each other.
-  const auto hull_of = [&](Plane& plane) -> const std::vector<Eigen::Vector2d>& {
-    if (plane.convex_hull.empty()) {
-      int steepest = 0;
-      plane.normal.cwiseAbs().maxCoeff(&steepest);
-      std::vector<Eigen::Vector2d> points;
-      for (const int v : plane.vertices) {
-        const Eigen::Vector3d& p = geometry.vertices[v];
-        points.emplace_back(p[(steepest + 1) % 3], p[(steepest + 2) % 3]);
-      }
-      plane.convex_hull = convex_hull(std::move(points));
-    }
-    return plane.convex_hull;
-  };
+                                  std::span<CoplanarGroups::Plane> planes, double tolerance,
+                                  std::vector<Pair>& pairs) {
   std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) {
     const double x = a.box.min().x(), y = b.box.min().x();
     return x != y ? x < y : a.group < b.group;
   });
-  constexpr double parallel = 1.0 - 1e-9;
   // Where very many lie together all of them count as covered: that only costs their rays time.
   std::size_t pairs_left = 1000 * planes.size();
   for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -238,16 +257,41 @@ void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
         for (const Plane& plane : planes) groups_[plane.group].overlaps = {plane.box};
         return;
       }
-      if (a.normal.dot(b.normal) < parallel || !a.box.intersects(b.box)) continue;
-      if (is_apart(hull_of(a), hull_of(b), tolerance) ||
-          is_apart(hull_of(b), hull_of(a), tolerance)) {
+      if (!lie_parallel(a.normal, b.normal) || !a.box.intersects(b.box)) continue;
+      const Eigen::AlignedBox3d shared = a.box.intersection(b.box);
+      if (!is_one_plane(a, b, shared.center(), tolerance)) continue;
+      // Facets that share an edge have boxes that meet, but do not lie on each other.
+      int along = 0;
+      a.normal.cwiseAbs().maxCoeff(&along);
+      flatten(geometry, along, a);
+      flatten(geometry, along, b);
+      if (is_apart(a.convex_hull, b.convex_hull, tolerance) ||
+          is_apart(b.convex_hull, a.convex_hull, tolerance)) {
         continue;
       }
-      for (const int g : {a.group, b.group}) {
-        groups_[g].overlaps.push_back(a.box.intersection(b.box));
-      }
+      pairs.push_back({a.group, b.group});
+      for (const int g : pairs.back()) groups_[g].overlaps.push_back(shared);
     }
   }
+}
+
+// Planes on opposite sides of the middle are as far from it as those that are one.
+bool CoplanarGroups::is_one_plane(const Plane& a, const Plane& b, const Eigen::Vector3d& place,
+                                  double tolerance) {
+  const double above_a = a.normal.dot(place - a.corner), above_b = b.normal.dot(place - b.corner);
+  return std::abs(a.normal.dot(b.normal) > 0.0 ? above_a - above_b : above_a + above_b) <=
+         margin * tolerance;
+}
+
+void CoplanarGroups::flatten(const CastGeometry& geometry, int along, Plane& plane) {
+  if (plane.seen_along == along) return;
+  std::vector<Eigen::Vector2d> points;
+  for (const int v : plane.vertices) {
+    const Eigen::Vector3d& p = geometry.vertices[v];
+    points.emplace_back(p[(along + 1) % 3], p[(along + 2) % 3]);
+  }
+  plane.convex_hull = convex_hull(std::move(points));
+  plane.seen_along = along;
 }
 
 bool CoplanarGroups::may_be_covered(int group, const Eigen::Vector3d& point) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -19,13 +20,18 @@ namespace lightwell {
 /// are taken to touch with their fronts. Of those that face one way nothing is known then.
 class CoplanarGroups {
  public:
-  /// Planes closer than `tolerance`, metres, are one.
+  /// Planes closer than `tolerance`, metres, are one. They are measured from the middle of the
+  /// geometry, so that one far from the origin of its coordinates loses no digits.
   CoplanarGroups(const CastGeometry& geometry, double tolerance);
 
-  /// Unit normal, of either sign; zero for a sphere, or a number that is no group.
+  /// Unit normal, of either sign, but of one sign for groups that lie on each other; zero for a
+  /// sphere, or a number that is no group.
   const Eigen::Vector3d& normal(int group) const {
     return is_known(group) ? groups_[group].normal : none_;
   }
+
+  /// Whether two groups' planes are parallel, for all that a file's digits can tell.
+  bool are_parallel(int a, int b) const { return lie_parallel(normal(a), normal(b)); }
 
   /// Of two groups that lie on each other: 1 if `a` lies above `b` along normal(a), -1 if below, 0
   /// if that cannot be told.
@@ -36,7 +42,7 @@ class CoplanarGroups {
 
   /// How far `point` lies off the group's plane, along its normal.
   double height(int group, const Eigen::Vector3d& point) const {
-    return normal(group).dot(point) - groups_[group].distance;
+    return normal(group).dot(point - groups_[group].corner);
   }
 
   /// Whether another group may lie on this one at `point`. Never wrong with "no"; a "yes" may be,
@@ -46,14 +52,21 @@ class CoplanarGroups {
  private:
   struct Group {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-    double distance = 0.0;                        // of the plane from the origin
-    std::vector<Eigen::AlignedBox3d> overlaps{};  // with others of its plane
-    int facing = 0;                               // of the front: 1 along the normal, -1 against it
-    int body = 0;  // 1: its body lies on the side of the normal, -1: on the other, 0: not known
+    Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // a point of the plane
+    std::vector<Eigen::AlignedBox3d> overlaps{};       // with others of its plane
+    int facing = 0;  // of the front: 1 along the normal, -1 against it
+    int body = 0;    // 1: its body lies on the side of the normal, -1: on the other, 0: not known
   };
   struct Plane;
+  using Pair = std::array<int, 2>;  // groups that lie on each other
+  static bool lie_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
   static std::vector<Plane> planes_of(const CastGeometry& geometry);
-  void add_overlaps(const CastGeometry& geometry, std::span<Plane> planes, double tolerance);
+  void add_overlaps(const CastGeometry& geometry, std::span<Plane> planes, double tolerance,
+                    std::vector<Pair>& pairs);
+  static bool is_one_plane(const Plane& a, const Plane& b, const Eigen::Vector3d& place,
+                           double tolerance);
+  static void flatten(const CastGeometry& geometry, int along, Plane& plane);
+  void align_normals(const std::vector<Pair>& pairs);
   void find_bodies(const CastGeometry& geometry, double tolerance);
   bool is_known(int group) const { return group >= 0 && group < static_cast<int>(groups_.size()); }
 

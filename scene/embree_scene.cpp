@@ -156,7 +156,6 @@ std::vector<int> EmbreeScene::groups_at(const Eigen::Vector3d& place, int on) co
 // Primitives are asked at their centre: whoever wants this exact cuts them where others end.
 void EmbreeScene::find_hidden(const CastGeometry& source) {
   hidden.assign(static_cast<std::size_t>(triangles + quads), 0);
-  constexpr double parallel = 1.0 - 1e-9;
   const auto look_at = [&](int p, std::span<const int> polygon) {
     const int g = group[p];
     if (!planes->has_overlaps(g)) return;
@@ -168,9 +167,7 @@ void EmbreeScene::find_hidden(const CastGeometry& source) {
             .cross(source.vertices[polygon[2]] - source.vertices[polygon[0]]);
     const int facing = front.dot(planes->normal(g)) > 0.0 ? 1 : -1;
     for (const int other : groups_at(mean, g)) {
-      if (other == g || std::abs(planes->normal(g).dot(planes->normal(other))) <= parallel) {
-        continue;
-      }
+      if (other == g || !planes->are_parallel(g, other)) continue;
       const int above = planes->order(other, g);
       if (above != 0) hidden[p] |= above == facing ? from_front : from_back;
     }

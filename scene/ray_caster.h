@@ -45,9 +45,9 @@ struct Hit {
   bool from_back = false;  ///< the ray met the clockwise side, or a sphere's inside
 };
 
-/// Answers batches of rays over Embree; the only class that knows it. Immutable once built, and
-/// safe to use from many threads. Coordinates are recentred before they become float, so a room far
-/// from the origin loses no digits. Triangles and quads are watertight along shared edges (Embree's
+/// Answers batches of rays over Embree, which no other room knows. Immutable once built, and safe
+/// to use from many threads. Coordinates are recentred before they become float, so a room far from
+/// the origin loses no digits. Triangles and quads are watertight along shared edges (Embree's
 /// robust mode); of rays aimed at a vertex itself, to the last float digit, one in 1e4 slips
 /// through. Spheres are intersected in double precision.
 class RayCaster {

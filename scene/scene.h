@@ -82,7 +82,7 @@ struct Scene {
   std::vector<Camera> cameras{};
   std::vector<std::string>
       notes{};               ///< what the reader assumed, repaired or dropped: one sentence each
-  int dropped_polygons = 0;  ///< of the file, without area or crossing themselves: left out
+  int dropped_polygons = 0;  ///< of its files, without area or crossing themselves: left out
   /// Emission is in no known unit: a figure of light means something only beside another of it.
   bool relative_units = false;
 };

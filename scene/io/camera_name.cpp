@@ -21,4 +21,19 @@ std::string camera_name(std::string name, const Scene& scene) {
   return name;
 }
 
+bool place_camera(const Eigen::Affine3d& to_world, const Eigen::Vector3d& ahead, Camera& camera,
+                  Remarks& remarks) {
+  camera.position = to_world.translation();
+  const Eigen::Vector3d direction = to_world.linear() * ahead, up = to_world.linear().col(1);
+  camera.direction = direction.stableNormalized();
+  const Eigen::Vector3d across = up.stableNormalized().cross(camera.direction);
+  constexpr double parallel = 1e-6;  // below this the picture's roll would be rounding
+  if (!(direction.stableNorm() > 0.0 && across.norm() > parallel)) return false;
+  camera.up = camera.direction.cross(across.normalized());
+  if (to_world.linear().determinant() < 0.0) {
+    remarks.add("Cameras that mirror what they see were turned the right way round", camera.name);
+  }
+  return true;
+}
+
 }  // namespace lightwell

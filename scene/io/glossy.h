@@ -9,6 +9,9 @@ namespace lightwell {
 /// than about 10 degrees. Rougher metals are read as diffuse.
 inline constexpr double mirror_alpha = 0.2;
 
+/// Least share of clear glass in a material that is read as wholly clear; the others are opaque.
+inline constexpr double mostly_clear = 0.5;
+
 /// Light that a smooth dielectric of this index (> 0, relative to outside) reflects of light that
 /// comes from all sides evenly: 2 integral F(cos) cos dcos, [0,1].
 double diffuse_fresnel(double index);

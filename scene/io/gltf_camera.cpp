@@ -27,19 +27,14 @@ void add_gltf_camera(const GltfObject& from, const GltfObject& node,
   if (!(aspect < extreme && aspect > 1.0 / extreme)) {
     lens->fail(fmt::format("has an aspectRatio of {}; no picture is of that shape", aspect));
   }
-  Camera camera{.name = camera_name(name, scene), .position = to_world.translation()};
+  Camera camera{.name = camera_name(name, scene)};
   camera.fov_degrees = 2.0 * std::atan(aspect * std::tan(0.5 * yfov)) * 180.0 / std::numbers::pi;
   camera.height = 512;
   camera.width = static_cast<int>(std::lround(camera.height * aspect));
   // It looks along its -z, y upwards (glTF 2.0, 3.10).
-  const Eigen::Vector3d ahead = -to_world.linear().col(2), up = to_world.linear().col(1);
-  camera.direction = ahead.stableNormalized();
-  const Eigen::Vector3d across = up.stableNormalized().cross(camera.direction);
-  constexpr double parallel = 1e-6;
-  if (!(ahead.stableNorm() > 0.0 && across.norm() > parallel)) {
+  if (!place_camera(to_world, -Eigen::Vector3d::UnitZ(), camera, remarks)) {
     node.fail("leaves its camera no direction or no upright");
   }
-  camera.up = camera.direction.cross(across.normalized());
   scene.cameras.push_back(camera);
 }
 

@@ -10,8 +10,6 @@
 namespace lightwell {
 namespace {
 
-constexpr double mostly = 0.5;
-
 // Factors of a colour; white where they are missing.
 Spectrum color(const std::optional<GltfObject>& owner, const char* key, std::size_t count) {
   Spectrum result = Spectrum::Ones(3);
@@ -149,7 +147,7 @@ void GltfMaterials::set_surface(const GltfObject& from, bool is_closed, Material
   if (passed > 0.0) {
     passed *= texture_mean(transmission, "transmissionTexture", PictureCode::linear, from).color[0];
   }
-  if (passed >= mostly) {
+  if (passed >= mostly_clear) {
     if (passed < 1.0) {
       remarks_.add("Materials at least half clear were read as wholly clear", material.name);
     }

@@ -78,18 +78,8 @@ void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scen
     remarks.add("Crop windows have no effect", camera.name);
   }
   camera.fov_degrees = 2.0 * std::atan(half_width(sensor, camera.width, camera.height)) / degree;
-  const Eigen::Affine3d to_world = read_to_world(sensor);
-  camera.position = to_world.translation();
-  const Eigen::Vector3d ahead = to_world.linear().col(2), up = to_world.linear().col(1);
-  camera.direction = ahead.stableNormalized();
-  const Eigen::Vector3d across = up.stableNormalized().cross(camera.direction);
-  constexpr double parallel = 1e-6;
-  if (!(ahead.stableNorm() > 0.0 && across.norm() > parallel)) {
+  if (!place_camera(read_to_world(sensor), Eigen::Vector3d::UnitZ(), camera, remarks)) {
     sensor.fail("has a transformation that leaves it no direction or no upright");
-  }
-  camera.up = camera.direction.cross(across.normalized());
-  if (to_world.linear().determinant() < 0.0) {
-    remarks.add("Cameras that mirror what they see were turned the right way round", camera.name);
   }
   scene.cameras.push_back(camera);
 }

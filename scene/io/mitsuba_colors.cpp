@@ -88,8 +88,8 @@ double planck(double nm, double kelvin) {
 }  // namespace
 
 Spectrum MitsubaColors::share_or(const MitsubaNode& owner, std::string_view property,
-                                 float otherwise) {
-  const Spectrum values = positive_or(owner, property, otherwise);
+                                 float otherwise, Pixels pixels) {
+  const Spectrum values = positive(owner, property, pixels).value_or(grey(otherwise));
   if ((values > 1.0f).any()) {
     remarks_.add(fmt::format("'{}' exceeds 1 and was cut off there in", property), owner.label());
   }
@@ -101,11 +101,11 @@ Spectrum MitsubaColors::positive_or(const MitsubaNode& owner, std::string_view p
   return positive(owner, property).value_or(grey(otherwise));
 }
 
-std::optional<Spectrum> MitsubaColors::positive(const MitsubaNode& owner,
-                                                std::string_view property) {
+std::optional<Spectrum> MitsubaColors::positive(const MitsubaNode& owner, std::string_view property,
+                                                Pixels pixels) {
   const MitsubaNode* node = owner.property(property);
   if (!node) return std::nullopt;
-  const Spectrum values = read(*node, 0);
+  const Spectrum values = read(*node, pixels, 0);
   if (!values.isFinite().all()) node->fail("is too large a number");
   if (!(values >= 0.0f).all()) {
     node->fail(fmt::format("is {}; it must be at least 0", values.minCoeff()));
@@ -113,16 +113,33 @@ std::optional<Spectrum> MitsubaColors::positive(const MitsubaNode& owner,
   return values;
 }
 
-Spectrum MitsubaColors::read(const MitsubaNode& given, int depth) {
+double MitsubaColors::number_or(const MitsubaNode& owner, std::string_view property,
+                                double otherwise) {
+  const MitsubaNode* node = owner.property(property);
+  if (!node) return otherwise;
+  if (node->tag == "float" || node->tag == "integer") return *owner.number(property);
+  const double mean = read(*node, Pixels::all, 0).cast<double>().mean();
+  if (!std::isfinite(mean)) node->fail("is too large a number");
+  return mean;
+}
+
+Spectrum MitsubaColors::read(const MitsubaNode& given, Pixels pixels, int depth) {
   const MitsubaNode& node = tree_.resolved(given);
   if (depth > deepest) node.fail("refers to itself, or is nested beyond all measure");
+  const auto known = known_.find({&node, pixels});
+  if (known != known_.end()) return known->second;
+  const Spectrum values = read_new(node, pixels, depth);
+  return known_.emplace(std::pair(&node, pixels), values).first->second;
+}
+
+Spectrum MitsubaColors::read_new(const MitsubaNode& node, Pixels pixels, int depth) {
   if (node.tag == "rgb" || node.tag == "color") return read_rgb(node);
   if (node.tag == "srgb") return read_srgb(node);
   if (node.tag == "float" || node.tag == "integer") return grey(node.number_attribute("value"));
-  if (node.tag == "spectrum") return read_spectrum(node, depth);
+  if (node.tag == "spectrum") return read_spectrum(node, pixels, depth);
   if (node.tag == "blackbody") return read_blackbody(node);
-  if (node.tag == "texture") return read_texture(node, depth);
-  node.fail("is no colour, spectrum or texture");
+  if (node.tag == "texture") return read_texture(node, pixels, depth);
+  node.fail("is no number, colour, spectrum or texture");
 }
 
 Spectrum MitsubaColors::read_rgb(const MitsubaNode& node) const {
@@ -156,7 +173,7 @@ Spectrum MitsubaColors::read_srgb(const MitsubaNode& node) const {
   return spectrum_of(code.unaryExpr(&linear_from_srgb));
 }
 
-Spectrum MitsubaColors::read_spectrum(const MitsubaNode& node, int depth) {
+Spectrum MitsubaColors::read_spectrum(const MitsubaNode& node, Pixels pixels, int depth) {
   if (const std::string* name = node.attribute("filename")) {
     return band_means(node, samples_of_file(tree_.file_named(node, *name)));
   }
@@ -170,13 +187,14 @@ Spectrum MitsubaColors::read_spectrum(const MitsubaNode& node, int depth) {
     node.fail(fmt::format("has {} numbers; give one, or wavelength:value pairs", numbers.size()));
   }
   if (node.type == "d65")
-    return part_or(node, "color", 1.0f, depth) * part_or(node, "scale", 1.0f, depth);
-  if (node.type == "uniform") return part_or(node, "value", 1.0f, depth);
+    return part_or(node, "color", 1.0f, pixels, depth) *
+           part_or(node, "scale", 1.0f, pixels, depth);
+  if (node.type == "uniform") return part_or(node, "value", 1.0f, pixels, depth);
   if (node.type == "blackbody") return read_blackbody(node);
   if (node.type == "irregular" || node.type == "regular") {
     node.fail("gives its samples in a way that is not read; write value=\"400:0.1, 500:0.2, ...\"");
   }
-  return read_texture(node, depth);
+  return read_texture(node, pixels, depth);
 }
 
 Spectrum MitsubaColors::read_blackbody(const MitsubaNode& node) const {
@@ -189,7 +207,7 @@ Spectrum MitsubaColors::read_blackbody(const MitsubaNode& node) const {
     if (numbers.size() != 1) node.fail("has a temperature that is no number of kelvins");
     kelvin = numbers[0];
   }
-  if (!(kelvin > 0.0 && kelvin < 1e6)) node.fail(fmt::format("has {} K; give 1 to 1e6", kelvin));
+  if (!(kelvin >= 1.0 && kelvin <= 1e6)) node.fail(fmt::format("has {} K; give 1 to 1e6", kelvin));
   const double scale =
       node.attribute("scale") ? node.number_attribute("scale") : node.number_or("scale", 1.0);
   SpectrumSamples samples;
@@ -201,28 +219,30 @@ Spectrum MitsubaColors::read_blackbody(const MitsubaNode& node) const {
 }
 
 Spectrum MitsubaColors::part_or(const MitsubaNode& texture, std::string_view property,
-                                float otherwise, int depth) {
+                                float otherwise, Pixels pixels, int depth) {
   const MitsubaNode* node = texture.property(property);
-  return node ? read(*node, depth + 1) : grey(otherwise);
+  return node ? read(*node, pixels, depth + 1) : grey(otherwise);
 }
 
-Spectrum MitsubaColors::read_texture(const MitsubaNode& node, int depth) {
-  if (node.type == "bitmap") return read_bitmap(node);
+Spectrum MitsubaColors::read_texture(const MitsubaNode& node, Pixels pixels, int depth) {
+  if (node.type == "bitmap") return read_bitmap(node, pixels);
   if (node.type == "checkerboard") {
     remarks_.add("Checkerboards were read as the mean of their colours", node.label());
-    return 0.5f * (part_or(node, "color0", 0.4f, depth) + part_or(node, "color1", 0.2f, depth));
+    return 0.5f * (part_or(node, "color0", 0.4f, pixels, depth) +
+                   part_or(node, "color1", 0.2f, pixels, depth));
   }
   if (node.type == "scale") {
     const auto inner = tree_.children(node, "texture");
-    const Spectrum base = inner.empty() ? grey(1.0) : read(*inner.front(), depth + 1);
-    return base * part_or(node, "scale", 1.0f, depth) * part_or(node, "value", 1.0f, depth);
+    const Spectrum base = inner.empty() ? grey(1.0) : read(*inner.front(), pixels, depth + 1);
+    return base * part_or(node, "scale", 1.0f, pixels, depth) *
+           part_or(node, "value", 1.0f, pixels, depth);
   }
   remarks_.add(fmt::format("Textures of the plugin '{}' were read as a grey of 0.5", node.type),
                node.label());
   return grey(0.5);
 }
 
-Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node) {
+Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node, Pixels pixels) {
   const std::string name = node.string_or("filename", "");
   const auto path = tree_.file_named(node, name);
   // 0.5 and 0.6 say "gamma", 2 and 3 "raw".
@@ -233,7 +253,7 @@ Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node) {
     return grey(0.5);
   }
   remarks_.add("Pictures on surfaces were read as their mean colour", name);
-  return spectrum_of(masks_ > 0 ? mean->covered_color : mean->color);
+  return spectrum_of(pixels == Pixels::by_opacity ? mean->covered_color : mean->color);
 }
 
 }  // namespace lightwell

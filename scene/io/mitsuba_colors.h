@@ -1,8 +1,10 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "scene/bands.h"
 #include "scene/io/mitsuba_tree.h"
@@ -10,6 +12,9 @@
 #include "scene/io/remarks.h"
 
 namespace lightwell {
+
+/// Which of a picture's pixels count: all, or each by its opacity, where a mask cuts the rest away.
+enum class Pixels { all, by_opacity };
 
 /// Spectra and textures of a Mitsuba scene as RGB bands (linear, Rec. 709). Wavelengths become r, g
 /// and b as in native files: means over 600-700, 500-600 and 400-500 nm. A texture becomes the mean
@@ -20,38 +25,31 @@ class MitsubaColors {
 
   /// A property that lies in [0,1]; what exceeds 1 is cut off, with a remark. `owner` is the plugin
   /// that has the property. Throws InputError naming file, line and value.
-  Spectrum share_or(const MitsubaNode& owner, std::string_view property, float otherwise);
+  Spectrum share_or(const MitsubaNode& owner, std::string_view property, float otherwise,
+                    Pixels pixels);
   /// A property that is at least 0: radiance, a metal's eta and k.
   Spectrum positive_or(const MitsubaNode& owner, std::string_view property, float otherwise);
-  std::optional<Spectrum> positive(const MitsubaNode& owner, std::string_view property);
-
-  /// While one lives, textures count by their opacity: a mask cuts the rest away.
-  class Masked {
-   public:
-    explicit Masked(MitsubaColors& colors) : colors_(colors) { ++colors_.masks_; }
-    ~Masked() { --colors_.masks_; }
-    Masked(const Masked&) = delete;
-    Masked& operator=(const Masked&) = delete;
-
-   private:
-    MitsubaColors& colors_;
-  };
+  std::optional<Spectrum> positive(const MitsubaNode& owner, std::string_view property,
+                                   Pixels pixels = Pixels::all);
+  /// A property that is one number, such as a roughness; of a spectrum or texture the mean.
+  double number_or(const MitsubaNode& owner, std::string_view property, double otherwise);
 
  private:
-  Spectrum read(const MitsubaNode& node, int depth);
+  Spectrum read(const MitsubaNode& node, Pixels pixels, int depth);
+  Spectrum read_new(const MitsubaNode& node, Pixels pixels, int depth);
   Spectrum read_rgb(const MitsubaNode& node) const;
   Spectrum read_srgb(const MitsubaNode& node) const;
-  Spectrum read_spectrum(const MitsubaNode& node, int depth);
+  Spectrum read_spectrum(const MitsubaNode& node, Pixels pixels, int depth);
   Spectrum read_blackbody(const MitsubaNode& node) const;
-  Spectrum read_texture(const MitsubaNode& node, int depth);
-  Spectrum read_bitmap(const MitsubaNode& node);
+  Spectrum read_texture(const MitsubaNode& node, Pixels pixels, int depth);
+  Spectrum read_bitmap(const MitsubaNode& node, Pixels pixels);
   Spectrum part_or(const MitsubaNode& texture, std::string_view property, float otherwise,
-                   int depth);
+                   Pixels pixels, int depth);
 
   const MitsubaTree& tree_;
   Remarks& remarks_;
   PictureFiles pictures_;
-  int masks_ = 0;
+  std::map<std::pair<const MitsubaNode*, Pixels>, Spectrum> known_;  // textures share their parts
 };
 
 }  // namespace lightwell

@@ -54,7 +54,7 @@ int MitsubaMaterials::of_shape(const MitsubaNode& shape, const std::string& shap
   if (!is_new) return entry->second;
   Material material = default_material(scene_.bands);
   if (bsdf) {
-    material = read(*bsdf);
+    material = read(*bsdf, Pixels::all);
     material.name = bsdf->id.empty() ? fmt::format("material of {}", shape_name) : bsdf->id;
   } else {
     remarks_.add("Shapes without a BSDF got a diffuse reflectance of 0.5", shape_name);
@@ -80,34 +80,35 @@ void MitsubaMaterials::add_emission(const MitsubaNode& emitter, const std::strin
   }
 }
 
-Material MitsubaMaterials::read(const MitsubaNode& bsdf) {
-  const auto known = known_.find(&bsdf);
+Material MitsubaMaterials::read(const MitsubaNode& bsdf, Pixels pixels) {
+  const auto known = known_.find({&bsdf, pixels});
   if (known != known_.end()) return known->second;
   if (!open_.insert(&bsdf).second) bsdf.fail("refers to itself");
   constexpr std::size_t deepest = 64;
   if (open_.size() > deepest) bsdf.fail("is nested beyond all measure");
-  const Material material = read_new(bsdf);
+  const Material material = read_new(bsdf, pixels);
   open_.erase(&bsdf);
-  return known_.emplace(&bsdf, material).first->second;
+  return known_.emplace(std::pair(&bsdf, pixels), material).first->second;
 }
 
-Material MitsubaMaterials::read_new(const MitsubaNode& bsdf) {
+Material MitsubaMaterials::read_new(const MitsubaNode& bsdf, Pixels pixels) {
   const std::string& type = bsdf.type;
   const auto is = [&](std::initializer_list<const char*> types) {
     return std::ranges::find(types, type) != types.end();
   };
-  if (is({"diffuse", "lambertian", "roughdiffuse"})) return diffuse(bsdf, "reflectance");
-  if (is({"conductor", "roughconductor", "mirror"})) return conductor(bsdf);
-  if (is({"dielectric", "roughdielectric", "thindielectric"})) return dielectric(bsdf);
-  if (is({"plastic", "roughplastic"})) return plastic(bsdf);
-  if (is({"principled", "principledthin", "disney"})) return principled(bsdf);
-  if (type == "twosided") return two_sided(bsdf);
-  if (is({"mask", "bumpmap", "bump", "normalmap", "coating", "roughcoating"})) return wrapped(bsdf);
-  if (is({"blendbsdf", "mixturebsdf"})) return blend(bsdf);
+  if (is({"diffuse", "lambertian", "roughdiffuse"})) return diffuse(bsdf, "reflectance", pixels);
+  if (is({"conductor", "roughconductor", "mirror"})) return conductor(bsdf, pixels);
+  if (is({"dielectric", "roughdielectric", "thindielectric"})) return dielectric(bsdf, pixels);
+  if (is({"plastic", "roughplastic"})) return plastic(bsdf, pixels);
+  if (is({"principled", "principledthin", "disney"})) return principled(bsdf, pixels);
+  if (type == "twosided") return two_sided(bsdf, pixels);
+  if (is({"mask", "bumpmap", "bump", "normalmap", "coating", "roughcoating"}))
+    return wrapped(bsdf, pixels);
+  if (is({"blendbsdf", "mixturebsdf"})) return blend(bsdf, pixels);
   if (type == "null") return clear(1.0, Spectrum::Ones(3));
   if (is({"phong", "ward", "modified_phong"})) {
     remarks_.add(fmt::format("BSDF '{}': its highlight was left out in", type), bsdf.label());
-    return diffuse(bsdf, "diffuse_reflectance");
+    return diffuse(bsdf, "diffuse_reflectance", pixels);
   }
   remarks_.add(
       fmt::format("BSDF plugin '{}' is not known and got a diffuse reflectance of 0.5", type),
@@ -117,11 +118,12 @@ Material MitsubaMaterials::read_new(const MitsubaNode& bsdf) {
   return material;
 }
 
-Material MitsubaMaterials::diffuse(const MitsubaNode& bsdf, std::string_view property) {
-  return opaque(colors_.share_or(bsdf, property, 0.5f));
+Material MitsubaMaterials::diffuse(const MitsubaNode& bsdf, std::string_view property,
+                                   Pixels pixels) {
+  return opaque(colors_.share_or(bsdf, property, 0.5f, pixels));
 }
 
-Material MitsubaMaterials::conductor(const MitsubaNode& bsdf) {
+Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
   Spectrum reflectance = Spectrum::Ones(3);
   const auto eta = colors_.positive(bsdf, "eta"), k = colors_.positive(bsdf, "k");
   if (eta && k) {
@@ -131,16 +133,18 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf) {
     if (const auto known = metal_preset(name)) {
       reflectance = *known;
     } else {
+      // Iron, nickel, platinum and titanium reflect 0.5 to 0.65.
       remarks_.add(fmt::format("Metal '{}' is not known and got a reflectance of 0.6", name),
                    bsdf.label());
       reflectance.setConstant(0.6f);
     }
   }
-  reflectance *= colors_.share_or(bsdf, "specular_reflectance", 1.0f);
+  reflectance *= colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
   double alpha = 0.0;
   if (bsdf.type == "roughconductor") {
-    alpha = std::max(bsdf.number_or("alpha_u", 0.0), bsdf.number_or("alpha_v", 0.0));
-    alpha = bsdf.number_or("alpha", alpha > 0.0 ? alpha : 0.1);
+    alpha =
+        std::max(colors_.number_or(bsdf, "alpha_u", 0.0), colors_.number_or(bsdf, "alpha_v", 0.0));
+    alpha = colors_.number_or(bsdf, "alpha", alpha > 0.0 ? alpha : 0.1);
     remarks_.add(rough_metal, bsdf.label());
   }
   Material material = opaque(zero());
@@ -148,20 +152,22 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf) {
   return material;
 }
 
+// A number, or the name of a material.
+double MitsubaMaterials::index(const MitsubaNode& bsdf, std::string_view property,
+                               double otherwise) {
+  const MitsubaNode* node = bsdf.property(property);
+  if (!node || node->tag != "string") return bsdf.number_or(property, otherwise);
+  const std::string name = bsdf.string_or(property, "");
+  if (const auto known = index_preset(name)) return *known;
+  node->fail(
+      fmt::format("is '{}', a material whose index of refraction is not known; give a "
+                  "number.{}",
+                  name, did_you_mean(name, index_preset_names())));
+}
+
 // Of the inside over the outside.
 double MitsubaMaterials::index_ratio(const MitsubaNode& bsdf, double inside) {
-  const auto index = [&](const char* property, double otherwise) {
-    const MitsubaNode* node = bsdf.property(property);
-    if (!node) return otherwise;
-    if (node->tag != "string") return bsdf.number_or(property, otherwise);
-    const std::string name = bsdf.string_or(property, "");
-    if (const auto known = index_preset(name)) return *known;
-    node->fail(
-        fmt::format("is '{}', a material whose index of refraction is not known; give a "
-                    "number.{}",
-                    name, did_you_mean(name, index_preset_names())));
-  };
-  const double ratio = index("int_ior", inside) / index("ext_ior", air);
+  const double ratio = index(bsdf, "int_ior", inside) / index(bsdf, "ext_ior", air);
   constexpr double extreme = 100.0;
   if (!(ratio > 1.0 / extreme && ratio < extreme)) {
     bsdf.fail(fmt::format("has a ratio of refractive indices of {}; glass has 1.5", ratio));
@@ -169,40 +175,44 @@ double MitsubaMaterials::index_ratio(const MitsubaNode& bsdf, double inside) {
   return ratio;
 }
 
-Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf) {
-  const double index = index_ratio(bsdf, bk7);
-  const Spectrum tint = colors_.share_or(bsdf, "specular_transmittance", 1.0f);
+Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf, Pixels pixels) {
+  const double ratio = index_ratio(bsdf, bk7);
+  const Spectrum tint = colors_.share_or(bsdf, "specular_transmittance", 1.0f, pixels);
   if (bsdf.type == "thindielectric") {
-    remarks_.add("Thin panes let light straight through and absorb what they would reflect",
-                 bsdf.label());
-    return clear(1.0, tint * static_cast<float>(pane_transmittance(index)));
+    return pane(bsdf, ratio, tint);
   }
   if (bsdf.type == "roughdielectric") {
     remarks_.add("Frosted glass was read as clear", bsdf.label());
   }
-  return clear(index, tint);
+  return clear(ratio, tint);
 }
 
-Material MitsubaMaterials::plastic(const MitsubaNode& bsdf) {
-  const Spectrum rho = colors_.share_or(bsdf, "diffuse_reflectance", 0.5f);
-  const Spectrum specular = colors_.share_or(bsdf, "specular_reflectance", 1.0f);
+Material MitsubaMaterials::pane(const MitsubaNode& bsdf, double index, const Spectrum& tint) {
+  remarks_.add("Thin panes let light straight through and absorb what they would reflect",
+               bsdf.label());
+  return clear(1.0, tint * static_cast<float>(pane_transmittance(index)));
+}
+
+Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
+  const Spectrum rho = colors_.share_or(bsdf, "diffuse_reflectance", 0.5f, pixels);
+  const Spectrum specular = colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
   remarks_.add("Plastics were read as diffuse, with what their gloss reflects in the mean",
                bsdf.label());
   return opaque(coated_reflectance(rho, index_ratio(bsdf, polypropylene),
                                    bsdf.boolean_or("nonlinear", false), specular));
 }
 
-Material MitsubaMaterials::principled(const MitsubaNode& bsdf) {
-  const Spectrum color = colors_.share_or(bsdf, "base_color", 0.5f);
+Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
+  const Spectrum color = colors_.share_or(bsdf, "base_color", 0.5f, pixels);
   const auto share = [&](const char* property, double otherwise) {
-    return std::clamp(bsdf.number_or(property, otherwise), 0.0, 1.0);
+    return std::clamp(colors_.number_or(bsdf, property, otherwise), 0.0, 1.0);
   };
-  constexpr double mostly = 0.5;
-  if (share("spec_trans", 0.0) >= mostly) {
+  if (share("spec_trans", 0.0) >= mostly_clear) {
+    const double eta = index(bsdf, "eta", 1.5);
+    if (!(eta > 0.0 && eta < 100.0)) bsdf.fail("has no index of refraction that glass has");
+    if (bsdf.type == "principledthin") return pane(bsdf, eta, color);
     remarks_.add("Principled BSDFs that are mostly clear were read as clear glass", bsdf.label());
-    const double index = bsdf.number_or("eta", 1.5);
-    if (!(index > 0.0 && index < 100.0)) bsdf.fail("has no index of refraction that glass has");
-    return clear(index, color);
+    return clear(eta, color);
   }
   remarks_.add("Principled BSDFs were read by their base colour, metallic and roughness",
                bsdf.label());
@@ -212,35 +222,34 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf) {
   return material;
 }
 
-Material MitsubaMaterials::wrapped(const MitsubaNode& bsdf) {
+Material MitsubaMaterials::wrapped(const MitsubaNode& bsdf, Pixels pixels) {
   const auto inner = tree_.children(bsdf, "bsdf");
   if (inner.empty()) bsdf.fail("holds no BSDF");
   if (bsdf.type != "mask") {
     remarks_.add(fmt::format("BSDF '{}' was read as what it covers", bsdf.type), bsdf.label());
-    return read(*inner.front());
+    return read(*inner.front(), pixels);
   }
   remarks_.add("Masks were left out, so the whole surface is opaque", bsdf.label());
-  const MitsubaColors::Masked masked(colors_);
-  return read(*inner.front());
+  return read(*inner.front(), Pixels::by_opacity);
 }
 
-Material MitsubaMaterials::two_sided(const MitsubaNode& bsdf) {
+Material MitsubaMaterials::two_sided(const MitsubaNode& bsdf, Pixels pixels) {
   const auto inner = tree_.children(bsdf, "bsdf");
   if (inner.empty()) bsdf.fail("holds no BSDF");
   if (inner.size() > 1) {
     remarks_.add("Surfaces whose sides differ got the front's BSDF on both", bsdf.label());
   }
-  Material material = read(*inner.front());
+  Material material = read(*inner.front(), pixels);
   material.one_sided = false;
   return material;
 }
 
-Material MitsubaMaterials::blend(const MitsubaNode& bsdf) {
+Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
   const auto inner = tree_.children(bsdf, "bsdf");
   if (inner.empty()) bsdf.fail("holds no BSDF");
   std::vector<float> weights;
   if (bsdf.type == "blendbsdf" && inner.size() == 2) {
-    const float second = colors_.share_or(bsdf, "weight", 0.5f).mean();
+    const float second = colors_.share_or(bsdf, "weight", 0.5f, pixels).mean();
     weights = {1.0f - second, second};
   } else if (const MitsubaNode* given = bsdf.property("weights")) {
     for (const double weight : parse_numbers(*given, bsdf.string_or("weights", ""))) {
@@ -251,9 +260,10 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf) {
   if (weights.size() != inner.size()) bsdf.fail("needs one weight for each BSDF it blends");
   remarks_.add("Blended BSDFs were read as the mean of their parts", bsdf.label());
   Material sum = opaque(zero());
-  sum.one_sided = std::ranges::all_of(inner, [&](const auto* b) { return read(*b).one_sided; });
+  sum.one_sided =
+      std::ranges::all_of(inner, [&](const auto* b) { return read(*b, pixels).one_sided; });
   for (std::size_t i = 0; i < inner.size(); ++i) {
-    const Material part = read(*inner[i]);
+    const Material part = read(*inner[i], pixels);
     if (part.dielectric) {
       if (weights[i] >= 0.5f) return part;
       continue;

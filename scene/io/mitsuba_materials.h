@@ -25,24 +25,26 @@ class MitsubaMaterials {
   int of_shape(const MitsubaNode& shape, const std::string& shape_name);
 
  private:
-  Material read(const MitsubaNode& bsdf);
-  Material read_new(const MitsubaNode& bsdf);
-  Material diffuse(const MitsubaNode& bsdf, std::string_view property);
-  Material conductor(const MitsubaNode& bsdf);
-  Material dielectric(const MitsubaNode& bsdf);
-  Material plastic(const MitsubaNode& bsdf);
-  Material principled(const MitsubaNode& bsdf);
-  Material wrapped(const MitsubaNode& bsdf);
-  Material two_sided(const MitsubaNode& bsdf);
-  Material blend(const MitsubaNode& bsdf);
-  double index_ratio(const MitsubaNode& bsdf, double inside);
+  Material read(const MitsubaNode& bsdf, Pixels pixels);
+  Material read_new(const MitsubaNode& bsdf, Pixels pixels);
+  Material diffuse(const MitsubaNode& bsdf, std::string_view property, Pixels pixels);
+  Material conductor(const MitsubaNode& bsdf, Pixels pixels);
+  Material dielectric(const MitsubaNode& bsdf, Pixels pixels);
+  Material plastic(const MitsubaNode& bsdf, Pixels pixels);
+  Material principled(const MitsubaNode& bsdf, Pixels pixels);
+  Material wrapped(const MitsubaNode& bsdf, Pixels pixels);
+  Material two_sided(const MitsubaNode& bsdf, Pixels pixels);
+  Material blend(const MitsubaNode& bsdf, Pixels pixels);
+  Material pane(const MitsubaNode& bsdf, double index, const Spectrum& tint);
+  static double index(const MitsubaNode& bsdf, std::string_view property, double otherwise);
+  static double index_ratio(const MitsubaNode& bsdf, double inside);
   void add_emission(const MitsubaNode& emitter, const std::string& name, Material& material);
 
   const MitsubaTree& tree_;
   Scene& scene_;
   Remarks& remarks_;
   MitsubaColors colors_;
-  std::map<const MitsubaNode*, Material> known_;
+  std::map<std::pair<const MitsubaNode*, Pixels>, Material> known_;
   std::set<const MitsubaNode*> open_;  // being read: what finds itself here refers to itself
   std::map<std::pair<const MitsubaNode*, const MitsubaNode*>, int> index_of_;
 };

@@ -13,8 +13,6 @@
 namespace lightwell {
 namespace {
 
-constexpr std::int64_t most_facets = 20'000'000;  // some 5 GB; instances multiply quickly
-
 double positive(const MitsubaNode& shape, const char* property, double otherwise) {
   const double value = shape.number_or(property, otherwise);
   if (!(value > 0.0))
@@ -187,11 +185,7 @@ std::string MitsubaShapes::unique_name(const MitsubaNode& shape, const std::stri
   const bool is_mesh = shape.type == "obj" || shape.type == "ply";
   const std::string file = is_mesh ? shape.string_or("filename", "") : "";
   const std::string stem = std::filesystem::path(file).stem().string();
-  const std::string name = prefix + (!shape.id.empty() ? shape.id
-                                     : !stem.empty()   ? stem
-                                                       : shape.type);
-  const int times = ++times_named_[name];
-  return times == 1 ? name : fmt::format("{} {}", name, times);
+  return names_.unique(prefix + (!shape.id.empty() ? shape.id : !stem.empty() ? stem : shape.type));
 }
 
 }  // namespace lightwell

@@ -10,6 +10,7 @@
 #include "scene/io/mesh_file.h"
 #include "scene/io/mitsuba_materials.h"
 #include "scene/io/mitsuba_tree.h"
+#include "scene/io/numbered_names.h"
 #include "scene/io/remarks.h"
 #include "scene/scene.h"
 
@@ -54,7 +55,7 @@ class MitsubaShapes {
   MitsubaMaterials materials_;
   Repairs repairs_;
   std::map<std::pair<std::filesystem::path, MeshFronts>, MeshFile> files_;
-  std::map<std::string, int> times_named_;
+  NumberedNames names_;
   std::int64_t facets_ = 0;
 };
 

@@ -59,7 +59,10 @@ double MitsubaNode::number_attribute(std::string_view key) const {
 
 std::optional<double> MitsubaNode::number(std::string_view property_name) const {
   const MitsubaNode* node = property(property_name);
-  if (!node || (node->tag != "float" && node->tag != "integer")) return std::nullopt;
+  if (!node) return std::nullopt;
+  if (node->tag != "float" && node->tag != "integer") {
+    node->fail("is no number; write <float> or <integer>");
+  }
   return node->number_attribute("value");
 }
 

@@ -31,7 +31,8 @@ struct MitsubaNode {
 
   /// The first child with that property name, as it stands; nullptr if there is none.
   const MitsubaNode* property(std::string_view property_name) const;
-  /// Values of properties. Each throws InputError unless it is of that type, numbers finite.
+  /// Values of properties that are there. Each throws InputError if it is of another type; numbers
+  /// must be finite.
   std::optional<double> number(std::string_view property_name) const;
   double number_or(std::string_view property_name, double otherwise) const;
   bool boolean_or(std::string_view property_name, bool otherwise) const;

@@ -23,8 +23,9 @@ struct NumberedScene {
 };
 
 /// Reads what read_scene() reads. Rows are faces in .obj, .ply and .stl, the S records of .vs3 less
-/// those combined with an earlier one, and facets and spheres in .toml. Throws InputError naming
-/// file, line or object, value and remedy.
+/// those combined with an earlier one, and what facets and spheres the scene has in other formats,
+/// where a polygon that was dropped has no number. Throws InputError naming file, line or object,
+/// value and remedy.
 NumberedScene read_numbered_scene(const std::filesystem::path& path);
 
 /// The same for one .vs3 file.

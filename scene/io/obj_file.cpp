@@ -39,7 +39,10 @@ class ObjParser {
       read_line(continued);
       continued.clear();
     });
-    if (!continued.empty()) read_line(continued);
+    if (!continued.empty()) {
+      line_ = first_line;
+      read_line(continued);
+    }
     check_indices();
     return std::move(content_);
   }

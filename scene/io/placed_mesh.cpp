@@ -25,18 +25,6 @@ Loop loop_of(const PolygonMesh& mesh, const std::vector<int>& indices) {
   return loop;
 }
 
-// Twice the area over the squared size, as for the polygons of files.
-bool is_flattened(const PolygonMesh& mesh, const Facet& facet) {
-  const Loop loop = loop_of(mesh, facet.boundary);
-  const double size = size_of(loop);
-  return !(area_vector(loop).norm() > 0.5 * flatness * size * size);
-}
-
-void turn_over(Facet& facet) {
-  std::reverse(facet.boundary.begin(), facet.boundary.end());
-  for (auto& hole : facet.holes) std::reverse(hole.begin(), hole.end());
-}
-
 }  // namespace
 
 std::vector<Loop> rectangle_loops() {
@@ -128,15 +116,29 @@ PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& 
   return mesh.mesh();
 }
 
+void turn_over(PolygonMesh& mesh) {
+  for (Facet& facet : mesh.facets) {
+    std::reverse(facet.boundary.begin(), facet.boundary.end());
+    for (auto& hole : facet.holes) std::reverse(hole.begin(), hole.end());
+  }
+}
+
 PolygonMesh placed_mesh(PolygonMesh mesh, const Eigen::Affine3d& transform, bool flip,
                         bool mirror_turns, Repairs& repairs) {
-  const bool turned = (mirror_turns && transform.linear().determinant() < 0.0) != flip;
+  const bool is_mirrored = transform.linear().determinant() < 0.0;
+  const bool turned = (mirror_turns && is_mirrored) != flip;
   if (!turned && transform.matrix().isIdentity(0.0)) return mesh;
+  if (!keeps_angles(transform)) {
+    // What was as good as planar may be bent now.
+    std::vector<Loop> loops;
+    for (const Facet& facet : mesh.facets) loops.push_back(loop_of(mesh, facet.boundary));
+    return placed_loops(loops, transform, flip != (!mirror_turns && is_mirrored), repairs);
+  }
   for (Eigen::Vector3d& p : mesh.vertices) p = transform * p;
-  if (turned) std::ranges::for_each(mesh.facets, turn_over);
-  const auto flattened =
-      std::erase_if(mesh.facets, [&](const Facet& facet) { return is_flattened(mesh, facet); });
-  repairs.thin += static_cast<int>(flattened);
+  if (turned) turn_over(mesh);
+  const auto thin = std::erase_if(
+      mesh.facets, [&](const Facet& facet) { return is_thin(loop_of(mesh, facet.boundary)); });
+  repairs.thin += static_cast<int>(thin);
   return mesh;
 }
 

@@ -1,12 +1,16 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "scene/io/polygon.h"
 #include "scene/scene.h"
 
 namespace lightwell {
+
+/// Facets, some 5 GB of them, that no scene may exceed: instances multiply quickly.
+inline constexpr std::int64_t most_facets = 20'000'000;
 
 /// Loops of simple shapes, counter-clockwise seen from outside or from +z, as formats define them.
 std::vector<Loop> rectangle_loops();  ///< x and y from -1 to 1, z = 0
@@ -21,13 +25,16 @@ std::vector<Loop> sphere_loops();
 /// Whether a transformation keeps angles: it turns, moves, mirrors and scales evenly, to 1e-6.
 bool keeps_angles(const Eigen::Affine3d& transform);
 
+/// Turns every facet's front to the other side.
+void turn_over(PolygonMesh& mesh);
+
 /// The loops where `transform` puts them, turned over if `flip` says so. Normals keep their side of
 /// the surface even where the transformation mirrors. Polygons that it flattens are dropped.
 PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& transform,
                          bool flip, Repairs& repairs);
 
-/// The same for a mesh that is sound already; with `mirror_turns` false the order of the corners
-/// alone says where the front is, so that a mirrored mesh is turned inside out.
+/// The same for a mesh of sound facets without holes; with `mirror_turns` false the order of the
+/// corners alone says where the front is, so that a mirrored mesh is turned inside out.
 PolygonMesh placed_mesh(PolygonMesh mesh, const Eigen::Affine3d& transform, bool flip,
                         bool mirror_turns, Repairs& repairs);
 

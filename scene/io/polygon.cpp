@@ -134,12 +134,6 @@ std::string count_fault(const Loop& loop) {
   return fmt::format("has {} vertices; a polygon needs at least 3", loop.size());
 }
 
-// Twice the area over the squared size, so about the width over the length of a thin strip.
-bool is_thin(const Loop& loop) {
-  const double size = size_of(loop);
-  return !(newell(loop).norm() > 0.5 * flatness * size * size);
-}
-
 std::string holes_fault(const Polygon& polygon, const Plane& plane, const FlatLoop& boundary) {
   std::vector<FlatLoop> holes;
   for (std::size_t h = 0; h < polygon.holes.size(); ++h) {
@@ -184,6 +178,12 @@ double size_of(const Loop& loop) {
   double radius = 0.0;
   for (const auto& p : loop) radius = std::max(radius, (p - middle).norm());
   return 2.0 * radius;
+}
+
+// Twice the area over the squared size, so about the width over the length of a thin strip.
+bool is_thin(const Loop& loop) {
+  const double size = size_of(loop);
+  return !(newell(loop).norm() > 0.5 * flatness * size * size);
 }
 
 double deviation_from_plane(const Polygon& polygon) {

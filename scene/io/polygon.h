@@ -34,6 +34,9 @@ double deviation_from_plane(const Polygon& polygon);
 /// Twice the largest distance of a vertex from the vertices' mean.
 double size_of(const Loop& loop);
 
+/// Whether a loop has no area worth the name: it is thinner than `flatness` of its size.
+bool is_thin(const Loop& loop);
+
 /// Cuts a polygon without holes into triangles of the same orientation by clipping ears (Meisters
 /// 1975) as seen along its normal. A quadrilateral is cut along v0-v2 if that diagonal lies inside.
 /// The loop may touch itself (a hole joined by a bridge); empty if it crosses itself.

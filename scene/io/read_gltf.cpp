@@ -4,20 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "scene/io/gltf_camera.h"
 #include "scene/io/gltf_file.h"
 #include "scene/io/gltf_materials.h"
+#include "scene/io/numbered_names.h"
+#include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 
 namespace lightwell {
 namespace {
-
-constexpr std::int64_t most_triangles = 20'000'000;  // some 5 GB; instances multiply quickly
 
 // Extensions that are read, or that change nothing about the light where they are passed over.
 constexpr std::array known_extensions = {"KHR_materials_emissive_strength",
@@ -192,7 +191,7 @@ class GltfReader {
     const int material = materials_.of_primitive(primitive, is_closed(mesh));
     const std::string& of = scene_.materials[static_cast<std::size_t>(material)].name;
     scene_.surfaces.push_back(
-        {.name = unique(is_one_of_many ? fmt::format("{} ({})", name, of) : name),
+        {.name = names_.unique(is_one_of_many ? fmt::format("{} ({})", name, of) : name),
          .material = material,
          .shape = std::move(mesh)});
   }
@@ -214,8 +213,8 @@ class GltfReader {
     }
     const std::size_t count = mode == triangle_list ? corners / 3 : corners < 3 ? 0 : corners - 2;
     triangles_ += static_cast<std::int64_t>(count);
-    if (triangles_ > most_triangles) {
-      primitive.fail(fmt::format("brings the scene to more than {} triangles", most_triangles));
+    if (triangles_ > most_facets) {
+      primitive.fail(fmt::format("brings the scene to more than {} triangles", most_facets));
     }
     const bool is_mirrored = to_world.linear().determinant() < 0.0;
     MeshBuilder mesh;
@@ -230,18 +229,13 @@ class GltfReader {
     return mesh.mesh();
   }
 
-  std::string unique(const std::string& name) {
-    const int times = ++times_named_[name];
-    return times == 1 ? name : fmt::format("{} {}", name, times);
-  }
-
   const GltfFile& file_;
   Scene& scene_;
   Remarks remarks_;
   GltfMaterials materials_;
   Repairs repairs_;
   std::set<std::size_t> seen_;
-  std::map<std::string, int> times_named_;
+  NumberedNames names_;
   std::int64_t triangles_ = 0;
 };
 

@@ -17,22 +17,19 @@ void Remarks::add(std::string_view what, std::string_view name) {
   if (found == remarks_.end()) {
     found = remarks_.insert(remarks_.end(), Remark{.what = std::string(what)});
   }
-  const auto& names = found->names;
-  if (found->count > 0 && (found->last == name || std::ranges::find(names, name) != names.end())) {
-    return;
-  }
-  found->last = name;
-  if (found->count++ < listed) found->names.emplace_back(name);
+  const bool is_new = found->names.emplace(name).second;
+  if (is_new && found->first.size() < listed) found->first.emplace_back(name);
 }
 
 std::vector<std::string> Remarks::sentences() const {
   std::vector<std::string> result;
   for (const Remark& remark : remarks_) {
     std::string sentence = remark.what + ": ";
-    for (std::size_t i = 0; i < remark.names.size(); ++i) {
-      sentence += fmt::format("{}'{}'", i ? ", " : "", remark.names[i]);
+    for (std::size_t i = 0; i < remark.first.size(); ++i) {
+      sentence += fmt::format("{}'{}'", i ? ", " : "", remark.first[i]);
     }
-    if (remark.count > listed) sentence += fmt::format(" and {} more", remark.count - listed);
+    const std::size_t more = remark.names.size() - remark.first.size();
+    if (more > 0) sentence += fmt::format(" and {} more", more);
     result.push_back(sentence + ".");
   }
   return result;

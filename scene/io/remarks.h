@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,9 +21,8 @@ class Remarks {
  private:
   struct Remark {
     std::string what{};
-    std::vector<std::string> names{};  ///< the first few
-    std::size_t count = 0;             ///< names that differ from the one before
-    std::string last{};
+    std::vector<std::string> first{};  ///< the names to list
+    std::set<std::string> names{};
   };
   std::vector<Remark> remarks_;
 };

@@ -10,6 +10,7 @@
 #include "scene/errors.h"
 #include "scene/io/mesh_file.h"
 #include "scene/io/nearest_name.h"
+#include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
 #include "scene/io/text_file.h"
 
@@ -235,6 +236,7 @@ class SurfaceReader {
     for (const std::string& note : mesh.notes) {
       scene_.notes.push_back(fmt::format("{}: {}", name_, note));
     }
+    scene_.dropped_polygons += mesh.dropped_polygons;
     for (Surface& surface : mesh.surfaces) {
       auto& polygons = std::get<PolygonMesh>(surface.shape);
       for (auto& vertex : polygons.vertices) vertex = place_(vertex);
@@ -243,13 +245,6 @@ class SurfaceReader {
       add_surface(mesh.surfaces.size() == 1 ? name_ : fmt::format("{}/{}", name_, surface.name),
                   material ? find_material(*material) : import_material(own, name, value),
                   std::move(surface.shape));
-    }
-  }
-
-  static void turn_over(PolygonMesh& mesh) {
-    for (Facet& facet : mesh.facets) {
-      std::reverse(facet.boundary.begin(), facet.boundary.end());
-      for (auto& hole : facet.holes) std::reverse(hole.begin(), hole.end());
     }
   }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -274,6 +275,27 @@ TEST_F(FormFactorsCommand, AnyNumberOfThreadsGivesTheSameFile) {
   EXPECT_EQ(text("1"), text("3"));
 }
 
+TEST_F(FormFactorsCommand, AcceptsTheOptionsItRecords) {
+  folder.write("plates.vs3", plates);
+  const Words scene = {"form-factors", "plates.vs3", "-o", "F.mtx"};
+  for (const Words& more : {Words{}, Words{"--max-patch-size", "0.5", "--two-sided"},
+                            Words{"--method", "hemicube", "--hemicube-resolution", "64"}}) {
+    const auto options = run_json(scene + more)["options"].get<std::string>();
+    std::istringstream in(options);
+    const Words recorded{std::istream_iterator<std::string>(in), {}};
+    EXPECT_EQ(run_json(scene + recorded)["options"], options);
+  }
+}
+
+TEST_F(FormFactorsCommand, HelpTellsHowFactorsAreFoundInOnePlace) {
+  const std::string help = run({"form-factors", "--help"}).out;
+  const std::size_t group = help.find("How they are found");
+  ASSERT_NE(group, std::string::npos);
+  for (const char* option : {"--method", "--hemicube-resolution", "--target-error"}) {
+    EXPECT_NE(help.find(option, group), std::string::npos) << option;
+  }
+}
+
 TEST_F(FormFactorsCommand, MistakesHaveTheirExitCodesAndLeaveNothing) {
   folder.write("plates.vs3", plates);
   folder.write("flat.vs3", "F 2\n");
@@ -285,7 +307,9 @@ TEST_F(FormFactorsCommand, MistakesHaveTheirExitCodesAndLeaveNothing) {
   const std::vector<Mistake> mistakes = {
       {{"plates.vs3"}, 2, "--output"},
       {{"plates.vs3", "-o", "F.csv"}, 2, ".mtx"},
-      {{"plates.vs3", "-o", "F.mtx", "--method", "guess"}, 2, "hemicube"},
+      {{"plates.vs3", "-o", "F.mtx", "--method", "guess"},
+       2,
+       "there is no form-factor method 'guess'"},
       {{"plates.vs3", "-o", "F.mtx", "--target-error", "nan"}, 2, "above 0"},
       {{"plates.vs3", "-o", "F.mtx", "--row-output", "r.vtp"}, 2, "--show-row"},
       {{"plates.vs3", "-o", "F.mtx", "--show-row", "3"}, 3, "there are 2"},

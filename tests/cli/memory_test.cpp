@@ -2,10 +2,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <sstream>
 #include <string>
 
 #include "tests/cli/program.h"
@@ -34,11 +32,7 @@ class Memory : public testing::Test {
                      "--max-patch-size", "0.04"} +
                more);
   }
-  std::string content(const std::string& file) const {
-    std::ostringstream out;
-    out << std::ifstream(folder / file, std::ios::binary).rdbuf();
-    return out.str();
-  }
+  std::string content(const std::string& file) const { return content_of(folder / file); }
   TemporaryFolder folder;
 };
 

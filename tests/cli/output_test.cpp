@@ -1,6 +1,7 @@
 // What a script sees: files, standard output, JSON.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -115,7 +116,7 @@ TEST_F(Output, InfoCallsNothingLuxWhereTheFileNamesNoUnit) {
       <transform name="to_world"><scale value="0.5"/></transform>
       <emitter type="area"><rgb name="radiance" value="1, 2, 3"/></emitter></shape></scene>)");
   const auto json = run_json({"info", "box.xml"});
-  EXPECT_EQ(json["light"], "in relative units");
+  EXPECT_EQ(json["light"], "relative");
   ASSERT_EQ(json["emitters"].size(), 1u);
   const auto& lamp = json["emitters"][0];
   EXPECT_FALSE(lamp.contains("lumens") || lamp.contains("watts"));
@@ -124,6 +125,26 @@ TEST_F(Output, InfoCallsNothingLuxWhereTheFileNamesNoUnit) {
   EXPECT_EQ(json["quality"]["triangles"], 12);
   EXPECT_EQ(json["quality"]["open_edges"], 0);
   EXPECT_EQ(json["notes"].size(), 2u);  // no units, no BSDF
+}
+
+TEST_F(Output, NothingSaysWattsWhereTheFileNamesNoUnit) {
+  folder.write("box.xml", R"(<scene version="3.0.0"><shape type="cube">
+      <emitter type="area"/></shape><sensor type="perspective"><transform name="to_world">
+      <lookat origin="0,0,5" target="0,0,0"/></transform><film type="hdrfilm">
+      <integer name="width" value="8"/><integer name="height" value="8"/></film></sensor></scene>)");
+  folder.write("room.toml", small_room());
+  for (const auto& [scene, light, unit] :
+       {std::array{"box.xml", "relative", "relative radiance per band"},
+        std::array{"room.toml", "watts", "W/(m^2 sr) per band"}}) {
+    const auto solved = run_json(Words{"solve", scene, "-o", "S.vtp"} + quick());
+    EXPECT_EQ(solved["light"], light);
+    EXPECT_EQ(run_json({"info", "S.vtp"})["light"], light);
+    run_json({"render", scene, "S.vtp", "--size", "8x8", "-o", "P.exr", "-o", "P.png"});
+    for (const char* picture : {"P.exr", "P.png"}) {
+      EXPECT_NE(content_of(folder / picture).find(unit), std::string::npos)
+          << picture << " of " << scene;
+    }
+  }
 }
 
 TEST_F(Output, InfoTellsHowASolutionWasMade) {

@@ -64,6 +64,7 @@ void expect_same_solution(const RadiositySolution& a, const RadiositySolution& b
   EXPECT_EQ(a.bands.lumens_per_watt, b.bands.lumens_per_watt);
   EXPECT_EQ(a.metres_per_unit, b.metres_per_unit);
   EXPECT_EQ(a.unit_name, b.unit_name);
+  EXPECT_EQ(a.relative_units, b.relative_units);
   expect_same_bits(a.patch_radiosity, b.patch_radiosity, "patch_radiosity");
   expect_same_bits(a.direct_irradiance, b.direct_irradiance, "direct_irradiance");
   expect_same_bits(a.indirect_irradiance, b.indirect_irradiance, "indirect_irradiance");
@@ -169,6 +170,18 @@ TEST_F(SolutionFile, BeginsWithTextForPeople) {
   EXPECT_EQ(line, "<?lightwell-solution format=\"1\"");
   EXPECT_NE(start.str().find("2 patches, 3 elements, 9 vertices"), std::string::npos);
   EXPECT_NE(start.str().find("options: solve --accuracy 1%"), std::string::npos);
+}
+
+TEST_F(SolutionFile, SaysWhetherItsLightIsInWatts) {
+  SolvedScene solved = small_solution(3);
+  for (const bool is_relative : {false, true}) {
+    solved.solution.relative_units = is_relative;
+    write_solution(file(), solved);
+    EXPECT_EQ(read_solution(file()).solution.relative_units, is_relative);
+    const std::string start = contents(file()).substr(0, 800);
+    EXPECT_EQ(start.find("energy: 100 W emitted") == std::string::npos, is_relative) << start;
+    EXPECT_EQ(start.find("energy: 100 (no known unit) emitted") != std::string::npos, is_relative);
+  }
 }
 
 TEST_F(SolutionFile, AFailedWriteNamesTheFileAndKeepsTheOldOne) {

@@ -85,8 +85,7 @@ TEST_F(SolutionSeal, ForeignFilesAreRefusedWithTheReason) {
 /// Someone who knows the format seals a file again after a change: its numbers are still checked.
 class ResealedSolution : public SolutionFile {
  protected:
-  void expect_refused_after(const std::function<void(vtkPolyData*)>& change,
-                            const std::string& reason) {
+  fs::path changed(const std::function<void(vtkPolyData*)>& change) {
     write_solution(file(), small_solution(3));
     vtkNew<vtkXMLPolyDataReader> reader;
     reader->SetFileName(file().c_str());
@@ -99,9 +98,18 @@ class ResealedSolution : public SolutionFile {
     writer->Write();
     put(file("changed.vtp"), solution_preamble("") + contents(file("changed.vtp")));
     seal_solution(file("changed.vtp"));
-    expect_refused(file("changed.vtp"), reason);
+    return file("changed.vtp");
+  }
+  void expect_refused_after(const std::function<void(vtkPolyData*)>& change,
+                            const std::string& reason) {
+    expect_refused(changed(change), reason);
   }
 };
+
+TEST_F(ResealedSolution, LightIsInWattsWhereAnOldFileDoesNotSay) {
+  const fs::path old = changed([](vtkPolyData* p) { p->GetFieldData()->RemoveArray("light"); });
+  EXPECT_FALSE(read_solution(old).solution.relative_units);
+}
 
 TEST_F(ResealedSolution, IndicesOutOfRangeAreRefused) {
   const auto set = [](vtkFieldData* data, const char* name, vtkIdType row, double value) {

@@ -1,7 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <ostream>
+#include <string>
 
 #include "scene/ray_caster.h"
 
@@ -106,60 +112,113 @@ void add_box(CastGeometry& geometry, const Vector3d& low, const Vector3d& high, 
 
 constexpr int low_x = 0, high_x = 1, low_z = 4;
 
-// A ray that starts nowhere in particular.
-Hit look(const RayCaster& caster, const Vector3d& from, const Vector3d& towards) {
-  const Ray ray{.origin = from, .direction = towards - from};
-  Hit hit;
-  caster.closest_hits({&ray, 1}, {&hit, 1});
-  return hit;
+// Where two bodies stand, and with which rounding: the second may come turned by a quarter about an
+// axis, as a node of a glTF file whose quaternion is stored in float.
+struct Place {
+  const char* name;
+  Eigen::Affine3d of_both = Eigen::Affine3d::Identity();
+  std::optional<Vector3d> turns_second{};  // the axis
+
+  bool is_exact() const { return !turns_second && of_both.matrix().isIdentity(0.0); }
+  friend void PrintTo(const Place& place, std::ostream* out) { *out << place.name; }
+};
+
+// Off a quarter turn by 1.7e-7.
+Eigen::Affine3d float_quarter_turn(const Vector3d& axis) {
+  Eigen::Quaterniond turn;
+  turn.w() = 0.7071067094802856;
+  turn.vec() = 0.7071068286895752 * axis;
+  return Eigen::Affine3d(turn);
 }
 
-TEST(CoplanarRays, RoomsWithAWallInCommonSeeEachTheirOwn) {
-  CastGeometry geometry;
-  add_box(geometry, {0, 0, 0}, {1, 1, 1}, true, 0);
-  add_box(geometry, {1, 0, 0}, {2, 1, 1}, true, 6);
-  const RayCaster caster(geometry);
+class CoplanarBodies : public testing::TestWithParam<Place> {
+ protected:
+  void build(CastGeometry geometry, std::size_t first_vertex_of_second) {
+    const Place& place = GetParam();
+    for (std::size_t v = 0; v < geometry.vertices.size(); ++v) {
+      Vector3d& p = geometry.vertices[v];
+      if (place.turns_second && v >= first_vertex_of_second) {
+        const Eigen::Matrix3d turn = float_quarter_turn(*place.turns_second).linear();
+        const Eigen::Matrix3d exact = turn.array().round();  // its local coordinates are whole
+        p = turn * (exact.transpose() * p);
+      }
+      p = place.of_both * p;
+    }
+    caster = std::make_unique<RayCaster>(geometry);
+  }
+  void build_rooms_side_by_side() {
+    CastGeometry geometry;
+    add_box(geometry, {0, 0, 0}, {1, 1, 1}, true, 0);
+    add_box(geometry, {1, 0, 0}, {2, 1, 1}, true, 6);
+    build(geometry, 8);
+  }
+  void build_block_in_room() {
+    CastGeometry geometry;
+    add_box(geometry, {0, 0, 0}, {2, 2, 2}, true, 0);
+    add_box(geometry, {0, 0, 0}, {1, 1, 1}, false, 6);
+    build(geometry, 8);
+  }
+  // What a ray that starts nowhere in particular meets.
+  int look(const Vector3d& from, const Vector3d& towards) const {
+    const Ray ray = between(from, towards);
+    Hit hit;
+    caster->closest_hits({&ray, 1}, {&hit, 1});
+    return hit.primitive;
+  }
+  Met leave(const Vector3d& from, const Vector3d& direction, int group) const {
+    const Eigen::Affine3d& to_world = GetParam().of_both;
+    return cast(*caster, to_world * from, to_world.linear() * direction, group);
+  }
+  bool is_blocked(const Vector3d& from, const Vector3d& to, int target) const {
+    Ray ray = between(from, to);
+    constexpr double past_rounding = 1.00001;  // which may set what lies on the target behind it
+    ray.t_max = GetParam().is_exact() ? 1.0 : past_rounding;
+    ray.target_group = target;
+    std::uint8_t blocked = 0;
+    caster->occluded({&ray, 1}, {&blocked, 1});
+    return blocked != 0;
+  }
+  std::unique_ptr<RayCaster> caster;
+
+ private:
+  static Ray between(const Vector3d& from, const Vector3d& to) {
+    const Eigen::Affine3d& to_world = GetParam().of_both;
+    return {.origin = to_world * from, .direction = to_world.linear() * (to - from)};
+  }
+};
+
+TEST_P(CoplanarBodies, RoomsWithAWallInCommonSeeEachTheirOwn) {
+  build_rooms_side_by_side();
   for (int i = 1; i < 10; ++i) {
     const Vector3d on_wall(1.0, 0.1 * i, 0.37);
-    EXPECT_EQ(look(caster, {0.3, 0.4, 0.5}, on_wall).primitive, high_x);
-    EXPECT_EQ(look(caster, {1.7, 0.4, 0.5}, on_wall).primitive, 6 + low_x);
+    EXPECT_EQ(look({0.3, 0.4, 0.5}, on_wall), high_x);
+    EXPECT_EQ(look({1.7, 0.4, 0.5}, on_wall), 6 + low_x);
     // And neither wall lies on the other's front.
-    EXPECT_EQ(cast(caster, on_wall, {-1.0, 0.05, 0.0}, high_x).primitive, low_x);
-    EXPECT_EQ(cast(caster, on_wall, {1.0, 0.05, 0.0}, 6 + low_x).primitive, 6 + high_x);
-    EXPECT_FALSE(cast(caster, on_wall, {-0.5, 0.0, 0.1}, high_x).is_blocked);
+    EXPECT_EQ(leave(on_wall, {-1.0, 0.05, 0.0}, high_x).primitive, low_x);
+    EXPECT_EQ(leave(on_wall, {1.0, 0.05, 0.0}, 6 + low_x).primitive, 6 + high_x);
+    EXPECT_FALSE(leave(on_wall, {-0.5, 0.0, 0.1}, high_x).is_blocked);
   }
 }
 
-TEST(CoplanarRays, BoxAgainstAWallAndOnTheFloorHidesThem) {
-  CastGeometry geometry;
-  add_box(geometry, {0, 0, 0}, {2, 2, 2}, true, 0);
-  add_box(geometry, {0, 0, 0}, {1, 1, 1}, false, 6);
-  const RayCaster caster(geometry);
+TEST_P(CoplanarBodies, BoxAgainstAWallAndOnTheFloorHidesThem) {
+  build_block_in_room();
   for (int i = 1; i < 10; ++i) {
     const Vector3d on_wall(0.0, 0.1 * i, 0.63), on_floor(0.1 * i, 0.41, 0.0);
     // Out of the box: its own sides, from behind.
-    EXPECT_EQ(look(caster, {0.5, 0.4, 0.5}, on_wall).primitive, 6 + low_x);
-    EXPECT_EQ(look(caster, {0.5, 0.4, 0.5}, on_floor).primitive, 6 + low_z);
+    EXPECT_EQ(look({0.5, 0.4, 0.5}, on_wall), 6 + low_x);
+    EXPECT_EQ(look({0.5, 0.4, 0.5}, on_floor), 6 + low_z);
     // The wall under it sees the side that lies on it, and nothing beyond.
-    EXPECT_EQ(cast(caster, on_wall, {1.0, 0.1, 0.2}, low_x).primitive, 6 + low_x);
-    EXPECT_EQ(cast(caster, on_wall, {0.01, 1.0, 0.2}, low_x).primitive, 6 + low_x);
-    EXPECT_EQ(cast(caster, on_wall, {-0.01, 1.0, 0.2}, 6 + low_x).primitive, low_x);
+    EXPECT_EQ(leave(on_wall, {1.0, 0.1, 0.2}, low_x).primitive, 6 + low_x);
+    EXPECT_EQ(leave(on_wall, {0.01, 1.0, 0.2}, low_x).primitive, 6 + low_x);
+    EXPECT_EQ(leave(on_wall, {-0.01, 1.0, 0.2}, 6 + low_x).primitive, low_x);
+    EXPECT_EQ(leave(on_floor, {0.2, 0.1, 1.0}, low_z).primitive, 6 + low_z);
     // Through the wall from outside: the wall, from behind.
-    EXPECT_EQ(look(caster, {-1.0, 0.4, 0.5}, on_wall).primitive, low_x);
+    EXPECT_EQ(look({-1.0, 0.4, 0.5}, on_wall), low_x);
   }
 }
 
-TEST(CoplanarRays, WhatLiesOnATargetHidesIt) {
-  CastGeometry geometry;
-  add_box(geometry, {0, 0, 0}, {2, 2, 2}, true, 0);
-  add_box(geometry, {0, 0, 0}, {1, 1, 1}, false, 6);
-  const RayCaster caster(geometry);
-  const auto is_blocked = [&](const Vector3d& from, const Vector3d& to, int target) {
-    const Ray ray{.origin = from, .direction = to - from, .t_max = 1.0, .target_group = target};
-    std::uint8_t blocked = 0;
-    caster.occluded({&ray, 1}, {&blocked, 1});
-    return blocked != 0;
-  };
+TEST_P(CoplanarBodies, WhatLiesOnATargetHidesIt) {
+  build_block_in_room();
   const Vector3d inside(0.5, 0.4, 0.5), outside(-1.0, 0.4, 0.5);
   for (int i = 1; i < 10; ++i) {
     const Vector3d on_wall(0.0, 0.1 * i, 0.63);
@@ -169,6 +228,48 @@ TEST(CoplanarRays, WhatLiesOnATargetHidesIt) {
     EXPECT_TRUE(is_blocked(outside, on_wall, 6 + low_x));
   }
 }
+
+TEST_P(CoplanarBodies, TheFacesThatMeetAreHidden) {
+  build_block_in_room();
+  for (const int side : {low_x, low_z}) {
+    constexpr bool from_front = false, from_back = true;
+    EXPECT_TRUE(caster->is_hidden(6 + side, from_front));
+    EXPECT_FALSE(caster->is_hidden(6 + side, from_back));
+  }
+}
+
+Eigen::Affine3d on_the_map(double angle) {
+  return Eigen::Translation3d(5e5, 5e6, 100.0) * Eigen::AngleAxisd(angle, Vector3d::UnitZ());
+}
+
+// The wall between the rooms then stands where the sign of its normal is told by rounding alone.
+Eigen::Affine3d undecided() {
+  const Vector3d told_by(0.8191, 0.4927, 0.2937);
+  return Eigen::Affine3d(Eigen::Quaterniond::FromTwoVectors(
+      Vector3d::UnitX(), told_by.cross(Vector3d::UnitZ()).normalized()));
+}
+
+const Eigen::Affine3d eighth_turn(Eigen::AngleAxisd(std::numbers::pi / 4.0, Vector3d::UnitZ()));
+
+INSTANTIATE_TEST_SUITE_P(
+    Places, CoplanarBodies,
+    testing::Values(
+        Place{.name = "Plain"}, Place{.name = "TurnedAboutX", .turns_second = Vector3d::UnitX()},
+        Place{.name = "TurnedAboutY", .turns_second = Vector3d::UnitY()},
+        Place{.name = "TurnedAboutZ", .turns_second = Vector3d::UnitZ()},
+        Place{.name = "OnTheMap", .of_both = on_the_map(0.3)},
+        Place{.name = "OnTheMapTurned",
+              .of_both = on_the_map(0.3),
+              .turns_second = Vector3d::UnitY()},
+        Place{.name = "Diagonal", .of_both = eighth_turn, .turns_second = Vector3d::UnitY()},
+        Place{.name = "DiagonalTheOtherWay",
+              .of_both = eighth_turn,
+              .turns_second = Vector3d::UnitZ()},
+        Place{.name = "Undecided", .of_both = undecided(), .turns_second = Vector3d::UnitY()},
+        Place{.name = "UndecidedTheOtherWay",
+              .of_both = undecided(),
+              .turns_second = -Vector3d::UnitZ()}),
+    [](const auto& place) { return std::string(place.param.name); });
 
 }  // namespace
 }  // namespace lightwell

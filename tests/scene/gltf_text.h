@@ -51,4 +51,14 @@ inline std::string square_gltf(const std::string& more, const std::string& primi
          primitive + "}]}]" + more + "}";
 }
 
+/// A binary glTF file (.glb) of that JSON.
+inline std::string glb(std::string json) {
+  while (json.size() % 4) json += ' ';
+  const auto word = [](std::size_t n) {
+    return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(n)});
+  };
+  constexpr std::size_t version = 2, headers = 20;
+  return "glTF" + word(version) + word(headers + json.size()) + word(json.size()) + "JSON" + json;
+}
+
 }  // namespace lightwell

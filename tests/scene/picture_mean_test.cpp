@@ -2,24 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "scene/errors.h"
+#include "tests/raytrace/temporary_folder.h"
 
 namespace lightwell {
 namespace {
 
 const std::filesystem::path folder = LIGHTWELL_TEST_DATA "/scene";
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 TEST(PictureMean, IsTakenOfLightNotOfItsCode) {
   // One white pixel, opaque, and one black one, transparent.
-  const auto mean = picture_mean(bytes_of(folder / "two-pixels.png"), PictureCode::srgb, "it");
+  const auto mean = picture_mean(content_of(folder / "two-pixels.png"), PictureCode::srgb, "it");
   ASSERT_TRUE(mean.has_value());
   EXPECT_DOUBLE_EQ(mean->color[0], 0.5);
   EXPECT_DOUBLE_EQ(mean->covered_color[1], 1.0);
@@ -50,7 +43,7 @@ TEST(PictureMean, IsUnknownForOtherFormats) {
 }
 
 TEST(PictureMean, DamageAndHugeSizesAreRefusedByName) {
-  std::string png = bytes_of(folder / "two-pixels.png"), jpeg = bytes_of(folder / "grey.jpg");
+  std::string png = content_of(folder / "two-pixels.png"), jpeg = content_of(folder / "grey.jpg");
   EXPECT_THROW(picture_mean(png.substr(0, 50), PictureCode::srgb, "it"), InputError);
   EXPECT_THROW(picture_mean(jpeg.substr(0, 30), PictureCode::srgb, "it"), InputError);
   const auto frame = jpeg.find("\xff\xc0");  // then length, precision, height and width

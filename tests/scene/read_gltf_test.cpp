@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 
 #include "scene/errors.h"
@@ -109,15 +108,9 @@ TEST_F(Gltf, StripsAndFansAndPlainCornersAreOneSquare) {
 }
 
 TEST_F(Gltf, BinaryFilesSayTheSame) {
-  std::string json = square_gltf(one_node);
+  const std::string json = square_gltf(one_node);
   const Scene text = read(json);
-  while (json.size() % 4) json += ' ';
-  const auto word = [](std::size_t n) {
-    return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(n)});
-  };
-  const std::string glb =
-      "glTF" + word(2) + word(20 + json.size()) + word(json.size()) + "JSON" + json;
-  EXPECT_EQ(scene_hash(read_scene(folder.write("it.glb", glb))), scene_hash(text));
+  EXPECT_EQ(scene_hash(read_scene(folder.write("it.glb", glb(json)))), scene_hash(text));
 }
 
 TEST_F(Gltf, MetalsAreMirrorsWhereTheyAreSmooth) {
@@ -159,8 +152,7 @@ TEST_F(Gltf, ClearSheetsAreThinPanesUnlessTheyHaveAThickness) {
 }
 
 TEST_F(Gltf, PicturesWithinTheFileBecomeTheirMean) {
-  std::ifstream stream(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", std::ios::binary);
-  const std::string png(std::istreambuf_iterator<char>(stream), {});
+  const std::string png = content_of(LIGHTWELL_TEST_DATA "/scene/two-pixels.png");
   const auto color = [&](const char* mode) {
     const Scene scene = read(square_gltf(
         one_node + R"(,"images":[{"uri":"data:image/png;base64,)" + base64(png) +
@@ -186,6 +178,27 @@ TEST_F(Gltf, CamerasLookAlongTheirMinusZ) {
   EXPECT_EQ(camera.width, 2 * camera.height);
   EXPECT_LT((camera.direction - Eigen::Vector3d(0, 0, -1)).norm(), 1e-12);
   EXPECT_LT((camera.position - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
+}
+
+TEST_F(Gltf, PicturesAreNotMirrored) {
+  const auto with_scale = [&](const std::string& scale) {
+    return read(
+        square_gltf(R"(,"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"camera":0,"scale":)" +
+                    scale + R"(}],"cameras":[{"name":"eye","type":"perspective",
+                            "perspective":{"yfov":1.0,"znear":0.1}}])"));
+  };
+  const Scene mirrored = with_scale("[-1,1,1]");
+  EXPECT_LT((mirrored.cameras.at(0).up - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_TRUE(has_note(mirrored, "turned the right way round: 'eye'"));
+  EXPECT_FALSE(has_note(with_scale("[1,1,1]"), "turned the right way round"));
+}
+
+TEST_F(Gltf, SurfacesOfOneNameAreNumbered) {
+  const Scene scene = read(square_gltf(R"(,"scenes":[{"nodes":[0,1,2]}],"nodes":[
+      {"mesh":0,"name":"lamp"},{"mesh":0,"name":"lamp 2"},{"mesh":0,"name":"lamp"}])"));
+  std::vector<std::string> names;
+  for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"lamp", "lamp 2", "lamp 3"}));
 }
 
 TEST_F(Gltf, WhatIsNotUsedIsNamed) {

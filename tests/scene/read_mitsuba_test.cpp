@@ -282,6 +282,73 @@ TEST_F(Mitsuba, PicturesBecomeTheirMeanColour) {
                   1.0f);
 }
 
+TEST_F(Mitsuba, AMaskCutsOnlyWhereItIs) {
+  std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", folder / "leaf.png");
+  const std::string leaf = R"(<bsdf type="diffuse" id="leaf"><texture type="bitmap"
+      name="reflectance"><string name="filename" value="leaf.png"/></texture></bsdf>)";
+  const std::string masked =
+      R"(<shape type="cube"><bsdf type="mask"><ref id="leaf"/></bsdf></shape>)";
+  const std::string whole = R"(<shape type="cube"><ref id="leaf"/></shape>)";
+  const auto reflectance = [](const Scene& scene, std::size_t surface) {
+    const auto m = static_cast<std::size_t>(scene.surfaces.at(surface).material);
+    return scene.materials.at(m).reflectance[0];
+  };
+  const Scene one_way = read(leaf + masked + whole), other_way = read(leaf + whole + masked);
+  EXPECT_FLOAT_EQ(reflectance(one_way, 0), 1.0f);
+  EXPECT_FLOAT_EQ(reflectance(one_way, 1), 0.5f);
+  EXPECT_FLOAT_EQ(reflectance(other_way, 0), 0.5f);
+  EXPECT_FLOAT_EQ(reflectance(other_way, 1), 1.0f);
+}
+
+TEST_F(Mitsuba, TexturesThatShareTheirPartsAreReadOnce) {
+  // Read afresh by each that names them, these would be 2^32 checkerboards.
+  std::string boards = R"(<texture type="checkerboard" id="t0"/>)";
+  for (int i = 1; i < 32; ++i) {
+    boards += "<texture type='checkerboard' id='t" + std::to_string(i) + "'>";
+    for (const char* color : {"color0", "color1"}) {
+      boards += std::string("<ref name='") + color + "' id='t" + std::to_string(i - 1) + "'/>";
+    }
+    boards += "</texture>";
+  }
+  const Scene scene = read(boards + R"(<shape type="cube"><bsdf type="diffuse">
+      <ref name="reflectance" id="t31"/></bsdf></shape>)");
+  EXPECT_FLOAT_EQ(scene.materials.at(0).reflectance[0], 0.3f);  // of the defaults, 0.4 and 0.2
+}
+
+TEST_F(Mitsuba, TexturesOfANumberCountByTheirMean) {
+  const auto metal = [&](const std::string& alpha) {
+    return material("<bsdf type='roughconductor'>" + alpha + "</bsdf>").specular[0] > 0.0f;
+  };
+  const auto checks = [](const char* name, const char* color) {
+    return std::string("<texture type='checkerboard' name='") + name + "'><float name='color0' " +
+           "value='0'/><float name='color1' value='" + color + "'/></texture>";
+  };
+  EXPECT_TRUE(metal(""));  // alpha 0.1
+  EXPECT_TRUE(metal(checks("alpha", "0.3")));
+  EXPECT_FALSE(metal(checks("alpha", "0.5")));
+  EXPECT_TRUE(metal("<spectrum name='alpha' value='0.15'/>"));
+  EXPECT_FALSE(metal("<spectrum name='alpha' value='0.25'/>"));
+  const auto principled = [&](const std::string& parts) {
+    return material("<bsdf type='principled'>" + parts + "</bsdf>");
+  };
+  EXPECT_TRUE(principled(checks("spec_trans", "1")).dielectric.has_value());
+  EXPECT_FALSE(principled(checks("spec_trans", "0.9")).dielectric.has_value());
+  const std::string polished = "<float name='roughness' value='0.1'/>";
+  EXPECT_FLOAT_EQ(principled(checks("metallic", "1") + polished).specular[0], 0.5f * 0.5f);
+}
+
+TEST_F(Mitsuba, AThinPrincipledSheetIsAPane) {
+  const Material pane = material(R"(<bsdf type="principledthin">
+      <rgb name="base_color" value="0.8"/><float name="spec_trans" value="1"/></bsdf>)");
+  ASSERT_TRUE(pane.dielectric.has_value());
+  EXPECT_FLOAT_EQ(pane.dielectric->index_of_refraction, 1.0f);
+  // F = ((1.5 - 1) / (1.5 + 1))^2 = 0.04; a pane passes (1 - F) / (1 + F).
+  EXPECT_NEAR(pane.dielectric->tint[0], 0.8 * 0.96 / 1.04, 1e-6);
+  const Material block = material(R"(<bsdf type="principled"><string name="eta" value="diamond"/>
+      <float name="spec_trans" value="1"/></bsdf>)");
+  EXPECT_FLOAT_EQ(block.dielectric.value().index_of_refraction, 2.419f);
+}
+
 TEST_F(Mitsuba, DefaultsAndReferencesAndIncludesArePutInPlace) {
   folder.write("walls.xml", R"(<scene version="3.0.0"><bsdf type="diffuse" id="wall">
       <rgb name="reflectance" value="$shade"/></bsdf></scene>)");
@@ -310,6 +377,25 @@ TEST_F(Mitsuba, FlattenedFacesAreDroppedWithACount) {
       <scale z="0"/></transform></shape>)");
   EXPECT_EQ(mesh_of(scene, 1).facets.size(), 2u);
   EXPECT_EQ(scene.dropped_polygons, 4);
+}
+
+// Its fourth corner lies 1e-6 of the square's edge off the plane of the others: planar as it is,
+// but not once it is made 1000 times as high.
+TEST_F(Mitsuba, WhatAnUnevenScaleBendsIsSplit) {
+  folder.write("tile.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1e-6\nf 1 2 3 4\n");
+  const auto tile = [&](const std::string& scale) {
+    return read(
+        "<shape type='obj'><string name='filename' value='tile.obj'/><transform "
+        "name='to_world'><scale " +
+        scale + "/></transform><bsdf type='diffuse'/></shape>");
+  };
+  const Scene even = tile("value='1000'"), high = tile("z='1000'");
+  EXPECT_EQ(mesh_of(even).facets.size(), 1u);
+  EXPECT_EQ(mesh_of(high).facets.size(), 2u);
+  EXPECT_TRUE(has_note(high, "1 polygon was not planar and was split"));
+  // The order of the corners tells the front, mirrored or not.
+  EXPECT_GT(normal_of(high).z(), 0.9);
+  EXPECT_LT(normal_of(tile("x='-1' z='1000'")).z(), -0.9);
 }
 
 TEST_F(Mitsuba, MistakesAreToldWithTheirLine) {
@@ -341,6 +427,18 @@ TEST_F(Mitsuba, MistakesAreToldWithTheirLine) {
   expect("<shape type='obj'><string name='filename' value='gone.obj'/></shape>",
          {"gone.obj", "no such file"});
   expect("<shape type='sphere'><float name='radius' value='-1'/></shape>", {"radius -1"});
+  expect("<shape type='sphere'>\n<string name='radius' value='2'/></shape>",
+         {"scene.xml:3:", "<string> 'radius'", "is no number"});
+  expect("<sensor type='perspective'><spectrum name='fov' value='40'/></sensor>",
+         {"<spectrum> 'fov'", "is no number"});
+  expect(
+      "<shape type='cube'><bsdf type='roughconductor'><string name='alpha' value='0.3'/></bsdf>"
+      "</shape>",
+      {"<string> 'alpha'", "is no number"});
+  expect(
+      "<shape type='cube'><bsdf type='diffuse'>"
+      "<blackbody name='reflectance' temperature='0.5K'/></bsdf></shape>",
+      {"0.5 K", "1 to 1e6"});
   expect(
       "<shape type='cube'><bsdf type='diffuse'><rgb name='reflectance' value='-1'/></bsdf></shape>",
       {"reflectance", "-1"});

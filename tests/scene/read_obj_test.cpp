@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "scene/errors.h"
 #include "scene/io/read_scene.h"
 
 namespace lightwell {
@@ -81,6 +82,22 @@ TEST(ReadObj, KeepsPolygonsAsTheyAre) {
 TEST(ReadObj, JoinsContinuedLines) {
   EXPECT_DOUBLE_EQ(facet_area(mesh(room(), "box (mirror)"), mesh(room(), "box (mirror)").facets[0]),
                    10.0);
+}
+
+TEST(ReadObj, NamesTheLineWhereAContinuedOneBegins) {
+  const auto line_of = [](const std::string& obj) -> std::string {
+    try {
+      read_text(obj);
+    } catch (const InputError& refused) {
+      const std::string message = refused.what(), file = "lightwell_text.obj:";
+      const std::size_t begin = message.find(file) + file.size();
+      return message.substr(begin, message.find(':', begin) - begin);
+    }
+    return "nothing was refused";
+  };
+  // The lines begin after one with an mtllib.
+  EXPECT_EQ(line_of("v 0 0 0\nv 1 0\\\nx\nv 0 1 0\n"), "3");
+  EXPECT_EQ(line_of("v 0 0 0\nv 1 0 0\nv 1 0\\\n x \\\n"), "4") << "where the file ends";
 }
 
 TEST(ReadObj, RepairsWhatItCanAndCountsIt) {

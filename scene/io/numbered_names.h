@@ -1,0 +1,25 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+namespace lightwell {
+
+/// Names told apart by a number: "lamp", "lamp 2", "lamp 3".
+class NumberedNames {
+ public:
+  /// `name`, or the first of its numbered forms that was not given before.
+  std::string unique(const std::string& name) {
+    std::string result = name;
+    int& times = times_named_.emplace(name, 1).first->second;
+    while (!given_.insert(result).second) result = name + " " + std::to_string(++times);
+    return result;
+  }
+
+ private:
+  std::map<std::string, int> times_named_;
+  std::set<std::string> given_;
+};
+
+}  // namespace lightwell
