@@ -6,14 +6,15 @@
 // Prints: raw incoherent Embree rays per second; form-factor rays per second and the ratio; seconds
 // for the default solve and the 512 x 512 second pass; peak memory.
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <functional>
 #include <vector>
 
 #include "bench/raw_embree.h"
+#include "bench/stopwatch.h"
 #include "mesh/patch_sampler.h"
+#include "radiosity/memory_budget.h"
 #include "radiosity/ray_cast_rows.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"
@@ -84,12 +85,6 @@ void trace_raw(RTCScene scene, std::vector<RTCRayHit>& rays) {
   });
 }
 
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss / 1024.0;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -115,7 +110,8 @@ int main(int argc, char** argv) {
     fmt::print("  {} {:.2f}", phase.phase, phase.seconds);
   }
   fmt::print("\nsecond pass 512 x 512 {:.2f} s\nsolve + picture {:.2f} s, peak memory {:.0f} MB\n",
-             render_seconds, solve_seconds + render_seconds, peak_memory_mb());
+             render_seconds, solve_seconds + render_seconds,
+             static_cast<double>(resident_memory().most) / (1 << 20));
 
   constexpr int rays_per_patch = 512, runs = 5;
   const RawScene embree(mesh);

@@ -7,18 +7,18 @@
 // effort: seconds per row, RMS and worst error of F_ij; closed forms per second; and time and
 // memory of cities of growing size. With PLOT.svg it draws error over rays or cells per row.
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "bench/stopwatch.h"
 #include "mesh/patch_outline.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/memory_budget.h"
 #include "radiosity/pair_exchange.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -92,9 +92,9 @@ struct Curve {
 };
 
 Eigen::MatrixXd compute(const Prepared& p, const FormFactorOptions& options, double& seconds) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto F = compute_form_factors(p.scene, p.caster, p.direct_light, options);
-  seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::unique_ptr<FormFactors> F;
+  seconds =
+      seconds_of([&] { F = compute_form_factors(p.scene, p.caster, p.direct_light, options); });
   return dense(*F);
 }
 
@@ -186,19 +186,17 @@ void draw(const std::string& file, const std::vector<Curve>& curves) {
 }
 
 void count_pairs(const Prepared& p) {
-  std::vector<PatchOutline> outlines;
-  for (int i = 0; i < p.mesh.patch_count(); ++i) outlines.push_back(patch_outline(p.mesh, i));
+  const std::vector<PatchOutline> outlines = patch_outlines(p.mesh);
   const PairExchange pairs(outlines);
   const int n = p.mesh.patch_count();
   std::vector<double> sums(static_cast<std::size_t>(n), 0.0);
-  const auto start = std::chrono::steady_clock::now();
-  parallel_for(n, 8, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      for (int j = i + 1; j < n; ++j) sums[i] += pairs.between(i, j);
-    }
+  const double seconds = seconds_of([&] {
+    parallel_for(n, 8, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        for (int j = i + 1; j < n; ++j) sums[i] += pairs.between(i, j);
+      }
+    });
   });
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   fmt::print("closed forms, {} patches: {:.1f} million pairs a second\n", n,
              0.5e-6 * n * n / seconds);
 }
@@ -245,18 +243,16 @@ Scene city(int n) {
 
 void measure_city(int blocks, double target_error) {
   const Prepared p(city(blocks), 1e4);
-  const auto start = std::chrono::steady_clock::now();
   FormFactorReport report;
-  const auto F = compute_form_factors(p.scene, p.caster, p.direct_light,
-                                      {.target_error = target_error}, &report);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
+  const double seconds = seconds_of([&] {
+    compute_form_factors(p.scene, p.caster, p.direct_light, {.target_error = target_error},
+                         &report);
+  });
   fmt::print(
       "city of {} facets to {:.0e}: {:.1f} s, {:.0f} us/row, {:.0f} rays/row, {:.0f} MB at most\n",
       p.mesh.patch_count(), target_error, seconds, 1e6 * seconds / p.mesh.patch_count(),
-      static_cast<double>(report.rays) / p.mesh.patch_count(), usage.ru_maxrss / 1024.0);
+      static_cast<double>(report.rays) / p.mesh.patch_count(),
+      static_cast<double>(resident_memory().most) / (1 << 20));
 }
 
 }  // namespace

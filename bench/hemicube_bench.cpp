@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "bench/raw_embree.h"
+#include "bench/stopwatch.h"
 #include "radiosity/hemicube.h"
 #include "radiosity/hemicube_view.h"
 #include "radiosity/polygon_form_factor.h"

@@ -1,9 +1,6 @@
 #pragma once
 
-// What the programs compare with: plain Embree over the same elements, and a clock.
-
-#include <chrono>
-#include <functional>
+// What the programs compare with: plain Embree over the same elements.
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -14,12 +11,6 @@
 #include "mesh/patch_mesh.h"
 
 namespace lightwell {
-
-inline double seconds_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// The fronts of a mesh as Embree itself would have them. `configuration`: of rtcNewDevice.
 struct RawScene {

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "mesh/sphere_grid.h"
+#include "scene/parallel.h"
 
 namespace lightwell {
 namespace {
@@ -124,6 +125,15 @@ PatchOutline patch_outline(const PatchMesh& mesh, int patch) {
   }
   outline.normal = element_center(mesh, mesh.first_element[patch]).normal;
   return outline;
+}
+
+std::vector<PatchOutline> patch_outlines(const PatchMesh& mesh) {
+  std::vector<PatchOutline> outlines(static_cast<std::size_t>(mesh.patch_count()));
+  parallel_for(mesh.patch_count(), 256, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      outlines[static_cast<std::size_t>(i)] = patch_outline(mesh, i);
+  });
+  return outlines;
 }
 
 }  // namespace lightwell

@@ -23,7 +23,10 @@ struct PatchOutline {
 /// Of one's own loops; the normal is the one about which the first runs counter-clockwise.
 PatchOutline polygon_outline(std::vector<std::vector<Eigen::Vector3d>> loops);
 
+/// Of a patch, which may be in pieces: the normal and centre are then those of its first.
 PatchOutline patch_outline(const PatchMesh& mesh, int patch);
+/// Of all patches.
+std::vector<PatchOutline> patch_outlines(const PatchMesh& mesh);
 
 /// The outline of any elements of one plane that face one way, without vertices inside straight
 /// edges: edges that two of them share cancel, in whatever patch or facet they are.

@@ -1,13 +1,12 @@
 #include "radiosity/analytic_exchange.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "mesh/patch_sampler.h"
 #include "radiosity/pair_exchange.h"
 #include "radiosity/pair_shafts.h"
+#include "radiosity/shadow_rays.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -17,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::uint64_t shadow_rays_key = 21;  // purpose of random keys
-// Batches of rays, sets of points and goals are powers of 4, so that none straddles another.
-constexpr int few_rays = 16, batch = 64, points_in_set = 1 << 14, most_rays = 1 << 18;
+// Powers of 4, so that no goal straddles two sets.
+constexpr int few_rays = 16, points_in_set = 1 << 14, most_rays = 1 << 18;
 constexpr double usual_target = 1e-3;
 constexpr double exact_target = 1e-6;  // of F, where visibility is exact
 
@@ -40,14 +39,14 @@ class PairVisibility {
     for (int i = 0; i < mesh_.patch_count(); ++i) samplers_.emplace_back(mesh_, i);
   }
 
-  // None needed, exact or sampled: whichever is the first that does.
-  Visibility between(int i, int j, double largest_form_factor) const {
+  // None needed, exact or sampled: whichever is the first that does. S: unoccluded exchange.
+  Visibility between(int i, int j, double S) const {
     if (shafts_.is_hidden(i) || shafts_.is_hidden(j)) return {.share = 0.0};
+    const double largest_form_factor = S / std::min(mesh_.area[i], mesh_.area[j]);
     if (shafts_.is_covered(i) || shafts_.is_covered(j)) return sampled(i, j, largest_form_factor);
     Between between;
     shafts_.find(i, j, between);
     if (between.is_nothing()) return {};
-    const double S = largest_form_factor * std::min(mesh_.area[i], mesh_.area[j]);
     const auto exact = shafts_.visible(i, j, between, S, std::min(exact_target, 0.1 * target_));
     if (exact) return {exact->value / S, exact->error * exact->error / (S * S)};
     return sampled(i, j, largest_form_factor);
@@ -57,28 +56,22 @@ class PairVisibility {
   // Kernel-weighted share of point pairs that see each other; more pairs while they leave F_ij more
   // uncertain than asked.
   Visibility sampled(int i, int j, double largest_form_factor) const {
-    Tally tally;
-    for (int goal = first_count(largest_form_factor); goal <= most_rays; goal *= 4) {
-      while (tally.count < goal) add_rays(i, j, std::min(goal, tally.count + batch), tally);
-      if (largest_form_factor * std::sqrt(tally.visibility().variance) <= target_) break;
-    }
-    return tally.visibility();
-  }
-
-  struct Tally {
+    ShadowTally tally;
+    ShadowBatch batch(caster_, {&tally, 1});
+    Visibility found;
     int count = 0;
-    double all = 0.0, seen = 0.0, squares = 0.0;  // of the weights
-
-    Visibility visibility() const {
-      if (!(all > 0.0)) return {};
-      const double share = seen / all;
-      const double variance = share * (1.0 - share) * squares / (all * all);
+    for (int goal = first_count(largest_form_factor); goal <= most_rays; goal *= 4) {
+      for (; count < goal; ++count) batch.add(0, sample(i, j, count));
+      batch.flush();
+      if (!(tally.all > 0.0)) break;
       // Rays that all agree may all have missed the rest: the spread of a share of which n draws of
       // n came out alike (Laplace's rule of succession).
       const double unanimous = 1.0 / (count + 2.0);
-      return {share, std::max(variance, unanimous * unanimous)};
+      found = {tally.share(), std::max(tally.variance(), unanimous * unanimous)};
+      if (largest_form_factor * std::sqrt(found.variance) <= target_) break;
     }
-  };
+    return found;
+  }
 
   // A pair that matters little need not be looked at closely before it is found to be mixed.
   static int first_count(double largest_form_factor) {
@@ -86,36 +79,22 @@ class PairVisibility {
     return largest_form_factor > matters ? 4 * few_rays : few_rays;
   }
 
-  void add_rays(int i, int j, int up_to, Tally& tally) const {
-    std::array<Ray, batch> rays;
-    std::array<double, batch> weight;
-    std::array<std::uint8_t, batch> blocked;
-    const int set = tally.count / sobol_.count();
+  ShadowSample sample(int i, int j, int count) const {
+    const int set = count / sobol_.count();
     const std::uint64_t key =
         random_key(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j), shadow_rays_key,
                    static_cast<std::uint64_t>(set));
-    const auto size = static_cast<std::size_t>(up_to - tally.count);
-    for (std::size_t k = 0; k < size; ++k) {
-      const int s = tally.count + static_cast<int>(k) - set * sobol_.count();
-      const Eigen::Array4f u = sobol_.point(s, key);
-      const PatchPoint a = samplers_[i].point(u[0], u[1]), b = samplers_[j].point(u[2], u[3]);
-      const Vector3d way = b.position - a.position;
-      const double squared = way.squaredNorm();
-      const double cosines = std::max(0.0, a.normal.dot(way)) * std::max(0.0, -b.normal.dot(way));
-      weight[k] = squared > 0.0 ? cosines / (squared * squared) : 0.0;
-      rays[k] = {.origin = a.position,
-                 .direction = way,
-                 .t_max = 1.0,
-                 .origin_group = mesh_.facet[i],
-                 .target_group = mesh_.facet[j]};
-    }
-    caster_.occluded({rays.data(), size}, {blocked.data(), size});
-    for (std::size_t k = 0; k < size; ++k) {
-      tally.all += weight[k];
-      tally.squares += weight[k] * weight[k];
-      if (!blocked[k]) tally.seen += weight[k];
-    }
-    tally.count = up_to;
+    const Eigen::Array4f u = sobol_.point(count - set * sobol_.count(), key);
+    const PatchPoint a = samplers_[i].point(u[0], u[1]), b = samplers_[j].point(u[2], u[3]);
+    const Vector3d way = b.position - a.position;
+    const double squared = way.squaredNorm();
+    const double cosines = std::max(0.0, a.normal.dot(way)) * std::max(0.0, -b.normal.dot(way));
+    return {.ray = {.origin = a.position,
+                    .direction = way,
+                    .t_max = 1.0,
+                    .origin_group = mesh_.facet[i],
+                    .target_group = mesh_.facet[j]},
+            .weight = squared > 0.0 ? cosines / (squared * squared) : 0.0};
   }
 
   const PatchMesh& mesh_;
@@ -136,7 +115,6 @@ void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutli
   const int n = mesh.patch_count();
   const PairVisibility visibility(caster, outlines, target_error);
   const PairExchange closed_form(outlines);
-  row_error.assign(static_cast<std::size_t>(n), 0.0f);
   // What visibility's noise does to S, by pair.
   struct Row {
     std::vector<FormFactor> entries;
@@ -158,8 +136,7 @@ void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutli
           if (!receives[j] || !outlines[j].is_polygon()) continue;
           const double unoccluded = closed_form.between(i, j);
           if (!(unoccluded > 0.0)) continue;
-          const double F = unoccluded / std::min(mesh.area[i], mesh.area[j]);
-          const Visibility seen = visibility.between(i, j, F);
+          const Visibility seen = visibility.between(i, j, unoccluded);
           if (!(seen.share > 0.0)) continue;
           const auto S = static_cast<float>(unoccluded * seen.share);
           if (!(S > 0.0f)) continue;

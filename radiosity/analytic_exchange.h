@@ -13,9 +13,9 @@ namespace lightwell {
 /// many polygons stand between, or something lies on one of the two, shadow rays between stratified
 /// points of both sample it, weighted as the form factor is: 16 or 64 rays to begin with, up to
 /// 2^18 while the standard error of F_ij is above `target_error` (0: 1e-3). Patches of spheres, and
-/// patches that lie on each other, are left to other methods. `row_error`: standard error of the
-/// worst F_ij of each row. `take(i, row)` gets the exchange of
-/// patch i with patches j > i, one row after another.
+/// patches that lie on each other, are left to other methods. `row_error`, one per
+/// patch, is raised to the standard error of the row's worst F_ij. `take(i, row)` gets the exchange
+/// of patch i with patches j > i, one row after another.
 void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
                        const std::vector<char>& receives, double target_error,
                        const Progress& progress, std::vector<float>& row_error,

@@ -14,7 +14,7 @@ bool is_below(const RecordStore& rows) {
 }  // namespace
 
 ColumnBlock::ColumnBlock(const RecordStore& rows, int first, int last)
-    : first_(first), last_(last), record_bytes_(rows.record_bytes()) {
+    : first_(first), record_bytes_(rows.record_bytes()) {
   begin_.push_back(0);
   for (int j = first; j < last; ++j) {
     begin_.push_back(begin_.back() + static_cast<std::size_t>(rows.column_size(j)));

@@ -14,8 +14,6 @@ class ColumnBlock {
  public:
   ColumnBlock(const RecordStore& rows, int first, int last);
 
-  int first() const { return first_; }
-  int last() const { return last_; }
   RecordSpan column(int j) const {
     const std::size_t begin = begin_[static_cast<std::size_t>(j - first_)];
     const std::size_t end = begin_[static_cast<std::size_t>(j - first_) + 1];
@@ -25,7 +23,7 @@ class ColumnBlock {
  private:
   void fill(const RecordStore& rows, int row, int low, int high, std::size_t* at);
 
-  int first_ = 0, last_ = 0;
+  int first_ = 0;
   std::size_t record_bytes_ = 0;
   std::vector<std::size_t> begin_;
   std::vector<std::byte> records_;

@@ -148,8 +148,19 @@ struct Frame {
 
 }  // namespace
 
+bool all_below(std::span<const Vector3d> points, const HalfSpace& plane, double height) {
+  return std::all_of(points.begin(), points.end(),
+                     [&](const Vector3d& p) { return plane.height(p) <= height; });
+}
+
+bool all_above(std::span<const Vector3d> points, const HalfSpace& plane, double height) {
+  return std::all_of(points.begin(), points.end(),
+                     [&](const Vector3d& p) { return plane.height(p) >= height; });
+}
+
 ConvexPolygon::ConvexPolygon(std::span<const Vector3d> corners)
     : count(static_cast<int>(corners.size())) {
+  assert(corners.size() <= most_corners);
   std::copy(corners.begin(), corners.end(), corner.begin());
 }
 

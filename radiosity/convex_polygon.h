@@ -2,10 +2,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cassert>
 #include <span>
 #include <vector>
-
-#include "mesh/patch_outline.h"
 
 namespace lightwell {
 
@@ -14,7 +13,20 @@ struct HalfSpace {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double offset = 0.0;
   double height(const Eigen::Vector3d& p) const { return normal.dot(p) - offset; }
+  HalfSpace opposite() const { return {-normal, -offset}; }
 };
+
+/// Whether all points are at most, or at least, this high; any of them higher, or lower.
+bool all_below(std::span<const Eigen::Vector3d> points, const HalfSpace& plane, double height);
+bool all_above(std::span<const Eigen::Vector3d> points, const HalfSpace& plane, double height);
+inline bool any_above(std::span<const Eigen::Vector3d> points, const HalfSpace& plane,
+                      double height) {
+  return !all_below(points, plane, height);
+}
+inline bool any_below(std::span<const Eigen::Vector3d> points, const HalfSpace& plane,
+                      double height) {
+  return !all_above(points, plane, height);
+}
 
 /// A planar convex polygon of few corners that needs no memory of its own, to be cut many times.
 struct ConvexPolygon {
@@ -28,7 +40,10 @@ struct ConvexPolygon {
   ConvexPolygon(const ConvexPolygon& other) : ConvexPolygon(other.corners()) {}
   ConvexPolygon& operator=(const ConvexPolygon& other);
 
-  void add(const Eigen::Vector3d& v) { corner[static_cast<std::size_t>(count++)] = v; }
+  void add(const Eigen::Vector3d& v) {
+    assert(count < most_corners);
+    corner[static_cast<std::size_t>(count++)] = v;
+  }
   std::span<const Eigen::Vector3d> corners() const {
     return {corner.data(), static_cast<std::size_t>(count)};
   }

@@ -53,10 +53,7 @@ class Assembly {
     result->specular.close();
     lightwell::report(progress_, "balance", 1.0);
     note_rays(found);
-    if (report) {
-      found.row_error = std::move(report->row_error);
-      *report = std::move(found);
-    }
+    if (report) *report = std::move(found);
     return result;
   }
 

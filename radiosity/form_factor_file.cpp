@@ -45,6 +45,7 @@ class TextOutput {
 
  private:
   void flush() {
+    errno = 0;  // the stream does not say why it fails
     stream_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
     buffer_.clear();
     check();

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mesh/patch_sampler.h"
 #include "radiosity/analytic_exchange.h"
 #include "radiosity/emitter_exchange.h"
 #include "radiosity/form_factor_assembly.h"
 #include "radiosity/hemicube.h"
 #include "radiosity/light_path.h"
 #include "radiosity/near_exchange.h"
+#include "radiosity/pair_shafts.h"
 #include "radiosity/ray_cast_rows.h"
 #include "radiosity/row_estimates.h"
 #include "scene/parallel.h"
@@ -30,11 +32,18 @@ struct Estimate {
 
 // What is still to come beside rows: numbers for each patch here and in what is done with the
 // result, and what each thread counts in.
-std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters) {
-  constexpr std::int64_t per_patch = 900, per_band = 64, per_thread = 48;
+std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
+                               const FormFactorOptions& options) {
+  // Outlines and their quadratures, places in stores, balance's vectors; scratch of a row.
+  constexpr std::int64_t per_patch = 900, per_band = 64, per_thread = 48, per_emitter = 16;
   const std::int64_t bands = mesh.reflectance.cols();
-  return mesh.patch_count() *
-         (per_patch + per_band * bands + per_thread * thread_count() + 16 * emitters);
+  std::int64_t each =
+      per_patch + per_band * bands + per_thread * thread_count() + per_emitter * emitters;
+  const bool analytic = options.method == FormFactorMethod::analytic;
+  if (analytic) each += std::int64_t{sizeof(PatchSampler)};
+  const bool clips =
+      analytic || (options.method == FormFactorMethod::automatic && options.target_error > 0.0);
+  return mesh.patch_count() * each + (clips ? PairShafts::bytes_for(mesh) : 0);
 }
 
 class Estimator {
@@ -134,24 +143,25 @@ class Estimator {
     });
     estimate.rows.close();
   }
-  template <class ErrorOf>
-  void cast(Estimate& estimate, const std::vector<int>& rays_of, ErrorOf error_of) const {
-    cast(
-        estimate, rays_of, false,
-        [&](int, const EstimatedRow& row, auto&) { return error_of(row); }, [](int, auto&) {});
-  }
-
-  // Counts are binomial at worst; stratified points do better.
-  Estimate rays_alone() const {
-    const EmitterExchange emitters(caster_, direct_light_);
-    Estimate estimate = nothing_yet();
-    cast(estimate, rays_of(emitters, base_rays()), [](const EstimatedRow& row) {
+  // `is_count(i, j)`: whether F_ij remains what the rays say. Counts are binomial at worst;
+  // stratified points do better.
+  template <class IsCount>
+  void cast_counts(Estimate& estimate, const std::vector<int>& rays_of, IsCount is_count) const {
+    const auto error_of = [&](int i, const EstimatedRow& row, auto&) {
       double worst = 0.0;
       for (const FormFactor& f : row.shares) {
+        if (!is_count(i, f.patch)) continue;
         worst = std::max(worst, static_cast<double>(f.value * (1.0f - f.value)));
       }
       return row.rays > 0.0 ? std::sqrt(worst / row.rays) : 0.0;
-    });
+    };
+    cast(estimate, rays_of, false, error_of, [](int, auto&) {});
+  }
+
+  Estimate rays_alone() const {
+    const EmitterExchange emitters(caster_, direct_light_);
+    Estimate estimate = nothing_yet();
+    cast_counts(estimate, rays_of(emitters, base_rays()), [](int, int) { return true; });
     estimate.known.S.close();
     return estimate;
   }
@@ -198,17 +208,20 @@ class Estimator {
   }
   static bool by_patch(const FormFactor& a, const FormFactor& b) { return a.patch < b.patch; }
 
-  // Rays still find what escapes, and what goes by way of mirrors and glass.
+  // Rays still find what escapes, what goes by way of mirrors and glass, and what curved patches
+  // exchange.
   Estimate closed_forms_alone() const {
     const EmitterExchange emitters(caster_, direct_light_);
+    const std::vector<PatchOutline> outlines = patch_outlines(mesh_);
+    const auto is_count = [&](int i, int j) {
+      return !outlines[static_cast<std::size_t>(i)].is_polygon() ||
+             !outlines[static_cast<std::size_t>(j)].is_polygon();
+    };
     Estimate estimate = nothing_yet();
-    cast(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)),
-         [](const EstimatedRow&) { return 0.0; });
-    const NearExchange near(caster_, 0.0);  // for the outlines
-    analytic_exchange(caster_, near.outlines(), receives_, options_.target_error, options_.progress,
-                      estimate.row_error, [&](int i, std::vector<FormFactor>& row) {
-                        estimate.known.S.append(i, row);
-                      });
+    cast_counts(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)), is_count);
+    analytic_exchange(
+        caster_, outlines, receives_, options_.target_error, options_.progress, estimate.row_error,
+        [&](int i, std::vector<FormFactor>& row) { estimate.known.S.append(i, row); });
     estimate.known.S.close();
     return estimate;
   }
@@ -240,11 +253,13 @@ std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const Elem
                                                   FormFactorReport* report) {
   const auto budget = options.memory ? options.memory : std::make_shared<MemoryBudget>();
   const PatchMesh& mesh = caster.mesh();
-  budget->plan(bytes_beside_rows(mesh, static_cast<std::int64_t>(direct_light.emitters().size())));
+  budget->plan(
+      bytes_beside_rows(mesh, static_cast<std::int64_t>(direct_light.emitters().size()), options));
   Estimate estimate = Estimator(scene, caster, direct_light, options, budget).estimate();
+  auto result = assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
+                                      options.enforce_closure, budget, options.progress, report);
   if (report) report->row_error = std::move(estimate.row_error);
-  return assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
-                               options.enforce_closure, budget, options.progress, report);
+  return result;
 }
 
 }  // namespace lightwell

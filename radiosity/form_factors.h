@@ -55,8 +55,9 @@ enum class FormFactorMethod {
   ray_cast,
   /// Item buffers on half a cube about each patch's centre (Cohen & Greenberg 1985).
   hemicube,
-  /// The closed form of every pair of polygons (Lambert; Schroeder & Hanrahan 1993) times
-  /// visibility sampled by shadow rays. Quadratic in the number of patches.
+  /// The closed form of every pair of polygons (Lambert; Schroeder & Hanrahan 1993) times their
+  /// visibility: exact where few polygons stand between, else sampled by shadow rays. Quadratic in
+  /// the number of patches. Rays for patches that are no polygons.
   analytic
 };
 

@@ -59,14 +59,6 @@ std::array<std::array<Vector3d, 3>, 2> halves(const std::array<Vector3d, 3>& cor
 
 }  // namespace
 
-bool clip_to_reach(ConvexPolygon& polygon, const Blocker& blocker) {
-  for (const HalfSpace& bound : blocker.reach) {
-    if (polygon.count >= ConvexPolygon::most_corners) return true;
-    if (!clip(polygon, bound)) return false;
-  }
-  return true;
-}
-
 double total_error(std::span<const HiddenTriangle> triangles) {
   double error = 0.0;
   for (const HiddenTriangle& t : triangles) error += t.error;

@@ -46,7 +46,4 @@ class HiddenIntegral {
   std::vector<double> reach_area_;  // of `from`, per blocker
 };
 
-/// Leaves of the polygon what the blocker reaches; false if that is nothing.
-bool clip_to_reach(ConvexPolygon& polygon, const Blocker& blocker);
-
 }  // namespace lightwell

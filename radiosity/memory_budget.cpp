@@ -82,7 +82,7 @@ void MemoryBudget::plan(std::int64_t other) {
 void MemoryBudget::share_out(std::int64_t resident, std::int64_t other) {
   std::int64_t room = std::max(limit_ - resident - other, least_room);
   if (options_.rows >= 0) room = std::min(room, options_.rows);
-  const auto page = static_cast<std::int64_t>(::sysconf(_SC_PAGESIZE));
+  const auto page = static_cast<std::int64_t>(whole_pages(1));
   chunk_ = std::clamp(room / 64 / page * page, page, largest_chunk);
   block_ = std::clamp(room / 8, page, largest_block);
   window_ = block_;

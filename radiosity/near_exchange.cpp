@@ -31,11 +31,7 @@ static_assert(NearExchange::worst_count_error * NearExchange::worst_count_error 
 NearExchange::NearExchange(const ElementCaster& caster, double target_error)
     : area_(caster.mesh().area),
       target_error_(target_error),
-      outlines_(static_cast<std::size_t>(caster.mesh().patch_count())) {
-  const PatchMesh& mesh = caster.mesh();
-  parallel_for(mesh.patch_count(), 256, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) outlines_[i] = patch_outline(mesh, i);
-  });
+      outlines_(patch_outlines(caster.mesh())) {
   if (target_error > 0.0) shafts_.emplace(caster, outlines_);
 }
 
@@ -96,8 +92,9 @@ void NearExchange::add_row(const PairExchange& closed_form, int i, RecordSpan ro
           shafts_->visible(i, j, between, unoccluded, share_of_target * target_error_);
       if (exact) S = exact->value;
     }
-    // Patches that lie on each other, face to face, have no closed form; their counts are exact.
-    if (S > 0.0) exchange.push_back({j, static_cast<float>(S)});
+    // Patches that lie on each other, face to face, have no closed form; their counts are exact. A
+    // pair known to see nothing of each other is known all the same.
+    if (unoccluded > 0.0) exchange.push_back({j, static_cast<float>(S)});
   });
 }
 

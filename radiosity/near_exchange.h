@@ -25,7 +25,9 @@ class NearExchange {
   /// `target_error`: wanted standard error of F_ij; 0: what the rays give.
   NearExchange(const ElementCaster& caster, double target_error);
 
-  /// Standard error of the worst F_ij that remains a count, times the row's rays.
+  /// Rays that a row starts with, times the error wanted: what leaves a count of the fewest rays
+  /// that make a closed form worth it uncertain by that error. Larger counts, of patches that are
+  /// neither near nor polygons, ask for more.
   static constexpr double worst_count_error = 3.32;
 
   /// What a row says of patch j: how many of its rays cross it, and how many meet it first.
@@ -43,8 +45,6 @@ class NearExchange {
   /// are added.
   void exchange(RecordStore pairs, const Progress& progress,
                 const std::function<void(int, std::vector<FormFactor>&)>& take) const;
-
-  const std::vector<PatchOutline>& outlines() const { return outlines_; }
 
  private:
   bool is_exact_due(int i, int j, double variance, Between& between) const;

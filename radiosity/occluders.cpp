@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "mesh/patch_outline.h"
 #include "mesh/sphere_grid.h"
 
 namespace lightwell {
@@ -27,6 +28,8 @@ class Sheets {
     plane_.resize(elements_.size());
     sheet_.resize(elements_.size());
     std::iota(sheet_.begin(), sheet_.end(), 0);
+    facets_.resize(elements_.size());
+    for (std::size_t f = 0; f < facets_.size(); ++f) facets_[f] = {static_cast<int>(f)};
     for (int p = 0; p < mesh.patch_count(); ++p) {
       const int f = mesh.facet[p];
       if (mesh.is_back[p] || sphere_grid_of(mesh, f)) continue;
@@ -42,10 +45,9 @@ class Sheets {
 
   int facet_count() const { return static_cast<int>(elements_.size()); }
   bool is_polygon(int facet) const { return !elements_[facet].empty(); }
-  int sheet(int facet) const {
-    while (sheet_[facet] != facet) facet = sheet_[facet];
-    return facet;
-  }
+  int sheet(int facet) const { return sheet_[facet]; }
+  /// Of a sheet.
+  const std::vector<int>& facets(int sheet) const { return facets_[sheet]; }
   const std::vector<int>& elements(int facet) const { return elements_[facet]; }
   const HalfSpace& plane(int facet) const { return plane_[facet]; }
 
@@ -108,14 +110,20 @@ class Sheets {
     }
   }
 
-  // A sheet's plane is that of its lowest facet, so that planes do not drift.
+  // A sheet keeps the plane of its first facet, which holds all others, so that planes do not
+  // drift. The smaller one joins the larger: none is looked at more often than its sheet doubles.
   void join(int a, int b) {
-    const int root_a = sheet(a), root_b = sheet(b);
-    if (root_a == root_b) return;
-    const int low = std::min(root_a, root_b), high = std::max(root_a, root_b);
-    if (!(plane_[low].normal.dot(plane_[high].normal) > 0.0)) return;
-    if (!holds(plane_[low], a) || !holds(plane_[low], b) || !holds(plane_[low], high)) return;
-    sheet_[high] = low;
+    int to = sheet(a), from = sheet(b);
+    if (to == from) return;
+    const auto rank = [&](int s) { return std::pair(facets_[s].size(), -s); };
+    if (rank(to) < rank(from)) std::swap(to, from);
+    if (!(plane_[to].normal.dot(plane_[from].normal) > 0.0)) return;
+    const bool is_one_plane = std::all_of(facets_[from].begin(), facets_[from].end(),
+                                          [&](int f) { return holds(plane_[to], f); });
+    if (!is_one_plane) return;
+    for (const int f : facets_[from]) sheet_[f] = to;
+    facets_[to].insert(facets_[to].end(), facets_[from].begin(), facets_[from].end());
+    facets_[from].clear();
   }
 
   const PatchMesh& mesh_;
@@ -123,6 +131,7 @@ class Sheets {
   std::vector<std::vector<int>> elements_;  // of a facet's front
   std::vector<HalfSpace> plane_;
   std::vector<int> sheet_;
+  std::vector<std::vector<int>> facets_;  // of a sheet, the one whose plane it has first
 };
 
 std::vector<ConvexPolygon> pieces_of(const PatchMesh& mesh, const std::vector<int>& elements,
@@ -155,14 +164,12 @@ Occluders::Occluders(const PatchMesh& mesh) {
   for (const SphereGrid& grid : mesh.sphere_grids) spheres.push_back(grid.sphere);
 
   const Sheets sheets(mesh, tolerance);
-  std::vector<std::vector<int>> facets_of(static_cast<std::size_t>(sheets.facet_count()));
   for (int f = 0; f < sheets.facet_count(); ++f) {
     sheet_of_facet.push_back(sheets.is_polygon(f) ? sheets.sheet(f) : -1);
-    if (sheets.is_polygon(f)) facets_of[sheets.sheet(f)].push_back(f);
   }
   for (int s = 0; s < sheets.facet_count(); ++s) {
     std::vector<int> elements;
-    for (const int f : facets_of[s]) {
+    for (const int f : sheets.facets(s)) {
       elements.insert(elements.end(), sheets.elements(f).begin(), sheets.elements(f).end());
     }
     if (elements.empty()) continue;

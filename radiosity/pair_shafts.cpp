@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "radiosity/shadowed_polygon.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -21,6 +20,16 @@ PairShafts::PairShafts(const ElementCaster& caster, const std::vector<PatchOutli
       is_covered_[i] = hidden > 0 || shafts_.is_covered(ends_[i]);
     }
   });
+}
+
+std::int64_t PairShafts::bytes_for(const PatchMesh& mesh) {
+  constexpr std::int64_t corners = 4, allocation = 16;
+  constexpr std::int64_t end =
+      sizeof(ShaftEnd) + sizeof(ConvexPolygon) + corners * sizeof(Eigen::Vector3d) + 2 * allocation;
+  constexpr std::int64_t in_tree = 2 * sizeof(Eigen::AlignedBox3d);
+  std::int64_t facets = 0;
+  for (const int facet : mesh.facet) facets = std::max<std::int64_t>(facets, facet + 1);
+  return mesh.patch_count() * end + facets * (std::int64_t{sizeof(Occluder)} + in_tree);
 }
 
 void PairShafts::find(int i, int j, Between& between) const {

@@ -13,6 +13,9 @@ class PairShafts {
  public:
   PairShafts(const ElementCaster& caster, const std::vector<PatchOutline>& outlines);
 
+  /// Bytes that it will take, roughly: every patch an end of one part, every facet an occluder.
+  static std::int64_t bytes_for(const PatchMesh& mesh);
+
   /// Whether something lies on part of the patch, which no shaft shows.
   bool is_covered(int patch) const { return is_covered_[static_cast<std::size_t>(patch)] != 0; }
   /// Whether something lies on all of it: the patch sees that and nothing else.

@@ -9,6 +9,7 @@
 #include "radiosity/polygon_form_factor.h"
 #include "radiosity/shadow_rays.h"
 #include "radiosity/shadowed_polygon.h"
+#include "radiosity/visible_exchange.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -103,9 +104,8 @@ PointFormFactors::Unsampled PointFormFactors::without_rays(const ShaftEnd& targe
   const ShaftEnd from = shafts_.end(point.position, point.normal, point.facet);
   Between between;
   shafts_.find(from, target, between);
-  constexpr std::size_t most_clipped = 16;
-  result.needs_rays =
-      between.may_be_sphere || between.pieces.size() > most_clipped || shafts_.is_covered(from);
+  result.needs_rays = between.may_be_sphere || between.pieces.size() > most_pieces_between ||
+                      shafts_.is_covered(from);
   if (result.needs_rays) return result;
   std::vector<Blocker> blockers;
   for (const int piece : between.pieces) {

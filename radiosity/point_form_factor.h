@@ -54,9 +54,9 @@ class PointFormFactors {
 
   /// The closed form of the whole shooter (point_to_polygon) times visibility: 1 where the shaft
   /// from the point to the shooter holds nothing, exact by clipping (ShadowedPolygon) where it
-  /// holds at most 16 convex polygons, else the share of the kernel cos cos / r^2 that shadow rays
-  /// to stratified points of the shooter see. For patches of spheres it is by_discs with `max_rays`
-  /// discs.
+  /// holds at most most_pieces_between convex polygons, else the share of the kernel cos cos / r^2
+  /// that shadow rays to stratified points of the shooter see. For patches of spheres, and polygons
+  /// that cross themselves, it is by_discs with `max_rays` discs.
   void by_closed_form(int shooter, std::span<const ReceivingPoint> points, std::span<double> F,
                       const PointFormFactorOptions& options = {}) const;
 

@@ -21,7 +21,11 @@ void RowEstimates::add(int i, const EstimatedRow& row) {
   specular_[i] = row.specular;
   rays_[i] = row.rays;
   shares_.append(i, row.shares.data(), row.shares.size());
-  if (row.specular > 0.0 || !row.specular_patch.empty()) add_specular(i, row);
+  const auto any = [](const Spectrum& lost) { return lost.size() > 0 && (lost > 0.0f).any(); };
+  if (row.specular > 0.0 || !row.specular_patch.empty() || any(row.specular_escaped) ||
+      any(row.absorbed) || any(row.cut)) {
+    add_specular(i, row);
+  }
 }
 
 void RowEstimates::add_specular(int i, const EstimatedRow& row) {

@@ -1,7 +1,6 @@
 #include "radiosity/row_store.h"
 
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -12,11 +11,6 @@
 
 namespace lightwell {
 namespace {
-
-std::size_t whole_pages(std::size_t bytes) {
-  static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  return (bytes + page - 1) / page * page;
-}
 
 // Memory straight from the system: the allocator would keep what is freed.
 class Pages {

@@ -15,16 +15,6 @@ using Eigen::Vector3d;
 constexpr double flat = 1e-12;        // sine of an angle that is none
 constexpr double same = 1.0 - 1e-14;  // cosine of one
 
-bool any_above(std::span<const Vector3d> points, const HalfSpace& plane, double height) {
-  return std::any_of(points.begin(), points.end(),
-                     [&](const Vector3d& p) { return plane.height(p) > height; });
-}
-
-bool any_below(std::span<const Vector3d> points, const HalfSpace& plane, double height) {
-  return std::any_of(points.begin(), points.end(),
-                     [&](const Vector3d& p) { return plane.height(p) < height; });
-}
-
 // Planes through an edge of `edges` and one of `corners`, with `before` at heights >= 0, `behind`
 // at heights <= 0 and some of `points` at heights < 0.
 void add_parting_planes(std::span<const Vector3d> edges, std::span<const Vector3d> corners,
@@ -59,7 +49,7 @@ bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, cons
   blocker = {};
   blocker.polygon = occluder.polygon;
   blocker.plane = {side * occluder.plane.normal, side * occluder.plane.offset};
-  const HalfSpace beyond{-blocker.plane.normal, -blocker.plane.offset};
+  const HalfSpace beyond = blocker.plane.opposite();
   if (!any_above(from.corners, blocker.plane, tolerance)) return false;
   // What lies behind either end is not between them.
   if (!clip(blocker.polygon, from.plane) || !clip(blocker.polygon, target.plane)) return false;
@@ -88,11 +78,19 @@ bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, cons
   return true;
 }
 
+bool clip_to_reach(ConvexPolygon& polygon, const Blocker& blocker) {
+  for (const HalfSpace& bound : blocker.reach) {
+    if (polygon.count >= ConvexPolygon::most_corners) return true;
+    if (!clip(polygon, bound)) return false;
+  }
+  return true;
+}
+
 double ShadowedPolygon::take_away(const Blocker& blocker, const Vector3d& point,
                                   const Vector3d& normal) {
   std::array<HalfSpace, ConvexPolygon::most_corners + 1> pyramid;
   int planes = 0;
-  if (blocker.cuts_target) pyramid[planes++] = {-blocker.plane.normal, -blocker.plane.offset};
+  if (blocker.cuts_target) pyramid[planes++] = blocker.plane.opposite();
   const ConvexPolygon& polygon = blocker.polygon;
   for (int k = 0; k < polygon.count; ++k) {
     const Vector3d a = polygon.corner[k] - point;

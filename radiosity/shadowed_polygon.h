@@ -31,6 +31,9 @@ struct Blocker {
 bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, const ShaftEnd& target,
                   double tolerance, Blocker& blocker);
 
+/// Leaves of the polygon what the blocker reaches; false if that is nothing.
+bool clip_to_reach(ConvexPolygon& polygon, const Blocker& blocker);
+
 /// A polygon with others before it. From a point, what a convex occluder hides is the part of the
 /// polygon inside the pyramid from the point over the occluder's edges; several hide the union,
 /// which is taken away piece by piece, so that nothing is taken twice.

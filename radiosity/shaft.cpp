@@ -22,16 +22,6 @@ bool has_on_both_sides(const PatchMesh& mesh, const HalfSpace& plane, double tol
   return false;
 }
 
-bool all_below(std::span<const Vector3d> points, const HalfSpace& plane, double height) {
-  return std::all_of(points.begin(), points.end(),
-                     [&](const Vector3d& p) { return plane.height(p) <= height; });
-}
-
-bool all_above(std::span<const Vector3d> points, const HalfSpace& plane, double height) {
-  return std::all_of(points.begin(), points.end(),
-                     [&](const Vector3d& p) { return plane.height(p) >= height; });
-}
-
 // Faces of the hull of both ends through an edge of `a` and a corner of `b`; heights are positive
 // outside.
 void add_hull_faces(const ShaftEnd& a, const ShaftEnd& b, double slack,
@@ -47,7 +37,7 @@ void add_hull_faces(const ShaftEnd& a, const ShaftEnd& b, double slack,
         if (!(length > flat * edge.norm() * (corner - from).norm())) continue;
         HalfSpace face{across / length, 0.0};
         face.offset = face.normal.dot(from);
-        if (!all_below(a.corners, face, slack)) face = {-face.normal, -face.offset};
+        if (!all_below(a.corners, face, slack)) face = face.opposite();
         if (all_below(a.corners, face, slack) && all_below(b.corners, face, slack)) {
           faces.push_back(face);
         }
@@ -167,8 +157,7 @@ void Shafts::find(const ShaftEnd& a, const ShaftEnd& b, Between& between) const 
   if (between.pieces.empty() && occluders_.spheres.empty()) return;
   const double tolerance = occluders_.tolerance;
   constexpr double rounding = 1e-3;  // of the tolerance
-  std::vector<HalfSpace> faces = {{-a.plane.normal, -a.plane.offset},
-                                  {-b.plane.normal, -b.plane.offset}};
+  std::vector<HalfSpace> faces = {a.plane.opposite(), b.plane.opposite()};
   add_hull_faces(a, b, rounding * tolerance, faces);
   add_hull_faces(b, a, rounding * tolerance, faces);
   std::erase_if(between.pieces, [&](int p) {

@@ -12,15 +12,10 @@
 #include <system_error>
 
 namespace lightwell {
-namespace {
-
-// Pieces begin at pages, as mappings must.
 std::size_t whole_pages(std::size_t bytes) {
   static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
   return (bytes + page - 1) / page * page;
 }
-
-}  // namespace
 
 SpillFile::SpillFile(std::filesystem::path folder, std::int64_t most_resident)
     : folder_(std::move(folder)), most_resident_(most_resident) {
@@ -57,7 +52,9 @@ std::unique_ptr<SpillFile::Piece> SpillFile::write(std::span<const std::byte> by
   }
   // Room for all of it first: a page that the disk has no room for, read or written by way of a
   // mapping, would be a signal and not an error.
-  if (const int error = ::posix_fallocate(file_, piece->offset_, size)) fail(error, size);
+  int error = EINTR;
+  while (error == EINTR) error = ::posix_fallocate(file_, piece->offset_, size);
+  if (error != 0) fail(error, size);
   put(bytes, piece->offset_);
   void* const at = ::mmap(nullptr, piece->size_, PROT_READ, MAP_SHARED, file_, piece->offset_);
   if (at == MAP_FAILED) fail(errno, size);

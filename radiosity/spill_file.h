@@ -13,6 +13,9 @@
 
 namespace lightwell {
 
+/// `bytes`, rounded up to the pages of memory they take.
+std::size_t whole_pages(std::size_t bytes);
+
 /// A file for what does not fit into memory. It has no name once it is made, so nothing is left of
 /// it however the process ends. Pieces are mapped for reading and stay where they are; pages of
 /// those that were not touched for long leave memory. Safe to use from many threads.

@@ -13,17 +13,13 @@ namespace {
 using Eigen::Vector3d;
 
 bool hides_all(const Blocker& blocker, const ShaftEnd& from, const ShaftEnd& to) {
-  const auto corners_are_before = [](const ShaftEnd& end, const HalfSpace& plane, double sign) {
-    return std::all_of(end.corners.begin(), end.corners.end(),
-                       [&](const Vector3d& p) { return sign * plane.height(p) >= 0.0; });
-  };
-  if (blocker.cuts_target || !corners_are_before(from, blocker.plane, 1.0)) return false;
+  if (blocker.cuts_target || !all_above(from.corners, blocker.plane, 0.0)) return false;
   const ConvexPolygon& polygon = blocker.polygon;
   for (const Vector3d& x : from.corners) {
     for (int k = 0; k < polygon.count; ++k) {
       const Vector3d inwards =
           (polygon.corner[k] - x).cross(polygon.corner[k + 1 < polygon.count ? k + 1 : 0] - x);
-      if (!corners_are_before(to, {inwards, inwards.dot(x)}, 1.0)) return false;
+      if (!all_above(to.corners, {inwards, inwards.dot(x)}, 0.0)) return false;
     }
   }
   return true;

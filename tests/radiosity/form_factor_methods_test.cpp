@@ -188,6 +188,33 @@ TEST_P(Room, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(results[0], results[2]) << name;
 }
 
+// A sphere's patches have no closed form, so rays are added until they meet the target too.
+TEST(AnalyticFormFactors, MeetATargetWithSpheres) {
+  constexpr double target = 4e-3;
+  Scene scene = test::furnace(0.5f, 1.0f, false);
+  scene.surfaces.push_back({.name = "ball", .material = 0, .shape = Sphere{{0.5, 0.6, 0.45}, 0.2}});
+  const Computed c =
+      compute(scene, 0.6, {.method = FormFactorMethod::analytic, .target_error = target});
+  double worst = 0.0;
+  for (const float error : c.report.row_error) worst = std::max(worst, static_cast<double>(error));
+  EXPECT_GT(worst, 0.0);
+  EXPECT_LE(worst, target);
+  EXPECT_GT(c.report.rays / c.mesh.patch_count(), FormFactorOptions{}.rays_per_patch);
+  // All that leaves the ball arrives at the walls: by reciprocity its share of their rows is known.
+  const int ball = static_cast<int>(scene.surfaces.size()) - 1;
+  double to_ball = 0.0, area = 0.0;
+  for (int i = 0; i < c.mesh.patch_count(); ++i) {
+    if (c.mesh.surface[i] == ball) {
+      area += c.mesh.area[i];
+      continue;
+    }
+    for (const FormFactor& f : c.F->row(i)) {
+      if (c.mesh.surface[f.patch] == ball) to_ball += c.mesh.area[i] * f.value;
+    }
+  }
+  EXPECT_NEAR(to_ball / area, 1.0, target);
+}
+
 // Too many patches for closed forms of all pairs; partly hidden near ones must not ask for ever
 // more rays.
 TEST(AutomaticFormFactors, MeetATargetWithFewRaysWherePolygonsHideEachOther) {

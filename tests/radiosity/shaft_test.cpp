@@ -65,6 +65,24 @@ TEST(Shaft, TakesAWallOfManyFacetsAsOne) {
   EXPECT_EQ(between(polygons).pieces.size(), 1u);
 }
 
+// A bent strip of a millimetre lies in either plane as far as can be told; the floor does not.
+TEST(Shaft, KeepsAWallInItsOwnPlaneWhateverStripsItMeets) {
+  constexpr double bend = 1e-3, mm = 1e-3;
+  const auto strip = [](double x, double width, double low, double high) -> Corners {
+    return {{x, 0, low}, {x + width, 0, high}, {x + width, 5, high}, {x, 5, low}};
+  };
+  const double edge = 5.0 * bend, next = edge + mm * bend;
+  // The strip that goes on level comes first, then the bent one, then the floor in its plane.
+  const Polygons p(
+      {strip(5.0 + mm, mm, next, next), strip(5.0, mm, edge, next), strip(0.0, 5.0, 0.0, edge)});
+  const Occluders occluders(p.mesh);
+  for (const Occluder& piece : occluders.pieces) {
+    for (const Vector3d& corner : piece.polygon.corners()) {
+      EXPECT_LE(std::abs(piece.plane.height(corner)), occluders.tolerance);
+    }
+  }
+}
+
 TEST(Shaft, KnowsWhatIsCoveredFaceToFace) {
   const Corners lid = {{0.2, 0.2, 0}, {0.2, 0.5, 0}, {0.5, 0.5, 0}, {0.5, 0.2, 0}};
   const Corners beside = {{1, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 0, 0}};

@@ -95,6 +95,24 @@ TEST(SolveScene, MirrorsAndGlassKeepTheEnergyBalance) {
   EXPECT_NEAR((e.absorbed + e.escaped) / e.emitted, 1.0, 1e-4);
 }
 
+// A row whose mirrored light meets nothing more still says what it lost.
+TEST(SolveScene, LightMirroredOutOfTheSceneEscapes) {
+  Scene scene;
+  Material glossy = test::diffuse(scene.bands, 0.3f);
+  glossy.specular = constant_spectrum(scene.bands, 0.5f);
+  Material lamp = test::diffuse(scene.bands, 0.0f, 20.0f);
+  const int floor = test::add_material(scene, glossy), panel = test::add_material(scene, lamp);
+  test::add_polygon(scene, "floor", floor, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
+  // To the side: no ray goes from it by way of the floor back to it, nor to the floor again.
+  test::add_polygon(scene, "lamp", panel,
+                    {{4.2, 1, 0.1}, {4.2, 1, 0.6}, {4.2, 3, 0.6}, {4.2, 3, 0.1}});
+  std::swap(scene.surfaces[0], scene.surfaces[1]);
+  const EnergyBalance e = solve_scene(scene, quick()).solution.energy;
+  std::printf("glossy floor: emitted %.5f absorbed %.5f escaped %.5f\n", e.emitted, e.absorbed,
+              e.escaped);
+  EXPECT_NEAR((e.absorbed + e.escaped) / e.emitted, 1.0, 1e-4);
+}
+
 bool same_bits(const BandArray& a, const BandArray& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&
          std::memcmp(a.data(), b.data(), sizeof(float) * static_cast<std::size_t>(a.size())) == 0;
