@@ -36,6 +36,25 @@ double unshaded(const Emitter& emitter, const Vector3d& at, const Vector3d& norm
   return emitter.power * cos_i * cos_j / (std::numbers::pi * d.squaredNorm() + emitter.area);
 }
 
+// Falling weights, those that differ by rounding alone being equal: the order is then the same in
+// every unit.
+template <class Item>
+void sort_by_weight(std::vector<Item>& items) {
+  double most = 0.0;
+  for (const Item& item : items) most = std::max(most, item.weight);
+  if (!(most > 0.0)) return;
+  constexpr double step = 1e-6, least = 1e-100;  // natural logarithms
+  std::vector<std::pair<double, std::size_t>> order(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    order[i] = {-std::round(std::log(std::max(items[i].weight / most, least)) / step), i};
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Item> sorted;
+  sorted.reserve(items.size());
+  for (const auto& [key, i] : order) sorted.push_back(std::move(items[i]));
+  items = std::move(sorted);
+}
+
 class LineFinder {
  public:
   LineFinder(const Scene& scene, const std::vector<FacetPlane>& planes,
@@ -99,8 +118,7 @@ class LineFinder {
   void limit_pairings(std::vector<Pairing>& pairings, CriticalLines& result) const {
     const auto most = static_cast<std::size_t>(std::max(0, options_.most_wedges));
     if (pairings.size() > most) {
-      std::stable_sort(pairings.begin(), pairings.end(),
-                       [](const Pairing& a, const Pairing& b) { return a.weight > b.weight; });
+      sort_by_weight(pairings);
       result.wedges_left_out = static_cast<std::int64_t>(pairings.size() - most);
       pairings.resize(most);
     }
@@ -253,9 +271,7 @@ class LineFinder {
         result.lines.push_back(line);
       }
     }
-    std::stable_sort(
-        result.lines.begin(), result.lines.end(),
-        [](const CriticalLine& a, const CriticalLine& b) { return a.weight > b.weight; });
+    sort_by_weight(result.lines);
   }
 
   const Scene& scene_;
