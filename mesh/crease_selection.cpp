@@ -210,7 +210,7 @@ bool CreaseSelection::add_line(const CriticalLine& line) {
     d.pieces.push_back({from.point, to.point});
     is_kept = true;
     // A line through quadrilaterals makes triangles on both sides of it, and more where it ends.
-    elements_ += 2.0 * std::ceil((to.xy - from.xy).norm() / h) + 2.0;
+    elements_ += std::ceil((to.xy - from.xy).norm() / h) + 1.0;
   }
   return is_kept;
 }

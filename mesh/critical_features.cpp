@@ -1,6 +1,7 @@
 #include "mesh/critical_features.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -71,7 +72,7 @@ class Sheets {
   std::vector<int> parent_;
 };
 
-void add_border_edge(const std::array<int, 2>& ends, const EdgeUse& use, Emitter& emitter,
+void add_border_edge(const std::array<int, 2>& ends, const EdgeUse& use, EmittingPolygon& emitter,
                      std::map<int, int>& corner_of_point) {
   const Vector3d d = (use.high - use.low).normalized();
   emitter.edges.push_back({use.low, use.high});
@@ -85,7 +86,8 @@ void add_border_edge(const std::array<int, 2>& ends, const EdgeUse& use, Emitter
 
 }  // namespace
 
-std::vector<Emitter> emitters(const Scene& scene, const std::vector<FacetPlane>& planes) {
+std::vector<EmittingPolygon> emitting_polygons(const Scene& scene,
+                                               const std::vector<FacetPlane>& planes) {
   const EdgeUses uses = edge_uses(
       planes, [&](const FacetPlane& plane) { return material_of(scene, plane).is_emitter(); });
   Sheets sheets(planes.size());
@@ -97,15 +99,15 @@ std::vector<Emitter> emitters(const Scene& scene, const std::vector<FacetPlane>&
   for (const auto& [ends, edge] : uses) {
     if (joins(edge)) sheets.join(edge[0].plane, edge[1].plane);
   }
-  std::map<int, Emitter> of_root;
+  std::map<int, EmittingPolygon> of_root;
   for (int p = 0; p < static_cast<int>(planes.size()); ++p) {
     const Material& material = material_of(scene, planes[p]);
     if (!material.is_emitter()) continue;
     const int root = sheets.root(p);
-    Emitter& emitter =
-        of_root
-            .try_emplace(root, Emitter{.normal = planes[root].normal, .center = Vector3d::Zero()})
-            .first->second;
+    EmittingPolygon& emitter = of_root
+                                   .try_emplace(root, EmittingPolygon{.normal = planes[root].normal,
+                                                                      .center = Vector3d::Zero()})
+                                   .first->second;
     const double area = planes[p].area();
     emitter.planes.push_back(p);
     emitter.center += area * planes[p].origin;
@@ -120,7 +122,7 @@ std::vector<Emitter> emitters(const Scene& scene, const std::vector<FacetPlane>&
       add_border_edge(ends, use, of_root.at(root), corner_of_point[root]);
     }
   }
-  std::vector<Emitter> result;
+  std::vector<EmittingPolygon> result;
   for (auto& [root, emitter] : of_root) {
     emitter.center /= emitter.area;
     std::erase_if(emitter.corners, [](const auto& c) { return is_straight(c.edges); });
@@ -129,8 +131,13 @@ std::vector<Emitter> emitters(const Scene& scene, const std::vector<FacetPlane>&
     emitter.normal = -emitter.normal;
     result.push_back(std::move(emitter));
   }
+  double most = 0.0;
+  for (const EmittingPolygon& emitter : result) most = std::max(most, emitter.power);
+  // Powers that differ by rounding are equal: the order is the same in every unit.
+  constexpr double step = 1e-9;
+  const auto share = [most](const EmittingPolygon& e) { return std::round(e.power / most / step); };
   std::stable_sort(result.begin(), result.end(),
-                   [](const Emitter& a, const Emitter& b) { return a.power > b.power; });
+                   [&](const auto& one, const auto& other) { return share(one) > share(other); });
   return result;
 }
 

@@ -8,7 +8,7 @@
 namespace lightwell {
 
 /// An emitting polygon: facets of one material in one plane that share edges, as far as they do.
-struct Emitter {
+struct EmittingPolygon {
   struct Corner {
     Eigen::Vector3d position;
     std::vector<Eigen::Vector3d> edges{};  ///< unit directions of the border from here
@@ -23,7 +23,8 @@ struct Emitter {
 };
 
 /// All emitting sides of a scene, most powerful first.
-std::vector<Emitter> emitters(const Scene& scene, const std::vector<FacetPlane>& planes);
+std::vector<EmittingPolygon> emitting_polygons(const Scene& scene,
+                                               const std::vector<FacetPlane>& planes);
 
 /// An edge that may cast a shadow: facets end or bend there.
 struct OccluderEdge {

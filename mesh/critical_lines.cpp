@@ -28,7 +28,7 @@ struct Pairing {
 
 // Irradiance at `at` of a surface with `normal` if nothing stood before the emitter, with the
 // emitter drawn together in its centre but no nearer than its size.
-double unshaded(const Emitter& emitter, const Vector3d& at, const Vector3d& normal) {
+double unshaded(const EmittingPolygon& emitter, const Vector3d& at, const Vector3d& normal) {
   const Vector3d d = at - emitter.center;
   const double cos_i = emitter.normal.dot(d.normalized());
   const double cos_j = std::abs(normal.dot(d.normalized()));
@@ -63,7 +63,7 @@ class LineFinder {
         planes_(planes),
         options_(options),
         features_(occluder_features(scene, planes)),
-        emitters_(emitters(scene, planes)) {
+        emitters_(emitting_polygons(scene, planes)) {
     for (const FacetPlane& plane : planes) bounds_.extend(plane.box);
     tolerance_ = planes.empty() ? 0.0 : planes.front().weld_tolerance;
     std::vector<BoxTree::Box> boxes;
@@ -105,7 +105,7 @@ class LineFinder {
     const double edges = static_cast<double>(features_.edges.size() + features_.vertices.size());
     double pairings = 0.0;
     int kept = 0;
-    for (const Emitter& emitter : emitters_) {
+    for (const EmittingPolygon& emitter : emitters_) {
       pairings += edges * static_cast<double>(emitter.corners.size());
       if (kept == options_.most_emitters || (kept > 0 && pairings > most_pairings)) break;
       ++kept;
@@ -125,14 +125,14 @@ class LineFinder {
     result.wedges = static_cast<int>(pairings.size());
   }
 
-  bool is_lit(const Emitter& emitter, const Vector3d& p) const {
+  bool is_lit(const EmittingPolygon& emitter, const Vector3d& p) const {
     return emitter.normal.dot(p - emitter.center) > tolerance_;
   }
 
   std::vector<Pairing> candidates() const {
     std::vector<Pairing> pairings;
     for (int k = 0; k < static_cast<int>(emitters_.size()); ++k) {
-      const Emitter& emitter = emitters_[k];
+      const EmittingPolygon& emitter = emitters_[k];
       for (int e = 0; e < static_cast<int>(features_.edges.size()); ++e) {
         const OccluderEdge& edge = features_.edges[e];
         if (!is_lit(emitter, edge.from) && !is_lit(emitter, edge.to)) continue;
@@ -155,7 +155,7 @@ class LineFinder {
   }
 
   // Light at the occluder times the length of the wedge's edge.
-  static double weight_of(const Emitter& emitter, const Vector3d& at, const Vector3d& from,
+  static double weight_of(const EmittingPolygon& emitter, const Vector3d& at, const Vector3d& from,
                           const Vector3d& to) {
     return unshaded(emitter, at, (at - emitter.center).normalized()) * (to - from).norm();
   }
@@ -178,7 +178,7 @@ class LineFinder {
   }
 
   std::vector<CriticalLine> lines_of(const Pairing& pairing) const {
-    const Emitter& emitter = emitters_[pairing.emitter];
+    const EmittingPolygon& emitter = emitters_[pairing.emitter];
     if (pairing.is_vertex_edge) {
       const OccluderEdge& edge = features_.edges[pairing.occluder_feature];
       const auto& corner = emitter.corners[pairing.emitter_feature];
@@ -213,7 +213,7 @@ class LineFinder {
   }
 
   std::vector<CriticalLine> follow(const Wedge& wedge, const std::vector<WedgeRange>& ranges,
-                                   LineDegree degree, const Emitter& emitter) const {
+                                   LineDegree degree, const EmittingPolygon& emitter) const {
     if (ranges.empty()) return {};
     std::vector<int> near;
     tree_->find_overlaps(reach_of(wedge), near);
@@ -278,7 +278,7 @@ class LineFinder {
   const std::vector<FacetPlane>& planes_;
   const CriticalLineOptions& options_;
   OccluderFeatures features_;
-  std::vector<Emitter> emitters_;
+  std::vector<EmittingPolygon> emitters_;
   Eigen::AlignedBox3d bounds_{};
   double tolerance_ = 0.0;
   std::unique_ptr<BoxTree> tree_;
