@@ -146,8 +146,8 @@ void add_cut(const Wedge& wedge, Cut cut, double sign, double slack, std::vector
   Cut first = cut, second = cut;
   first.end = second.begin = s;
   first.w_end = second.w_begin = 1.0;
-  Cut& nearer = at_begin > 0.0 ? first : second;
-  nearer.phase = Phase::before;
+  first.phase = at_begin > 0.0 ? Phase::before : Phase::beyond;
+  second.phase = at_begin > 0.0 ? Phase::beyond : Phase::before;
   for (const Cut& part : {first, second}) {
     if (!(part.end - part.begin > least_range)) continue;
     if (part.phase == Phase::before || wedge.is_vertex_edge) cuts.push_back(part);

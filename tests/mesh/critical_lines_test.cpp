@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "mesh_scenes.h"
 
@@ -27,11 +28,8 @@ struct PlaneLine {
 
 Scene scene_with_light(const Loop& light) {
   Scene scene = empty_scene();
-  Material lamp = diffuse("lamp", 0.0f);
-  lamp.emission = constant_spectrum(scene.bands, 1.0f);
-  lamp.one_sided = true;
-  scene.materials.push_back(lamp);
-  add_polygon(scene, "light", light, {}, 2);
+  const int lamp = add_lamp(scene);
+  add_polygon(scene, "light", light, {}, lamp);
   return scene;
 }
 
@@ -355,6 +353,125 @@ TEST(CriticalLines, BlockOnTheFloorBoundsUmbraAndPenumbra) {
                            {426.14946479658164, 593.6884518294667},
                            {314.00000000000006, 456.0000000000002}},
                           1000.0);
+}
+
+// Random boxes, with visibility found the slow way: the line of sight against every polygon.
+struct BoxScene {
+  explicit BoxScene(std::uint32_t seed)
+      : scene(boxes_under_a_lamp(seed)),
+        points(1e-7),
+        planes(facet_planes(scene, points)),
+        lines(critical_lines(scene, planes).lines) {}
+
+  bool sees(const Vector3d& from, const Vector3d& to) const {
+    for (const FacetPlane& plane : planes) {
+      if (plane.facet == 1) continue;  // the lamp
+      const double h = plane.height(from), k = plane.height(to);
+      constexpr double on_plane = 1e-9;
+      if (std::abs(h) < on_plane || std::abs(k) < on_plane || h * k > 0.0) continue;
+      if (plane.contains(plane.project(from + h / (h - k) * (to - from)), 0.0)) return false;
+    }
+    return true;
+  }
+  // Whether looking past p from x some of the lamp's plane is hidden and some is not.
+  bool is_outlined(const Vector3d& x, const Vector3d& p) const {
+    const Vector3d d = (p - x).normalized(), u = d.unitOrthogonal(), w = d.cross(u);
+    bool hidden = false, seen = false;
+    constexpr int directions = 32;
+    for (int k = 0; k < directions; ++k) {
+      const double angle = (k + 0.37) * 2.0 * std::numbers::pi / directions;
+      const Vector3d towards = p + 1e-6 * (std::cos(angle) * u + std::sin(angle) * w) - x;
+      const double t = -planes[1].height(x) / planes[1].normal.dot(towards);
+      (sees(x + t * towards, x) ? seen : hidden) = true;
+    }
+    return hidden && seen;
+  }
+
+  Scene scene;
+  WeldedPoints points;
+  std::vector<FacetPlane> planes;
+  std::vector<CriticalLine> lines;
+};
+
+TEST(CriticalLines, AcrossEachOfAVertexACornerOfTheLampAppears) {
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    const BoxScene s(seed);
+    for (const CriticalLine& line : s.lines) {
+      if (!line.is_vertex_edge || line.degree == LineDegree::d0) continue;
+      const FacetPlane& plane = s.planes[line.plane];
+      const Vector3d along = line.ends[1] - line.ends[0];
+      const Vector3d middle = line.ends[0] + 0.37 * along;
+      const Vector3d aside = 1e-6 * plane.normal.cross(along).normalized();
+      bool changes = false;
+      for (const Vector3d& corner : s.planes[1].corner) {
+        changes |= s.sees(corner, middle + aside) != s.sees(corner, middle - aside);
+      }
+      EXPECT_TRUE(changes) << "seed " << seed << " at " << middle.transpose();
+    }
+  }
+}
+
+TEST(CriticalLines, CornersOfTheLampAppearNowhereElse) {
+  int changes = 0;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    const BoxScene s(seed);
+    const FacetPlane& floor = s.planes[0];
+    Eigen::AlignedBox2d box;
+    for (const Vector2d& q : floor.xy) box.extend(q);
+    Numbers numbers(seed + 1000);
+    for (int k = 0; k < 200; ++k) {
+      const Vector2d a(numbers.between(box.min().x(), box.max().x()),
+                       numbers.between(box.min().y(), box.max().y()));
+      const double angle = numbers.between(0.0, 2.0 * std::numbers::pi);
+      const Vector2d b = a + 0.02 * Vector2d(std::cos(angle), std::sin(angle));
+      if (!floor.contains(a, 0.0) || !floor.contains(b, 0.0)) continue;
+      for (const Vector3d& corner : s.planes[1].corner) {
+        if (s.sees(corner, floor.lift(a)) == s.sees(corner, floor.lift(b))) continue;
+        ++changes;
+        EXPECT_TRUE(std::any_of(s.lines.begin(), s.lines.end(),
+                                [&](const CriticalLine& line) {
+                                  const Vector2d p = floor.project(line.ends[0]),
+                                                 q = floor.project(line.ends[1]);
+                                  return line.plane == 0 && line.is_vertex_edge &&
+                                         cross(b - a, p - a) * cross(b - a, q - a) <= 0.0 &&
+                                         cross(q - p, a - p) * cross(q - p, b - p) <= 0.0;
+                                }))
+            << "seed " << seed << " at " << floor.lift(a).transpose();
+      }
+    }
+  }
+  EXPECT_GT(changes, 500);
+}
+
+TEST(CriticalLines, ShadowsOfCornersOnTheLampsEdgesAreLinesOfAnEdge) {
+  int found = 0;
+  for (std::uint32_t seed = 1; seed < 120; seed += 2) {
+    const BoxScene s(seed);
+    const FacetPlane &floor = s.planes[0], &lamp = s.planes[1];
+    Numbers numbers(seed + 2000);
+    for (int point = 0; point < s.points.size(); ++point) {
+      const Vector3d p = s.points[point];
+      if (!(lamp.height(p) > 1e-6)) continue;
+      for (int k = 0; k < 10; ++k) {
+        const int e = numbers.below(4);
+        const Vector3d a = lamp.corner[e], b = lamp.corner[(e + 1) % 4];
+        const Vector3d from = a + numbers.between(0.0, 1.0) * (b - a);
+        const double t = -floor.height(from) / floor.normal.dot(p - from);
+        const Vector3d x = from + t * (p - from);
+        const Vector2d q = floor.project(x);
+        if (!(t > 1.0 + 1e-6) || !floor.contains(q, 0.0) || !s.is_outlined(x, p)) continue;
+        ++found;
+        EXPECT_TRUE(std::any_of(s.lines.begin(), s.lines.end(),
+                                [&](const CriticalLine& line) {
+                                  return line.plane == 0 && !line.is_vertex_edge &&
+                                         segment_distance(q, floor.project(line.ends[0]),
+                                                          floor.project(line.ends[1])) < 1e-9;
+                                }))
+            << "seed " << seed << " at " << x.transpose();
+      }
+    }
+  }
+  EXPECT_GT(found, 1000);
 }
 
 }  // namespace
