@@ -216,7 +216,7 @@ class LineFinder {
                                    LineDegree degree, const EmittingPolygon& emitter) const {
     if (ranges.empty()) return {};
     std::vector<int> near;
-    tree_->find_overlaps(reach_of(wedge), near);
+    tree_->find_on_plane(reach_of(wedge), {wedge.normal, wedge.apex}, near);
     std::erase_if(near, [&](int i) {
       return std::binary_search(emitter.planes.begin(), emitter.planes.end(), i);
     });
