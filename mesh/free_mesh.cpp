@@ -24,7 +24,8 @@ struct LocalLines {
   std::vector<int> point{};    // number in ContactGraph::points
   std::vector<Vector2d> xy{};  // the same in the facet's frame
   std::vector<Pair> boundary{};
-  std::vector<Pair> all{};
+  std::vector<Pair> all{};   // boundary, contacts, creases
+  int hard_count = 0;        // of `all`, without the creases
   std::set<Pair> creases{};  // lower number first
   Eigen::AlignedBox2d box{};
 };
@@ -56,6 +57,7 @@ LocalLines local_lines(const FacetPlane& plane, const FacetOutline& outline,
   for (const Vector2d& q : lines.xy) lines.box.extend(q);
   lines.all = lines.boundary;
   for (const auto& [a, b] : outline.contacts) lines.all.push_back({number(a), number(b)});
+  lines.hard_count = static_cast<int>(lines.all.size());
   for (const auto& [p, q] : outline.creases) {
     const int a = number(p), b = number(q);
     lines.all.push_back({a, b});
@@ -288,7 +290,9 @@ FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
                     const std::vector<Vector3d>& points, const CutSize& size) {
   const LocalLines lines = local_lines(plane, outline, points);
   std::vector<Vector2d> xy = lines.xy;
-  const auto inner = inner_points(cell_grid(lines.box, size), lines.xy, lines.boundary, lines.all);
+  const auto inner = inner_points(cell_grid(lines.box, size), lines.xy, lines.boundary,
+                                  {lines.all.begin(), lines.all.begin() + lines.hard_count},
+                                  {lines.all.begin() + lines.hard_count, lines.all.end()});
   xy.insert(xy.end(), inner.begin(), inner.end());
   const PlanarTriangulation triangulation = triangulate_places(xy, lines, size.element_size());
   // A crease that had to be cut is not known by its ends.
