@@ -244,7 +244,7 @@ const std::string cut_colour = "#2471a3", even_colour = "#c0392b";
 
 // Error of F across the penumbra of the half plane.
 std::string profile_panel(const Row& row, double left) {
-  constexpr double low_x = -0.9, high_x = 0.9, high_y = 0.004;
+  constexpr double low_x = -0.9, high_x = 0.9, high_y = 0.0006;
   const auto place = [&](double x, double y) {
     return std::array{left + panel_width * (x - low_x) / (high_x - low_x),
                       panel_top + panel_height * 0.5 * (1.0 - y / high_y)};
@@ -278,7 +278,7 @@ std::string profile_panel(const Row& row, double left) {
 // Largest error over the number of elements, both logarithmic.
 std::string error_panel(const std::vector<Row>& half, const std::vector<Row>& triangle,
                         double left) {
-  constexpr double low_x = 1.8, high_x = 4.2, low_y = -4.6, high_y = -1.6;  // powers of ten
+  constexpr double low_x = 2.0, high_x = 4.0, low_y = -4.7, high_y = -2.5;  // powers of ten
   const auto place = [&](double x, double y) {
     return std::array{left + panel_width * (x - low_x) / (high_x - low_x),
                       panel_top + panel_height * (high_y - y) / (high_y - low_y)};
@@ -288,7 +288,7 @@ std::string error_panel(const std::vector<Row>& half, const std::vector<Row>& tr
     svg += line({place(p, low_y), place(p, high_y)}, "stroke=\"#ddd\"") +
            text(place(p, 0)[0], panel_top + panel_height + 18, fmt::format("10^{}", p), centred);
   }
-  for (const int p : {-4, -3, -2}) {
+  for (const int p : {-4, -3}) {
     svg += line({place(low_x, p), place(high_x, p)}, "stroke=\"#ddd\"") +
            text(left - 6, place(0, p)[1] + 4, fmt::format("10^{}", p), to_left);
   }
@@ -315,7 +315,7 @@ void draw(const std::string& file, const std::vector<Row>& half, const std::vect
   std::ofstream out(file);
   out << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 820 390" font-family="sans-serif" font-size="12">)"
       << "\n<rect width=\"820\" height=\"390\" fill=\"white\"/>\n"
-      << profile_panel(half[2], 60) << error_panel(half, triangle, 470)
+      << profile_panel(half[4], 60) << error_panel(half, triangle, 470)
       << text(60, 378, "cut along critical lines", fmt::format("fill=\"{}\"", cut_colour))
       << text(230, 378, "even elements", fmt::format("fill=\"{}\"", even_colour)) << "</svg>\n";
 }
