@@ -22,10 +22,12 @@ struct CreaseOptions {
   double most_elements = 0.0;  ///< roughly how many elements creases may add
 };
 
-/// What became of the critical lines: drawn, at least in part; too short, or nowhere far enough
-/// from what was drawn before; or left out because enough elements had been added.
+/// What became of the critical lines.
 struct CreaseCounts {
-  int drawn = 0, too_close = 0, over_budget = 0;
+  int drawn = 0;        ///< at least in part
+  int resolved = 0;     ///< D2 in penumbras that the elements resolve anyway
+  int too_close = 0;    ///< too short, or nowhere far enough from what was drawn before
+  int over_budget = 0;  ///< left out because enough elements had been added
 };
 
 /// Which critical lines to cut the mesh along, and where exactly, so that what comes of it can be

@@ -236,10 +236,29 @@ class LineFinder {
                        .degree = of_trace,
                        .is_vertex_edge = wedge.is_vertex_edge,
                        .emitter = planes_[emitter.planes.front()].facet,
+                       .penumbra = {penumbra_width(wedge, emitter, plane, trace.from),
+                                    penumbra_width(wedge, emitter, plane, trace.to)},
                        .weight = share * length *
                                  unshaded(emitter, 0.5 * (trace.from + trace.to), plane.normal)});
     }
     return lines;
+  }
+
+  // The emitter's extent across the wedge, cast through the occluder on to the receiver.
+  static double penumbra_width(const Wedge& wedge, const EmittingPolygon& emitter,
+                               const FacetPlane& plane, const Vector3d& at) {
+    double low = 0.0, high = 0.0;  // the wedge's plane touches the emitter
+    for (const auto& corner : emitter.corners) {
+      const double height = wedge.normal.dot(corner.position - wedge.apex);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    // The ray through `at`: alpha = dual . (at - apex), with dual perpendicular to `across`.
+    const Vector3d dual = wedge.across.cross(wedge.normal);
+    const double alpha = dual.dot(at - wedge.apex) / dual.dot(wedge.along);
+    const double beyond = wedge.is_vertex_edge ? alpha - 1.0 : alpha;
+    const double sine = wedge.normal.cross(plane.normal).norm();
+    return (high - low) * beyond / sine;
   }
 
   // Bounds of the wedge as far as the scene goes.

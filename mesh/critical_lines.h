@@ -21,6 +21,9 @@ struct CriticalLine {
   LineDegree degree = LineDegree::d2;
   bool is_vertex_edge = true;  ///< VE; else EV
   int emitter = 0;             ///< facet number of the emitter's first facet
+  /// Roughly how wide the penumbra is at the ends, metres: the shadow of the occluder's feature
+  /// from all of the emitter.
+  std::array<double, 2> penumbra{};
   /// What leaving it out costs, watts per metre: irradiance (unshaded) times length, a quarter of
   /// that for d2.
   double weight = 0.0;

@@ -122,7 +122,8 @@ std::vector<std::string> discontinuity_notes(const CriticalLines& critical,
     notes.push_back(fmt::format(
         "discontinuity lines: the {} least important of {} were left out; they would add too many "
         "elements",
-        counts.over_budget, counts.drawn + counts.too_close + counts.over_budget));
+        counts.over_budget,
+        counts.drawn + counts.resolved + counts.too_close + counts.over_budget));
   }
   if (without_creases > 0) {
     notes.push_back(fmt::format(

@@ -79,7 +79,8 @@ struct MeshOptions {
   int auto_patch_count = 1600;
   /// Elements along a patch edge, >= 1. More follow shadows more closely at the square of the cost.
   int elements_per_patch_edge = 2;
-  /// Cut receivers along the critical lines of emitters (D1 and D2), most important first.
+  /// Cut receivers along the critical lines of emitters, most important first: D1, and D2 where the
+  /// penumbra is not much wider than the elements.
   bool discontinuity = false;
   /// Elements that may add, as a share of those there would be without: what is left out is said in
   /// PatchMesh::notes.
