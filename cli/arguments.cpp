@@ -195,6 +195,10 @@ void SolveArguments::add_to(CLI::App& command) {
       ->check(whole_number(1, 64))
       ->group(group);
   command
+      .add_flag("--discontinuity", solve.mesh.discontinuity,
+                "cut receivers along the bounds of umbra and penumbra")
+      ->group(group);
+  command
       .add_option("--form-factors", form_factors,
                   "how form factors are found: auto (default), ray-cast, hemicube, analytic")
       ->type_name("METHOD")
@@ -241,11 +245,11 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
 
 std::string SolveArguments::text(const Scene& scene) const {
   return fmt::format(
-      "--max-patch-size {:.6g} --elements-per-patch-edge {} --form-factors {}{} --solver {} --rays "
-      "{} --gather-rays {} --tolerance {:g} --max-sweeps {}",
+      "--max-patch-size {:.6g} --elements-per-patch-edge {}{} --form-factors {}{} --solver {} "
+      "--rays {} --gather-rays {} --tolerance {:g} --max-sweeps {}",
       patch_size(scene, options(scene).mesh) / scene.metres_per_unit,
-      solve.mesh.elements_per_patch_edge, form_factors,
-      hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
+      solve.mesh.elements_per_patch_edge, solve.mesh.discontinuity ? " --discontinuity" : "",
+      form_factors, hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
       solve.form_factors.rays_per_patch, solve.gather.rays, solve.tolerance, solve.max_sweeps);
 }
 

@@ -46,6 +46,7 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   console.say_verbose("solving with " + arguments.text(scene));
   SolvedScene solved = solve_scene(scene, options);
   console.finish_phase();
+  for (const std::string& note : solved.mesh.notes) console.say("note: " + note);
   solved.solution.provenance.version = LIGHTWELL_VERSION;
   solved.solution.provenance.options = arguments.text(scene);
   report.add_solution(solved, true);

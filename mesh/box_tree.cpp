@@ -38,7 +38,8 @@ int BoxTree::build(int begin, int end) {
   return index;
 }
 
-void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
+template <class Meets>
+void BoxTree::find(const Meets& meets, std::vector<int>& found) const {
   found.clear();
   if (nodes_.empty()) return;
   // The tree halves at every level, so its depth stays below 32 for any int count.
@@ -48,17 +49,31 @@ void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
   while (depth > 0) {
     const int index = stack[--depth];
     const Node& node = nodes_[index];
-    if (!node.box.intersects(query)) continue;
+    if (!meets(node.box)) continue;
     if (node.right != 0) {
       stack[depth++] = node.right;
       stack[depth++] = index + 1;
       continue;
     }
     for (int i = node.begin; i < node.end; ++i) {
-      if (boxes_[order_[i]].intersects(query)) found.push_back(order_[i]);
+      if (meets(boxes_[order_[i]])) found.push_back(order_[i]);
     }
   }
   std::sort(found.begin(), found.end());
+}
+
+void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
+  find([&](const Box& box) { return box.intersects(query); }, found);
+}
+
+void BoxTree::find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
+                            std::vector<int>& found) const {
+  const auto meets = [&](const Box& box) {
+    if (!box.intersects(query)) return false;
+    const double reach = 0.5 * box.sizes().dot(plane.normal().cwiseAbs());
+    return plane.absDistance(box.center()) <= reach;
+  };
+  find(meets, found);
 }
 
 }  // namespace lightwell

@@ -14,6 +14,9 @@ class BoxTree {
 
   /// Fills `found` with the boxes that meet `query` (touching counts), in ascending order.
   void find_overlaps(const Box& query, std::vector<int>& found) const;
+  /// Of those the ones that the plane (of unit normal) meets as well.
+  void find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
+                     std::vector<int>& found) const;
 
  private:
   struct Node {
@@ -22,6 +25,8 @@ class BoxTree {
     int right = 0;           ///< the left child follows its parent
   };
   int build(int begin, int end);
+  template <class Meets>
+  void find(const Meets& meets, std::vector<int>& found) const;
 
   std::vector<Box> boxes_;
   std::vector<int> order_;

@@ -19,6 +19,13 @@ std::uint64_t ends_key(int a, int b) {
   return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b);
 }
 
+// Both ascending.
+std::vector<int> without(const std::vector<int>& all, const std::vector<int>& less) {
+  std::vector<int> rest;
+  std::set_difference(all.begin(), all.end(), less.begin(), less.end(), std::back_inserter(rest));
+  return rest;
+}
+
 }  // namespace
 
 int CutSize::patches(double length) const {
@@ -31,13 +38,20 @@ int CutSize::pieces(double length) const {
 }
 
 ContactGraph::ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes,
-                           WeldedPoints points, const CutSize& size, const Progress& progress)
-    : planes_(planes), size_(size), welded_(std::move(points)), contact_segments_(planes.size()) {
+                           WeldedPoints points, const CutSize& size,
+                           const std::vector<CriticalLine>& critical, double most_elements,
+                           const Progress& progress)
+    : planes_(planes),
+      size_(size),
+      welded_(std::move(points)),
+      contact_segments_(planes.size()),
+      crease_segments_(planes.size()) {
   add_boundaries();
   add_contacts(scene, progress);
   cuts_.resize(segments_.size());
   cut_at_crossings();
   cut_at_points();
+  if (!critical.empty()) add_creases(critical, most_elements);
   make_atoms();
   count_pieces();
   divide();
@@ -126,20 +140,70 @@ void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
   }
 }
 
+std::vector<int> ContactGraph::chain(int segment) const {
+  const Segment& s = segments_[segment];
+  std::vector<int> chain{s.a};
+  const auto append = [&chain](int point) {
+    if (std::find(chain.begin(), chain.end(), point) == chain.end()) chain.push_back(point);
+  };
+  for (const auto& [t, point] : cuts_[segment]) {
+    if (point != s.b) append(point);
+  }
+  append(s.b);
+  return chain;
+}
+
+std::vector<FixedPiece> ContactGraph::fixed_pieces(int index) const {
+  std::vector<int> segments(contact_segments_[index]);
+  for (int e = 0; e < planes_[index].corner_count(); ++e) {
+    segments.push_back(edge_segment_[first_edge_[index] + e]);
+  }
+  std::sort(segments.begin(), segments.end());
+  segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
+  std::vector<FixedPiece> pieces;
+  for (const int s : segments) {
+    const std::vector<int> points = chain(s);
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+      const int a = points[k], b = points[k + 1];
+      pieces.push_back({.a = a, .b = b, .from = welded_[a], .to = welded_[b], .segment = s});
+    }
+  }
+  return pieces;
+}
+
+void ContactGraph::add_creases(const std::vector<CriticalLine>& critical, double most_elements) {
+  std::vector<std::vector<FixedPiece>> fixed(planes_.size());
+  for (const CriticalLine& line : critical) {
+    if (fixed[line.plane].empty()) fixed[line.plane] = fixed_pieces(line.plane);
+  }
+  CreaseSelection selection(planes_, fixed,
+                            {.element_size = size_.element_size(),
+                             .tolerance = welded_.tolerance(),
+                             .most_elements = most_elements});
+  selection.select(critical);
+  crease_counts_ = selection.counts();
+  for (std::size_t p = 0; p < planes_.size(); ++p) {
+    for (const auto& [from, to] : selection.creases(static_cast<int>(p))) {
+      const int a = welded_.add(from, welded_.tolerance()),
+                b = welded_.add(to, welded_.tolerance());
+      if (a != b) crease_segments_[p].push_back(segment(a, b));
+    }
+    auto& list = crease_segments_[p];
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  cuts_.assign(segments_.size(), {});
+  cut_at_crossings();
+  cut_at_points();
+}
+
 void ContactGraph::make_atoms() {
   std::unordered_map<std::uint64_t, int> atom_of_ends;
   atoms_of_segment_.resize(segments_.size());
   for (std::size_t i = 0; i < segments_.size(); ++i) {
-    std::vector<int> chain{segments_[i].a};
-    const auto append = [&chain](int point) {
-      if (std::find(chain.begin(), chain.end(), point) == chain.end()) chain.push_back(point);
-    };
-    for (const auto& [t, point] : cuts_[i]) {
-      if (point != segments_[i].b) append(point);
-    }
-    append(segments_[i].b);
-    for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
-      const int a = std::min(chain[k], chain[k + 1]), b = std::max(chain[k], chain[k + 1]);
+    const std::vector<int> points = chain(static_cast<int>(i));
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+      const int a = std::min(points[k], points[k + 1]), b = std::max(points[k], points[k + 1]);
       const auto [entry, is_new] =
           atom_of_ends.try_emplace(ends_key(a, b), static_cast<int>(atoms_.size()));
       if (is_new) {
@@ -161,19 +225,25 @@ std::vector<int> ContactGraph::atoms_of_boundary(int index) const {
   return atoms;
 }
 
-std::vector<int> ContactGraph::contact_atoms(int index) const {
+std::vector<int> ContactGraph::atoms_of(const std::vector<int>& segments) const {
   std::vector<int> atoms;
-  if (contact_segments_[index].empty()) return atoms;
-  for (int s : contact_segments_[index]) {
+  for (const int s : segments) {
     atoms.insert(atoms.end(), atoms_of_segment_[s].begin(), atoms_of_segment_[s].end());
   }
   std::sort(atoms.begin(), atoms.end());
   atoms.erase(std::unique(atoms.begin(), atoms.end()), atoms.end());
-  const std::vector<int> boundary = atoms_of_boundary(index);
-  std::vector<int> inside;
-  std::set_difference(atoms.begin(), atoms.end(), boundary.begin(), boundary.end(),
-                      std::back_inserter(inside));
-  return inside;
+  return atoms;
+}
+
+std::vector<int> ContactGraph::contact_atoms(int index) const {
+  if (contact_segments_[index].empty()) return {};
+  return without(atoms_of(contact_segments_[index]), atoms_of_boundary(index));
+}
+
+std::vector<int> ContactGraph::crease_atoms(int index) const {
+  if (crease_segments_[index].empty()) return {};
+  return without(without(atoms_of(crease_segments_[index]), atoms_of_boundary(index)),
+                 contact_atoms(index));
 }
 
 // Opposite edges of four-sided facets get equal counts where their lengths nearly agree, so that a
@@ -258,15 +328,19 @@ FacetOutline ContactGraph::outline(int index) const {
       }
     }
   }
-  for (int c : contact_atoms(index)) {
-    const Atom& atom = atoms_[c];
-    int from = atom.a;
-    for (int k = 0; k < atom.pieces - 1; ++k) {
-      outline.contacts.push_back({from, atom.first_division + k});
-      from = atom.first_division + k;
+  const auto add_pieces = [&](const std::vector<int>& atoms, std::vector<std::array<int, 2>>& to) {
+    for (int c : atoms) {
+      const Atom& atom = atoms_[c];
+      int from = atom.a;
+      for (int k = 0; k < atom.pieces - 1; ++k) {
+        to.push_back({from, atom.first_division + k});
+        from = atom.first_division + k;
+      }
+      to.push_back({from, atom.b});
     }
-    outline.contacts.push_back({from, atom.b});
-  }
+  };
+  add_pieces(contact_atoms(index), outline.contacts);
+  add_pieces(crease_atoms(index), outline.creases);
   return outline;
 }
 

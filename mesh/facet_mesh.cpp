@@ -36,7 +36,7 @@ void make_element(const std::vector<int>& loop, const std::vector<Vector3d>& poi
 // A facet no larger than an element.
 bool make_single_element(const FacetPlane& plane, const FacetOutline& outline,
                          const std::vector<Vector3d>& points, FacetMesh& mesh) {
-  if (outline.loops.size() != 1 || !outline.contacts.empty()) return false;
+  if (outline.loops.size() != 1 || outline.has_lines()) return false;
   const std::vector<int>& loop = outline.loops.front();
   const int n = static_cast<int>(loop.size());
   if (n != 3 && n != 4) return false;
@@ -88,7 +88,7 @@ std::vector<std::vector<int>> four_sides(const FacetPlane& plane, const std::vec
 // where the sides are divided evenly).
 bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
                const std::vector<Vector3d>& points, const CutSize& size, FacetMesh& mesh) {
-  if (outline.loops.size() != 1 || !outline.contacts.empty()) return false;
+  if (outline.loops.size() != 1 || outline.has_lines()) return false;
   const auto sides = four_sides(plane, outline.loops.front(), points);
   if (sides.empty()) return false;
   const int nx = static_cast<int>(sides[0].size()), ny = static_cast<int>(sides[1].size());
@@ -196,6 +196,13 @@ FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
   if (make_grid(plane, outline, points, size, mesh)) return mesh;
   mesh = free_mesh(plane, outline, points, size);
   if (is_sound(plane, mesh)) return mesh;
+  if (!outline.creases.empty()) {
+    FacetOutline less = outline;
+    less.creases.clear();
+    mesh = mesh_facet(plane, less, points, size);
+    mesh.lacks_creases = true;
+    return mesh;
+  }
   // First give up the contact lines, then the points other facets put on the boundary.
   const FacetOutline bare = bare_outline(plane);
   for (const FacetOutline& less : {FacetOutline{.loops = outline.loops}, bare}) {

@@ -21,6 +21,7 @@ struct FacetMesh {
   std::vector<BorderEdge> border{};
   /// Contact lines had to be left out: they lie so close together that rounding folds elements up.
   bool is_flawed = false;
+  bool lacks_creases = false;  ///< the same of creases
 
   int patch_count() const { return static_cast<int>(first_element.size()) - 1; }
 };
@@ -28,7 +29,8 @@ struct FacetMesh {
 /// Cuts a facet into elements and patches: one element if it is small; a grid of quadrilaterals if
 /// it has four sides; else a constrained Delaunay triangulation of boundary, contact lines and a
 /// grid of inner points, paired into quadrilaterals. Vertices on contact lines are split, one for
-/// each side. Empty if the elements do not add up to the polygon (its boundary crosses itself).
+/// each side; on creases both sides share them. Empty if the elements do not add up to the polygon
+/// (its boundary crosses itself).
 FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
                      const std::vector<Eigen::Vector3d>& points, const CutSize& size);
 

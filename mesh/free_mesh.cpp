@@ -24,7 +24,9 @@ struct LocalLines {
   std::vector<int> point{};    // number in ContactGraph::points
   std::vector<Vector2d> xy{};  // the same in the facet's frame
   std::vector<Pair> boundary{};
-  std::vector<Pair> all{};
+  std::vector<Pair> all{};   // boundary, contacts, creases
+  int hard_count = 0;        // of `all`, without the creases
+  std::set<Pair> creases{};  // lower number first
   Eigen::AlignedBox2d box{};
 };
 
@@ -55,6 +57,12 @@ LocalLines local_lines(const FacetPlane& plane, const FacetOutline& outline,
   for (const Vector2d& q : lines.xy) lines.box.extend(q);
   lines.all = lines.boundary;
   for (const auto& [a, b] : outline.contacts) lines.all.push_back({number(a), number(b)});
+  lines.hard_count = static_cast<int>(lines.all.size());
+  for (const auto& [p, q] : outline.creases) {
+    const int a = number(p), b = number(q);
+    lines.all.push_back({a, b});
+    lines.creases.insert({std::min(a, b), std::max(a, b)});
+  }
   return lines;
 }
 
@@ -115,12 +123,14 @@ std::vector<char> inside_by_place(const FacetPlane& plane, const PlanarTriangula
 // line share one.
 struct SplitTriangles {
   std::vector<std::array<int, 3>> triangles{};
-  std::vector<std::array<int, 3>> neighbor{};  // -1 across lines and the boundary
+  std::vector<std::array<int, 3>> neighbor{};  // -1 across contact lines and the boundary
+  std::vector<std::array<int, 3>> partner{};   // the same, and -1 across creases
   std::vector<int> source{};                   // point of the triangulation, per vertex
   std::vector<Vector2d> xy{};
 };
 
-SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<char>& inside) {
+SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<char>& inside,
+                              const std::set<Pair>& creases) {
   std::vector<int> kept(t.triangles.size(), -1);
   int count = 0;
   for (std::size_t i = 0; i < t.triangles.size(); ++i) {
@@ -132,9 +142,14 @@ SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<ch
     if (!inside[i]) continue;
     source.push_back(t.triangles[i]);
     auto& neighbor = split.neighbor.emplace_back();
+    auto& partner = split.partner.emplace_back();
     for (int c = 0; c < 3; ++c) {
       const int n = t.neighbor[i][c];
-      neighbor[c] = n < 0 || t.constrained[i][c] ? -1 : kept[n];
+      const int a = t.triangles[i][(c + 1) % 3], b = t.triangles[i][(c + 2) % 3];
+      const bool is_line = t.constrained[i][c];
+      const bool is_crease = is_line && creases.contains({std::min(a, b), std::max(a, b)});
+      neighbor[c] = n < 0 || (is_line && !is_crease) ? -1 : kept[n];
+      partner[c] = is_crease ? -1 : neighbor[c];
     }
   }
   // Corners (3 t + c) joined across every open edge: what stays joined is one fan, one vertex.
@@ -176,7 +191,7 @@ SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<ch
 // Elements in the order of their patches, with all that FacetMesh wants.
 FacetMesh assemble(const FacetPlane& plane, const SplitTriangles& split, const LocalLines& lines,
                    const std::vector<Vector3d>& points, const CellGrid& patches) {
-  const std::vector<int> partner = pair_triangles(split.xy, split.triangles, split.neighbor);
+  const std::vector<int> partner = pair_triangles(split.xy, split.triangles, split.partner);
   const int triangle_count = static_cast<int>(split.triangles.size());
   std::vector<std::array<int, 4>> corners;
   std::vector<PlacedElement> placed;
@@ -275,12 +290,18 @@ FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
                     const std::vector<Vector3d>& points, const CutSize& size) {
   const LocalLines lines = local_lines(plane, outline, points);
   std::vector<Vector2d> xy = lines.xy;
-  const auto inner = inner_points(cell_grid(lines.box, size), lines.xy, lines.boundary, lines.all);
+  const auto inner = inner_points(cell_grid(lines.box, size), lines.xy, lines.boundary,
+                                  {lines.all.begin(), lines.all.begin() + lines.hard_count},
+                                  {lines.all.begin() + lines.hard_count, lines.all.end()});
   xy.insert(xy.end(), inner.begin(), inner.end());
   const PlanarTriangulation triangulation = triangulate_places(xy, lines, size.element_size());
-  const SplitTriangles split = split_at_lines(
-      triangulation, triangulation.is_as_given ? inside_by_parity(triangulation, lines.boundary)
-                                               : inside_by_place(plane, triangulation));
+  // A crease that had to be cut is not known by its ends.
+  if (!triangulation.is_as_given && !lines.creases.empty()) return {};
+  const SplitTriangles split =
+      split_at_lines(triangulation,
+                     triangulation.is_as_given ? inside_by_parity(triangulation, lines.boundary)
+                                               : inside_by_place(plane, triangulation),
+                     lines.creases);
   if (split.triangles.empty()) return {};
   return assemble(plane, split, lines, points, patch_grid(lines.box, size));
 }

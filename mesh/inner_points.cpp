@@ -16,7 +16,8 @@ int CellGrid::cell(const Vector2d& q) const {
 
 std::vector<Vector2d> inner_points(const CellGrid& grid, const std::vector<Vector2d>& xy,
                                    const std::vector<std::array<int, 2>>& boundary,
-                                   const std::vector<std::array<int, 2>>& lines) {
+                                   const std::vector<std::array<int, 2>>& lines,
+                                   const std::vector<std::array<int, 2>>& creases) {
   const int columns = grid.nx - 1, rows = grid.ny - 1;
   if (columns < 1 || rows < 1) return {};
   const double dx = grid.dx(), dy = grid.dy();
@@ -28,9 +29,11 @@ std::vector<Vector2d> inner_points(const CellGrid& grid, const std::vector<Vecto
   // Half a spacing: nearer points make slivers against the line, leaving out farther ones makes
   // elements up to one and a half spacings long.
   constexpr double half = 0.5 - 1e-6;  // a line midway between two rows leaves both
-  const double reach = half * std::min(dx, dy);
+  // Strips between creases, 1 to 2 spacings wide, would often be left without a row in the middle.
+  constexpr double near_crease = 0.3;
   std::vector<char> is_near(static_cast<std::size_t>(columns) * rows, 0);
-  for (const auto& [a, b] : lines) {
+  const auto keep_clear = [&](const std::array<int, 2>& line, double reach) {
+    const auto& [a, b] = line;
     const Vector2d from = xy[a].cwiseMin(xy[b]) - low, to = xy[a].cwiseMax(xy[b]) - low;
     const int i0 = std::max(0, static_cast<int>(std::floor((from.x() - reach) / dx)) - 1);
     const int i1 = std::min(columns - 1, static_cast<int>(std::ceil((to.x() + reach) / dx)));
@@ -41,7 +44,9 @@ std::vector<Vector2d> inner_points(const CellGrid& grid, const std::vector<Vecto
         if (segment_distance(at(i, j), xy[a], xy[b]) < reach) is_near[j * columns + i] = 1;
       }
     }
-  }
+  };
+  for (const auto& line : lines) keep_clear(line, half * std::min(dx, dy));
+  for (const auto& line : creases) keep_clear(line, near_crease * std::min(dx, dy));
   std::vector<std::vector<double>> crossings(rows);
   for (const auto& [a, b] : boundary) {
     const Vector2d &p = xy[a], &q = xy[b];

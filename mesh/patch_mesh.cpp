@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "mesh/contact_graph.h"
+#include "mesh/critical_lines.h"
 #include "mesh/facet_plane.h"
 #include "mesh/patch_builder.h"
 #include "scene/parallel.h"
@@ -81,6 +82,11 @@ void check(const Scene& scene, const MeshOptions& options) {
     throw InputError(
         fmt::format("{} patches are asked for; give at least 1", options.auto_patch_count));
   }
+  if (!(options.discontinuity_growth >= 0.0)) {
+    throw InputError(fmt::format(
+        "discontinuity lines may add {} times the elements; give a number that is not negative",
+        options.discontinuity_growth));
+  }
   constexpr int most_per_edge = 1000;
   if (options.elements_per_patch_edge < 1 || options.elements_per_patch_edge > most_per_edge) {
     throw InputError(fmt::format("{} elements along a patch edge are asked for; give 1 to {}",
@@ -98,19 +104,56 @@ void check_count(const Scene& scene, double size, const CutSize& cut) {
       most_elements / 1e6));
 }
 
+// What discontinuity meshing left out.
+std::vector<std::string> discontinuity_notes(const CriticalLines& critical,
+                                             const CreaseCounts& counts, int without_creases) {
+  std::vector<std::string> notes;
+  if (critical.emitters_left_out > 0) {
+    notes.push_back(fmt::format(
+        "discontinuity lines: of {} emitting polygons the {} most powerful were followed",
+        critical.emitters + critical.emitters_left_out, critical.emitters));
+  }
+  if (critical.wedges_left_out > 0) {
+    notes.push_back(fmt::format(
+        "discontinuity lines: of {} critical surfaces the {} most important were followed",
+        critical.wedges + critical.wedges_left_out, critical.wedges));
+  }
+  if (counts.over_budget > 0) {
+    notes.push_back(fmt::format(
+        "discontinuity lines: the {} least important of {} were left out; they would add too many "
+        "elements",
+        counts.over_budget,
+        counts.drawn + counts.resolved + counts.too_close + counts.over_budget));
+  }
+  if (without_creases > 0) {
+    notes.push_back(fmt::format(
+        "discontinuity lines: left out on {} polygons, where they would fold elements up",
+        without_creases));
+  }
+  return notes;
+}
+
 // The polygon facets of a scene cut to size, points joined with one tolerance.
 struct FacetMeshes {
   std::vector<FacetPlane> planes{};
   std::vector<FacetMesh> meshes{};  ///< one per plane
   int flawed = 0;
+  std::vector<std::string> notes{};
 };
 
 FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut,
-                        const Progress& progress) {
+                        const MeshOptions& options) {
+  const Progress& progress = options.progress;
   FacetMeshes result;
   WeldedPoints points(tolerance);
   result.planes = facet_planes(scene, points);
-  const ContactGraph graph(scene, result.planes, std::move(points), cut, progress);
+  CriticalLines critical;
+  if (options.discontinuity)
+    critical = critical_lines(scene, result.planes, {.progress = progress});
+  const double most_added =
+      options.discontinuity_growth * predicted_elements(scene, cut.element_size());
+  const ContactGraph graph(scene, result.planes, std::move(points), cut, critical.lines, most_added,
+                           progress);
   const int count = static_cast<int>(result.planes.size());
   result.meshes.resize(count);
   constexpr int batch = 1024;  // facets between two looks at the stop request
@@ -122,16 +165,23 @@ FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut
       }
     });
   }
-  for (const FacetMesh& mesh : result.meshes) result.flawed += mesh.is_flawed ? 1 : 0;
+  int without_creases = 0;
+  for (const FacetMesh& mesh : result.meshes) {
+    result.flawed += mesh.is_flawed ? 1 : 0;
+    without_creases += mesh.lacks_creases ? 1 : 0;
+  }
+  if (options.discontinuity) {
+    result.notes = discontinuity_notes(critical, graph.crease_counts(), without_creases);
+  }
   return result;
 }
 
 // The smallest tolerance with which all contact lines can be kept; else the one that keeps most.
-FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const Progress& progress) {
+FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOptions& options) {
   const double diagonal = scene_bounds(scene).diagonal();
   FacetMeshes best;
   for (const double share : weld_shares) {
-    FacetMeshes next = mesh_facets(scene, share * diagonal, cut, progress);
+    FacetMeshes next = mesh_facets(scene, share * diagonal, cut, options);
     const bool is_first = share == weld_shares.front();
     if (!is_first && next.flawed >= best.flawed) break;
     best = std::move(next);
@@ -164,7 +214,7 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
   const CutSize cut{.patch_size = size, .elements_per_edge = options.elements_per_patch_edge};
   check_count(scene, size, cut);
   report(options.progress, "mesh", 0.0);
-  FacetMeshes facet_meshes = mesh_facets(scene, cut, options.progress);
+  FacetMeshes facet_meshes = mesh_facets(scene, cut, options);
 
   report(options.progress, "mesh", 0.9);
   PatchBuilder builder(scene, options.smooth_angle_degrees);
@@ -186,8 +236,10 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
     builder.add_facet(f, facets[f].surface, facet_meshes.planes[plane].normal, std::move(mesh));
     ++plane;
   }
+  std::vector<std::string> notes = std::move(facet_meshes.notes);
   facet_meshes = {};
   PatchMesh mesh = builder.finish();
+  mesh.notes = std::move(notes);
   report(options.progress, "mesh", 1.0);
   return mesh;
 }

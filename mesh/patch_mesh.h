@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <array>
+#include <string>
 #include <vector>
 
 #include "scene/progress.h"
@@ -32,7 +33,8 @@ struct SphereGrid {
 /// One array per quantity. Conforming: no vertex lies inside another element's edge. Vertices are
 /// shared only where radiosity is continuous: within one side of one facet, or across facets of one
 /// surface whose normals differ by less than MeshOptions::smooth_angle_degrees; never across
-/// contact lines, and not at reflex corners, where each element has a vertex of its own.
+/// contact lines (D0; across D1 and D2 lines they are), and not at reflex corners, where each
+/// element has a vertex of its own.
 struct PatchMesh {
   HalfedgeMesh elements{};
 
@@ -58,6 +60,7 @@ struct PatchMesh {
   std::vector<char> is_back{};       ///< 1: the patch faces away from its facet's front
 
   std::vector<SphereGrid> sphere_grids{};
+  std::vector<std::string> notes{};  ///< what meshing had to leave out: one sentence each
 
   int patch_count() const { return static_cast<int>(area.size()); }
   int element_count() const { return static_cast<int>(patch.size()); }
@@ -76,12 +79,19 @@ struct MeshOptions {
   int auto_patch_count = 1600;
   /// Elements along a patch edge, >= 1. More follow shadows more closely at the square of the cost.
   int elements_per_patch_edge = 2;
+  /// Cut receivers along the critical lines of emitters, most important first: D1, and D2 where the
+  /// penumbra is not much wider than the elements.
+  bool discontinuity = false;
+  /// Elements that may add, as a share of those there would be without: what is left out is said in
+  /// PatchMesh::notes.
+  double discontinuity_growth = 1.0;
   double smooth_angle_degrees = 5.0;  ///< facets of one surface meeting at less share vertices
   Progress progress{};
 };
 
 /// Cuts the scene into patches and elements. Coplanar touching and intersecting surfaces are cut
-/// along their contact lines first, so no element straddles one; parts of a facet that are covered
+/// along their contact lines first, so no element straddles one, and with `discontinuity` no
+/// element straddles an important bound of a shadow; parts of a facet that are covered
 /// by another surface lying on it become elements of their own. Throws InputError for a scene
 /// without surfaces, or when `max_patch_size` asks for more than 20 million elements.
 PatchMesh build_patches(const Scene& scene, const MeshOptions& options = {});

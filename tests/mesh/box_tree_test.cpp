@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -32,6 +34,18 @@ TEST(BoxTree, FindsWhatLookingAtEveryBoxFinds) {
       for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
         if (boxes[i].intersects(query)) expected.push_back(i);
       }
+      ASSERT_EQ(found, expected);
+      const Eigen::Hyperplane<double, 3> plane(Vector3d(1 + q, 2, 50 - q).normalized(),
+                                               query.center());
+      tree.find_on_plane(query, plane, found);
+      std::erase_if(expected, [&](int i) {
+        bool above = false, below = false;
+        for (int c = 0; c < 8; ++c) {
+          const auto corner = static_cast<BoxTree::Box::CornerType>(c);
+          (plane.signedDistance(boxes[i].corner(corner)) > 0.0 ? above : below) = true;
+        }
+        return !(above && below);
+      });
       ASSERT_EQ(found, expected);
     }
   }

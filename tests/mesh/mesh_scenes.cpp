@@ -201,6 +201,54 @@ void expect_twins_agree(const PatchMesh& mesh) {
 
 }  // namespace
 
+int Numbers::below(int n) {
+  state_ = state_ * 1664525u + 1013904223u;
+  return static_cast<int>((state_ >> 8) % static_cast<std::uint32_t>(n));
+}
+
+double Numbers::between(double low, double high) {
+  return low + (high - low) * below(1 << 20) / 0x1p20;
+}
+
+int add_lamp(Scene& scene) {
+  Material lamp = diffuse("lamp", 0.0f);
+  lamp.emission = constant_spectrum(scene.bands, 1.0f);
+  scene.materials.push_back(lamp);
+  return static_cast<int>(scene.materials.size()) - 1;
+}
+
+Scene boxes_under_a_lamp(std::uint32_t seed) {
+  Numbers numbers(seed);
+  Scene scene = empty_scene();
+  const int lamp = add_lamp(scene);
+  add_polygon(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const double x = numbers.between(0.1, 0.7), y = numbers.between(0.1, 0.7);
+  const double height = seed % 3 == 0 ? 0.75 : numbers.between(0.5, 1.0);
+  add_polygon(
+      scene, "lamp",
+      {{x, y, height}, {x, y + 0.2, height}, {x + 0.15, y + 0.2, height}, {x + 0.2, y, height}}, {},
+      lamp);
+  const bool on_lattice = seed % 2 == 0;
+  const int count = 1 + numbers.below(4);
+  for (int b = 0; b < count; ++b) {
+    Vector3d low, extent;
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = on_lattice ? numbers.below(7) / 8.0 : numbers.between(0.0, 0.8);
+      extent[axis] = on_lattice ? (1 + numbers.below(3)) / 8.0 : numbers.between(0.05, 0.4);
+    }
+    if (numbers.below(2) == 0) low.z() = 0.0;
+    add_box(scene, "box", low, low + extent, numbers.below(2) == 0);
+  }
+  if (seed % 5 == 0) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(1.0 + seed, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    for (Surface& surface : scene.surfaces) {
+      for (Vector3d& v : std::get<PolygonMesh>(surface.shape).vertices) v = turn * v;
+    }
+  }
+  return scene;
+}
+
 void expect_consistent(const PatchMesh& mesh) {
   const int elements = mesh.element_count(), patches = mesh.patch_count();
   ASSERT_GT(patches, 0);

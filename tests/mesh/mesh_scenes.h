@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,25 @@ Scene cornell_box();
 
 /// A height field of 2 n^2 triangles over the unit square.
 Scene terrain(int n);
+
+/// Uniform numbers that are the same on every machine.
+class Numbers {
+ public:
+  explicit Numbers(std::uint32_t seed) : state_(seed * 2654435761u + 12345u) {}
+  int below(int n);
+  double between(double low, double high);
+
+ private:
+  std::uint32_t state_;
+};
+
+/// Adds a black material that emits 1 in every band from its front; its number.
+int add_lamp(Scene& scene);
+
+/// A floor (facet 0), a lamp above it that faces down (facet 1) and one to four boxes; with even
+/// seeds they stand on a lattice and touch in every way, with odd ones they cross. Every fifth is
+/// turned.
+Scene boxes_under_a_lamp(std::uint32_t seed);
 
 /// Checks every promise of PatchMesh's comments that can be told from the mesh alone.
 void expect_consistent(const PatchMesh& mesh);
