@@ -14,7 +14,8 @@ using Eigen::Array4f;
 using Eigen::Vector3d;
 
 bool is_front_polygon(const PatchMesh& mesh, int patch) {
-  return mesh.is_back[patch] == 0 && sphere_grid_of(mesh, mesh.facet[patch]) == nullptr;
+  const int facet = mesh.facet[mesh.first_element[patch]];
+  return mesh.is_back[patch] == 0 && sphere_grid_of(mesh, facet) == nullptr;
 }
 
 // (alpha, beta) of Primitive.
@@ -110,7 +111,7 @@ CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh,
       if (!is_front_polygon(mesh, p)) continue;
       for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
         if (mesh.corner_count(e) != corner_count) continue;
-        Primitive primitive{.element = e, .facet = mesh.facet[p]};
+        Primitive primitive{.element = e, .facet = mesh.facet[e]};
         const auto& c = mesh.corners[e];
         if (corner_count == 3) {
           geometry.triangles.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2])});

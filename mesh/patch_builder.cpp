@@ -161,6 +161,7 @@ void PatchBuilder::emit_side(const Piece& piece, bool is_back, std::vector<int>&
       std::array<int, 4> c = piece.mesh.corners[e];
       for (int& corner : c) corner = corner < 0 ? -1 : vertex(corner);
       out.patch.push_back(patch);
+      out.facet.push_back(piece.facet);
       out.corners.push_back(is_back ? turned(c) : c);
       element_area_.push_back(piece.sphere >= 0 ? sphere_area_[piece.sphere][e]
                                                 : polygon_area(piece.mesh, piece.mesh.corners[e]));
@@ -169,7 +170,6 @@ void PatchBuilder::emit_side(const Piece& piece, bool is_back, std::vector<int>&
     patch_area_.push_back(area);
     out.surface.push_back(piece.surface);
     out.material.push_back(scene_.surfaces[piece.surface].material);
-    out.facet.push_back(piece.facet);
     out.is_back.push_back(is_back ? 1 : 0);
   }
 }

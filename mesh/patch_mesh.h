@@ -38,6 +38,7 @@ struct PatchMesh {
 
   // Per element. The elements of patch i are first_element[i] .. first_element[i+1] - 1.
   std::vector<int> patch{};
+  std::vector<int> facet{};  ///< scene-wide facet number (see scene_facets)
   /// Vertices counter-clockwise seen from the side the element faces; [3] is -1 for a triangle. The
   /// same as the half-edge mesh's faces, flat for inner loops.
   std::vector<std::array<int, 4>> corners{};
@@ -54,14 +55,21 @@ struct PatchMesh {
   BandArray emission{};              ///< M_i, W/m^2, patches x bands
   std::vector<int> surface{};        ///< index into Scene::surfaces
   std::vector<int> material{};       ///< index into Scene::materials
-  std::vector<int> facet{};          ///< scene-wide facet number (see scene_facets)
-  std::vector<char> is_back{};       ///< 1: the patch faces away from its facet's front
+  std::vector<char> is_back{};       ///< 1: the patch faces away from its facets' fronts
 
   std::vector<SphereGrid> sphere_grids{};
 
   int patch_count() const { return static_cast<int>(area.size()); }
   int element_count() const { return static_cast<int>(patch.size()); }
   int vertex_count() const { return static_cast<int>(vertex_normal.size()); }
+  /// The facet that holds all of a patch; -1: the patch reaches over several, and is not flat.
+  int facet_of(int p) const {
+    const int first = facet[first_element[p]];
+    for (int e = first_element[p] + 1; e < first_element[p + 1]; ++e) {
+      if (facet[e] != first) return -1;
+    }
+    return first;
+  }
   int corner_count(int element) const { return corners[element][3] < 0 ? 3 : 4; }
   Eigen::Vector3d position(int vertex) const {
     const auto& p = elements.point(HalfedgeMesh::VertexHandle(vertex));

@@ -106,8 +106,8 @@ class PairVisibility {
       rays[k] = {.origin = a.position,
                  .direction = way,
                  .t_max = 1.0,
-                 .origin_group = mesh_.facet[i],
-                 .target_group = mesh_.facet[j]};
+                 .origin_group = mesh_.facet[a.element],
+                 .target_group = mesh_.facet[b.element]};
     }
     caster_.occluded({rays.data(), size}, {blocked.data(), size});
     for (std::size_t k = 0; k < size; ++k) {

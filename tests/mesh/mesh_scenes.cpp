@@ -169,7 +169,7 @@ void expect_patches_connected(const PatchMesh& mesh) {
         open.push_back(f);
       }
     }
-    ASSERT_EQ(reached, count) << "patch " << p << " of facet " << mesh.facet[p]
+    ASSERT_EQ(reached, count) << "patch " << p << " of facet " << mesh.facet_of(p)
                               << " is not connected";
   }
 }
@@ -186,7 +186,7 @@ void expect_twins_agree(const PatchMesh& mesh) {
     if (t < 0) continue;
     ASSERT_EQ(mesh.twin[t], e);
     ASSERT_NE(mesh.is_back[mesh.patch[t]], mesh.is_back[mesh.patch[e]]);
-    ASSERT_EQ(mesh.facet[mesh.patch[t]], mesh.facet[mesh.patch[e]]);
+    ASSERT_EQ(mesh.facet[t], mesh.facet[e]);
     ASSERT_EQ(mesh.element_area[t], mesh.element_area[e]);
     const PatchPoint a = element_center(mesh, e), b = element_center(mesh, t);
     ASSERT_NEAR((a.position - b.position).norm(), 0.0, 1e-12 * (1.0 + a.position.norm()));
@@ -241,7 +241,7 @@ void expect_consistent(const PatchMesh& mesh) {
 double side_area(const PatchMesh& mesh, int facet, bool back) {
   double sum = 0.0;
   for (int p = 0; p < mesh.patch_count(); ++p) {
-    if (mesh.facet[p] == facet && (mesh.is_back[p] != 0) == back) sum += mesh.area[p];
+    if (mesh.facet_of(p) == facet && (mesh.is_back[p] != 0) == back) sum += mesh.area[p];
   }
   return sum;
 }
@@ -280,11 +280,14 @@ int hanging_vertices(const PatchMesh& mesh) {
   const auto patch_of = [&](HalfedgeMesh::HalfedgeHandle h) {
     return mesh.patch[mesh.elements.face_handle(h).idx()];
   };
+  const auto facet_of = [&](HalfedgeMesh::HalfedgeHandle h) {
+    return mesh.facet[mesh.elements.face_handle(h).idx()];
+  };
   const auto is_inner_edge = [&](HalfedgeMesh::HalfedgeHandle h) {
     const auto from = mesh.elements.from_vertex_handle(h), to = mesh.elements.to_vertex_handle(h);
     const auto& there = edges_at[std::minmax(place(from.idx()), place(to.idx()))];
     return std::any_of(there.begin(), there.end(), [&](auto other) {
-      if (other == h || mesh.facet[patch_of(other)] != mesh.facet[patch_of(h)]) return false;
+      if (other == h || facet_of(other) != facet_of(h)) return false;
       return patch_of(other) == patch_of(h) || mesh.elements.to_vertex_handle(other) == from ||
              mesh.elements.from_vertex_handle(other) == to;
     });
@@ -292,14 +295,14 @@ int hanging_vertices(const PatchMesh& mesh) {
   std::vector<std::set<int>> facets_of(mesh.vertex_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
     for (int i = 0; i < mesh.corner_count(e); ++i) {
-      facets_of[mesh.corners[e][i]].insert(mesh.facet[mesh.patch[e]]);
+      facets_of[mesh.corners[e][i]].insert(mesh.facet[e]);
     }
   }
   std::set<std::array<double, 3>> hanging;
   for (auto h : mesh.elements.halfedges()) {
     const auto face = mesh.elements.face_handle(h);
     if (!face.is_valid()) continue;
-    const int facet = mesh.facet[mesh.patch[face.idx()]];
+    const int facet = mesh.facet[face.idx()];
     const bool is_inner = is_inner_edge(h);
     const Vector3d a = mesh.position(mesh.elements.from_vertex_handle(h).idx());
     const Vector3d d = mesh.position(mesh.elements.to_vertex_handle(h).idx()) - a;

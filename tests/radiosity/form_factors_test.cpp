@@ -70,7 +70,7 @@ TEST(FormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
   Eigen::ArrayXXd F = Eigen::ArrayXXd::Zero(6, 6);  // face to face, area-weighted
   for (int i = 0; i < s.mesh.patch_count(); ++i) {
     for (const FormFactor& f : s.form_factors->row(i)) {
-      F(s.mesh.facet[i], s.mesh.facet[f.patch]) += s.mesh.area[i] * f.value;
+      F(s.mesh.facet_of(i), s.mesh.facet_of(f.patch)) += s.mesh.area[i] * f.value;
     }
   }
   // 16 patches a face, each end casts: 4 standard errors of a binomial share of 0.2, an upper bound
@@ -94,7 +94,7 @@ TEST(FormFactors, OpenTopLetsOutWhatTheClosedFormSays) {
   const Solved s = cast(scene, {.rays_per_patch = 4096});
   double floor_escapes = 0.0;
   for (int i = 0; i < s.mesh.patch_count(); ++i) {
-    if (s.mesh.facet[i] == 4) floor_escapes += s.mesh.area[i] * s.form_factors->escaped(i)[0];
+    if (s.mesh.facet_of(i) == 4) floor_escapes += s.mesh.area[i] * s.form_factors->escaped(i)[0];
   }
   const double se = std::sqrt(0.2 * 0.8 / (16.0 * 4096));
   EXPECT_NEAR(floor_escapes, 0.19982489569838738, 4 * se);
@@ -115,7 +115,7 @@ TEST(FormFactors, SmallEmitterIsExactAndCloses) {
   EXPECT_LT(worst_reciprocity(s), 1e-6);
 
   for (int i = 0; i < s.mesh.patch_count(); ++i) {
-    if (s.mesh.facet[i] != 4) continue;  // floor: nothing between it and the lamp
+    if (s.mesh.facet_of(i) != 4) continue;  // floor: nothing between it and the lamp
     double F = 0.0;
     for (const FormFactor& f : s.form_factors->row(i)) {
       if (s.mesh.surface[f.patch] == 6) F += f.value;
@@ -137,11 +137,11 @@ TEST(FormFactors, PerfectMirrorPassesEverythingOn) {
   // opposed unit square at distance 2: F = 0.06858959... (parallel unit squares, closed form).
   double back = 0.0, area = 0.0;
   for (int i = 0; i < s.mesh.patch_count(); ++i) {
-    if (s.mesh.facet[i] != 1) continue;
+    if (s.mesh.facet_of(i) != 1) continue;
     area += s.mesh.area[i];
     const SpecularRow row = s.form_factors->specular_row(i);
     for (std::size_t e = 0; e < row.patch.size(); ++e) {
-      if (s.mesh.facet[row.patch[e]] == 1) back += s.mesh.area[i] * row.value(e, 0);
+      if (s.mesh.facet_of(row.patch[e]) == 1) back += s.mesh.area[i] * row.value(e, 0);
     }
   }
   const auto parallel_squares = [](double distance) {
