@@ -85,6 +85,9 @@ struct MeshOptions {
   /// Elements along a patch edge, >= 1. More follow shadows more closely at the square of the cost.
   int elements_per_patch_edge = 2;
   double smooth_angle_degrees = 5.0;  ///< facets of one surface meeting at less share vertices
+  /// Facets of one surface smaller than a patch share one as long as their normals stay within this
+  /// of its mean. 0: no patch reaches over several facets.
+  double curve_angle_degrees = 20.0;
   Progress progress{};
 };
 
