@@ -9,6 +9,7 @@ namespace lightwell {
 struct FacetPatch {
   int surface = 0;
   bool may_join = true;
+  int facet = 0;  ///< lines on which others stand may part its patches: they are not joined again
   double area = 0.0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit
   Eigen::AlignedBox3d box{};
@@ -28,11 +29,13 @@ struct FacetGroupOptions {
 /// curved surface has as many as its area asks for and not as many as it has facets (face clusters;
 /// Willmott, Heckbert & Garland 1999, "Face cluster radiosity").
 ///
-/// From the largest facet on, its neighbours across edges are added, nearest first, as long as they
-/// stay within 0.7 patch sizes of its middle and their normals within 3/4 of the angle of its own
-/// and the whole of it of the mean. What then is smaller than 15 % of a patch is joined, connected
-/// or not, with others of its surface, its cell of a grid of the patch size and its direction (of
-/// 54): a plant's leaves, a heap of bolts. Result: by patch of a facet the lowest one of its group.
+/// From the largest facet on, its neighbours across edges are added, nearest first, while their
+/// middles are within 0.7 patch sizes of its middle and their normals within 3/4 of the angle of
+/// its own; what then is not within the angle of the mean is let go of. Less than half a patch
+/// joins a neighbour that has room. Whole facets that are less than 15 % of a patch still are
+/// joined, connected or not, with others of its surface, its cell of a grid of the patch size
+/// and their direction (of 54): a plant's leaves, a heap of bolts. Result: by patch of a facet the
+/// lowest one of its group.
 std::vector<int> group_facets(const std::vector<FacetPatch>& patches,
                               const std::vector<FacetPatchContact>& contacts,
                               const FacetGroupOptions& options);

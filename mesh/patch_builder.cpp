@@ -156,6 +156,7 @@ FacetPatch PatchBuilder::facet_patch(const Part& part) const {
   // Emitters' patches keep to their facet, for whose light there are closed forms.
   FacetPatch patch{.surface = piece.surface,
                    .may_join = piece.sphere < 0 && !material.is_emitter(),
+                   .facet = part.piece,
                    .normal = piece.normal};
   for (int e = piece.mesh.first_element[part.patch]; e < piece.mesh.first_element[part.patch + 1];
        ++e) {

@@ -35,7 +35,7 @@ std::vector<int> elements_of(const PatchMesh& mesh, int facet, bool back = false
   std::vector<int> elements;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
-    if (mesh.facet_of(p) == facet && (mesh.is_back[p] != 0) == back) elements.push_back(e);
+    if (mesh.facet[e] == facet && (mesh.is_back[p] != 0) == back) elements.push_back(e);
   }
   return elements;
 }

@@ -35,6 +35,10 @@ Scene cornell_box();
 /// A height field of 2 n^2 triangles over the unit square.
 Scene terrain(int n);
 
+/// A ball of radius 1 about the origin as one surface of n (n - 2) triangles, n even, facing
+/// outwards, of one of empty_scene()'s materials.
+Scene triangle_ball(int n, int material);
+
 /// Checks every promise of PatchMesh's comments that can be told from the mesh alone.
 void expect_consistent(const PatchMesh& mesh);
 

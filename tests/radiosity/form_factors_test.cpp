@@ -86,6 +86,58 @@ TEST(FormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
   }
 }
 
+// Inside of a ball of triangles, in patches of many facets that see themselves: of a sphere
+// F_ij = A_j / A.
+TEST(FormFactors, PatchesOfManyFacetsSeeThemselvesAndTheRoomCloses) {
+  Scene scene;
+  const int m = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 0.0f));
+  scene.materials[m].one_sided = true;
+  PolygonMesh ball;
+  constexpr int n = 32, rings = n / 2;
+  for (int j = 0; j <= rings; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const double theta = M_PI * j / rings, phi = 2.0 * M_PI * i / n;
+      ball.vertices.emplace_back(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                 std::cos(theta));
+      const int right = (i + 1) % n;
+      if (j > 0 && j < rings) {
+        ball.facets.push_back({.boundary = {j * n + i, j * n + right, (j + 1) * n + i}});
+      }
+      if (j + 1 < rings) {
+        ball.facets.push_back({.boundary = {j * n + right, (j + 1) * n + right, (j + 1) * n + i}});
+      }
+    }
+  }
+  scene.surfaces.push_back({.name = "ball", .material = m, .shape = ball});
+  constexpr int rays = 4096;
+  for (const auto method : {FormFactorMethod::ray_cast, FormFactorMethod::automatic,
+                            FormFactorMethod::analytic, FormFactorMethod::hemicube}) {
+    const Solved s = cast(scene, {.method = method, .rays_per_patch = rays}, 0.8);
+    ASSERT_LT(s.mesh.patch_count(), 100);
+    EXPECT_LT(worst_closure(s), 1e-5);
+    EXPECT_LT(worst_reciprocity(s), 1e-5);
+    const double A = s.mesh.area.sum();
+    for (int i = 0; i < s.mesh.patch_count(); ++i) {
+      if (s.mesh.facet_of(i) >= 0) continue;
+      const Eigen::Vector3d here = element_center(s.mesh, s.mesh.first_element[i]).position;
+      // A facet does not see itself; what of the patch it does see it sees as on a sphere.
+      EXPECT_GT(form_factor(s, i, i), 0.0);
+      EXPECT_LT(form_factor(s, i, i), 2.0 * s.mesh.area[i] / A);
+      double far = 0.0, far_area = 0.0;
+      for (int j = 0; j < s.mesh.patch_count(); ++j) {
+        const Eigen::Vector3d there = element_center(s.mesh, s.mesh.first_element[j]).position;
+        if (here.dot(there) > 0.0) continue;
+        far += form_factor(s, i, j);
+        far_area += s.mesh.area[j];
+      }
+      // 4 standard errors of a share of a half, and 2 % for facets that lie inside of the sphere
+      // by 1 - cos(pi / 16).
+      const double error = 4.0 * 0.5 / std::sqrt(1.0 * rays) + 0.02;
+      EXPECT_NEAR(far, far_area / A, error) << "patch " << i;
+    }
+  }
+}
+
 TEST(FormFactors, OpenTopLetsOutWhatTheClosedFormSays) {
   Scene scene;
   const int m = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
