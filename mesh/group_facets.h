@@ -32,7 +32,7 @@ struct FacetGroupOptions {
 /// From the largest facet on, its neighbours across edges are added, nearest first, while their
 /// middles are within 0.7 patch sizes of its middle and their normals within 3/4 of the angle of
 /// its own; what then is not within the angle of the mean is let go of. Less than half a patch
-/// joins a neighbour that has room. Whole facets that are less than 15 % of a patch still are
+/// joins a neighbour that has room. What is less than 15 % of a patch still is
 /// joined, connected or not, with others of its surface, its cell of a grid of the patch size
 /// and their direction (of 54): a plant's leaves, a heap of bolts. Result: by patch of a facet the
 /// lowest one of its group.

@@ -28,7 +28,9 @@ struct SphereGrid {
 };
 
 /// Surfaces cut into *patches*, the sources of energy and unknowns of the solver, and each patch
-/// into *elements*, which receive and carry the gradient (Cohen, Greenberg, Immel & Brock 1986).
+/// into *elements*, which receive and carry the gradient (Cohen, Greenberg, Immel & Brock 1986). A
+/// patch lies in one facet, or, where facets are small against it, reaches over many that face
+/// nearly alike (see group_facets).
 /// One array per quantity. Conforming: no vertex lies inside another element's edge. Vertices are
 /// shared only where radiosity is continuous: within one side of one facet, or across facets of one
 /// surface whose normals differ by less than MeshOptions::smooth_angle_degrees; never across
