@@ -191,10 +191,10 @@ double mesh_form_factor(const Scene& scene, double size) {
   const auto rows = hemicube_rows(caster, LightPaths(scene, caster, 1), {.resolution = 256});
   double F = 0.0, area = 0.0;
   for (int i = 0; i < mesh.patch_count(); ++i) {
-    if (mesh.facet[i] != 0) continue;
+    if (mesh.facet_of(i) != 0) continue;
     area += mesh.area[i];
     for (const FormFactor& f : rows[i].shares) {
-      if (mesh.facet[f.patch] == 1) F += mesh.area[i] * f.value;
+      if (mesh.facet_of(f.patch) == 1) F += mesh.area[i] * f.value;
     }
   }
   return F / area;

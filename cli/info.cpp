@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "mesh/mesh_quality.h"
+#include "mesh/planar_regions.h"
 #include "radiosity/solution_file.h"
 #include "raytrace/image.h"
 #include "scene/io/read_scene.h"
@@ -84,12 +85,20 @@ Json quality_json(const Scene& scene) {
           {"inconsistent_edges", quality.inconsistent_edges}};
 }
 
+Json clean_up_json(const CleanUpReport& report) {
+  return {{"facets", report.facets_after},   {"welded_vertices", report.welded_vertices},
+          {"degenerate", report.degenerate}, {"duplicates", report.duplicates},
+          {"flipped", report.flipped},       {"merged", report.merged}};
+}
+
 Json scene_json(const Scene& scene) {
   std::size_t spheres = 0;
   for (const Surface& surface : scene.surfaces) {
     spheres += std::holds_alternative<Sphere>(surface.shape) ? 1 : 0;
   }
   const Bounds bounds = scene_bounds(scene);
+  CleanUpReport clean_up;
+  const Scene clean = merge_planar_regions(scene, &clean_up);
   Json materials = Json::array(), cameras = Json::array();
   for (const Material& material : scene.materials) {
     materials.push_back({{"name", material.name}, {"is", kind_of(material, scene.relative_units)}});
@@ -111,11 +120,12 @@ Json scene_json(const Scene& scene) {
           {"facets", scene_facets(scene).size()},
           {"spheres", spheres},
           {"quality", quality_json(scene)},
+          {"cleaned", clean_up_json(clean_up)},
           {"materials", std::move(materials)},
           {"emitters", emitters_json(scene)},
           {"cameras", std::move(cameras)},
           {"notes", scene.notes},
-          {"scene_hash", fmt::format("{:016x}", scene_hash(scene))}};
+          {"scene_hash", fmt::format("{:016x}", scene_hash(clean))}};
 }
 
 Json solution_json(const SolvedScene& solved) {

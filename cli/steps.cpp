@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "mesh/planar_regions.h"
 #include "radiosity/solution_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
@@ -29,12 +30,18 @@ void write_picture(const fs::path& file, const Image& image, const RadiositySolu
 
 Scene read_scene_step(const fs::path& file, Console& console, Report& report) {
   const Stopwatch watch;
-  Scene scene = read_scene(file);
+  const Scene scene = read_scene(file);
   console.say_notes(scene);
   report.add("light", light_name(scene.relative_units));
   report.add_phase("read_scene", watch.seconds());
   stop_if_interrupted();
-  return scene;
+  const Stopwatch clean_up_watch;
+  CleanUpReport clean_up;
+  Scene clean = merge_planar_regions(scene, &clean_up);
+  console.say_verbose(sentence(clean_up));
+  report.add_phase("clean_up", clean_up_watch.seconds());
+  stop_if_interrupted();
+  return clean;
 }
 
 SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, const fs::path& output,

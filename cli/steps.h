@@ -16,6 +16,8 @@ namespace lightwell {
 // The steps that several sub-commands share. Each notes its seconds in the report, says on the
 // console what people should know, and throws Interrupted when asked to stop.
 
+/// The scene as every command that needs light sees it: cleaned by merge_planar_regions(), so that
+/// facet numbers and hash are those of any solution made from it.
 Scene read_scene_step(const std::filesystem::path& file, Console& console, Report& report);
 
 /// Form factors that do not fit into memory go beside `output`.

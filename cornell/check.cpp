@@ -15,6 +15,7 @@
 
 #include "cornell/picture_mask.h"
 #include "cornell/sightlines.h"
+#include "mesh/planar_regions.h"
 #include "radiosity/solution_file.h"
 #include "raytrace/image.h"
 #include "raytrace/probe.h"
@@ -219,7 +220,8 @@ void check_specular_picture(const std::string& name, const Subject& subject, Ver
 int check(const std::string& name, const fs::path& folder, const fs::path& solution,
           const fs::path& picture) {
   const std::string file = name == "diffuse" ? "cornell.toml" : "cornell-" + name + ".toml";
-  Subject subject{folder, read_scene(folder / file), read_solution(solution), read_exr(picture)};
+  Subject subject{folder, merge_planar_regions(read_scene(folder / file)), read_solution(solution),
+                  read_exr(picture)};
   check_matches(subject.scene, subject.solved.solution);
   Verdict verdict;
   check_energy(subject, verdict);

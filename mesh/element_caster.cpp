@@ -14,7 +14,8 @@ using Eigen::Array4f;
 using Eigen::Vector3d;
 
 bool is_front_polygon(const PatchMesh& mesh, int patch) {
-  return mesh.is_back[patch] == 0 && sphere_grid_of(mesh, mesh.facet[patch]) == nullptr;
+  const int facet = mesh.facet[mesh.first_element[patch]];
+  return mesh.is_back[patch] == 0 && sphere_grid_of(mesh, facet) == nullptr;
 }
 
 // (alpha, beta) of QuadShape.
@@ -117,7 +118,7 @@ CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh, std::vector<int
           const Eigen::Vector2f shape = shape_of_quad(mesh, c).cast<float>();
           quad_shapes.push_back({shape.x(), shape.y()});
         }
-        add(e, mesh.facet[p]);
+        add(e, mesh.facet[e]);
       }
     }
   }

@@ -21,28 +21,6 @@ void for_each_loop(const Facet& facet, Visit&& visit) {
 constexpr double weld_share_of_edge = 1e-3;
 constexpr double weld_share_of_thickness = 0.1;
 
-std::vector<double> weld_radii(const PolygonMesh& mesh, double tolerance) {
-  std::vector<double> radius(mesh.vertices.size(), tolerance);
-  for (const Facet& facet : mesh.facets) {
-    double boundary = 0.0;
-    for_each_loop(facet, [&](const std::vector<int>& loop) {
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const int a = loop[i], b = loop[(i + 1) % loop.size()];
-        const double length = (mesh.vertices[a] - mesh.vertices[b]).norm();
-        if (!(length > 0.0)) continue;
-        boundary += length;
-        radius[a] = std::min(radius[a], weld_share_of_edge * length);
-        radius[b] = std::min(radius[b], weld_share_of_edge * length);
-      }
-    });
-    const double thickness = 2.0 * facet_area(mesh, facet) / boundary;
-    for_each_loop(facet, [&](const std::vector<int>& loop) {
-      for (int v : loop) radius[v] = std::min(radius[v], weld_share_of_thickness * thickness);
-    });
-  }
-  return radius;
-}
-
 void add_loop(FacetPlane& plane, const std::vector<int>& loop, const std::vector<int>& welded,
               const WeldedPoints& points) {
   const int begin = plane.corner_count();
@@ -100,6 +78,28 @@ void set_frame(FacetPlane& plane) {
 }
 
 }  // namespace
+
+std::vector<double> weld_radii(const PolygonMesh& mesh, double tolerance) {
+  std::vector<double> radius(mesh.vertices.size(), tolerance);
+  for (const Facet& facet : mesh.facets) {
+    double boundary = 0.0;
+    for_each_loop(facet, [&](const std::vector<int>& loop) {
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const int a = loop[i], b = loop[(i + 1) % loop.size()];
+        const double length = (mesh.vertices[a] - mesh.vertices[b]).norm();
+        if (!(length > 0.0)) continue;
+        boundary += length;
+        radius[a] = std::min(radius[a], weld_share_of_edge * length);
+        radius[b] = std::min(radius[b], weld_share_of_edge * length);
+      }
+    });
+    const double thickness = 2.0 * facet_area(mesh, facet) / boundary;
+    for_each_loop(facet, [&](const std::vector<int>& loop) {
+      for (int v : loop) radius[v] = std::min(radius[v], weld_share_of_thickness * thickness);
+    });
+  }
+  return radius;
+}
 
 double FacetPlane::area() const {
   double twice = 0.0;

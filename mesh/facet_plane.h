@@ -59,6 +59,10 @@ struct FacetPlane {
 double segment_distance(const Eigen::Vector2d& q, const Eigen::Vector2d& a,
                         const Eigen::Vector2d& b);
 
+/// How far each vertex may be moved to become one with another, metres: `tolerance`, but less where
+/// that would join the ends of an edge or the sides of a needle.
+std::vector<double> weld_radii(const PolygonMesh& mesh, double tolerance);
+
 /// The planes of all polygon facets of the scene (spheres have none), in scene-wide order. Their
 /// corners are added to `points`.
 std::vector<FacetPlane> facet_planes(const Scene& scene, WeldedPoints& points);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 namespace lightwell {
@@ -96,15 +97,8 @@ int PatchBuilder::root(int vertex) {
   return vertex;
 }
 
-// Exactly two elements of different facets at an edge, and nothing else: no third facet stands
-// there, so radiosity is continuous across it if the surface is smooth.
-void PatchBuilder::share_smooth_edges() {
-  struct Side {
-    int low, high;      // points
-    int v_low, v_high;  // vertices there
-    int piece;
-    bool forward;
-  };
+// Sorted by their points: what meets at an edge lies side by side.
+std::vector<PatchBuilder::Side> PatchBuilder::border_sides() const {
   std::vector<Side> sides;
   for (int p = 0; p < static_cast<int>(pieces_.size()); ++p) {
     const int first = pieces_[p].first_vertex;
@@ -118,24 +112,116 @@ void PatchBuilder::share_smooth_edges() {
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return std::tie(a.low, a.high, a.v_low) < std::tie(b.low, b.high, b.v_low);
   });
-  constexpr double rounding = 1e-12;  // coplanar facets share even at a limit of 0 degrees
-  const double least_cosine = std::cos(smooth_angle_degrees_ * std::numbers::pi / 180.0) - rounding;
+  return sides;
+}
+
+namespace {
+
+// Calls visit(one, other) where exactly two elements of different facets of one surface meet at an
+// edge, and nothing else: no third facet stands there.
+template <class Sides, class Pieces, class Visit>
+void for_each_joint(const Sides& sides, const Pieces& pieces, Visit&& visit) {
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t j = i + 1;
     while (j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high) ++j;
     if (j - i == 2) {
-      const Side &a = sides[i], &b = sides[i + 1];
-      const Piece &pa = pieces_[a.piece], &pb = pieces_[b.piece];
-      if (a.piece != b.piece && pa.surface == pb.surface && a.forward != b.forward &&
-          pa.normal.dot(pb.normal) >= least_cosine) {
-        for (const auto& [one, other] : {std::pair(a.v_low, b.v_low), {a.v_high, b.v_high}}) {
-          const int r = root(one), s = root(other);
-          parent_[std::max(r, s)] = std::min(r, s);
-        }
+      const auto &a = sides[i], &b = sides[i + 1];
+      if (a.piece != b.piece && pieces[a.piece].surface == pieces[b.piece].surface &&
+          a.forward != b.forward) {
+        visit(a, b);
       }
     }
     i = j;
   }
+}
+
+}  // namespace
+
+// Radiosity is continuous across a joint if the surface is smooth there.
+void PatchBuilder::share_smooth_edges(const std::vector<Side>& sides) {
+  constexpr double rounding = 1e-12;  // coplanar facets share even at a limit of 0 degrees
+  const double least_cosine = std::cos(smooth_angle_degrees_ * std::numbers::pi / 180.0) - rounding;
+  for_each_joint(sides, pieces_, [&](const Side& a, const Side& b) {
+    if (!(pieces_[a.piece].normal.dot(pieces_[b.piece].normal) >= least_cosine)) return;
+    for (const auto& [one, other] : {std::pair(a.v_low, b.v_low), {a.v_high, b.v_high}}) {
+      const int r = root(one), s = root(other);
+      parent_[std::max(r, s)] = std::min(r, s);
+    }
+  });
+}
+
+FacetPatch PatchBuilder::facet_patch(const Part& part) const {
+  const Piece& piece = pieces_[part.piece];
+  const Material& material = scene_.materials[scene_.surfaces[piece.surface].material];
+  // Emitters' patches keep to their facet, for whose light there are closed forms.
+  FacetPatch patch{.surface = piece.surface,
+                   .may_join = piece.sphere < 0 && !material.is_emitter(),
+                   .facet = part.piece,
+                   .normal = piece.normal};
+  for (int e = piece.mesh.first_element[part.patch]; e < piece.mesh.first_element[part.patch + 1];
+       ++e) {
+    const auto& c = piece.mesh.corners[e];
+    patch.area += polygon_area(piece.mesh, c);
+    for (int i = 0; i < (c[3] < 0 ? 3 : 4); ++i) patch.box.extend(piece.mesh.position[c[i]]);
+  }
+  return patch;
+}
+
+std::vector<std::vector<std::vector<PatchBuilder::Part>>> PatchBuilder::patches_of_pieces(
+    const std::vector<Side>& sides) const {
+  std::vector<Part> parts;
+  std::vector<int> first_part;
+  for (int p = 0; p < static_cast<int>(pieces_.size()); ++p) {
+    first_part.push_back(static_cast<int>(parts.size()));
+    for (int i = 0; i < pieces_[p].mesh.patch_count(); ++i) parts.push_back({p, i});
+  }
+  std::vector<int> group(parts.size());
+  std::iota(group.begin(), group.end(), 0);
+  if (groups_.angle_degrees > 0.0) {
+    std::vector<FacetPatch> patches;
+    for (const Part& part : parts) patches.push_back(facet_patch(part));
+    std::vector<FacetPatchContact> contacts;
+    // Of a facet in many patches, which of them has an edge is known by the edge's two vertices.
+    std::unordered_map<std::uint64_t, int> part_at;
+    const auto key = [](int from, int to) {
+      return (static_cast<std::uint64_t>(from) << 32) | static_cast<std::uint64_t>(to);
+    };
+    for (int p = 0; p < static_cast<int>(pieces_.size()); ++p) {
+      const FacetMesh& mesh = pieces_[p].mesh;
+      for (int i = 0; i < mesh.patch_count() && mesh.patch_count() > 1; ++i) {
+        for (int e = mesh.first_element[i]; e < mesh.first_element[i + 1]; ++e) {
+          const int n = mesh.corners[e][3] < 0 ? 3 : 4, first = pieces_[p].first_vertex;
+          for (int c = 0; c < n; ++c) {
+            part_at[key(first + mesh.corners[e][c], first + mesh.corners[e][(c + 1) % n])] =
+                first_part[p] + i;
+          }
+        }
+      }
+    }
+    const auto part_of = [&](const Side& side) {
+      if (pieces_[side.piece].mesh.patch_count() == 1) return first_part[side.piece];
+      const auto found =
+          part_at.find(side.forward ? key(side.v_low, side.v_high) : key(side.v_high, side.v_low));
+      return found == part_at.end() ? -1 : found->second;
+    };
+    for_each_joint(sides, pieces_, [&](const Side& a, const Side& b) {
+      const int one = part_of(a), other = part_of(b);
+      if (one >= 0 && other >= 0) contacts.push_back({one, other});
+    });
+    group = group_facets(patches, contacts, groups_);
+  }
+  std::vector<std::vector<std::vector<Part>>> of_piece(pieces_.size());
+  std::vector<int> place(parts.size(), -1);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    auto& patches = of_piece[parts[group[i]].piece];
+    int& at = place[group[i]];
+    if (at < 0) {
+      at = static_cast<int>(patches.size());
+      patches.emplace_back();
+    }
+    patches[at].push_back(parts[i]);
+  }
+  return of_piece;
 }
 
 bool PatchBuilder::has_back(const Material& material) const {
@@ -143,49 +229,58 @@ bool PatchBuilder::has_back(const Material& material) const {
   return !material.one_sided || (material.emits_both_sides && material.is_emitter());
 }
 
-void PatchBuilder::emit_side(const Piece& piece, bool is_back, std::vector<int>& number,
-                             PatchMesh& out, std::vector<Vector3d>& positions) {
-  const auto vertex = [&](int local) {
-    int& n = number[root(piece.first_vertex + local)];
-    if (n < 0) {
-      n = static_cast<int>(positions.size());
-      positions.push_back(piece.mesh.position[local]);
-    }
-    return n;
-  };
-  for (int p = 0; p < piece.mesh.patch_count(); ++p) {
-    const int patch = static_cast<int>(patch_area_.size());
-    out.first_element.push_back(static_cast<int>(out.patch.size()));
-    double area = 0.0;
-    for (int e = piece.mesh.first_element[p]; e < piece.mesh.first_element[p + 1]; ++e) {
+void PatchBuilder::emit_patch(const std::vector<Part>& parts, bool is_back,
+                              std::vector<int>& number, PatchMesh& out,
+                              std::vector<Vector3d>& positions) {
+  const int patch = static_cast<int>(patch_area_.size());
+  out.first_element.push_back(static_cast<int>(out.patch.size()));
+  double area = 0.0;
+  for (const auto& [p, i] : parts) {
+    const Piece& piece = pieces_[p];
+    const auto vertex = [&](int local) {
+      int& n = number[root(piece.first_vertex + local)];
+      if (n < 0) {
+        n = static_cast<int>(positions.size());
+        positions.push_back(piece.mesh.position[local]);
+      }
+      return n;
+    };
+    for (int e = piece.mesh.first_element[i]; e < piece.mesh.first_element[i + 1]; ++e) {
       std::array<int, 4> c = piece.mesh.corners[e];
       for (int& corner : c) corner = corner < 0 ? -1 : vertex(corner);
       out.patch.push_back(patch);
+      out.facet.push_back(piece.facet);
       out.corners.push_back(is_back ? turned(c) : c);
       element_area_.push_back(piece.sphere >= 0 ? sphere_area_[piece.sphere][e]
                                                 : polygon_area(piece.mesh, piece.mesh.corners[e]));
       area += element_area_.back();
     }
-    patch_area_.push_back(area);
-    out.surface.push_back(piece.surface);
-    out.material.push_back(scene_.surfaces[piece.surface].material);
-    out.facet.push_back(piece.facet);
-    out.is_back.push_back(is_back ? 1 : 0);
   }
+  patch_area_.push_back(area);
+  const int surface = pieces_[parts.front().piece].surface;
+  out.surface.push_back(surface);
+  out.material.push_back(scene_.surfaces[surface].material);
+  out.is_back.push_back(is_back ? 1 : 0);
 }
 
 PatchMesh PatchBuilder::finish() {
-  share_smooth_edges();
+  std::vector<Side> sides = border_sides();
+  share_smooth_edges(sides);
+  const auto patches = patches_of_pieces(sides);
+  sides = {};
   PatchMesh out;
   std::vector<Vector3d> positions;
   std::vector<int> front(parent_.size(), -1), back(parent_.size(), -1);
-  for (Piece& piece : pieces_) {
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    const Piece& piece = pieces_[p];
     const Material& material = scene_.materials[scene_.surfaces[piece.surface].material];
     const int first = static_cast<int>(out.patch.size());
-    emit_side(piece, false, front, out, positions);
+    for (const auto& parts : patches[p]) emit_patch(parts, false, front, out, positions);
     const int count = static_cast<int>(out.patch.size()) - first;
     const bool two_sides = has_back(material);
-    if (two_sides) emit_side(piece, true, back, out, positions);
+    for (const auto& parts : patches[p]) {
+      if (two_sides) emit_patch(parts, true, back, out, positions);
+    }
     for (int side = 0; side < (two_sides ? 2 : 1); ++side) {
       for (int e = 0; e < count; ++e) {
         out.twin.push_back(two_sides ? first + e + (side == 0 ? count : 0) : -1);
@@ -194,8 +289,8 @@ PatchMesh PatchBuilder::finish() {
     if (piece.sphere >= 0) {
       for (int& e : grids_[piece.sphere].element) e += first;
     }
-    piece.mesh = {};
   }
+  pieces_.clear();
   const int patch_count = static_cast<int>(patch_area_.size());
   out.first_element.push_back(static_cast<int>(out.patch.size()));
   out.element_area = Eigen::Map<Eigen::ArrayXd>(element_area_.data(),

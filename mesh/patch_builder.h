@@ -1,17 +1,19 @@
 #pragma once
 
 #include "mesh/facet_mesh.h"
+#include "mesh/group_facets.h"
 #include "mesh/patch_mesh.h"
 #include "mesh/sphere_grid.h"
 
 namespace lightwell {
 
 /// Joins the meshes of all facets and spheres into one PatchMesh, in the order they are added
-/// (ascending facet numbers): shares vertices across smooth edges, makes the back sides.
+/// (ascending facet numbers): shares vertices across smooth edges, joins small facets' patches,
+/// makes the back sides.
 class PatchBuilder {
  public:
-  PatchBuilder(const Scene& scene, double smooth_angle_degrees)
-      : scene_(scene), smooth_angle_degrees_(smooth_angle_degrees) {}
+  PatchBuilder(const Scene& scene, double smooth_angle_degrees, const FacetGroupOptions& groups)
+      : scene_(scene), smooth_angle_degrees_(smooth_angle_degrees), groups_(groups) {}
 
   void add_facet(int facet, int surface, const Eigen::Vector3d& normal, FacetMesh mesh);
   void add_sphere(int facet, int surface, const Sphere& sphere, SphereElements elements);
@@ -25,14 +27,31 @@ class PatchBuilder {
     FacetMesh mesh{};
     int sphere = -1;  ///< index into grids_; its areas are in sphere_area_
   };
-  void share_smooth_edges();
+  /// One of a piece's patches, before they are joined.
+  struct Part {
+    int piece = 0, patch = 0;
+  };
+  /// A border edge of a piece, by its points; `forward`: from `low` to `high`.
+  struct Side {
+    int low = 0, high = 0;
+    int v_low = 0, v_high = 0;  ///< vertices there
+    int piece = 0;
+    bool forward = true;
+  };
+  std::vector<Side> border_sides() const;
+  void share_smooth_edges(const std::vector<Side>& sides);
   int root(int vertex);
-  void emit_side(const Piece& piece, bool is_back, std::vector<int>& number, PatchMesh& out,
-                 std::vector<Eigen::Vector3d>& positions);
+  FacetPatch facet_patch(const Part& part) const;
+  /// What becomes one patch, by the first piece that has a part of it.
+  std::vector<std::vector<std::vector<Part>>> patches_of_pieces(
+      const std::vector<Side>& sides) const;
+  void emit_patch(const std::vector<Part>& parts, bool is_back, std::vector<int>& number,
+                  PatchMesh& out, std::vector<Eigen::Vector3d>& positions);
   bool has_back(const Material& material) const;
 
   const Scene& scene_;
   double smooth_angle_degrees_;
+  FacetGroupOptions groups_;
   std::vector<Piece> pieces_;
   std::vector<SphereGrid> grids_;
   std::vector<std::vector<double>> sphere_area_;

@@ -32,7 +32,7 @@ Vector3d mean_of_corners(const PatchMesh& mesh, int element) {
 }
 
 const SphereGrid* sphere_of_element(const PatchMesh& mesh, int element) {
-  return sphere_grid_of(mesh, mesh.facet[mesh.patch[element]]);
+  return sphere_grid_of(mesh, mesh.facet[element]);
 }
 
 // Radial on spheres, inwards for inner elements; elsewhere the mean of the faces around.
@@ -40,7 +40,7 @@ void set_vertex_normals(PatchMesh& mesh, int vertex_count) {
   mesh.vertex_normal.assign(vertex_count, Vector3d::Zero());
   const int patches = mesh.patch_count();
   for (int p = 0; p < patches; ++p) {
-    const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[p]);
+    const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[mesh.first_element[p]]);
     const double towards = mesh.is_back[p] != 0 ? -1.0 : 1.0;
     for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
       const Vector3d area = element_area_vector(mesh, e);

@@ -217,7 +217,8 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
   FacetMeshes facet_meshes = mesh_facets(scene, cut, options);
 
   report(options.progress, "mesh", 0.9);
-  PatchBuilder builder(scene, options.smooth_angle_degrees);
+  PatchBuilder builder(scene, options.smooth_angle_degrees,
+                       {.patch_size = size, .angle_degrees = options.curve_angle_degrees});
   const std::vector<FacetRef> facets = scene_facets(scene);
   int plane = 0;
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {

@@ -29,7 +29,9 @@ struct SphereGrid {
 };
 
 /// Surfaces cut into *patches*, the sources of energy and unknowns of the solver, and each patch
-/// into *elements*, which receive and carry the gradient (Cohen, Greenberg, Immel & Brock 1986).
+/// into *elements*, which receive and carry the gradient (Cohen, Greenberg, Immel & Brock 1986). A
+/// patch lies in one facet, or, where facets are small against it, reaches over many that face
+/// nearly alike (see group_facets).
 /// One array per quantity. Conforming: no vertex lies inside another element's edge. Vertices are
 /// shared only where radiosity is continuous: within one side of one facet, or across facets of one
 /// surface whose normals differ by less than MeshOptions::smooth_angle_degrees; never across
@@ -40,6 +42,7 @@ struct PatchMesh {
 
   // Per element. The elements of patch i are first_element[i] .. first_element[i+1] - 1.
   std::vector<int> patch{};
+  std::vector<int> facet{};  ///< scene-wide facet number (see scene_facets)
   /// Vertices counter-clockwise seen from the side the element faces; [3] is -1 for a triangle. The
   /// same as the half-edge mesh's faces, flat for inner loops.
   std::vector<std::array<int, 4>> corners{};
@@ -56,8 +59,7 @@ struct PatchMesh {
   BandArray emission{};              ///< M_i, W/m^2, patches x bands
   std::vector<int> surface{};        ///< index into Scene::surfaces
   std::vector<int> material{};       ///< index into Scene::materials
-  std::vector<int> facet{};          ///< scene-wide facet number (see scene_facets)
-  std::vector<char> is_back{};       ///< 1: the patch faces away from its facet's front
+  std::vector<char> is_back{};       ///< 1: the patch faces away from its facets' fronts
 
   std::vector<SphereGrid> sphere_grids{};
   std::vector<std::string> notes{};  ///< what meshing had to leave out: one sentence each
@@ -65,6 +67,14 @@ struct PatchMesh {
   int patch_count() const { return static_cast<int>(area.size()); }
   int element_count() const { return static_cast<int>(patch.size()); }
   int vertex_count() const { return static_cast<int>(vertex_normal.size()); }
+  /// The facet that holds all of a patch; -1: the patch reaches over several, and is not flat.
+  int facet_of(int p) const {
+    const int first = facet[first_element[p]];
+    for (int e = first_element[p] + 1; e < first_element[p + 1]; ++e) {
+      if (facet[e] != first) return -1;
+    }
+    return first;
+  }
   int corner_count(int element) const { return corners[element][3] < 0 ? 3 : 4; }
   Eigen::Vector3d position(int vertex) const {
     const auto& p = elements.point(HalfedgeMesh::VertexHandle(vertex));
@@ -86,6 +96,9 @@ struct MeshOptions {
   /// PatchMesh::notes.
   double discontinuity_growth = 1.0;
   double smooth_angle_degrees = 5.0;  ///< facets of one surface meeting at less share vertices
+  /// Facets of one surface smaller than a patch share one as long as their normals stay within this
+  /// of its mean. 0: no patch reaches over several facets.
+  double curve_angle_degrees = 20.0;
   Progress progress{};
 };
 

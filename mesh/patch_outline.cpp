@@ -112,7 +112,8 @@ std::vector<std::vector<Vector3d>> boundary_loops(const PatchMesh& mesh,
 
 PatchOutline patch_outline(const PatchMesh& mesh, int patch) {
   PatchOutline outline;
-  if (!sphere_grid_of(mesh, mesh.facet[patch])) {
+  const int facet = mesh.facet_of(patch);
+  if (facet >= 0 && !sphere_grid_of(mesh, facet)) {
     std::vector<int> elements(mesh.first_element[patch + 1] - mesh.first_element[patch]);
     std::iota(elements.begin(), elements.end(), mesh.first_element[patch]);
     outline = polygon_outline(boundary_loops(mesh, elements));

@@ -36,8 +36,11 @@ Vector3d direction_of_sphere(const PatchMesh& mesh, const SphereGrid& grid, int 
 }  // namespace
 
 PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
-    : mesh_(mesh), patch_(patch), sphere_(sphere_grid_of(mesh, mesh.facet[patch])) {
-  if (!sphere_) {
+    : mesh_(mesh),
+      patch_(patch),
+      sphere_(sphere_grid_of(mesh, mesh.facet[mesh.first_element[patch]])),
+      is_flat_(!sphere_ && mesh.facet_of(patch) >= 0) {
+  if (is_flat_) {
     normal_ = element_center(mesh, mesh.first_element[patch]).normal;
     grid_ = element_grid(mesh, patch);
   }
@@ -58,7 +61,7 @@ void PatchSampler::add_parts() {
       parts_.push_back({.element = e, .area_up_to = area_});
       continue;
     }
-    const Vector3d mean = element_center(mesh_, e).position;
+    const auto [element, mean, normal] = element_center(mesh_, e);
     std::array<Vector3d, 4> corner;
     for (int i = 0; i < mesh_.corner_count(e); ++i) {
       const Vector3d at = mesh_.position(mesh_.corners[e][i]);
@@ -70,7 +73,8 @@ void PatchSampler::add_parts() {
                         .area_up_to = area_,
                         .corner = corner[0],
                         .first_edge = corner[i - 1] - corner[0],
-                        .second_edge = corner[i] - corner[0]});
+                        .second_edge = corner[i] - corner[0],
+                        .normal = is_flat_ ? normal_ : normal});
     }
   }
 }
@@ -90,7 +94,7 @@ PatchPoint PatchSampler::point_on_part(double u, double v) const {
     const double s = std::sqrt(u);
     return {.element = part.element,
             .position = part.corner + s * ((1.0 - v) * part.first_edge + v * part.second_edge),
-            .normal = normal_};
+            .normal = part.normal};
   }
   const Vector3d direction = direction_of_sphere(mesh_, *sphere_, part.element, u, v);
   return {.element = part.element,

@@ -14,7 +14,7 @@ class PatchSampler {
   PatchSampler(const PatchMesh& mesh, int patch);
 
   /// Whether the normal is the same everywhere.
-  bool is_flat() const { return sphere_ == nullptr; }
+  bool is_flat() const { return is_flat_; }
 
   /// Uniform over the patch's area for (u, v) uniform in [0,1)^2 (u also picks the element, in
   /// proportion to area); on a sphere the point lies on the exact sphere. Linear in u and v where
@@ -34,6 +34,7 @@ class PatchSampler {
     double area_up_to = 0.0;  // of this and all parts before
     Eigen::Vector3d corner = Eigen::Vector3d::Zero();
     Eigen::Vector3d first_edge = Eigen::Vector3d::Zero(), second_edge = Eigen::Vector3d::Zero();
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
   void add_parts();
   PatchPoint point_on_part(double u, double v) const;
@@ -51,7 +52,8 @@ class PatchSampler {
   const PatchMesh& mesh_;
   int patch_;
   const SphereGrid* sphere_;
-  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of a polygon
+  bool is_flat_;
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of a flat patch
   std::optional<ElementGrid> grid_;
   // Of the grid, a little inside.
   Eigen::Vector3d corner_ = Eigen::Vector3d::Zero();

@@ -92,8 +92,8 @@ class PairVisibility {
     return {.ray = {.origin = a.position,
                     .direction = way,
                     .t_max = 1.0,
-                    .origin_group = mesh_.facet[i],
-                    .target_group = mesh_.facet[j]},
+                    .origin_group = mesh_.facet[a.element],
+                    .target_group = mesh_.facet[b.element]},
             .weight = squared > 0.0 ? cosines / (squared * squared) : 0.0};
   }
 

@@ -44,7 +44,7 @@ void tile(const PatchMesh& mesh, Emitter& emitter) {
   } else {
     for (int e = 0; e < mesh.element_count(); ++e) {
       const int p = mesh.patch[e];
-      if (mesh.facet[p] != emitter.facet || mesh.is_back[p]) continue;
+      if (mesh.facet[e] != emitter.facet || mesh.is_back[p]) continue;
       const auto& c = mesh.corners[e];
       emitter.triangles.push_back({mesh.position(c[0]), mesh.position(c[1]), mesh.position(c[2])});
       if (c[3] >= 0) {

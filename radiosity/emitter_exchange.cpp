@@ -24,7 +24,7 @@ EmitterExchange::EmitterExchange(const ElementCaster& caster, const DirectLight&
   }
   emitter_of_.assign(static_cast<std::size_t>(mesh_.patch_count()), -1);
   for (int i = 0; i < mesh_.patch_count(); ++i) {
-    const auto facet = static_cast<std::size_t>(mesh_.facet[i]);
+    const auto facet = static_cast<std::size_t>(mesh_.facet[mesh_.first_element[i]]);
     if (facet >= emitter_of_facet.size() || emitter_of_facet[facet] < 0) continue;
     const int e = emitter_of_facet[facet];
     if (mesh_.is_back[i] && !emitters[e].emits_both_sides) continue;
@@ -51,8 +51,9 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
               !emitter.is_sphere && (at.position - emitter.loops[0][0]).dot(emitter.normal) < 0.0;
           exchange_(2 * e + behind, i) +=
               mesh_.area[i] / options.emitter_points *
-              direct_light_.form_factor(emitter, caster_, at.position, at.normal, mesh_.facet[i],
-                                        random_key(key, s, e), options.shadows);
+              direct_light_.form_factor(emitter, caster_, at.position, at.normal,
+                                        mesh_.facet[at.element], random_key(key, s, e),
+                                        options.shadows);
         }
       }
     }

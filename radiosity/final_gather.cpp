@@ -130,7 +130,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int p = patch[v];
     B.row(v) = mesh.reflectance.row(p) * irradiance.row(v);
-    if (!direct_light.owns(mesh.facet[p])) B.row(v) += mesh.emission.row(p);
+    if (!direct_light.owns(mesh.facet[mesh.first_element[p]])) B.row(v) += mesh.emission.row(p);
   }
   return B;
 }
@@ -157,7 +157,7 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
   }
   const SobolPoints sobol(rays);
   for (int p = 0; p < mesh.patch_count(); ++p) {
-    const int facet = mesh.facet[p];
+    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
     if (!direct_light.owns(facet) || !(mesh.emission.row(p) > 0.0f).any()) continue;
     const double share = mesh.area[p] / direct_light.emitters()[emitter_of_facet[facet]].area;
     const int count = std::clamp(static_cast<int>(std::lround(rays * share)), 1, rays);
@@ -220,14 +220,14 @@ std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
       const Eigen::Vector3d p = mesh.position(v);
       points[v] = {.position = p + inset * (center.position - p),
                    .normal = center.normal,
-                   .facet = mesh.facet[mesh.patch[e]]};
+                   .facet = mesh.facet[e]};
     }
   }
   // On a sphere the chord lies inside the ball: go back out to the surface, with the sphere's own
   // normal.
   for (const SphereGrid& grid : mesh.sphere_grids) {
     for (int e = 0; e < mesh.element_count(); ++e) {
-      if (mesh.facet[mesh.patch[e]] != grid.facet) continue;
+      if (mesh.facet[e] != grid.facet) continue;
       for (int c = 0; c < mesh.corner_count(e); ++c) {
         GatherPoint& at = points[mesh.corners[e][c]];
         const Eigen::Vector3d out = (at.position - grid.sphere.center).normalized();

@@ -57,7 +57,7 @@ class Estimator {
         options_(options),
         paths_(scene, caster, options.max_specular_depth) {
     for (int i = 0; i < mesh_.patch_count(); ++i) {
-      receives_.push_back(paths_.is_diffuse(mesh_.facet[i]));
+      receives_.push_back(paths_.is_diffuse(mesh_.facet[mesh_.first_element[i]]));
     }
   }
 

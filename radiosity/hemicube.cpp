@@ -152,7 +152,7 @@ void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
       RowCaster::Scratch ray_scratch(mesh);
       std::vector<int> items(cells.cell_count());
       for (int i = begin + low; i < begin + high; ++i) {
-        if (!paths.is_diffuse(mesh.facet[i])) continue;
+        if (!paths.is_diffuse(mesh.facet[mesh.first_element[i]])) continue;
         if (caster.hidden_elements(i) > 0) {
           EstimatedRow row = row_caster.cast(i, rays_where_covered, ray_scratch);
           row.trust = 1.0 / mesh.area[i];

@@ -257,16 +257,28 @@ HemicubeScan::HemicubeScan(const ElementCaster& caster) : caster_(caster) {
   }
   constexpr int group_size = 32;  // elements: small enough to be rejected, large enough to pay
   for (int p = 0; p < mesh.patch_count();) {
-    const int first = mesh.first_element[p], facet = mesh.facet[p];
+    const int first = mesh.first_element[p], facet = mesh.facet_of(p);
     if (mesh.is_back[p] != 0) {
       ++p;
       continue;
     }
+    if (facet < 0) {
+      add_runs_of_facets(first, mesh.first_element[++p]);
+      continue;
+    }
     do {
       ++p;
-    } while (p < mesh.patch_count() && mesh.facet[p] == facet && mesh.is_back[p] == 0 &&
+    } while (p < mesh.patch_count() && mesh.facet_of(p) == facet && mesh.is_back[p] == 0 &&
              mesh.first_element[p + 1] - first <= group_size);
     add_facet_elements(first, mesh.first_element[p]);
+  }
+}
+
+void HemicubeScan::add_runs_of_facets(int first_element, int last_element) {
+  const PatchMesh& mesh = caster_.mesh();
+  for (int begin = first_element, end = begin; begin < last_element; begin = end) {
+    while (end < last_element && mesh.facet[end] == mesh.facet[begin]) ++end;
+    add_facet_elements(begin, end);
   }
 }
 
@@ -274,7 +286,7 @@ void HemicubeScan::add_facet_elements(int first_element, int last_element) {
   const PatchMesh& mesh = caster_.mesh();
   Group group{.first_polygon = static_cast<int>(polygons_.size()),
               .first_vertex = static_cast<int>(vertices_.size()),
-              .facet = mesh.facet[mesh.patch[first_element]]};
+              .facet = mesh.facet[first_element]};
   std::vector<int> used;
   for (int e = first_element; e < last_element; ++e) {
     const int n = mesh.corner_count(e);

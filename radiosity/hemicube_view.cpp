@@ -109,10 +109,10 @@ void drop_onto_element(const PatchMesh& mesh, PatchPoint& place) {
 }  // namespace
 
 HemicubeEye hemicube_eye(const PatchMesh& mesh, int patch, bool on_elements) {
-  const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[patch]);
+  const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[mesh.first_element[patch]]);
   PatchPoint place = grid ? place_on_sphere(mesh, patch, *grid) : place_on_polygon(mesh, patch);
   HemicubeEye eye{.element = place.element,
-                  .facet = mesh.facet[patch],
+                  .facet = mesh.facet[place.element],
                   .inside = grid && mesh.is_back[patch] != 0};
   if (eye.inside && on_elements) drop_onto_element(mesh, place);
   eye.position = place.position;

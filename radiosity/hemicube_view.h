@@ -37,7 +37,7 @@ inline constexpr int black_back(int facet) {
 }
 /// -1 where nothing is seen.
 inline int facet(const PatchMesh& mesh, int item) {
-  return item >= 0 ? mesh.facet[mesh.patch[item]] : item == nothing ? -1 : -2 - item;
+  return item >= 0 ? mesh.facet[item] : item == nothing ? -1 : -2 - item;
 }
 }  // namespace hemicube_item
 
@@ -88,6 +88,7 @@ class HemicubeScan {
     double radius = 0.0;
   };
   class Painter;
+  void add_runs_of_facets(int first_element, int last_element);
   void add_facet_elements(int first_element, int last_element);
 
   const ElementCaster& caster_;

@@ -31,10 +31,9 @@ class Sheets {
     facets_.resize(elements_.size());
     for (std::size_t f = 0; f < facets_.size(); ++f) facets_[f] = {static_cast<int>(f)};
     for (int p = 0; p < mesh.patch_count(); ++p) {
-      const int f = mesh.facet[p];
-      if (mesh.is_back[p] || sphere_grid_of(mesh, f)) continue;
+      if (mesh.is_back[p] || sphere_grid_of(mesh, mesh.facet[mesh.first_element[p]])) continue;
       for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
-        elements_[f].push_back(e);
+        elements_[mesh.facet[e]].push_back(e);
       }
     }
     for (std::size_t f = 0; f < elements_.size(); ++f) {

@@ -14,7 +14,7 @@ PairShafts::PairShafts(const ElementCaster& caster, const std::vector<PatchOutli
       is_hidden_(outlines.size()) {
   parallel_for(mesh_.patch_count(), 64, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      ends_[i] = shafts_.end(outlines[i], mesh_.facet[i]);
+      ends_[i] = shafts_.end(outlines[i], mesh_.facet_of(i));
       const int hidden = caster.hidden_elements(i);
       is_hidden_[i] = hidden == mesh_.first_element[i + 1] - mesh_.first_element[i];
       is_covered_[i] = hidden > 0 || shafts_.is_covered(ends_[i]);

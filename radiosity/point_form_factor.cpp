@@ -41,7 +41,7 @@ class Shooter {
                 .direction = way,
                 .t_max = 1.0,
                 .origin_group = from.facet,
-                .target_group = mesh_.facet[patch_]},
+                .target_group = mesh_.facet[to.element]},
         .weight = squared > 0.0 ? cosines / (squared * (std::numbers::pi * squared + disc)) : 0.0};
   }
 
@@ -61,7 +61,7 @@ ReceivingPoint receiving_corner(const PatchMesh& mesh, int element, int corner) 
   const Vector3d at = mesh.position(vertex);
   return {.position = at + inwards * (middle.position - at),
           .normal = mesh.vertex_normal[vertex],
-          .facet = mesh.facet[mesh.patch[element]],
+          .facet = mesh.facet[element],
           .key = static_cast<std::uint64_t>(vertex)};
 }
 
@@ -73,7 +73,7 @@ void PointFormFactors::by_discs(int shooter, int n, std::span<const ReceivingPoi
   assert(points.size() == F.size());
   const PatchMesh& mesh = caster_.mesh();
   const Shooter samples(mesh, shooter, n);
-  const ShaftEnd end = shafts_.end(patch_outline(mesh, shooter), mesh.facet[shooter]);
+  const ShaftEnd end = shafts_.end(patch_outline(mesh, shooter), mesh.facet_of(shooter));
   const double disc = mesh.area[shooter] / n;
   parallel_for(static_cast<int>(points.size()), points_at_once, [&](int begin, int stop) {
     std::array<ShadowTally, points_at_once> tallies{};
@@ -127,7 +127,7 @@ void PointFormFactors::by_closed_form(int shooter, std::span<const ReceivingPoin
                                       const PointFormFactorOptions& options) const {
   assert(points.size() == F.size());
   const PatchMesh& mesh = caster_.mesh();
-  const ShaftEnd target = shafts_.end(patch_outline(mesh, shooter), mesh.facet[shooter]);
+  const ShaftEnd target = shafts_.end(patch_outline(mesh, shooter), mesh.facet_of(shooter));
   const int most = std::max(1, options.max_rays), least = std::clamp(options.min_rays, 1, most);
   if (target.parts.empty()) {
     by_discs(shooter, most, points, F);

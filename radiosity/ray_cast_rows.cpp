@@ -43,7 +43,7 @@ RowCaster::RowCaster(const ElementCaster& caster, const LightPaths& paths, int m
 
 EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind) const {
   const PatchMesh& mesh = caster_.mesh();
-  if (!paths_.is_diffuse(mesh.facet[patch]) || rays <= 0) return {};
+  if (!paths_.is_diffuse(mesh.facet[mesh.first_element[patch]]) || rays <= 0) return {};
   const int bands = static_cast<int>(mesh.reflectance.cols());
   EstimatedRow row{.trust = rays / mesh.area[patch],
                    .specular_escaped = Spectrum::Zero(bands),
@@ -54,7 +54,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(patch), form_factor_rays);
   const PatchSampler sampler(mesh, patch);
   std::array<Ray, batch> ray;
-  ray.fill({.origin_group = mesh.facet[patch]});
+  ray.fill({.origin_group = mesh.facet[mesh.first_element[patch]]});
   std::array<ElementHit, batch> hit;
   HemisphereSets::Draw draw;
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
@@ -75,6 +75,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
         const PatchPoint from = sampler.point(place.x(), place.y());
         frame = draw.frame(from.normal);
         ray[r].origin = from.position;
+        ray[r].origin_group = mesh.facet[from.element];
       }
       ray[r].direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z);
     }
@@ -94,7 +95,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
     }
     if (behind) {
       look_behind({ray.data(), n}, {hit.data(), n}, scratch);
-      ray.fill({.origin_group = mesh.facet[patch]});
+      ray.fill({.origin_group = mesh.facet[mesh.first_element[patch]]});
     }
   }
   scratch.take(rays, behind, row);

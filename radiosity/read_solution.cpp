@@ -185,13 +185,13 @@ void read_patches(const SolutionArrays& in, int band_count, PatchMesh& mesh) {
   mesh.area = in.areas(in.field(), "patch_area", n);
   mesh.surface = in.integers(in.field(), "patch_surface", n, 0, no_limit);
   mesh.material = in.integers(in.field(), "patch_material", n, 0, no_limit);
-  mesh.facet = in.integers(in.field(), "patch_facet", n, 0, no_limit);
   const auto is_back = in.required<unsigned char>(in.field(), "patch_is_back", n);
   mesh.is_back.assign(is_back.data, is_back.data + n);
   mesh.reflectance = in.bands(in.field(), "patch_reflectance", n, band_count);
   mesh.emission = in.bands(in.field(), "patch_emission", n, band_count);
 
   mesh.element_area = in.areas(in.cells(), "area", element_count);
+  mesh.facet = in.integers(in.cells(), "facet", element_count, 0, no_limit);
   mesh.twin = in.integers(in.cells(), "twin", element_count, -1, element_count);
   mesh.patch = in.integers(in.cells(), "patch", element_count, 0, n);
   for (int e = 0; e < element_count; ++e) {

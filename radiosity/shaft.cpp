@@ -86,7 +86,7 @@ Shafts::Shafts(const PatchMesh& mesh) : occluders_(mesh) {
 }
 
 ShaftEnd Shafts::end(const PatchOutline& outline, int facet) const {
-  ShaftEnd end{.sheet = occluders_.sheet_of_facet[facet]};
+  ShaftEnd end{.sheet = facet >= 0 ? occluders_.sheet_of_facet[facet] : -1};
   if (!outline.is_polygon()) return end;
   end.parts = convex_pieces(outline.loops, outline.normal);
   end.plane = {outline.normal, outline.normal.dot(outline.loops[0][0])};

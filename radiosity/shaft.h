@@ -40,6 +40,7 @@ class Shafts {
   const Occluders& occluders() const { return occluders_; }
 
   /// Empty (no parts) for an outline that is no polygon or crosses itself.
+  /// `facet`: of the patch; -1: of several.
   ShaftEnd end(const PatchOutline& outline, int facet) const;
   /// `facet`: on which the point lies; -1: in free space.
   ShaftEnd end(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet) const;

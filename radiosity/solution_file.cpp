@@ -131,7 +131,7 @@ void add_elements(vtkCellData* data, const PatchMesh& mesh) {
   add_values(data, "twin", mesh.twin.data(), n);
   of_patch("surface", mesh.surface);
   of_patch("material", mesh.material);
-  of_patch("facet", mesh.facet);
+  add_values(data, "facet", mesh.facet.data(), n);
   add_values(data, "area", mesh.element_area.data(), n);
 }
 
@@ -142,7 +142,6 @@ void add_patches(vtkFieldData* data, const PatchMesh& mesh, const RadiositySolut
   add_values(data, "patch_area", mesh.area.data(), n);
   add_values(data, "patch_surface", mesh.surface.data(), n);
   add_values(data, "patch_material", mesh.material.data(), n);
-  add_values(data, "patch_facet", mesh.facet.data(), n);
   add_values(data, "patch_is_back", is_back.data(), n);
   add_bands(data, "patch_reflectance", mesh.reflectance, s.bands);
   add_bands(data, "patch_emission", mesh.emission, s.bands);

@@ -50,7 +50,7 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
     const int p = mesh.patch[e];
     const auto area = static_cast<float>(mesh.element_area[e]);
     Eigen::Array<float, 1, Eigen::Dynamic> B = patch_radiosity.row(p);
-    if (direct_light.owns(mesh.facet[p])) B -= mesh.emission.row(p);
+    if (direct_light.owns(mesh.facet[e])) B -= mesh.emission.row(p);
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       sum.row(mesh.corners[e][c]) += area * B;
       weight[mesh.corners[e][c]] += area;
@@ -113,14 +113,14 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
     const auto at = std::upper_bound(area_to.begin(), area_to.end() - 1, u[0] * total);
     const int p = static_cast<int>(at - area_to.begin());
     const PatchPoint point = PatchSampler(mesh, p).point(u[1], u[2]);
-    points[i] = {point.position, point.normal, mesh.facet[p]};
+    points[i] = {point.position, point.normal, mesh.facet[point.element]};
     // The element's own interpolation: look at the point from just above it.
     const double above = 1e-3 * std::sqrt(mesh.element_area[point.element]);
     const Ray ray{.origin = point.position + above * point.normal, .direction = -point.normal};
     ElementHit hit;
     caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.element < 0)
-      hit = {.facet = mesh.facet[p], .element = point.element, .weights = {1, 0, 0, 0}};
+      hit = {.facet = mesh.facet[point.element], .element = point.element, .weights = {1, 0, 0, 0}};
     interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
     if (solution.caustic_irradiance.size() > 0) {
       caustic.row(i) = interpolate(mesh, solution.caustic_irradiance, hit).transpose();

@@ -78,8 +78,8 @@ ViewFactorScene make_view_factor_scene(const NumberedScene& numbered, const Face
 
 std::vector<int> rows_of_patches(const ViewFactorScene& view, const PatchMesh& mesh) {
   std::vector<int> rows;
-  for (std::size_t p = 0; p < mesh.facet.size(); ++p) {
-    const auto facet = static_cast<std::size_t>(mesh.facet[p]);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const auto facet = static_cast<std::size_t>(mesh.facet[mesh.first_element[p]]);
     rows.push_back(mesh.is_back[p] ? view.back_row[facet] : view.front_row[facet]);
   }
   return rows;

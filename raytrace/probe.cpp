@@ -30,8 +30,8 @@ Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
     if (grid.facet == hit.facet) return (at - grid.sphere.center).normalized();
   }
   if (hit.element >= 0) return element_center(mesh, hit.element).normal;
-  for (int i = 0; i < mesh.patch_count(); ++i) {
-    if (mesh.facet[i] == hit.facet) return element_center(mesh, mesh.first_element[i]).normal;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (mesh.facet[e] == hit.facet) return element_center(mesh, e).normal;
   }
   return Eigen::Vector3d::Zero();
 }

@@ -25,7 +25,7 @@ std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
   std::iota(parent.begin(), parent.end(), 0);
   std::vector<int> facet_of_vertex(mesh.vertex_count(), -1);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const int facet = mesh.facet[mesh.patch[e]];
+    const int facet = mesh.facet[e];
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       int& other = facet_of_vertex[mesh.corners[e][c]];
       if (other < 0) other = facet;

@@ -35,7 +35,7 @@ std::vector<int> elements_of(const PatchMesh& mesh, int facet, bool back = false
   std::vector<int> elements;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
-    if (mesh.facet[p] == facet && (mesh.is_back[p] != 0) == back) elements.push_back(e);
+    if (mesh.facet[e] == facet && (mesh.is_back[p] != 0) == back) elements.push_back(e);
   }
   return elements;
 }
@@ -117,7 +117,7 @@ TEST(ContactLines, IntersectingBoxesCutEachOther) {
   };
   double hidden = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const bool of_one = mesh.facet[mesh.patch[e]] < 6;
+    const bool of_one = mesh.facet[e] < 6;
     const Vector3d l = of_one ? low : Vector3d::Zero(), h = of_one ? high : Vector3d::Ones();
     const bool inside = depth(element_center(mesh, e).position, l, h) > 0.0;
     if (inside && mesh.is_back[mesh.patch[e]] == 0) hidden += mesh.element_area[e];

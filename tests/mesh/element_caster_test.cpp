@@ -83,11 +83,11 @@ TEST(ElementCaster, EveryElementIsFoundFromItsOwnSide) {
   caster.closest_hits(rays, hits);
   for (int e = 0; e < mesh.element_count(); ++e) {
     ASSERT_EQ(hits[e].element, e);
-    EXPECT_EQ(hits[e].facet, mesh.facet[mesh.patch[e]]);
+    EXPECT_EQ(hits[e].facet, mesh.facet[e]);
     EXPECT_EQ(hits[e].from_back, mesh.is_back[mesh.patch[e]] != 0);
     EXPECT_NEAR(hits[e].t, away, 1e-6);
     const int n = mesh.corner_count(e);
-    if (!mesh.sphere_grids.empty() && mesh.facet[mesh.patch[e]] == mesh.sphere_grids[0].facet) {
+    if (!mesh.sphere_grids.empty() && mesh.facet[e] == mesh.sphere_grids[0].facet) {
       continue;
     }
     // At the mean of the corners all weigh the same in a parallelogram or triangle; in any

@@ -55,6 +55,10 @@ int add_lamp(Scene& scene);
 /// turned.
 Scene boxes_under_a_lamp(std::uint32_t seed);
 
+/// A ball of radius 1 about the origin as one surface of n (n - 2) triangles, n even, facing
+/// outwards, of one of empty_scene()'s materials.
+Scene triangle_ball(int n, int material);
+
 /// Checks every promise of PatchMesh's comments that can be told from the mesh alone.
 void expect_consistent(const PatchMesh& mesh);
 

@@ -70,7 +70,7 @@ TEST(FormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
   Eigen::ArrayXXd F = Eigen::ArrayXXd::Zero(6, 6);  // face to face, area-weighted
   for (int i = 0; i < s.mesh.patch_count(); ++i) {
     for (const FormFactor& f : s.form_factors->row(i)) {
-      F(s.mesh.facet[i], s.mesh.facet[f.patch]) += s.mesh.area[i] * f.value;
+      F(s.mesh.facet_of(i), s.mesh.facet_of(f.patch)) += s.mesh.area[i] * f.value;
     }
   }
   // 16 patches a face, each end casts: 4 standard errors of a binomial share of 0.2, an upper bound
@@ -86,6 +86,58 @@ TEST(FormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
   }
 }
 
+// Inside of a ball of triangles, in patches of many facets that see themselves: of a sphere
+// F_ij = A_j / A.
+TEST(FormFactors, PatchesOfManyFacetsSeeThemselvesAndTheRoomCloses) {
+  Scene scene;
+  const int m = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 0.0f));
+  scene.materials[m].one_sided = true;
+  PolygonMesh ball;
+  constexpr int n = 32, rings = n / 2;
+  for (int j = 0; j <= rings; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const double theta = M_PI * j / rings, phi = 2.0 * M_PI * i / n;
+      ball.vertices.emplace_back(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                 std::cos(theta));
+      const int right = (i + 1) % n;
+      if (j > 0 && j < rings) {
+        ball.facets.push_back({.boundary = {j * n + i, j * n + right, (j + 1) * n + i}});
+      }
+      if (j + 1 < rings) {
+        ball.facets.push_back({.boundary = {j * n + right, (j + 1) * n + right, (j + 1) * n + i}});
+      }
+    }
+  }
+  scene.surfaces.push_back({.name = "ball", .material = m, .shape = ball});
+  constexpr int rays = 4096;
+  for (const auto method : {FormFactorMethod::ray_cast, FormFactorMethod::automatic,
+                            FormFactorMethod::analytic, FormFactorMethod::hemicube}) {
+    const Solved s = cast(scene, {.method = method, .rays_per_patch = rays}, 0.8);
+    ASSERT_LT(s.mesh.patch_count(), 100);
+    EXPECT_LT(worst_closure(s), 1e-5);
+    EXPECT_LT(worst_reciprocity(s), 1e-5);
+    const double A = s.mesh.area.sum();
+    for (int i = 0; i < s.mesh.patch_count(); ++i) {
+      if (s.mesh.facet_of(i) >= 0) continue;
+      const Eigen::Vector3d here = element_center(s.mesh, s.mesh.first_element[i]).position;
+      // A facet does not see itself; what of the patch it does see it sees as on a sphere.
+      EXPECT_GT(form_factor(s, i, i), 0.0);
+      EXPECT_LT(form_factor(s, i, i), 2.0 * s.mesh.area[i] / A);
+      double far = 0.0, far_area = 0.0;
+      for (int j = 0; j < s.mesh.patch_count(); ++j) {
+        const Eigen::Vector3d there = element_center(s.mesh, s.mesh.first_element[j]).position;
+        if (here.dot(there) > 0.0) continue;
+        far += form_factor(s, i, j);
+        far_area += s.mesh.area[j];
+      }
+      // 4 standard errors of a share of a half, and 2 % for facets that lie inside of the sphere
+      // by 1 - cos(pi / 16).
+      const double error = 4.0 * 0.5 / std::sqrt(1.0 * rays) + 0.02;
+      EXPECT_NEAR(far, far_area / A, error) << "patch " << i;
+    }
+  }
+}
+
 TEST(FormFactors, OpenTopLetsOutWhatTheClosedFormSays) {
   Scene scene;
   const int m = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
@@ -94,7 +146,7 @@ TEST(FormFactors, OpenTopLetsOutWhatTheClosedFormSays) {
   const Solved s = cast(scene, {.rays_per_patch = 4096});
   double floor_escapes = 0.0;
   for (int i = 0; i < s.mesh.patch_count(); ++i) {
-    if (s.mesh.facet[i] == 4) floor_escapes += s.mesh.area[i] * s.form_factors->escaped(i)[0];
+    if (s.mesh.facet_of(i) == 4) floor_escapes += s.mesh.area[i] * s.form_factors->escaped(i)[0];
   }
   const double se = std::sqrt(0.2 * 0.8 / (16.0 * 4096));
   EXPECT_NEAR(floor_escapes, 0.19982489569838738, 4 * se);
@@ -115,7 +167,7 @@ TEST(FormFactors, SmallEmitterIsExactAndCloses) {
   EXPECT_LT(worst_reciprocity(s), 1e-6);
 
   for (int i = 0; i < s.mesh.patch_count(); ++i) {
-    if (s.mesh.facet[i] != 4) continue;  // floor: nothing between it and the lamp
+    if (s.mesh.facet_of(i) != 4) continue;  // floor: nothing between it and the lamp
     double F = 0.0;
     for (const FormFactor& f : s.form_factors->row(i)) {
       if (s.mesh.surface[f.patch] == 6) F += f.value;
@@ -137,11 +189,11 @@ TEST(FormFactors, PerfectMirrorPassesEverythingOn) {
   // opposed unit square at distance 2: F = 0.06858959... (parallel unit squares, closed form).
   double back = 0.0, area = 0.0;
   for (int i = 0; i < s.mesh.patch_count(); ++i) {
-    if (s.mesh.facet[i] != 1) continue;
+    if (s.mesh.facet_of(i) != 1) continue;
     area += s.mesh.area[i];
     const SpecularRow row = s.form_factors->specular_row(i);
     for (std::size_t e = 0; e < row.patch.size(); ++e) {
-      if (s.mesh.facet[row.patch[e]] == 1) back += s.mesh.area[i] * row.value(e, 0);
+      if (s.mesh.facet_of(row.patch[e]) == 1) back += s.mesh.area[i] * row.value(e, 0);
     }
   }
   const auto parallel_squares = [](double distance) {

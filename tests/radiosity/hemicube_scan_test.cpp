@@ -291,7 +291,7 @@ TEST(HemicubeScan, FloorUnderABlockSeesItsBottomAlone) {
   for (int patch = 0; patch < mesh.patch_count(); ++patch) {
     const HemicubeEye eye = hemicube_eye(mesh, patch, true);
     const Vector3d& p = eye.position;
-    if (mesh.facet[patch] != 4 || p.x() < 0.3 || p.x() > 0.6 || p.y() < 0.4 || p.y() > 0.7)
+    if (mesh.facet_of(patch) != 4 || p.x() < 0.3 || p.x() > 0.6 || p.y() < 0.4 || p.y() > 0.7)
       continue;
     ++covered;
     constexpr int bottom = 6 + 4;

@@ -55,7 +55,7 @@ TEST_P(Hemicube, RowsOfAClosedRoomSumToOne) {
     int before = -1;
     for (const FormFactor& f : row.shares) {
       EXPECT_GT(f.patch, before);
-      EXPECT_NE(rows.mesh.facet[f.patch], rows.mesh.facet[i]);
+      EXPECT_NE(rows.mesh.facet_of(f.patch), rows.mesh.facet_of(i));
       EXPECT_GT(f.value, 0.0f);
       before = f.patch;
     }
@@ -89,7 +89,7 @@ TEST_P(Hemicube, BlackBackBlocks) {
     if (eye.position.z() > 0.49) continue;
     const double exact = std::abs(point_to_polygon(eye.position, eye.frame.col(2), {&plate, 1}));
     EXPECT_NEAR(rows.row[i].escaped, exact, 2e-3);
-    for (const FormFactor& f : rows.row[i].shares) EXPECT_NE(rows.mesh.facet[f.patch], 6);
+    for (const FormFactor& f : rows.row[i].shares) EXPECT_NE(rows.mesh.facet_of(f.patch), 6);
     ++below;
   }
   EXPECT_GT(below, 10);
@@ -102,16 +102,16 @@ TEST_P(Hemicube, PerfectMirrorPassesEverythingOn) {
   double back = 0.0;
   for (int i = 0; i < rows.mesh.patch_count(); ++i) {
     const EstimatedRow& row = rows.row[i];
-    if (rows.mesh.facet[i] == 0) {
+    if (rows.mesh.facet_of(i) == 0) {
       EXPECT_EQ(row.trust, 0.0);  // a mirror has no row of its own
       continue;
     }
     EXPECT_NEAR(sum_of_shares(row) + row.specular, 1.0, 1e-7);
     // All that meets the mirror arrives. Float entries, a few hundred.
     EXPECT_NEAR(row.specular_share.col(0).sum(), row.specular, 1e-6);
-    if (rows.mesh.facet[i] != 1) continue;
+    if (rows.mesh.facet_of(i) != 1) continue;
     for (std::size_t e = 0; e < row.specular_patch.size(); ++e) {
-      if (rows.mesh.facet[row.specular_patch[e]] == 1) {
+      if (rows.mesh.facet_of(row.specular_patch[e]) == 1) {
         back += rows.mesh.area[i] * row.specular_share(e, 0);
       }
     }
@@ -213,10 +213,10 @@ TEST(HemicubeRows, PolygonToPolygonIsTheCatalogues) {
     const Rows rows = rows_of(scene, {.max_patch_size = size, .elements_per_patch_edge = 1}, {});
     double F = 0.0, area = 0.0;
     for (int i = 0; i < rows.mesh.patch_count(); ++i) {
-      if (rows.mesh.facet[i] != 0) continue;
+      if (rows.mesh.facet_of(i) != 0) continue;
       area += rows.mesh.area[i];
       for (const FormFactor& f : rows.row[i].shares) {
-        if (rows.mesh.facet[f.patch] == 1) F += rows.mesh.area[i] * f.value;
+        if (rows.mesh.facet_of(f.patch) == 1) F += rows.mesh.area[i] * f.value;
       }
     }
     EXPECT_NEAR(F / area, entry["value"].get<double>(), 2e-3) << entry["id"];
@@ -238,7 +238,7 @@ TEST(HemicubeRows, AliasingFallsWithTheResolution) {
     double squares = 0.0;
     int count = 0;
     for (int i = 0; i < rows.mesh.patch_count(); ++i) {
-      if (rows.mesh.facet[i] != 0) continue;
+      if (rows.mesh.facet_of(i) != 0) continue;
       const HemicubeEye eye = hemicube_eye(rows.mesh, i, true);
       const double exact = std::abs(point_to_polygon(eye.position, eye.frame.col(2), {&lamp, 1}));
       squares += std::pow(1.0 - rows.row[i].escaped - exact, 2);
@@ -271,7 +271,7 @@ TEST(HemicubeRows, SameBitsForAnyNumberOfThreads) {
 TEST(HemicubeRows, EachPatchTurnsItsHemicube) {
   const PatchMesh mesh = build_patches(test::furnace(0.5f, 1.0f, false), {.max_patch_size = 0.5});
   const HemicubeEye first = hemicube_eye(mesh, 0, true), second = hemicube_eye(mesh, 1, true);
-  ASSERT_EQ(mesh.facet[0], mesh.facet[1]);
+  ASSERT_EQ(mesh.facet_of(0), mesh.facet_of(1));
   EXPECT_EQ(first.frame.col(2), second.frame.col(2));
   EXPECT_GT((first.frame.col(0) - second.frame.col(0)).norm(), 1e-3);
   EXPECT_EQ(first.frame, hemicube_eye(mesh, 0, true).frame);

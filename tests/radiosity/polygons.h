@@ -18,7 +18,7 @@ struct Polygons {
     mesh = build_patches(scene, {.max_patch_size = 1e9, .elements_per_patch_edge = 1});
   }
   ShaftEnd end(const Shafts& shafts, int patch) const {
-    return shafts.end(patch_outline(mesh, patch), mesh.facet[patch]);
+    return shafts.end(patch_outline(mesh, patch), mesh.facet_of(patch));
   }
   Scene scene;
   PatchMesh mesh;

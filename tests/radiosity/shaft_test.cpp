@@ -140,8 +140,8 @@ TEST(Shaft, NeverMissesWhatBlocksARay) {
         const Ray ray{.origin = a.position,
                       .direction = way,
                       .t_max = 1.0,
-                      .origin_group = p.mesh.facet[i],
-                      .target_group = p.mesh.facet[j]};
+                      .origin_group = p.mesh.facet_of(i),
+                      .target_group = p.mesh.facet_of(j)};
         std::uint8_t blocked = 0;
         caster.occluded({&ray, 1}, {&blocked, 1});
         EXPECT_EQ(blocked, 0) << i << " to " << j;

@@ -69,7 +69,7 @@ inline SolvedScene small_solution(int band_count) {
   mesh.emission = awkward(2, band_count, 4);
   mesh.surface = {4, 4};
   mesh.material = {1, 2};
-  mesh.facet = {7, 7};
+  mesh.facet = {7, 7, 9};
   mesh.is_back = {0, 1};
   mesh.sphere_grids = {
       {.facet = 3,

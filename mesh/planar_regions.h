@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// What merge_planar_regions() found and did.
+struct CleanUpReport {
+  std::int64_t facets_before = 0, facets_after = 0;  ///< spheres count as one
+  std::int64_t welded_vertices = 0;  ///< joined with another vertex of their surface
+  std::int64_t degenerate = 0;       ///< facets dropped for having no area
+  std::int64_t duplicates = 0;       ///< facets dropped for lying on an equal one
+  std::int64_t flipped = 0;          ///< facets turned over to face as their neighbours do
+  std::int64_t merged = 0;           ///< facets that became part of a larger polygon
+
+  bool is_clean() const {
+    return welded_vertices + degenerate + duplicates + flipped + merged == 0;
+  }
+};
+
+/// One sentence for people: "142973 facets became 61204: ...".
+std::string sentence(const CleanUpReport& report);
+
+/// The same surfaces in fewer, cleaner polygons, as the commands that mesh for light use them.
+/// Within each surface, in this order:
+///
+/// 1. corners closer than 1e-7 of the scene's diagonal become one (never the ends of one edge);
+/// 2. facets without area are dropped: thinner than 1e-13, or smaller than 1e-9 of the diagonal;
+/// 3. of facets with the same edges and the same facing the first stays; of facets back to back
+///    too, where the material is alike on both sides;
+/// 4. facets that are connected over edges of exactly two facets are turned to face alike, as the
+///    larger part of their area does. One-sided (Moebius) pieces and ties are left;
+/// 5. facets in one plane that are connected over whole edges become one polygon, with holes. Where
+///    anything is uncertain (edges of overlapping facets, boundaries that would cross) all stay;
+/// 6. vertices inside straight edges of those polygons go, where no facet left as it was has them.
+///
+/// The sum of areas is kept to 1e-9. A surface in which nothing is found stays bit by bit what it
+/// was; facets keep the order of their first part. O(n log n) in the number of corners.
+Scene merge_planar_regions(const Scene& scene, CleanUpReport* report = nullptr);
+
+}  // namespace lightwell
