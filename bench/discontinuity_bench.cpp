@@ -121,7 +121,7 @@ std::vector<std::array<double, 2>> profile(const PatchMesh& mesh, const Truth& t
                                            const Eigen::ArrayX4d& corner_F) {
   Eigen::AlignedBox3d box;
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (mesh.facet[mesh.patch[e]] != 0) continue;
+    if (mesh.facet[e] != 0) continue;
     for (int i = 0; i < mesh.corner_count(e); ++i) box.extend(mesh.position(mesh.corners[e][i]));
   }
   constexpr int count = 500;
@@ -157,7 +157,7 @@ Quality quality(const Scene& scene, const Truth& truth, const MeshOptions& optio
   std::vector<ReceivingPoint> points;
   std::vector<int> elements;
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (mesh.facet[mesh.patch[e]] != 0 || mesh.is_back[mesh.patch[e]] != 0) continue;
+    if (mesh.facet[e] != 0 || mesh.is_back[mesh.patch[e]] != 0) continue;
     elements.push_back(e);
     for (int i = 0; i < 4; ++i) {  // of a triangle the last corner twice
       points.push_back(receiving_corner(mesh, e, std::min(i, mesh.corner_count(e) - 1)));

@@ -51,8 +51,7 @@ int run(const Arguments& arguments, Console& console) {
 Action add_run(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.description(
-      "Solves a scene and renders each of its cameras: solution.vtp, a .exr and a .png per\n"
-      "camera, report.json.");
+      "Solves a scene and renders its cameras: solution.vtp, .exr and .png files, report.json.");
   command
       .add_option("scene", arguments->scene,
                   "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .vs3")

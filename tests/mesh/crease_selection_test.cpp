@@ -77,7 +77,7 @@ TEST(CreaseSelection, NoElementStraddlesABoundOfThePenumbraAndItsSidesShareVerti
   for (const double x : {-0.37, 0.3}) {  // the shadows of the lamp's edges: -x_lamp
     std::set<int> left, right;
     for (int e = 0; e < mesh.element_count(); ++e) {
-      if (mesh.facet[mesh.patch[e]] != 0 || mesh.is_back[mesh.patch[e]] != 0) continue;
+      if (mesh.facet[e] != 0 || mesh.is_back[mesh.patch[e]] != 0) continue;
       const bool is_left = element_center(mesh, e).position.x() < x;
       for (int i = 0; i < mesh.corner_count(e); ++i) {
         const double at = mesh.position(mesh.corners[e][i]).x();
@@ -118,7 +118,7 @@ ProfileError profile_error(const MeshOptions& options) {
   const PatchMesh mesh = build_patches(half_plane_scene(), options);
   ProfileError error;
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (mesh.facet[mesh.patch[e]] != 0 || mesh.is_back[mesh.patch[e]] != 0) continue;
+    if (mesh.facet[e] != 0 || mesh.is_back[mesh.patch[e]] != 0) continue;
     ++error.elements;
     std::array<Vector3d, 4> p;
     std::array<double, 4> E{};
