@@ -71,9 +71,10 @@ Array4f turned(const Array4f& w, bool is_triangle) {
 ElementCaster::ElementCaster(const PatchMesh& mesh)
     : mesh_(mesh),
       caster_(cast_geometry(mesh, elements_, quad_shapes_)),
+      triangles_(caster_.triangle_count()),
+      polygons_(triangles_ + caster_.quad_count()),
       hidden_(static_cast<std::size_t>(mesh.element_count()), 0) {
-  const int polygons = caster_.triangle_count() + caster_.quad_count();
-  for (int primitive = 0; primitive < polygons; ++primitive) {
+  for (int primitive = 0; primitive < polygons_; ++primitive) {
     hidden_[elements_[primitive]] =
         static_cast<std::uint8_t>((caster_.is_hidden(primitive, false) ? 1 : 0) |
                                   (caster_.is_hidden(primitive, true) ? 2 : 0));
@@ -136,15 +137,14 @@ ElementHit ElementCaster::element_hit(const Ray& ray, const Hit& hit) const {
                     .element = elements_[hit.primitive],
                     .from_back = hit.from_back,
                     .t = hit.t};
-  const int triangles = caster_.triangle_count();
-  const bool is_polygon = hit.primitive < triangles + caster_.quad_count();
-  bool is_triangle = hit.primitive < triangles;
+  const bool is_polygon = hit.primitive < polygons_;
+  bool is_triangle = hit.primitive < triangles_;
   if (!with_weights && is_polygon) {
     // Nothing more to find out.
   } else if (is_triangle) {
     result.weights = {1.0f - hit.u - hit.v, hit.u, hit.v, 0.0f};
   } else if (is_polygon) {
-    const QuadShape& shape = quad_shapes_[static_cast<std::size_t>(hit.primitive - triangles)];
+    const QuadShape& shape = quad_shapes_[static_cast<std::size_t>(hit.primitive - triangles_)];
     result.weights = quad_weights(shape.alpha, shape.beta, hit.u, hit.v);
   } else {
     const SphereGrid& grid = mesh_.sphere_grids[result.element];

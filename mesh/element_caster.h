@@ -63,6 +63,7 @@ class ElementCaster {
   std::vector<int> elements_;
   std::vector<QuadShape> quad_shapes_;
   RayCaster caster_;
+  int triangles_ = 0, polygons_ = 0;  // the first of the primitives
   std::vector<std::uint8_t> hidden_;  // per element, a bit per side
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <memory>
+#include <mutex>
 
 #include "mesh/patch_sampler.h"
 #include "scene/parallel.h"
@@ -158,16 +160,28 @@ void RowCaster::look_behind(std::span<Ray> rays, std::span<ElementHit> hits,
 void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& progress,
                   const std::function<void(int, RowCaster::Scratch&)>& work) {
   const int patches = mesh.patch_count();
-  // Slices keep progress and interruption on this thread: each a fraction of a second of rays.
-  constexpr int rays_per_slice = 1 << 20;
-  const int slice =
-      std::clamp(rays_per_slice / std::max(rays_per_patch, 1), 2, std::max(64, patches / 100));
+  // Slices keep progress and interruption on this thread: each a fraction of a second of rays. At
+  // the end of each the threads wait for each other, so they should be few.
+  constexpr int rays_per_slice = 1 << 21;
+  const int slice = std::max(2, rays_per_slice / std::max(rays_per_patch, 1));
   const int grain = std::clamp(slice / 16, 1, 16);
+  // Scratch grows with the mesh, so it is handed on and not made again.
+  std::mutex mutex;
+  std::vector<std::unique_ptr<RowCaster::Scratch>> idle;
+  const auto borrow = [&] {
+    const std::lock_guard lock(mutex);
+    if (idle.empty()) return std::make_unique<RowCaster::Scratch>(mesh);
+    auto scratch = std::move(idle.back());
+    idle.pop_back();
+    return scratch;
+  };
   for (int begin = 0; begin < patches; begin += slice) {
     report(progress, "form factors", static_cast<double>(begin) / patches);
     parallel_for(std::min(slice, patches - begin), grain, [&](int low, int high) {
-      RowCaster::Scratch scratch(mesh);
-      for (int i = begin + low; i < begin + high; ++i) work(i, scratch);
+      auto scratch = borrow();
+      for (int i = begin + low; i < begin + high; ++i) work(i, *scratch);
+      const std::lock_guard lock(mutex);
+      idle.push_back(std::move(scratch));
     });
   }
   report(progress, "form factors", 1.0);
