@@ -77,7 +77,7 @@ std::string for_people(const Json& facts, const CleanUpReport& clean_up) {
        fmt::format("{}; {} vertices", of_fronts("elements", "front_elements"), count("vertices")));
   line("area", fmt::format("{:.6g} m2 of fronts; the scene has {:.6g} m2 (difference {:.1e})",
                            number("area"), number("scene_area"), number("area_error")));
-  line("angles", fmt::format("{:.1f} degrees at least; {:.2f} % of elements below 10, {:.2f} % "
+  line("angles", fmt::format("{:.3g} degrees at least; {:.2f} % of elements below 10, {:.2f} % "
                              "below 20",
                              number("least_angle"), 100.0 * number("below_10_degrees"),
                              100.0 * number("below_20_degrees")));

@@ -6,6 +6,8 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "mesh/element_quality.h"
@@ -34,6 +36,29 @@ void add_column(vtkFieldData* cells, const char* name, const std::vector<int>& e
   add_values(cells, name, values.data(), static_cast<std::ptrdiff_t>(values.size()));
 }
 
+// Okabe & Ito 2008, "Color universal design": told apart with any colour vision. What needs more
+// numbers than colours gets them darker.
+std::vector<unsigned char> palette_colors(const std::vector<int>& numbers) {
+  constexpr std::array<std::array<int, 3>, 8> palette = {{{86, 180, 233},
+                                                          {230, 159, 0},
+                                                          {0, 158, 115},
+                                                          {240, 228, 66},
+                                                          {204, 121, 167},
+                                                          {0, 114, 178},
+                                                          {213, 94, 0},
+                                                          {160, 160, 160}}};
+  std::vector<unsigned char> colors;
+  colors.reserve(3 * numbers.size());
+  for (const int number : numbers) {
+    const auto n = static_cast<std::size_t>(number);
+    for (const int channel : palette[n % palette.size()]) {
+      const auto divisor = static_cast<int>(std::min<std::size_t>(1 + n / palette.size(), 8));
+      colors.push_back(static_cast<unsigned char>(channel / divisor));
+    }
+  }
+  return colors;
+}
+
 void add_cells(vtkCellData* cells, const PatchMesh& mesh, const std::vector<int>& elements) {
   const auto add = [&](const char* name, auto&& value) {
     add_column(cells, name, elements, value);
@@ -50,7 +75,11 @@ void add_cells(vtkCellData* cells, const PatchMesh& mesh, const std::vector<int>
   add("least_angle", [&](int e) { return element_shape(mesh, e).least_angle_degrees; });
   add("aspect_ratio", [&](int e) { return element_shape(mesh, e).aspect_ratio; });
   add("is_back", [&](int e) -> unsigned char { return mesh.is_back[mesh.patch[e]] ? 1 : 0; });
-  cells->SetActiveScalars("patch_color");
+  std::vector<int> number;
+  for (const int e : elements) number.push_back(color[mesh.patch[e]]);
+  add_values(cells, "patch_rgb", palette_colors(number).data(),
+             static_cast<std::ptrdiff_t>(elements.size()), 3);
+  cells->SetActiveScalars("patch_rgb");
 }
 
 }  // namespace

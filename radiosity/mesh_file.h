@@ -13,7 +13,7 @@ enum class MeshSides { fronts, both };
 /// seen from the side they face, with cell data
 ///
 /// - `element`, `patch`, `facet`, `surface`, `material`: numbers, from 0, as in a solution
-/// - `patch_color`: see patch_colors(); what is shown at first
+/// - `patch_color`: see patch_colors(); `patch_rgb` is the same as an 8-bit colour, shown at first
 /// - `area`, `patch_area`: m^2, exact on spheres
 /// - `least_angle` (degrees), `aspect_ratio`: see element_shape()
 /// - `is_back`: 1 on the backs of two-sided surfaces

@@ -9,6 +9,7 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -109,7 +110,7 @@ TEST_F(MeshCommand, ReportAndColumnsAgree) {
   EXPECT_EQ(json["largest_element"]["area"], *std::max_element(areas.begin(), areas.end()));
 
   vtkPolyData* const poly = read("M.vtp");
-  EXPECT_STREQ(poly->GetCellData()->GetScalars()->GetName(), "patch_color");
+  EXPECT_STREQ(poly->GetCellData()->GetScalars()->GetName(), "patch_rgb");
   const auto text = [poly](const char* name) {
     auto* const array = vtkStringArray::SafeDownCast(poly->GetFieldData()->GetAbstractArray(name));
     return array ? std::string(array->GetValue(0)) : "missing";
@@ -138,10 +139,27 @@ TEST_F(MeshCommand, WithoutAnOutputThereIsOnlyAReport) {
   const int files = folder.file_count();
   const Ended ended = run({"mesh", "room.toml"});
   EXPECT_EQ(ended.code, 0) << ended.err;
-  for (const char* part : {"patches", "60 m2", "90.0 degrees at least", "'panel'"}) {
+  for (const char* part : {"patches", "60 m2", "90 degrees at least", "'panel'"}) {
     EXPECT_TRUE(says(ended.out, part));
   }
   EXPECT_EQ(folder.file_count(), files);
+}
+
+TEST_F(MeshCommand, EachPatchColorHasAColorOfItsOwn) {
+  run_json({"mesh", "room.toml", "-o", "M.vtp"});
+  vtkCellData* const data = read("M.vtp")->GetCellData();
+  vtkDataArray *const color = data->GetArray("patch_color"), *const rgb = data->GetScalars();
+  ASSERT_EQ(rgb->GetNumberOfComponents(), 3);
+  std::map<double, std::array<double, 3>> rgb_of;
+  std::map<std::array<double, 3>, double> color_of;
+  for (vtkIdType i = 0; i < color->GetNumberOfTuples(); ++i) {
+    std::array<double, 3> shown;
+    rgb->GetTuple(i, shown.data());
+    const double number = color->GetTuple1(i);
+    EXPECT_EQ(rgb_of.emplace(number, shown).first->second, shown);
+    EXPECT_EQ(color_of.emplace(shown, number).first->second, number);
+  }
+  EXPECT_GT(rgb_of.size(), 1u);
 }
 
 TEST_F(MeshCommand, BacksComeOnlyWhenAskedFor) {
