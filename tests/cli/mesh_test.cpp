@@ -187,6 +187,27 @@ TEST_F(MeshCommand, TellsWhatWasCleanedFirst) {
   EXPECT_TRUE(says(run({"mesh", "cube.obj"}).out, "12 facets became 6"));
 }
 
+// A block that hangs in a room of few large elements has more shadow bounds than may be drawn.
+TEST_F(MeshCommand, NotesSayWhatMeshingLeftOut) {
+  folder.write("block.toml", small_room() + R"(
+[[surfaces]]
+name = "block"
+material = "white"
+box = { min = [1.3, 1.2, 0.5], max = [2.2, 1.7, 1.1] }
+)");
+  const Words coarse = {"--max-patch-size", "2", "--elements-per-patch-edge", "1",
+                        "--discontinuity"};
+  const auto meshed = run_json(Words{"mesh", "block.toml"} + coarse);
+  ASSERT_EQ(meshed["notes"].size(), 1u);
+  EXPECT_TRUE(says(meshed["notes"][0], "discontinuity lines"));
+  EXPECT_TRUE(says(run(Words{"mesh", "block.toml"} + coarse).err,
+                   "note: " + meshed["notes"][0].get<std::string>()));
+  const auto solved = run_json(
+      Words{"solve", "block.toml", "-o", "S.vtp", "--rays", "64", "--gather-rays", "32"} + coarse);
+  EXPECT_EQ(solved["notes"], meshed["notes"]);
+  EXPECT_EQ(solved["elements"], meshed["elements"]);
+}
+
 TEST_F(MeshCommand, TheSameBytesForAnyNumberOfThreads) {
   folder.write("ball.toml", small_room() + ball);
   for (const char* threads : {"1", "4"}) {
