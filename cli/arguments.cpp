@@ -180,8 +180,7 @@ std::string hemicube_text(const std::string& method, int resolution) {
   return method == "hemicube" ? fmt::format(" --hemicube-resolution {}", resolution) : "";
 }
 
-void SolveArguments::add_to(CLI::App& command) {
-  const std::string group = "How the light is solved";
+void MeshArguments::add_to(CLI::App& command, const std::string& group) {
   command
       .add_option("--max-patch-size", max_patch_size,
                   "longest patch edge in the scene file's unit (default: about 1600 patches)")
@@ -189,15 +188,32 @@ void SolveArguments::add_to(CLI::App& command) {
       ->check(positive())
       ->group(group);
   command
-      .add_option("--elements-per-patch-edge", solve.mesh.elements_per_patch_edge,
+      .add_option("--elements-per-patch-edge", mesh.elements_per_patch_edge,
                   "detail of shadows within a patch (default 2)")
       ->type_name("N")
       ->check(whole_number(1, 64))
       ->group(group);
   command
-      .add_flag("--discontinuity", solve.mesh.discontinuity,
+      .add_flag("--discontinuity", mesh.discontinuity,
                 "cut receivers along the bounds of umbra and penumbra")
       ->group(group);
+}
+
+MeshOptions MeshArguments::options(const Scene& scene) const {
+  MeshOptions options = mesh;
+  options.max_patch_size = max_patch_size * scene.metres_per_unit;
+  return options;
+}
+
+std::string MeshArguments::text(const Scene& scene) const {
+  return fmt::format("--max-patch-size {:.6g} --elements-per-patch-edge {}{}",
+                     patch_size(scene, options(scene)) / scene.metres_per_unit,
+                     mesh.elements_per_patch_edge, mesh.discontinuity ? " --discontinuity" : "");
+}
+
+void SolveArguments::add_to(CLI::App& command) {
+  const std::string group = "How the light is solved";
+  mesh.add_to(command, group);
   command
       .add_option("--form-factors", form_factors,
                   "how form factors are found: auto (default), ray-cast, hemicube, analytic")
@@ -238,18 +254,17 @@ void SolveArguments::add_to(CLI::App& command) {
 
 SolveOptions SolveArguments::options(const Scene& scene) const {
   SolveOptions options = solve;
-  options.mesh.max_patch_size = max_patch_size * scene.metres_per_unit;
+  options.mesh = mesh.options(scene);
   options.form_factors.method = form_factor_method(form_factors);
   return options;
 }
 
 std::string SolveArguments::text(const Scene& scene) const {
   return fmt::format(
-      "--max-patch-size {:.6g} --elements-per-patch-edge {}{} --form-factors {}{} --solver {} "
-      "--rays {} --gather-rays {} --tolerance {:g} --max-sweeps {}",
-      patch_size(scene, options(scene).mesh) / scene.metres_per_unit,
-      solve.mesh.elements_per_patch_edge, solve.mesh.discontinuity ? " --discontinuity" : "",
-      form_factors, hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
+      "{} --form-factors {}{} --solver {} --rays {} --gather-rays {} --tolerance {:g} "
+      "--max-sweeps {}",
+      mesh.text(scene), form_factors,
+      hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
       solve.form_factors.rays_per_patch, solve.gather.rays, solve.tolerance, solve.max_sweeps);
 }
 

@@ -12,9 +12,21 @@
 
 namespace lightwell {
 
+/// How surfaces are cut into patches and elements, as asked for on the command line.
+struct MeshArguments {
+  double max_patch_size = 0.0;  ///< in the scene file's unit; 0: automatic
+  MeshOptions mesh{};
+
+  void add_to(CLI::App& command, const std::string& group);
+  /// With lengths in metres; `progress` is left empty.
+  MeshOptions options(const Scene& scene) const;
+  /// The command line that repeats it, with every default spelled out.
+  std::string text(const Scene& scene) const;
+};
+
 /// How the light is solved, as asked for on the command line.
 struct SolveArguments {
-  double max_patch_size = 0.0;  ///< in the scene file's unit; 0: automatic
+  MeshArguments mesh{};
   std::string form_factors = "auto";
   std::string solver = "gauss-seidel";
   std::int64_t memory = 0;  ///< bytes; 0: no limit given

@@ -85,12 +85,6 @@ Json quality_json(const Scene& scene) {
           {"inconsistent_edges", quality.inconsistent_edges}};
 }
 
-Json clean_up_json(const CleanUpReport& report) {
-  return {{"facets", report.facets_after},   {"welded_vertices", report.welded_vertices},
-          {"degenerate", report.degenerate}, {"duplicates", report.duplicates},
-          {"flipped", report.flipped},       {"merged", report.merged}};
-}
-
 Json scene_json(const Scene& scene) {
   std::size_t spheres = 0;
   for (const Surface& surface : scene.surfaces) {

@@ -24,6 +24,7 @@ constexpr const char* recipes =
 
   lightwell run cornell/cornell.toml                     solve, and render every camera of the scene
   lightwell solve room.toml -o room.vtp                  solve, and keep the light on all surfaces
+  lightwell mesh room.toml -o mesh.vtp                   the patches and elements of 'solve'
   lightwell render room.toml room.vtp -o room.png        a picture: mirrors, glass, exact shadows
   lightwell view room.toml room.vtp                      walk through it
   lightwell probe room.toml room.vtp --points desk.csv -o lux.csv
@@ -40,8 +41,9 @@ struct NamedCommand {
   const char* name;
   Action (*add)(CLI::App&);
 };
-constexpr std::array<NamedCommand, 8> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 9> commands = {{{"run", add_run},
                                                    {"solve", add_solve},
+                                                   {"mesh", add_mesh},
                                                    {"render", add_render},
                                                    {"probe", add_probe},
                                                    {"view", add_view},

@@ -163,6 +163,12 @@ std::string light_name(bool relative_units) {
   return relative_units ? "relative" : "watts";
 }
 
+Json clean_up_json(const CleanUpReport& report) {
+  return {{"facets", report.facets_after},   {"welded_vertices", report.welded_vertices},
+          {"degenerate", report.degenerate}, {"duplicates", report.duplicates},
+          {"flipped", report.flipped},       {"merged", report.merged}};
+}
+
 Json energy_json(const EnergyBalance& energy) {
   return {{"emitted", energy.emitted},
           {"absorbed", energy.absorbed},

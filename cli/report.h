@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/console.h"
+#include "mesh/planar_regions.h"
 #include "radiosity/solve.h"
 #include "raytrace/image.h"
 
@@ -53,6 +54,9 @@ void write_json(const std::filesystem::path& file, const Json& json);
 
 /// What light is in, for the key "light" of JSON: "watts" or "relative".
 std::string light_name(bool relative_units);
+
+/// What cleaning did to a scene's polygons, for JSON.
+Json clean_up_json(const CleanUpReport& report);
 
 /// Watts by fate, or their relative amounts, for JSON.
 Json energy_json(const EnergyBalance& energy);

@@ -4,7 +4,6 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "mesh/planar_regions.h"
 #include "radiosity/solution_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
@@ -28,7 +27,8 @@ void write_picture(const fs::path& file, const Image& image, const RadiositySolu
 
 }  // namespace
 
-Scene read_scene_step(const fs::path& file, Console& console, Report& report) {
+Scene read_scene_step(const fs::path& file, Console& console, Report& report,
+                      CleanUpReport* clean_up) {
   const Stopwatch watch;
   const Scene scene = read_scene(file);
   console.say_notes(scene);
@@ -36,12 +36,21 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report) {
   report.add_phase("read_scene", watch.seconds());
   stop_if_interrupted();
   const Stopwatch clean_up_watch;
-  CleanUpReport clean_up;
-  Scene clean = merge_planar_regions(scene, &clean_up);
-  console.say_verbose(sentence(clean_up));
+  CleanUpReport done;
+  Scene clean = merge_planar_regions(scene, &done);
+  console.say_verbose(sentence(done));
+  report.add("cleaned", clean_up_json(done));
+  if (clean_up) *clean_up = done;
   report.add_phase("clean_up", clean_up_watch.seconds());
   stop_if_interrupted();
   return clean;
+}
+
+void note_mesh(const Scene& scene, const PatchMesh& mesh, Console& console, Report& report) {
+  std::vector<std::string> notes = scene.notes;  // said when it was read
+  notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
+  report.add("notes", notes);
+  for (const std::string& note : mesh.notes) console.say("note: " + note);
 }
 
 SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, const fs::path& output,
@@ -53,7 +62,7 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   console.say_verbose("solving with " + arguments.text(scene));
   SolvedScene solved = solve_scene(scene, options);
   console.finish_phase();
-  for (const std::string& note : solved.mesh.notes) console.say("note: " + note);
+  note_mesh(scene, solved.mesh, console, report);
   solved.solution.provenance.version = LIGHTWELL_VERSION;
   solved.solution.provenance.options = arguments.text(scene);
   report.add_solution(solved, true);

@@ -18,7 +18,11 @@ namespace lightwell {
 
 /// The scene as every command that needs light sees it: cleaned by merge_planar_regions(), so that
 /// facet numbers and hash are those of any solution made from it.
-Scene read_scene_step(const std::filesystem::path& file, Console& console, Report& report);
+Scene read_scene_step(const std::filesystem::path& file, Console& console, Report& report,
+                      CleanUpReport* clean_up = nullptr);
+
+/// Notes on the mesh go to the console, those on the scene and the mesh into the report.
+void note_mesh(const Scene& scene, const PatchMesh& mesh, Console& console, Report& report);
 
 /// Form factors that do not fit into memory go beside `output`.
 SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments,

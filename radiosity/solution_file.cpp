@@ -6,7 +6,6 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkStringArray.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
@@ -40,14 +39,6 @@ class SealedWriter : public vtkXMLPolyDataWriter {
  private:
   std::string preamble_;
 };
-
-void add_strings(vtkFieldData* data, const char* name, const std::vector<std::string>& values) {
-  if (values.empty()) return;
-  vtkNew<vtkStringArray> array;
-  array->SetName(name);
-  for (const std::string& value : values) array->InsertNextValue(value);
-  data->AddArray(array);
-}
 
 void add_bands(vtkFieldData* data, const char* name, const BandArray& values, const Bands& bands) {
   auto* array =

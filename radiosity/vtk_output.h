@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "mesh/patch_mesh.h"
 
@@ -30,8 +32,15 @@ vtkAOSDataArrayTemplate<T>* add_values(vtkFieldData* data, const std::string& na
   return array;
 }
 
+/// Text for people and for readers; nothing for no values.
+void add_strings(vtkFieldData* data, const std::string& name,
+                 const std::vector<std::string>& values);
+
 /// The mesh's vertices, in double precision, and one polygon per element.
 void set_element_polygons(vtkPolyData* poly, const PatchMesh& mesh);
+
+/// One polygon for each of `elements`, and only the vertices that those have, in the mesh's order.
+void set_element_polygons(vtkPolyData* poly, const PatchMesh& mesh, std::span<const int> elements);
 
 /// Writes raw appended data with 64-bit headers. Returns why it failed, in the system's words;
 /// nothing where it did not.

@@ -28,8 +28,9 @@ class Output : public testing::Test {
 };
 
 void expect_solution_keys(const nlohmann::json& json) {
-  for (const char* key : {"patches", "elements", "seconds", "peak_memory_mb", "energy",
-                          "error_estimate", "residual", "outcome", "version", "threads", "files"}) {
+  for (const char* key :
+       {"patches", "elements", "cleaned", "notes", "seconds", "peak_memory_mb", "energy",
+        "error_estimate", "residual", "outcome", "version", "threads", "files"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   const auto& energy = json["energy"];
@@ -138,6 +139,7 @@ TEST_F(Output, NothingSaysWattsWhereTheFileNamesNoUnit) {
         std::array{"room.toml", "watts", "W/(m^2 sr) per band"}}) {
     const auto solved = run_json(Words{"solve", scene, "-o", "S.vtp"} + quick());
     EXPECT_EQ(solved["light"], light);
+    EXPECT_EQ(solved["notes"], run_json({"info", scene})["notes"]);
     EXPECT_EQ(run_json({"info", "S.vtp"})["light"], light);
     run_json({"render", scene, "S.vtp", "--size", "8x8", "-o", "P.exr", "-o", "P.png"});
     for (const char* picture : {"P.exr", "P.png"}) {
@@ -157,8 +159,9 @@ TEST_F(Output, InfoTellsHowASolutionWasMade) {
 }
 
 TEST_F(Output, HelpAndVersionEverywhere) {
-  for (const Words& command : {Words{}, Words{"run"}, Words{"solve"}, Words{"render"},
-                               Words{"probe"}, Words{"view"}, Words{"compare"}, Words{"info"}}) {
+  for (const Words& command :
+       {Words{}, Words{"run"}, Words{"solve"}, Words{"mesh"}, Words{"render"}, Words{"probe"},
+        Words{"view"}, Words{"compare"}, Words{"info"}}) {
     const Ended help = run(command + Words{"--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_EQ(help.err, "");
