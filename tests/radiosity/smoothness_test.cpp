@@ -224,7 +224,9 @@ TEST(Scale, IrradianceIsThatOfTheSameRoomInAnyUnit) {
     // Rounding may send one ray of 1024 past the block that would have met it, at few places.
     EXPECT_LT(share, 1e-3);
     EXPECT_LT(off.maxCoeff(), 1e-3);
-    if (scale == 1024.0) EXPECT_EQ(off.maxCoeff(), 0.0);  // a power of two rounds nothing
+    if (scale == 1024.0) {
+      EXPECT_EQ(off.maxCoeff(), 0.0);  // a power of two rounds nothing
+    }
   }
 }
 
