@@ -116,8 +116,8 @@ TEST_F(MeshCommand, ReportAndColumnsAgree) {
     return array ? std::string(array->GetValue(0)) : "missing";
   };
   EXPECT_EQ(text("scene_file"), "ball.toml");
-  EXPECT_EQ(text("options"), json["options"]);
-  EXPECT_EQ(text("scene_hash"), run_json({"info", "ball.toml"})["scene_hash"]);
+  EXPECT_EQ(text("options"), json["options"].get<std::string>());
+  EXPECT_EQ(text("scene_hash"), run_json({"info", "ball.toml"})["scene_hash"].get<std::string>());
 }
 
 TEST_F(MeshCommand, TheMeshIsTheOneThatSolveUses) {
