@@ -59,14 +59,7 @@ ElementQuality element_quality(const PatchMesh& mesh) {
 
 double scene_area(const Scene& scene) {
   double area = 0.0;
-  for (const Surface& surface : scene.surfaces) {
-    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-      area += 4.0 * std::numbers::pi * sphere->radius * sphere->radius;
-    } else {
-      const auto& polygons = std::get<PolygonMesh>(surface.shape);
-      for (const Facet& facet : polygons.facets) area += facet_area(polygons, facet);
-    }
-  }
+  for (const Surface& surface : scene.surfaces) area += surface_area(surface);
   return area;
 }
 

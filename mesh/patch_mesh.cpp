@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "mesh/contact_graph.h"
 #include "mesh/critical_lines.h"
@@ -24,18 +23,6 @@ constexpr double most_elements = 20e6;
 
 int side_count(const Material& material) {
   return material.one_sided || material.dielectric ? 1 : 2;
-}
-
-double sphere_area(const Sphere& sphere) {
-  return 4.0 * std::numbers::pi * sphere.radius * sphere.radius;
-}
-
-double surface_area(const Surface& surface) {
-  if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) return sphere_area(*sphere);
-  const auto& mesh = std::get<PolygonMesh>(surface.shape);
-  double area = 0.0;
-  for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
-  return area;
 }
 
 double boundary_length(const PolygonMesh& mesh, const Facet& facet) {

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "scene/errors.h"
@@ -176,6 +177,16 @@ Eigen::Vector3d facet_normal(const PolygonMesh& mesh, const Facet& facet) {
 
 double facet_area(const PolygonMesh& mesh, const Facet& facet) {
   return area_vector(mesh, facet).norm();
+}
+
+double surface_area(const Surface& surface) {
+  if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+    return 4.0 * std::numbers::pi * sphere->radius * sphere->radius;
+  }
+  const auto& mesh = std::get<PolygonMesh>(surface.shape);
+  double area = 0.0;
+  for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
+  return area;
 }
 
 Bounds scene_bounds(const Scene& scene) {

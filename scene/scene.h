@@ -103,6 +103,9 @@ Eigen::Vector3d facet_normal(const PolygonMesh& mesh, const Facet& facet);
 /// Area in m^2, holes taken out.
 double facet_area(const PolygonMesh& mesh, const Facet& facet);
 
+/// m^2 of a surface's polygons or exact sphere, one side.
+double surface_area(const Surface& surface);
+
 /// Axis-aligned bounds of all surfaces; throws std::invalid_argument for a scene without surfaces.
 struct Bounds {
   Eigen::Vector3d low, high;

@@ -160,16 +160,6 @@ void read_emission(const TomlTable& table, const TomlBands& bands, TomlMaterial&
   }
 }
 
-double surface_area(const Surface& surface) {
-  if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-    return 4.0 * std::numbers::pi * sphere->radius * sphere->radius;
-  }
-  const auto& mesh = std::get<PolygonMesh>(surface.shape);
-  double area = 0.0;
-  for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
-  return area;
-}
-
 }  // namespace
 
 TomlBands read_toml_bands(const TomlValue& value) {
