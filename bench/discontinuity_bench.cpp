@@ -18,7 +18,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/grey_scene.h"
 #include "mesh/element_caster.h"
+#include "mesh/element_quality.h"
 #include "radiosity/point_form_factor.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"
@@ -39,16 +41,11 @@ void add_polygon(Scene& scene, const std::string& name, int material,
 
 // Floor (facet 0), lamp at z = 2 (facet 1, given clockwise seen from above) and screen at z = 1.
 Scene shadow_scene(const std::vector<Vector3d>& lamp, const std::vector<Vector3d>& screen) {
-  Scene scene;
-  Material grey;
-  grey.name = "grey";
-  grey.reflectance = constant_spectrum(scene.bands, 0.5f);
-  grey.specular = grey.emission = constant_spectrum(scene.bands, 0.0f);
-  grey.one_sided = true;
-  Material light = grey;
+  Scene scene = grey_scene();
+  Material light = scene.materials[0];
   light.name = "light";
   light.emission = constant_spectrum(scene.bands, static_cast<float>(std::numbers::pi));
-  scene.materials = {grey, light};
+  scene.materials.push_back(light);
   add_polygon(scene, "floor", 0,
               {{-1.317, -1.213, 0}, {1.231, -1.213, 0}, {1.231, 1.127, 0}, {-1.317, 1.127, 0}});
   add_polygon(scene, "lamp", 1, lamp);
@@ -102,19 +99,6 @@ class Truth {
   PointFormFactors factors_;
   std::vector<int> emitters_;
 };
-
-double least_angle(const PatchMesh& mesh, int element) {
-  double least = 180.0;
-  const int n = mesh.corner_count(element);
-  const auto& c = mesh.corners[element];
-  for (int i = 0; i < n; ++i) {
-    const Vector3d at = mesh.position(c[i]);
-    const Vector3d u = mesh.position(c[(i + 1) % n]) - at;
-    const Vector3d v = mesh.position(c[(i + n - 1) % n]) - at;
-    least = std::min(least, std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi);
-  }
-  return least;
-}
 
 // Errors along a line through the floor's middle that runs along no mesh line.
 std::vector<std::array<double, 2>> profile(const PatchMesh& mesh, const Truth& truth,
@@ -188,7 +172,8 @@ Quality quality(const Scene& scene, const Truth& truth, const MeshOptions& optio
       squares += weight * off * off;
       area += weight;
     }
-    result.least_angle = std::min(result.least_angle, least_angle(mesh, elements[i]));
+    result.least_angle =
+        std::min(result.least_angle, element_shape(mesh, elements[i]).least_angle_degrees);
     for (int k = 0; k < 4; ++k) corner_F(elements[i], k) = corner[k];
   }
   result.profile = profile(mesh, truth, corner_F);

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/grey_scene.h"
 #include "bench/stopwatch.h"
 #include "mesh/patch_outline.h"
 #include "radiosity/form_factors.h"
@@ -26,18 +27,6 @@
 namespace {
 
 using namespace lightwell;
-
-// Without surfaces yet.
-Scene grey_scene() {
-  Scene scene;
-  Material grey;
-  grey.name = "grey";
-  grey.reflectance = constant_spectrum(scene.bands, 0.5f);
-  grey.specular = grey.emission = constant_spectrum(scene.bands, 0.0f);
-  grey.one_sided = true;
-  scene.materials = {grey};
-  return scene;
-}
 
 Scene room(bool with_block) {
   Scene scene = grey_scene();
