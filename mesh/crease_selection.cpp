@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/cross.h"
+
 namespace lightwell {
 namespace {
 
@@ -11,10 +13,6 @@ using Eigen::Vector3d;
 
 constexpr double spacing_share = 0.05;      // of an element: nearer points make slivers
 constexpr double least_angle_sine = 0.208;  // 12 degrees
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // Parameters on a-b and p-q where the two cross, if they do.
 bool crossing(const Vector2d& a, const Vector2d& b, const Vector2d& p, const Vector2d& q, double& s,

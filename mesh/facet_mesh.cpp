@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "mesh/cross.h"
 #include "mesh/free_mesh.h"
 
 namespace lightwell {
@@ -11,10 +12,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // Exact in a coordinate that both share, so that a wall at x = 1.9 has no vertex beyond it.
 Vector3d between(const Vector3d& a, const Vector3d& b, double t) {

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "mesh/box_tree.h"
+#include "mesh/cross.h"
 
 namespace lightwell {
 namespace {
@@ -25,10 +26,6 @@ class PlaneFrame {
  private:
   Vector3d origin_, x_, y_;
 };
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // Edges sorted by where they start; follows them round.
 class LoopTracer {

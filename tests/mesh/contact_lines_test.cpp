@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "mesh/cross.h"
 #include "mesh_scenes.h"
 
 namespace lightwell {
@@ -15,10 +16,6 @@ namespace {
 using namespace lightwell::testing;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // > 0 inside a counter-clockwise convex polygon, 0 on its boundary: distance to the nearest edge's
 // line.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/cross.h"
 #include "mesh_scenes.h"
 
 namespace lightwell {
@@ -14,10 +15,6 @@ namespace {
 using namespace lightwell::testing;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // A line on the receiver, in two of its coordinates.
 struct PlaneLine {
