@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "scene/errors.h"
-#include "tests/raytrace/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {

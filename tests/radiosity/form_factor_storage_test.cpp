@@ -9,7 +9,7 @@
 #include "scene/parallel.h"
 #include "tests/radiosity/named_methods.h"
 #include "tests/radiosity/test_scenes.h"
-#include "tests/raytrace/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {

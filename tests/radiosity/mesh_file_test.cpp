@@ -24,7 +24,7 @@ using MeshFile = SolutionFile;
 TEST_F(MeshFile, AFailedWriteNamesTheFileAndLeavesNothing) {
   const std::string message = failure_of(file("no-such-folder/M.vtp"));
   EXPECT_NE(message.find("M.vtp"), std::string::npos) << message;
-  EXPECT_EQ(file_count(), 0u);
+  EXPECT_EQ(folder_.file_count(), 0);
 }
 
 TEST_F(MeshFile, ADiskThatFillsUpLeavesTheOldFile) {
@@ -34,7 +34,7 @@ TEST_F(MeshFile, ADiskThatFillsUpLeavesTheOldFile) {
   const std::string message = failure_of(file("M.vtp"));
   EXPECT_NE(message.find("M.vtp"), std::string::npos) << message;
   EXPECT_EQ(contents(file("M.vtp")), "old");
-  EXPECT_EQ(file_count(), 1u) << "the temporary is gone";
+  EXPECT_EQ(folder_.file_count(), 1) << "the temporary is gone";
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
-#include "tests/raytrace/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -196,7 +196,6 @@ TEST(SymmetricRows, MultiplyAsTheWholeMatrixDoes) {
 
 // Pages of what was read long ago leave memory: 64 MB are read through a window of 16 MB / 8.
 TEST(SpilledRows, DoNotStayResidentOnceRead) {
-  if (!memory_is_our_own) GTEST_SKIP() << "the thread sanitizer uses memory too";
   const TemporaryFolder folder;
   RowStore<FormFactor> rows(budget_of(16 * megabyte, folder), 1000);
   const std::vector<FormFactor> row(8192, FormFactor{1, 0.5f});
@@ -205,7 +204,9 @@ TEST(SpilledRows, DoNotStayResidentOnceRead) {
   rows.close();
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(rows.row(i)[8191].value, 0.5f);
   // 16 MB of rows, the window, the chunk that is being filled; and what else the process does.
-  EXPECT_LT(resident_memory().now - before, 24 * megabyte);
+  if (memory_is_our_own) {
+    EXPECT_LT(resident_memory().now - before, 24 * megabyte);
+  }
 }
 
 /// While it lives, files may not grow beyond a size: the disk is full.
@@ -273,13 +274,15 @@ TEST(MemoryBudget, LeavesRoomForWhatElseIsThere) {
 }
 
 TEST(MemoryBudget, KnowsWhatThisProcessUses) {
-  if (!memory_is_our_own) GTEST_SKIP() << "the thread sanitizer uses memory too";
   const ResidentMemory before = resident_memory();
   EXPECT_GT(before.now, megabyte);
   EXPECT_GE(before.most, before.now);
   const std::vector<char> more(30 * megabyte, 1);
-  EXPECT_NEAR(static_cast<double>(resident_memory().now - before.now), 30.0 * megabyte,
-              3.0 * megabyte);
+  const auto added = static_cast<double>(resident_memory().now - before.now);
+  EXPECT_GE(added, 27.0 * megabyte);
+  if (memory_is_our_own) {
+    EXPECT_LE(added, 33.0 * megabyte);
+  }
   EXPECT_GT(usable_memory(), before.now);
 }
 

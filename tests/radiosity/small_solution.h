@@ -1,7 +1,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "radiosity/solve.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 
@@ -18,21 +18,8 @@ namespace fs = std::filesystem;
 /// A folder of its own that goes away with the test.
 class SolutionFile : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("lightwell-" + std::string(info->name()) + "-" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path file(const std::string& name = "s.vtp") const { return folder_ / name; }
-  std::size_t file_count() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
-
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 /// Band values with every awkward bit pattern that must survive: signed zero, the smallest

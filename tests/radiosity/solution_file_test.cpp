@@ -100,7 +100,7 @@ TEST_P(SolutionFileBands, RestoresEveryBit) {
   const SolvedScene again = read_solution(folder_ / "s.vtp");
   expect_same_mesh(solved.mesh, again.mesh);
   expect_same_solution(solved.solution, again.solution);
-  EXPECT_EQ(file_count(), 1u) << "a temporary file was left behind";
+  EXPECT_EQ(folder_.file_count(), 1) << "a temporary file was left behind";
 }
 INSTANTIATE_TEST_SUITE_P(Bands, SolutionFileBands, testing::Values(1, 3, 76, max_bands));
 
@@ -195,7 +195,7 @@ TEST_F(SolutionFile, AFailedWriteNamesTheFileAndKeepsTheOldOne) {
   }
   fs::create_directories(file() / "occupied");
   EXPECT_THROW(write_solution(file(), solved), std::runtime_error);
-  EXPECT_EQ(file_count(), 1u) << "a temporary file was left behind";
+  EXPECT_EQ(folder_.file_count(), 1) << "a temporary file was left behind";
 }
 
 TEST_F(SolutionFile, ASolutionOfAnotherSceneIsRefused) {

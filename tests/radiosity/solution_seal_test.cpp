@@ -69,7 +69,7 @@ TEST_F(SolutionSeal, OneChangedByteIsNoticedAnywhere) {
 
 TEST_F(SolutionSeal, ForeignFilesAreRefusedWithTheReason) {
   expect_refused(file("none.vtp"), "no such file");
-  expect_refused(folder_, "folder");
+  expect_refused(folder_.path(), "folder");
   put(file("empty.vtp"), "");
   expect_refused(file("empty.vtp"), "empty");
   put(file("scene.toml"), "[camera]\nposition = [0, 0, 0]\n");

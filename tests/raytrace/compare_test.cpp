@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "scene/errors.h"
-#include "tests/raytrace/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {

@@ -12,7 +12,7 @@
 #include "raytrace/image.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
-#include "tests/raytrace/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {

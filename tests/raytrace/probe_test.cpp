@@ -7,7 +7,7 @@
 
 #include "scene/errors.h"
 #include "tests/raytrace/lit_scene.h"
-#include "tests/raytrace/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
+#include "tests/temporary_folder.h"
 
 // One small file per way to be wrong, and what a reader of the message must find in it: the place
 // (file:line:column), the thing, and the remedy.
@@ -181,7 +182,7 @@ TEST(BadPaths, AreNamedWithWhatIsPossible) {
 
 // Reading a file cut off anywhere ends in a scene or in an InputError, never in anything else.
 TEST(CutOffFiles, AreRefusedOrReadButNeverCrash) {
-  const auto temporary = std::filesystem::path(testing::TempDir());
+  const TemporaryFolder temporary;
   for (const char* name : {"everything.toml", "room.obj", "room.mtl", "cube.ply", "cube.stl"}) {
     std::ifstream stream(std::filesystem::path(LIGHTWELL_TEST_DATA) / "scene" / name);
     const std::string text(std::istreambuf_iterator<char>(stream), {});
@@ -204,8 +205,6 @@ TEST(CutOffFiles, AreRefusedOrReadButNeverCrash) {
             << error.what();
       }
     }
-    std::filesystem::remove(target);
-    std::filesystem::remove(cut);
   }
 }
 

@@ -7,8 +7,8 @@
 
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
-#include "tests/raytrace/temporary_folder.h"
 #include "tests/scene/gltf_text.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/errors.h"
-#include "tests/raytrace/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {

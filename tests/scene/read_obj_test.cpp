@@ -8,6 +8,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -43,15 +44,11 @@ void expect_rgb(const Spectrum& actual, float r, float g, float b) {
   EXPECT_FLOAT_EQ(actual[2], b);
 }
 
-// Writes an OBJ (and MTL) of these lines beside each other, reads it and removes it.
+// The scene of an OBJ (and MTL) of these lines beside each other.
 Scene read_text(const std::string& obj, const std::string& mtl = "") {
-  const auto folder = std::filesystem::path(testing::TempDir());
-  std::ofstream(folder / "lightwell_text.obj") << "mtllib lightwell_text.mtl\n" << obj;
-  if (!mtl.empty()) std::ofstream(folder / "lightwell_text.mtl") << mtl;
-  Scene scene = read_scene(folder / "lightwell_text.obj");
-  std::filesystem::remove(folder / "lightwell_text.obj");
-  std::filesystem::remove(folder / "lightwell_text.mtl");
-  return scene;
+  const TemporaryFolder folder;
+  if (!mtl.empty()) folder.write("text.mtl", mtl);
+  return read_scene(folder.write("text.obj", "mtllib text.mtl\n" + obj));
 }
 
 const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
@@ -89,7 +86,7 @@ TEST(ReadObj, NamesTheLineWhereAContinuedOneBegins) {
     try {
       read_text(obj);
     } catch (const InputError& refused) {
-      const std::string message = refused.what(), file = "lightwell_text.obj:";
+      const std::string message = refused.what(), file = "text.obj:";
       const std::size_t begin = message.find(file) + file.size();
       return message.substr(begin, message.find(':', begin) - begin);
     }
@@ -151,12 +148,12 @@ TEST(ReadObj, OneNumberStandsForThree) {
 TEST(ReadObj, WithoutMaterialsGreyIsAssumedAndSaid) {
   const Scene missing = read_text(triangle);
   expect_rgb(missing.materials[0].reflectance, 0.5f, 0.5f, 0.5f);
-  EXPECT_TRUE(is_noted(missing, "lightwell_text.mtl' is missing"));
+  EXPECT_TRUE(is_noted(missing, "text.mtl' is missing"));
   EXPECT_TRUE(is_noted(missing, "Material 'm' is not defined"));
   const Scene none = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "newmtl unused\n");
   EXPECT_EQ(none.materials[0].name, "default");
   EXPECT_TRUE(is_noted(none, "1 polygon names no material"));
-  EXPECT_EQ(none.surfaces[0].name, "lightwell_text");
+  EXPECT_EQ(none.surfaces[0].name, "text");
 }
 
 TEST(ReadObj, FacesMayComeBeforeTheirVertices) {

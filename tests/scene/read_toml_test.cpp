@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "scene/io/read_scene.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -60,11 +61,8 @@ void expect_spectrum(const Spectrum& actual, std::vector<float> expected) {
 }
 
 Scene read_text(const std::string& text) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "lightwell_read_text.toml";
-  std::ofstream(path) << text;
-  Scene scene = read_scene(path);
-  std::filesystem::remove(path);
-  return scene;
+  const TemporaryFolder folder;
+  return read_scene(folder.write("text.toml", text));
 }
 
 const std::string one_polygon = R"(
@@ -264,10 +262,9 @@ TEST(ReadToml, ReadsFilesWithByteOrderMarkAndWindowsLineEnds) {
 }
 
 TEST(ReadToml, TheExtensionMayBeInCapitals) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "lightwell_capitals.TOML";
-  std::ofstream(path) << "[materials.white]\n" << one_polygon;
+  const TemporaryFolder folder;
+  const auto path = folder.write("capitals.TOML", "[materials.white]\n" + one_polygon);
   EXPECT_EQ(read_scene(path).surfaces.size(), 1u);
-  std::filesystem::remove(path);
 }
 
 TEST(SceneFormatPage, ItsExampleIsAScene) {

@@ -6,7 +6,7 @@
 #include "scene/errors.h"
 #include "scene/io/numbered_scene.h"
 #include "scene/io/read_scene.h"
-#include "tests/raytrace/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {

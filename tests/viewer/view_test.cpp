@@ -1,7 +1,6 @@
 #include "viewer/view.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
@@ -15,6 +14,7 @@
 #include "raytrace/display.h"
 #include "raytrace/image.h"
 #include "solved_box.h"
+#include "tests/temporary_folder.h"
 #include "viewer/solution_view.h"
 
 namespace lightwell {
@@ -202,15 +202,6 @@ TEST(Snapshot, TheMeshOverlayDrawsTheOutlinesAndNoDiagonals) {
 /// A folder of its own that goes away with the test.
 class SnapshotFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lightwell-view-" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::size_t file_count() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
   Picture read(const fs::path& png) const {
     vtkNew<vtkPNGReader> reader;
     reader->SetFileName(png.c_str());
@@ -224,7 +215,7 @@ class SnapshotFile : public testing::Test {
     return picture;
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(SnapshotFile, IsThePictureAsAPng) {
@@ -236,7 +227,7 @@ TEST_F(SnapshotFile, IsThePictureAsAPng) {
   EXPECT_EQ(stored.width, 200);
   EXPECT_EQ(stored.height, 150);
   EXPECT_EQ(stored.bytes, drawn.bytes);
-  EXPECT_EQ(file_count(), 1u);
+  EXPECT_EQ(folder_.file_count(), 1);
 }
 
 TEST_F(SnapshotFile, MayBeOnePixelOrLargerThanTheScreen) {
@@ -280,7 +271,7 @@ TEST_F(SnapshotFile, WithoutADisplayTheMessageSaysWhatToDo) {
     EXPECT_THROW(show_window(solved_box(), options_for(box_camera())), std::runtime_error);
   }
   setenv("DISPLAY", display.c_str(), 1);
-  EXPECT_EQ(file_count(), 0u);
+  EXPECT_EQ(folder_.file_count(), 0);
 }
 
 /// The whole window, driven from outside as a person would: walk, save a picture, close.
@@ -290,7 +281,7 @@ TEST_F(SnapshotFile, AWindowCanBeWalkedPhotographedAndClosed) {
   ViewOptions options = options_for(box_camera());
   options.width = 320;
   options.height = 240;
-  options.screenshot_folder = folder_;
+  options.screenshot_folder = folder_.path();
   std::thread person([] {
     const char* script =
         "timeout 60 xdotool search --sync --name 'Lightwell - box.toml' >/dev/null && sleep 0.5 &&"
@@ -301,7 +292,7 @@ TEST_F(SnapshotFile, AWindowCanBeWalkedPhotographedAndClosed) {
   });
   show_window(box, options);
   person.join();
-  ASSERT_EQ(file_count(), 2u);
+  ASSERT_EQ(folder_.file_count(), 2);
   const Picture before = read(folder_ / "lightwell-1.png");
   const Picture after = read(folder_ / "lightwell-2.png");
   EXPECT_EQ(before.width, 320);

@@ -10,7 +10,8 @@
 
 namespace lightwell {
 
-/// A folder of its own for one test, removed afterwards.
+/// A folder of its own for one test, removed afterwards. Tests run side by side in processes of
+/// their own, so no test may write to a name that another could choose as well.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -24,6 +25,7 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::ofstream(path_ / name, std::ios::binary) << text;
