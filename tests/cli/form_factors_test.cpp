@@ -68,14 +68,8 @@ struct Matrix {
   }
 };
 
-class FormFactorsCommand : public testing::Test {
+class FormFactorsCommand : public CommandTest {
  protected:
-  Ended run(const Words& arguments) { return run_lightwell(folder / "", arguments); }
-  nlohmann::json run_json(const Words& arguments) {
-    const Ended ended = run(arguments + Words{"--json"});
-    EXPECT_EQ(ended.code, 0) << ended.err;
-    return nlohmann::json::parse(ended.out);
-  }
   nlohmann::json json_file(const std::string& name) const {
     std::ifstream in(folder / name);
     return nlohmann::json::parse(in);
@@ -98,7 +92,6 @@ class FormFactorsCommand : public testing::Test {
     EXPECT_EQ(matrix.entry.size(), entries);
     return matrix;
   }
-  TemporaryFolder folder;
 };
 
 TEST_F(FormFactorsCommand, TwoPlatesAreRightWithinTheErrorAskedFor) {

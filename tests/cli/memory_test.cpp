@@ -19,21 +19,19 @@ constexpr bool memory_is_its_own = false;
 constexpr bool memory_is_its_own = true;
 #endif
 
-class Memory : public testing::Test {
+class Memory : public CommandTest {
  protected:
   // Cut finely enough, every row of the cube sees hundreds of patches.
   void SetUp() override {
     folder.write("cube.obj", unit_cube());
     folder.write("room.toml", small_room());
   }
-  Ended run(const Words& arguments) { return run_lightwell(folder / "", arguments); }
   Ended factors(const std::string& output, const Words& more) {
     return run(Words{"form-factors", "cube.obj", "-o", output, "--json", "--target-error", "0.02",
                      "--max-patch-size", "0.04"} +
                more);
   }
   std::string content(const std::string& file) const { return content_of(folder / file); }
-  TemporaryFolder folder;
 };
 
 // The budget that a refusal asks for.

@@ -32,15 +32,9 @@ material = "white"
 sphere = { center = [1, 1, 0.6], radius = 0.35 }
 )";
 
-class MeshCommand : public testing::Test {
+class MeshCommand : public CommandTest {
  protected:
   void SetUp() override { folder.write("room.toml", small_room()); }
-  Ended run(const Words& arguments) { return run_lightwell(folder / "", arguments); }
-  nlohmann::json run_json(const Words& arguments) {
-    const Ended ended = run(arguments + Words{"--json"});
-    EXPECT_EQ(ended.code, 0) << ended.err;
-    return nlohmann::json::parse(ended.out);
-  }
   vtkPolyData* read(const std::string& name) {
     reader->SetFileName((folder / name).c_str());
     reader->Update();
@@ -55,7 +49,6 @@ class MeshCommand : public testing::Test {
     }
     return values;
   }
-  TemporaryFolder folder;
   vtkNew<vtkXMLPolyDataReader> reader;
 };
 

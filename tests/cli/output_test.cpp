@@ -15,16 +15,9 @@ namespace lightwell {
 namespace {
 using Words = std::vector<std::string>;
 
-class Output : public testing::Test {
+class Output : public CommandTest {
  protected:
   void SetUp() override { folder.write("room.toml", small_room()); }
-  Ended run(const Words& arguments) { return run_lightwell(folder / "", arguments); }
-  nlohmann::json run_json(const Words& arguments) {
-    const Ended ended = run(arguments + Words{"--json"});
-    EXPECT_EQ(ended.code, 0) << ended.err;
-    return nlohmann::json::parse(ended.out);  // throws unless it is one value and nothing else
-  }
-  TemporaryFolder folder;
 };
 
 void expect_solution_keys(const nlohmann::json& json) {

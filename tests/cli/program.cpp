@@ -6,20 +6,9 @@
 
 #include <csignal>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 namespace lightwell {
-namespace {
-
-std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-}  // namespace
 
 Running::Running(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {
   const std::string out = said_ / "out", err = said_ / "err";
@@ -55,7 +44,7 @@ void Running::signal(int number) const {
 }
 
 std::string Running::err() const {
-  return read_text(said_ / "err");
+  return content_of(said_ / "err");
 }
 
 Ended Running::wait() {
@@ -63,7 +52,7 @@ Ended Running::wait() {
   ::waitpid(process_, &status, 0);
   process_ = -1;
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  return {code, read_text(said_ / "out"), read_text(said_ / "err")};
+  return {code, content_of(said_ / "out"), content_of(said_ / "err")};
 }
 
 Ended run_lightwell(const std::filesystem::path& folder,

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "tests/raytrace/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 
@@ -35,6 +38,22 @@ class Running {
 };
 
 Ended run_lightwell(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+
+/// A folder of its own, and the command run in it.
+class CommandTest : public testing::Test {
+ protected:
+  Ended run(const std::vector<std::string>& arguments) {
+    return run_lightwell(folder / "", arguments);
+  }
+  /// With --json; throws unless standard output is one value and nothing else.
+  nlohmann::json run_json(std::vector<std::string> arguments) {
+    arguments.emplace_back("--json");
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+  }
+  TemporaryFolder folder;
+};
 
 /// A room 4 m x 3 m x 2.5 m with a luminous panel under its ceiling and the camera "door"; small
 /// enough to solve in a moment with `quick`.
