@@ -38,17 +38,18 @@ class HemisphereGather {
     std::array<Ray, batch> ray;
     std::array<ElementHit, batch> hit;
     for (int begin = 0; begin < sets_.count(); begin += batch) {
-      const int count = std::min(batch, sets_.count() - begin);
-      const auto n = static_cast<std::size_t>(count);
-      const auto points = draw.points(begin, count);
-      for (int r = 0; r < count; ++r) {
+      const auto points =
+          draw.all().subspan(static_cast<std::size_t>(begin),
+                             static_cast<std::size_t>(std::min(batch, sets_.count() - begin)));
+      const std::size_t n = points.size();
+      for (std::size_t r = 0; r < n; ++r) {
         ray[r] = {.origin = at.position,
                   .direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z),
                   .origin_group = at.facet};
       }
       caster_.closest_hits({ray.data(), n}, {hit.data(), n});
-      for (int r = 0; r < count; ++r) {
-        const auto index = static_cast<std::uint64_t>(begin + r);
+      for (std::size_t r = 0; r < n; ++r) {
+        const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;
         add(ray[r], hit[r], random_key(key, gather_branches, index), sum);
       }
     }

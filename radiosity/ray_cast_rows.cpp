@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t form_factor_rays = 1;  // purposes of random keys
 constexpr std::uint64_t form_factor_branches = 2;
-constexpr int batch = 64;
+constexpr std::size_t batch = 64;
 
 // Longer rows are made of several sets.
 constexpr int longest_set = 1 << 16;
@@ -24,6 +24,43 @@ int set_size(int most_rays) {
   const auto wanted = static_cast<unsigned>(std::max(most_rays, 1));
   return std::min(static_cast<int>(std::bit_ceil(wanted)), longest_set);
 }
+
+// The rays that leave one patch.
+class PatchRays {
+ public:
+  PatchRays(const PatchMesh& mesh, int patch)
+      : mesh_(mesh), first_element_(mesh.first_element[patch]), sampler_(mesh, patch) {}
+
+  const HemisphereSets::Draw& draw() const { return draw_; }
+  void use(const HemisphereSets::Draw& draw) {
+    draw_ = draw;
+    if (sampler_.is_flat()) frame_ = draw.frame(sampler_.point(0.5, 0.5).normal);
+  }
+  void aim(std::span<const HemispherePoint> points, std::span<Ray> rays) {
+    for (std::size_t r = 0; r < points.size(); ++r) {
+      const HemispherePoint& point = points[r];
+      const Eigen::Vector2d place = draw_.place(point);
+      int element = first_element_;
+      if (sampler_.is_flat()) {
+        rays[r].origin = sampler_.position(place.x(), place.y());
+      } else {
+        const PatchPoint from = sampler_.point(place.x(), place.y());
+        frame_ = draw_.frame(from.normal);
+        rays[r].origin = from.position;
+        element = from.element;
+      }
+      rays[r].origin_group = mesh_.facet[element];
+      rays[r].direction = frame_ * Eigen::Vector3d(point.x, point.y, point.z);
+    }
+  }
+
+ private:
+  const PatchMesh& mesh_;
+  int first_element_;
+  PatchSampler sampler_;
+  HemisphereSets::Draw draw_;
+  Eigen::Matrix3d frame_ = Eigen::Matrix3d::Identity();
+};
 
 }  // namespace
 
@@ -54,50 +91,31 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
                    .rays = static_cast<double>(rays)};
   std::map<int, Spectrum> by_way_of_specular;
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(patch), form_factor_rays);
-  const PatchSampler sampler(mesh, patch);
+  PatchRays from(mesh, patch);
   std::array<Ray, batch> ray;
-  ray.fill({.origin_group = mesh.facet[mesh.first_element[patch]]});
   std::array<ElementHit, batch> hit;
-  HemisphereSets::Draw draw;
-  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
-  for (int begin = 0; begin < rays; begin += batch) {
+  for (int begin = 0; begin < rays; begin += HemisphereSets::block) {
     const int in_set = begin % sets_.count();
-    if (in_set == 0) {
-      draw = sets_.draw(random_key(key, static_cast<std::uint64_t>(begin)));
-      if (sampler.is_flat()) frame = draw.frame(sampler.point(0.5, 0.5).normal);
-    }
-    const int count = std::min({batch, rays - begin, sets_.count() - in_set});
-    const auto n = static_cast<std::size_t>(count);
-    const auto points = draw.points(in_set, count);
-    for (int r = 0; r < count; ++r) {
-      const Eigen::Vector2d place = draw.place(points[r]);
-      if (sampler.is_flat()) {
-        ray[r].origin = sampler.position(place.x(), place.y());
-      } else {
-        const PatchPoint from = sampler.point(place.x(), place.y());
-        frame = draw.frame(from.normal);
-        ray[r].origin = from.position;
-        ray[r].origin_group = mesh.facet[from.element];
+    if (in_set == 0) from.use(sets_.draw(random_key(key, static_cast<std::uint64_t>(begin))));
+    const int size = std::min({HemisphereSets::block, rays - begin, sets_.count() - in_set});
+    const auto points = from.draw().points(in_set, size, scratch.points_);
+    for (std::size_t first = 0; first < points.size(); first += batch) {
+      const std::size_t n = std::min<std::size_t>(batch, points.size() - first);
+      from.aim(points.subspan(first, n), ray);
+      caster_.closest_elements({ray.data(), n}, {hit.data(), n});
+      for (std::size_t r = 0; r < n; ++r) {
+        const ElementHit& h = hit[r];
+        if (paths_.has_specular() && h.facet >= 0 && paths_.is_specular(h.facet)) {
+          const std::uint64_t index = static_cast<std::uint64_t>(begin) + first + r;
+          pass_on(ray[r], h, random_key(key, form_factor_branches, index), scratch, row,
+                  by_way_of_specular);
+        } else if (h.element >= 0) {
+          scratch.first_.add(mesh.patch[h.element]);
+        } else {
+          ++row.escaped;
+        }
       }
-      ray[r].direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z);
-    }
-    caster_.closest_elements({ray.data(), n}, {hit.data(), n});
-    for (int r = 0; r < count; ++r) {
-      const ElementHit& h = hit[r];
-      const bool specular = paths_.has_specular() && h.facet >= 0 && paths_.is_specular(h.facet);
-      if (specular) {
-        const std::uint64_t branch =
-            random_key(key, form_factor_branches, static_cast<std::uint64_t>(begin + r));
-        pass_on(ray[r], h, branch, scratch, row, by_way_of_specular);
-      } else if (h.element >= 0) {
-        scratch.first_.add(mesh.patch[h.element]);
-      } else {
-        ++row.escaped;
-      }
-    }
-    if (behind) {
-      look_behind({ray.data(), n}, {hit.data(), n}, scratch);
-      ray.fill({.origin_group = mesh.facet[mesh.first_element[patch]]});
+      if (behind) look_behind({ray.data(), n}, {hit.data(), n}, scratch);
     }
   }
   scratch.take(rays, behind, row);

@@ -81,6 +81,7 @@ class RowCaster {
     void take(int rays, bool with_hidden, EstimatedRow& row);
 
     PatchCounts first_, hidden_;
+    std::vector<HemispherePoint> points_;
   };
 
   /// `rays` cosine-distributed rays from all over the patch. Empty for patches that take no part in

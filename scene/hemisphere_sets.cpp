@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <utility>
 
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -13,6 +15,30 @@ namespace {
 constexpr std::uint64_t set_key = 0x5e75;
 // Enough for neighbours to differ, few enough to stay in the second-level cache.
 constexpr int most_sets = 64, fewest_sets = 8, points_in_cache = 1 << 16;
+
+// Where a direction lies on the disc below it, along a curve that keeps neighbours together (Morton
+// 1966).
+unsigned place_on_curve(const HemispherePoint& point) {
+  constexpr int bits = 8;
+  const auto cell = [](float x) { return static_cast<unsigned>((0.5f * x + 0.5f) * 255.0f); };
+  const unsigned column = cell(point.x), row = cell(point.y);
+  unsigned place = 0;
+  for (int i = 0; i < bits; ++i) {
+    place |= (column >> i & 1) << (2 * i) | (row >> i & 1) << (2 * i + 1);
+  }
+  return place;
+}
+
+void sort_by_direction(std::span<HemispherePoint> points) {
+  std::vector<std::pair<unsigned, HemispherePoint>> sorted;
+  sorted.reserve(points.size());
+  for (const HemispherePoint& p : points) sorted.emplace_back(place_on_curve(p), p);
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.first, a.second.rank) < std::pair(b.first, b.second.rank);
+  });
+  std::transform(sorted.begin(), sorted.end(), points.begin(),
+                 [](const auto& p) { return p.second; });
+}
 
 }  // namespace
 
@@ -25,11 +51,15 @@ HemisphereSets::HemisphereSets(int count)
     std::vector<Eigen::Array4f> points(size);
     for (int set = begin; set < end; ++set) {
       sobol.points(0, random_key(static_cast<std::uint64_t>(set), set_key), points);
-      HemispherePoint* at = points_.data() + static_cast<std::size_t>(set) * size;
-      for (const Eigen::Array4f& p : points) {
+      const auto made = std::span(points_).subspan(static_cast<std::size_t>(set) * size, size);
+      for (std::size_t i = 0; i < size; ++i) {
+        const Eigen::Array4f& p = points[i];
         // The first two dimensions are stratified best; directions gain most by it.
         const Eigen::Vector3f d = cosine_direction(p[0], p[1]).cast<float>();
-        *at++ = {p[2], p[3], d.x(), d.y(), d.z()};
+        made[i] = {p[2], p[3], d.x(), d.y(), d.z(), static_cast<int>(i % block)};
+      }
+      for (std::size_t first = 0; first < size; first += block) {
+        sort_by_direction(made.subspan(first, std::min<std::size_t>(block, size - first)));
       }
     }
   });
@@ -45,6 +75,17 @@ HemisphereSets::Draw HemisphereSets::draw(std::uint64_t key) const {
   draw.cosine_ = std::cos(turn);
   draw.sine_ = std::sin(turn);
   return draw;
+}
+
+std::span<const HemispherePoint> HemisphereSets::Draw::points(
+    int first, int size, std::vector<HemispherePoint>& some) const {
+  const auto begin = static_cast<std::size_t>(first);
+  const auto whole = points_.subspan(begin, std::min<std::size_t>(block, points_.size() - begin));
+  if (static_cast<std::size_t>(size) == whole.size()) return whole;
+  some.clear();
+  std::copy_if(whole.begin(), whole.end(), std::back_inserter(some),
+               [&](const HemispherePoint& point) { return point.rank < size; });
+  return some;
 }
 
 Eigen::Matrix3d HemisphereSets::Draw::frame(const Eigen::Vector3d& normal) const {

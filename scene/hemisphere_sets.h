@@ -11,24 +11,29 @@ namespace lightwell {
 struct HemispherePoint {
   float u, v;     ///< in [0,1)^2
   float x, y, z;  ///< unit, about +z with density cos(theta)/pi
+  int rank;       ///< its place in the sequence, counted from the beginning of its block
 };
 
 /// Ready-made sets of places and directions, each an Owen-scrambled 4-D Sobol sequence of its own.
 /// Whoever casts from very many patches draws one for each and makes it its own by a shift of the
 /// places (Cranley & Patterson 1976) and a turn of the directions about the normal, which costs a
 /// fraction of making the points.
+/// Points come in blocks, each in an order in which neighbours point nearly alike, so that rays
+/// cast one after the other go down much the same way in the tree.
 class HemisphereSets {
  public:
+  static constexpr int block = 1024;
   /// Sets of `count` >= 1 points.
   explicit HemisphereSets(int count);
   int count() const { return count_; }
 
   class Draw {
    public:
-    /// Points first, first + 1, ..., as they are in the set.
-    std::span<const HemispherePoint> points(int first, int size) const {
-      return points_.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(size));
-    }
+    std::span<const HemispherePoint> all() const { return points_; }
+    /// The points first .. first + size - 1 of the sequence; `first` a multiple of `block`, size at
+    /// most `block`. `some` keeps them where they are not all of a block.
+    std::span<const HemispherePoint> points(int first, int size,
+                                            std::vector<HemispherePoint>& some) const;
     /// The place of a point, shifted; in [0,1)^2.
     Eigen::Vector2d place(const HemispherePoint& point) const {
       return {wrapped(point.u + shift_.x()), wrapped(point.v + shift_.y())};

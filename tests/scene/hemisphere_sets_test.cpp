@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <vector>
 
 namespace lightwell {
 namespace {
@@ -19,7 +21,7 @@ TEST(HemisphereSets, DrawsHaveTheMomentsOfLambertsLaw) {
     ASSERT_NEAR(frame.determinant(), 1.0, 1e-14);
     Eigen::Vector3d mean_direction = Eigen::Vector3d::Zero();
     Eigen::Vector2d mean_place = Eigen::Vector2d::Zero();
-    for (const HemispherePoint& point : draw.points(0, count)) {
+    for (const HemispherePoint& point : draw.all()) {
       const Eigen::Vector3d d = frame * Eigen::Vector3d(point.x, point.y, point.z);
       const Eigen::Vector2d place = draw.place(point);
       ASSERT_NEAR(d.norm(), 1.0, 1e-6);
@@ -36,16 +38,53 @@ TEST(HemisphereSets, DrawsHaveTheMomentsOfLambertsLaw) {
 TEST(HemisphereSets, KeysGiveDifferentDrawsAndOneKeyTheSame) {
   const HemisphereSets sets(16);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  EXPECT_EQ(sets.draw(7).points(0, 16).data(), sets.draw(7).points(0, 16).data());
+  EXPECT_EQ(sets.draw(7).all().data(), sets.draw(7).all().data());
   EXPECT_EQ(sets.draw(7).frame(up), sets.draw(7).frame(up));
   EXPECT_NE(sets.draw(7).frame(up), sets.draw(8).frame(up));
-  const HemispherePoint& point = sets.draw(7).points(0, 1)[0];
+  const HemispherePoint& point = sets.draw(7).all()[0];
   EXPECT_NE(sets.draw(7).place(point), sets.draw(8).place(point));
 }
 
 TEST(HemisphereSets, OnePointIsASet) {
   const HemisphereSets sets(1);
-  EXPECT_EQ(sets.draw(3).points(0, 1).size(), 1u);
+  EXPECT_EQ(sets.draw(3).all().size(), 1u);
+}
+
+// The first points of a block are those of the sequence, which are spread evenly, and not those
+// that come first in the order of directions.
+TEST(HemisphereSets, AnyNumberOfFirstPointsIsSpreadEvenly) {
+  const HemisphereSets sets(4 * HemisphereSets::block);
+  const auto draw = sets.draw(5);
+  std::vector<HemispherePoint> some;
+  for (const int first : {0, HemisphereSets::block}) {
+    for (const int size : {16, 64, 100, 1000, HemisphereSets::block}) {
+      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+      const auto points = draw.points(first, size, some);
+      ASSERT_EQ(points.size(), static_cast<std::size_t>(size));
+      std::vector<char> is_there(static_cast<std::size_t>(size), 0);
+      for (const HemispherePoint& p : points) {
+        mean += Eigen::Vector3d(p.x, p.y, p.z) / size;
+        ++is_there[static_cast<std::size_t>(p.rank)];
+      }
+      EXPECT_EQ(std::count(is_there.begin(), is_there.end(), 1), size);
+      // Random points would be off by about 0.8 / sqrt(size).
+      EXPECT_NEAR((mean - Eigen::Vector3d(0.0, 0.0, 2.0 / 3.0)).norm(), 0.0, 1.0 / size + 2e-3)
+          << first << ' ' << size;
+    }
+  }
+}
+
+TEST(HemisphereSets, NeighboursPointNearlyAlike) {
+  const HemisphereSets sets(HemisphereSets::block);
+  const auto points = sets.draw(5).all();
+  double sum = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    sum += Eigen::Vector3f(points[i].x - points[i - 1].x, points[i].y - points[i - 1].y,
+                           points[i].z - points[i - 1].z)
+               .norm();
+  }
+  // 1 024 cells over the hemisphere are 0.08 wide; Morton's curve jumps now and then.
+  EXPECT_LT(sum / static_cast<double>(points.size()), 0.16);
 }
 
 }  // namespace
