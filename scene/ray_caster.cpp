@@ -12,6 +12,8 @@ namespace lightwell {
 struct RayCaster::Impl : EmbreeScene {
   using EmbreeScene::EmbreeScene;
 
+  static constexpr double coplanar = 4.0;  // times `rounding`: no further off a plane
+
   // A ray that starts on a group begins past its plane by what rounding may move it, so that it
   // rarely meets that plane and needs a second query. Where another surface may lie on the plane it
   // begins as far before it, so that the other, the table under a block of glass, is still ahead.
@@ -30,7 +32,7 @@ struct RayCaster::Impl : EmbreeScene {
     r.dir_x = static_cast<float>(ray.direction.x());
     r.dir_y = static_cast<float>(ray.direction.y());
     r.dir_z = static_cast<float>(ray.direction.z());
-    r.tfar = static_cast<float>(ray.t_max);
+    r.tfar = static_cast<float>(ends_covered(ray) ? past_target(ray) : ray.t_max);
     r.time = 0.0f;
     r.mask = ~0u;
     r.id = id;
@@ -42,19 +44,29 @@ struct RayCaster::Impl : EmbreeScene {
            planes->may_be_covered(ray.origin_group, ray.origin);
   }
 
+  bool ends_covered(const Ray& ray) const {
+    return ray.target_group >= 0 && planes->has_overlaps(ray.target_group);
+  }
+
+  // Rounding may set what lies on the target behind it. `counts` drops what else is met there.
+  double past_target(const Ray& ray) const {
+    constexpr double at_most = 1e-3;  // of the ray, where it grazes the target
+    const double along = std::abs(planes->normal(ray.target_group).dot(ray.direction));
+    return ray.t_max + std::min(coplanar * rounding / along, at_most * ray.t_max);
+  }
+
   // Whether the plane of a hit is one with a group's, there where the ray meets it.
   bool is_coplanar(const RTCHit& hit, double off_plane, int with) const {
-    const Eigen::Vector3d& own = planes->normal(with);
-    if (own.isZero() || !(std::abs(off_plane) <= 4.0 * rounding)) return false;
-    constexpr double parallel = 1.0 - 1e-9;
-    return std::abs(own.dot(planes->normal(group[primitive(hit)]))) > parallel;
+    return std::abs(off_plane) <= coplanar * rounding &&
+           planes->are_parallel(with, group[primitive(hit)]);
   }
 
   // Whether a hit is what the ray meets: not its own plane, nor what lies on that before it or
   // cannot be told to lie after it; not what another surface hides; and nothing on its target.
   bool counts(const RTCHit& hit, float t, const Ray& ray, int target) const {
-    if (hit.geomID == spheres_id) return group[primitive(hit)] != target || target < 0;
+    const bool is_past = target >= 0 && t > static_cast<float>(ray.t_max);
     const int p = primitive(hit), g = group[p];
+    if (hit.geomID == spheres_id) return target < 0 || (g != target && !is_past);
     if (g == ray.origin_group || (target >= 0 && g == target)) return false;
     if (ray.origin_group >= 0) {
       const double along = planes->normal(ray.origin_group).dot(ray.direction);
@@ -73,7 +85,7 @@ struct RayCaster::Impl : EmbreeScene {
         return planes->order(g, target) * planes->normal(target).dot(ray.direction) < 0.0;
       }
     }
-    return true;
+    return !is_past;
   }
 
   static void skip_what_does_not_count(const RTCFilterFunctionNArguments* args) {
