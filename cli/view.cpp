@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <memory>
 #include <stdexcept>
 
@@ -16,10 +17,27 @@ namespace lightwell {
 namespace {
 
 struct Arguments {
-  std::string scene, solution, camera, offscreen;
+  std::string scene, solution, camera, offscreen, overlay, false_colour;
+  std::optional<std::pair<double, double>> range;  // lx
   std::optional<std::pair<int, int>> size;
   double exposure_ev = 0.0;
 };
+
+std::pair<double, double> parse_range(const std::string& text) {
+  double low = 0.0, high = 0.0;
+  const char* const last = text.data() + text.size();
+  const auto [colon, bad_low] = std::from_chars(text.data(), last, low);
+  if (bad_low == std::errc() && colon != last && *colon == ':') {
+    const auto [end, bad_high] = std::from_chars(colon + 1, last, high);
+    constexpr double most = 1e30;
+    const bool rises = low >= 0.0 && low < high && high < most;
+    if (bad_high == std::errc() && end == last && rises) return {low, high};
+  }
+  throw CLI::ValidationError(
+      "--range", fmt::format("'{}' is no range; write LOW:HIGH, such as 0:1000, rising from 0 or "
+                             "more",
+                             text));
+}
 
 #ifdef LIGHTWELL_VIEWER
 int view(const Arguments& arguments, Console& console) {
@@ -27,6 +45,9 @@ int view(const Arguments& arguments, Console& console) {
   const Scene scene = read_scene_step(arguments.scene, console, report);
   ViewOptions options{
       .cameras = scene.cameras, .exposure_ev = arguments.exposure_ev, .materials = scene.materials};
+  options.mesh = !arguments.overlay.empty();
+  options.illuminance = !arguments.false_colour.empty();
+  if (arguments.range) options.lux_range = {arguments.range->first, arguments.range->second};
   options.relative_units = scene.relative_units;
   if (!arguments.camera.empty()) options.camera = choose_camera(scene, arguments.camera);
   // Off screen, the picture that 'render' would make; a window is as large as suits a screen.
@@ -72,6 +93,23 @@ Action add_view(CLI::App& command) {
       ->type_name("NAME");
   add_size(command, arguments->size);
   add_exposure(command, arguments->exposure_ev);
+  command
+      .add_option("--overlay", arguments->overlay,
+                  "mesh: begin with the outlines of the elements (key M)")
+      ->type_name("WHAT")
+      ->check(one_of("overlay", {"mesh"}));
+  auto* const false_colour =
+      command
+          .add_option("--false-colour,--false-color", arguments->false_colour,
+                      "lux: begin with illuminance in false colours (key V)")
+          ->type_name("WHAT")
+          ->check(one_of("quantity", {"lux"}));
+  command
+      .add_option_function<std::string>(
+          "--range", [arguments](const std::string& text) { arguments->range = parse_range(text); },
+          "ends of the scale in lux, even from 0, else logarithmic (default: suits the solution)")
+      ->type_name("LOW:HIGH")
+      ->needs(false_colour);
   command.footer("Example: lightwell view cornell/cornell.toml cornell.vtp");
   return [arguments](Console& console) { return view(*arguments, console); };
 }

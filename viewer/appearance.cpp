@@ -125,9 +125,12 @@ Eigen::Array3f false_color(float place) {
 std::vector<std::uint8_t> false_colors(const std::vector<float>& lux, const LuxRange& range) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(3 * lux.size());
-  const double span = std::log(range.high / range.low);
+  const auto place_of = [&range](double value) {
+    if (range.is_even()) return value / range.high;
+    return value > 0.0 ? std::log(value / range.low) / std::log(range.high / range.low) : 0.0;
+  };
   for (const float value : lux) {
-    const double place = value > 0.0f ? std::log(value / range.low) / span : 0.0;
+    const double place = place_of(value);
     for (const float c : false_color(static_cast<float>(place))) {
       bytes.push_back(static_cast<std::uint8_t>(255.0f * c + 0.5f));
     }

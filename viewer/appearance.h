@@ -29,11 +29,15 @@ BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>&
 std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
                                          double scale);
 
-/// Range of a logarithmic false-colour scale, lx: 1, 2 or 5 times a power of ten at either end,
-/// that takes in all but the brightest 0.5 % of the vertices and reaches at most a thousandth down.
+/// Of a false-colour scale, lx, low < high: logarithmic, or even where `low` is 0.
 struct LuxRange {
   double low = 1.0, high = 1000.0;
+
+  bool is_even() const { return low == 0.0; }
 };
+
+/// A logarithmic one with 1, 2 or 5 times a power of ten at either end, that takes in all but the
+/// brightest 0.5 % of the vertices and reaches at most a thousandth down.
 LuxRange lux_range(const std::vector<float>& lux);
 
 /// Illuminance at each vertex, lx.

@@ -27,8 +27,21 @@ constexpr int metering_width = 160;
 /// driver's largest picture or memory is the limit.
 constexpr int samples_along_pixel = 4;
 
+/// About five even steps, each 1, 2 or 5 times a power of ten.
+std::vector<double> even_steps(double high) {
+  const double power = std::pow(10.0, std::floor(std::log10(high / 5.0)));
+  double step = 10.0 * power;
+  for (const double factor : {5.0, 2.0, 1.0}) {
+    if (factor * power * 4.0 >= 0.999 * high) step = factor * power;
+  }
+  std::vector<double> steps;
+  for (int i = 0; i * step <= 1.001 * high; ++i) steps.push_back(i * step);
+  return steps;
+}
+
 /// 1, 2 and 5 times the powers of ten of a range; the powers alone over more than two decades.
 std::vector<double> round_steps(const LuxRange& range) {
+  if (range.is_even()) return even_steps(range.high);
   std::vector<double> steps;
   const bool is_long = range.high > 100.0 * range.low;
   for (double power = std::pow(10.0, std::floor(std::log10(range.low))); power <= range.high;
@@ -47,7 +60,7 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char
   constexpr int entries = 256;
   vtkNew<vtkLookupTable> table;
   table->SetNumberOfTableValues(entries);
-  table->SetScaleToLog10();
+  if (!range.is_even()) table->SetScaleToLog10();
   table->SetTableRange(range.low, range.high);
   for (int i = 0; i < entries; ++i) {
     const Eigen::Array3f c = false_color(static_cast<float>(i) / (entries - 1));
@@ -111,7 +124,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       kinds_(element_kinds(solved, options.materials)),
       radiance_(shown_radiance(solved, options.materials)),
       lux_(vertex_illuminance(solved.solution)),
-      lux_range_(lux_range(lux_)),
+      lux_range_(options.lux_range.value_or(lux_range(lux_))),
       bounds_(mesh_bounds(solved.mesh)),
       up_axis_(guess_up_axis(options.cameras, bounds_)),
       actor_(solved.mesh, kinds_, radiance_),
@@ -130,6 +143,10 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   look_.camera = start_camera_;
   look_.metered_scale = meter(start_camera_);
   look_.exposure_ev = options.exposure_ev;
+  look_.mesh = options.mesh;
+  look_.illuminance = options.illuminance;
+  actor_.show_mesh(look_.mesh);
+  legend_->SetVisibility(look_.illuminance);
   apply_camera();
   apply_colors();
 }

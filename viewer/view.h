@@ -7,6 +7,7 @@
 
 #include "radiosity/solve.h"
 #include "scene/scene.h"
+#include "viewer/appearance.h"
 
 namespace lightwell {
 
@@ -19,6 +20,9 @@ struct ViewOptions {
   /// The scene's materials, so that mirrors and glass can be told from black surfaces; a solution
   /// alone knows only diffuse light. May be left empty.
   std::vector<Material> materials{};
+  bool mesh = false;                             ///< begin with the elements' outlines
+  bool illuminance = false;                      ///< begin in false colours
+  std::optional<LuxRange> lux_range{};           ///< of those; else what suits the solution
   bool relative_units = false;                   ///< what the scale calls lux is in no known unit
   std::filesystem::path screenshot_folder{"."};  ///< where the screenshot key leaves its PNGs
 };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
 #include <numbers>
 
 #include "solved_box.h"
@@ -153,6 +154,17 @@ TEST(FalseColor, ColorsRiseInLightnessOverTheScale) {
   const auto bytes = false_colors({1.0f, 10.0f, 100.0f}, {1.0, 100.0});
   const Eigen::Array3f half = false_color(0.5f);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(bytes[3 + c], 255.0f * half[c], 1.0f);
+}
+
+TEST(FalseColor, AScaleFromZeroIsEven) {
+  const auto bytes = false_colors({-1.0f, 0.0f, 250.0f, 1000.0f, 2000.0f}, {0.0, 1000.0});
+  const float places[] = {0.0f, 0.0f, 0.25f, 1.0f, 1.0f};
+  for (std::size_t i = 0; i < std::size(places); ++i) {
+    const Eigen::Array3f wanted = false_color(places[i]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(bytes[3 * i + c], 255.0f * wanted[static_cast<Eigen::Index>(c)], 1.0f) << i;
+    }
+  }
 }
 
 }  // namespace

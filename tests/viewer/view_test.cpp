@@ -199,6 +199,24 @@ TEST(Snapshot, TheMeshOverlayDrawsTheOutlinesAndNoDiagonals) {
   }
 }
 
+TEST(Snapshot, BeginsAsTheOptionsSay) {
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  Look look = SolutionView(box, options).look();
+  look.mesh = look.illuminance = true;
+  const Picture switched = draw(box, options, &look);
+  options.mesh = options.illuminance = true;
+  EXPECT_EQ(draw(box, options).bytes, switched.bytes);
+
+  const float lux = vertex_illuminance(box.solution)[8];  // of the back wall, even all over
+  options.lux_range = {0.0, 4.0 * lux};
+  const Eigen::Array3f quarter = 255.0f * false_color(0.25f);
+  expect_pixel(draw(box, options).at(100, 75),
+               {static_cast<int>(quarter[0]), static_cast<int>(quarter[1]),
+                static_cast<int>(quarter[2])},
+               "a quarter up the scale");
+}
+
 /// A folder of its own that goes away with the test.
 class SnapshotFile : public testing::Test {
  protected:
