@@ -34,8 +34,8 @@ ShotRows cast_shots(const ElementCaster& caster, const LightPaths& paths, int mo
   };
   const auto casting = std::make_shared<Casting>(RowCaster(caster, paths, most_rays));
   const PatchMesh& mesh = caster.mesh();
-  return [casting, &mesh](std::span<const Shooter> shooters, std::span<EstimatedRow> rows) {
-    parallel_for(static_cast<int>(shooters.size()), 1, [&](int begin, int end) {
+  return [casting, &mesh](std::span<const RowRequest> requests, std::span<EstimatedRow> rows) {
+    parallel_for(static_cast<int>(requests.size()), 1, [&](int begin, int end) {
       std::unique_ptr<RowCaster::Scratch> scratch;
       {
         const std::lock_guard lock(casting->mutex);
@@ -46,7 +46,7 @@ ShotRows cast_shots(const ElementCaster& caster, const LightPaths& paths, int mo
       }
       if (!scratch) scratch = std::make_unique<RowCaster::Scratch>(mesh);
       for (int k = begin; k < end; ++k) {
-        rows[k] = casting->rows.cast(shooters[k].patch, shooters[k].rays, *scratch);
+        rows[k] = casting->rows.cast(requests[k].patch, requests[k].rays, *scratch);
       }
       const std::lock_guard lock(casting->mutex);
       casting->idle.push_back(std::move(scratch));
@@ -55,9 +55,9 @@ ShotRows cast_shots(const ElementCaster& caster, const LightPaths& paths, int mo
 }
 
 ShotRows stored_shots(const FormFactors& form_factors) {
-  return [&form_factors](std::span<const Shooter> shooters, std::span<EstimatedRow> rows) {
-    for (std::size_t k = 0; k < shooters.size(); ++k) {
-      const int i = shooters[k].patch;
+  return [&form_factors](std::span<const RowRequest> requests, std::span<EstimatedRow> rows) {
+    for (std::size_t k = 0; k < requests.size(); ++k) {
+      const int i = requests[k].patch;
       const std::span<const FormFactor> direct = form_factors.row(i);
       const SpecularRow specular = form_factors.specular_row(i);
       rows[k] = {.shares = {direct.begin(), direct.end()},
@@ -119,15 +119,15 @@ bool ProgressiveRadiosity::step() {
   const std::vector<int> chosen = choose();
   const auto foreseen =
       options_.overshooting == Overshooting::ambient ? ambient() : Spectrum::Zero(unshot_.cols());
-  std::vector<Shooter> shooters;
+  std::vector<RowRequest> requests;
   last_shots_.clear();
   for (const int i : chosen) {
-    shooters.push_back({i, rays_of(i)});
+    requests.push_back({i, rays_of(i)});
     const Spectrum more = mesh_.reflectance.row(i).transpose() * foreseen.max(0.0f);
     last_shots_.push_back({i, unshot_.row(i).transpose() + more});
   }
-  std::vector<EstimatedRow> rows(shooters.size());
-  rows_(shooters, rows);
+  std::vector<EstimatedRow> rows(requests.size());
+  rows_(requests, rows);
   for (const Shot& shot : last_shots_) unshot_.row(shot.patch) -= shot.radiosity.transpose();
   for (std::size_t k = 0; k < rows.size(); ++k) receive(last_shots_[k], rows[k]);
   shots_ += static_cast<int>(chosen.size());

@@ -12,15 +12,15 @@
 namespace lightwell {
 
 /// A patch that shoots, and with how many rays if it comes to rays.
-struct Shooter {
+struct RowRequest {
   int patch = 0;
   int rays = 0;
 };
 
-/// Finds where all that leaves some patches goes: rows[k] for shooters[k]. Rows are not kept, so
+/// Finds where all that leaves some patches goes: rows[k] for requests[k]. Rows are not kept, so
 /// progressive refinement needs memory for the mesh alone.
 using ShotRows =
-    std::function<void(std::span<const Shooter> shooters, std::span<EstimatedRow> rows)>;
+    std::function<void(std::span<const RowRequest> requests, std::span<EstimatedRow> rows)>;
 
 /// Rows by rays from all over the shooter, cast when they are needed and forgotten afterwards.
 /// Keeps references to both.
