@@ -72,13 +72,13 @@ struct Solvable {
   std::unique_ptr<FormFactors> form_factors{};
 };
 
-Solvable prepare(const std::string& name, const Scene& raw, int patches) {
+Solvable prepare(const std::string& name, const Scene& raw, int patches, int rays = 512) {
   Solvable s{.name = name};
   const Scene scene = merge_planar_regions(raw);
   s.mesh = build_patches(scene, {.auto_patch_count = patches, .elements_per_patch_edge = 1});
   const ElementCaster caster(s.mesh);
   const DirectLight direct_light(scene, s.mesh);
-  s.form_factors = compute_form_factors(scene, caster, direct_light);
+  s.form_factors = compute_form_factors(scene, caster, direct_light, {.rays_per_patch = rays});
   return s;
 }
 
@@ -101,9 +101,11 @@ struct Curve {
 std::vector<Curve> compare_solvers(const Solvable& s, int max_sweeps) {
   fmt::print("{}: {} patches, rows {:.3f} GB\n", s.name, s.mesh.patch_count(),
              gigabytes(*s.form_factors));
-  const BandArray exact = solve_radiosity(SolverMethod::bicgstab, s.mesh, *s.form_factors,
-                                          {.tolerance = 1e-10, .max_sweeps = 5000})
-                              .patch_radiosity;
+  const RadiositySolution reference =
+      solve_radiosity(SolverMethod::conjugate_gradients, s.mesh, *s.form_factors,
+                      {.tolerance = 1e-10, .max_sweeps = 5000});
+  const BandArray& exact = reference.patch_radiosity;
+  fmt::print("  reference to 1e-10: {} sweeps\n", reference.history.size());
   std::vector<Curve> curves;
   for (const auto& [name, method] : solver_methods) {
     const RadiositySolution solution =
@@ -114,7 +116,7 @@ std::vector<Curve> compare_solvers(const Solvable& s, int max_sweeps) {
         name == "auto" ? "auto: " + solution.solver : std::string(name), solution.history.size(),
         solution.history.back().seconds, solution.residual, off.maxCoeff() / exact.maxCoeff(),
         solution.outcome == Outcome::converged ? "" : "   (stopped)");
-    curves.push_back({std::string(name), solution.history});
+    if (name != "auto") curves.push_back({std::string(name), solution.history});
   }
   return curves;
 }
@@ -131,17 +133,15 @@ void measure_passes(const Solvable& s) {
   const RadiositySystem system(s.mesh, F);
   const double bytes = gigabytes(F);
   std::vector<double> sums(static_cast<std::size_t>(F.patch_count()), 0.0);
+  // Nothing but reading, as plain numbers that are added to several sums at once.
   const auto read_all = [&] {
     parallel_for(F.patch_count(), 64, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
-        // As plain numbers, four sums at once: nothing but reading.
         const std::span<const FormFactor> row = F.row(i);
-        using Words = Eigen::Array<std::int64_t, Eigen::Dynamic, 1>;
-        const Words words = Words::Zero(1);
-        (void)words;
-        const auto* const at = reinterpret_cast<const float*>(row.data());
+        const auto* const numbers = reinterpret_cast<const float*>(row.data());
         sums[i] =
-            Eigen::Map<const Eigen::ArrayXf>(at, 2 * static_cast<Eigen::Index>(row.size())).sum();
+            Eigen::Map<const Eigen::ArrayXf>(numbers, 2 * static_cast<Eigen::Index>(row.size()))
+                .sum();
       }
     });
   };
@@ -155,6 +155,59 @@ void measure_passes(const Solvable& s) {
   }
 }
 
+// Residual, logarithmic, over seconds; one line per method.
+void draw(const std::string& file, const std::vector<Curve>& curves) {
+  constexpr double left = 70, top = 20, width = 520, height = 340;
+  constexpr double low = -7.0, high = 0.0;  // powers of ten
+  double longest = 0.0;                     // Jacobi is cut off where the next slowest one ends
+  for (const Curve& curve : curves) {
+    if (curve.name != "jacobi") longest = std::max(longest, curve.history.back().seconds);
+  }
+  const auto x = [&](double seconds) { return left + width * std::min(seconds / longest, 1.0); };
+  const auto y = [&](double residual) {
+    return top + height * (high - std::clamp(std::log10(residual), low, high)) / (high - low);
+  };
+  std::ofstream out(file);
+  out << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 720 410" font-family="sans-serif" font-size="13">)"
+      << "\n<rect width=\"720\" height=\"410\" fill=\"white\"/>\n";
+  for (int tenth = 0; tenth <= 10; tenth += 2) {
+    const double seconds = 0.1 * tenth * longest;
+    out << fmt::format("<path d=\"M{:.1f} {} V{}\" stroke=\"#ddd\"/>", x(seconds), top,
+                       top + height)
+        << fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.2f}</text>\n",
+                       x(seconds), top + height + 18, seconds);
+  }
+  for (int p = static_cast<int>(low); p <= static_cast<int>(high); ++p) {
+    const double at = y(std::pow(10.0, p));
+    out << fmt::format("<path d=\"M{} {:.1f} H{}\" stroke=\"#ddd\"/>", left, at, left + width)
+        << fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">10^{}</text>\n", left - 6,
+                       at + 4, p);
+  }
+  const std::vector<std::string> colors = {"#c0392b", "#2471a3", "#229954", "#8e44ad",
+                                           "#d68910", "#117a65", "#5d6d7e"};
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const std::string& color = colors[c % colors.size()];
+    std::string path;
+    for (const StepRecord& step : curves[c].history) {
+      if (step.seconds > longest) break;
+      path += fmt::format("{}{:.1f} {:.1f} ", path.empty() ? "M" : "L", x(step.seconds),
+                          y(step.residual));
+    }
+    const double legend = top + 20.0 + 20.0 * static_cast<double>(c);
+    out << fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>", path,
+                       color)
+        << fmt::format("<text x=\"{}\" y=\"{}\" fill=\"{}\">{}</text>\n", left + width + 10, legend,
+                       color, curves[c].name);
+  }
+  out << fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">seconds</text>",
+                     left + width / 2, top + height + 40)
+      << fmt::format(
+             "<text transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\">residual "
+             "over "
+             "the largest B</text>\n</svg>\n",
+             top + height / 2);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -165,13 +218,14 @@ int main(int argc, char** argv) {
     for (int i = 2; i < argc; ++i) all.push_back(prepare(argv[i], read_scene(argv[i]), 1600));
   } else {
     all.push_back(prepare("Cornell box", read_scene(LIGHTWELL_CORNELL "/cornell.toml"), 1600));
-    all.push_back(prepare("furnished room, reflectance 0.5", furnished_room(0.5f), 12000));
+    all.push_back(prepare("furnished room, reflectance 0.5", furnished_room(0.5f), 12000, 2048));
     all.push_back(prepare("furnished room, reflectance 0.9", furnished_room(0.9f), 6000));
   }
-  constexpr int most_sweeps = 2000;
+  constexpr int most_sweeps = 1000;
   std::vector<Curve> curves;
   for (const Solvable& s : all) {
     curves = compare_solvers(s, most_sweeps);
     measure_passes(s);
   }
+  if (argc > 1) draw(argv[1], curves);
 }

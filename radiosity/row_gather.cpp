@@ -11,7 +11,7 @@ constexpr int packet = 4;  // lanes that are computed together
 
 // Left to itself a processor waits for each row's start to come from memory; asked for it so much
 // earlier it does a pass in half the time (solver_bench).
-constexpr int bytes_ahead = 2048;
+constexpr int bytes_ahead = 4096;
 
 void fetch_ahead(const FormFactor* at) {
   __builtin_prefetch(reinterpret_cast<const char*>(at) + bytes_ahead);

@@ -16,8 +16,8 @@ namespace lightwell {
 enum class SolverMethod {
   /// Conjugate gradients; BiCGSTAB where F turns out not to be reciprocal.
   automatic,
-  /// Gathers to patch after patch (Cohen & Wallace 1993, section 5.3.2), then solves exactly for
-  /// the constant mode, which converges slowest in a bright closed room.
+  /// Gathers to patch after patch (Cohen & Wallace 1993, section 5.3.2), then solves directly for
+  /// uniform light, which converges slowest in a bright closed room.
   gauss_seidel,
   /// One more bounce of light a sweep, all patches at once (Cohen & Wallace 1993, section 5.3.1).
   jacobi,

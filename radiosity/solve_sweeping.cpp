@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "radiosity/solvers.h"
+#include "radiosity/uniform_light.h"
 
 namespace lightwell {
 namespace {
@@ -17,41 +18,6 @@ void sweep(const RadiositySystem& system, double omega, LightVector& B) {
     if ((i + 1) % rows_between_pauses == 0) system.pause();
   }
 }
-
-// alpha per group of exchanging patches and band with sum_i A_i (residual of B + alpha v)_i = 0,
-// where v = 1 wherever light is reflected: a two-level correction with one coarse unknown each. A
-// dark room has no residual and so stays exactly dark.
-class ConstantMode {
- public:
-  explicit ConstantMode(const SolverRun& run)
-      : run_(run),
-        shape_((run.system.rho > 0.0).cast<double>()),
-        drained_(run.system.product(shape_)),
-        drain_(sums(drained_)) {}
-
-  void correct(LightVector& residual, LightVector& B) const {
-    const double least_drain = 1e-9 * run_.system.area.sum();
-    const LightVector alpha = (drain_ > least_drain).select(sums(residual) / drain_, 0.0);
-    for (Eigen::Index i = 0; i < B.rows(); ++i) {
-      const int g = run_.groups.group_of[i];
-      B.row(i) += alpha.row(g) * shape_.row(i);
-      residual.row(i) -= alpha.row(g) * drained_.row(i);
-    }
-  }
-
- private:
-  // sum_i A_i values_i over each group.
-  LightVector sums(const LightVector& values) const {
-    LightVector sum = LightVector::Zero(run_.groups.count, values.cols());
-    for (Eigen::Index i = 0; i < values.rows(); ++i) {
-      sum.row(run_.groups.group_of[i]) += run_.system.area[i] * values.row(i);
-    }
-    return sum;
-  }
-
-  const SolverRun& run_;
-  LightVector shape_, drained_, drain_;
-};
 
 // Young's omega = 2 / (1 + sqrt(1 - q)), for Gauss-Seidel whose residual falls by q a sweep. It is
 // the best one for matrices that radiosity's are not, so what it does is watched.
@@ -93,12 +59,12 @@ LightVector solve_by_jacobi(SolverRun& run) {
 }
 
 LightVector solve_by_gauss_seidel(SolverRun& run) {
-  const ConstantMode constant_mode(run);
+  const UniformLight uniform(run);
   LightVector B = run.start(), r;
   do {
     sweep(run.system, 1.0, B);
     r = run.system.residual(B);
-    constant_mode.correct(r, B);
+    uniform.correct(r, B);
   } while (run.goes_on(SolverMethod::gauss_seidel, B, r));
   return B;
 }
