@@ -155,29 +155,33 @@ void measure_passes(const Solvable& s) {
   }
 }
 
-// Residual, logarithmic, over seconds; one line per method.
+// Logarithmic axes, one line per method.
 void draw(const std::string& file, const std::vector<Curve>& curves) {
   constexpr double left = 70, top = 20, width = 520, height = 340;
-  constexpr double low = -7.0, high = 0.0;  // powers of ten
-  double longest = 0.0;                     // Jacobi is cut off where the next slowest one ends
+  constexpr int low = -7, high = 0;  // powers of ten
+  int soonest = 0, latest = -3;
   for (const Curve& curve : curves) {
-    if (curve.name != "jacobi") longest = std::max(longest, curve.history.back().seconds);
+    const auto power = [](const StepRecord& step) { return std::log10(step.seconds); };
+    soonest = std::min(soonest, static_cast<int>(std::floor(power(curve.history.front()))));
+    latest = std::max(latest, static_cast<int>(std::ceil(power(curve.history.back()))));
   }
-  const auto x = [&](double seconds) { return left + width * std::min(seconds / longest, 1.0); };
+  const auto x = [&](double seconds) {
+    return left + width * (std::log10(seconds) - soonest) / (latest - soonest);
+  };
   const auto y = [&](double residual) {
-    return top + height * (high - std::clamp(std::log10(residual), low, high)) / (high - low);
+    return top +
+           height * (high - std::clamp<double>(std::log10(residual), low, high)) / (high - low);
   };
   std::ofstream out(file);
   out << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 720 410" font-family="sans-serif" font-size="13">)"
       << "\n<rect width=\"720\" height=\"410\" fill=\"white\"/>\n";
-  for (int tenth = 0; tenth <= 10; tenth += 2) {
-    const double seconds = 0.1 * tenth * longest;
-    out << fmt::format("<path d=\"M{:.1f} {} V{}\" stroke=\"#ddd\"/>", x(seconds), top,
-                       top + height)
-        << fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.2f}</text>\n",
-                       x(seconds), top + height + 18, seconds);
+  for (int p = soonest; p <= latest; ++p) {
+    const double at = x(std::pow(10.0, p));
+    out << fmt::format("<path d=\"M{:.1f} {} V{}\" stroke=\"#ddd\"/>", at, top, top + height)
+        << fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">10^{}</text>\n", at,
+                       top + height + 18, p);
   }
-  for (int p = static_cast<int>(low); p <= static_cast<int>(high); ++p) {
+  for (int p = low; p <= high; ++p) {
     const double at = y(std::pow(10.0, p));
     out << fmt::format("<path d=\"M{} {:.1f} H{}\" stroke=\"#ddd\"/>", left, at, left + width)
         << fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">10^{}</text>\n", left - 6,
@@ -189,7 +193,6 @@ void draw(const std::string& file, const std::vector<Curve>& curves) {
     const std::string& color = colors[c % colors.size()];
     std::string path;
     for (const StepRecord& step : curves[c].history) {
-      if (step.seconds > longest) break;
       path += fmt::format("{}{:.1f} {:.1f} ", path.empty() ? "M" : "L", x(step.seconds),
                           y(step.residual));
     }

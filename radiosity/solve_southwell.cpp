@@ -37,7 +37,12 @@ class Largest {
 class Shooter {
  public:
   Shooter(const RadiositySystem& system, LightVector& B, LightVector& r)
-      : system_(system), B_(B), r_(r), lanes_(system.lanes()), unshot_(system.patch_count()) {}
+      : system_(system),
+        B_(B),
+        r_(r),
+        lanes_(system.lanes()),
+        rho_per_area_(system.rho.colwise() / system.area),
+        unshot_(system.patch_count()) {}
 
   // As many shots as read `factors` of F.
   void shoot_for(std::size_t factors) {
@@ -76,12 +81,11 @@ class Shooter {
 
   template <class Factor>
   void receive(int j, Factor F) {
-    const double per_area = 1.0 / system_.area[j];
-    const double* const rho = &system_.rho(j, 0);
+    const double* const rho_per_area = &rho_per_area_(j, 0);
     double* const r = &r_(j, 0);
     double sum = 0.0;
     for (int k = 0; k < lanes_; ++k) {
-      r[k] += rho[k] * per_area * F(k) * power_[k];
+      r[k] += rho_per_area[k] * F(k) * power_[k];
       sum += std::abs(r[k]);
     }
     unshot_.set(j, system_.area[j] * sum);
@@ -90,6 +94,7 @@ class Shooter {
   const RadiositySystem& system_;
   LightVector &B_, &r_;
   int lanes_ = 0;
+  LightVector rho_per_area_;
   Largest unshot_;
   LaneArray power_;
 };

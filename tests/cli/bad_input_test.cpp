@@ -123,7 +123,7 @@ const Mistake mistakes[] = {
      solve_room + std::vector<std::string>{"--solver", "jacoby"},
      2,
      {"jacoby", "auto", "gauss-seidel", "jacobi", "sor", "southwell", "cg", "bicgstab", "gmres",
-      "did you mean 'jacobi'"}},
+      "Did you mean 'jacobi'"}},
     {"SizeWithoutHeight", {"run", "room.toml", "--size", "640"}, 2, {"--size", "640x480"}},
     {"ThreadsBelowZero", {"run", "room.toml", "--threads", "-1"}, 2, {"--threads"}},
     {"MeshOfAMissingFile", {"mesh", "nowhere.toml"}, 3, {"nowhere.toml"}},
