@@ -1,5 +1,6 @@
 #include "radiosity/radiosity_system.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 

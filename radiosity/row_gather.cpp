@@ -1,5 +1,6 @@
 #include "radiosity/row_gather.h"
 
+#include <algorithm>
 #include <array>
 
 #include "scene/parallel.h"

@@ -4,6 +4,7 @@
 // share a pass.
 #include <Eigen/QR>
 #include <cmath>
+#include <vector>
 
 #include "radiosity/solvers.h"
 #include "radiosity/uniform_light.h"

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <vector>
 
 #include "radiosity/solvers.h"
 
