@@ -160,6 +160,12 @@ std::vector<std::string> form_factor_method_names() {
   return names;
 }
 
+std::vector<std::string> solver_names() {
+  std::vector<std::string> names;
+  for (const NamedSolverMethod& known : solver_methods) names.emplace_back(known.name);
+  return names;
+}
+
 CLI::Option* add_hemicube_resolution(CLI::App& command, int& resolution) {
   constexpr int finest = 4096;
   return command
@@ -221,9 +227,12 @@ void SolveArguments::add_to(CLI::App& command) {
       ->check(one_of("form-factor method", form_factor_method_names()))
       ->group(group);
   add_hemicube_resolution(command, solve.form_factors.hemicube_resolution)->group(group);
-  command.add_option("--solver", solver, "how the equations are solved: gauss-seidel")
+  command
+      .add_option("--solver", solver,
+                  "how the equations are solved: auto (default), gauss-seidel, jacobi, sor, "
+                  "southwell, cg, bicgstab, gmres")
       ->type_name("METHOD")
-      ->check(one_of("solver", {"gauss-seidel"}))
+      ->check(one_of("solver", solver_names()))
       ->group(group);
   command
       .add_option("--rays", solve.form_factors.rays_per_patch,
@@ -239,13 +248,13 @@ void SolveArguments::add_to(CLI::App& command) {
       ->check(power_of_two())
       ->group(group);
   command
-      .add_option("--tolerance", solve.tolerance,
-                  "relative residual at which the solver stops (default 1e-5)")
+      .add_option("--tolerance", solve.solver.tolerance,
+                  "relative error of radiosity at which the solver stops (default 1e-5)")
       ->type_name("T")
       ->check(positive())
       ->group(group);
   command
-      .add_option("--max-sweeps", solve.max_sweeps,
+      .add_option("--max-sweeps", solve.solver.max_sweeps,
                   "sweeps after which the solver gives up (default 500)")
       ->type_name("N")
       ->check(whole_number(1, 1000000))
@@ -256,6 +265,7 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
   SolveOptions options = solve;
   options.mesh = mesh.options(scene);
   options.form_factors.method = form_factor_method(form_factors);
+  options.solver_method = solver_method(solver);
   return options;
 }
 
@@ -265,7 +275,8 @@ std::string SolveArguments::text(const Scene& scene) const {
       "--max-sweeps {}",
       mesh.text(scene), form_factors,
       hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
-      solve.form_factors.rays_per_patch, solve.gather.rays, solve.tolerance, solve.max_sweeps);
+      solve.form_factors.rays_per_patch, solve.gather.rays, solve.solver.tolerance,
+      solve.solver.max_sweeps);
 }
 
 void RenderArguments::add_to(CLI::App& command) {

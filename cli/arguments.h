@@ -28,7 +28,7 @@ struct MeshArguments {
 struct SolveArguments {
   MeshArguments mesh{};
   std::string form_factors = "auto";
-  std::string solver = "gauss-seidel";
+  std::string solver = "auto";
   std::int64_t memory = 0;  ///< bytes; 0: no limit given
   SolveOptions solve{};
 
@@ -57,6 +57,7 @@ struct RenderArguments {
 void add_solved_scene(CLI::App& command, std::string& scene, std::string& solution);
 
 std::vector<std::string> form_factor_method_names();
+std::vector<std::string> solver_names();
 
 /// The option --hemicube-resolution spelled out where it matters, with a space before it.
 std::string hemicube_text(const std::string& method, int resolution);

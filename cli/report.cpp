@@ -51,6 +51,7 @@ void Report::add_solution(const SolvedScene& solved, bool solved_now) {
   facts_["bands"] = solution.bands.count();
   facts_["light"] = light_name(solution.relative_units);
   facts_["energy"] = energy_json(solution.energy);
+  if (solved_now) facts_["solver"] = solution.solver;
   facts_["residual"] = solution.residual;
   facts_["sweeps"] = solution.history.size();
   facts_["error_estimate"] = solution.error_estimate;
@@ -112,9 +113,11 @@ std::string Report::for_people() const {
                      "unshot",
                      emitted, facts_["light"] == light_name(true) ? "(no known unit)" : "W",
                      percent("absorbed"), percent("escaped"), percent("unshot")));
+    const std::string by =
+        facts_.contains("solver") ? " of " + facts_["solver"].get<std::string>() : "";
     line("residual",
-         fmt::format("{:.2g} after {} sweeps ({})", facts_["residual"].get<double>(),
-                     facts_["sweeps"].get<int>(), facts_["outcome"].get<std::string>()));
+         fmt::format("{:.2g} after {} sweeps{} ({})", facts_["residual"].get<double>(),
+                     facts_["sweeps"].get<int>(), by, facts_["outcome"].get<std::string>()));
     line("error", fmt::format("{:.2f} % of the mean irradiance, estimated (relative RMS)",
                               100.0 * facts_["error_estimate"].get<double>()));
   }

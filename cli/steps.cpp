@@ -69,9 +69,11 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   report.add_storage(options.form_factors.memory->report());
   if (solved.solution.outcome != Outcome::converged) {
     console.say(
-        fmt::format("warning: the solver stopped after {} sweeps at a residual of {:.2g}, "
-                    "above the tolerance of {:g}; what it has is written",
-                    solved.solution.history.size(), solved.solution.residual, options.tolerance));
+        fmt::format("warning: the solver ({}) stopped after {} sweeps at a residual of {:.2g}, "
+                    "before the tolerance of {:g} was reached; what it has is written. Allow more "
+                    "--max-sweeps, or try --solver bicgstab",
+                    solved.solution.solver, solved.solution.history.size(),
+                    solved.solution.residual, options.solver.tolerance));
   }
   stop_if_interrupted();
   return solved;

@@ -34,8 +34,9 @@ struct Estimate {
 // result, and what each thread counts in.
 std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
                                const FormFactorOptions& options) {
-  // Outlines and their quadratures, places in stores, balance's vectors; scratch of a row.
-  constexpr std::int64_t per_patch = 900, per_band = 64, per_thread = 48, per_emitter = 16;
+  // Outlines and their quadratures, places in stores, balance's vectors; a solver's vectors;
+  // scratch of a row.
+  constexpr std::int64_t per_patch = 900, per_band = 128, per_thread = 48, per_emitter = 16;
   const std::int64_t bands = mesh.reflectance.cols();
   std::int64_t each =
       per_patch + per_band * bands + per_thread * thread_count() + per_emitter * emitters;

@@ -53,6 +53,7 @@ struct RadiositySolution {
   /// The part of indirect_irradiance that DirectLight's emitters send by way of mirrors and glass.
   BandArray caustic_irradiance{};
 
+  std::string solver{};  ///< the method that found it, or the methods; empty if read from a file
   std::vector<StepRecord> history{};
   Outcome outcome = Outcome::converged;
   double residual = 0.0;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "mesh/patch_sampler.h"
-#include "radiosity/solve_gauss_seidel.h"
+#include "radiosity/solve_radiosity.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 
@@ -177,10 +177,13 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
                                            report ? &report->form_factors : nullptr);
   seconds.push_back({"form_factors", watch.lap()});
 
-  solved.solution = solve_gauss_seidel(solved.mesh, *form_factors,
-                                       {.tolerance = options.tolerance,
-                                        .max_sweeps = options.max_sweeps,
-                                        .progress = options.progress});
+  SolverOptions solver_options = options.solver;
+  solver_options.progress = options.progress;
+  solver_options.name_of = [&](int i) {
+    return fmt::format("surface '{}'", scene.surfaces[solved.mesh.surface[i]].name);
+  };
+  solved.solution =
+      solve_radiosity(options.solver_method, solved.mesh, *form_factors, solver_options);
   RadiositySolution& solution = solved.solution;
   solution.bands = scene.bands;
   solution.metres_per_unit = scene.metres_per_unit;

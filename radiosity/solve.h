@@ -3,14 +3,15 @@
 #include "radiosity/final_gather.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/solution.h"
+#include "radiosity/solve_radiosity.h"
 
 namespace lightwell {
 
 struct SolveOptions {
   MeshOptions mesh{};
   FormFactorOptions form_factors{};
-  double tolerance = 1e-5;  ///< see GaussSeidelOptions
-  int max_sweeps = 500;
+  SolverMethod solver_method = SolverMethod::automatic;
+  SolverOptions solver{};  ///< but for `progress` and `name_of`
   GatherOptions gather{.rays = 1024};
   int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
   int error_points = 512;      ///< random points that the error estimate looks at
@@ -28,10 +29,10 @@ struct SolveReport {
   FormFactorReport form_factors{};
 };
 
-/// The whole first pass: mesh, form factors, Gauss-Seidel, final gather to the elements' vertices,
+/// The whole first pass: mesh, form factors, solver, final gather to the elements' vertices,
 /// and an error estimate by independent gathers at random points (relative RMS difference from the
 /// interpolation; it holds the noise of both, so it errs on the high side). Throws InputError if
-/// nothing in the scene emits light, Interrupted when progress says stop.
+/// nothing in the scene emits light or light never ends, Interrupted when progress says stop.
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);
 

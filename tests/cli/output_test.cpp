@@ -172,6 +172,24 @@ TEST_F(Output, NoArgumentsShowRecipes) {
   EXPECT_TRUE(says(ended.out, "lightwell run"));
 }
 
+TEST_F(Output, SaysWhichSolverFoundIt) {
+  double absorbed = 0.0;
+  for (const std::string solver : {"auto", "jacobi", "southwell", "gmres"}) {
+    const auto json =
+        run_json(Words{"solve", "room.toml", "-o", "S.vtp", "--solver", solver} + quick());
+    EXPECT_EQ(json["solver"], solver == "auto" ? "cg" : solver);
+    EXPECT_EQ(json["outcome"], "converged");
+    EXPECT_GT(json["sweeps"], 1);
+    EXPECT_NE(json["options"].get<std::string>().find("--solver " + solver), std::string::npos);
+    const double now = json["energy"]["absorbed"];
+    // Each radiosity is within 1e-5 of the lamp's; absorption adds them up over all walls.
+    if (absorbed > 0.0) {
+      EXPECT_NEAR(now / absorbed, 1.0, 1e-3) << solver;
+    }
+    absorbed = now;
+  }
+}
+
 TEST_F(Output, StoppedBeforeTheToleranceIsCodeFourAndStillWritten) {
   const Ended ended =
       run(Words{"solve", "room.toml", "-o", "S.vtp", "--max-sweeps", "1"} + quick());

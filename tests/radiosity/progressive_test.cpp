@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "radiosity/solve.h"
-#include "radiosity/solve_gauss_seidel.h"
+#include "radiosity/solve_radiosity.h"
 #include "radiosity/vertex_light.h"
 #include "scene/parallel.h"
 #include "tests/radiosity/test_scenes.h"
@@ -73,7 +73,9 @@ TEST(Progressive, ToTheEndIsWhatGaussSeidelFinds) {
   for (const bool with_mirror : {false, true}) {
     const Solved room(lamp_room(0.6f, with_mirror));
     const auto F = room.form_factors();
-    const BandArray wanted = solve_gauss_seidel(room.mesh, *F, {.tolerance = 1e-7}).patch_radiosity;
+    const BandArray wanted =
+        solve_radiosity(SolverMethod::automatic, room.mesh, *F, {.tolerance = 1e-7})
+            .patch_radiosity;
     ProgressiveRadiosity progressive(room.scene, room.mesh, stored_shots(*F), {.tolerance = 1e-6});
     run(progressive);
     EXPECT_TRUE(progressive.has_converged());
@@ -88,7 +90,7 @@ TEST(Progressive, ToTheEndIsWhatGaussSeidelFinds) {
 TEST(Progressive, RowsCastOnTheFlyFindTheSameLight) {
   const Solved room(lamp_room(0.6f, false));
   const auto F = room.form_factors();
-  const BandArray wanted = solve_gauss_seidel(room.mesh, *F).patch_radiosity;
+  const BandArray wanted = solve_radiosity(SolverMethod::automatic, room.mesh, *F).patch_radiosity;
   constexpr int most_rays = 1 << 16;
   ProgressiveRadiosity progressive(room.scene, room.mesh,
                                    cast_shots(room.caster, room.paths, most_rays),
@@ -129,7 +131,7 @@ TEST(Progressive, TheAmbientTermOfAFurnaceIsRightFromTheBeginning) {
 TEST(Progressive, TheAmbientTermBringsFirstPicturesNearer) {
   const Solved room(lamp_room(0.8f, false));
   const auto F = room.form_factors();
-  const BandArray wanted = solve_gauss_seidel(room.mesh, *F).patch_radiosity;
+  const BandArray wanted = solve_radiosity(SolverMethod::automatic, room.mesh, *F).patch_radiosity;
   ProgressiveRadiosity progressive(room.scene, room.mesh, stored_shots(*F));
   ASSERT_TRUE(progressive.step());
   const BandArray plain = progressive.radiosity();
@@ -141,7 +143,8 @@ TEST(Progressive, TheAmbientTermBringsFirstPicturesNearer) {
 TEST(Progressive, OvershootingNeedsFewerShotsForTheSameAnswer) {
   const Solved room(lamp_room(0.8f, false));
   const auto F = room.form_factors();
-  const BandArray wanted = solve_gauss_seidel(room.mesh, *F, {.tolerance = 1e-7}).patch_radiosity;
+  const BandArray wanted =
+      solve_radiosity(SolverMethod::automatic, room.mesh, *F, {.tolerance = 1e-7}).patch_radiosity;
   const auto shots_to = [&](Overshooting overshooting, double error) {
     ProgressiveRadiosity progressive(room.scene, room.mesh, stored_shots(*F),
                                      {.tolerance = 1e-7, .overshooting = overshooting});
