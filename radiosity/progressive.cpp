@@ -17,7 +17,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int fewest_rays = 16;
+constexpr int fewest_rays = 16, least_round = 16;
 
 // Of all bands, without regard to sign.
 double power(const PatchMesh& mesh, const BandArray& radiosity, int patch) {
@@ -145,7 +145,8 @@ std::vector<int> ProgressiveRadiosity::choose() const {
     const double unshot = power(mesh_, unshot_, i);
     if (unshot > 0.0) order.emplace_back(-unshot, i);
   }
-  const auto wanted = static_cast<std::size_t>(std::min(round_size, options_.max_shots - shots_));
+  const int round = std::max(least_round, mesh_.patch_count() / 128);
+  const auto wanted = static_cast<std::size_t>(std::min(round, options_.max_shots - shots_));
   const std::size_t count = std::min(wanted, order.size());
   std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end());
   std::vector<int> chosen;
@@ -154,8 +155,7 @@ std::vector<int> ProgressiveRadiosity::choose() const {
 }
 
 int ProgressiveRadiosity::rays_of(int patch) const {
-  const double mean = energy_.emitted / mesh_.patch_count();
-  const double wanted = options_.rays_per_patch * power(mesh_, unshot_, patch) / mean;
+  const double wanted = options_.rays * power(mesh_, unshot_, patch) / energy_.emitted;
   const int most = std::max(options_.most_rays, fewest_rays);
   const auto rays = static_cast<unsigned>(std::clamp<double>(wanted, fewest_rays, most));
   return static_cast<int>(std::bit_floor(rays));

@@ -42,9 +42,9 @@ struct ProgressiveOptions {
   /// falls below this share of what is emitted.
   double tolerance = 1e-3;
   int max_shots = 1 << 24;  ///< a fuse
-  /// Rays of a shooter that holds the mean power per patch. Others get as many more or fewer as
-  /// they hold power, so that every ray carries about the same and noise is even.
-  int rays_per_patch = 512;
+  /// Rays that carry all that is emitted. Every shooter gets its share by power, so each ray
+  /// carries about the same and noise is even; what is reflected takes about as many again.
+  double rays = 1 << 20;
   int most_rays = 1 << 16;  ///< of one shot
   Overshooting overshooting = Overshooting::none;
 };
@@ -53,13 +53,11 @@ struct ProgressiveOptions {
 /// unshot power shoot it to all that they see, again and again. Useful after the first shots, and
 /// needs neither form factors in advance nor memory for them.
 ///
-/// Shooters go in rounds of `round_size`, so that their rows can be found side by side; what they
-/// do to each other counts from the next round on. The result is the same for any number of
-/// threads. Keeps references to scene and mesh.
+/// Shooters go in rounds of 16, and of 1/128 of the patches where those are many, so that their
+/// rows can be found side by side; what they do to each other counts from the next round on. The
+/// result is the same for any number of threads. Keeps references to scene and mesh.
 class ProgressiveRadiosity {
  public:
-  static constexpr int round_size = 16;
-
   struct Shot {
     int patch = 0;
     Spectrum radiosity{};  ///< what it sent out, W/m^2

@@ -94,9 +94,9 @@ TEST(Progressive, RowsCastOnTheFlyFindTheSameLight) {
   constexpr int most_rays = 1 << 16;
   ProgressiveRadiosity progressive(room.scene, room.mesh,
                                    cast_shots(room.caster, room.paths, most_rays),
-                                   {.rays_per_patch = 4096, .most_rays = most_rays});
+                                   {.rays = 1200000, .most_rays = most_rays});
   run(progressive);
-  // A patch holds one in 300 of 1.2 million rays' arrivals, so 4 000 and 1.6 % if they were random.
+  // One ray in 300 of 1.2 million arrives at a patch, so 4 000, and 1.6 % if they were random.
   EXPECT_LT(rms(room.mesh, progressive.radiosity(), wanted), 0.016);
   expect_balanced(progressive.energy(), 1e-5);
 }
