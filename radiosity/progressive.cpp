@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -98,6 +99,12 @@ double ProgressiveRadiosity::unshot_share() const {
   return sum / energy_.emitted;
 }
 
+double ProgressiveRadiosity::done() const {
+  const double unshot = unshot_share();
+  if (unshot <= options_.tolerance) return 1.0;
+  return std::clamp(std::log(unshot) / std::log(options_.tolerance), 0.0, 1.0);
+}
+
 Spectrum ProgressiveRadiosity::ambient() const {
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(unshot_.cols());
   for (int i = 0; i < mesh_.patch_count(); ++i) {
@@ -178,6 +185,26 @@ void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
   }
   energy_.escaped += (watts * (row.specular_escaped.cast<double>() + row.escaped)).sum();
   energy_.absorbed += (watts * (row.absorbed + row.cut).cast<double>()).sum();
+}
+
+RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  RadiositySolution solution;
+  solution.solver = "progressive";
+  while (progressive.step()) {
+    const double largest = progressive.radiosity().abs().maxCoeff();
+    solution.residual = progressive.unshot().abs().maxCoeff() / largest;
+    solution.history.push_back(
+        {.residual = solution.residual,
+         .seconds =
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+    report(progress, "solve", progressive.done());
+  }
+  report(progress, "solve", 1.0);
+  solution.patch_radiosity = progressive.radiosity();
+  solution.energy = progressive.energy();
+  solution.outcome = progressive.has_converged() ? Outcome::converged : Outcome::max_sweeps_reached;
+  return solution;
 }
 
 }  // namespace lightwell

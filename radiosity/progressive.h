@@ -79,6 +79,8 @@ class ProgressiveRadiosity {
   const BandArray& unshot() const { return unshot_; }
   /// Unshot power over emitted power, all bands together, without regard to sign.
   double unshot_share() const;
+  /// How far on the way to the tolerance, [0,1], by powers of ten.
+  double done() const;
   bool has_converged() const { return unshot_share() <= options_.tolerance; }
   /// Radiosity that all surfaces would add for every unit of reflectance if the unshot light were
   /// spread evenly at once: rho_i times this belongs to what a picture shows meanwhile (Cohen et
@@ -102,5 +104,12 @@ class ProgressiveRadiosity {
   std::vector<Shot> last_shots_{};
   int shots_ = 0;
 };
+
+/// Shoots until step() has no more to do. Fills patch_radiosity, solver ("progressive"), history (a
+/// record a round), residual, outcome and energy of the result; residual is max |unshot| over max
+/// B, which max |M + rho F B - B| over max B is never above. Throws Interrupted when progress says
+/// stop.
+RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive,
+                                   const Progress& progress = {});
 
 }  // namespace lightwell
