@@ -52,6 +52,9 @@ std::pair<int, int> parse_size(const std::string& text) {
                             text, largest_picture_edge));
 }
 
+// Not one of solver_methods: it needs no form factors.
+constexpr std::string_view progressive = "progressive";
+
 }  // namespace
 
 CLI::Validator whole_number(int least, int most) {
@@ -163,6 +166,7 @@ std::vector<std::string> form_factor_method_names() {
 std::vector<std::string> solver_names() {
   std::vector<std::string> names;
   for (const NamedSolverMethod& known : solver_methods) names.emplace_back(known.name);
+  names.emplace_back(progressive);
   return names;
 }
 
@@ -230,7 +234,7 @@ void SolveArguments::add_to(CLI::App& command) {
   command
       .add_option("--solver", solver,
                   "how the equations are solved: auto (default), gauss-seidel, jacobi, sor, "
-                  "southwell, cg, bicgstab, gmres")
+                  "southwell, cg, bicgstab, gmres; progressive: without form factors in advance")
       ->type_name("METHOD")
       ->check(one_of("solver", solver_names()))
       ->group(group);
@@ -265,7 +269,12 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
   SolveOptions options = solve;
   options.mesh = mesh.options(scene);
   options.form_factors.method = form_factor_method(form_factors);
-  options.solver_method = solver_method(solver);
+  if (solver == progressive) {
+    options.progressive = {.tolerance = options.solver.tolerance,
+                           .overshooting = Overshooting::ambient};
+  } else {
+    options.solver_method = solver_method(solver);
+  }
   return options;
 }
 

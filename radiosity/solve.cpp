@@ -138,6 +138,42 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
   return std::sqrt((interpolated - truth).cast<double>().square().mean()) / mean;
 }
 
+// Of patches; `seconds` of the result say what took how long.
+RadiositySolution shoot(const Scene& scene, const ElementCaster& caster,
+                        const SolveOptions& options) {
+  Stopwatch watch;
+  const LightPaths paths(scene, caster, options.form_factors.max_specular_depth);
+  ProgressiveRadiosity progressive(scene, caster.mesh(),
+                                   cast_shots(caster, paths, options.progressive->most_rays),
+                                   *options.progressive);
+  RadiositySolution solution = shoot_to_the_end(progressive, options.progress);
+  solution.seconds.push_back({"solve", watch.lap()});
+  return solution;
+}
+
+RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caster,
+                                  const DirectLight& direct_light, const SolveOptions& options,
+                                  SolveReport* report) {
+  const PatchMesh& mesh = caster.mesh();
+  Stopwatch watch;
+  FormFactorOptions form_factor_options = options.form_factors;
+  form_factor_options.progress = options.progress;
+  const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
+                                                 report ? &report->form_factors : nullptr);
+  const double form_factor_seconds = watch.lap();
+
+  SolverOptions solver_options = options.solver;
+  solver_options.progress = options.progress;
+  solver_options.name_of = [&](int i) {
+    return fmt::format("surface '{}'", scene.surfaces[mesh.surface[i]].name);
+  };
+  RadiositySolution solution =
+      solve_radiosity(options.solver_method, mesh, *form_factors, solver_options);
+  solution.energy = energy_balance(scene, mesh, *form_factors, solution.patch_radiosity);
+  solution.seconds = {{"form_factors", form_factor_seconds}, {"solve", watch.lap()}};
+  return solution;
+}
+
 }  // namespace
 
 EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
@@ -171,27 +207,16 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   const DirectLight direct_light(scene, solved.mesh);
   seconds.push_back({"mesh", watch.lap()});
 
-  FormFactorOptions form_factor_options = options.form_factors;
-  form_factor_options.progress = options.progress;
-  auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
-                                           report ? &report->form_factors : nullptr);
-  seconds.push_back({"form_factors", watch.lap()});
-
-  SolverOptions solver_options = options.solver;
-  solver_options.progress = options.progress;
-  solver_options.name_of = [&](int i) {
-    return fmt::format("surface '{}'", scene.surfaces[solved.mesh.surface[i]].name);
-  };
-  solved.solution =
-      solve_radiosity(options.solver_method, solved.mesh, *form_factors, solver_options);
+  solved.solution = options.progressive
+                        ? shoot(scene, caster, options)
+                        : solve_equations(scene, caster, direct_light, options, report);
   RadiositySolution& solution = solved.solution;
+  for (const PhaseSeconds& phase : solution.seconds) seconds.push_back(phase);
+  watch.lap();
   solution.bands = scene.bands;
   solution.metres_per_unit = scene.metres_per_unit;
   solution.unit_name = scene.unit_name;
   solution.relative_units = scene.relative_units;
-  solution.energy = energy_balance(scene, solved.mesh, *form_factors, solution.patch_radiosity);
-  form_factors.reset();  // what follows needs the memory
-  seconds.push_back({"solve", watch.lap()});
 
   reconstruct(scene, caster, direct_light, options, solution);
   seconds.push_back({"gather", watch.lap()});

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "radiosity/final_gather.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/progressive.h"
 #include "radiosity/solution.h"
 #include "radiosity/solve_radiosity.h"
 
@@ -12,6 +15,9 @@ struct SolveOptions {
   FormFactorOptions form_factors{};
   SolverMethod solver_method = SolverMethod::automatic;
   SolverOptions solver{};  ///< but for `progress` and `name_of`
+  /// Patches shoot, with rows found on the fly and forgotten, instead of all form factors and a
+  /// solver: of the options above only `form_factors.max_specular_depth` then counts.
+  std::optional<ProgressiveOptions> progressive{};
   GatherOptions gather{.rays = 1024};
   int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
   int error_points = 512;      ///< random points that the error estimate looks at

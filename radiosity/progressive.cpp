@@ -1,0 +1,210 @@
+#include "radiosity/progressive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "radiosity/ray_cast_rows.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int fewest_rays = 16, least_round = 16;
+
+// Of all bands, without regard to sign.
+double power(const PatchMesh& mesh, const BandArray& radiosity, int patch) {
+  return mesh.area[patch] * radiosity.row(patch).abs().cast<double>().sum();
+}
+
+}  // namespace
+
+ShotRows cast_shots(const ElementCaster& caster, const LightPaths& paths, int most_rays) {
+  struct Casting {
+    RowCaster rows;
+    std::mutex mutex{};
+    std::vector<std::unique_ptr<RowCaster::Scratch>> idle{};  // grows with the mesh: handed on
+  };
+  const auto casting = std::make_shared<Casting>(RowCaster(caster, paths, most_rays));
+  const PatchMesh& mesh = caster.mesh();
+  return [casting, &mesh](std::span<const RowRequest> requests, std::span<EstimatedRow> rows) {
+    parallel_for(static_cast<int>(requests.size()), 1, [&](int begin, int end) {
+      std::unique_ptr<RowCaster::Scratch> scratch;
+      {
+        const std::lock_guard lock(casting->mutex);
+        if (!casting->idle.empty()) {
+          scratch = std::move(casting->idle.back());
+          casting->idle.pop_back();
+        }
+      }
+      if (!scratch) scratch = std::make_unique<RowCaster::Scratch>(mesh);
+      for (int k = begin; k < end; ++k) {
+        rows[k] = casting->rows.cast(requests[k].patch, requests[k].rays, *scratch);
+      }
+      const std::lock_guard lock(casting->mutex);
+      casting->idle.push_back(std::move(scratch));
+    });
+  };
+}
+
+ShotRows stored_shots(const FormFactors& form_factors) {
+  return [&form_factors](std::span<const RowRequest> requests, std::span<EstimatedRow> rows) {
+    for (std::size_t k = 0; k < requests.size(); ++k) {
+      const int i = requests[k].patch;
+      const std::span<const FormFactor> direct = form_factors.row(i);
+      const SpecularRow specular = form_factors.specular_row(i);
+      rows[k] = {.shares = {direct.begin(), direct.end()},
+                 .specular_patch = {specular.patch.begin(), specular.patch.end()},
+                 .specular_share = specular.value,
+                 .specular_escaped = form_factors.escaped(i),
+                 .absorbed = form_factors.absorbed_by_specular(i),
+                 .cut = Spectrum::Zero(form_factors.escaped(i).size())};
+    }
+  };
+}
+
+ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& mesh, ShotRows rows,
+                                           const ProgressiveOptions& options)
+    : scene_(scene),
+      mesh_(mesh),
+      rows_(std::move(rows)),
+      options_(options),
+      radiosity_(mesh.emission),
+      unshot_(mesh.emission) {
+  Eigen::ArrayXd reflected = Eigen::ArrayXd::Zero(mesh.reflectance.cols());
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    if (!(mesh.area[i] > 0.0)) {
+      throw std::invalid_argument(fmt::format("patch {} has area {}", i, mesh.area[i]));
+    }
+    reflected += mesh.area[i] * mesh.reflectance.row(i).transpose().cast<double>();
+    energy_.emitted += power(mesh, mesh.emission, i);
+  }
+  // A room that loses nothing would add up without end.
+  constexpr double most_reflected = 0.99;
+  reflections_ = (1.0 / (1.0 - (reflected / mesh.area.sum()).min(most_reflected))).cast<float>();
+}
+
+double ProgressiveRadiosity::unshot_share() const {
+  if (!(energy_.emitted > 0.0)) return 0.0;
+  double sum = 0.0;
+  for (int i = 0; i < mesh_.patch_count(); ++i) sum += power(mesh_, unshot_, i);
+  return sum / energy_.emitted;
+}
+
+double ProgressiveRadiosity::done() const {
+  const double unshot = unshot_share();
+  if (unshot <= options_.tolerance) return 1.0;
+  return std::clamp(std::log(unshot) / std::log(options_.tolerance), 0.0, 1.0);
+}
+
+Spectrum ProgressiveRadiosity::ambient() const {
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(unshot_.cols());
+  for (int i = 0; i < mesh_.patch_count(); ++i) {
+    sum += mesh_.area[i] * unshot_.row(i).transpose().cast<double>();
+  }
+  return reflections_ * (sum / mesh_.area.sum()).cast<float>();
+}
+
+EnergyBalance ProgressiveRadiosity::energy() const {
+  EnergyBalance energy = energy_;
+  for (int i = 0; i < mesh_.patch_count(); ++i) {
+    energy.unshot += mesh_.area[i] * unshot_.row(i).cast<double>().sum();
+  }
+  return energy;
+}
+
+bool ProgressiveRadiosity::step() {
+  if (shots_ >= options_.max_shots || has_converged()) return false;
+  const std::vector<int> chosen = choose();
+  const auto foreseen =
+      options_.overshooting == Overshooting::ambient ? ambient() : Spectrum::Zero(unshot_.cols());
+  std::vector<RowRequest> requests;
+  last_shots_.clear();
+  for (const int i : chosen) {
+    requests.push_back({i, rays_of(i)});
+    const Spectrum more = mesh_.reflectance.row(i).transpose() * foreseen.max(0.0f);
+    last_shots_.push_back({i, unshot_.row(i).transpose() + more});
+  }
+  std::vector<EstimatedRow> rows(requests.size());
+  rows_(requests, rows);
+  for (const Shot& shot : last_shots_) unshot_.row(shot.patch) -= shot.radiosity.transpose();
+  for (std::size_t k = 0; k < rows.size(); ++k) receive(last_shots_[k], rows[k]);
+  shots_ += static_cast<int>(chosen.size());
+  if (!unshot_.allFinite()) {
+    throw std::runtime_error(
+        "The radiosities are no longer finite numbers; please report the scene.");
+  }
+  return true;
+}
+
+// Most unshot power first, and of equals the first.
+std::vector<int> ProgressiveRadiosity::choose() const {
+  std::vector<std::pair<double, int>> order;
+  for (int i = 0; i < mesh_.patch_count(); ++i) {
+    const double unshot = power(mesh_, unshot_, i);
+    if (unshot > 0.0) order.emplace_back(-unshot, i);
+  }
+  const int round = std::max(least_round, mesh_.patch_count() / 128);
+  const auto wanted = static_cast<std::size_t>(std::min(round, options_.max_shots - shots_));
+  const std::size_t count = std::min(wanted, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end());
+  std::vector<int> chosen;
+  for (std::size_t k = 0; k < count; ++k) chosen.push_back(order[k].second);
+  return chosen;
+}
+
+int ProgressiveRadiosity::rays_of(int patch) const {
+  const double wanted = options_.rays * power(mesh_, unshot_, patch) / energy_.emitted;
+  const int most = std::max(options_.most_rays, fewest_rays);
+  const auto rays = static_cast<unsigned>(std::clamp<double>(wanted, fewest_rays, most));
+  return static_cast<int>(std::bit_floor(rays));
+}
+
+void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
+  const Eigen::ArrayXd watts = mesh_.area[shot.patch] * shot.radiosity.cast<double>();
+  const auto arrive = [&](int j, const Eigen::ArrayXd& arriving) {
+    const Spectrum E = (arriving / mesh_.area[j]).cast<float>();
+    const Spectrum rho = mesh_.reflectance.row(j).transpose();
+    radiosity_.row(j) += (rho * E).transpose();
+    unshot_.row(j) += (rho * E).transpose();
+    const Spectrum kept = 1.0f - rho - scene_.materials[mesh_.material[j]].specular;
+    energy_.absorbed += (arriving * kept.cast<double>()).sum();
+  };
+  for (const auto& [j, share] : row.shares) arrive(j, watts * static_cast<double>(share));
+  for (std::size_t s = 0; s < row.specular_patch.size(); ++s) {
+    const auto share = row.specular_share.row(static_cast<Eigen::Index>(s));
+    arrive(row.specular_patch[s], watts * share.transpose().cast<double>());
+  }
+  energy_.escaped += (watts * (row.specular_escaped.cast<double>() + row.escaped)).sum();
+  energy_.absorbed += (watts * (row.absorbed + row.cut).cast<double>()).sum();
+}
+
+RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  RadiositySolution solution;
+  solution.solver = "progressive";
+  while (progressive.step()) {
+    const double largest = progressive.radiosity().abs().maxCoeff();
+    solution.residual = progressive.unshot().abs().maxCoeff() / largest;
+    solution.history.push_back(
+        {.residual = solution.residual,
+         .seconds =
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+    report(progress, "solve", progressive.done());
+  }
+  report(progress, "solve", 1.0);
+  solution.patch_radiosity = progressive.radiosity();
+  solution.energy = progressive.energy();
+  solution.outcome = progressive.has_converged() ? Outcome::converged : Outcome::max_sweeps_reached;
+  return solution;
+}
+
+}  // namespace lightwell
