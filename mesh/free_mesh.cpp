@@ -7,6 +7,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "mesh/graded_points.h"
 #include "mesh/group_patches.h"
 #include "mesh/inner_points.h"
 #include "mesh/pair_triangles.h"
@@ -284,6 +285,24 @@ PlanarTriangulation triangulate_places(const std::vector<Vector2d>& xy, const Lo
   return t;
 }
 
+// Each round lets triangles become about twice as large as those of the last.
+void grade(const LocalLines& lines, double element_size, PlanarTriangulation& triangulation,
+           std::vector<char>& inside) {
+  constexpr int most_rounds = 8;
+  std::size_t left = lines.point.size();  // twice the elements at most
+  for (int round = 0; round < most_rounds; ++round) {
+    const auto added = graded_points(triangulation, inside, lines.all, element_size, left);
+    if (added.empty()) return;
+    left -= added.size();
+    std::vector<Vector2d> xy = triangulation.points;
+    xy.insert(xy.end(), added.begin(), added.end());
+    PlanarTriangulation next = triangulate_places(xy, lines, element_size);
+    if (!next.is_as_given) return;
+    triangulation = std::move(next);
+    inside = inside_by_parity(triangulation, lines.boundary);
+  }
+}
+
 }  // namespace
 
 FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
@@ -294,16 +313,21 @@ FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
                                   {lines.all.begin(), lines.all.begin() + lines.hard_count},
                                   {lines.all.begin() + lines.hard_count, lines.all.end()});
   xy.insert(xy.end(), inner.begin(), inner.end());
-  const PlanarTriangulation triangulation = triangulate_places(xy, lines, size.element_size());
+  PlanarTriangulation triangulation = triangulate_places(xy, lines, size.element_size());
   // A crease that had to be cut is not known by its ends.
   if (!triangulation.is_as_given && !lines.creases.empty()) return {};
-  const SplitTriangles split =
-      split_at_lines(triangulation,
-                     triangulation.is_as_given ? inside_by_parity(triangulation, lines.boundary)
-                                               : inside_by_place(plane, triangulation),
-                     lines.creases);
+  std::vector<char> inside = triangulation.is_as_given
+                                 ? inside_by_parity(triangulation, lines.boundary)
+                                 : inside_by_place(plane, triangulation);
+  // Creases lie as fine as they should.
+  if (triangulation.is_as_given && lines.creases.empty()) {
+    grade(lines, size.element_size(), triangulation, inside);
+  }
+  const SplitTriangles split = split_at_lines(triangulation, inside, lines.creases);
   if (split.triangles.empty()) return {};
-  return assemble(plane, split, lines, points, patch_grid(lines.box, size));
+  FacetMesh mesh = assemble(plane, split, lines, points, patch_grid(lines.box, size));
+  mesh.has_cut_lines = !triangulation.is_as_given;
+  return mesh;
 }
 
 }  // namespace lightwell
