@@ -89,9 +89,9 @@ bool BoxTree::find_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, dou
         if (low[c] > 0.0 || high[c] < 0.0) return false;
         continue;
       }
-      const auto [first, last] = std::minmax(low[c] / d[c], high[c] / d[c]);
-      from = std::max(from, first);
-      to = std::min(to, last);
+      const double at_low = low[c] / d[c], at_high = high[c] / d[c];
+      from = std::max(from, std::min(at_low, at_high));
+      to = std::min(to, std::max(at_low, at_high));
     }
     return from <= to;
   };

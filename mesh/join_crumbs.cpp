@@ -23,7 +23,7 @@ class Joiner {
         cell_area_(options.patch_size * options.patch_size),
         patch_size_(options.patch_size),
         least_to_mean_(std::cos(options.radians())),
-        least_to_seed_(std::cos(seed_angle * options.radians())),
+        least_to_seed_(std::cos(options.radians())),
         groups_(patches.size()) {
     for (std::size_t i = 0; i < patches.size(); ++i) {
       Group& g = groups_[group[i]];

@@ -107,35 +107,61 @@ class Regions {
   struct Growing {
     int number = 0;
     Vector3d normal, origin;
+    Vector3d area_vector, moment;  // sums: the fitted plane's normal, its point times area
     double area = 0.0, boundary_length = 0.0;  // of its facets
   };
 
   void grow(int seed) {
+    if (!grow(seed, true)) grow(seed, false);
+  }
+
+  // The plane is that of the seed, or, fitted, that of all facets so far: a seed's own may lean by
+  // the tolerance over its width. False if the facets do not lie in what the plane has become.
+  bool grow(int seed, bool is_fitted) {
     Growing region{.number = static_cast<int>(normal_of_region_.size()),
                    .normal = normal_[seed],
-                   .origin = points_[facets_.loop(facets_.facet_begin[seed])[0]],
-                   .area = area_[seed],
-                   .boundary_length = boundary_length_[seed]};
-    std::vector<int> members{seed};
-    region_[seed] = region.number;
+                   .origin = middle_of(seed),
+                   .area_vector = Vector3d::Zero(),
+                   .moment = Vector3d::Zero()};
+    std::vector<int> members;
+    const auto add = [&](int facet) {
+      region.area += area_[facet];
+      region.boundary_length += boundary_length_[facet];
+      region.area_vector += area_[facet] * normal_[facet];
+      region.moment += area_[facet] * middle_of(facet);
+      if (is_fitted) {
+        region.normal = region.area_vector.normalized();
+        region.origin = region.moment / region.area;
+      }
+      region_[facet] = region.number;
+      members.push_back(facet);
+    };
+    add(seed);
     for (std::size_t m = 0; m < members.size(); ++m) {
       const int f = members[m];
       for (int k = first_use_[f]; k < first_use_[f + 1]; ++k) {
         const int next = across(use_of_[k], region);
-        if (next < 0) continue;
-        region.area += area_[next];
-        region.boundary_length += boundary_length_[next];
-        region_[next] = region.number;
-        members.push_back(next);
+        if (next >= 0) add(next);
       }
     }
-    if (members.size() == 1) {
-      region_[seed] = -1;
-      return;
+    const bool is_flat = !is_fitted || std::all_of(members.begin(), members.end(),
+                                                   [&](int f) { return lies_in(f, region); });
+    if (!is_flat || members.size() == 1) {
+      for (const int f : members) region_[f] = -1;
+      return is_flat;
     }
     normal_of_region_.push_back(region.normal);
     area_of_region_.push_back(region.area);
     slack_of_region_.push_back(tolerance_ * region.boundary_length);
+    return true;
+  }
+
+  Vector3d middle_of(int facet) const {
+    const auto corners = facets_.loop(facets_.facet_begin[facet]);
+    const Vector3d& first = points_[corners[0]];
+    Vector3d sum = Vector3d::Zero();
+    for (const int v : corners) sum += points_[v] - first;
+    return first + sum / static_cast<double>(corners.size());
   }
 
   // The one facet that goes on in the region's plane over an edge of its; -1 if there is none, or

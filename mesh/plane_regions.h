@@ -16,10 +16,11 @@ struct PlaneRegions {
 };
 
 /// Grows regions from the largest facets on. A facet joins where exactly one of the region's meets
-/// it at an edge, all its corners lie within `tolerance` (metres) of the plane of the region's
-/// first facet, and it faces as that does to 1 degree, or is a needle no wider than what the
-/// tolerance may do to it. So a region's area differs from its facets' by less than the tolerance
-/// times the length of their edges.
+/// it at an edge, all its corners lie within `tolerance` (metres) of the plane that fits the
+/// region, and it faces as that does to 1 degree, or is a needle no wider than what the tolerance
+/// may do to it; where the plane turns away from the first of the facets so, theirs is that of the
+/// largest. So a region's area differs from its facets' by less than the tolerance times the length
+/// of their edges.
 PlaneRegions find_plane_regions(const FacetLoops& facets,
                                 const std::vector<Eigen::Vector3d>& points, double tolerance);
 

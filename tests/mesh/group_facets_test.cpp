@@ -90,10 +90,9 @@ TEST(GroupFacets, CrumbsStayWithinTheAngleToo) {
     const PatchMesh mesh =
         build_patches(scene, {.max_patch_size = 1.0, .curve_angle_degrees = angle});
     EXPECT_LE(largest_angle_from_mean(mesh), angle + rounding);
-    // Caps of 3/4 of the angle cover the sphere of directions at least this often; packed first
-    // come first served they overlap, four times at most.
-    const double caps = 2.0 / (1.0 - std::cos(0.75 * angle * M_PI / 180.0));
-    EXPECT_LT(mesh.patch_count(), std::min<double>(n, 4.0 * caps));
+    // Seeds are the angle apart or more, so caps of half of it about them do not overlap.
+    const double caps = 2.0 / (1.0 - std::cos(0.5 * angle * M_PI / 180.0));
+    EXPECT_LT(mesh.patch_count(), caps);
   }
 }
 
