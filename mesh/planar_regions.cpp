@@ -180,8 +180,9 @@ std::string sentence(const CleanUpReport& report) {
   add(report.duplicates, "duplicates dropped");
   add(report.flipped, "turned over");
   add(report.merged, "merged into larger polygons");
-  return fmt::format("{} facets became {}: {}", report.facets_before, report.facets_after,
-                     fmt::join(what, ", "));
+  add(report.hanging, "vertices inside edges of their neighbours");
+  return fmt::format("{} facets became {}: {}; area changed by {:.1e} of it", report.facets_before,
+                     report.facets_after, fmt::join(what, ", "), std::abs(report.area_change()));
 }
 
 Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {

@@ -18,6 +18,7 @@ struct CleanUpReport {
   std::int64_t hanging = 0;  ///< vertices found inside an edge of another facet of their surface
   double area_before = 0.0, area_after = 0.0;  ///< of one side of all surfaces, m^2
 
+  double area_change() const { return area_before > 0.0 ? area_after / area_before - 1.0 : 0.0; }
   bool is_clean() const {
     return welded_vertices + degenerate + duplicates + flipped + merged == 0;
   }
