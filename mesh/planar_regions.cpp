@@ -23,7 +23,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double weld_share = 1e-7;        // the precision of single-precision files, as in meshing
 constexpr double least_thickness = 1e-13;  // of the diagonal: rounding of coordinates
 constexpr double least_extent = 1e-9;      // of the diagonal: dust
 
