@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::int64_t quick = 256;           // nodes of the tree that any edge may look at
-constexpr std::int64_t most_per_edge = 64;    // nodes in the mean, of what the longer edges need
+constexpr std::int64_t quick = 128;           // nodes of the tree that any edge may look at
+constexpr std::int64_t most_per_edge = 16;    // nodes in the mean, of what the longer edges need
 constexpr double share_of_length = 1e-3;      // an edge takes in nothing farther away
 constexpr std::size_t most_beside_edge = 64;  // facets; more are a fan whose corners nobody checks
 
