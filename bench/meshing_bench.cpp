@@ -1,5 +1,6 @@
 // Triangles into patches: what cleaning, merging and meshing take, of a million triangles in walls,
-// of a million in curved surfaces, and of the scenes named on the command line.
+// of a million in curved surfaces, of a million that lie on one another (which is refused) or are
+// copies, and of the scenes named on the command line.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -12,8 +13,10 @@
 
 #include "mesh/patch_mesh.h"
 #include "mesh/planar_regions.h"
+#include "scene/errors.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"
+#include "scene/sampling.h"
 
 namespace {
 
@@ -98,15 +101,45 @@ Scene balls() {
   return scene_of(std::move(mesh));
 }
 
+// Triangles in one plane that nearly all overlap.
+Scene heap(int count) {
+  PolygonMesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const auto random = [&](int k) { return random_uniform(random_key(i, k)); };
+    const Vector3d at(random(0), random(1), 0);
+    const double a = 2 * std::numbers::pi * random(2);
+    const Vector3d u(std::cos(a), std::sin(a), 0), v(-u.y(), u.x(), 0);
+    add_triangle(mesh, at - u - v, at + u - v, at + v);
+  }
+  return scene_of(std::move(mesh));
+}
+
+// The walls of a coarse room, `copies` times.
+Scene copied(int copies) {
+  PolygonMesh mesh;
+  for (int k = 0; k < copies; ++k) {
+    add_grid(mesh, 70, 70, [](double u, double v) { return Vector3d(4 * u, 3 * v, 0.1 * u * v); });
+  }
+  return scene_of(std::move(mesh));
+}
+
 void measure(const std::string& name, const Scene& scene) {
   CleanUpReport report;
   Scene clean;
   const double cleaning = seconds_of([&] { clean = merge_planar_regions(scene, &report); });
   PatchMesh mesh;
-  const double meshing = seconds_of([&] { mesh = build_patches(clean); });
+  std::string refusal;
+  const double meshing = seconds_of([&] {
+    try {
+      mesh = build_patches(clean);
+    } catch (const InputError& error) {
+      refusal = error.what();
+    }
+  });
   fmt::print("{:<28} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8.2f} {:>8.2f} {:>7.0f}\n", name,
              report.facets_before, report.facets_after, mesh.patch_count(), mesh.element_count(),
              mesh.vertex_count(), cleaning, meshing, peak_megabytes());
+  if (!refusal.empty()) fmt::print("  refused: {}\n", refusal);
   std::fflush(stdout);
 }
 
@@ -121,6 +154,8 @@ int main(int argc, char** argv) try {
   if (argc > 1) return 0;
   measure("walls of triangles", walls());
   measure("balls of triangles", balls());
+  measure("copies of a wall", copied(100));
+  measure("heap of triangles", heap(1'000'000));
   return 0;
 } catch (const std::exception& error) {
   fmt::print(stderr, "meshing_bench: {}\n", error.what());

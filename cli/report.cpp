@@ -167,9 +167,10 @@ std::string light_name(bool relative_units) {
 }
 
 Json clean_up_json(const CleanUpReport& report) {
-  return {{"facets", report.facets_after},   {"welded_vertices", report.welded_vertices},
-          {"degenerate", report.degenerate}, {"duplicates", report.duplicates},
-          {"flipped", report.flipped},       {"merged", report.merged}};
+  return {{"facets", report.facets_after},      {"welded_vertices", report.welded_vertices},
+          {"degenerate", report.degenerate},    {"duplicates", report.duplicates},
+          {"flipped", report.flipped},          {"merged", report.merged},
+          {"hanging_vertices", report.hanging}, {"area_change", report.area_change()}};
 }
 
 Json energy_json(const EnergyBalance& energy) {

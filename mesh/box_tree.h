@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 namespace lightwell {
@@ -17,6 +18,11 @@ class BoxTree {
   /// Of those the ones that the plane (of unit normal) meets as well.
   void find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
                      std::vector<int>& found) const;
+  /// Fills `found` with the boxes that come within `reach` of the segment a-b, in no order; a few
+  /// that do not may be among them. `visits` is how many nodes may be looked at, and after the call
+  /// how many are left; false, and nothing found, if they were not enough.
+  bool find_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double reach,
+                  std::int64_t& visits, std::vector<int>& found) const;
 
  private:
   struct Node {

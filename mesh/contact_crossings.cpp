@@ -1,8 +1,10 @@
 // Where the lines of a ContactGraph meet one another.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mesh/box_tree.h"
+#include "mesh/contact_effort.h"
 #include "mesh/contact_graph.h"
 #include "scene/parallel.h"
 
@@ -31,7 +33,7 @@ bool closest_parameters(const Vector3d& p, const Vector3d& u, const Vector3d& q,
 
 }  // namespace
 
-void ContactGraph::cut_at_crossings() {
+void ContactGraph::cut_at_crossings(const Scene& scene) {
   const double tolerance = welded_.tolerance();
   const int count = static_cast<int>(segments_.size());
   std::vector<BoxTree::Box> boxes(count);
@@ -45,12 +47,14 @@ void ContactGraph::cut_at_crossings() {
     Vector3d point;
   };
   std::vector<std::vector<Crossing>> crossings(count);
+  ContactEffort effort(scene, static_cast<int>(planes_.size()));
   parallel_for(count, 64, [&](int begin, int end) {
     std::vector<int> near;
     for (int i = begin; i < end; ++i) {
       const Segment& si = segments_[i];
       const Vector3d p = welded_[si.a], u = welded_[si.b] - p;
       tree.find_overlaps(boxes[i], near);
+      effort.look_at(near.size());
       for (int j : near) {
         if (j <= i) continue;
         const Segment& sj = segments_[j];
@@ -65,6 +69,7 @@ void ContactGraph::cut_at_crossings() {
         if ((on_i - on_j).norm() <= tolerance)
           crossings[i].push_back({j, s, t, 0.5 * (on_i + on_j)});
       }
+      if (!crossings[i].empty()) effort.found(crossings[i].size());
     }
   });
   for (int i = 0; i < count; ++i) {
@@ -88,7 +93,8 @@ void ContactGraph::cut_at_points() {
       const double length = d.norm();
       constexpr double share_of_length = 1e-3;
       const double tolerance = std::min(welded_.tolerance(), share_of_length * length);
-      tree.find_overlaps(segment_box(p, welded_[s.b], tolerance), near);
+      std::int64_t visits = std::numeric_limits<std::int64_t>::max();
+      tree.find_along(p, welded_[s.b], tolerance, visits, near);
       for (int point : near) {
         if (point == s.a || point == s.b) continue;
         // A needle's apex on its own long edge: cutting there would fold the triangle up.

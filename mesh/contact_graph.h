@@ -38,7 +38,8 @@ struct FacetOutline {
 class ContactGraph {
  public:
   /// `points` must hold the planes' corners. `critical` are lines to cut the mesh along as far as
-  /// they add no more than `most_elements` elements.
+  /// they add no more than `most_elements` elements. Throws InputError where facets touch and cross
+  /// in more places than there is time for (see ContactEffort).
   ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes, WeldedPoints points,
                const CutSize& size, const std::vector<CriticalLine>& critical, double most_elements,
                const Progress& progress);
@@ -62,11 +63,12 @@ class ContactGraph {
   int segment(int a, int b);
   void add_boundaries();
   void add_contacts(const Scene& scene, const Progress& progress);
-  void add_creases(const std::vector<CriticalLine>& critical, double most_elements);
+  void add_creases(const Scene& scene, const std::vector<CriticalLine>& critical,
+                   double most_elements);
   std::vector<FixedPiece> fixed_pieces(int index) const;
   /// Points along a segment, from a to b.
   std::vector<int> chain(int segment) const;
-  void cut_at_crossings();
+  void cut_at_crossings(const Scene& scene);
   void cut_at_points();
   void make_atoms();
   void count_pieces();

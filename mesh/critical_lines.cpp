@@ -311,7 +311,6 @@ CriticalLines critical_lines(const Scene& scene, const std::vector<FacetPlane>& 
 }
 
 CriticalLines critical_lines(const Scene& scene, const CriticalLineOptions& options) {
-  constexpr double weld_share = 1e-7;  // of the scene's diagonal, as build_patches takes first
   WeldedPoints points(weld_share * scene_bounds(scene).diagonal());
   const std::vector<FacetPlane> planes = facet_planes(scene, points);
   return critical_lines(scene, planes, options);

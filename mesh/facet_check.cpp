@@ -19,7 +19,6 @@ struct WeldedFacet {
 };
 
 std::vector<WeldedFacet> weld(const Scene& scene) {
-  constexpr double weld_share = 1e-7;  // the precision of single-precision files, as in meshing
   WeldedPoints points(weld_share * scene_bounds(scene).diagonal());
   std::vector<WeldedFacet> welded;
   const std::vector<FacetRef> facets = scene_facets(scene);

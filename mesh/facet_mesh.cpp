@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "mesh/contact_chains.h"
 #include "mesh/cross.h"
 #include "mesh/free_mesh.h"
 
@@ -165,6 +166,34 @@ bool is_sound(const FacetPlane& plane, const FacetMesh& mesh) {
   return std::abs(area - plane.area()) <= moved + rounding * plane.area();
 }
 
+// Smallest sine of an element's angle.
+double least_sine(const FacetPlane& plane, const FacetMesh& mesh) {
+  double least = 1.0;
+  for (const auto& c : mesh.corners) {
+    const int n = c[3] < 0 ? 3 : 4;
+    for (int i = 0; i < n; ++i) {
+      const Vector2d at = plane.project(mesh.position[c[i]]);
+      const Vector2d a = plane.project(mesh.position[c[(i + 1) % n]]) - at,
+                     b = plane.project(mesh.position[c[(i + n - 1) % n]]) - at;
+      least = std::min(least, cross(a, b) / (a.norm() * b.norm()));
+    }
+  }
+  return least;
+}
+
+// With contact lines in fewer pieces, unless they then cross or nearly touch what they did not.
+bool make_joined(const FacetPlane& plane, const FacetOutline& outline,
+                 const std::vector<Vector3d>& points, const CutSize& size, FacetMesh& mesh) {
+  if (outline.contacts.size() < 2) return false;
+  const FacetOutline joined = with_joined_contacts(outline, points, size.element_size());
+  if (joined.contacts.size() == outline.contacts.size()) return false;
+  mesh = free_mesh(plane, joined, points, size);
+  if (!is_sound(plane, mesh) || mesh.has_cut_lines) return false;
+  constexpr double poor = 0.002;  // a tenth of a degree
+  const double least = least_sine(plane, mesh);
+  return least >= poor || least >= least_sine(plane, free_mesh(plane, outline, points, size));
+}
+
 FacetOutline bare_outline(const FacetPlane& plane) {
   FacetOutline bare;
   for (int l = 0; l < plane.loop_count(); ++l) {
@@ -191,6 +220,7 @@ FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
   FacetMesh mesh;
   if (make_single_element(plane, outline, points, mesh)) return mesh;
   if (make_grid(plane, outline, points, size, mesh)) return mesh;
+  if (make_joined(plane, outline, points, size, mesh)) return mesh;
   mesh = free_mesh(plane, outline, points, size);
   if (is_sound(plane, mesh)) return mesh;
   if (!outline.creases.empty()) {

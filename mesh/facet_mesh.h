@@ -22,6 +22,7 @@ struct FacetMesh {
   /// Contact lines had to be left out: they lie so close together that rounding folds elements up.
   bool is_flawed = false;
   bool lacks_creases = false;  ///< the same of creases
+  bool has_cut_lines = false;  ///< lines cross, where vertices had to be added
 
   int patch_count() const { return static_cast<int>(first_element.size()) - 1; }
 };

@@ -1,16 +1,13 @@
 #include "mesh/free_mesh.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <numeric>
 #include <set>
-#include <unordered_map>
 
+#include "mesh/facet_triangulation.h"
 #include "mesh/group_patches.h"
 #include "mesh/inner_points.h"
 #include "mesh/pair_triangles.h"
-#include "mesh/triangulate.h"
 
 namespace lightwell {
 namespace {
@@ -19,104 +16,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Pair = std::array<int, 2>;
 
-// The lines of an outline over points numbered within the facet.
-struct LocalLines {
-  std::vector<int> point{};    // number in ContactGraph::points
-  std::vector<Vector2d> xy{};  // the same in the facet's frame
-  std::vector<Pair> boundary{};
-  std::vector<Pair> all{};   // boundary, contacts, creases
-  int hard_count = 0;        // of `all`, without the creases
-  std::set<Pair> creases{};  // lower number first
-  Eigen::AlignedBox2d box{};
-};
-
-LocalLines local_lines(const FacetPlane& plane, const FacetOutline& outline,
-                       const std::vector<Vector3d>& points) {
-  LocalLines lines;
-  std::unordered_map<int, int> local;
-  const auto number = [&](int p) {
-    const auto [entry, is_new] = local.try_emplace(p, static_cast<int>(lines.point.size()));
-    if (is_new) {
-      lines.point.push_back(p);
-      lines.xy.push_back(plane.project(points[p]));
-    }
-    return entry->second;
-  };
-  // A boundary that runs along one line forth and back (the bridge to a hole) has nothing outside
-  // there: an even number of passes is no border.
-  std::map<Pair, int> passes;
-  for (const auto& loop : outline.loops) {
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const int a = number(loop[i]), b = number(loop[(i + 1) % loop.size()]);
-      ++passes[{std::min(a, b), std::max(a, b)}];
-    }
-  }
-  for (const auto& [line, count] : passes) {
-    if (count % 2 == 1) lines.boundary.push_back(line);
-  }
-  for (const Vector2d& q : lines.xy) lines.box.extend(q);
-  lines.all = lines.boundary;
-  for (const auto& [a, b] : outline.contacts) lines.all.push_back({number(a), number(b)});
-  lines.hard_count = static_cast<int>(lines.all.size());
-  for (const auto& [p, q] : outline.creases) {
-    const int a = number(p), b = number(q);
-    lines.all.push_back({a, b});
-    lines.creases.insert({std::min(a, b), std::max(a, b)});
-  }
-  return lines;
-}
-
-CellGrid cell_grid(const Eigen::AlignedBox2d& box, const CutSize& size) {
-  return {box, size.pieces(box.sizes().x()), size.pieces(box.sizes().y())};
-}
-
 CellGrid patch_grid(const Eigen::AlignedBox2d& box, const CutSize& size) {
   return {box, size.patches(box.sizes().x()), size.patches(box.sizes().y())};
-}
-
-// Which triangles lie inside the polygon: every border line crossed on the way in from outside
-// changes sides. Combinatorial, so right even for the slivers that rounding leaves along a divided
-// edge, whose centres no geometric test can place.
-std::vector<char> inside_by_parity(const PlanarTriangulation& t,
-                                   const std::vector<Pair>& boundary) {
-  const std::set<Pair> border(boundary.begin(), boundary.end());
-  const auto crosses_border = [&](int triangle, int i) {
-    if (!t.constrained[triangle][i]) return false;
-    const int a = t.triangles[triangle][(i + 1) % 3], b = t.triangles[triangle][(i + 2) % 3];
-    return border.contains({std::min(a, b), std::max(a, b)});
-  };
-  const int count = static_cast<int>(t.triangles.size());
-  constexpr char unknown = 2;
-  std::vector<char> inside(count, unknown);
-  std::vector<int> open;
-  for (int i = 0; i < count; ++i) {
-    for (int c = 0; c < 3; ++c) {
-      if (t.neighbor[i][c] >= 0 || inside[i] != unknown) continue;
-      inside[i] = crosses_border(i, c) ? 1 : 0;
-      open.push_back(i);
-    }
-  }
-  while (!open.empty()) {
-    const int current = open.back();
-    open.pop_back();
-    for (int c = 0; c < 3; ++c) {
-      const int next = t.neighbor[current][c];
-      if (next < 0 || inside[next] != unknown) continue;
-      inside[next] = static_cast<char>(inside[current] ^ (crosses_border(current, c) ? 1 : 0));
-      open.push_back(next);
-    }
-  }
-  return inside;
-}
-
-// The same by geometry, for the rare case that lines had to be cut where they cross by rounding.
-std::vector<char> inside_by_place(const FacetPlane& plane, const PlanarTriangulation& t) {
-  std::vector<char> inside;
-  for (const auto& [a, b, c] : t.triangles) {
-    const Vector2d center = (t.points[a] + t.points[b] + t.points[c]) / 3.0;
-    inside.push_back(plane.contains(center, 0.0) ? 1 : 0);
-  }
-  return inside;
 }
 
 // The triangles inside, with vertices split so that only triangles connected without crossing a
@@ -261,49 +162,18 @@ FacetMesh assemble(const FacetPlane& plane, const SplitTriangles& split, const L
   return mesh;
 }
 
-// Decides the triangles on coordinates rounded to a billionth of an element: the corners of a
-// square then lie on one circle whatever rounding has done to them, so that the mesh is the same in
-// every unit and every place. Where that turns a triangle over, the true places decide.
-PlanarTriangulation triangulate_places(const std::vector<Vector2d>& xy, const LocalLines& lines,
-                                       double element_size) {
-  const double unit = element_size * std::ldexp(1.0, -30);
-  std::vector<Vector2d> rounded;
-  for (const Vector2d& q : xy) {
-    const Eigen::Array2d cells = (q - lines.box.min()).array() / unit;
-    rounded.emplace_back(std::round(cells.x()), std::round(cells.y()));
-  }
-  PlanarTriangulation t = triangulate(rounded, lines.all);
-  if (!t.is_as_given) return triangulate(xy, lines.all);
-  t.points = xy;
-  const std::vector<char> inside = inside_by_parity(t, lines.boundary);
-  for (std::size_t i = 0; i < inside.size(); ++i) {
-    const auto& [a, b, c] = t.triangles[i];
-    const Vector2d u = xy[b] - xy[a], v = xy[c] - xy[a];
-    if (inside[i] && !(u.x() * v.y() > u.y() * v.x())) return triangulate(xy, lines.all);
-  }
-  return t;
-}
-
 }  // namespace
 
 FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
                     const std::vector<Vector3d>& points, const CutSize& size) {
-  const LocalLines lines = local_lines(plane, outline, points);
-  std::vector<Vector2d> xy = lines.xy;
-  const auto inner = inner_points(cell_grid(lines.box, size), lines.xy, lines.boundary,
-                                  {lines.all.begin(), lines.all.begin() + lines.hard_count},
-                                  {lines.all.begin() + lines.hard_count, lines.all.end()});
-  xy.insert(xy.end(), inner.begin(), inner.end());
-  const PlanarTriangulation triangulation = triangulate_places(xy, lines, size.element_size());
+  const auto [lines, triangulation, inside] = triangulate_facet(plane, outline, points, size);
   // A crease that had to be cut is not known by its ends.
   if (!triangulation.is_as_given && !lines.creases.empty()) return {};
-  const SplitTriangles split =
-      split_at_lines(triangulation,
-                     triangulation.is_as_given ? inside_by_parity(triangulation, lines.boundary)
-                                               : inside_by_place(plane, triangulation),
-                     lines.creases);
+  const SplitTriangles split = split_at_lines(triangulation, inside, lines.creases);
   if (split.triangles.empty()) return {};
-  return assemble(plane, split, lines, points, patch_grid(lines.box, size));
+  FacetMesh mesh = assemble(plane, split, lines, points, patch_grid(lines.box, size));
+  mesh.has_cut_lines = !triangulation.is_as_given;
+  return mesh;
 }
 
 }  // namespace lightwell

@@ -1,28 +1,23 @@
 #include "mesh/group_facets.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <map>
-#include <numbers>
 #include <numeric>
 #include <queue>
-#include <set>
-#include <tuple>
+#include <vector>
+
+#include "mesh/join_crumbs.h"
 
 namespace lightwell {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double most_facet = 0.5;    // of a patch's area: a larger facet is a patch of its own
-constexpr double most_area = 1.2;     // of a patch's area
-constexpr double reach = 0.7;         // of the patch size: a disc of 1.5 patches, cut by others
-constexpr double join_share = 0.5;    // of a patch's area: less is left over
-constexpr double most_extent = 2.5;   // of the reach
-constexpr double least_share = 0.15;  // of a patch's area, as inside a facet
-constexpr double seed_angle = 0.75;   // of the angle: the mean may move away from the seed
+constexpr double most_facet = 0.5;   // of a patch's area: a larger facet is a patch of its own
+constexpr double reach = 0.7;        // of the patch size: a disc of 1.5 patches, cut by others
+constexpr double join_share = 0.5;   // of a patch's area: less is left over
+constexpr double most_extent = 2.5;  // of the reach
+constexpr double most_area = most_group_area;
 
 class Grower {
  public:
@@ -31,8 +26,8 @@ class Grower {
       : patches_(patches),
         cell_area_(options.patch_size * options.patch_size),
         reach_(reach * options.patch_size),
-        least_to_mean_(std::cos(radians(options.angle_degrees))),
-        least_to_seed_(std::cos(radians(seed_angle * options.angle_degrees))),
+        least_to_mean_(std::cos(options.radians())),
+        least_to_seed_(std::cos(seed_angle * options.radians())),
         group_(patches.size(), -1) {
     first_.assign(patches.size() + 1, 0);
     for (const FacetPatchContact& c : contacts) ++first_[c.one + 1], ++first_[c.other + 1];
@@ -68,8 +63,6 @@ class Grower {
   }
 
  private:
-  static double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
-
   bool is_small(const FacetPatch& p) const {
     return p.may_join && p.area <= most_facet * cell_area_;
   }
@@ -177,81 +170,13 @@ class Grower {
   std::vector<double> area_;               // by seed
 };
 
-// One of 54 directions: 3 x 3 on each face of a cube, even in angle.
-int direction_of(const Vector3d& normal) {
-  int axis = 0;
-  normal.cwiseAbs().maxCoeff(&axis);
-  const auto third = [&](int k) {
-    const double angle = std::atan(normal[(axis + k) % 3] / std::abs(normal[axis]));
-    constexpr double sixth_turn_of_face = std::numbers::pi / 12.0;
-    return angle < -sixth_turn_of_face ? 0 : angle > sixth_turn_of_face ? 2 : 1;
-  };
-  return ((2 * axis + (normal[axis] < 0.0 ? 1 : 0)) * 3 + third(1)) * 3 + third(2);
-}
-
-struct GroupSum {
-  int members = 0;
-  double area = 0.0;
-  Vector3d normal = Vector3d::Zero(), center = Vector3d::Zero();  // times area
-  bool may_join = true;
-  std::vector<int> facets{};
-};
-
-// Small groups of one surface, place and direction become one.
-void join_small(const std::vector<FacetPatch>& patches, double patch_size,
-                std::vector<int>& group) {
-  std::vector<GroupSum> sums(patches.size());
-  Eigen::AlignedBox3d bounds;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    GroupSum& sum = sums[group[i]];
-    const FacetPatch& p = patches[i];
-    ++sum.members;
-    sum.area += p.area;
-    sum.normal += p.area * p.normal;
-    sum.center += p.area * p.box.center();
-    sum.may_join = sum.may_join && p.may_join;
-    sum.facets.push_back(p.facet);
-    bounds.extend(p.box);
-  }
-  using Place = std::tuple<int, int, std::int64_t, std::int64_t, std::int64_t>;
-  struct Cluster {
-    int group = -1;
-    double area = 0.0;
-    std::set<int> facets{};
-  };
-  std::map<Place, Cluster> clusters;
-  std::vector<int> joined(patches.size());
-  std::iota(joined.begin(), joined.end(), 0);
-  for (std::size_t g = 0; g < sums.size(); ++g) {
-    const GroupSum& sum = sums[g];
-    if (sum.members == 0 || !sum.may_join || !(sum.area > 0.0)) continue;
-    if (!(sum.area < least_share * patch_size * patch_size)) continue;
-    const Vector3d at = (sum.center / sum.area - bounds.min()) / patch_size;
-    const auto cell = [&](int c) { return static_cast<std::int64_t>(std::floor(at[c])); };
-    Cluster& cluster =
-        clusters[{patches[g].surface, direction_of(sum.normal), cell(0), cell(1), cell(2)}];
-    // A full one is closed: the next begins.
-    if (cluster.group < 0 || cluster.area + sum.area > most_area * patch_size * patch_size) {
-      cluster = {.group = static_cast<int>(g)};
-    }
-    if (std::any_of(sum.facets.begin(), sum.facets.end(),
-                    [&](int f) { return cluster.facets.contains(f); })) {
-      continue;
-    }
-    cluster.facets.insert(sum.facets.begin(), sum.facets.end());
-    joined[g] = cluster.group;
-    cluster.area += sum.area;
-  }
-  for (int& g : group) g = joined[g];
-}
-
 }  // namespace
 
 std::vector<int> group_facets(const std::vector<FacetPatch>& patches,
                               const std::vector<FacetPatchContact>& contacts,
                               const FacetGroupOptions& options) {
   std::vector<int> group = Grower(patches, contacts, options).grow_all();
-  join_small(patches, options.patch_size, group);
+  join_crumbs(patches, options, group);
   // Named by their lowest member.
   std::vector<int> lowest(patches.size(), -1);
   for (std::size_t i = 0; i < group.size(); ++i) {

@@ -77,7 +77,6 @@ void count_edges(std::vector<Edge> edges, MeshQuality& quality) {
 }  // namespace
 
 MeshQuality mesh_quality(const Scene& scene) {
-  constexpr double weld_share = 1e-7;  // the precision of single-precision files, as in meshing
   const double tolerance = weld_share * scene_bounds(scene).diagonal();
   MeshQuality quality;
   for (const Surface& surface : scene.surfaces) {

@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "mesh/reflex_corners.h"
+
 namespace lightwell {
 namespace {
 
@@ -25,41 +27,6 @@ double polygon_area(const FacetMesh& mesh, const std::array<int, 4>& c) {
 std::array<int, 4> turned(const std::array<int, 4>& c) {
   return c[3] < 0 ? std::array<int, 4>{c[0], c[2], c[1], -1}
                   : std::array<int, 4>{c[0], c[3], c[2], c[1]};
-}
-
-double corner_angle(const FacetMesh& mesh, const std::array<int, 4>& c, int corner) {
-  const int count = c[3] < 0 ? 3 : 4;
-  const Vector3d& at = mesh.position[c[corner]];
-  const Vector3d a = mesh.position[c[(corner + 1) % count]] - at;
-  const Vector3d b = mesh.position[c[(corner + count - 1) % count]] - at;
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-// At a reflex corner, the foot of a block or the inner corner of an L-shaped room, what a point
-// sees depends on the direction in which the corner is approached: one side may be lit and the
-// other in the block's shadow. No one value is right for all, so each element there gets a vertex
-// of its own.
-void split_reflex_corners(FacetMesh& mesh) {
-  // Between straight on (180 degrees) and inside (360), with room for cells that are not quite
-  // flat.
-  constexpr double least = 200.0 * std::numbers::pi / 180.0;
-  constexpr double most = 350.0 * std::numbers::pi / 180.0;
-  std::vector<double> angle(mesh.position.size(), 0.0);
-  for (const auto& c : mesh.corners) {
-    for (int i = 0; i < (c[3] < 0 ? 3 : 4); ++i) angle[c[i]] += corner_angle(mesh, c, i);
-  }
-  std::vector<char> taken(mesh.position.size(), 0);
-  for (auto& c : mesh.corners) {
-    for (int i = 0; i < (c[3] < 0 ? 3 : 4); ++i) {
-      const int v = c[i];
-      if (v >= static_cast<int>(angle.size()) || !(angle[v] > least && angle[v] < most)) continue;
-      if (taken[v]) {
-        c[i] = static_cast<int>(mesh.position.size());
-        mesh.position.push_back(Vector3d(mesh.position[v]));
-      }
-      taken[v] = 1;
-    }
-  }
 }
 
 }  // namespace

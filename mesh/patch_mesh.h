@@ -32,7 +32,8 @@ struct SphereGrid {
 /// into *elements*, which receive and carry the gradient (Cohen, Greenberg, Immel & Brock 1986). A
 /// patch lies in one facet, or, where facets are small against it, reaches over many that face
 /// nearly alike (see group_facets).
-/// One array per quantity. Conforming: no vertex lies inside another element's edge. Vertices are
+/// One array per quantity. Conforming: no vertex lies inside another element's edge, but for lines
+/// along which something much finer than an element crosses a facet's inside. Vertices are
 /// shared only where radiosity is continuous: within one side of one facet, or across facets of one
 /// surface whose normals differ by less than MeshOptions::smooth_angle_degrees; never across
 /// contact lines (D0; across D1 and D2 lines they are), and not at reflex corners, where each

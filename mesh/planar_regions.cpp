@@ -9,9 +9,12 @@
 #include <optional>
 #include <vector>
 
+#include "mesh/element_quality.h"
 #include "mesh/facet_loops.h"
 #include "mesh/facet_plane.h"
-#include "mesh/region_outline.h"
+#include "mesh/hanging_points.h"
+#include "mesh/plane_regions.h"
+#include "mesh/straighten.h"
 #include "mesh/welded_points.h"
 #include "scene/parallel.h"
 
@@ -20,193 +23,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double weld_share = 1e-7;        // the precision of single-precision files, as in meshing
 constexpr double least_thickness = 1e-13;  // of the diagonal: rounding of coordinates
 constexpr double least_extent = 1e-9;      // of the diagonal: dust
-constexpr double area_kept = 5e-10;        // what flattening may take of a region's area
-
-// Facets of one surface that lie in one plane, grown from the largest.
-class Regions {
- public:
-  Regions(const FacetLoops& facets, const std::vector<Vector3d>& points, double tolerance)
-      : facets_(facets),
-        points_(points),
-        tolerance_(tolerance),
-        uses_(edge_uses(facets)),
-        region_(static_cast<std::size_t>(facets.count()), -1) {
-    index_edges();
-    for (int f = 0; f < facets.count(); ++f) {
-      const Vector3d vector = area_vector(facets, f, points);
-      area_.push_back(vector.norm());
-      normal_.push_back(area_.back() > 0.0 ? Vector3d(vector / area_.back()) : Vector3d::Zero());
-    }
-    std::vector<int> order(region_.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return area_[a] > area_[b]; });
-    for (const int seed : order) {
-      if (region_[seed] < 0 && area_[seed] > 0.0) grow(seed);
-    }
-  }
-
-  /// By facet: the region; -1 where nothing could be added to a facet.
-  int region(int facet) const { return region_[facet]; }
-
-  /// The loops of each region; empty if it cannot be one polygon.
-  std::vector<std::vector<std::vector<int>>> outlines() const {
-    std::vector<std::vector<RegionEdge>> edges(normal_of_region_.size());
-    for_each_edge_group(uses_, [&](std::span<const EdgeUse> group) {
-      const bool is_fan = group.size() > most_at_edge;  // nothing was joined over it
-      for (std::size_t i = 0; i < group.size(); ++i) {
-        const int r = region_[group[i].facet];
-        if (r < 0) continue;
-        const auto is_inside = [&](const EdgeUse& other) {
-          return region_[other.facet] == r && other.forward != group[i].forward;
-        };
-        if (!is_fan && std::any_of(group.begin(), group.end(), is_inside)) continue;
-        const auto [low, high] = std::pair(group[i].low, group[i].high);
-        edges[r].push_back(group[i].forward ? RegionEdge{low, high} : RegionEdge{high, low});
-      }
-    });
-    std::vector<std::vector<std::vector<int>>> outlines(edges.size());
-    parallel_for(static_cast<int>(edges.size()), 16, [&](int begin, int end) {
-      for (int r = begin; r < end; ++r) {
-        auto loops = region_loops(std::move(edges[r]), points_, normal_of_region_[r]);
-        if (loops && keeps_area(r, *loops)) outlines[r] = std::move(*loops);
-      }
-    });
-    return outlines;
-  }
-
- private:
-  // Where in uses_ the edges of each facet's corners are.
-  void index_edges() {
-    group_begin_.resize(uses_.size());
-    first_use_.assign(region_.size() + 1, 0);
-    for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
-      while (end < uses_.size() && uses_[end].same_edge(uses_[begin])) {
-        group_begin_[end++] = static_cast<int>(begin);
-      }
-    }
-    for (const EdgeUse& use : uses_) ++first_use_[use.facet + 1];
-    std::partial_sum(first_use_.begin(), first_use_.end(), first_use_.begin());
-    use_of_.resize(uses_.size());
-    std::vector<int> next(first_use_.begin(), first_use_.end() - 1);
-    for (std::size_t u = 0; u < uses_.size(); ++u) {
-      use_of_[next[uses_[u].facet]++] = static_cast<int>(u);
-    }
-  }
-
-  std::span<const EdgeUse> group_of(int use) const {
-    const auto begin = static_cast<std::size_t>(group_begin_[use]);
-    std::size_t end = begin;
-    while (end < uses_.size() && end - begin <= most_at_edge &&
-           uses_[end].same_edge(uses_[begin])) {
-      ++end;
-    }
-    return std::span(uses_).subspan(begin, end - begin);
-  }
-
-  struct Growing {
-    int number = 0;
-    Vector3d normal, origin;
-    double area = 0.0, lost = 0.0;
-  };
-
-  void grow(int seed) {
-    Growing region{.number = static_cast<int>(normal_of_region_.size()),
-                   .normal = normal_[seed],
-                   .origin = points_[facets_.loop(facets_.facet_begin[seed])[0]],
-                   .area = area_[seed]};
-    std::vector<int> members{seed};
-    region_[seed] = region.number;
-    for (std::size_t m = 0; m < members.size(); ++m) {
-      const int f = members[m];
-      for (int k = first_use_[f]; k < first_use_[f + 1]; ++k) {
-        const int next = across(use_of_[k], region);
-        if (next < 0) continue;
-        region.area += area_[next];
-        region.lost += lost_by(next, region);
-        region_[next] = region.number;
-        members.push_back(next);
-      }
-    }
-    if (members.size() == 1) {
-      region_[seed] = -1;
-      return;
-    }
-    normal_of_region_.push_back(region.normal);
-    area_of_region_.push_back(region.area);
-  }
-
-  // The one facet that goes on in the region's plane over an edge of its; -1 if there is none, or
-  // more than one.
-  int across(int use, const Growing& region) const {
-    const auto group = group_of(use);
-    if (group.size() > most_at_edge) return -1;
-    int found = -1;
-    for (const EdgeUse& other : group) {
-      if (other.facet == uses_[use].facet) {
-        if (other.forward != uses_[use].forward) return -1;  // a bridge to a hole
-        continue;
-      }
-      if (!lies_in(other.facet, region)) continue;
-      if (other.forward == uses_[use].forward || found >= 0) return -1;
-      found = other.facet;
-    }
-    if (found < 0 || region_[found] >= 0 || runs_along(found, region)) return -1;
-    return found;
-  }
-
-  double lost_by(int facet, const Growing& region) const {
-    return area_[facet] * (1.0 - normal_[facet].dot(region.normal));
-  }
-
-  bool lies_in(int facet, const Growing& region) const {
-    const double lost = lost_by(facet, region);
-    if (!(region.lost + lost <= area_kept * (region.area + area_[facet]))) return false;
-    bool is_near = true;
-    facets_.for_each_edge(facet, [&](int a, int) {
-      is_near = is_near && std::abs(region.normal.dot(points_[a] - region.origin)) <= tolerance_;
-    });
-    return is_near;
-  }
-
-  // Whether the region has an edge of the facet's in the facet's direction: then they overlap.
-  bool runs_along(int facet, const Growing& region) const {
-    for (int k = first_use_[facet]; k < first_use_[facet + 1]; ++k) {
-      const EdgeUse& mine = uses_[use_of_[k]];
-      for (const EdgeUse& other : group_of(use_of_[k])) {
-        if (other.facet != facet && region_[other.facet] == region.number &&
-            other.forward == mine.forward) {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
-  bool keeps_area(int region, const std::vector<std::vector<int>>& loops) const {
-    FacetLoops whole;
-    for (const auto& loop : loops) whole.add_loop(loop);
-    whole.end_facet();
-    const double area = area_vector(whole, 0, points_).norm();
-    return std::abs(area - area_of_region_[region]) <= 2.0 * area_kept * area;
-  }
-
-  static constexpr std::size_t most_at_edge = 8;  // facets; more is a fan whose sides nobody knows
-
-  const FacetLoops& facets_;
-  const std::vector<Vector3d>& points_;
-  double tolerance_;
-  std::vector<EdgeUse> uses_;
-  std::vector<int> group_begin_;         // per use, in uses_
-  std::vector<int> first_use_, use_of_;  // per facet, its uses
-  std::vector<int> region_;
-  std::vector<double> area_;
-  std::vector<Vector3d> normal_;
-  std::vector<Vector3d> normal_of_region_;
-  std::vector<double> area_of_region_;
-};
 
 FacetLoops without(const FacetLoops& facets, const std::vector<char>& is_gone) {
   FacetLoops left;
@@ -258,24 +76,22 @@ std::vector<char> find_degenerate(const FacetLoops& facets, const std::vector<Ve
 
 // A region in the place of its first facet, the others as they are. `is_new` gets which are
 // regions.
-FacetLoops merged(const FacetLoops& facets, const std::vector<Vector3d>& points, double tolerance,
-                  std::vector<char>& is_new, CleanUpReport& report) {
-  const Regions regions(facets, points, tolerance);
-  const auto outlines = regions.outlines();
-  std::vector<char> is_placed(outlines.size(), 0);
+FacetLoops merged(const FacetLoops& facets, const PlaneRegions& regions, std::vector<char>& is_new,
+                  CleanUpReport& report) {
+  std::vector<char> is_placed(regions.outlines.size(), 0);
   FacetLoops result;
   for (int f = 0; f < facets.count(); ++f) {
-    const int r = regions.region(f);
-    const bool is_part = r >= 0 && !outlines[r].empty();
+    const bool is_part = regions.is_merged(f);
     if (!is_part) {
       for (int l = facets.facet_begin[f]; l < facets.facet_begin[f + 1]; ++l) {
         result.add_loop(facets.loop(l));
       }
     } else {
       ++report.merged;
+      const int r = regions.region[f];
       if (is_placed[r]) continue;
       is_placed[r] = 1;
-      for (const auto& loop : outlines[r]) result.add_loop(loop);
+      for (const auto& loop : regions.outlines[r]) result.add_loop(loop);
     }
     result.end_facet();
     is_new.push_back(is_part ? 1 : 0);
@@ -333,17 +149,20 @@ std::optional<PolygonMesh> cleaned(const PolygonMesh& mesh, const std::vector<in
   found.duplicates = std::count(is_duplicate.begin(), is_duplicate.end(), 1);
   if (found.duplicates > 0) facets = without(facets, is_duplicate);
 
-  const std::vector<char> is_reversed = find_reversed(facets, points);
+  const double tolerance = weld_share * diagonal;
+  FacetLoops whole_edged = with_hanging_points(facets, points, tolerance, found.hanging);
+  const std::vector<char> is_reversed = find_reversed(whole_edged, points);
   for (int f = 0; f < facets.count(); ++f) {
     if (!is_reversed[f]) continue;
     facets.turn_over(f);
+    whole_edged.turn_over(f);
     ++found.flipped;
   }
   std::vector<char> is_new;
-  facets = merged(facets, points, weld_share * diagonal, is_new, found);
-  if (found.is_clean()) return {};
-  straighten(facets, is_new, points);
+  facets = merged(facets, find_plane_regions(whole_edged, points, tolerance), is_new, found);
   report = found;
+  if (found.is_clean()) return {};
+  straighten(facets, is_new, points, tolerance);
   return polygon_mesh(facets, points);
 }
 
@@ -360,8 +179,9 @@ std::string sentence(const CleanUpReport& report) {
   add(report.duplicates, "duplicates dropped");
   add(report.flipped, "turned over");
   add(report.merged, "merged into larger polygons");
-  return fmt::format("{} facets became {}: {}", report.facets_before, report.facets_after,
-                     fmt::join(what, ", "));
+  add(report.hanging, "vertices inside edges of their neighbours");
+  return fmt::format("{} facets became {}: {}; area changed by {:.1e} of it", report.facets_before,
+                     report.facets_after, fmt::join(what, ", "), std::abs(report.area_change()));
 }
 
 Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {
@@ -405,8 +225,11 @@ Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {
       total.duplicates += r.duplicates;
       total.flipped += r.flipped;
       total.merged += r.merged;
+      total.hanging += r.hanging;
     }
     total.facets_after = static_cast<std::int64_t>(scene_facets(result).size());
+    total.area_before = scene_area(scene);
+    total.area_after = scene_area(result);
   }
   if (report) *report = total;
   return result;

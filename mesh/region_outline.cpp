@@ -135,8 +135,8 @@ bool do_cross(const FlatEdge& e, const FlatEdge& f) {
   return fa * fb <= 0.0 && ea * eb <= 0.0;
 }
 
-bool any_cross(const std::vector<std::vector<int>>& loops, const std::vector<Vector3d>& points,
-               const PlaneFrame& frame) {
+template <class Loops>
+bool any_cross(const Loops& loops, const std::vector<Vector3d>& points, const PlaneFrame& frame) {
   std::vector<FlatEdge> edges;
   for (const auto& loop : loops) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -169,73 +169,6 @@ bool any_cross(const std::vector<std::vector<int>>& loops, const std::vector<Vec
   return false;
 }
 
-// Douglas & Peucker 1973 on the open chain; marks the points to keep. The ends are kept by whoever
-// asks.
-void keep_corners(const std::vector<int>& chain, const std::vector<Vector3d>& points,
-                  std::vector<char>& kept) {
-  constexpr double straight = 1e-10;
-  std::vector<std::pair<std::size_t, std::size_t>> open{{0, chain.size() - 1}};
-  while (!open.empty()) {
-    const auto [begin, end] = open.back();
-    open.pop_back();
-    const Vector3d &a = points[chain[begin]], d = points[chain[end]] - a;
-    const double length = d.norm();
-    double farthest = -1.0;
-    std::size_t at = begin;
-    double before = 0.0;
-    bool runs_on = length > 0.0;
-    for (std::size_t i = begin + 1; i < end; ++i) {
-      const Vector3d p = points[chain[i]] - a;
-      const double distance = length > 0.0 ? p.cross(d).norm() / length : p.norm();
-      if (distance > farthest) {
-        farthest = distance;
-        at = i;
-      }
-      const double along = p.dot(d);
-      runs_on = runs_on && along > before && along < length * length;
-      before = along;
-    }
-    if (at == begin || (runs_on && farthest <= straight * length)) continue;
-    kept[chain[at]] = 1;
-    open.emplace_back(begin, at);
-    open.emplace_back(at, end);
-  }
-}
-
-// The loop as chains between kept points; a loop with fewer than two gets them from its shape, so
-// that the facet on its other side finds the same.
-void keep_loop_corners(std::span<const int> loop, const std::vector<Vector3d>& points,
-                       std::vector<char>& kept) {
-  const auto is_before = [&](int a, int b) {
-    const Vector3d &p = points[a], &q = points[b];
-    return std::tuple(p.x(), p.y(), p.z(), a) < std::tuple(q.x(), q.y(), q.z(), b);
-  };
-  const auto count = std::count_if(loop.begin(), loop.end(), [&](int v) { return kept[v] != 0; });
-  if (count == 0) kept[*std::min_element(loop.begin(), loop.end(), is_before)] = 1;
-  if (count < 2) {
-    const int one = *std::find_if(loop.begin(), loop.end(), [&](int v) { return kept[v] != 0; });
-    kept[*std::max_element(loop.begin(), loop.end(), [&](int a, int b) {
-      const double s = (points[a] - points[one]).squaredNorm(),
-                   t = (points[b] - points[one]).squaredNorm();
-      return s != t ? s < t : is_before(a, b);
-    })] = 1;
-  }
-  const std::size_t n = loop.size();
-  std::size_t start = 0;
-  while (!kept[loop[start]]) ++start;
-  for (std::size_t i = 0; i < n;) {
-    std::vector<int> chain{loop[(start + i) % n]};
-    do {
-      ++i;
-      chain.push_back(loop[(start + i) % n]);
-    } while (!kept[chain.back()]);
-    if (chain.size() == 2) continue;
-    // One direction for the facets on both sides.
-    if (chain.back() < chain.front()) std::reverse(chain.begin(), chain.end());
-    keep_corners(chain, points, kept);
-  }
-}
-
 }  // namespace
 
 std::optional<std::vector<std::vector<int>>> region_loops(std::vector<RegionEdge> edges,
@@ -265,47 +198,9 @@ std::optional<std::vector<std::vector<int>>> region_loops(std::vector<RegionEdge
   return loops;
 }
 
-void straighten(FacetLoops& facets, const std::vector<char>& may_change,
-                const std::vector<Vector3d>& points) {
-  // A point can go if all its uses are in facets that may change and have the same two neighbours.
-  struct Neighbours {
-    int low = -1, high = -1;
-  };
-  std::vector<Neighbours> neighbours(points.size());
-  std::vector<char> kept(points.size(), 0);
-  for (int f = 0; f < facets.count(); ++f) {
-    for (int l = facets.facet_begin[f]; l < facets.facet_begin[f + 1]; ++l) {
-      const auto loop = facets.loop(l);
-      const std::size_t n = loop.size();
-      for (std::size_t i = 0; i < n; ++i) {
-        const auto [low, high] = std::minmax(loop[(i + n - 1) % n], loop[(i + 1) % n]);
-        Neighbours& at = neighbours[loop[i]];
-        const bool is_new = at.low < 0;
-        if (is_new) at = {low, high};
-        if (!may_change[f] || at.low != low || at.high != high) kept[loop[i]] = 1;
-      }
-    }
-  }
-  for (int f = 0; f < facets.count(); ++f) {
-    if (!may_change[f]) continue;
-    for (int l = facets.facet_begin[f]; l < facets.facet_begin[f + 1]; ++l) {
-      keep_loop_corners(facets.loop(l), points, kept);
-    }
-  }
-  FacetLoops result;
-  std::vector<int> left;
-  for (int f = 0; f < facets.count(); ++f) {
-    for (int l = facets.facet_begin[f]; l < facets.facet_begin[f + 1]; ++l) {
-      left.clear();
-      for (const int v : facets.loop(l)) {
-        if (!may_change[f] || kept[v]) left.push_back(v);
-      }
-      // A needle as thin as what counts as straight stays.
-      result.add_loop(left.size() >= 3 ? std::span<const int>(left) : facets.loop(l));
-    }
-    result.end_facet();
-  }
-  facets = std::move(result);
+bool do_loops_cross(const std::vector<std::span<const int>>& loops,
+                    const std::vector<Vector3d>& points, const Vector3d& normal) {
+  return !loops.empty() && any_cross(loops, points, PlaneFrame(points[loops[0][0]], normal));
 }
 
 }  // namespace lightwell

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mesh/facet_loops.h"
@@ -20,10 +21,8 @@ std::optional<std::vector<std::vector<int>>> region_loops(
     std::vector<RegionEdge> edges, const std::vector<Eigen::Vector3d>& points,
     const Eigen::Vector3d& normal);
 
-/// Takes vertices inside straight edges out of the facets marked in `may_change`, where the facets
-/// on both sides of the edge are marked and go straight on alike. What lies within 1e-10 of an
-/// edge's length from it is straight.
-void straighten(FacetLoops& facets, const std::vector<char>& may_change,
-                const std::vector<Eigen::Vector3d>& points);
+/// Whether any two edges of the loops share more than a common end, seen along `normal`.
+bool do_loops_cross(const std::vector<std::span<const int>>& loops,
+                    const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal);
 
 }  // namespace lightwell

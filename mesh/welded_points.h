@@ -7,6 +7,10 @@
 
 namespace lightwell {
 
+/// The precision of single-precision files: corners closer than this share of a scene's diagonal
+/// are one.
+inline constexpr double weld_share = 1e-7;
+
 /// Points in space in which nearly equal ones are one: what makes two facets that share an edge
 /// share its ends, whatever their files' rounding. Hashed on a grid; O(1) a point.
 class WeldedPoints {

@@ -49,21 +49,51 @@ TEST(GroupFacets, BallHasAsManyPatchesAsItsAreaAsksFor) {
   }
 }
 
-// Crumbs of less than 15 % of a patch share one within a direction of the 54, up to 42 degrees
-// wide, each with 20 degrees of its own about it; they are little of the area.
-TEST(GroupFacets, NormalsStayWithinTheAngleOfThePatchsMean) {
-  const PatchMesh mesh = build_patches(triangle_ball(64, 1), {.max_patch_size = 1.0});
-  double near = 0.0;
+double largest_angle_from_mean(const PatchMesh& mesh) {
+  double largest = 0.0;
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const Vector3d mean = mean_normal(mesh, p);
     for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
-      const double cosine = mean.dot(element_center(mesh, e).normal);
-      EXPECT_GT(cosine, std::cos(62.0 * M_PI / 180.0));
-      if (cosine >= std::cos(20.0 * M_PI / 180.0) - 1e-12) near += mesh.element_area[e];
+      const Vector3d normal = element_center(mesh, e).normal;
+      largest = std::max(largest, std::atan2(mean.cross(normal).norm(), mean.dot(normal)));
     }
   }
-  EXPECT_GT(near, 0.95 * mesh.area.sum());
+  return largest * 180.0 / M_PI;
+}
+
+constexpr double rounding = 1e-9;  // degrees
+
+TEST(GroupFacets, NormalsStayWithinTheAngleOfThePatchsMean) {
+  const PatchMesh mesh = build_patches(triangle_ball(64, 1), {.max_patch_size = 1.0});
+  EXPECT_LE(largest_angle_from_mean(mesh), 20.0 + rounding);
   EXPECT_LT(mesh.patch_count(), 2 * 59);  // a cap of 15 degrees is 1/59 of the ball
+}
+
+// Leaves that face every way, in one cell.
+TEST(GroupFacets, CrumbsStayWithinTheAngleToo) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  const auto direction = [&] {
+    return Vector3d(normal(random), normal(random), normal(random)).normalized();
+  };
+  PolygonMesh leaves;
+  constexpr int n = 3000;
+  for (int i = 0; i < n; ++i) {
+    const Vector3d at = 0.4 * direction(), u = direction(), v = u.cross(direction());
+    const int first = static_cast<int>(leaves.vertices.size());
+    for (const Vector3d& d : {Vector3d(0, 0, 0), u, v}) leaves.vertices.push_back(at + 1e-3 * d);
+    leaves.facets.push_back({.boundary = {first, first + 1, first + 2}});
+  }
+  Scene scene = empty_scene();
+  scene.surfaces.push_back({.name = "leaves", .material = 1, .shape = leaves});
+  for (const double angle : {5.0, 20.0, 45.0}) {
+    const PatchMesh mesh =
+        build_patches(scene, {.max_patch_size = 1.0, .curve_angle_degrees = angle});
+    EXPECT_LE(largest_angle_from_mean(mesh), angle + rounding);
+    // Seeds are the angle apart or more, so caps of half of it about them do not overlap.
+    const double caps = 2.0 / (1.0 - std::cos(0.5 * angle * M_PI / 180.0));
+    EXPECT_LT(mesh.patch_count(), caps);
+  }
 }
 
 TEST(GroupFacets, BothSidesArePatchedAlike) {

@@ -321,18 +321,22 @@ TEST(PlanarRegions, WallStandingOnAFloorOfItsSurfaceStaysOnIt) {
   EXPECT_EQ(hanging_vertices(patches), 0);
 }
 
-TEST(PlanarRegions, FacetsThatMeetAtAPartOfAnEdgeStay) {
+TEST(PlanarRegions, FacetsThatMeetAtPartsOfEdgesBecomeOne) {
   PolygonMesh mesh;
   add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   add_triangle(mesh, {0, 0, 0}, {0.5, -1, 0}, {0.5, 0, 0});
   add_triangle(mesh, {0.5, 0, 0}, {0.5, -1, 0}, {1, 0, 0});
-  const Scene scene = merge_planar_regions(scene_of(mesh));
-  EXPECT_EQ(mesh_of(scene).facets.size(), 2u);
+  CleanUpReport report;
+  const Scene scene = merge_planar_regions(scene_of(mesh), &report);
+  ASSERT_EQ(mesh_of(scene).facets.size(), 1u);
+  EXPECT_EQ(mesh_of(scene).facets[0].boundary.size(), 4u);
+  EXPECT_EQ(report.hanging, 1);
+  EXPECT_NEAR(total_area(scene), 1.0, 1e-12);
   EXPECT_EQ(hanging_vertices(build_patches(scene, {.max_patch_size = 0.3})), 0);
 }
 
-// A flat ramp that winds round twice covers its place twice: it bounds no polygon.
-TEST(PlanarRegions, OverlappingWindingsStayFacets) {
+// A flat ramp that winds round one and a half times covers places twice: no polygon does.
+TEST(PlanarRegions, OverlappingWindingsAreCutWhereTheyOverlap) {
   PolygonMesh mesh;
   constexpr int n = 16;
   const auto at = [](int i, double r) {
@@ -344,8 +348,9 @@ TEST(PlanarRegions, OverlappingWindingsStayFacets) {
     add_triangle(mesh, at(i, 1), at(i + 1, 2), at(i + 1, 1));
   }
   const Scene soup = scene_of(mesh), scene = merge_planar_regions(soup);
-  EXPECT_EQ(mesh_of(scene).facets.size(), 2u * n);
+  EXPECT_EQ(mesh_of(scene).facets.size(), 2u);  // a whole turn, and the rest
   EXPECT_NEAR(total_area(scene), total_area(soup), 1e-9);
+  EXPECT_NO_THROW(build_patches(scene));
 }
 
 TEST(PlanarRegions, CleanScenesStayBitByBit) {
