@@ -38,8 +38,8 @@ double corner_angle(const FacetMesh& mesh, const std::array<int, 4>& c, int corn
 // At a reflex corner, the foot of a block or the inner corner of an L-shaped room, what a point
 // sees depends on the direction in which the corner is approached: one side may be lit and the
 // other in the block's shadow. No one value is right for all, so each element there gets a vertex
-// of its own.
-void split_reflex_corners(FacetMesh& mesh) {
+// of its own. Returns per vertex whether it is such a one.
+std::vector<char> split_reflex_corners(FacetMesh& mesh) {
   // Between straight on (180 degrees) and inside (360), with room for cells that are not quite
   // flat.
   constexpr double least = 200.0 * std::numbers::pi / 180.0;
@@ -48,25 +48,28 @@ void split_reflex_corners(FacetMesh& mesh) {
   for (const auto& c : mesh.corners) {
     for (int i = 0; i < (c[3] < 0 ? 3 : 4); ++i) angle[c[i]] += corner_angle(mesh, c, i);
   }
-  std::vector<char> taken(mesh.position.size(), 0);
+  std::vector<char> split(mesh.position.size(), 0);
   for (auto& c : mesh.corners) {
     for (int i = 0; i < (c[3] < 0 ? 3 : 4); ++i) {
       const int v = c[i];
       if (v >= static_cast<int>(angle.size()) || !(angle[v] > least && angle[v] < most)) continue;
-      if (taken[v]) {
+      if (split[v]) {
         c[i] = static_cast<int>(mesh.position.size());
         mesh.position.push_back(Vector3d(mesh.position[v]));
+        split.push_back(1);
       }
-      taken[v] = 1;
+      split[v] = 1;
     }
   }
+  return split;
 }
 
 }  // namespace
 
 void PatchBuilder::add_facet(int facet, int surface, const Vector3d& normal, FacetMesh mesh) {
   const bool is_flat = !normal.isZero();
-  if (is_flat) split_reflex_corners(mesh);
+  std::vector<char> at_reflex_corner;
+  if (is_flat) at_reflex_corner = split_reflex_corners(mesh);
   const int first = static_cast<int>(parent_.size());
   parent_.resize(parent_.size() + mesh.position.size());
   std::iota(parent_.begin() + first, parent_.end(), first);
@@ -74,7 +77,8 @@ void PatchBuilder::add_facet(int facet, int surface, const Vector3d& normal, Fac
                      .surface = surface,
                      .first_vertex = first,
                      .normal = normal,
-                     .mesh = std::move(mesh)});
+                     .mesh = std::move(mesh),
+                     .at_reflex_corner = std::move(at_reflex_corner)});
 }
 
 void PatchBuilder::add_sphere(int facet, int surface, const Sphere& sphere,
@@ -242,6 +246,10 @@ void PatchBuilder::emit_patch(const std::vector<Part>& parts, bool is_back,
       if (n < 0) {
         n = static_cast<int>(positions.size());
         positions.push_back(piece.mesh.position[local]);
+        out.at_reflex_corner.push_back(0);
+      }
+      if (!piece.at_reflex_corner.empty() && piece.at_reflex_corner[local]) {
+        out.at_reflex_corner[n] = 1;
       }
       return n;
     };

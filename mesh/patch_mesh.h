@@ -51,6 +51,8 @@ struct PatchMesh {
 
   // Per vertex.
   std::vector<Eigen::Vector3d> vertex_normal{};  ///< unit, on the side its elements face
+  /// 1: one of several at a reflex corner, each of one element. Empty if the mesh is from a file.
+  std::vector<char> at_reflex_corner{};
 
   // Per patch.
   std::vector<int> first_element{};  ///< patch_count + 1 entries
