@@ -91,6 +91,10 @@ struct MeshOptions {
   int auto_patch_count = 1600;
   /// Elements along a patch edge, >= 1. More follow shadows more closely at the square of the cost.
   int elements_per_patch_edge = 2;
+  /// Elements of polygons are twice as long, since RefinedElements will split those that matter
+  /// (odd numbers per patch edge are rounded up); those of spheres, which it does not split, are
+  /// not.
+  bool to_be_refined = false;
   /// Cut receivers along the critical lines of emitters, most important first: D1, and D2 where the
   /// penumbra is not much wider than the elements.
   bool discontinuity = false;

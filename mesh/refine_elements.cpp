@@ -45,34 +45,34 @@ double fan_area(const std::array<int, 4>& c, const std::vector<Vector3d>& positi
 
 }  // namespace
 
-RefinedElements::RefinedElements(PatchMesh base) : base_(std::move(base)) {
-  vertices_.resize(base_.vertex_count());
-  for (int v = 0; v < base_.vertex_count(); ++v) vertices_[v].position = base_.position(v);
-  for (int e = base_.element_count() - 1; e >= 0; --e) {
-    for (int i = 0; i < base_.corner_count(e); ++i) vertices_[base_.corners[e][i]].element = e;
+RefinedElements::RefinedElements(const PatchMesh& base) : base_(&base) {
+  vertices_.resize(base_->vertex_count());
+  for (int v = 0; v < base_->vertex_count(); ++v) vertices_[v].position = base_->position(v);
+  for (int e = base_->element_count() - 1; e >= 0; --e) {
+    for (int i = 0; i < base_->corner_count(e); ++i) vertices_[base_->corners[e][i]].element = e;
   }
-  const std::vector<int> places = vertex_places(base_);
+  const std::vector<int> places = vertex_places(*base_);
   for (const int place : places) place_count_ = std::max(place_count_, place + 1);
   add_base_cells(places);
   find_reflex_corners(places);
 }
 
 void RefinedElements::add_base_cells(const std::vector<int>& places) {
-  cell_of_.assign(base_.element_count(), -1);
+  cell_of_.assign(base_->element_count(), -1);
   std::vector<std::tuple<int, int, int>> sides;  // places, 4 cell + corner
-  for (int e = 0; e < base_.element_count(); ++e) {
-    const bool is_sphere = sphere_grid_of(base_, base_.facet[e]) != nullptr;
-    const int twin = base_.twin[e];
+  for (int e = 0; e < base_->element_count(); ++e) {
+    const bool is_sphere = sphere_grid_of(*base_, base_->facet[e]) != nullptr;
+    const int twin = base_->twin[e];
     if (is_sphere || (twin >= 0 && twin < e)) continue;
     const int number = static_cast<int>(cells_.size());
     cell_of_[e] = number;
-    Cell cell{.base = e, .corner_count = base_.corner_count(e)};
+    Cell cell{.base = e, .corner_count = base_->corner_count(e)};
     for (int i = 0; i < cell.corner_count; ++i) {
-      cell.vertex[0][i] = base_.corners[e][i];
-      cell.place[i] = places[base_.corners[e][i]];
+      cell.vertex[0][i] = base_->corners[e][i];
+      cell.place[i] = places[base_->corners[e][i]];
     }
     for (int i = 0; i < cell.corner_count && twin >= 0; ++i) {
-      const int at = base_.corners[twin][i];
+      const int at = base_->corners[twin][i];
       const auto same = std::find(cell.place.begin(), cell.place.end(), places[at]);
       cell.vertex[1][same - cell.place.begin()] = at;
     }
@@ -94,19 +94,19 @@ void RefinedElements::add_base_cells(const std::vector<int>& places) {
 }
 
 void RefinedElements::find_reflex_corners(const std::vector<int>& places) {
-  reflex_.resize(base_.vertex_count());
+  reflex_.resize(base_->vertex_count());
   std::iota(reflex_.begin(), reflex_.end(), 0);
-  if (base_.at_reflex_corner.empty()) return;
+  if (base_->at_reflex_corner.empty()) return;
   const auto root = [this](int v) {
     while (reflex_[v] != v) v = reflex_[v] = reflex_[reflex_[v]];
     return v;
   };
   std::vector<std::tuple<int, int, int, int>> corners;  // place, facet, side, vertex
-  for (int e = 0; e < base_.element_count(); ++e) {
-    for (int i = 0; i < base_.corner_count(e); ++i) {
-      const int v = base_.corners[e][i];
-      if (!base_.at_reflex_corner[v]) continue;
-      corners.emplace_back(places[v], base_.facet[e], base_.is_back[base_.patch[e]], v);
+  for (int e = 0; e < base_->element_count(); ++e) {
+    for (int i = 0; i < base_->corner_count(e); ++i) {
+      const int v = base_->corners[e][i];
+      if (!base_->at_reflex_corner[v]) continue;
+      corners.emplace_back(places[v], base_->facet[e], base_->is_back[base_->patch[e]], v);
     }
   }
   std::sort(corners.begin(), corners.end());
@@ -120,16 +120,16 @@ void RefinedElements::find_reflex_corners(const std::vector<int>& places) {
     const int r = root(vertex), s = root(std::get<3>(corners[i - 1]));
     reflex_[std::max(r, s)] = std::min(r, s);
   }
-  for (int v = 0; v < base_.vertex_count(); ++v) reflex_[v] = root(v);
+  for (int v = 0; v < base_->vertex_count(); ++v) reflex_[v] = root(v);
 }
 
 int RefinedElements::side_count(int cell) const {
-  return base_.twin[cells_[cell].base] >= 0 ? 2 : 1;
+  return base_->twin[cells_[cell].base] >= 0 ? 2 : 1;
 }
 
 int RefinedElements::element(int cell, int side) const {
   const int e = cells_[cell].base;
-  return side == 0 ? e : base_.twin[e];
+  return side == 0 ? e : base_->twin[e];
 }
 
 double RefinedElements::area(int cell) const {
@@ -164,10 +164,10 @@ unsigned RefinedElements::split_edges(const Cell& cell) const {
 
 std::int64_t RefinedElements::element_count() const {
   std::int64_t count = 0;
-  for (int e = 0; e < base_.element_count(); ++e) {
+  for (int e = 0; e < base_->element_count(); ++e) {
     const int root = cell_of_[e];
     if (root < 0) {  // backs are counted with their fronts
-      if (base_.twin[e] < 0 || sphere_grid_of(base_, base_.facet[e])) ++count;
+      if (base_->twin[e] < 0 || sphere_grid_of(*base_, base_->facet[e])) ++count;
       continue;
     }
     for_each_leaf(root, [&](int leaf) {
@@ -179,8 +179,8 @@ std::int64_t RefinedElements::element_count() const {
   return count;
 }
 
-int RefinedElements::add_vertex(const Vector3d& position, int element) {
-  vertices_.push_back({position, element});
+int RefinedElements::add_vertex(const Vertex& vertex) {
+  vertices_.push_back(vertex);
   return static_cast<int>(vertices_.size()) - 1;
 }
 
@@ -196,7 +196,9 @@ int RefinedElements::edge_vertex(int number, int side, int i) {
   for (int m = edge.first_middle; m >= 0; m = middles_[m].next) {
     if (middles_[m].from == from && middles_[m].to == to) return middles_[m].vertex;
   }
-  const int vertex = add_vertex(0.5 * (position(a) + position(b)), element(number, side));
+  const int vertex = add_vertex({.position = 0.5 * (position(a) + position(b)),
+                                 .element = element(number, side),
+                                 .ends = {a, b, -1, -1}});
   middles_.push_back({from, to, vertex, edge.first_middle});
   edge.first_middle = static_cast<int>(middles_.size()) - 1;
   return vertex;
@@ -207,16 +209,19 @@ int RefinedElements::center_vertex(int number, int side) {
   if (cell.center[side] >= 0) return cell.center[side];
   Vector3d sum = Vector3d::Zero();
   for (int i = 0; i < cell.corner_count; ++i) sum += position(cell.vertex[0][i]);
-  cell.center[side] = add_vertex(sum / cell.corner_count, element(number, side));
+  std::array<int, 4> ends{-1, -1, -1, -1};
+  std::copy_n(cell.vertex[side].begin(), cell.corner_count, ends.begin());
+  cell.center[side] = add_vertex(
+      {.position = sum / cell.corner_count, .element = element(number, side), .ends = ends});
   return cell.center[side];
 }
 
 PatchPoint RefinedElements::inside(int vertex, double inset) const {
   const Vertex& v = vertices_[vertex];
-  const PatchPoint center = element_center(base_, v.element);
-  if (const SphereGrid* grid = sphere_grid_of(base_, base_.facet[v.element])) {
+  const PatchPoint center = element_center(*base_, v.element);
+  if (const SphereGrid* grid = sphere_grid_of(*base_, base_->facet[v.element])) {
     const Vector3d out = (v.position - grid->sphere.center).normalized();
-    const bool is_back = base_.is_back[base_.patch[v.element]] != 0;
+    const bool is_back = base_->is_back[base_->patch[v.element]] != 0;
     return {v.element, v.position, is_back ? Vector3d(-out) : out};
   }
   return {v.element, v.position + inset * (center.position - v.position), center.normal};
@@ -242,32 +247,33 @@ RefinedMesh RefinedElements::mesh() {
   std::vector<double> areas;
   std::vector<Vector3d> positions;
   std::vector<int> number;  // in the mesh, by vertex here
-  std::vector<int> first(base_.element_count() + 1, 0);
+  std::vector<int> first(base_->element_count() + 1, 0);
   const auto mesh_vertex = [&](int v) {
     if (v >= static_cast<int>(number.size())) number.resize(vertices_.size(), -1);
     if (number[v] < 0) {
       number[v] = static_cast<int>(positions.size());
       positions.push_back(position(v));
       refined.vertex.push_back(v);
-      const bool is_base = v < static_cast<int>(base_.at_reflex_corner.size());
-      out.at_reflex_corner.push_back(is_base ? base_.at_reflex_corner[v] : 0);
+      const bool is_base = v < static_cast<int>(base_->at_reflex_corner.size());
+      out.at_reflex_corner.push_back(is_base ? base_->at_reflex_corner[v] : 0);
     }
     return number[v];
   };
   const auto add = [&](int e, int cell, std::array<int, 4> c) {
     for (int& v : c) v = v < 0 ? -1 : mesh_vertex(v);
     out.corners.push_back(c);
-    out.patch.push_back(base_.patch[e]);
-    out.facet.push_back(base_.facet[e]);
+    out.patch.push_back(base_->patch[e]);
+    out.facet.push_back(base_->facet[e]);
     refined.cell.push_back(cell);
   };
-  for (int e = 0; e < base_.element_count(); ++e) {
+  for (int e = 0; e < base_->element_count(); ++e) {
     first[e] = static_cast<int>(out.corners.size());
-    const int side = cell_of_[e] < 0 && base_.twin[e] >= 0 && cell_of_[base_.twin[e]] >= 0 ? 1 : 0;
-    const int root = side == 0 ? cell_of_[e] : cell_of_[base_.twin[e]];
+    const int side =
+        cell_of_[e] < 0 && base_->twin[e] >= 0 && cell_of_[base_->twin[e]] >= 0 ? 1 : 0;
+    const int root = side == 0 ? cell_of_[e] : cell_of_[base_->twin[e]];
     if (root < 0) {
-      add(e, -1, base_.corners[e]);
-      areas.push_back(base_.element_area[e]);
+      add(e, -1, base_->corners[e]);
+      areas.push_back(base_->element_area[e]);
       continue;
     }
     double sum = 0.0;
@@ -281,28 +287,28 @@ RefinedMesh RefinedElements::mesh() {
       }
     });
     // Exactly the element's, although rounding moves the middle of an edge off its line.
-    for (std::size_t i = first[e]; i < areas.size(); ++i) areas[i] *= base_.element_area[e] / sum;
+    for (std::size_t i = first[e]; i < areas.size(); ++i) areas[i] *= base_->element_area[e] / sum;
   }
   first.back() = static_cast<int>(out.corners.size());
-  for (int e = 0; e < base_.element_count(); ++e) {
+  for (int e = 0; e < base_->element_count(); ++e) {
     for (int k = first[e]; k < first[e + 1]; ++k) {
-      out.twin.push_back(base_.twin[e] < 0 ? -1 : first[base_.twin[e]] + (k - first[e]));
+      out.twin.push_back(base_->twin[e] < 0 ? -1 : first[base_->twin[e]] + (k - first[e]));
     }
   }
   out.element_area =
       Eigen::Map<Eigen::ArrayXd>(areas.data(), static_cast<Eigen::Index>(areas.size()));
-  for (const int e : base_.first_element) out.first_element.push_back(first[e]);
-  out.area = base_.area;
-  out.reflectance = base_.reflectance;
-  out.emission = base_.emission;
-  out.surface = base_.surface;
-  out.material = base_.material;
-  out.is_back = base_.is_back;
-  out.sphere_grids = base_.sphere_grids;
+  for (const int e : base_->first_element) out.first_element.push_back(first[e]);
+  out.area = base_->area;
+  out.reflectance = base_->reflectance;
+  out.emission = base_->emission;
+  out.surface = base_->surface;
+  out.material = base_->material;
+  out.is_back = base_->is_back;
+  out.sphere_grids = base_->sphere_grids;
   for (SphereGrid& grid : out.sphere_grids) {
     for (int& e : grid.element) e = first[e];
   }
-  out.notes = base_.notes;
+  out.notes = base_->notes;
   build_topology(out, positions);
   return refined;
 }

@@ -32,11 +32,14 @@ struct RefinedMesh {
 /// into which diagonals cut its parallelograms (Rosenberg & Stenger 1975 for halved triangles; a
 /// triangle with two angles a is halved into a third of a at worst). Elements of spheres stay what
 /// they are.
+///
+/// Keeps a reference to the base; a copy is a refinement of its own.
 class RefinedElements {
  public:
-  explicit RefinedElements(PatchMesh base);
+  explicit RefinedElements(const PatchMesh& base);
+  explicit RefinedElements(PatchMesh&& base) = delete;
 
-  const PatchMesh& base() const { return base_; }
+  const PatchMesh& base() const { return *base_; }
   /// That are not split and not on spheres, in the base's order.
   std::vector<int> leaves() const;
   int level(int cell) const { return cells_[cell].level; }
@@ -48,6 +51,9 @@ class RefinedElements {
   /// The base's element on a side of the cell (0: front).
   int element(int cell, int side) const;
   double area(int cell) const;  ///< m^2, one side
+  int cell_count() const { return static_cast<int>(cells_.size()); }
+  /// The first of the four it was split into, which are numbered in a row.
+  int first_child(int cell) const { return cells_[cell].first_child; }
 
   /// Splits leaves, and coarser neighbours as balance demands; what is split already is left out.
   void split(std::span<const int> cells);
@@ -69,6 +75,9 @@ class RefinedElements {
 
   int vertex_count() const { return static_cast<int>(vertices_.size()); }
   Eigen::Vector3d position(int vertex) const { return vertices_[vertex].position; }
+  /// The vertices that this one was made half-way between (2 or 4, the rest -1): lower numbers.
+  /// None for the base's own.
+  const std::array<int, 4>& ends(int vertex) const { return vertices_[vertex].ends; }
   /// A place next to a vertex, `inset` of the way to the middle of a base element that has it, and
   /// that element and its normal; on spheres the vertex itself.
   PatchPoint inside(int vertex, double inset) const;
@@ -77,6 +86,7 @@ class RefinedElements {
   struct Vertex {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     int element = -1;  // of the base
+    std::array<int, 4> ends{-1, -1, -1, -1};
   };
   // The middle of an edge, for those whose vertices at its ends are these.
   struct Middle {
@@ -110,12 +120,12 @@ class RefinedElements {
   void split_alone(int cell);
   bool may_merge(const Cell& cell) const;
   unsigned split_edges(const Cell& cell) const;
-  int add_vertex(const Eigen::Vector3d& position, int element);
+  int add_vertex(const Vertex& vertex);
   template <class Visit>
   void for_each_leaf(int root, Visit&& visit) const;
   std::array<int, 4> piece_vertices(int cell, int side, const std::array<int, 4>& piece);
 
-  PatchMesh base_;
+  const PatchMesh* base_;
   std::vector<Vertex> vertices_;
   std::vector<int> reflex_;  // per base vertex, the lowest vertex of its reflex corner, or itself
   std::vector<Edge> edges_;

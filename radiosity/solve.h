@@ -2,6 +2,7 @@
 
 #include "radiosity/final_gather.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/refine_solution.h"
 #include "radiosity/solution.h"
 
 namespace lightwell {
@@ -12,6 +13,7 @@ struct SolveOptions {
   double tolerance = 1e-5;  ///< see GaussSeidelOptions
   int max_sweeps = 500;
   GatherOptions gather{.rays = 1024};
+  RefineOptions refine{};
   int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
   int error_points = 512;      ///< random points that the error estimate looks at
   Progress progress{};
@@ -26,12 +28,14 @@ struct SolvedScene {
 /// What the first pass found out besides the solution.
 struct SolveReport {
   FormFactorReport form_factors{};
+  RefineReport refinement{};
 };
 
-/// The whole first pass: mesh, form factors, Gauss-Seidel, final gather to the elements' vertices,
-/// and an error estimate by independent gathers at random points (relative RMS difference from the
-/// interpolation; it holds the noise of both, so it errs on the high side). Throws InputError if
-/// nothing in the scene emits light, Interrupted when progress says stop.
+/// The whole first pass: mesh, form factors, Gauss-Seidel, refinement of the elements (from ones of
+/// twice the size asked for, where there are several along a patch edge), final gather to their
+/// vertices, and an error estimate by independent gathers at random points (relative RMS difference
+/// from the interpolation; it holds the noise of both, so it errs on the high side). Throws
+/// InputError if nothing in the scene emits light, Interrupted when progress says stop.
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);
 

@@ -139,7 +139,8 @@ TEST_P(Refined, SameCellsSplitAlikeInAnyUnit) {
     for (Surface& surface : scene.surfaces) {
       for (Vector3d& v : std::get<PolygonMesh>(surface.shape).vertices) v *= scale;
     }
-    RefinedElements refined(build_patches(scene, {.max_patch_size = 0.25 * scale}));
+    const PatchMesh base = build_patches(scene, {.max_patch_size = 0.25 * scale});
+    RefinedElements refined(base);
     Numbers numbers(seed);
     for (int round = 0; round < 2; ++round) refined.split(some(refined.leaves(), numbers, 5));
     const PatchMesh made = refined.mesh().mesh;
@@ -195,7 +196,8 @@ OnLine vertices_between(const PatchMesh& mesh, const Vector3d& a, const Vector3d
 
 TEST(ContactLine, StaysSplitWhenItIsRefined) {
   for (const double to : {1.0, 0.75}) {  // all across, and ending inside
-    RefinedElements refined(build_patches(floor_with_panel(0.0, to), {.max_patch_size = 0.25}));
+    const PatchMesh base = build_patches(floor_with_panel(0.0, to), {.max_patch_size = 0.25});
+    RefinedElements refined(base);
     for (int round = 0; round < 2; ++round) refined.split(refined.leaves());
     const OnLine found = vertices_between(refined.mesh().mesh, {0.52, 0, 0}, {0.52, to, 0});
     EXPECT_EQ(found.both, 0);
@@ -206,8 +208,9 @@ TEST(ContactLine, StaysSplitWhenItIsRefined) {
 
 // A panel shorter than an element: both its ends are free.
 TEST(ContactLine, ShorterThanAnElementStaysSplitToo) {
-  RefinedElements refined(build_patches(floor_with_panel(0.45, 0.55),
-                                        {.max_patch_size = 0.25, .elements_per_patch_edge = 1}));
+  const PatchMesh base = build_patches(floor_with_panel(0.45, 0.55),
+                                       {.max_patch_size = 0.25, .elements_per_patch_edge = 1});
+  RefinedElements refined(base);
   for (int round = 0; round < 2; ++round) {
     refined.split(refined.leaves());
     const RefinedMesh made = refined.mesh();
@@ -223,7 +226,8 @@ TEST(ContactLine, ShorterThanAnElementStaysSplitToo) {
 TEST(ReflexCorner, AloneHasAVertexForEveryElement) {
   Scene scene = empty_scene();
   add_polygon(scene, "floor", {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}});
-  RefinedElements refined(build_patches(scene, {.max_patch_size = 0.4}));
+  const PatchMesh base = build_patches(scene, {.max_patch_size = 0.4});
+  RefinedElements refined(base);
   for (int round = 0; round < 2; ++round) refined.split(refined.leaves());
   const PatchMesh mesh = refined.mesh().mesh;
   std::map<Place, std::set<int>> vertices;
@@ -245,8 +249,9 @@ TEST(ReflexCorner, AloneHasAVertexForEveryElement) {
 
 TEST(SmoothSurface, StaysOfOnePieceWhereItsFacetsMeet) {
   Numbers numbers(5);
-  RefinedElements refined(
-      build_patches(triangle_ball(90, 0), {.max_patch_size = 0.3, .smooth_angle_degrees = 5.0}));
+  const PatchMesh base =
+      build_patches(triangle_ball(90, 0), {.max_patch_size = 0.3, .smooth_angle_degrees = 5.0});
+  RefinedElements refined(base);
   for (int round = 0; round < 2; ++round) {
     refined.split(some(refined.leaves(), numbers, 6));
     const PatchMesh mesh = refined.mesh().mesh;
@@ -301,7 +306,8 @@ TEST(Merging, WhatWasSplitGivesTheBaseAgain) {
 TEST(Spheres, StayWhatTheyAre) {
   Scene scene = boxes_under_a_lamp(2);
   add_sphere(scene, "ball", {{0.5, 0.5, 0.9}, 0.2});
-  RefinedElements refined(build_patches(scene, {.max_patch_size = 0.25}));
+  const PatchMesh base = build_patches(scene, {.max_patch_size = 0.25});
+  RefinedElements refined(base);
   refined.split(refined.leaves());
   const PatchMesh mesh = refined.mesh().mesh;
   expect_consistent(mesh);
