@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "scene/parallel.h"
 
@@ -12,6 +13,7 @@ namespace {
 constexpr std::uint64_t probe_key = 30;  // purpose of random keys
 constexpr std::uint64_t draft_replica = 1000;
 constexpr int probe_count = 16;
+constexpr int share_of_rays = 8;
 
 // Vertices lie this far inside the elements of the deepest level (see vertex_gather_points).
 constexpr double finest_inset = 0.02;
@@ -28,8 +30,8 @@ double mean_square(const Spectrum& difference) {
 
 InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& caster,
                                        const DirectLight& direct_light, const BandArray& radiosity,
-                                       RefinedElements& elements, const GatherOptions& options,
-                                       int deepest_level)
+                                       const BandArray& caustic, RefinedElements& elements,
+                                       const GatherOptions& options, int deepest_level)
     : scene_(scene),
       caster_(caster),
       direct_light_(direct_light),
@@ -43,10 +45,13 @@ InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& 
       return progress("refine", share);
     };
   }
-  std::vector<int> all(elements.base().vertex_count());
-  for (int v = 0; v < static_cast<int>(all.size()); ++v) all[v] = v;
-  gather(all);
+  sharpen_radiosity(caustic);
   find_what_matters();
+}
+
+GatherPoint InterpolationError::gather_point(int vertex) const {
+  const PatchPoint at = elements_.inside(vertex, inset_);
+  return {at.position, at.normal, elements_.base().facet[at.element]};
 }
 
 void InterpolationError::find_what_matters() {
@@ -71,44 +76,80 @@ Spectrum InterpolationError::total(int vertex) const {
   return (direct_.row(vertex) + 0.5f * (first_.row(vertex) + second_.row(vertex))).transpose();
 }
 
-void InterpolationError::gather(const std::vector<int>& vertices) {
+// Room for all vertices there are now; as a vector grows.
+void InterpolationError::make_room() {
   const int count = elements_.vertex_count();
-  if (count > direct_.rows()) {  // room to grow, as a vector does
+  if (count > direct_.rows()) {
     const Eigen::Index rows = std::max<Eigen::Index>(count, 2 * direct_.rows());
     for (BandArray* values : {&direct_, &first_, &second_}) {
       values->conservativeResize(rows, scene_.bands.count());
     }
   }
-  done_.resize(count, 0);
+  has_direct_.resize(count, 0);
+  has_indirect_.resize(count, 0);
   sight_.resize(count);
+}
+
+void InterpolationError::gather_direct_at(const std::vector<int>& vertices) {
   std::vector<int> fresh;
-  for (const int v : vertices) {
-    if (done_[v]) continue;
-    done_[v] = 1;
-    fresh.push_back(v);
-  }
-  if (fresh.empty()) return;
   std::vector<GatherPoint> points;
-  for (const int v : fresh) {
-    const PatchPoint at = elements_.inside(v, inset_);
-    points.push_back({at.position, at.normal, elements_.base().facet[at.element]});
+  for (const int v : vertices) {
+    if (has_direct_[v]) continue;
+    has_direct_[v] = 1;
+    fresh.push_back(v);
+    points.push_back(gather_point(v));
+    points.back().key = static_cast<std::uint64_t>(v);
   }
-  gathers_ += static_cast<std::int64_t>(points.size());
   std::vector<EmitterSight> sights;
-  GatherOptions options = options_;
-  options.replica = options_.replica + draft_replica * ++batches_;
-  const BandArray direct = gather_direct(scene_, caster_, direct_light_, points, options, &sights);
-  constexpr int share_of_rays = 8;
-  options.rays = std::max(1, options_.rays / share_of_rays);
-  options.replica = options_.replica + draft_replica;  // one for all batches
-  const BandArray first = gather_indirect(scene_, caster_, radiosity_, points, options);
-  ++options.replica;
-  const BandArray second = gather_indirect(scene_, caster_, radiosity_, points, options);
+  const BandArray direct = gather_direct(scene_, caster_, direct_light_, points, options_, &sights);
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     direct_.row(fresh[i]) = direct.row(static_cast<Eigen::Index>(i));
+    sight_[fresh[i]] = sights[i];
+  }
+  gathers_ += static_cast<std::int64_t>(points.size());
+}
+
+BandArray InterpolationError::indirect_at(const std::vector<int>& vertices,
+                                          std::uint64_t replica) const {
+  const PatchMesh& mesh = elements_.base();
+  std::vector<GatherPoint> points;
+  for (const int v : vertices) {
+    GatherPoint& point = points.emplace_back(gather_point(v));
+    const int patch = mesh.patch[elements_.inside(v, 0.0).element];
+    point.key = random_key(static_cast<std::uint64_t>(mesh.surface[patch]),
+                           mesh.is_back[patch] != 0 ? 1 : 0);
+  }
+  GatherOptions options = options_;
+  options.rays = std::max(1, options_.rays / share_of_rays);
+  options.replica = options_.replica + draft_replica + replica;
+  return gather_indirect(scene_, caster_, radiosity_, points, options);
+}
+
+void InterpolationError::sharpen_radiosity(const BandArray& caustic) {
+  const PatchMesh& mesh = elements_.base();
+  std::vector<int> all(mesh.vertex_count());
+  std::iota(all.begin(), all.end(), 0);
+  make_room();
+  gather_direct_at(all);
+  BandArray irradiance = direct_.topRows(mesh.vertex_count()) + indirect_at(all, 2);
+  if (caustic.size() > 0) irradiance += caustic;
+  radiosity_ = gatherable_radiosity(mesh, direct_light_, irradiance);
+  gather(all);
+}
+
+void InterpolationError::gather(const std::vector<int>& vertices) {
+  make_room();
+  gather_direct_at(vertices);
+  std::vector<int> fresh;
+  for (const int v : vertices) {
+    if (has_indirect_[v]) continue;
+    has_indirect_[v] = 1;
+    fresh.push_back(v);
+  }
+  const BandArray first = indirect_at(fresh, 0), second = indirect_at(fresh, 1);
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
     first_.row(fresh[i]) = first.row(static_cast<Eigen::Index>(i));
     second_.row(fresh[i]) = second.row(static_cast<Eigen::Index>(i));
-    sight_[fresh[i]] = sights[i];
   }
 }
 

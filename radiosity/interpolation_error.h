@@ -24,10 +24,13 @@ namespace lightwell {
 /// Caustics are left out, and the light on places that reflect none.
 class InterpolationError {
  public:
-  /// `radiosity` is at the base's vertices, as gatherable_radiosity makes it; `caster` of the base.
+  /// At the base's vertices: `radiosity` as gatherable_radiosity makes it, and caustic irradiance
+  /// (or nothing). A first gather there replaces that radiosity, which patches hold as one value
+  /// each, before the gathers that are compared. `caster` is of the base.
   InterpolationError(const Scene& scene, const ElementCaster& caster,
                      const DirectLight& direct_light, const BandArray& radiosity,
-                     RefinedElements& elements, const GatherOptions& options, int deepest_level);
+                     const BandArray& caustic, RefinedElements& elements,
+                     const GatherOptions& options, int deepest_level);
 
   /// Whether light on a side of an element of the base is of interest.
   bool matters(int element) const { return matters_[element] != 0; }
@@ -48,7 +51,12 @@ class InterpolationError {
   std::int64_t gathers() const { return gathers_; }
 
  private:
+  void sharpen_radiosity(const BandArray& caustic);
   void find_what_matters();
+  GatherPoint gather_point(int vertex) const;
+  void make_room();
+  void gather_direct_at(const std::vector<int>& vertices);
+  BandArray indirect_at(const std::vector<int>& vertices, std::uint64_t replica) const;
   double lattice_error(int cell, int side);
   double probed_error(int cell, int side);
   Spectrum total(int vertex) const;
@@ -56,17 +64,16 @@ class InterpolationError {
   const Scene& scene_;
   const ElementCaster& caster_;
   const DirectLight& direct_light_;
-  const BandArray& radiosity_;
+  BandArray radiosity_;
   RefinedElements& elements_;
   GatherOptions options_;
   double inset_;
   std::vector<char> matters_;
   double area_ = 0.0, mean_ = 0.0;
   // Per vertex.
-  std::vector<char> done_;
+  std::vector<char> has_direct_, has_indirect_;
   BandArray direct_, first_, second_;
   std::vector<EmitterSight> sight_;
-  std::uint64_t batches_ = 0;
   std::int64_t gathers_ = 0;
   SobolPoints probes_;
 };

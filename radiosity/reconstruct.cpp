@@ -1,6 +1,7 @@
 #include "radiosity/reconstruct.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "radiosity/light_path.h"
@@ -86,7 +87,10 @@ Draft refined_draft(const Scene& scene, const ElementCaster& caster,
                     const GatherOptions& gather_options, const BandArray& radiosity) {
   RefinedElements elements(caster.mesh());
   EvenCaustics even_caustics(scene, direct_light, options, elements);
-  RefinedSolution found = refine_solution(scene, caster, direct_light, radiosity, elements,
+  std::vector<int> base_vertices(caster.mesh().vertex_count());
+  std::iota(base_vertices.begin(), base_vertices.end(), 0);
+  RefinedSolution found = refine_solution(scene, caster, direct_light, radiosity,
+                                          even_caustics.at(elements, base_vertices), elements,
                                           gather_options, options.refine);
   return {.refined = std::move(found.refined.mesh),
           .direct = std::move(found.draft.direct),

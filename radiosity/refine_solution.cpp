@@ -172,10 +172,10 @@ std::string sentence(const RefineReport& report) {
 
 RefinedSolution refine_solution(const Scene& scene, const ElementCaster& caster,
                                 const DirectLight& direct_light, const BandArray& radiosity,
-                                RefinedElements& elements, const GatherOptions& gather,
-                                const RefineOptions& options) {
+                                const BandArray& caustic, RefinedElements& elements,
+                                const GatherOptions& gather, const RefineOptions& options) {
   require_room(elements.base(), options);
-  InterpolationError error(scene, caster, direct_light, radiosity, elements, gather,
+  InterpolationError error(scene, caster, direct_light, radiosity, caustic, elements, gather,
                            options.max_level);
   Refinement refinement(elements, error, options);
   RefinedSolution result;

@@ -53,11 +53,11 @@ struct RefinedSolution {
 /// "A convergent adaptive algorithm for Poisson's equation"). What a bound by the corners' values
 /// shows not to matter is not measured.
 ///
-/// `radiosity` is at the base's vertices, as gatherable_radiosity makes it; `caster` of the base.
-/// Throws as require_room does.
+/// `radiosity` (as gatherable_radiosity makes it) and `caustic` irradiance (or nothing) are at the
+/// base's vertices; `caster` is of the base. Throws as require_room does.
 RefinedSolution refine_solution(const Scene& scene, const ElementCaster& caster,
                                 const DirectLight& direct_light, const BandArray& radiosity,
-                                RefinedElements& elements, const GatherOptions& gather,
-                                const RefineOptions& options);
+                                const BandArray& caustic, RefinedElements& elements,
+                                const GatherOptions& gather, const RefineOptions& options);
 
 }  // namespace lightwell
