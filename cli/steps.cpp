@@ -70,6 +70,9 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   report.add_solution(solved, true);
   report.add("refinement", refinement_json(solve_report.refinement));
   report.add_storage(options.form_factors.memory->report());
+  if (solve_report.refinement.outcome == RefineOutcome::max_elements_reached) {
+    console.say("note: refinement " + sentence(solve_report.refinement));
+  }
   if (solved.solution.outcome != Outcome::converged) {
     console.say(
         fmt::format("warning: the solver stopped after {} sweeps at a residual of {:.2g}, "

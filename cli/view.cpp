@@ -8,6 +8,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "scene/errors.h"
 #ifdef LIGHTWELL_VIEWER
 #include "viewer/view.h"
 #endif
@@ -19,6 +20,7 @@ struct Arguments {
   std::string scene, solution, camera, offscreen;
   std::optional<std::pair<int, int>> size;
   double exposure_ev = 0.0;
+  bool mesh = false, error = false;
 };
 
 #ifdef LIGHTWELL_VIEWER
@@ -37,6 +39,14 @@ int view(const Arguments& arguments, Console& console) {
   if (arguments.size) std::tie(options.width, options.height) = *arguments.size;
   if (!arguments.offscreen.empty()) require_writable(arguments.offscreen);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  options.mesh = arguments.mesh;
+  options.interpolation_error = arguments.error;
+  if (arguments.error && solved.solution.interpolation_error.size() == 0) {
+    throw InputError(fmt::format(
+        "{}: it was not refined, so there is no error of interpolation to show; solve it without "
+        "'--refine off'",
+        arguments.solution));
+  }
   if (arguments.offscreen.empty()) {
     show_window(solved, options);
     return exit_done;
@@ -72,6 +82,9 @@ Action add_view(CLI::App& command) {
       ->type_name("NAME");
   add_size(command, arguments->size);
   add_exposure(command, arguments->exposure_ev);
+  command.add_flag("--mesh", arguments->mesh, "start with the outlines of the elements");
+  command.add_flag("--error", arguments->error,
+                   "start with the estimated error of interpolation: 0.1 % to 10 %");
   command.footer("Example: lightwell view cornell/cornell.toml cornell.vtp");
   return [arguments](Console& console) { return view(*arguments, console); };
 }

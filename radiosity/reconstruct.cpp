@@ -45,7 +45,7 @@ class EvenCaustics {
     const LightPaths paths(scene, ElementCaster(elements.base()), 1);
     if (!paths.has_specular()) return;
     const std::vector<int> all = elements.leaves();
-    if (options.mesh.elements_per_patch_edge > 1) elements.split(all);
+    if (starts_coarse(options) && options.mesh.elements_per_patch_edge > 1) elements.split(all);
     const RefinedMesh even = elements.mesh();
     elements.merge(all);
     values_ = BandArray::Zero(elements.vertex_count(), scene.bands.count());

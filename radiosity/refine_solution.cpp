@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -21,11 +22,13 @@ class Refinement {
         max_elements_(options.max_elements > 0 ? options.max_elements
                                                : growth * elements.element_count()),
         allowed_(std::pow(options.tolerance * error.mean_irradiance(), 2) * error.area()) {
+    resize();
     for (const int cell : elements.leaves()) {
-      resize();
+      std::array<double, 2> expected{0.0, 0.0};
       for (int side = 0; side < elements.side_count(cell); ++side) {
-        squares_[cell][side] = error.expected(cell, side);
+        expected[side] = error.expected(cell, side);
       }
+      set(cell, expected);
     }
   }
 
@@ -59,7 +62,12 @@ class Refinement {
  private:
   void resize() {
     squares_.resize(elements_.cell_count(), {0.0, 0.0});
+    is_known_.resize(elements_.cell_count(), 0);
     measured_.resize(elements_.cell_count(), 0);
+  }
+  void set(int cell, const std::array<double, 2>& squares) {
+    squares_[cell] = squares;
+    is_known_[cell] = 1;
   }
 
   // The leaves with most of the squared error, the others holding at most half of what is allowed
@@ -94,7 +102,7 @@ class Refinement {
     }
     const std::vector<std::array<double, 2>> errors = error_.measure(fresh);
     for (std::size_t i = 0; i < fresh.size(); ++i) {
-      squares_[fresh[i]] = errors[i];
+      set(fresh[i], errors[i]);
       measured_[fresh[i]] = 1;
     }
     return !fresh.empty();
@@ -117,11 +125,11 @@ class Refinement {
       marks.resize(low);
     }
     elements_.split(marks);
-    const auto known = static_cast<int>(squares_.size());
     resize();
-    // Until they are measured, children are as bad as what they were split from.
-    for (int cell = known; cell < elements_.cell_count(); ++cell) {
-      squares_[cell] = squares_[elements_.parent(cell)];
+    // Until they are measured, children are as bad as what they were split from. (Their numbers may
+    // be old: what was merged is split into the same again.)
+    for (const int cell : elements_.leaves()) {
+      if (!is_known_[cell]) set(cell, squares_[elements_.parent(cell)]);
     }
     return all;
   }
@@ -134,7 +142,7 @@ class Refinement {
   double allowed_;
   double sum_ = 0.0;                            // squared error times area, over all leaves
   std::vector<std::array<double, 2>> squares_;  // per cell and side
-  std::vector<char> measured_;
+  std::vector<char> is_known_, measured_;
 };
 
 }  // namespace

@@ -93,6 +93,10 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
 
 }  // namespace
 
+bool starts_coarse(const SolveOptions& options) {
+  return options.refine.tolerance > 0.0 && !options.mesh.discontinuity;
+}
+
 EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
                              const FormFactors& form_factors, const BandArray& B) {
   const BandArray E = gather(form_factors, B);
@@ -119,7 +123,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   Stopwatch watch;
   MeshOptions mesh_options = options.mesh;
   mesh_options.progress = options.progress;
-  mesh_options.to_be_refined = options.refine.tolerance > 0.0;
+  mesh_options.to_be_refined = starts_coarse(options);
   solved.mesh = build_patches(scene, mesh_options);
   require_room(solved.mesh, options.refine);
   std::optional<ElementCaster> caster(std::in_place, solved.mesh);

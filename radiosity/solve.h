@@ -31,11 +31,14 @@ struct SolveReport {
   RefineReport refinement{};
 };
 
-/// The whole first pass: mesh, form factors, Gauss-Seidel, refinement of the elements (from ones of
-/// twice the size asked for, where there are several along a patch edge), final gather to their
-/// vertices, and an error estimate by independent gathers at random points (relative RMS difference
-/// from the interpolation; it holds the noise of both, so it errs on the high side). Throws
-/// InputError if nothing in the scene emits light, Interrupted when progress says stop.
+/// Whether elements start twice as long as asked for, and are split where that matters: unless
+/// nothing is refined, and unless lines of discontinuity are drawn, which need the size asked for.
+bool starts_coarse(const SolveOptions& options);
+
+/// The whole first pass: mesh, form factors, Gauss-Seidel, refinement of the elements, final gather
+/// to their vertices, and an error estimate by independent gathers at random points (relative RMS
+/// difference from the interpolation; it holds the noise of both, so it errs on the high side).
+/// Throws InputError if nothing in the scene emits light, Interrupted when progress says stop.
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);
 

@@ -19,6 +19,10 @@ struct ViewOptions {
   /// The scene's materials, so that mirrors and glass can be told from black surfaces; a solution
   /// alone knows only diffuse light. May be left empty.
   std::vector<Material> materials{};
+  bool mesh = false;  ///< start with the elements' outlines
+  /// Start with the error of interpolation that refinement estimated, in the false colours of
+  /// error_colors; of a solution that has it.
+  bool interpolation_error = false;
   bool relative_units = false;                   ///< what the scale calls lux is in no known unit
   std::filesystem::path screenshot_folder{"."};  ///< where the screenshot key leaves its PNGs
 };
