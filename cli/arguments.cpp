@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "cli/memory_size.h"
+#include "cli/refinement.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
@@ -244,6 +245,7 @@ void SolveArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(power_of_two())
       ->group(group);
+  add_refinement(command, solve.refine, group);
   add_memory(command, memory)->group(group);
   command
       .add_option("--gather-rays", solve.gather.rays,
@@ -280,9 +282,9 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
 
 std::string SolveArguments::text(const Scene& scene) const {
   return fmt::format(
-      "{} --form-factors {}{} --solver {} --rays {} --gather-rays {} --tolerance {:g} "
+      "{}{} --form-factors {}{} --solver {} --rays {} --gather-rays {} --tolerance {:g} "
       "--max-sweeps {}",
-      mesh.text(scene), form_factors,
+      mesh.text(scene), refinement_text(solve.refine), form_factors,
       hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
       solve.form_factors.rays_per_patch, solve.gather.rays, solve.solver.tolerance,
       solve.solver.max_sweeps);

@@ -48,6 +48,9 @@ void Report::add_solution(const SolvedScene& solved, bool solved_now) {
   facts_["options"] = solution.provenance.options;
   facts_["patches"] = solved.mesh.patch_count();
   facts_["elements"] = solved.mesh.element_count();
+  if (!solution.provenance.refinement.empty()) {
+    facts_["refined"] = solution.provenance.refinement;
+  }
   facts_["bands"] = solution.bands.count();
   facts_["light"] = light_name(solution.relative_units);
   facts_["energy"] = energy_json(solution.energy);
@@ -101,6 +104,7 @@ std::string Report::for_people() const {
   if (facts_.contains("energy")) {
     line("patches", fmt::format("{} ({} elements)", facts_["patches"].get<int>(),
                                 facts_["elements"].get<int>()));
+    if (facts_.contains("refined")) line("refined", facts_["refined"].get<std::string>());
     const Json& energy = facts_["energy"];
     const double emitted = energy["emitted"];
     const auto percent = [&](const char* key) {

@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/refinement.h"
 #include "radiosity/solution_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
@@ -60,13 +61,18 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   options.form_factors.memory = std::make_shared<MemoryBudget>(
       MemoryOptions{.limit = arguments.memory, .folder = output.parent_path()});
   console.say_verbose("solving with " + arguments.text(scene));
-  SolvedScene solved = solve_scene(scene, options);
+  SolveReport solve_report;
+  SolvedScene solved = solve_scene(scene, options, &solve_report);
   console.finish_phase();
   note_mesh(scene, solved.mesh, console, report);
   solved.solution.provenance.version = LIGHTWELL_VERSION;
   solved.solution.provenance.options = arguments.text(scene);
   report.add_solution(solved, true);
+  report.add("refinement", refinement_json(solve_report.refinement));
   report.add_storage(options.form_factors.memory->report());
+  if (solve_report.refinement.outcome == RefineOutcome::max_elements_reached) {
+    console.say("note: refinement " + sentence(solve_report.refinement));
+  }
   if (solved.solution.outcome != Outcome::converged) {
     console.say(
         fmt::format("warning: the solver ({}) stopped after {} sweeps at a residual of {:.2g}, "

@@ -9,6 +9,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "scene/errors.h"
 #ifdef LIGHTWELL_VIEWER
 #include "viewer/view.h"
 #endif
@@ -46,7 +47,8 @@ int view(const Arguments& arguments, Console& console) {
   ViewOptions options{
       .cameras = scene.cameras, .exposure_ev = arguments.exposure_ev, .materials = scene.materials};
   options.mesh = !arguments.overlay.empty();
-  options.illuminance = !arguments.false_colour.empty();
+  options.illuminance = arguments.false_colour == "lux";
+  options.interpolation_error = arguments.false_colour == "error";
   if (arguments.range) options.lux_range = {arguments.range->first, arguments.range->second};
   options.relative_units = scene.relative_units;
   if (!arguments.camera.empty()) options.camera = choose_camera(scene, arguments.camera);
@@ -58,6 +60,12 @@ int view(const Arguments& arguments, Console& console) {
   if (arguments.size) std::tie(options.width, options.height) = *arguments.size;
   if (!arguments.offscreen.empty()) require_writable(arguments.offscreen);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  if (options.interpolation_error && solved.solution.interpolation_error.size() == 0) {
+    throw InputError(fmt::format(
+        "{}: it was not refined, so there is no error of interpolation to show; solve it without "
+        "'--refine off'",
+        arguments.solution));
+  }
   if (arguments.offscreen.empty()) {
     show_window(solved, options);
     return exit_done;
@@ -101,9 +109,10 @@ Action add_view(CLI::App& command) {
   auto* const false_colour =
       command
           .add_option("--false-colour,--false-color", arguments->false_colour,
-                      "lux: begin with illuminance in false colours (key V)")
+                      "begin in false colours: lux (key V), or error, what interpolation was "
+                      "estimated to miss, 0.1 % to 10 %")
           ->type_name("WHAT")
-          ->check(one_of("quantity", {"lux"}));
+          ->check(one_of("quantity", {"lux", "error"}));
   command
       .add_option_function<std::string>(
           "--range", [arguments](const std::string& text) { arguments->range = parse_range(text); },

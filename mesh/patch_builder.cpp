@@ -33,7 +33,8 @@ std::array<int, 4> turned(const std::array<int, 4>& c) {
 
 void PatchBuilder::add_facet(int facet, int surface, const Vector3d& normal, FacetMesh mesh) {
   const bool is_flat = !normal.isZero();
-  if (is_flat) split_reflex_corners(mesh);
+  std::vector<char> at_reflex_corner;
+  if (is_flat) at_reflex_corner = split_reflex_corners(mesh);
   const int first = static_cast<int>(parent_.size());
   parent_.resize(parent_.size() + mesh.position.size());
   std::iota(parent_.begin() + first, parent_.end(), first);
@@ -41,7 +42,8 @@ void PatchBuilder::add_facet(int facet, int surface, const Vector3d& normal, Fac
                      .surface = surface,
                      .first_vertex = first,
                      .normal = normal,
-                     .mesh = std::move(mesh)});
+                     .mesh = std::move(mesh),
+                     .at_reflex_corner = std::move(at_reflex_corner)});
 }
 
 void PatchBuilder::add_sphere(int facet, int surface, const Sphere& sphere,
@@ -209,6 +211,10 @@ void PatchBuilder::emit_patch(const std::vector<Part>& parts, bool is_back,
       if (n < 0) {
         n = static_cast<int>(positions.size());
         positions.push_back(piece.mesh.position[local]);
+        out.at_reflex_corner.push_back(0);
+      }
+      if (!piece.at_reflex_corner.empty() && piece.at_reflex_corner[local]) {
+        out.at_reflex_corner[n] = 1;
       }
       return n;
     };

@@ -25,7 +25,8 @@ class PatchBuilder {
     int first_vertex = 0;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     FacetMesh mesh{};
-    int sphere = -1;  ///< index into grids_; its areas are in sphere_area_
+    std::vector<char> at_reflex_corner{};  ///< per vertex; empty: none
+    int sphere = -1;                       ///< index into grids_; its areas are in sphere_area_
   };
   /// One of a piece's patches, before they are joined.
   struct Part {

@@ -198,7 +198,10 @@ double patch_size(const Scene& scene, const MeshOptions& options) {
 
 PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
   const double size = patch_size(scene, options);
-  const CutSize cut{.patch_size = size, .elements_per_edge = options.elements_per_patch_edge};
+  const CutSize sphere_cut{.patch_size = size,
+                           .elements_per_edge = options.elements_per_patch_edge};
+  CutSize cut = sphere_cut;
+  if (options.to_be_refined) cut.elements_per_edge = (cut.elements_per_edge + 1) / 2;
   check_count(scene, size, cut);
   report(options.progress, "mesh", 0.0);
   FacetMeshes facet_meshes = mesh_facets(scene, cut, options);
@@ -211,7 +214,7 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
     const Surface& surface = scene.surfaces[facets[f].surface];
     if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-      builder.add_sphere(f, facets[f].surface, *sphere, sphere_elements(*sphere, cut));
+      builder.add_sphere(f, facets[f].surface, *sphere, sphere_elements(*sphere, sphere_cut));
       continue;
     }
     FacetMesh& mesh = facet_meshes.meshes[plane];

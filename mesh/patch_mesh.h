@@ -52,6 +52,8 @@ struct PatchMesh {
 
   // Per vertex.
   std::vector<Eigen::Vector3d> vertex_normal{};  ///< unit, on the side its elements face
+  /// 1: one of several at a reflex corner, each of one element. Empty if the mesh is from a file.
+  std::vector<char> at_reflex_corner{};
 
   // Per patch.
   std::vector<int> first_element{};  ///< patch_count + 1 entries
@@ -90,6 +92,10 @@ struct MeshOptions {
   int auto_patch_count = 1600;
   /// Elements along a patch edge, >= 1. More follow shadows more closely at the square of the cost.
   int elements_per_patch_edge = 2;
+  /// Elements of polygons are twice as long, since RefinedElements will split those that matter
+  /// (odd numbers per patch edge are rounded up); those of spheres, which it does not split, are
+  /// not.
+  bool to_be_refined = false;
   /// Cut receivers along the critical lines of emitters, most important first: D1, and D2 where the
   /// penumbra is not much wider than the elements.
   bool discontinuity = false;

@@ -20,7 +20,7 @@ double corner_angle(const FacetMesh& mesh, const std::array<int, 4>& c, int corn
 
 }  // namespace
 
-void split_reflex_corners(FacetMesh& mesh) {
+std::vector<char> split_reflex_corners(FacetMesh& mesh) {
   // Between straight on (180 degrees) and inside (360), with room for cells that are not quite
   // flat.
   constexpr double least = 200.0 * std::numbers::pi / 180.0;
@@ -29,18 +29,20 @@ void split_reflex_corners(FacetMesh& mesh) {
   for (const auto& c : mesh.corners) {
     for (int i = 0; i < (c[3] < 0 ? 3 : 4); ++i) angle[c[i]] += corner_angle(mesh, c, i);
   }
-  std::vector<char> taken(mesh.position.size(), 0);
+  std::vector<char> split(mesh.position.size(), 0);
   for (auto& c : mesh.corners) {
     for (int i = 0; i < (c[3] < 0 ? 3 : 4); ++i) {
       const int v = c[i];
       if (v >= static_cast<int>(angle.size()) || !(angle[v] > least && angle[v] < most)) continue;
-      if (taken[v]) {
+      if (split[v]) {
         c[i] = static_cast<int>(mesh.position.size());
         mesh.position.push_back(Vector3d(mesh.position[v]));
+        split.push_back(1);
       }
-      taken[v] = 1;
+      split[v] = 1;
     }
   }
+  return split;
 }
 
 }  // namespace lightwell

@@ -186,9 +186,8 @@ double DirectLight::visible_share(const Emitter& emitter, const ElementCaster& c
   return tally.share();
 }
 
-double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& caster,
-                                const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                int facet, std::uint64_t key, const ShadowOptions& options) const {
+double DirectLight::unoccluded_form_factor(const Emitter& emitter, const Eigen::Vector3d& point,
+                                           const Eigen::Vector3d& normal, int facet) const {
   if (facet == emitter.facet) return 0.0;
   double F = 0.0;
   if (emitter.is_sphere) {
@@ -200,18 +199,47 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
   }
   // Below this the emitter grazes the horizon or is edge-on: rounding, not light.
   constexpr double nothing = 1e-12;
-  if (!(F > nothing)) return 0.0;
+  return F > nothing ? F : 0.0;
+}
+
+double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& caster,
+                                const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                int facet, std::uint64_t key, const ShadowOptions& options) const {
+  const double F = unoccluded_form_factor(emitter, point, normal, facet);
+  if (!(F > 0.0)) return 0.0;
   return F * visible_share(emitter, caster, point, normal, facet, key, options);
+}
+
+std::optional<bool> DirectLight::sees(const Emitter& emitter, const ElementCaster& caster,
+                                      const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                      int facet, double u, double v) const {
+  ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u, v)
+                                          : polygon_sample(emitter, point, normal, u, v);
+  if (!(sample.weight > 0.0)) return std::nullopt;
+  sample.ray.origin_group = facet;
+  sample.ray.target_group = emitter.facet;
+  std::uint8_t blocked = 0;
+  caster.occluded({&sample.ray, 1}, {&blocked, 1});
+  return blocked == 0;
 }
 
 Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
                                  const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                                 const ShadowOptions& options) const {
+                                 const ShadowOptions& options, EmitterSight* sight) const {
   Spectrum E = Spectrum::Zero(bands_);
+  if (sight) *sight = {};
   for (std::size_t e = 0; e < emitters_.size(); ++e) {
-    const double F =
-        form_factor(emitters_[e], caster, point, normal, facet, random_key(key, e), options);
-    if (F > 0.0) E += emitters_[e].exitance * static_cast<float>(F);
+    const double F = unoccluded_form_factor(emitters_[e], point, normal, facet);
+    if (!(F > 0.0)) continue;
+    const double share =
+        visible_share(emitters_[e], caster, point, normal, facet, random_key(key, e), options);
+    if (share > 0.0) E += emitters_[e].exitance * static_cast<float>(F * share);
+    if (!sight) continue;
+    sight->unshadowed += F * emitters_[e].exitance.mean();
+    constexpr std::size_t bits = 64;
+    const std::uint64_t bit = e < bits ? std::uint64_t{1} << e : 0;
+    if (share == 1.0) sight->whole |= bit;
+    if (share == 0.0) sight->hidden |= bit;
   }
   return E;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "mesh/element_caster.h"
@@ -35,6 +36,13 @@ struct ShadowOptions {
   int max_rays = 64;  ///< 1 to most_shadow_rays
 };
 
+/// What a point sees of the emitters, by the shadow rays of its irradiance.
+struct EmitterSight {
+  double unshadowed = 0.0;   ///< sum M F with nothing in the way, mean of the bands, W/m^2
+  std::uint64_t whole = 0;   ///< bit i: every ray reached emitter i, of the first 64
+  std::uint64_t hidden = 0;  ///< bit i: none did
+};
+
 /// Light straight from the scene's emitters. Emitters are taken in order of falling exitance, all
 /// of one exitance together, while they add up to at most a quarter of the scene's area: those are
 /// small and bright, and a hemisphere of rays would find them by chance. What emits beyond that is
@@ -56,10 +64,20 @@ class DirectLight {
                      const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
                      std::uint64_t key, const ShadowOptions& options = {}) const;
 
+  /// The same with nothing in the way.
+  double unoccluded_form_factor(const Emitter& emitter, const Eigen::Vector3d& point,
+                                const Eigen::Vector3d& normal, int facet) const;
+
+  /// Whether a point sees the place (u, v), in [0,1)^2, of an emitter; empty if no light would come
+  /// from there.
+  std::optional<bool> sees(const Emitter& emitter, const ElementCaster& caster,
+                           const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
+                           double u, double v) const;
+
   /// Irradiance E = sum M F at a point, W/m^2 per band, from all emitters.
   Spectrum irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
                       const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                      const ShadowOptions& options = {}) const;
+                      const ShadowOptions& options = {}, EmitterSight* sight = nullptr) const;
 
  private:
   double visible_share(const Emitter& emitter, const ElementCaster& caster,

@@ -83,6 +83,27 @@ class HemisphereGather {
   HemisphereSets sets_;
 };
 
+// Calls body(i, key) for every point, with the key of its random numbers. Slices keep progress and
+// interruption on this thread: each a fraction of a second of rays.
+template <class Body>
+void for_each_point(std::span<const GatherPoint> points, const GatherOptions& options,
+                    Body&& body) {
+  const int count = static_cast<int>(points.size());
+  constexpr int rays_per_slice = 1 << 20;
+  const int slice =
+      std::clamp(rays_per_slice / std::max(options.rays, 1), 2, std::max(64, count / 100));
+  const int grain = std::clamp(slice / 8, 1, 8);
+  for (int begin = 0; begin < count; begin += slice) {
+    report(options.progress, "gather", static_cast<double>(begin) / count);
+    parallel_for(std::min(slice, count - begin), grain, [&](int low, int high) {
+      for (int i = begin + low; i < begin + high; ++i) {
+        body(i, random_key(points[i].key.value_or(static_cast<std::uint64_t>(i)), options.replica));
+      }
+    });
+  }
+  report(options.progress, "gather", 1.0);
+}
+
 std::vector<int> vertex_patches(const PatchMesh& mesh) {
   std::vector<int> patch(mesh.vertex_count(), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -101,27 +122,42 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
   const HemisphereGather hemisphere(scene, caster, radiosity, options);
   GatheredIrradiance result{.direct = BandArray::Zero(count, scene.bands.count()),
                             .indirect = BandArray::Zero(count, scene.bands.count())};
-  // Slices keep progress and interruption on this thread: each a fraction of a second of rays.
-  constexpr int rays_per_slice = 1 << 20;
-  const int slice =
-      std::clamp(rays_per_slice / std::max(options.rays, 1), 2, std::max(64, count / 100));
-  const int grain = std::clamp(slice / 8, 1, 8);
-  for (int begin = 0; begin < count; begin += slice) {
-    report(options.progress, "gather", static_cast<double>(begin) / count);
-    parallel_for(std::min(slice, count - begin), grain, [&](int low, int high) {
-      for (int i = begin + low; i < begin + high; ++i) {
-        const GatherPoint& at = points[i];
-        const std::uint64_t key = random_key(static_cast<std::uint64_t>(i), options.replica);
-        result.direct.row(i) = direct_light
-                                   .irradiance(caster, at.position, at.normal, at.facet,
-                                               random_key(key, gather_shadows), options.shadows)
-                                   .transpose();
-        result.indirect.row(i) = hemisphere.irradiance(at, key).transpose();
-      }
-    });
-  }
-  report(options.progress, "gather", 1.0);
+  for_each_point(points, options, [&](int i, std::uint64_t key) {
+    const GatherPoint& at = points[i];
+    result.direct.row(i) = direct_light
+                               .irradiance(caster, at.position, at.normal, at.facet,
+                                           random_key(key, gather_shadows), options.shadows)
+                               .transpose();
+    result.indirect.row(i) = hemisphere.irradiance(at, key).transpose();
+  });
   return result;
+}
+
+BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
+                        const DirectLight& direct_light, std::span<const GatherPoint> points,
+                        const GatherOptions& options, std::vector<EmitterSight>* sights) {
+  BandArray direct(static_cast<Eigen::Index>(points.size()), scene.bands.count());
+  if (sights) sights->assign(points.size(), {});
+  for_each_point(points, options, [&](int i, std::uint64_t key) {
+    const GatherPoint& at = points[i];
+    direct.row(i) =
+        direct_light
+            .irradiance(caster, at.position, at.normal, at.facet, random_key(key, gather_shadows),
+                        options.shadows, sights ? &(*sights)[i] : nullptr)
+            .transpose();
+  });
+  return direct;
+}
+
+BandArray gather_indirect(const Scene& scene, const ElementCaster& caster,
+                          const BandArray& radiosity, std::span<const GatherPoint> points,
+                          const GatherOptions& options) {
+  const HemisphereGather hemisphere(scene, caster, radiosity, options);
+  BandArray indirect(static_cast<Eigen::Index>(points.size()), scene.bands.count());
+  for_each_point(points, options, [&](int i, std::uint64_t key) {
+    indirect.row(i) = hemisphere.irradiance(points[i], key).transpose();
+  });
+  return indirect;
 }
 
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct GatherPoint {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< unit
   int facet =
       -1;  ///< scene-wide facet it lies on, whose plane it then does not see; -1: free space
+  /// Of the random numbers; else its place in the list. What points of one key have in common,
+  /// light from afar, has the same noise in all of them: it is not in their differences.
+  std::optional<std::uint64_t> key{};
 };
 
 struct GatherOptions {
@@ -43,6 +47,16 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
                                      const DirectLight& direct_light, const BandArray& radiosity,
                                      std::span<const GatherPoint> points,
                                      const GatherOptions& options = {});
+
+/// Only the direct light; `sights`, if given, gets one entry a point.
+BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
+                        const DirectLight& direct_light, std::span<const GatherPoint> points,
+                        const GatherOptions& options, std::vector<EmitterSight>* sights = nullptr);
+
+/// Only the indirect light.
+BandArray gather_indirect(const Scene& scene, const ElementCaster& caster,
+                          const BandArray& radiosity, std::span<const GatherPoint> points,
+                          const GatherOptions& options);
 
 /// rho E, plus the emission of patches that `direct_light` does not own: what gather_irradiance
 /// reads. `irradiance` is vertices x bands.

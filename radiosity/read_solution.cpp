@@ -255,6 +255,10 @@ void read_light(const SolutionArrays& in, const PatchMesh& mesh, RadiositySoluti
   if (in.points()->GetAbstractArray("caustic_irradiance")) {  // only where mirrors or glass are
     s.caustic_irradiance = in.bands(in.points(), "caustic_irradiance", mesh.vertex_count(), K);
   }
+  if (in.cells()->GetAbstractArray("interpolation_error")) {  // only where elements were refined
+    const auto error = in.required<float>(in.cells(), "interpolation_error", mesh.element_count());
+    s.interpolation_error = Eigen::Map<const Eigen::ArrayXf>(error.data, error.rows);
+  }
 }
 
 void read_record(const SolutionArrays& in, RadiositySolution& s) {
@@ -282,6 +286,8 @@ void read_record(const SolutionArrays& in, RadiositySolution& s) {
   s.energy = {energy[0], energy[1], energy[2], energy[3]};
 
   s.provenance = {in.text("version"), in.text("scene_file"), 0, in.text("options")};
+  const auto refinement = in.strings("refinement");
+  if (!refinement.empty()) s.provenance.refinement = refinement.front();
   const std::string hash = in.text("scene_hash");
   const auto parsed =
       std::from_chars(hash.data(), hash.data() + hash.size(), s.provenance.scene_hash, 16);

@@ -34,7 +34,8 @@ struct Provenance {
   std::string version{};  ///< program version that made it
   std::string scene_file{};
   std::uint64_t scene_hash = 0;
-  std::string options{};  ///< the command-line equivalent of what was in force
+  std::string options{};     ///< the command-line equivalent of what was in force
+  std::string refinement{};  ///< why the elements are no finer and no coarser; empty: not refined
 };
 
 /// A view-independent solution on a PatchMesh; also what is saved.
@@ -52,6 +53,10 @@ struct RadiositySolution {
   BandArray indirect_irradiance{};  ///< everything else, caustics included
   /// The part of indirect_irradiance that DirectLight's emitters send by way of mirrors and glass.
   BandArray caustic_irradiance{};
+
+  /// Per element: estimated RMS error of interpolated irradiance over it, of the mean irradiance.
+  /// Empty if the mesh was not refined by the solution.
+  Eigen::ArrayXf interpolation_error{};
 
   std::string solver{};  ///< the method that found it, or the methods; empty if read from a file
   std::vector<StepRecord> history{};

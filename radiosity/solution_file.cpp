@@ -111,7 +111,7 @@ void add_vertex_light(vtkPointData* data, const SolvedScene& solved) {
       add_values(data, "rgb", display_colors(solved.mesh, B, s.bands).data(), E.rows(), 3));
 }
 
-void add_elements(vtkCellData* data, const PatchMesh& mesh) {
+void add_elements(vtkCellData* data, const PatchMesh& mesh, const RadiositySolution& s) {
   const int n = mesh.element_count();
   const auto of_patch = [&](const char* name, const std::vector<int>& per_patch) {
     std::vector<int> values(n);
@@ -124,6 +124,8 @@ void add_elements(vtkCellData* data, const PatchMesh& mesh) {
   of_patch("material", mesh.material);
   add_values(data, "facet", mesh.facet.data(), n);
   add_values(data, "area", mesh.element_area.data(), n);
+  add_values(data, "interpolation_error", s.interpolation_error.data(),
+             s.interpolation_error.size());
 }
 
 void add_patches(vtkFieldData* data, const PatchMesh& mesh, const RadiositySolution& s) {
@@ -185,6 +187,7 @@ void add_record(vtkFieldData* data, const RadiositySolution& s) {
   add_strings(data, "scene_file", {s.provenance.scene_file});
   add_strings(data, "scene_hash", {fmt::format("{:016x}", s.provenance.scene_hash)});
   add_strings(data, "options", {s.provenance.options});
+  if (!s.provenance.refinement.empty()) add_strings(data, "refinement", {s.provenance.refinement});
 }
 
 /// What a person wants to know first, for the top of the file.
@@ -202,7 +205,7 @@ std::string summary(const SolvedScene& solved) {
       "view'\n"
       "scene: {} (hash {:016x}), 1 {} = {} m\n"
       "options: {}\n"
-      "mesh: {} patches, {} elements, {} vertices\n"
+      "mesh: {} patches, {} elements, {} vertices\n{}"
       "bands: {}, {} lm/W\n"
       "outcome: {} after {} sweeps, residual {:.3g}\n"
       "energy: {:.6g} {} emitted, {:.6g} absorbed, {:.6g} escaped, {:.3g} unshot\n"
@@ -210,7 +213,9 @@ std::string summary(const SolvedScene& solved) {
       "seconds: {:.3g}\n",
       s.provenance.version, s.provenance.scene_file, s.provenance.scene_hash, s.unit_name,
       s.metres_per_unit, s.provenance.options, mesh.patch_count(), mesh.element_count(),
-      mesh.vertex_count(), band_list, s.bands.lumens_per_watt,
+      mesh.vertex_count(),
+      s.provenance.refinement.empty() ? "" : "refined: " + s.provenance.refinement + "\n",
+      band_list, s.bands.lumens_per_watt,
       s.outcome == Outcome::converged ? "converged" : "stopped at the most sweeps allowed",
       s.history.size(), s.residual, s.energy.emitted, s.relative_units ? "(no known unit)" : "W",
       s.energy.absorbed, s.energy.escaped, s.energy.unshot, 100.0 * s.error_estimate, total);
@@ -227,7 +232,7 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
   vtkNew<vtkPolyData> poly;
   add_geometry(poly, solved.mesh);
   add_vertex_light(poly->GetPointData(), solved);
-  add_elements(poly->GetCellData(), solved.mesh);
+  add_elements(poly->GetCellData(), solved.mesh, solved.solution);
   add_patches(poly->GetFieldData(), solved.mesh, solved.solution);
   add_record(poly->GetFieldData(), solved.solution);
 

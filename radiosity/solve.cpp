@@ -4,8 +4,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "mesh/patch_sampler.h"
+#include "radiosity/reconstruct.h"
 #include "radiosity/solve_radiosity.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
@@ -14,7 +16,6 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
-constexpr std::uint64_t draft_replica = 1000;
 
 class Stopwatch {
  public:
@@ -38,54 +39,6 @@ void require_light(const Scene& scene) {
       "{}: nothing emits light, so there is nothing to solve; give a material a 'radiance', "
       "'exitance' or 'power' (in OBJ files: Ke) and use it on a surface",
       scene.file.empty() ? "the scene" : scene.file.string()));
-}
-
-// First guess for the gather: patch radiosities, smoothed to vertices by the mean of the elements
-// around.
-BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,
-                          const BandArray& patch_radiosity) {
-  BandArray sum = BandArray::Zero(mesh.vertex_count(), patch_radiosity.cols());
-  Eigen::ArrayXf weight = Eigen::ArrayXf::Zero(mesh.vertex_count());
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int p = mesh.patch[e];
-    const auto area = static_cast<float>(mesh.element_area[e]);
-    Eigen::Array<float, 1, Eigen::Dynamic> B = patch_radiosity.row(p);
-    if (direct_light.owns(mesh.facet[e])) B -= mesh.emission.row(p);
-    for (int c = 0; c < mesh.corner_count(e); ++c) {
-      sum.row(mesh.corners[e][c]) += area * B;
-      weight[mesh.corners[e][c]] += area;
-    }
-  }
-  return sum.colwise() / weight.max(1e-30f);
-}
-
-void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, RadiositySolution& solution) {
-  const PatchMesh& mesh = caster.mesh();
-  const std::vector<GatherPoint> points = vertex_gather_points(mesh);
-  solution.caustic_irradiance = caustic_irradiance(
-      scene, caster, direct_light, options.caustic_rays, options.form_factors.max_specular_depth);
-  const bool has_caustics = solution.caustic_irradiance.size() > 0;
-  GatherOptions gather_options = options.gather;
-  gather_options.progress = options.progress;
-
-  // A first, cheap gather sharpens what patches hold as one value each (the dark foot of a block);
-  // the second one reads that.
-  GatherOptions draft_options = gather_options;
-  draft_options.rays = std::max(1, gather_options.rays / 4);
-  draft_options.replica = gather_options.replica + draft_replica;
-  draft_options.shadows = {.min_rays = 16, .max_rays = 64};
-  const GatheredIrradiance draft = gather_irradiance(
-      scene, caster, direct_light, patch_to_vertex(mesh, direct_light, solution.patch_radiosity),
-      points, draft_options);
-  BandArray irradiance = draft.direct + draft.indirect;
-  if (has_caustics) irradiance += solution.caustic_irradiance;
-  const GatheredIrradiance gathered = gather_irradiance(
-      scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
-      gather_options);
-  solution.direct_irradiance = gathered.direct;
-  solution.indirect_irradiance = gathered.indirect;
-  if (has_caustics) solution.indirect_irradiance += solution.caustic_irradiance;
 }
 
 // Uniform over the area that reflects: independent gathers against the interpolation.
@@ -176,6 +129,10 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
 
 }  // namespace
 
+bool starts_coarse(const SolveOptions& options) {
+  return options.refine.tolerance > 0.0 && !options.mesh.discontinuity;
+}
+
 EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
                              const FormFactors& form_factors, const BandArray& B) {
   const BandArray E = gather(form_factors, B);
@@ -202,14 +159,16 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   Stopwatch watch;
   MeshOptions mesh_options = options.mesh;
   mesh_options.progress = options.progress;
+  mesh_options.to_be_refined = starts_coarse(options);
   solved.mesh = build_patches(scene, mesh_options);
-  const ElementCaster caster(solved.mesh);
+  require_room(solved.mesh, options.refine);
+  std::optional<ElementCaster> caster(std::in_place, solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
   seconds.push_back({"mesh", watch.lap()});
 
   solved.solution = options.progressive
-                        ? shoot(scene, caster, options)
-                        : solve_equations(scene, caster, direct_light, options, report);
+                        ? shoot(scene, *caster, options)
+                        : solve_equations(scene, *caster, direct_light, options, report);
   RadiositySolution& solution = solved.solution;
   for (const PhaseSeconds& phase : solution.seconds) seconds.push_back(phase);
   watch.lap();
@@ -218,9 +177,18 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   solution.unit_name = scene.unit_name;
   solution.relative_units = scene.relative_units;
 
-  reconstruct(scene, caster, direct_light, options, solution);
+  Draft draft = make_draft(scene, *caster, direct_light, options, solution.patch_radiosity);
+  if (draft.refined) {
+    caster.reset();
+    solved.mesh = std::move(*draft.refined);
+    caster.emplace(solved.mesh);
+    seconds.push_back({"refine", watch.lap()});
+    solution.provenance.refinement = sentence(draft.refinement);
+    if (report) report->refinement = draft.refinement;
+  }
+  reconstruct(scene, *caster, direct_light, options, std::move(draft), solution);
   seconds.push_back({"gather", watch.lap()});
-  solution.error_estimate = estimate_error(scene, caster, direct_light, options, solution);
+  solution.error_estimate = estimate_error(scene, *caster, direct_light, options, solution);
   seconds.push_back({"error_estimate", watch.lap()});
   solution.seconds = std::move(seconds);
   solution.provenance.scene_file = scene.file.string();

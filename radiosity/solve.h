@@ -5,6 +5,7 @@
 #include "radiosity/final_gather.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/progressive.h"
+#include "radiosity/refine_solution.h"
 #include "radiosity/solution.h"
 #include "radiosity/solve_radiosity.h"
 
@@ -19,6 +20,7 @@ struct SolveOptions {
   /// solver: of the options above only `form_factors.max_specular_depth` then counts.
   std::optional<ProgressiveOptions> progressive{};
   GatherOptions gather{.rays = 1024};
+  RefineOptions refine{};
   int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
   int error_points = 512;      ///< random points that the error estimate looks at
   Progress progress{};
@@ -33,12 +35,18 @@ struct SolvedScene {
 /// What the first pass found out besides the solution.
 struct SolveReport {
   FormFactorReport form_factors{};
+  RefineReport refinement{};
 };
 
-/// The whole first pass: mesh, form factors, solver, final gather to the elements' vertices,
-/// and an error estimate by independent gathers at random points (relative RMS difference from the
-/// interpolation; it holds the noise of both, so it errs on the high side). Throws InputError if
-/// nothing in the scene emits light or light never ends, Interrupted when progress says stop.
+/// Whether elements start twice as long as asked for, and are split where that matters: unless
+/// nothing is refined, and unless lines of discontinuity are drawn, which need the size asked for.
+bool starts_coarse(const SolveOptions& options);
+
+/// The whole first pass: mesh, form factors, solver, refinement of the elements, final gather to
+/// their vertices, and an error estimate by independent gathers at random points (relative RMS
+/// difference from the interpolation; it holds the noise of both, so it errs on the high side).
+/// Throws InputError if nothing in the scene emits light or light never ends, Interrupted when
+/// progress says stop.
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);
 

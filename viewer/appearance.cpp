@@ -138,6 +138,18 @@ std::vector<std::uint8_t> false_colors(const std::vector<float>& lux, const LuxR
   return bytes;
 }
 
+std::vector<std::uint8_t> error_colors(const SolvedScene& solved) {
+  const PatchMesh& mesh = solved.mesh;
+  std::vector<float> error(mesh.vertex_count(), 0.0f);
+  for (int e = 0; e < mesh.element_count() && solved.solution.interpolation_error.size() > 0; ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      float& largest = error[mesh.corners[e][c]];
+      largest = std::max(largest, solved.solution.interpolation_error[e]);
+    }
+  }
+  return false_colors(error, {.low = 1e-3, .high = 0.1});
+}
+
 Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                      const BandArray& radiance, const Camera& camera, int width) {
   Camera coarse = camera;

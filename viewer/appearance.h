@@ -50,6 +50,10 @@ Eigen::Array3f false_color(float place);
 /// 8-bit sRGB, 3 bytes a vertex.
 std::vector<std::uint8_t> false_colors(const std::vector<float>& lux, const LuxRange& range);
 
+/// The interpolation error around each vertex, the largest of its elements, on a logarithmic scale
+/// from 0.1 % of the mean irradiance to 10 %. 8-bit sRGB, 3 bytes a vertex.
+std::vector<std::uint8_t> error_colors(const SolvedScene& solved);
+
 /// A coarse picture, `width` pixels wide, of what the viewer draws for a camera: backs and glass
 /// are looked through, a miss is black. Its exposure_scale is what the second pass's picture from
 /// there has, up to mirrors and glass.

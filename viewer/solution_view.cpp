@@ -145,6 +145,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   look_.exposure_ev = options.exposure_ev;
   look_.mesh = options.mesh;
   look_.illuminance = options.illuminance;
+  look_.interpolation_error = options.interpolation_error;
   actor_.show_mesh(look_.mesh);
   legend_->SetVisibility(look_.illuminance);
   apply_camera();
@@ -167,16 +168,18 @@ double SolutionView::meter(const Camera& camera) const {
 void SolutionView::set_look(const Look& look) {
   const bool recolor = look.metered_scale != look_.metered_scale ||
                        look.exposure_ev != look_.exposure_ev ||
-                       look.illuminance != look_.illuminance;
+                       look.illuminance != look_.illuminance ||
+                       look.interpolation_error != look_.interpolation_error;
   look_ = look;
   actor_.show_mesh(look.mesh);
   actor_.show_unlit(look.unlit);
-  legend_->SetVisibility(look.illuminance);
+  legend_->SetVisibility(look.illuminance && !look.interpolation_error);
   if (recolor) apply_colors();
   apply_camera();
 }
 
 void SolutionView::apply_colors() {
+  if (look_.interpolation_error) return actor_.set_colors(error_colors(solved_));
   actor_.set_colors(look_.illuminance
                         ? false_colors(lux_, lux_range_)
                         : display_colors(radiance_, solved_.solution.bands,

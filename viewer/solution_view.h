@@ -23,6 +23,7 @@ struct Look {
   bool mesh = false;           ///< outlines of the elements
   bool unlit = true;           ///< surfaces without light are drawn, black; else looked through
   bool illuminance = false;    ///< false colours with a legend instead of light
+  bool interpolation_error = false;  ///< see error_colors; goes before illuminance
 };
 
 /// A solution set up for drawing with VTK. Keeps references to both arguments.

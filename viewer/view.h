@@ -20,9 +20,12 @@ struct ViewOptions {
   /// The scene's materials, so that mirrors and glass can be told from black surfaces; a solution
   /// alone knows only diffuse light. May be left empty.
   std::vector<Material> materials{};
-  bool mesh = false;                             ///< begin with the elements' outlines
-  bool illuminance = false;                      ///< begin in false colours
-  std::optional<LuxRange> lux_range{};           ///< of those; else what suits the solution
+  bool mesh = false;                    ///< begin with the elements' outlines
+  bool illuminance = false;             ///< begin in false colours
+  std::optional<LuxRange> lux_range{};  ///< of those; else what suits the solution
+  /// Begin with the error of interpolation that refinement estimated, in the false colours of
+  /// error_colors; of a solution that has it.
+  bool interpolation_error = false;
   bool relative_units = false;                   ///< what the scale calls lux is in no known unit
   std::filesystem::path screenshot_folder{"."};  ///< where the screenshot key leaves its PNGs
 };

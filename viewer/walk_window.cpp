@@ -229,7 +229,8 @@ void WalkWindow::press(const std::string& key_symbol) {
     look.exposure_ev = options_.exposure_ev;
     change(look);
   } else if (key == "v") {
-    look.illuminance = !look.illuminance;
+    look.illuminance = !look.illuminance && !look.interpolation_error;
+    look.interpolation_error = false;
     change(look);
   } else if (key == "m") {
     look.mesh = !look.mesh;

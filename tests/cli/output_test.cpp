@@ -42,6 +42,23 @@ TEST_F(Output, SolvePrintsOneJsonObject) {
   EXPECT_TRUE(std::filesystem::exists(folder / "S.vtp"));
 }
 
+TEST_F(Output, SolveTellsHowItRefined) {
+  const Words asked{"solve", "room.toml",      "-o", "S.vtp", "--refine",
+                    "2 %",   "--max-elements", "900"};
+  const auto json = run_json(asked + quick());
+  const auto& refinement = json["refinement"];
+  EXPECT_NE(refinement["outcome"], "off");
+  EXPECT_DOUBLE_EQ(refinement["tolerance"].get<double>(), 0.02);
+  EXPECT_EQ(refinement["elements"], json["elements"]);
+  EXPECT_LE(refinement["elements"].get<int>(), 900);
+  EXPECT_TRUE(says(json["options"], "--refine 2% --max-elements 900 "));
+  EXPECT_TRUE(says(json["refined"], "elements became"));
+  const auto off =
+      run_json(Words{"solve", "room.toml", "-o", "S.vtp", "--refine", "off"} + quick());
+  EXPECT_EQ(off["refinement"]["outcome"], "off");
+  EXPECT_FALSE(off.contains("refined"));
+}
+
 TEST_F(Output, RunLeavesSolutionPicturesAndReport) {
   const Ended ended = run(Words{"run", "room.toml", "-o", "made/results"} + quick());
   ASSERT_EQ(ended.code, 0) << ended.err;

@@ -135,10 +135,12 @@ TEST(LightLeaks, NothingPassesUnderAPartitionThatParts) {
   EXPECT_GT(least_lit, 0.1);
 }
 
-// A table leg of 2 cm, where elements are 5 cm and patches 10; `shift` moves it over the mesh.
+// A table leg of 2 cm or less, where elements are 5 cm and patches 10; `shift` moves it over the
+// mesh.
 struct Leg {
-  explicit Leg(double shift)
-      : low(0.307 + shift, 0.231 + 0.7 * shift, 0), high(low + Vector3d(0.02, 0.02, 0.7)) {}
+  explicit Leg(double shift, double thickness = 0.02)
+      : low(0.307 + shift, 0.231 + 0.7 * shift, 0),
+        high(low + Vector3d(thickness, thickness, 0.7)) {}
   Vector3d low, high;
   Vector3d lamp_middle{-0.9, -0.4, 2.2};
   double lamp_half = 0.15;
@@ -176,13 +178,14 @@ double beside_leg(const Leg& leg, const Vector3d& at) {
   return sum * std::pow(2.0 * leg.lamp_half / n, 2) / std::numbers::pi;
 }
 
-// Places 1 mm from the two faces of the leg that look away from the lamp.
+// Places a twentieth of its thickness from the two faces of the leg that look away from the lamp.
 std::vector<Vector3d> behind_foot(const Leg& leg) {
   std::vector<Vector3d> places;
+  const double step = (leg.high.x() - leg.low.x()) / 20.0;
   for (int k = 0; k < 20; ++k) {
-    const double t = (k + 0.5) * 1e-3;
-    places.emplace_back(leg.high.x() + 1e-3, leg.low.y() + t, 0);
-    places.emplace_back(leg.low.x() + t, leg.high.y() + 1e-3, 0);
+    const double t = (k + 0.5) * step;
+    places.emplace_back(leg.high.x() + step, leg.low.y() + t, 0);
+    places.emplace_back(leg.low.x() + t, leg.high.y() + step, 0);
   }
   return places;
 }
@@ -245,17 +248,39 @@ INSTANTIATE_TEST_SUITE_P(Shifts, ThinLeg, testing::Values(0.0, 0.013, 0.029));
 
 TEST_P(ThinLeg, CastsAnUnbrokenShadowFromItsFoot) {
   const LegShadow shadow = leg_shadow(Leg(GetParam()), false);
-  // The floor beside the foot has vertices at the foot's corners alone. Along a dark face
-  // irradiance rises in a line from 0 at the corner between both to at most all at the other, whose
-  // element looks past the leg: a half in the mean. Without a contact line it would be about 1.
-  EXPECT_LT(shadow.behind, 0.5);
+  // Along a dark face irradiance rises in a line from 0, at the last vertex that the leg shades, to
+  // at most all at the far corner, whose element looks past it: where the face is split in four, a
+  // half over a quarter of it. Without a contact line it would be about 1.
+  EXPECT_LT(shadow.behind, shadow.true_behind + 0.125);
   // As beside a panel, with elements of 5 cm and 0.8 a metre.
   EXPECT_LT(shadow.before, 1e-3);
-  // Linear elements draw what one vertex sees two elements wide. The shadow is 0.5 to 1.5 wide, so
-  // strips may hold up to twice the truth; a shadow broken into dots would have strips of 0.
+  // Linear elements draw what one vertex sees two elements wide. The shadow is 2 to 6 elements of
+  // 1.2 cm wide, so strips may hold half more than the truth; a shadow broken into dots would have
+  // strips of 0.
+  EXPECT_GT(shadow.least, 0.75);
+  EXPECT_LT(shadow.most, 1.5);
+  EXPECT_NEAR(shadow.whole, 1.0, 0.1);
+}
+
+// Of a fifth of an element: the shadow is 1 to 5 elements of 1.2 cm wide, so that strips may hold
+// between half of the truth and twice as much.
+TEST_P(ThinLeg, OfOneCentimetreDoesSoToo) {
+  const LegShadow shadow = leg_shadow(Leg(GetParam(), 0.01), false);
+  EXPECT_LT(shadow.behind, shadow.true_behind + 0.25);  // the face in two
+  EXPECT_LT(shadow.before, 1e-3);
   EXPECT_GT(shadow.least, 0.5);
   EXPECT_LT(shadow.most, 2.0);
-  EXPECT_NEAR(shadow.whole, 1.0, 0.15);
+  EXPECT_NEAR(shadow.whole, 1.0, 0.1);
+}
+
+// Of a tenth of an element: what its shadow takes from the floor is below the tolerance but for its
+// foot. It is there all the same, and dark at the foot.
+TEST_P(ThinLeg, OfHalfACentimetreIsNotLost) {
+  const LegShadow shadow = leg_shadow(Leg(GetParam(), 0.005), false);
+  EXPECT_LT(shadow.behind, 0.5);
+  EXPECT_LT(shadow.before, 1e-3);
+  EXPECT_GT(shadow.least, 0.0);
+  EXPECT_NEAR(shadow.whole, 1.0, 0.5);
 }
 
 TEST_P(ThinLeg, TouchesTheFloorWhereTheMeshIsCutAlongItsShadow) {

@@ -38,6 +38,12 @@ inline SolveOptions direct_alone() {
   return {.gather = {.rays = 16}, .error_points = 0};
 }
 
+/// For what asks about elements of even size.
+inline SolveOptions even(SolveOptions options) {
+  options.refine.tolerance = 0.0;
+  return options;
+}
+
 /// A solved scene that can be asked for irradiance at places of its surfaces.
 class Lit {
  public:

@@ -69,6 +69,8 @@ void expect_same_solution(const RadiositySolution& a, const RadiositySolution& b
   expect_same_bits(a.direct_irradiance, b.direct_irradiance, "direct_irradiance");
   expect_same_bits(a.indirect_irradiance, b.indirect_irradiance, "indirect_irradiance");
   expect_same_bits(a.caustic_irradiance, b.caustic_irradiance, "caustic_irradiance");
+  ASSERT_EQ(a.interpolation_error.size(), b.interpolation_error.size());
+  EXPECT_TRUE((a.interpolation_error == b.interpolation_error).all());
   ASSERT_EQ(a.history.size(), b.history.size());
   for (std::size_t i = 0; i < a.history.size(); ++i) {
     EXPECT_EQ(a.history[i].residual, b.history[i].residual);
@@ -90,6 +92,7 @@ void expect_same_solution(const RadiositySolution& a, const RadiositySolution& b
   EXPECT_EQ(a.provenance.scene_file, b.provenance.scene_file);
   EXPECT_EQ(a.provenance.scene_hash, b.provenance.scene_hash);
   EXPECT_EQ(a.provenance.options, b.provenance.options);
+  EXPECT_EQ(a.provenance.refinement, b.provenance.refinement);
 }
 
 class SolutionFileBands : public SolutionFile, public testing::WithParamInterface<int> {};
@@ -103,6 +106,15 @@ TEST_P(SolutionFileBands, RestoresEveryBit) {
   EXPECT_EQ(folder_.file_count(), 1) << "a temporary file was left behind";
 }
 INSTANTIATE_TEST_SUITE_P(Bands, SolutionFileBands, testing::Values(1, 3, 76, max_bands));
+
+TEST_F(SolutionFile, RestoresWhatRefinementFound) {
+  SolvedScene solved = small_solution(3);
+  solved.solution.interpolation_error =
+      Eigen::ArrayXf::LinSpaced(solved.mesh.element_count(), 0.0f, 0.3f);
+  solved.solution.provenance.refinement = "the tolerance is reached";
+  write_solution(folder_ / "s.vtp", solved);
+  expect_same_solution(solved.solution, read_solution(folder_ / "s.vtp").solution);
+}
 
 TEST_F(SolutionFile, RestoresASolutionWithoutHistoryOrSpheres) {
   SolvedScene solved = small_solution(3);

@@ -129,6 +129,7 @@ TEST(SolveScene, BitsDoNotDependOnTheNumberOfThreads) {
     EXPECT_TRUE(same_bits(one.solution.direct_irradiance, other->solution.direct_irradiance));
     EXPECT_TRUE(same_bits(one.solution.indirect_irradiance, other->solution.indirect_irradiance));
     EXPECT_EQ(one.solution.error_estimate, other->solution.error_estimate);
+    EXPECT_EQ(one.mesh.corners, other->mesh.corners);
   }
 }
 
@@ -202,6 +203,7 @@ TEST(SolveScene, ConvergedBoxesWithinDiscretisation) {
     SolveOptions options;
     options.mesh.auto_patch_count = 600;
     options.gather.rays = 1024;
+    options.refine = {.tolerance = 0.001, .max_elements = 1000000};
     const SolvedScene solved = solve_scene(scene, options);
     const ElementCaster caster(solved.mesh);
     double worst = 0.0;

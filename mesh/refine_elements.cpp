@@ -1,0 +1,316 @@
+#include "mesh/refine_elements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "mesh/closure_pieces.h"
+#include "mesh/sphere_grid.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+// One number per place, in ascending order of coordinates. What touches in the base has the same
+// bits there.
+std::vector<int> vertex_places(const PatchMesh& mesh) {
+  std::vector<int> order(mesh.vertex_count());
+  std::iota(order.begin(), order.end(), 0);
+  const auto coordinates = [&](int v) {
+    const Vector3d p = mesh.position(v);
+    return std::tuple(p.x(), p.y(), p.z());
+  };
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const auto p = coordinates(a), q = coordinates(b);
+    return p < q || (p == q && a < b);
+  });
+  std::vector<int> place(order.size(), 0);
+  int count = -1;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || coordinates(order[i]) != coordinates(order[i - 1])) ++count;
+    place[order[i]] = count;
+  }
+  return place;
+}
+
+double fan_area(const std::array<int, 4>& c, const std::vector<Vector3d>& positions) {
+  const Vector3d& a = positions[c[0]];
+  Vector3d sum = (positions[c[1]] - a).cross(positions[c[2]] - a);
+  if (c[3] >= 0) sum += (positions[c[2]] - a).cross(positions[c[3]] - a);
+  return 0.5 * sum.norm();
+}
+
+}  // namespace
+
+RefinedElements::RefinedElements(const PatchMesh& base) : base_(&base) {
+  vertices_.resize(base_->vertex_count());
+  for (int v = 0; v < base_->vertex_count(); ++v) vertices_[v].position = base_->position(v);
+  for (int e = base_->element_count() - 1; e >= 0; --e) {
+    for (int i = 0; i < base_->corner_count(e); ++i) vertices_[base_->corners[e][i]].element = e;
+  }
+  const std::vector<int> places = vertex_places(*base_);
+  for (const int place : places) place_count_ = std::max(place_count_, place + 1);
+  add_base_cells(places);
+  find_reflex_corners(places);
+}
+
+void RefinedElements::add_base_cells(const std::vector<int>& places) {
+  cell_of_.assign(base_->element_count(), -1);
+  std::vector<std::tuple<int, int, int>> sides;  // places, 4 cell + corner
+  for (int e = 0; e < base_->element_count(); ++e) {
+    const bool is_sphere = sphere_grid_of(*base_, base_->facet[e]) != nullptr;
+    const int twin = base_->twin[e];
+    if (is_sphere || (twin >= 0 && twin < e)) continue;
+    const int number = static_cast<int>(cells_.size());
+    cell_of_[e] = number;
+    Cell cell{.base = e, .corner_count = base_->corner_count(e)};
+    for (int i = 0; i < cell.corner_count; ++i) {
+      cell.vertex[0][i] = base_->corners[e][i];
+      cell.place[i] = places[base_->corners[e][i]];
+    }
+    for (int i = 0; i < cell.corner_count && twin >= 0; ++i) {
+      const int at = base_->corners[twin][i];
+      const auto same = std::find(cell.place.begin(), cell.place.end(), places[at]);
+      cell.vertex[1][same - cell.place.begin()] = at;
+    }
+    for (int i = 0; i < cell.corner_count; ++i) {
+      const auto [low, high] = std::minmax(cell.place[i], cell.place[(i + 1) % cell.corner_count]);
+      sides.emplace_back(low, high, 4 * number + i);
+    }
+    cells_.push_back(cell);
+  }
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const auto& [low, high, user] = sides[i];
+    const bool is_new =
+        i == 0 || std::get<0>(sides[i - 1]) != low || std::get<1>(sides[i - 1]) != high;
+    const int edge = is_new ? add_edge(low, high) : static_cast<int>(edges_.size()) - 1;
+    cells_[user / 4].edge[user % 4] = edge;
+    use_edge(user / 4, user % 4);
+  }
+}
+
+void RefinedElements::find_reflex_corners(const std::vector<int>& places) {
+  reflex_.resize(base_->vertex_count());
+  std::iota(reflex_.begin(), reflex_.end(), 0);
+  if (base_->at_reflex_corner.empty()) return;
+  const auto root = [this](int v) {
+    while (reflex_[v] != v) v = reflex_[v] = reflex_[reflex_[v]];
+    return v;
+  };
+  std::vector<std::tuple<int, int, int, int>> corners;  // place, facet, side, vertex
+  for (int e = 0; e < base_->element_count(); ++e) {
+    for (int i = 0; i < base_->corner_count(e); ++i) {
+      const int v = base_->corners[e][i];
+      if (!base_->at_reflex_corner[v]) continue;
+      corners.emplace_back(places[v], base_->facet[e], base_->is_back[base_->patch[e]], v);
+    }
+  }
+  std::sort(corners.begin(), corners.end());
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const auto& [place, facet, side, vertex] = corners[i];
+    if (std::tuple(place, facet, side) != std::tuple(std::get<0>(corners[i - 1]),
+                                                     std::get<1>(corners[i - 1]),
+                                                     std::get<2>(corners[i - 1]))) {
+      continue;
+    }
+    const int r = root(vertex), s = root(std::get<3>(corners[i - 1]));
+    reflex_[std::max(r, s)] = std::min(r, s);
+  }
+  for (int v = 0; v < base_->vertex_count(); ++v) reflex_[v] = root(v);
+}
+
+int RefinedElements::side_count(int cell) const {
+  return base_->twin[cells_[cell].base] >= 0 ? 2 : 1;
+}
+
+int RefinedElements::element(int cell, int side) const {
+  const int e = cells_[cell].base;
+  return side == 0 ? e : base_->twin[e];
+}
+
+double RefinedElements::area(int cell) const {
+  const Cell& c = cells_[cell];
+  std::array<int, 4> corners{0, 1, 2, c.corner_count == 4 ? 3 : -1};
+  std::vector<Vector3d> positions;
+  for (int i = 0; i < c.corner_count; ++i) positions.push_back(position(c.vertex[0][i]));
+  return fan_area(corners, positions);
+}
+
+template <class Visit>
+void RefinedElements::for_each_leaf(int root, Visit&& visit) const {
+  if (!cells_[root].is_split) return visit(root);
+  for (int i = 0; i < 4; ++i) for_each_leaf(cells_[root].first_child + i, visit);
+}
+
+std::vector<int> RefinedElements::leaves() const {
+  std::vector<int> all;
+  for (const int root : cell_of_) {
+    if (root >= 0) for_each_leaf(root, [&](int cell) { all.push_back(cell); });
+  }
+  return all;
+}
+
+unsigned RefinedElements::split_edges(const Cell& cell) const {
+  unsigned edges = 0;
+  for (int i = 0; i < cell.corner_count; ++i) {
+    if (edges_[cell.edge[i]].splits > 0) edges |= 1U << i;
+  }
+  return edges;
+}
+
+std::int64_t RefinedElements::element_count() const {
+  std::int64_t count = 0;
+  for (int e = 0; e < base_->element_count(); ++e) {
+    const int root = cell_of_[e];
+    if (root < 0) {  // backs are counted with their fronts
+      if (base_->twin[e] < 0 || sphere_grid_of(*base_, base_->facet[e])) ++count;
+      continue;
+    }
+    for_each_leaf(root, [&](int leaf) {
+      const Cell& cell = cells_[leaf];
+      const auto pieces = closure_pieces(cell.corner_count, split_edges(cell)).size();
+      count += static_cast<std::int64_t>(pieces) * side_count(leaf);
+    });
+  }
+  return count;
+}
+
+int RefinedElements::add_vertex(const Vertex& vertex) {
+  vertices_.push_back(vertex);
+  return static_cast<int>(vertices_.size()) - 1;
+}
+
+int RefinedElements::edge_vertex(int number, int side, int i) {
+  const Cell& cell = cells_[number];
+  Edge& edge = edges_[cell.edge[i]];
+  const int a = cell.vertex[side][i], b = cell.vertex[side][(i + 1) % cell.corner_count];
+  const auto representative = [this](int v) {
+    return v < static_cast<int>(reflex_.size()) ? reflex_[v] : v;
+  };
+  int from = representative(a), to = representative(b);
+  if (from > to) std::swap(from, to);
+  for (int m = edge.first_middle; m >= 0; m = middles_[m].next) {
+    if (middles_[m].from == from && middles_[m].to == to) return middles_[m].vertex;
+  }
+  const int vertex = add_vertex({.position = 0.5 * (position(a) + position(b)),
+                                 .element = element(number, side),
+                                 .ends = {a, b, -1, -1}});
+  middles_.push_back({from, to, vertex, edge.first_middle});
+  edge.first_middle = static_cast<int>(middles_.size()) - 1;
+  return vertex;
+}
+
+int RefinedElements::center_vertex(int number, int side) {
+  Cell& cell = cells_[number];
+  if (cell.center[side] >= 0) return cell.center[side];
+  Vector3d sum = Vector3d::Zero();
+  for (int i = 0; i < cell.corner_count; ++i) sum += position(cell.vertex[0][i]);
+  std::array<int, 4> ends{-1, -1, -1, -1};
+  std::copy_n(cell.vertex[side].begin(), cell.corner_count, ends.begin());
+  cell.center[side] = add_vertex(
+      {.position = sum / cell.corner_count, .element = element(number, side), .ends = ends});
+  return cell.center[side];
+}
+
+PatchPoint RefinedElements::inside(int vertex, double inset) const {
+  const Vertex& v = vertices_[vertex];
+  const PatchPoint center = element_center(*base_, v.element);
+  if (const SphereGrid* grid = sphere_grid_of(*base_, base_->facet[v.element])) {
+    const Vector3d out = (v.position - grid->sphere.center).normalized();
+    const bool is_back = base_->is_back[base_->patch[v.element]] != 0;
+    return {v.element, v.position, is_back ? Vector3d(-out) : out};
+  }
+  return {v.element, v.position + inset * (center.position - v.position), center.normal};
+}
+
+// The vertices of a piece, on the side asked for and counter-clockwise there.
+std::array<int, 4> RefinedElements::piece_vertices(int cell, int side,
+                                                   const std::array<int, 4>& piece) {
+  std::array<int, 4> c{-1, -1, -1, -1};
+  for (int i = 0; i < 4 && piece[i] >= 0; ++i) {
+    c[i] = piece[i] == center_node   ? center_vertex(cell, side)
+           : piece[i] >= middle_node ? edge_vertex(cell, side, piece[i] - middle_node)
+                                     : corner_vertex(cell, side, piece[i]);
+  }
+  if (side == 0) return c;
+  return c[3] < 0 ? std::array<int, 4>{c[0], c[2], c[1], -1}
+                  : std::array<int, 4>{c[0], c[3], c[2], c[1]};
+}
+
+RefinedMesh RefinedElements::mesh() {
+  RefinedMesh refined;
+  PatchMesh& out = refined.mesh;
+  std::vector<double> areas;
+  std::vector<Vector3d> positions;
+  std::vector<int> number;  // in the mesh, by vertex here
+  std::vector<int> first(base_->element_count() + 1, 0);
+  const auto mesh_vertex = [&](int v) {
+    if (v >= static_cast<int>(number.size())) number.resize(vertices_.size(), -1);
+    if (number[v] < 0) {
+      number[v] = static_cast<int>(positions.size());
+      positions.push_back(position(v));
+      refined.vertex.push_back(v);
+      const bool is_base = v < static_cast<int>(base_->at_reflex_corner.size());
+      out.at_reflex_corner.push_back(is_base ? base_->at_reflex_corner[v] : 0);
+    }
+    return number[v];
+  };
+  const auto add = [&](int e, int cell, std::array<int, 4> c) {
+    for (int& v : c) v = v < 0 ? -1 : mesh_vertex(v);
+    out.corners.push_back(c);
+    out.patch.push_back(base_->patch[e]);
+    out.facet.push_back(base_->facet[e]);
+    refined.cell.push_back(cell);
+  };
+  for (int e = 0; e < base_->element_count(); ++e) {
+    first[e] = static_cast<int>(out.corners.size());
+    const int side =
+        cell_of_[e] < 0 && base_->twin[e] >= 0 && cell_of_[base_->twin[e]] >= 0 ? 1 : 0;
+    const int root = side == 0 ? cell_of_[e] : cell_of_[base_->twin[e]];
+    if (root < 0) {
+      add(e, -1, base_->corners[e]);
+      areas.push_back(base_->element_area[e]);
+      continue;
+    }
+    double sum = 0.0;
+    for_each_leaf(root, [&](int leaf) {
+      const Cell& cell = cells_[leaf];
+      const int corner_count = cell.corner_count;
+      for (const ElementPiece& piece : closure_pieces(corner_count, split_edges(cell))) {
+        add(e, leaf, piece_vertices(leaf, side, piece));
+        areas.push_back(fan_area(out.corners.back(), positions));
+        sum += areas.back();
+      }
+    });
+    // Exactly the element's, although rounding moves the middle of an edge off its line.
+    for (std::size_t i = first[e]; i < areas.size(); ++i) areas[i] *= base_->element_area[e] / sum;
+  }
+  first.back() = static_cast<int>(out.corners.size());
+  for (int e = 0; e < base_->element_count(); ++e) {
+    for (int k = first[e]; k < first[e + 1]; ++k) {
+      out.twin.push_back(base_->twin[e] < 0 ? -1 : first[base_->twin[e]] + (k - first[e]));
+    }
+  }
+  out.element_area =
+      Eigen::Map<Eigen::ArrayXd>(areas.data(), static_cast<Eigen::Index>(areas.size()));
+  for (const int e : base_->first_element) out.first_element.push_back(first[e]);
+  out.area = base_->area;
+  out.reflectance = base_->reflectance;
+  out.emission = base_->emission;
+  out.surface = base_->surface;
+  out.material = base_->material;
+  out.is_back = base_->is_back;
+  out.sphere_grids = base_->sphere_grids;
+  for (SphereGrid& grid : out.sphere_grids) {
+    for (int& e : grid.element) e = first[e];
+  }
+  out.notes = base_->notes;
+  build_topology(out, positions);
+  return refined;
+}
+
+}  // namespace lightwell

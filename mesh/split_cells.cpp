@@ -1,0 +1,148 @@
+// How the cells of RefinedElements are split and joined again.
+#include <utility>
+
+#include "mesh/closure_pieces.h"
+#include "mesh/refine_elements.h"
+
+namespace lightwell {
+
+int RefinedElements::add_edge(int from, int to) {
+  edges_.push_back({.place = {from, to}});
+  return static_cast<int>(edges_.size()) - 1;
+}
+
+void RefinedElements::use_edge(int cell, int corner) {
+  Edge& edge = edges_[cells_[cell].edge[corner]];
+  cells_[cell].next_user[corner] = edge.first_user;
+  edge.first_user = 4 * cell + corner;
+}
+
+void RefinedElements::split_edge(int number) {
+  if (edges_[number].middle_place >= 0) return;
+  const int middle = place_count_++;
+  edges_[number].middle_place = middle;
+  for (int end = 0; end < 2; ++end) {
+    const int half = add_edge(edges_[number].place[end], middle);
+    edges_[half].parent = number;
+    edges_[number].half[end] = half;
+  }
+}
+
+void RefinedElements::make_children(int number) {
+  const int n = cells_[number].corner_count;
+  const Cell parent = cells_[number];
+  // By node of closure_pieces.
+  std::array<int, 9> place{};
+  std::array<std::array<int, 9>, 2> vertex{};
+  for (int i = 0; i < n; ++i) {
+    split_edge(parent.edge[i]);
+    place[i] = parent.place[i];
+    place[middle_node + i] = edges_[parent.edge[i]].middle_place;
+  }
+  place[center_node] = n == 4 ? place_count_++ : -1;
+  for (int side = 0; side < side_count(number); ++side) {
+    for (int i = 0; i < n; ++i) {
+      vertex[side][i] = parent.vertex[side][i];
+      vertex[side][middle_node + i] = edge_vertex(number, side, i);
+    }
+    if (n == 4) vertex[side][center_node] = center_vertex(number, side);
+  }
+  const auto half = [&](int edge, int end) {
+    const Edge& whole = edges_[parent.edge[edge]];
+    return whole.half[whole.place[0] == place[end] ? 0 : 1];
+  };
+  // The edges inside: between middles in a triangle, from each middle to the centre in others.
+  std::array<int, 4> inner{-1, -1, -1, -1};
+  for (int i = 0; i < n; ++i) {
+    const int to = n == 4 ? center_node : middle_node + (i + 1) % n;
+    inner[i] = add_edge(place[middle_node + i], place[to]);
+  }
+  const auto edge_between = [&](int a, int b) {
+    if (a < middle_node) std::swap(a, b);
+    if (b < middle_node) return half(a - middle_node, b);
+    if (n == 4) return inner[std::min(a, b) - middle_node];
+    const int i = a - middle_node, k = b - middle_node;
+    return inner[(i + 1) % n == k ? i : k];
+  };
+  cells_[number].first_child = static_cast<int>(cells_.size());
+  for (const ElementPiece& piece : closure_pieces(n, (1U << n) - 1)) {
+    Cell child{.base = parent.base,
+               .parent = number,
+               .level = parent.level + 1,
+               .corner_count = n,
+               .is_active = false};
+    for (int i = 0; i < n; ++i) {
+      child.place[i] = place[piece[i]];
+      for (int side = 0; side < 2; ++side) child.vertex[side][i] = vertex[side][piece[i]];
+      child.edge[i] = edge_between(piece[i], piece[(i + 1) % n]);
+    }
+    cells_.push_back(child);
+    for (int i = 0; i < n; ++i) use_edge(static_cast<int>(cells_.size()) - 1, i);
+  }
+}
+
+void RefinedElements::split_alone(int number) {
+  if (cells_[number].first_child < 0) make_children(number);
+  Cell& cell = cells_[number];
+  cell.is_split = true;
+  for (int i = 0; i < cell.corner_count; ++i) ++edges_[cell.edge[i]].splits;
+  for (int i = 0; i < 4; ++i) cells_[cell.first_child + i].is_active = true;
+}
+
+void RefinedElements::split(std::span<const int> cells) {
+  std::vector<int> open;
+  for (const int marked : cells) {
+    open.push_back(marked);
+    while (!open.empty()) {
+      const int number = open.back();
+      const Cell& cell = cells_[number];
+      if (cell.is_split || !cell.is_active) {
+        open.pop_back();
+        continue;
+      }
+      // A leaf along the whole of what is half an edge of it would get two vertices there.
+      const std::size_t before = open.size();
+      for (int i = 0; i < cell.corner_count; ++i) {
+        const int whole = edges_[cell.edge[i]].parent;
+        if (whole < 0) continue;
+        for (int user = edges_[whole].first_user; user >= 0;
+             user = cells_[user / 4].next_user[user % 4]) {
+          const Cell& other = cells_[user / 4];
+          if (other.is_active && !other.is_split) open.push_back(user / 4);
+        }
+      }
+      if (open.size() > before) continue;
+      open.pop_back();
+      split_alone(number);
+    }
+  }
+}
+
+bool RefinedElements::may_merge(const Cell& cell) const {
+  if (!cell.is_split) return false;
+  for (int i = 0; i < 4; ++i) {
+    if (cells_[cell.first_child + i].is_split) return false;
+  }
+  for (int i = 0; i < cell.corner_count; ++i) {
+    const Edge& edge = edges_[cell.edge[i]];
+    for (const int half : edge.half) {
+      if (edges_[half].splits > 0) return false;
+    }
+  }
+  return true;
+}
+
+int RefinedElements::merge(std::span<const int> cells) {
+  int count = 0;
+  for (const int number : cells) {
+    Cell& cell = cells_[number];
+    if (!may_merge(cell)) continue;
+    cell.is_split = false;
+    for (int i = 0; i < cell.corner_count; ++i) --edges_[cell.edge[i]].splits;
+    for (int i = 0; i < 4; ++i) cells_[cell.first_child + i].is_active = false;
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace lightwell

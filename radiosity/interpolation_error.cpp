@@ -1,0 +1,319 @@
+#include "radiosity/interpolation_error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t probe_key = 30;  // purpose of random keys
+constexpr std::uint64_t draft_replica = 1000;
+constexpr int probe_count = 16;
+constexpr int share_of_rays = 8;
+
+// Vertices lie this far inside the elements of the deepest level (see vertex_gather_points).
+constexpr double finest_inset = 0.02;
+
+// A straight shadow edge crosses at most 32 of 256 stratified rays' cells, each of which is off by
+// 0.3 in the mean square.
+const double mixed_shadow_noise = 0.3 * std::sqrt(32.0) / 256.0;
+
+double mean_square(const Spectrum& difference) {
+  return difference.cast<double>().square().mean();
+}
+
+}  // namespace
+
+InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& caster,
+                                       const DirectLight& direct_light, const BandArray& radiosity,
+                                       const BandArray& caustic, RefinedElements& elements,
+                                       const GatherOptions& options, int deepest_level)
+    : scene_(scene),
+      caster_(caster),
+      direct_light_(direct_light),
+      radiosity_(radiosity),
+      elements_(elements),
+      options_(options),
+      inset_(std::ldexp(finest_inset, -deepest_level)),
+      probes_(probe_count) {
+  if (options.progress) {
+    options_.progress = [progress = options.progress](std::string_view, double share) {
+      return progress("refine", share);
+    };
+  }
+  sharpen_radiosity(caustic);
+  find_what_matters();
+}
+
+GatherPoint InterpolationError::gather_point(int vertex) const {
+  const PatchPoint at = elements_.inside(vertex, inset_);
+  return {at.position, at.normal, elements_.base().facet[at.element]};
+}
+
+void InterpolationError::find_what_matters() {
+  const PatchMesh& mesh = elements_.base();
+  matters_.assign(mesh.element_count(), 0);
+  double sum = 0.0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    const bool is_back = mesh.is_back[p] != 0;
+    const int front = is_back && mesh.twin[e] >= 0 ? mesh.twin[e] : e;
+    if (!(mesh.reflectance.row(p) > 0.0f).any() || caster_.is_hidden(front, is_back)) continue;
+    matters_[e] = 1;
+    area_ += mesh.element_area[e];
+    double E = 0.0;
+    for (int i = 0; i < mesh.corner_count(e); ++i) E += total(mesh.corners[e][i]).mean();
+    sum += mesh.element_area[e] * E / mesh.corner_count(e);
+  }
+  mean_ = area_ > 0.0 ? sum / area_ : 0.0;
+}
+
+Spectrum InterpolationError::total(int vertex) const {
+  return (direct_.row(vertex) + 0.5f * (first_.row(vertex) + second_.row(vertex))).transpose();
+}
+
+// Room for all vertices there are now; as a vector grows.
+void InterpolationError::make_room() {
+  const int count = elements_.vertex_count();
+  if (count > direct_.rows()) {
+    const Eigen::Index rows = std::max<Eigen::Index>(count, 2 * direct_.rows());
+    for (BandArray* values : {&direct_, &first_, &second_}) {
+      values->conservativeResize(rows, scene_.bands.count());
+    }
+  }
+  has_direct_.resize(count, 0);
+  has_indirect_.resize(count, 0);
+  sight_.resize(count);
+}
+
+void InterpolationError::gather_direct_at(const std::vector<int>& vertices) {
+  std::vector<int> fresh;
+  std::vector<GatherPoint> points;
+  for (const int v : vertices) {
+    if (has_direct_[v]) continue;
+    has_direct_[v] = 1;
+    fresh.push_back(v);
+    points.push_back(gather_point(v));
+    points.back().key = static_cast<std::uint64_t>(v);
+  }
+  std::vector<EmitterSight> sights;
+  const BandArray direct = gather_direct(scene_, caster_, direct_light_, points, options_, &sights);
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    direct_.row(fresh[i]) = direct.row(static_cast<Eigen::Index>(i));
+    sight_[fresh[i]] = sights[i];
+  }
+  gathers_ += static_cast<std::int64_t>(points.size());
+}
+
+BandArray InterpolationError::indirect_at(const std::vector<int>& vertices,
+                                          std::uint64_t replica) const {
+  const PatchMesh& mesh = elements_.base();
+  std::vector<GatherPoint> points;
+  for (const int v : vertices) {
+    GatherPoint& point = points.emplace_back(gather_point(v));
+    const int patch = mesh.patch[elements_.inside(v, 0.0).element];
+    point.key = random_key(static_cast<std::uint64_t>(mesh.surface[patch]),
+                           mesh.is_back[patch] != 0 ? 1 : 0);
+  }
+  GatherOptions options = options_;
+  options.rays = std::max(1, options_.rays / share_of_rays);
+  options.replica = options_.replica + draft_replica + replica;
+  return gather_indirect(scene_, caster_, radiosity_, points, options);
+}
+
+void InterpolationError::sharpen_radiosity(const BandArray& caustic) {
+  const PatchMesh& mesh = elements_.base();
+  std::vector<int> all(mesh.vertex_count());
+  std::iota(all.begin(), all.end(), 0);
+  make_room();
+  gather_direct_at(all);
+  BandArray irradiance = direct_.topRows(mesh.vertex_count()) + indirect_at(all, 2);
+  if (caustic.size() > 0) irradiance += caustic;
+  radiosity_ = gatherable_radiosity(mesh, direct_light_, irradiance);
+  gather(all);
+}
+
+void InterpolationError::gather(const std::vector<int>& vertices) {
+  make_room();
+  gather_direct_at(vertices);
+  std::vector<int> fresh;
+  for (const int v : vertices) {
+    if (has_indirect_[v]) continue;
+    has_indirect_[v] = 1;
+    fresh.push_back(v);
+  }
+  const BandArray first = indirect_at(fresh, 0), second = indirect_at(fresh, 1);
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    first_.row(fresh[i]) = first.row(static_cast<Eigen::Index>(i));
+    second_.row(fresh[i]) = second.row(static_cast<Eigen::Index>(i));
+  }
+}
+
+GatheredIrradiance InterpolationError::values(const std::vector<int>& vertices) const {
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  GatheredIrradiance result{.direct = BandArray(count, scene_.bands.count()),
+                            .indirect = BandArray(count, scene_.bands.count())};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    result.direct.row(i) = direct_.row(vertices[i]);
+    result.indirect.row(i) = 0.5f * (first_.row(vertices[i]) + second_.row(vertices[i]));
+  }
+  return result;
+}
+
+double InterpolationError::expected(int cell, int side) const {
+  if (!matters(elements_.element(cell, side))) return 0.0;
+  Spectrum low = total(elements_.corner_vertex(cell, side, 0)), high = low;
+  for (int i = 1; i < elements_.corner_count(cell); ++i) {
+    const Spectrum E = total(elements_.corner_vertex(cell, side, i));
+    low = low.min(E);
+    high = high.max(E);
+  }
+  constexpr double unseen = 0.05;
+  return mean_square(high - low) + std::pow(unseen * mean_, 2);
+}
+
+namespace {
+
+// Weighted sums of the squares of differences between gathered and interpolated irradiance.
+struct Differences {
+  double direct = 0.0, both = 0.0;  // the latter without the noise of the indirect light
+  double indirect = 0.0, noise = 0.0;
+
+  void add(double weight, const Spectrum& of_direct, const Spectrum& first,
+           const Spectrum& second) {
+    const Eigen::ArrayXd d = of_direct.cast<double>(), a = first.cast<double>(),
+                         b = second.cast<double>();
+    // The noise of two gathers is independent: it is not in the mean of their product.
+    const double product = (a * b).mean();
+    direct += weight * d.square().mean();
+    indirect += weight * product;
+    both += weight * (d.square().mean() + (d * (a + b)).mean() + product);
+    noise += weight * 0.25 * (a - b).square().mean();
+  }
+};
+
+}  // namespace
+
+// Simpson's rule in both directions: 16/36 in the centre, 4/36 at each edge, nothing at the
+// corners, where interpolation is exact. In triangles a third at each edge.
+double InterpolationError::lattice_error(int cell, int side) {
+  const int n = elements_.corner_count(cell);
+  const double at_edge = n == 4 ? 4.0 / 36.0 : 1.0 / 3.0, at_center = 16.0 / 36.0;
+  Differences differences;
+  double shadow_noise = 0.0;
+  const auto add_shadow_noise = [&](int v, double weight) {
+    const double unshadowed = sight_[v].unshadowed, E = direct_.row(v).mean();
+    const bool is_mixed = E > 0.0 && E < (1.0 - 1e-5) * unshadowed;
+    if (is_mixed) shadow_noise += weight * std::pow(mixed_shadow_noise * unshadowed, 2);
+  };
+  Spectrum direct = Spectrum::Zero(scene_.bands.count()), first = direct, second = direct;
+  for (int i = 0; i < n; ++i) {
+    const int a = elements_.corner_vertex(cell, side, i);
+    const int b = elements_.corner_vertex(cell, side, (i + 1) % n);
+    const int v = elements_.edge_vertex(cell, side, i);
+    const auto off = [&](const BandArray& values) -> Spectrum {
+      return (values.row(v) - 0.5f * (values.row(a) + values.row(b))).transpose();
+    };
+    differences.add(at_edge, off(direct_), off(first_), off(second_));
+    add_shadow_noise(v, at_edge);
+    // Each corner's share in the two edges and in the centre, squared.
+    add_shadow_noise(a, 2 * at_edge * 0.25 + (n == 4 ? at_center / 16.0 : 0.0));
+    direct += direct_.row(a).transpose() / static_cast<float>(n);
+    first += first_.row(a).transpose() / static_cast<float>(n);
+    second += second_.row(a).transpose() / static_cast<float>(n);
+  }
+  if (n == 4) {
+    const int v = elements_.center_vertex(cell, side);
+    differences.add(at_center, direct_.row(v).transpose() - direct,
+                    first_.row(v).transpose() - first, second_.row(v).transpose() - second);
+    add_shadow_noise(v, at_center);
+  }
+  const bool indirect_counts = differences.indirect > differences.noise;
+  const double error = indirect_counts ? differences.both : differences.direct;
+  constexpr double beyond_doubt = 2.0;
+  return error > beyond_doubt * shadow_noise ? error - shadow_noise : 0.0;
+}
+
+double InterpolationError::probed_error(int cell, int side) {
+  const int n = elements_.corner_count(cell), element = elements_.element(cell, side);
+  std::uint64_t whole = ~std::uint64_t{0}, hidden = whole;
+  const auto look = [&](int v) {
+    whole &= sight_[v].whole;
+    hidden &= sight_[v].hidden;
+  };
+  for (int i = 0; i < n; ++i) {
+    look(elements_.corner_vertex(cell, side, i));
+    look(elements_.edge_vertex(cell, side, i));
+  }
+  if (n == 4) look(elements_.center_vertex(cell, side));
+  const int facet = elements_.base().facet[element];
+  const Eigen::Vector3d normal = element_center(elements_.base(), element).normal;
+  const std::uint64_t key = random_key(static_cast<std::uint64_t>(2 * cell + side), probe_key);
+  double error = 0.0;
+  const std::size_t emitters = std::min<std::size_t>(direct_light_.emitters().size(), 64);
+  for (std::size_t e = 0; e < emitters; ++e) {
+    const bool all_see = (whole >> e & 1U) != 0;
+    if (!all_see && (hidden >> e & 1U) == 0) continue;
+    for (int k = 0; k < probe_count; ++k) {
+      const Eigen::Array4f u = probes_.point(k, random_key(key, e));
+      Eigen::Vector4d weights;
+      if (n == 4) {
+        weights = {(1 - u[0]) * (1 - u[1]), u[0] * (1 - u[1]), u[0] * u[1], (1 - u[0]) * u[1]};
+      } else {
+        weights << triangle_point(u[0], u[1]), 0.0;
+      }
+      Eigen::Vector3d at = Eigen::Vector3d::Zero();
+      Spectrum interpolated = Spectrum::Zero(scene_.bands.count());
+      for (int i = 0; i < n; ++i) {
+        const int v = elements_.corner_vertex(cell, side, i);
+        at += weights[i] * elements_.position(v);
+        interpolated += static_cast<float>(weights[i]) * direct_.row(v).transpose();
+      }
+      const auto sees =
+          direct_light_.sees(direct_light_.emitters()[e], caster_, at, normal, facet, u[2], u[3]);
+      if (!sees || *sees == all_see) continue;
+      const Spectrum E = direct_light_.irradiance(caster_, at, normal, facet,
+                                                  random_key(key, e, static_cast<std::uint64_t>(k)),
+                                                  options_.shadows);
+      error += mean_square(E - interpolated) / probe_count;
+    }
+  }
+  return error;
+}
+
+std::vector<std::array<double, 2>> InterpolationError::measure(const std::vector<int>& cells) {
+  std::vector<int> vertices;
+  for (const int cell : cells) {
+    for (int side = 0; side < elements_.side_count(cell); ++side) {
+      if (!matters(elements_.element(cell, side))) continue;
+      const int n = elements_.corner_count(cell);
+      for (int i = 0; i < n; ++i) {
+        vertices.push_back(elements_.corner_vertex(cell, side, i));
+        vertices.push_back(elements_.edge_vertex(cell, side, i));
+      }
+      if (n == 4) vertices.push_back(elements_.center_vertex(cell, side));
+    }
+  }
+  gather(vertices);
+  const int count = static_cast<int>(cells.size());
+  std::vector<std::array<double, 2>> errors(cells.size(), {0.0, 0.0});
+  constexpr int slice = 4096;  // cells between two looks at the stop request
+  for (int begin = 0; begin < count; begin += slice) {
+    report(options_.progress, "refine", static_cast<double>(begin) / count);
+    parallel_for(std::min(slice, count - begin), 16, [&](int low, int high) {
+      for (int i = begin + low; i < begin + high; ++i) {
+        for (int side = 0; side < elements_.side_count(cells[i]); ++side) {
+          if (!matters(elements_.element(cells[i], side))) continue;
+          errors[i][side] = lattice_error(cells[i], side) + probed_error(cells[i], side);
+        }
+      }
+    });
+  }
+  return errors;
+}
+
+}  // namespace lightwell

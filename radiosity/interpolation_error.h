@@ -1,0 +1,81 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/refine_elements.h"
+#include "radiosity/final_gather.h"
+
+namespace lightwell {
+
+/// How far irradiance interpolated over cells is from irradiance gathered inside them: the squared
+/// difference's mean over each cell, W^2/m^4, mean of the bands.
+///
+/// A cell is compared at the middles of its edges and in its centre (weights of Simpson's rule; in
+/// triangles at the middles alone), and those gathers are kept as the values of the vertices that
+/// a split makes there. Direct light is gathered as for the final solution; indirect light twice,
+/// with an eighth of the rays each, the same directions all over a side of a surface, so that most
+/// of the noise is alike at neighbours and not in what they differ by. The product of both
+/// differences is what counts, without the noise that is left, and only where it is more than that.
+///
+/// What lies between these places is looked for with shadow rays from 16 more to each emitter that
+/// all of them see whole, or that none of them sees: where one says otherwise, a shadow or a beam
+/// narrower than half the cell runs through it, and direct light gathered there is compared too.
+///
+/// Caustics are left out, and the light on places that reflect none.
+class InterpolationError {
+ public:
+  /// At the base's vertices: `radiosity` as gatherable_radiosity makes it, and caustic irradiance
+  /// (or nothing). A first gather there replaces that radiosity, which patches hold as one value
+  /// each, before the gathers that are compared. `caster` is of the base.
+  InterpolationError(const Scene& scene, const ElementCaster& caster,
+                     const DirectLight& direct_light, const BandArray& radiosity,
+                     const BandArray& caustic, RefinedElements& elements,
+                     const GatherOptions& options, int deepest_level);
+
+  /// Whether light on a side of an element of the base is of interest.
+  bool matters(int element) const { return matters_[element] != 0; }
+  /// m^2 of all that is, and its mean irradiance, W/m^2.
+  double area() const { return area_; }
+  double mean_irradiance() const { return mean_; }
+
+  /// A bound from the corners' values, for cells not measured yet: their range and 5 % of the mean
+  /// irradiance, squared.
+  double expected(int cell, int side) const;
+  /// Gathers what it takes, and gives the error of each cell's two sides.
+  std::vector<std::array<double, 2>> measure(const std::vector<int>& cells);
+
+  /// Gathers at those of these vertices where nobody has yet.
+  void gather(const std::vector<int>& vertices);
+  /// What was gathered at vertices, in their order.
+  GatheredIrradiance values(const std::vector<int>& vertices) const;
+  std::int64_t gathers() const { return gathers_; }
+
+ private:
+  void sharpen_radiosity(const BandArray& caustic);
+  void find_what_matters();
+  GatherPoint gather_point(int vertex) const;
+  void make_room();
+  void gather_direct_at(const std::vector<int>& vertices);
+  BandArray indirect_at(const std::vector<int>& vertices, std::uint64_t replica) const;
+  double lattice_error(int cell, int side);
+  double probed_error(int cell, int side);
+  Spectrum total(int vertex) const;
+
+  const Scene& scene_;
+  const ElementCaster& caster_;
+  const DirectLight& direct_light_;
+  BandArray radiosity_;
+  RefinedElements& elements_;
+  GatherOptions options_;
+  double inset_;
+  std::vector<char> matters_;
+  double area_ = 0.0, mean_ = 0.0;
+  // Per vertex.
+  std::vector<char> has_direct_, has_indirect_;
+  BandArray direct_, first_, second_;
+  std::vector<EmitterSight> sight_;
+  std::int64_t gathers_ = 0;
+  SobolPoints probes_;
+};
+
+}  // namespace lightwell

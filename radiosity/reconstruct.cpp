@@ -1,0 +1,151 @@
+#include "radiosity/reconstruct.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "radiosity/light_path.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t draft_replica = 1000;
+
+// First guess for the gather: patch radiosities, smoothed to vertices by the mean of the elements
+// around.
+BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,
+                          const BandArray& patch_radiosity) {
+  BandArray sum = BandArray::Zero(mesh.vertex_count(), patch_radiosity.cols());
+  Eigen::ArrayXf weight = Eigen::ArrayXf::Zero(mesh.vertex_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    const auto area = static_cast<float>(mesh.element_area[e]);
+    Eigen::Array<float, 1, Eigen::Dynamic> B = patch_radiosity.row(p);
+    if (direct_light.owns(mesh.facet[e])) B -= mesh.emission.row(p);
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      sum.row(mesh.corners[e][c]) += area * B;
+      weight[mesh.corners[e][c]] += area;
+    }
+  }
+  return sum.colwise() / weight.max(1e-30f);
+}
+
+BandArray caustics(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                   const SolveOptions& options) {
+  return caustic_irradiance(scene, caster, direct_light, options.caustic_rays,
+                            options.form_factors.max_specular_depth);
+}
+
+// Caustics on elements of even size, from which vertices of all others take theirs: on small ones
+// there would be too few rays.
+class EvenCaustics {
+ public:
+  EvenCaustics(const Scene& scene, const DirectLight& direct_light, const SolveOptions& options,
+               RefinedElements& elements) {
+    const LightPaths paths(scene, ElementCaster(elements.base()), 1);
+    if (!paths.has_specular()) return;
+    const std::vector<int> all = elements.leaves();
+    if (starts_coarse(options) && options.mesh.elements_per_patch_edge > 1) elements.split(all);
+    const RefinedMesh even = elements.mesh();
+    elements.merge(all);
+    values_ = BandArray::Zero(elements.vertex_count(), scene.bands.count());
+    const BandArray found = caustics(scene, ElementCaster(even.mesh), direct_light, options);
+    if (found.size() == 0) return;
+    known_ = elements.vertex_count();
+    for (std::size_t v = 0; v < even.vertex.size(); ++v) {
+      values_.row(even.vertex[v]) = found.row(static_cast<Eigen::Index>(v));
+    }
+  }
+
+  BandArray at(const RefinedElements& elements, const std::vector<int>& vertices) {
+    if (known_ == 0) return {};
+    values_.conservativeResize(elements.vertex_count(), values_.cols());
+    for (int v = known_; v < elements.vertex_count(); ++v) {
+      values_.row(v).setZero();
+      int count = 0;
+      for (const int end : elements.ends(v)) {
+        if (end < 0) continue;
+        values_.row(v) += values_.row(end);
+        ++count;
+      }
+      values_.row(v) /= static_cast<float>(count);
+    }
+    BandArray result(static_cast<Eigen::Index>(vertices.size()), values_.cols());
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      result.row(static_cast<Eigen::Index>(v)) = values_.row(vertices[v]);
+    }
+    return result;
+  }
+
+ private:
+  BandArray values_{};
+  int known_ = 0;  // vertices; 0: there are no caustics
+};
+
+Draft refined_draft(const Scene& scene, const ElementCaster& caster,
+                    const DirectLight& direct_light, const SolveOptions& options,
+                    const GatherOptions& gather_options, const BandArray& radiosity) {
+  RefinedElements elements(caster.mesh());
+  EvenCaustics even_caustics(scene, direct_light, options, elements);
+  std::vector<int> base_vertices(caster.mesh().vertex_count());
+  std::iota(base_vertices.begin(), base_vertices.end(), 0);
+  RefinedSolution found = refine_solution(scene, caster, direct_light, radiosity,
+                                          even_caustics.at(elements, base_vertices), elements,
+                                          gather_options, options.refine);
+  return {.refined = std::move(found.refined.mesh),
+          .direct = std::move(found.draft.direct),
+          .indirect = std::move(found.draft.indirect),
+          .caustic = even_caustics.at(elements, found.refined.vertex),
+          .interpolation_error = std::move(found.error),
+          .refinement = found.report};
+}
+
+GatherOptions gather_options(const SolveOptions& options) {
+  GatherOptions gather = options.gather;
+  gather.progress = options.progress;
+  return gather;
+}
+
+}  // namespace
+
+Draft make_draft(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                 const SolveOptions& options, const BandArray& patch_radiosity) {
+  const BandArray radiosity = patch_to_vertex(caster.mesh(), direct_light, patch_radiosity);
+  GatherOptions gather = gather_options(options);
+  if (options.refine.tolerance > 0.0) {
+    return refined_draft(scene, caster, direct_light, options, gather, radiosity);
+  }
+  gather.rays = std::max(1, gather.rays / 4);
+  gather.replica += draft_replica;
+  gather.shadows = {.min_rays = 16, .max_rays = 64};
+  GatheredIrradiance draft = gather_irradiance(scene, caster, direct_light, radiosity,
+                                               vertex_gather_points(caster.mesh()), gather);
+  return {.direct = std::move(draft.direct),
+          .indirect = std::move(draft.indirect),
+          .caustic = caustics(scene, caster, direct_light, options)};
+}
+
+void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                 const SolveOptions& options, Draft draft, RadiositySolution& solution) {
+  const PatchMesh& mesh = caster.mesh();
+  const bool has_caustics = draft.caustic.size() > 0;
+  BandArray irradiance = draft.direct + draft.indirect;
+  if (has_caustics) irradiance += draft.caustic;
+  const BandArray radiosity = gatherable_radiosity(mesh, direct_light, irradiance);
+  const GatherOptions gather = gather_options(options);
+  const std::vector<GatherPoint> points = vertex_gather_points(mesh);
+  if (draft.refined) {
+    solution.direct_irradiance = std::move(draft.direct);
+    solution.indirect_irradiance = gather_indirect(scene, caster, radiosity, points, gather);
+  } else {
+    GatheredIrradiance gathered =
+        gather_irradiance(scene, caster, direct_light, radiosity, points, gather);
+    solution.direct_irradiance = std::move(gathered.direct);
+    solution.indirect_irradiance = std::move(gathered.indirect);
+  }
+  if (has_caustics) solution.indirect_irradiance += draft.caustic;
+  solution.caustic_irradiance = std::move(draft.caustic);
+  solution.interpolation_error = std::move(draft.interpolation_error);
+}
+
+}  // namespace lightwell

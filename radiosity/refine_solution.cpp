@@ -1,0 +1,206 @@
+#include "radiosity/refine_solution.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "radiosity/interpolation_error.h"
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+class Refinement {
+ public:
+  Refinement(RefinedElements& elements, InterpolationError& error, const RefineOptions& options)
+      : elements_(elements),
+        error_(error),
+        options_(options),
+        max_elements_(options.max_elements > 0 ? options.max_elements
+                                               : growth * elements.element_count()),
+        allowed_(std::pow(options.tolerance * error.mean_irradiance(), 2) * error.area()) {
+    resize();
+    for (const int cell : elements.leaves()) {
+      std::array<double, 2> expected{0.0, 0.0};
+      for (int side = 0; side < elements.side_count(cell); ++side) {
+        expected[side] = error.expected(cell, side);
+      }
+      set(cell, expected);
+    }
+  }
+
+  RefineReport run() {
+    RefineReport report{.tolerance = options_.tolerance,
+                        .elements_at_first = elements_.element_count()};
+    while (report.outcome == RefineOutcome::off) {
+      std::vector<int> marks = cells_to_split();
+      if (sum_ <= allowed_) {
+        report.outcome = RefineOutcome::tolerance_reached;
+      } else if (marks.empty()) {
+        report.outcome = RefineOutcome::smallest_size_reached;
+      } else if (!measure(marks)) {
+        if (!split(marks)) report.outcome = RefineOutcome::max_elements_reached;
+        ++report.rounds;
+      }
+    }
+    cells_to_split();
+    const double mean_square = error_.area() > 0.0 ? sum_ / error_.area() : 0.0;
+    report.estimate =
+        error_.mean_irradiance() > 0.0 ? std::sqrt(mean_square) / error_.mean_irradiance() : 0.0;
+    report.elements = elements_.element_count();
+    return report;
+  }
+
+  float relative_error(int cell, int side) const {
+    if (!(error_.mean_irradiance() > 0.0)) return 0.0f;
+    return static_cast<float>(std::sqrt(squares_[cell][side]) / error_.mean_irradiance());
+  }
+
+ private:
+  void resize() {
+    squares_.resize(elements_.cell_count(), {0.0, 0.0});
+    is_known_.resize(elements_.cell_count(), 0);
+    measured_.resize(elements_.cell_count(), 0);
+  }
+  void set(int cell, const std::array<double, 2>& squares) {
+    squares_[cell] = squares;
+    is_known_[cell] = 1;
+  }
+
+  // The leaves with most of the squared error, the others holding at most half of what is allowed
+  // or being as small as may be; also finds the sum over all.
+  std::vector<int> cells_to_split() {
+    std::vector<std::pair<double, int>> by_error;
+    sum_ = 0.0;
+    double rest = 0.0;
+    for (const int cell : elements_.leaves()) {
+      const double square = elements_.area(cell) * (squares_[cell][0] + squares_[cell][1]);
+      sum_ += square;
+      if (elements_.level(cell) < options_.max_level && square > 0.0) {
+        by_error.emplace_back(-square, cell);
+        rest += square;
+      }
+    }
+    std::sort(by_error.begin(), by_error.end());
+    std::vector<int> marks;
+    for (const auto& [minus_square, cell] : by_error) {
+      if (rest <= 0.5 * allowed_) break;
+      rest += minus_square;
+      marks.push_back(cell);
+    }
+    return marks;
+  }
+
+  // Whether any of them had not been measured yet.
+  bool measure(const std::vector<int>& cells) {
+    std::vector<int> fresh;
+    for (const int cell : cells) {
+      if (!measured_[cell]) fresh.push_back(cell);
+    }
+    const std::vector<std::array<double, 2>> errors = error_.measure(fresh);
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+      set(fresh[i], errors[i]);
+      measured_[fresh[i]] = 1;
+    }
+    return !fresh.empty();
+  }
+
+  // Splits them all, or as many of the first as there may be elements for.
+  bool split(std::vector<int> marks) {
+    const auto fits = [&](std::size_t count) {
+      RefinedElements trial = elements_;
+      trial.split({marks.data(), count});
+      return trial.element_count() <= max_elements_;
+    };
+    const bool all = fits(marks.size());
+    if (!all) {
+      std::size_t low = 0, high = marks.size();  // low fits, high does not
+      while (high - low > 1) {
+        const std::size_t middle = low + (high - low) / 2;
+        (fits(middle) ? low : high) = middle;
+      }
+      marks.resize(low);
+    }
+    elements_.split(marks);
+    resize();
+    // Until they are measured, children are as bad as what they were split from. (Their numbers may
+    // be old: what was merged is split into the same again.)
+    for (const int cell : elements_.leaves()) {
+      if (!is_known_[cell]) set(cell, squares_[elements_.parent(cell)]);
+    }
+    return all;
+  }
+
+  RefinedElements& elements_;
+  InterpolationError& error_;
+  static constexpr std::int64_t growth = 4;  // as half the size everywhere would make
+  const RefineOptions& options_;
+  std::int64_t max_elements_;
+  double allowed_;
+  double sum_ = 0.0;                            // squared error times area, over all leaves
+  std::vector<std::array<double, 2>> squares_;  // per cell and side
+  std::vector<char> is_known_, measured_;
+};
+
+}  // namespace
+
+void require_room(const PatchMesh& mesh, const RefineOptions& options) {
+  if (options.max_elements == 0 || mesh.element_count() <= options.max_elements) return;
+  throw InputError(fmt::format(
+      "at most {} elements are allowed, but the scene makes {} before any is refined; allow more, "
+      "or use a larger patch size",
+      options.max_elements, mesh.element_count()));
+}
+
+std::string sentence(const RefineReport& report) {
+  const auto percent = [](double share) { return fmt::format("{:.3g} %", 100.0 * share); };
+  std::string end;
+  switch (report.outcome) {
+    case RefineOutcome::off:
+      return "nothing was refined";
+    case RefineOutcome::tolerance_reached:
+      end = fmt::format("the tolerance of {} is reached", percent(report.tolerance));
+      break;
+    case RefineOutcome::max_elements_reached:
+      end = fmt::format("stopped at the most elements allowed, before the tolerance of {}",
+                        percent(report.tolerance));
+      break;
+    case RefineOutcome::smallest_size_reached:
+      end = fmt::format("stopped at the smallest elements allowed, before the tolerance of {}",
+                        percent(report.tolerance));
+      break;
+  }
+  return fmt::format("{} ({} estimated; {} elements became {} in {} rounds)", end,
+                     percent(report.estimate), report.elements_at_first, report.elements,
+                     report.rounds);
+}
+
+RefinedSolution refine_solution(const Scene& scene, const ElementCaster& caster,
+                                const DirectLight& direct_light, const BandArray& radiosity,
+                                const BandArray& caustic, RefinedElements& elements,
+                                const GatherOptions& gather, const RefineOptions& options) {
+  require_room(elements.base(), options);
+  InterpolationError error(scene, caster, direct_light, radiosity, caustic, elements, gather,
+                           options.max_level);
+  Refinement refinement(elements, error, options);
+  RefinedSolution result;
+  result.report = refinement.run();
+  result.refined = elements.mesh();
+  error.gather(result.refined.vertex);
+  result.draft = error.values(result.refined.vertex);
+  const PatchMesh& mesh = result.refined.mesh;
+  result.error = Eigen::ArrayXf::Zero(mesh.element_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int cell = result.refined.cell[e];
+    if (cell < 0) continue;
+    const bool is_back_of_two = elements.side_count(cell) == 2 && mesh.twin[e] < e;
+    result.error[e] = refinement.relative_error(cell, is_back_of_two ? 1 : 0);
+  }
+  result.report.gathers = error.gathers();
+  return result;
+}
+
+}  // namespace lightwell
