@@ -6,8 +6,10 @@
 #include <array>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <new>
 #include <optional>
+#include <utility>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -50,6 +52,17 @@ constexpr std::array<NamedCommand, 9> commands = {{{"run", add_run},
                                                    {"compare", add_compare},
                                                    {"form-factors", add_form_factors},
                                                    {"info", add_info}}};
+
+/// One blank line between groups, so that help fits a screen.
+class TightFormatter : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    std::string help = CLI::Formatter::make_help(app, std::move(name), mode);
+    for (std::size_t at; (at = help.find("\n\n\n")) != std::string::npos;) help.erase(at, 1);
+    return help;
+  }
+};
 
 void add_common(CLI::App& app, CommonOptions& options) {
   const std::string group = "Everywhere";
@@ -138,6 +151,7 @@ int run_program(int argc, char** argv) {
   CLI::App app("Radiosity with a ray-traced second pass.", "lightwell");
   add_common(app, options);
   app.require_subcommand(0, 1);
+  app.formatter(std::make_shared<TightFormatter>());
   app.get_formatter()->column_width(36);
 
   std::map<const CLI::App*, Action> actions;

@@ -113,11 +113,12 @@ TEST_F(MeshCommand, ReportAndColumnsAgree) {
   EXPECT_EQ(text("scene_hash"), run_json({"info", "ball.toml"})["scene_hash"].get<std::string>());
 }
 
-TEST_F(MeshCommand, TheMeshIsTheOneThatSolveUses) {
+TEST_F(MeshCommand, TheMeshIsTheOneThatSolveUsesWhereItDoesNotRefine) {
   const Words size = {"--max-patch-size", "1", "--elements-per-patch-edge", "3"};
   const auto meshed = run_json(Words{"mesh", "room.toml", "-o", "M.vtp", "--both-sides"} + size);
-  const auto solved = run_json(
-      Words{"solve", "room.toml", "-o", "S.vtp", "--rays", "64", "--gather-rays", "32"} + size);
+  const auto solved = run_json(Words{"solve", "room.toml", "-o", "S.vtp", "--rays", "64",
+                                     "--gather-rays", "32", "--refine", "off"} +
+                               size);
   for (const char* key : {"patches", "elements", "cleaned", "notes"}) {
     EXPECT_EQ(meshed[key], solved[key]) << key;
   }
@@ -195,8 +196,9 @@ box = { min = [1.3, 1.2, 0.5], max = [2.2, 1.7, 1.1] }
   EXPECT_TRUE(says(meshed["notes"][0], "discontinuity lines"));
   EXPECT_TRUE(says(run(Words{"mesh", "block.toml"} + coarse).err,
                    "note: " + meshed["notes"][0].get<std::string>()));
-  const auto solved = run_json(
-      Words{"solve", "block.toml", "-o", "S.vtp", "--rays", "64", "--gather-rays", "32"} + coarse);
+  const auto solved = run_json(Words{"solve", "block.toml", "-o", "S.vtp", "--rays", "64",
+                                     "--gather-rays", "32", "--refine", "off"} +
+                               coarse);
   EXPECT_EQ(solved["notes"], meshed["notes"]);
   EXPECT_EQ(solved["elements"], meshed["elements"]);
 }

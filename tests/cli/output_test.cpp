@@ -59,6 +59,15 @@ TEST_F(Output, SolveTellsHowItRefined) {
   EXPECT_FALSE(off.contains("refined"));
 }
 
+TEST_F(Output, FewerElementsThanThereAreIsAnError) {
+  const Ended ended =
+      run(Words{"solve", "room.toml", "-o", "S.vtp", "--max-elements", "1"} + quick());
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_TRUE(says(ended.err, "error: at most 1 elements are allowed")) << ended.err;
+  EXPECT_TRUE(says(ended.err, "larger patch size"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "S.vtp"));
+}
+
 TEST_F(Output, RunLeavesSolutionPicturesAndReport) {
   const Ended ended = run(Words{"run", "room.toml", "-o", "made/results"} + quick());
   ASSERT_EQ(ended.code, 0) << ended.err;
