@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "radiosity/interpolation_error.h"
@@ -13,14 +14,35 @@
 namespace lightwell {
 namespace {
 
+// About as many as elements of half the edge everywhere would be, both sides; those that are small
+// already, leaves and crumbs, would stay what they are.
+std::int64_t even_count(const RefinedElements& elements) {
+  std::vector<double> areas;
+  double total = 0.0;
+  for (const int cell : elements.leaves()) {
+    areas.push_back(elements.area(cell));
+    total += elements.area(cell);
+  }
+  std::sort(areas.begin(), areas.end(), std::greater<>());
+  double typical = 0.0, larger = 0.0;  // half of all area lies in elements as large
+  for (std::size_t i = 0; i < areas.size() && larger < 0.5 * total; ++i) {
+    typical = areas[i];
+    larger += areas[i];
+  }
+  std::int64_t count = elements.element_count();
+  for (const int cell : elements.leaves()) {
+    if (elements.area(cell) > 0.25 * typical) count += 3 * elements.side_count(cell);
+  }
+  return count;
+}
+
 class Refinement {
  public:
   Refinement(RefinedElements& elements, InterpolationError& error, const RefineOptions& options)
       : elements_(elements),
         error_(error),
         options_(options),
-        max_elements_(options.max_elements > 0 ? options.max_elements
-                                               : growth * elements.element_count()),
+        max_elements_(options.max_elements > 0 ? options.max_elements : even_count(elements)),
         allowed_(std::pow(options.tolerance * error.mean_irradiance(), 2) * error.area()) {
     resize();
     for (const int cell : elements.leaves()) {
@@ -136,7 +158,6 @@ class Refinement {
 
   RefinedElements& elements_;
   InterpolationError& error_;
-  static constexpr std::int64_t growth = 4;  // as half the size everywhere would make
   const RefineOptions& options_;
   std::int64_t max_elements_;
   double allowed_;

@@ -12,7 +12,8 @@ struct RefineOptions {
   /// Relative RMS error of interpolated irradiance at which refinement stops: of the mean
   /// irradiance, over all that reflects. 0: nothing is refined.
   double tolerance = 0.007;
-  /// Elements that there may be, both sides; 0: four times those at first.
+  /// Elements that there may be, both sides; 0: about as many as an even mesh of half the
+  /// edges would have.
   std::int64_t max_elements = 0;
   /// How often an element of the start may be split: its edge by 2 to this.
   int max_level = 4;
