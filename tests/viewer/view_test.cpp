@@ -211,10 +211,10 @@ TEST(Snapshot, BeginsAsTheOptionsSay) {
   const float lux = vertex_illuminance(box.solution)[8];  // of the back wall, even all over
   options.lux_range = {0.0, 4.0 * lux};
   const Eigen::Array3f quarter = 255.0f * false_color(0.25f);
-  expect_pixel(draw(box, options).at(100, 75),
-               {static_cast<int>(quarter[0]), static_cast<int>(quarter[1]),
-                static_cast<int>(quarter[2])},
-               "a quarter up the scale");
+  expect_pixel(
+      draw(box, options).at(100, 75),
+      {static_cast<int>(quarter[0]), static_cast<int>(quarter[1]), static_cast<int>(quarter[2])},
+      "a quarter up the scale");
 }
 
 /// A folder of its own that goes away with the test.
