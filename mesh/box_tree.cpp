@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 
 namespace lightwell {
@@ -39,62 +40,10 @@ int BoxTree::build(int begin, int end) {
 }
 
 template <class Meets>
-void BoxTree::find(const Meets& meets, std::vector<int>& found) const {
-  found.clear();
-  if (nodes_.empty()) return;
-  // The tree halves at every level, so its depth stays below 32 for any int count.
-  std::array<int, 64> stack;
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const int index = stack[--depth];
-    const Node& node = nodes_[index];
-    if (!meets(node.box)) continue;
-    if (node.right != 0) {
-      stack[depth++] = node.right;
-      stack[depth++] = index + 1;
-      continue;
-    }
-    for (int i = node.begin; i < node.end; ++i) {
-      if (meets(boxes_[order_[i]])) found.push_back(order_[i]);
-    }
-  }
-  std::sort(found.begin(), found.end());
-}
-
-void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
-  find([&](const Box& box) { return box.intersects(query); }, found);
-}
-
-void BoxTree::find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
-                            std::vector<int>& found) const {
-  const auto meets = [&](const Box& box) {
-    if (!box.intersects(query)) return false;
-    const double reach = 0.5 * box.sizes().dot(plane.normal().cwiseAbs());
-    return plane.absDistance(box.center()) <= reach;
-  };
-  find(meets, found);
-}
-
-bool BoxTree::find_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double reach,
-                         std::int64_t& visits, std::vector<int>& found) const {
+bool BoxTree::collect(const Meets& meets, std::int64_t& visits, std::vector<int>& found) const {
   found.clear();
   if (nodes_.empty()) return true;
-  const Eigen::Vector3d d = b - a, grown = Eigen::Vector3d::Constant(reach);
-  const auto meets = [&](const Box& box) {
-    const Eigen::Vector3d low = box.min() - grown - a, high = box.max() + grown - a;
-    double from = 0.0, to = 1.0;
-    for (int c = 0; c < 3; ++c) {
-      if (d[c] == 0.0) {
-        if (low[c] > 0.0 || high[c] < 0.0) return false;
-        continue;
-      }
-      const double at_low = low[c] / d[c], at_high = high[c] / d[c];
-      from = std::max(from, std::min(at_low, at_high));
-      to = std::min(to, std::max(at_low, at_high));
-    }
-    return from <= to;
-  };
+  // The tree halves at every level, so its depth stays below 32 for any int count.
   std::array<int, 64> stack;
   int depth = 0;
   stack[depth++] = 0;
@@ -116,6 +65,47 @@ bool BoxTree::find_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, dou
     }
   }
   return true;
+}
+
+template <class Meets>
+void BoxTree::find(const Meets& meets, std::vector<int>& found) const {
+  std::int64_t visits = std::numeric_limits<std::int64_t>::max();
+  collect(meets, visits, found);
+  std::sort(found.begin(), found.end());
+}
+
+void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
+  find([&](const Box& box) { return box.intersects(query); }, found);
+}
+
+void BoxTree::find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
+                            std::vector<int>& found) const {
+  const auto meets = [&](const Box& box) {
+    if (!box.intersects(query)) return false;
+    const double reach = 0.5 * box.sizes().dot(plane.normal().cwiseAbs());
+    return plane.absDistance(box.center()) <= reach;
+  };
+  find(meets, found);
+}
+
+bool BoxTree::find_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double reach,
+                         std::int64_t& visits, std::vector<int>& found) const {
+  const Eigen::Vector3d d = b - a, grown = Eigen::Vector3d::Constant(reach);
+  const auto meets = [&](const Box& box) {
+    const Eigen::Vector3d low = box.min() - grown - a, high = box.max() + grown - a;
+    double from = 0.0, to = 1.0;
+    for (int c = 0; c < 3; ++c) {
+      if (d[c] == 0.0) {
+        if (low[c] > 0.0 || high[c] < 0.0) return false;
+        continue;
+      }
+      const double at_low = low[c] / d[c], at_high = high[c] / d[c];
+      from = std::max(from, std::min(at_low, at_high));
+      to = std::min(to, std::max(at_low, at_high));
+    }
+    return from <= to;
+  };
+  return collect(meets, visits, found);
 }
 
 }  // namespace lightwell

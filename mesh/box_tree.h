@@ -31,6 +31,9 @@ class BoxTree {
     int right = 0;           ///< the left child follows its parent
   };
   int build(int begin, int end);
+  // False, with nothing found, when it would take more visits of nodes; counts them down.
+  template <class Meets>
+  bool collect(const Meets& meets, std::int64_t& visits, std::vector<int>& found) const;
   template <class Meets>
   void find(const Meets& meets, std::vector<int>& found) const;
 
