@@ -30,24 +30,8 @@ using namespace lightwell;
 
 Scene room(bool with_block) {
   Scene scene = grey_scene();
-  const auto add_box = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& size, bool inwards) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const int side : {0, 1}) {
-        Eigen::Vector3d corner = low, u = Eigen::Vector3d::Zero(), v = u;
-        corner[axis] += side * size[axis];
-        u[(axis + 1) % 3] = size[(axis + 1) % 3];
-        v[(axis + 2) % 3] = size[(axis + 2) % 3];
-        if ((side == 0) != inwards) std::swap(u, v);
-        scene.surfaces.push_back(
-            {.name = fmt::format("face {}", scene.surfaces.size()),
-             .material = 0,
-             .shape = PolygonMesh{.vertices = {corner, corner + u, corner + u + v, corner + v},
-                                  .facets = {{.boundary = {0, 1, 2, 3}}}}});
-      }
-    }
-  };
-  add_box({0, 0, 0}, {1, 1, 1}, true);
-  if (with_block) add_box({0.3, 0.2, 0.0}, {0.3, 0.4, 0.6}, false);
+  add_box(scene, {0, 0, 0}, {1, 1, 1}, true);
+  if (with_block) add_box(scene, {0.3, 0.2, 0.0}, {0.3, 0.4, 0.6}, false);
   validate(scene);
   return scene;
 }

@@ -25,16 +25,9 @@ Scene room_of_everything() {
   Scene scene;
   const int wall = add_material(scene, diffuse(scene.bands, 0.5f));
   const int lamp = add_material(scene, diffuse(scene.bands, 0.0f, 10.0f));
-  Material mirror = diffuse(scene.bands, 0.0f);
-  mirror.specular << 0.9f, 0.8f, 0.7f;
-  Material polished = diffuse(scene.bands, 0.4f);
-  polished.specular = constant_spectrum(scene.bands, 0.2f);
-  Material glass = diffuse(scene.bands, 0.0f);
-  glass.dielectric =
-      Dielectric{.index_of_refraction = 1.5f, .tint = constant_spectrum(scene.bands, 0.9f)};
-  glass.one_sided = false;
-  const int m = add_material(scene, mirror), p = add_material(scene, polished),
-            g = add_material(scene, glass);
+  const int m = add_material(scene, test::tinted_mirror(scene.bands)),
+            p = add_material(scene, test::polished(scene.bands)),
+            g = add_material(scene, test::clear_glass(scene.bands));
   add_box(scene, {0, 0, 0}, {1.0, 1.2, 0.9}, {m, wall, wall, wall, p, wall}, true);
   add_box(scene, {0.3, 0.4, 0.1}, {0.6, 0.7, 0.5}, {g, g, g, g, g, g}, false);
   add_polygon(scene, "lamp", lamp,

@@ -51,6 +51,27 @@ inline void add_box(Scene& scene, const Eigen::Vector3d& low, const Eigen::Vecto
   }
 }
 
+inline Material tinted_mirror(const Bands& bands) {
+  Material mirror = diffuse(bands, 0.0f);
+  mirror.specular << 0.9f, 0.8f, 0.7f;
+  return mirror;
+}
+
+/// Scatters some of its light and mirrors some.
+inline Material polished(const Bands& bands) {
+  Material material = diffuse(bands, 0.4f);
+  material.specular = constant_spectrum(bands, 0.2f);
+  return material;
+}
+
+inline Material clear_glass(const Bands& bands) {
+  Material glass = diffuse(bands, 0.0f);
+  glass.dielectric =
+      Dielectric{.index_of_refraction = 1.5f, .tint = constant_spectrum(bands, 0.9f)};
+  glass.one_sided = false;
+  return glass;
+}
+
 /// A closed room where every face has reflectance rho and emits M; with a block inside if asked.
 inline Scene furnace(float rho, float M, bool with_block) {
   Scene scene;
