@@ -67,7 +67,7 @@ void add_refinement(CLI::App& command, RefineOptions& options, const std::string
   command
       .add_option_function<int>(
           "--max-elements", [&options](int most) { options.max_elements = most; },
-          "elements that refinement may make (default: about those of an even mesh)")
+          "elements that refinement may make (default: about those of an even mesh of half the edge)")
       ->type_name("N")
       ->check(whole_number(1, most_elements))
       ->group(group);

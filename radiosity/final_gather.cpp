@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
 
 #include "mesh/patch_sampler.h"
 #include "radiosity/light_path.h"
@@ -20,27 +23,37 @@ constexpr std::uint64_t caustic_rays = 13;
 constexpr std::uint64_t caustic_branches = 14;
 constexpr int batch = 128;
 
+int ray_count(const GatherPoint& at, const GatherOptions& options) {
+  return at.rays > 0 ? at.rays : std::max(1, options.rays);
+}
+
 class HemisphereGather {
  public:
   HemisphereGather(const Scene& scene, const ElementCaster& caster, const BandArray& radiosity,
-                   const GatherOptions& options)
+                   const GatherOptions& options, std::span<const GatherPoint> points)
       : mesh_(caster.mesh()),
         caster_(caster),
         radiosity_(radiosity),
         paths_(scene, caster, options.max_specular_depth),
-        sets_(std::max(1, options.rays)) {}
+        options_(options) {
+    for (const GatherPoint& at : points) {
+      const int rays = ray_count(at, options);
+      if (!sets_.contains(rays)) sets_.emplace(rays, HemisphereSets(rays));
+    }
+  }
 
   // E = (1/N) sum B over cosine-distributed rays.
   Spectrum irradiance(const GatherPoint& at, std::uint64_t key) const {
     Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(radiosity_.cols());
-    const HemisphereSets::Draw draw = sets_.draw(random_key(key, gather_rays));
+    const HemisphereSets& set = sets_.at(ray_count(at, options_));
+    const HemisphereSets::Draw draw = set.draw(random_key(key, gather_rays));
     const Eigen::Matrix3d frame = draw.frame(at.normal);
     std::array<Ray, batch> ray;
     std::array<ElementHit, batch> hit;
-    for (int begin = 0; begin < sets_.count(); begin += batch) {
+    for (int begin = 0; begin < set.count(); begin += batch) {
       const auto points =
           draw.all().subspan(static_cast<std::size_t>(begin),
-                             static_cast<std::size_t>(std::min(batch, sets_.count() - begin)));
+                             static_cast<std::size_t>(std::min(batch, set.count() - begin)));
       const std::size_t n = points.size();
       for (std::size_t r = 0; r < n; ++r) {
         ray[r] = {.origin = at.position,
@@ -53,7 +66,7 @@ class HemisphereGather {
         add(ray[r], hit[r], random_key(key, gather_branches, index), sum);
       }
     }
-    return (sum / sets_.count()).cast<float>();
+    return (sum / set.count()).cast<float>();
   }
 
  private:
@@ -80,7 +93,8 @@ class HemisphereGather {
   const ElementCaster& caster_;
   const BandArray& radiosity_;
   LightPaths paths_;
-  HemisphereSets sets_;
+  const GatherOptions& options_;
+  std::map<int, HemisphereSets> sets_;  // by the rays of each
 };
 
 // Calls body(i, key) for every point, with the key of its random numbers. Slices keep progress and
@@ -119,7 +133,7 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
                                      std::span<const GatherPoint> points,
                                      const GatherOptions& options) {
   const int count = static_cast<int>(points.size());
-  const HemisphereGather hemisphere(scene, caster, radiosity, options);
+  const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
   GatheredIrradiance result{.direct = BandArray::Zero(count, scene.bands.count()),
                             .indirect = BandArray::Zero(count, scene.bands.count())};
   for_each_point(points, options, [&](int i, std::uint64_t key) {
@@ -152,7 +166,7 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
 BandArray gather_indirect(const Scene& scene, const ElementCaster& caster,
                           const BandArray& radiosity, std::span<const GatherPoint> points,
                           const GatherOptions& options) {
-  const HemisphereGather hemisphere(scene, caster, radiosity, options);
+  const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
   BandArray indirect(static_cast<Eigen::Index>(points.size()), scene.bands.count());
   for_each_point(points, options, [&](int i, std::uint64_t key) {
     indirect.row(i) = hemisphere.irradiance(points[i], key).transpose();
@@ -240,6 +254,29 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
     }
   }
   return vertex_power.colwise() / vertex_area.max(1e-30f);
+}
+
+void share_rays(const PatchMesh& mesh, int rays, std::span<GatherPoint> points) {
+  std::vector<double> area(mesh.vertex_count(), 0.0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int n = mesh.corner_count(e);
+    for (int c = 0; c < n; ++c) area[mesh.corners[e][c]] += mesh.element_area[e] / n;
+  }
+  std::vector<double> sorted = area;
+  std::sort(sorted.begin(), sorted.end(), std::greater<>());
+  const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
+  double typical = 0.0, larger = 0.0;
+  for (std::size_t i = 0; i < sorted.size() && larger < 0.5 * total; ++i) {
+    typical = sorted[i];
+    larger += sorted[i];
+  }
+  if (!(typical > 0.0)) return;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    // sqrt(area / typical), rounded to a power of two.
+    const double halvings = -0.5 * std::log2(std::max(area[v] / typical, 1e-6));
+    const int shift = std::clamp(static_cast<int>(std::lround(halvings)), -1, 3);
+    points[v].rays = shift < 0 ? 2 * rays : std::max(1, rays >> shift);
+  }
 }
 
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {

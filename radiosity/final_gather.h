@@ -21,6 +21,7 @@ struct GatherPoint {
   /// Of the random numbers; else its place in the list. What points of one key have in common,
   /// light from afar, has the same noise in all of them: it is not in their differences.
   std::optional<std::uint64_t> key{};
+  int rays = 0;  ///< hemisphere rays, if not as many as GatherOptions say
 };
 
 struct GatherOptions {
@@ -69,6 +70,12 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 /// scene has no mirrors or glass.
 BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, int rays, int max_specular_depth);
+
+/// Gives each point a share of the rays that falls with the square root of the area it stands for,
+/// which makes the mean noise over all area least for the work: `rays` where the larger elements
+/// are that make up half of all area, at most twice as many on still larger ones, at least an
+/// eighth anywhere; powers of two. `points` are the mesh's vertices.
+void share_rays(const PatchMesh& mesh, int rays, std::span<GatherPoint> points);
 
 /// For every vertex, a point a hair inside one of its elements, so that it lies on no edge, and
 /// that element's facet and normal.

@@ -28,6 +28,11 @@ double mean_square(const Spectrum& difference) {
 
 }  // namespace
 
+double error_reference(double mean_irradiance, double own_irradiance) {
+  constexpr double bright = 4.0;
+  return std::max(mean_irradiance, own_irradiance / bright);
+}
+
 InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& caster,
                                        const DirectLight& direct_light, const BandArray& radiosity,
                                        const BandArray& caustic, RefinedElements& elements,
@@ -165,7 +170,7 @@ GatheredIrradiance InterpolationError::values(const std::vector<int>& vertices) 
 }
 
 double InterpolationError::expected(int cell, int side) const {
-  if (!matters(elements_.element(cell, side))) return 0.0;
+  if (!matters(elements_.element(cell, side)) || !(mean_ > 0.0)) return 0.0;
   Spectrum low = total(elements_.corner_vertex(cell, side, 0)), high = low;
   for (int i = 1; i < elements_.corner_count(cell); ++i) {
     const Spectrum E = total(elements_.corner_vertex(cell, side, i));
@@ -173,7 +178,16 @@ double InterpolationError::expected(int cell, int side) const {
     high = high.max(E);
   }
   constexpr double unseen = 0.05;
-  return mean_square(high - low) + std::pow(unseen * mean_, 2);
+  return mean_square(high - low) / std::pow(reference(cell, side), 2) + std::pow(unseen, 2);
+}
+
+// W/m^2 that differences are relative to.
+double InterpolationError::reference(int cell, int side) const {
+  double sum = 0.0;
+  for (int i = 0; i < elements_.corner_count(cell); ++i) {
+    sum += total(elements_.corner_vertex(cell, side, i)).mean();
+  }
+  return error_reference(mean_, sum / elements_.corner_count(cell));
 }
 
 namespace {
@@ -232,9 +246,10 @@ double InterpolationError::lattice_error(int cell, int side) {
                     first_.row(v).transpose() - first, second_.row(v).transpose() - second);
     add_shadow_noise(v, at_center);
   }
-  const bool indirect_counts = differences.indirect > differences.noise;
-  const double error = indirect_counts ? differences.both : differences.direct;
+  // Of two independent gathers alone, the product over a cell would be off by about the noise.
   constexpr double beyond_doubt = 2.0;
+  const bool indirect_counts = differences.indirect > beyond_doubt * differences.noise;
+  const double error = indirect_counts ? differences.both : differences.direct;
   return error > beyond_doubt * shadow_noise ? error - shadow_noise : 0.0;
 }
 
@@ -308,7 +323,10 @@ std::vector<std::array<double, 2>> InterpolationError::measure(const std::vector
       for (int i = begin + low; i < begin + high; ++i) {
         for (int side = 0; side < elements_.side_count(cells[i]); ++side) {
           if (!matters(elements_.element(cells[i], side))) continue;
-          errors[i][side] = lattice_error(cells[i], side) + probed_error(cells[i], side);
+          const double E = reference(cells[i], side);
+          if (!(E > 0.0)) continue;
+          errors[i][side] =
+              (lattice_error(cells[i], side) + probed_error(cells[i], side)) / (E * E);
         }
       }
     });

@@ -7,8 +7,15 @@
 
 namespace lightwell {
 
+/// What errors of irradiance are relative to, W/m^2: the scene's mean irradiance or a quarter of
+/// the place's own, whichever is more. (Else a palm's breadth of lamp shade, lit a thousand times
+/// as brightly as the room, would decide over all of it.)
+double error_reference(double mean_irradiance, double own_irradiance);
+
 /// How far irradiance interpolated over cells is from irradiance gathered inside them: the squared
-/// difference's mean over each cell, W^2/m^4, mean of the bands.
+/// difference's mean over each cell, mean of the bands, relative to the scene's mean irradiance or,
+/// on cells that have more, to their own. (Else a palm's breadth of lamp shade, lit a thousand
+/// times as brightly as the room, would decide over all of it.)
 ///
 /// A cell is compared at the middles of its edges and in its centre (weights of Simpson's rule; in
 /// triangles at the middles alone), and those gathers are kept as the values of the vertices that
@@ -38,8 +45,8 @@ class InterpolationError {
   double area() const { return area_; }
   double mean_irradiance() const { return mean_; }
 
-  /// A bound from the corners' values, for cells not measured yet: their range and 5 % of the mean
-  /// irradiance, squared.
+  /// A bound from the corners' values, for cells not measured yet: their range squared, and 5 %
+  /// squared.
   double expected(int cell, int side) const;
   /// Gathers what it takes, and gives the error of each cell's two sides.
   std::vector<std::array<double, 2>> measure(const std::vector<int>& cells);
@@ -60,6 +67,7 @@ class InterpolationError {
   double lattice_error(int cell, int side);
   double probed_error(int cell, int side);
   Spectrum total(int vertex) const;
+  double reference(int cell, int side) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;

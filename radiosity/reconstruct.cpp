@@ -133,7 +133,8 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (has_caustics) irradiance += draft.caustic;
   const BandArray radiosity = gatherable_radiosity(mesh, direct_light, irradiance);
   const GatherOptions gather = gather_options(options);
-  const std::vector<GatherPoint> points = vertex_gather_points(mesh);
+  std::vector<GatherPoint> points = vertex_gather_points(mesh);
+  share_rays(mesh, gather.rays, points);
   if (draft.refined) {
     solution.direct_irradiance = std::move(draft.direct);
     solution.indirect_irradiance = gather_indirect(scene, caster, radiosity, points, gather);

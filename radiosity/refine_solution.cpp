@@ -14,9 +14,9 @@
 namespace lightwell {
 namespace {
 
-// About as many as elements of half the edge everywhere would be, both sides; those that are small
-// already, leaves and crumbs, would stay what they are.
-std::int64_t even_count(const RefinedElements& elements) {
+// About as many as elements of a quarter of the edge everywhere would be, both sides; those that are
+// small already, leaves and crumbs, would stay what they are.
+std::int64_t default_room(const RefinedElements& elements) {
   std::vector<double> areas;
   double total = 0.0;
   for (const int cell : elements.leaves()) {
@@ -31,7 +31,7 @@ std::int64_t even_count(const RefinedElements& elements) {
   }
   std::int64_t count = elements.element_count();
   for (const int cell : elements.leaves()) {
-    if (elements.area(cell) > 0.25 * typical) count += 3 * elements.side_count(cell);
+    if (elements.area(cell) > 0.25 * typical) count += 15 * elements.side_count(cell);
   }
   return count;
 }
@@ -42,8 +42,8 @@ class Refinement {
       : elements_(elements),
         error_(error),
         options_(options),
-        max_elements_(options.max_elements > 0 ? options.max_elements : even_count(elements)),
-        allowed_(std::pow(options.tolerance * error.mean_irradiance(), 2) * error.area()) {
+        max_elements_(options.max_elements > 0 ? options.max_elements : default_room(elements)),
+        allowed_(std::pow(options.tolerance, 2) * error.area()) {
     resize();
     for (const int cell : elements.leaves()) {
       std::array<double, 2> expected{0.0, 0.0};
@@ -69,16 +69,13 @@ class Refinement {
       }
     }
     cells_to_split();
-    const double mean_square = error_.area() > 0.0 ? sum_ / error_.area() : 0.0;
-    report.estimate =
-        error_.mean_irradiance() > 0.0 ? std::sqrt(mean_square) / error_.mean_irradiance() : 0.0;
+    report.estimate = error_.area() > 0.0 ? std::sqrt(sum_ / error_.area()) : 0.0;
     report.elements = elements_.element_count();
     return report;
   }
 
   float relative_error(int cell, int side) const {
-    if (!(error_.mean_irradiance() > 0.0)) return 0.0f;
-    return static_cast<float>(std::sqrt(squares_[cell][side]) / error_.mean_irradiance());
+    return static_cast<float>(std::sqrt(squares_[cell][side]));
   }
 
  private:

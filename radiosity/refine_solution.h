@@ -9,11 +9,11 @@
 namespace lightwell {
 
 struct RefineOptions {
-  /// Relative RMS error of interpolated irradiance at which refinement stops: of the mean
-  /// irradiance, over all that reflects. 0: nothing is refined.
+  /// Relative RMS error of interpolated irradiance at which refinement stops, over all that
+  /// reflects; see InterpolationError for what it is relative to. 0: nothing is refined.
   double tolerance = 0.007;
-  /// Elements that there may be, both sides; 0: about as many as an even mesh of half the
-  /// edges would have.
+  /// Elements that there may be, both sides; 0: about as many as an even mesh of a quarter of the
+  /// edges would have, small ones left as they are.
   std::int64_t max_elements = 0;
   /// How often an element of the start may be split: its edge by 2 to this.
   int max_level = 4;
@@ -41,7 +41,7 @@ void require_room(const PatchMesh& mesh, const RefineOptions& options);
 struct RefinedSolution {
   RefinedMesh refined{};
   GatheredIrradiance draft{};  ///< vertices x bands; the direct light is as good as it gets
-  /// Per element: estimated RMS error of interpolation over it, of the mean irradiance.
+  /// Per element: estimated relative RMS error of interpolation over it.
   Eigen::ArrayXf error{};
   RefineReport report{};
 };

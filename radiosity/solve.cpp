@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "mesh/patch_sampler.h"
+#include "radiosity/interpolation_error.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/solve_radiosity.h"
 #include "scene/errors.h"
@@ -88,7 +89,10 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
   const BandArray truth = independent.direct + independent.indirect + caustic;
   const double mean = truth.cast<double>().mean();
   if (!(mean > 0.0)) return 0.0;
-  return std::sqrt((interpolated - truth).cast<double>().square().mean()) / mean;
+  const Eigen::ArrayXd reference = truth.cast<double>().rowwise().mean().unaryExpr(
+      [mean](double own) { return error_reference(mean, own); });
+  const Eigen::ArrayXd squares = (interpolated - truth).cast<double>().square().rowwise().mean();
+  return std::sqrt((squares / reference.square()).mean());
 }
 
 // Of patches; `seconds` of the result say what took how long.
