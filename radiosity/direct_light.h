@@ -29,8 +29,8 @@ struct Emitter {
 
 constexpr int most_shadow_rays = 256;
 
-/// Shadow rays per emitter and point: `min_rays` stratified ones first; where they disagree,
-/// `max_rays`.
+/// Shadow rays from a point to an emitter that would give all of its direct light: `min_rays`
+/// stratified ones first; where they disagree, `max_rays`. Emitters that would give less get fewer.
 struct ShadowOptions {
   int min_rays = 16;
   int max_rays = 64;  ///< 1 to most_shadow_rays
@@ -80,10 +80,6 @@ class DirectLight {
                       const ShadowOptions& options = {}, EmitterSight* sight = nullptr) const;
 
  private:
-  double visible_share(const Emitter& emitter, const ElementCaster& caster,
-                       const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
-                       std::uint64_t key, const ShadowOptions& options) const;
-
   std::vector<Emitter> emitters_;
   std::vector<char> owned_;
   int bands_ = 0;
