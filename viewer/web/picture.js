@@ -46,11 +46,11 @@ void main() {
 }`;
 
 const line_vertex_program = `
-in vec3 normal;
 out float facing;
 void main() {
   vec4 at = modelViewMatrix * vec4(position, 1.0);
   facing = -dot(normalMatrix * normal, at.xyz);
+  at.xyz *= 0.998;  // before the faces it belongs to
   gl_Position = projectionMatrix * at;
 }`;
 
@@ -131,8 +131,6 @@ class Picture {
       glslVersion: Library.GLSL3, vertexShader: vertex_program, fragmentShader: fragment_program,
       uniforms: {...this.uniforms, opacity: {value: opacity}},
       transparent: is_glass, depthWrite: !is_glass,
-      // So that outlines lie before the faces they belong to.
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
   }
 
