@@ -58,6 +58,13 @@ function digits(x) {
   return Math.abs(x) >= 9999.5 ? x.toFixed(0) : Number(x.toPrecision(4)).toString();
 }
 
+/** A coordinate to a ten-thousandth of the model's size. */
+function coordinate(x, about) {
+  const size = Math.hypot(...about.size) / about.metres_per_unit;
+  const decimals = Math.min(20, Math.max(0, 4 - Math.floor(Math.log10(size))));
+  return Number(x.toFixed(decimals)) || 0;  // no -0
+}
+
 /** The reading as an element's content; numbers also as data-... attributes, for scripts. */
 function show_reading(model, hit, element) {
   element.replaceChildren();
@@ -66,7 +73,7 @@ function show_reading(model, hit, element) {
   const {about} = model, part = about.parts[model.part_of_face[hit.face]], at = model.to_scene(hit.point);
   const name = document.createElement('span');
   name.textContent = part.name + (part.is_back !== hit.is_black ? ' (back)' : '');
-  const place = `at ${at.map(digits).join(', ')} ${about.unit_name}`;
+  const place = `at ${at.map((x) => coordinate(x, about)).join(', ')} ${about.unit_name}`;
   Object.assign(element.dataset, {surface: part.name, x: at[0], y: at[1], z: at[2]});
   if (hit.is_black) {
     element.append(name, `\nno light\n${place}`);
