@@ -163,6 +163,12 @@ double size_of(const BakedModel& model) {
   return (high - low).norm();
 }
 
+/// Of many bands the colours are weighted sums.
+const char* unit_of_radiosity(const BakedModel& model) {
+  if (model.relative_units) return "relative";
+  return model.bands.wavelengths_nm.empty() ? "W/m^2" : "W/m^2, weighted to linear sRGB";
+}
+
 /// What the colours stand for. A surface of radiance L has radiosity pi L.
 Json meaning(const BakedModel& model) {
   const double scale = model.cameras.front().scale;
@@ -171,7 +177,7 @@ Json meaning(const BakedModel& model) {
   return {{"exposure", scale},
           {"radiosity_of_color_1", B},
           {"luminance_of_white", model.bands.lumens_per_watt / scale},
-          {"unit_of_radiosity", model.relative_units ? "relative" : "W/m^2"},
+          {"unit_of_radiosity", unit_of_radiosity(model)},
           {"unit_of_illuminance", model.relative_units ? "relative" : "lx"},
           {"unit_of_luminance", model.relative_units ? "relative" : "cd/m^2"},
           {"clipped_vertices", clipped},

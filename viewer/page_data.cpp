@@ -144,7 +144,8 @@ PageData page_data(const BakedModel& model, const LuxRange& range) {
                 {"unit_name", model.unit_name},
                 {"metres_per_unit", model.metres_per_unit},
                 {"relative_units", model.relative_units},
-                {"lumens_per_watt", model.bands.lumens_per_watt}};
+                {"lumens_per_watt", model.bands.lumens_per_watt},
+                {"is_spectral", !model.bands.wavelengths_nm.empty()}};
   Json to_scene = Json::array();  // p of the page is here: rotation (p + origin) in the scene
   for (int c = 0; c < 3; ++c) to_scene.push_back(vector(model.to_y_up.col(c)));
   page.about["to_scene"] = std::move(to_scene);

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "lit_sides.h"

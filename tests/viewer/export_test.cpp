@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <array>
 
 #include <cstdlib>
 #include <cstring>

@@ -2,6 +2,8 @@
 // chromium).
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <cmath>
+#include <numbers>
 
 #include <array>
 #include <cstdio>

@@ -28,7 +28,7 @@ function weights_at(model, face, point) {
   return [(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t];
 }
 
-/** Light on a face at a point: illuminance (lx), luminance (cd/m^2), radiosity (linear RGB, W/m^2). */
+/** Light on a face at a point: illuminance (lx), luminance (cd/m^2), radiosity (linear RGB; W/m^2 of RGB bands). */
 function light_at(model, face, point) {
   const weights = weights_at(model, face, point), radiance = [0, 0, 0];
   let illuminance = 0;
@@ -85,7 +85,9 @@ function show_reading(model, hit, element) {
   const lux = document.createElement('b');
   lux.textContent = `${digits(light.illuminance)} ${relative ? '(relative)' : 'lx'}`;
   const kind = about.materials[part.material].kind;
+  // Of many bands the page has only their colour, which is no power.
+  const radiosity = about.is_spectral ? ''
+    : `, radiosity ${light.radiosity.map(digits).join(' ')}${relative ? '' : ' W/m²'} (r g b)`;
   element.append(lux, '  ', name, kind === 'mirror' ? ' (mirror, shown matt)' : '',
-    `\nluminance ${digits(light.luminance)}${relative ? '' : ' cd/m²'}, ` +
-    `radiosity ${light.radiosity.map(digits).join(' ')}${relative ? '' : ' W/m²'} (r g b)\n${place}`);
+    `\nluminance ${digits(light.luminance)}${relative ? '' : ' cd/m²'}${radiosity}\n${place}`);
 }
