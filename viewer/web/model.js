@@ -80,22 +80,23 @@ class Model {
   }
 
   /**
-   * Triangles of all faces, quads split from their first corner, in three groups: faces whose other side is black,
-   * faces without that, and glass.
+   * Triangles of all faces, quads split from their first corner, in five groups: faces without and with a black other
+   * side, both again of faces without light, and glass.
    */
   split_faces() {
     const {parts, materials, face_count} = this.about;
     this.part_of_face = new Uint32Array(face_count);
-    const group_of_face = new Uint8Array(face_count), sizes = [0, 0, 0];
+    const group_of_face = new Uint8Array(face_count), sizes = [0, 0, 0, 0, 0];
     parts.forEach((part, p) => {
       const is_glass = materials[part.material].kind === 'glass';
       for (let f = part.first_face; f < part.first_face + part.face_count; ++f) {
         this.part_of_face[f] = p;
-        group_of_face[f] = is_glass ? 2 : this.black_behind[f] ? 0 : 1;
+        group_of_face[f] = is_glass ? 4 : this.black_behind[f] + (this.is_lit(f) ? 0 : 2);
         sizes[group_of_face[f]] += this.corner_count(f) - 2;
       }
     });
-    const next = [0, sizes[0], sizes[0] + sizes[1]], count = sizes[0] + sizes[1] + sizes[2];
+    let count = 0;
+    const next = sizes.map((size) => (count += size) - size);
     this.groups = next.map((first, g) => ({first, count: sizes[g]}));
     this.triangles = new Uint32Array(3 * count);
     this.face_of_triangle = new Uint32Array(count);
@@ -109,6 +110,17 @@ class Model {
   }
 
   corner_count(face) { return this.corners[4 * face + 3] === 0xffffffff ? 3 : 4; }
+
+  /** Whether any basis has light at any corner. */
+  is_lit(face) {
+    for (let c = 0; c < this.corner_count(face); ++c) {
+      const v = 3 * this.corners[4 * face + c];
+      for (const {radiance} of this.bases) {
+        if (radiance[v] !== 0 || radiance[v + 1] !== 0 || radiance[v + 2] !== 0) return true;
+      }
+    }
+    return false;
+  }
 
   is_glass(face) { return this.about.materials[this.about.parts[this.part_of_face[face]].material].kind === 'glass'; }
 
