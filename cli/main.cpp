@@ -29,6 +29,9 @@ constexpr const char* recipes =
   lightwell mesh room.toml -o mesh.vtp                   the patches and elements of 'solve'
   lightwell render room.toml room.vtp -o room.png        a picture: mirrors, glass, exact shadows
   lightwell view room.toml room.vtp                      walk through it
+  lightwell export room.vtp --scene room.toml -o room.html
+                                                         a page to walk through in a browser, or
+                                                         a baked model: .glb, .ply, .obj
   lightwell probe room.toml room.vtp --points desk.csv -o lux.csv
                                                          irradiance and lux at points
   lightwell compare mine.exr reference.exr               how far two pictures are apart
@@ -43,15 +46,16 @@ struct NamedCommand {
   const char* name;
   Action (*add)(CLI::App&);
 };
-constexpr std::array<NamedCommand, 9> commands = {{{"run", add_run},
-                                                   {"solve", add_solve},
-                                                   {"mesh", add_mesh},
-                                                   {"render", add_render},
-                                                   {"probe", add_probe},
-                                                   {"view", add_view},
-                                                   {"compare", add_compare},
-                                                   {"form-factors", add_form_factors},
-                                                   {"info", add_info}}};
+constexpr std::array<NamedCommand, 10> commands = {{{"run", add_run},
+                                                    {"solve", add_solve},
+                                                    {"mesh", add_mesh},
+                                                    {"render", add_render},
+                                                    {"probe", add_probe},
+                                                    {"view", add_view},
+                                                    {"export", add_export},
+                                                    {"compare", add_compare},
+                                                    {"form-factors", add_form_factors},
+                                                    {"info", add_info}}};
 
 /// One blank line between groups, so that help fits a screen.
 class TightFormatter : public CLI::Formatter {

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <memory>
 #include <stdexcept>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/lux_range.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
@@ -19,26 +19,10 @@ namespace {
 
 struct Arguments {
   std::string scene, solution, camera, offscreen, overlay, false_colour;
-  std::optional<std::pair<double, double>> range;  // lx
+  std::optional<LuxRange> range;
   std::optional<std::pair<int, int>> size;
   double exposure_ev = 0.0;
 };
-
-std::pair<double, double> parse_range(const std::string& text) {
-  double low = 0.0, high = 0.0;
-  const char* const last = text.data() + text.size();
-  const auto [colon, bad_low] = std::from_chars(text.data(), last, low);
-  if (bad_low == std::errc() && colon != last && *colon == ':') {
-    const auto [end, bad_high] = std::from_chars(colon + 1, last, high);
-    constexpr double most = 1e30;
-    const bool rises = low >= 0.0 && low < high && high < most;
-    if (bad_high == std::errc() && end == last && rises) return {low, high};
-  }
-  throw CLI::ValidationError(
-      "--range", fmt::format("'{}' is no range; write LOW:HIGH, such as 0:1000, rising from 0 or "
-                             "more",
-                             text));
-}
 
 #ifdef LIGHTWELL_VIEWER
 int view(const Arguments& arguments, Console& console) {
@@ -49,7 +33,7 @@ int view(const Arguments& arguments, Console& console) {
   options.mesh = !arguments.overlay.empty();
   options.illuminance = arguments.false_colour == "lux";
   options.interpolation_error = arguments.false_colour == "error";
-  if (arguments.range) options.lux_range = {arguments.range->first, arguments.range->second};
+  options.lux_range = arguments.range;
   options.relative_units = scene.relative_units;
   if (!arguments.camera.empty()) options.camera = choose_camera(scene, arguments.camera);
   // Off screen, the picture that 'render' would make; a window is as large as suits a screen.
@@ -113,12 +97,7 @@ Action add_view(CLI::App& command) {
                       "estimated to miss, 0.1 % to 10 %")
           ->type_name("WHAT")
           ->check(one_of("quantity", {"lux", "error"}));
-  command
-      .add_option_function<std::string>(
-          "--range", [arguments](const std::string& text) { arguments->range = parse_range(text); },
-          "ends of the scale in lux, even from 0, else logarithmic (default: suits the solution)")
-      ->type_name("LOW:HIGH")
-      ->needs(false_colour);
+  add_lux_range(command, arguments->range)->needs(false_colour);
   command.footer("Example: lightwell view cornell/cornell.toml cornell.vtp");
   return [arguments](Console& console) { return view(*arguments, console); };
 }

@@ -15,11 +15,24 @@ namespace {
 constexpr int vertex_grain = 4096;
 /// Surfaces a sample looks through before it counts as black; each is a pane or a wall from behind.
 constexpr int max_layers = 16;
+constexpr int metering_width = 160;
 
 const Material* find_material(const PatchMesh& mesh, const std::vector<Material>& materials,
                               int element) {
   const auto m = static_cast<std::size_t>(mesh.material[mesh.patch[element]]);
   return m < materials.size() ? &materials[m] : nullptr;
+}
+
+/// About five even steps, each 1, 2 or 5 times a power of ten.
+std::vector<double> even_steps(double high) {
+  const double power = std::pow(10.0, std::floor(std::log10(high / 5.0)));
+  double step = 10.0 * power;
+  for (const double factor : {5.0, 2.0, 1.0}) {
+    if (factor * power * 4.0 >= 0.999 * high) step = factor * power;
+  }
+  std::vector<double> steps;
+  for (int i = 0; i * step <= 1.001 * high; ++i) steps.push_back(i * step);
+  return steps;
 }
 
 }  // namespace
@@ -56,6 +69,15 @@ BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>&
     }
   }
   return B / std::numbers::pi_v<float>;
+}
+
+int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance) {
+  const auto& corners = mesh.corners[element];
+  if (mesh.corner_count(element) < 4) return 0;
+  const auto difference = [&](int a, int b) {
+    return (radiance.row(corners[a]) - radiance.row(corners[b])).abs().sum();
+  };
+  return difference(1, 3) < difference(0, 2) ? 1 : 0;
 }
 
 std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
@@ -109,6 +131,22 @@ LuxRange lux_range(const std::vector<float>& lux) {
   range.low = round(std::max(darkest, range.high / 1000.0), false);
   if (!(range.low < range.high)) range.low = range.high / 10.0;
   return range;
+}
+
+std::vector<double> scale_steps(const LuxRange& range) {
+  if (range.is_even()) return even_steps(range.high);
+  std::vector<double> steps;
+  const bool is_long = range.high > 100.0 * range.low;
+  for (double power = std::pow(10.0, std::floor(std::log10(range.low))); power <= range.high;
+       power *= 10.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double value = factor * power;
+      const bool inside = value >= 0.999 * range.low && value <= 1.001 * range.high;
+      const bool is_end = value <= 1.001 * range.low || value >= 0.999 * range.high;
+      if (inside && (factor == 1.0 || is_end || !is_long)) steps.push_back(value);
+    }
+  }
+  return steps;
 }
 
 Eigen::Array3f false_color(float place) {
@@ -190,6 +228,13 @@ Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>
     pixels = std::move(further_pixels);
   }
   return image;
+}
+
+double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                     const BandArray& radiance, const Bands& bands, const Camera& camera) {
+  const Image seen = coarse_picture(caster, kinds, radiance, camera, metering_width);
+  if ((seen.radiance > 0.0f).any()) return exposure_scale(seen, bands);
+  return exposure_scale({static_cast<int>(radiance.rows()), 1, radiance}, bands);
 }
 
 }  // namespace lightwell

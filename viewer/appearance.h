@@ -16,6 +16,9 @@ enum class ElementKind : std::uint8_t {
   glass,  ///< clear: drawn as a veil over what is behind
 };
 
+/// Share of what is behind that glass hides.
+inline constexpr double glass_opacity = 0.2;
+
 /// What each element is. Without materials nothing is glass.
 std::vector<ElementKind> element_kinds(const SolvedScene& solved,
                                        const std::vector<Material>& materials);
@@ -23,6 +26,10 @@ std::vector<ElementKind> element_kinds(const SolvedScene& solved,
 /// Radiance that stands for each vertex, W/(m^2 sr), vertices x bands: B / pi; mirrors and glass
 /// add what they would send out if they scattered the mirrored or the refracted light evenly.
 BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>& materials);
+
+/// The corner of a quad from which the diagonal goes along which to split it: the one whose ends
+/// differ less, so that the crease follows the light. 0 or 1; 0 for a triangle.
+int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance);
 
 /// 8-bit sRGB, 3 bytes a vertex: the second pass's automatic tone mapping with `scale` as the
 /// exposure (see exposure_scale).
@@ -39,6 +46,10 @@ struct LuxRange {
 /// A logarithmic one with 1, 2 or 5 times a power of ten at either end, that takes in all but the
 /// brightest 0.5 % of the vertices and reaches at most a thousandth down.
 LuxRange lux_range(const std::vector<float>& lux);
+
+/// Where a scale is labelled: about five even steps, or 1, 2 and 5 times the powers of ten; the
+/// powers alone and the ends over more than two decades. lx.
+std::vector<double> scale_steps(const LuxRange& range);
 
 /// Illuminance at each vertex, lx.
 std::vector<float> vertex_illuminance(const RadiositySolution& solution);
@@ -59,5 +70,10 @@ std::vector<std::uint8_t> error_colors(const SolvedScene& solved);
 /// there has, up to mirrors and glass.
 Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                      const BandArray& radiance, const Camera& camera, int width);
+
+/// The exposure_scale of the second pass's picture from a camera, by a coarse picture; where
+/// nothing is to be seen from there, that of all vertices alike.
+double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                     const BandArray& radiance, const Bands& bands, const Camera& camera);
 
 }  // namespace lightwell

@@ -16,17 +16,6 @@
 namespace lightwell {
 namespace {
 
-/// Share of what is behind that glass hides.
-constexpr double glass_opacity = 0.2;
-
-/// VTK splits a quad along the diagonal from its first corner: the corner to begin with.
-int first_corner(const std::array<int, 4>& corners, const BandArray& radiance) {
-  const auto difference = [&](int a, int b) {
-    return (radiance.row(corners[a]) - radiance.row(corners[b])).abs().sum();
-  };
-  return difference(1, 3) < difference(0, 2) ? 1 : 0;
-}
-
 vtkSmartPointer<vtkCellArray> polygons_of_kind(const PatchMesh& mesh,
                                                const std::vector<ElementKind>& kinds,
                                                const BandArray& radiance, ElementKind kind) {
@@ -34,7 +23,8 @@ vtkSmartPointer<vtkCellArray> polygons_of_kind(const PatchMesh& mesh,
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (kinds[e] != kind) continue;
     const int corner_count = mesh.corner_count(e);
-    const int first = corner_count == 4 ? first_corner(mesh.corners[e], radiance) : 0;
+    // VTK splits a quad along the diagonal from its first corner.
+    const int first = first_corner(mesh, e, radiance);
     polygons->InsertNextCell(corner_count);
     for (int c = 0; c < corner_count; ++c) {
       polygons->InsertCellPoint(mesh.corners[e][(first + c) % corner_count]);

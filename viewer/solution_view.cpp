@@ -22,39 +22,9 @@
 namespace lightwell {
 namespace {
 
-constexpr int metering_width = 160;
 /// Drawing sixteen times instead of sixteen times as large: text and lines keep their size, and no
 /// driver's largest picture or memory is the limit.
 constexpr int samples_along_pixel = 4;
-
-/// About five even steps, each 1, 2 or 5 times a power of ten.
-std::vector<double> even_steps(double high) {
-  const double power = std::pow(10.0, std::floor(std::log10(high / 5.0)));
-  double step = 10.0 * power;
-  for (const double factor : {5.0, 2.0, 1.0}) {
-    if (factor * power * 4.0 >= 0.999 * high) step = factor * power;
-  }
-  std::vector<double> steps;
-  for (int i = 0; i * step <= 1.001 * high; ++i) steps.push_back(i * step);
-  return steps;
-}
-
-/// 1, 2 and 5 times the powers of ten of a range; the powers alone over more than two decades.
-std::vector<double> round_steps(const LuxRange& range) {
-  if (range.is_even()) return even_steps(range.high);
-  std::vector<double> steps;
-  const bool is_long = range.high > 100.0 * range.low;
-  for (double power = std::pow(10.0, std::floor(std::log10(range.low))); power <= range.high;
-       power *= 10.0) {
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      const double value = factor * power;
-      const bool inside = value >= 0.999 * range.low && value <= 1.001 * range.high;
-      const bool is_end = value <= 1.001 * range.low || value >= 0.999 * range.high;
-      if (inside && (factor == 1.0 || is_end || !is_long)) steps.push_back(value);
-    }
-  }
-  return steps;
-}
 
 vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char* unit) {
   constexpr int entries = 256;
@@ -70,7 +40,7 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char
   legend->SetLookupTable(table);
   legend->SetTitle(unit);
   vtkNew<vtkDoubleArray> labels;
-  for (const double value : round_steps(range)) labels->InsertNextValue(value);
+  for (const double value : scale_steps(range)) labels->InsertNextValue(value);
   legend->SetCustomLabels(labels);
   legend->UseCustomLabelsOn();
   legend->SetLabelFormat("%.4g");
@@ -159,10 +129,7 @@ vtkRenderer* SolutionView::renderer() const {
 }
 
 double SolutionView::meter(const Camera& camera) const {
-  const Image seen = coarse_picture(caster_, kinds_, radiance_, camera, metering_width);
-  if ((seen.radiance > 0.0f).any()) return exposure_scale(seen, solved_.solution.bands);
-  // Nothing to see from here: expose for the scene as a whole.
-  return exposure_scale({static_cast<int>(radiance_.rows()), 1, radiance_}, solved_.solution.bands);
+  return metered_scale(caster_, kinds_, radiance_, solved_.solution.bands, camera);
 }
 
 void SolutionView::set_look(const Look& look) {

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "viewer/appearance.h"
+
+namespace lightwell {
+
+/// Adds --range LOW:HIGH, of a scale of false colours in lux.
+CLI::Option* add_lux_range(CLI::App& command, std::optional<LuxRange>& range);
+
+}  // namespace lightwell

@@ -1,0 +1,274 @@
+// Files that other programs read, read back.
+#include "viewer/export.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <array>
+
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "lit_sides.h"
+#include "scene/io/read_scene.h"
+#include "tests/temporary_folder.h"
+
+namespace lightwell {
+namespace {
+
+using Json = nlohmann::json;
+
+class Export : public testing::Test {
+ protected:
+  TemporaryFolder folder;
+};
+
+struct Glb {
+  Json json;
+  std::string binary;
+};
+
+Glb parse_glb(const std::string& bytes) {
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, 4);
+    return value;
+  };
+  EXPECT_EQ(bytes.substr(0, 4), "glTF");
+  EXPECT_EQ(word(4), 2u);
+  EXPECT_EQ(word(8), bytes.size());
+  const std::size_t length = word(12);
+  EXPECT_EQ(bytes.substr(16, 4), "JSON");
+  EXPECT_EQ(bytes.substr(20 + length + 4, 4), std::string("BIN\0", 4));
+  EXPECT_EQ(word(20 + length), bytes.size() - 28 - length);
+  return {Json::parse(bytes.substr(20, length)), bytes.substr(28 + length)};
+}
+
+/// The numbers of an accessor, `columns` for each element.
+std::vector<float> floats(const Glb& glb, int accessor, int columns) {
+  const Json& a = glb.json["accessors"][accessor];
+  const Json& view = glb.json["bufferViews"][a["bufferView"].get<int>()];
+  std::vector<float> values(a["count"].get<std::size_t>() * columns);
+  std::memcpy(values.data(),
+              glb.binary.data() + view["byteOffset"].get<std::size_t>() +
+                  a["byteOffset"].get<std::size_t>(),
+              4 * values.size());
+  return values;
+}
+
+double area_of(const Scene& scene) {
+  double area = 0.0;
+  for (const Surface& surface : scene.surfaces) area += surface_area(surface);
+  return area;
+}
+
+std::set<std::string> names_of(const Scene& scene) {
+  std::set<std::string> names;
+  for (const Surface& surface : scene.surfaces) names.insert(surface.name);
+  return names;
+}
+
+/// Five walls of 2 m x 2 m; single precision holds their corners exactly.
+constexpr double box_area = 5 * 4.0;
+
+TEST_F(Export, OurReaderFindsTheRoomInTheGltf) {
+  write_gltf(folder / "box.glb", bake_model(solved_box(), box_scene()));
+  const Scene scene = read_scene(folder / "box.glb");
+  EXPECT_EQ(names_of(scene), (std::set<std::string>{"left", "right", "wall", "floor", "ceiling"}));
+  EXPECT_NEAR(area_of(scene), box_area, 1e-12);
+  const Bounds bounds = scene_bounds(scene);
+  EXPECT_EQ(bounds.low, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(bounds.high, Eigen::Vector3d(2, 2, 2));
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  const Camera &camera = scene.cameras[0], wanted = box_camera();
+  EXPECT_EQ(camera.name, "front");
+  // From doubles in text and back through a matrix and two tangents: some units of 2^-52.
+  EXPECT_LT((camera.position - wanted.position).norm(), 1e-14);
+  EXPECT_LT((camera.direction - wanted.direction).norm(), 1e-14);
+  EXPECT_LT((camera.up - wanted.up).norm(), 1e-14);
+  EXPECT_NEAR(camera.fov_degrees, wanted.fov_degrees, 1e-12);
+}
+
+/// Facets face where they faced: the walls of the box look inwards.
+TEST_F(Export, WindingIsKept) {
+  write_gltf(folder / "box.glb", bake_model(solved_box(), box_scene()));
+  for (const Surface& surface : read_scene(folder / "box.glb").surfaces) {
+    const auto& mesh = std::get<PolygonMesh>(surface.shape);
+    for (const Facet& facet : mesh.facets) {
+      const Eigen::Vector3d inwards =
+          Eigen::Vector3d(1, 1, 1) - mesh.vertices[facet.boundary.front()];
+      EXPECT_GT(facet_normal(mesh, facet).dot(inwards), 0.0) << surface.name;
+    }
+  }
+}
+
+/// COLOR_0 times `radiosity_of_color_1` is B, and what is clipped is counted.
+TEST_F(Export, GltfColorsStandForRadiosity) {
+  const BakedModel model = bake_model(solved_box(), box_scene(), -1.0);
+  write_gltf(folder / "box.glb", model);
+  const Glb glb = parse_glb(content_of(folder / "box.glb"));
+  const Json& extras = glb.json["asset"]["extras"];
+  const double factor = extras["radiosity_of_color_1"];
+  EXPECT_EQ(extras["clipped_vertices"],
+            0);  // a stop below automatic: nothing is five times typical
+  for (std::size_t m = 0; m < 5; ++m) {
+    const Json& primitive = glb.json["meshes"][m]["primitives"][0];
+    const std::vector<float> colors = floats(glb, primitive["attributes"]["COLOR_0"], 3);
+    const std::vector<float> lux = floats(glb, primitive["attributes"]["_ILLUMINANCE"], 1);
+    const int first = model.parts[m].first_vertex;
+    ASSERT_EQ(colors.size(), 12u);
+    for (int i = 0; i < 12; ++i) {
+      const float B = model.radiosity(first + i / 3, i % 3);
+      EXPECT_NEAR(factor * colors[i], B, B * 4e-7);  // three roundings of 2^-24
+    }
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(lux[i], model.illuminance[first + i]);
+  }
+  EXPECT_EQ(glb.json["materials"][0]["extensions"].count("KHR_materials_unlit"), 1u);
+
+  write_gltf(folder / "bright.glb", bake_model(solved_box(), box_scene(), 10.0));
+  const Glb bright = parse_glb(content_of(folder / "bright.glb"));
+  EXPECT_EQ(bright.json["asset"]["extras"]["clipped_vertices"], 20);
+  for (const float c :
+       floats(bright, bright.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"], 3)) {
+    EXPECT_EQ(c, 1.0f);
+  }
+}
+
+TEST_F(Export, BothLitSidesAreInTheGltfOfOneSurface) {
+  write_gltf(folder / "square.glb", bake_model(square_of_two_sides(white, red), {}));
+  const Glb glb = parse_glb(content_of(folder / "square.glb"));
+  ASSERT_EQ(glb.json["meshes"].size(), 1u);
+  EXPECT_EQ(glb.json["meshes"][0]["primitives"].size(), 2u);
+  EXPECT_EQ(glb.json.count("cameras"), 0u);  // one that we made up is no part of the model
+}
+
+TEST_F(Export, AnyNameIsWrittenAsValidText) {
+  Scene scene = box_scene();
+  scene.surfaces[0].name = "quote \" brace } newline \n";
+  scene.surfaces[1].name = "not UTF-8: \xff";
+  const BakedModel model = bake_model(solved_box(), scene);
+  write_gltf(folder / "box.glb", model);
+  const Glb glb = parse_glb(content_of(folder / "box.glb"));
+  EXPECT_EQ(glb.json["nodes"][0]["name"], scene.surfaces[0].name);
+  write_obj(folder / "box.obj", model);
+  EXPECT_NEAR(area_of(read_scene(folder / "box.obj")), box_area, 1e-12);
+  write_ply(folder / "box.ply", model);
+  EXPECT_NEAR(area_of(read_scene(folder / "box.ply")), box_area, 1e-12);
+}
+
+/// With Khronos' validator, where node finds it: npm install gltf-validator,
+/// NODE_PATH=.../node_modules.
+TEST_F(Export, KhronosValidatorHasNothingToSay) {
+  if (std::system("node -e \"require('gltf-validator')\" >/dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "node finds no gltf-validator; to run this test: npm install gltf-validator, "
+                    "and set NODE_PATH to the node_modules it is in";
+  }
+  Scene scene = box_scene();
+  scene.materials[0].dielectric = Dielectric{.tint = Spectrum::Ones(3)};
+  write_gltf(folder / "box.glb", bake_model(solved_box(), scene));
+  write_gltf(folder / "square.glb", bake_model(square_of_two_sides(white, red), {}));
+  folder.write(
+      "validate.js",
+      "const validator = require('gltf-validator'), fs = require('fs');\n"
+      "(async () => { for (const file of process.argv.slice(2)) {\n"
+      "  const report = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)));\n"
+      "  const {numErrors, numWarnings, messages} = report.issues;\n"
+      "  if (numErrors + numWarnings > 0) { console.error(JSON.stringify(messages)); "
+      "process.exit(1); }\n"
+      "} })();\n");
+  const std::string command = "node '" + (folder / "validate.js").string() + "' '" +
+                              (folder / "box.glb").string() + "' '" +
+                              (folder / "square.glb").string() + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+TEST_F(Export, OurReaderFindsTheRoomInThePly) {
+  write_ply(folder / "box.ply", bake_model(solved_box(), box_scene()));
+  const Scene scene = read_scene(folder / "box.ply");
+  EXPECT_NEAR(area_of(scene), box_area, 1e-12);
+  EXPECT_EQ(scene_bounds(scene).high, Eigen::Vector3d(2, 2, 2));
+}
+
+/// The rows of vertices, byte for byte.
+TEST_F(Export, PlyHoldsTheLightOfEveryVertex) {
+  const BakedModel model = bake_model(solved_box(), box_scene());
+  write_ply(folder / "box.ply", model);
+  const std::string text = content_of(folder / "box.ply");
+  EXPECT_TRUE(says(text, "element vertex 20\nproperty float x\n"));
+  EXPECT_TRUE(says(text, "property float radiosity_r\nproperty float radiosity_g\n"));
+  EXPECT_TRUE(says(text, "comment surface 2 wall\n"));
+  EXPECT_TRUE(says(text, "element face 10\n"));
+  const std::string mark = "end_header\n";
+  const char* row = text.data() + text.find(mark) + mark.size();
+  constexpr std::size_t row_size = 12 + 3 + 4 * 7;
+  const auto bytes = srgb_colors(model);
+  for (int v = 0; v < model.vertex_count(); ++v, row += row_size) {
+    std::array<float, 3> p{};
+    std::array<float, 7> light{};
+    std::memcpy(p.data(), row, 12);
+    std::memcpy(light.data(), row + 15, 28);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_EQ(p[c], model.position[v][c]);
+      EXPECT_EQ(static_cast<std::uint8_t>(row[12 + c]), bytes[3 * v + c]);
+      EXPECT_EQ(light[c], model.radiosity(v, c));
+      EXPECT_EQ(light[3 + c], model.irradiance(v, c));
+    }
+    EXPECT_EQ(light[6], model.illuminance[v]);
+  }
+  constexpr std::size_t face_size = 1 + 12 + 8;
+  EXPECT_EQ(static_cast<std::size_t>(text.data() + text.size() - row), 10 * face_size);
+}
+
+TEST_F(Export, OurReaderFindsTheRoomInTheObj) {
+  const BakedModel model = bake_model(solved_box(), box_scene());
+  write_obj(folder / "box.obj", model);
+  const Scene scene = read_scene(folder / "box.obj");
+  EXPECT_NEAR(area_of(scene), box_area, 1e-12);
+  ASSERT_EQ(scene.surfaces.size(), 5u);
+  EXPECT_TRUE(says(scene.surfaces[2].name, "wall"));
+  ASSERT_EQ(scene.materials.size(), 5u);
+  EXPECT_EQ(scene.materials[2].name, "2_wall_paint");
+
+  // The coordinates and colours of every vertex.
+  std::istringstream text(content_of(folder / "box.obj"));
+  const auto bytes = srgb_colors(model);
+  int v = 0;
+  for (std::string line; std::getline(text, line);) {
+    if (!line.starts_with("v ")) continue;
+    std::istringstream words(line.substr(2));
+    for (int c = 0; c < 6; ++c) {
+      double value = -1.0;
+      words >> value;
+      if (c < 3) {
+        EXPECT_EQ(value, model.position[v][c]);
+      } else {
+        EXPECT_NEAR(255.0 * value, bytes[3 * v + c - 3], 255.0 * 5e-5);  // four digits
+      }
+    }
+    ++v;
+  }
+  EXPECT_EQ(v, 20);
+}
+
+TEST_F(Export, AFileThatCannotBeWrittenIsNamedAndLeavesNothing) {
+  const BakedModel model = bake_model(solved_box(), box_scene());
+  const auto fails = [&](void (*write)(const std::filesystem::path&, const BakedModel&),
+                         const char* name) {
+    const auto path = folder / "nowhere" / name;
+    // Of OBJ the first file is box.mtl.
+    EXPECT_TRUE(says(message_of<std::runtime_error>([&] { write(path, model); }),
+                     path.parent_path() / path.stem()));
+  };
+  fails(&write_gltf, "box.glb");
+  fails(&write_ply, "box.ply");
+  fails(&write_obj, "box.obj");
+  fails([](const std::filesystem::path& path, const BakedModel& m) { write_walkthrough(path, m); },
+        "box.html");
+  EXPECT_EQ(folder.file_count(), 0);
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,266 @@
+// The walkthrough page in a browser. Skipped where there is no Chromium (Debian: apt install
+// chromium).
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <cmath>
+#include <numbers>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "lit_sides.h"
+#include "mesh/element_caster.h"
+#include "raytrace/probe.h"
+#include "tests/temporary_folder.h"
+#include "viewer/appearance.h"
+#include "viewer/export.h"
+
+namespace lightwell {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string find_browser() {
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
+    const std::string command = std::string("command -v ") + name + " >/dev/null 2>&1";
+    if (std::system(command.c_str()) == 0) return name;
+  }
+  return {};
+}
+
+std::string output_of(const std::string& command) {
+  std::string text;
+  std::FILE* const pipe = ::popen(command.c_str(), "r");
+  std::array<char, 4096> piece{};
+  for (std::size_t n; (n = std::fread(piece.data(), 1, piece.size(), pipe)) > 0;) {
+    text.append(piece.data(), n);
+  }
+  ::pclose(pipe);
+  return text;
+}
+
+/// Collects what goes wrong from the very beginning. A browser that only dumps its document shows
+/// no frames, so a clock stands in for them.
+constexpr const char* watch = R"(<head><script>
+const errors = [];
+for (const kind of ['error', 'warn']) console[kind] = (...words) => errors.push(words.join(' '));
+window.addEventListener('error', (event) => errors.push(event.message));
+window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 16);
+</script>)";
+
+/// Presses keys, moves the mouse, and leaves what is then to be seen as JSON.
+constexpr const char* drive = R"(<pre id="result"></pre><script>
+(async () => {
+  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+  const key = (type, key, code) => window.dispatchEvent(new KeyboardEvent(type, {key, code}));
+  const tap = (k, code = '') => { key('keydown', k, code); key('keyup', k, code); };
+  const found = {};
+  for (let i = 0; i < 200 && !window.lightwell; ++i) await wait(50);
+  await wait(300);
+  const page = window.lightwell, canvas = element('view');
+  found.message_hidden = element('message').hidden;
+  found.options = [...element('cameras').options].map((option) => option.text);
+
+  const point = async (x, y) => {  // in [0,1]
+    const at = {clientX: x * canvas.clientWidth, clientY: y * canvas.clientHeight};
+    canvas.dispatchEvent(new PointerEvent('pointermove', at));
+    while (page.probe_due) await new Promise(requestAnimationFrame);
+    return {...element('probe').dataset, text: element('probe').textContent};
+  };
+  const pixel = (x, y) => {
+    page.picture.draw();
+    const gl = page.picture.renderer.getContext(), bytes = new Uint8Array(4);
+    gl.readPixels(x * gl.drawingBufferWidth, (1 - y) * gl.drawingBufferHeight, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return [...bytes].slice(0, 3);
+  };
+  found.probes = [await point(0.5, 0.5), await point(0.45, 0.6), await point(0.5, 0.9)];
+  found.outside = await point(0.02, 0.5);
+  found.wall_pixel = pixel(0.5, 0.5);
+  page.camera.aspect = page.bookmark.aspect;  // of the camera's own picture, not of the window
+  page.fit_view();
+  found.measured_exposure = page.picture.meter();
+  page.resize();
+  tap('+');
+  found.brighter_pixel = pixel(0.5, 0.5);
+  tap('0');
+  tap('v');
+  found.legend = !element('legend').hidden && [...document.querySelectorAll('.step')].map((s) => s.textContent);
+  found.false_color_pixel = pixel(0.5, 0.5);
+  tap('v');
+  tap('m');
+  page.picture.draw();
+  tap('m');
+  tap('?');
+  found.help = !element('help').hidden;
+  tap('?');
+
+  // Into the box, to the wall at its end.
+  key('keydown', 'w', 'KeyW');
+  key('keydown', 'Shift', 'ShiftLeft');
+  const start = page.camera.position.z;
+  for (let i = 0; i < 9 && page.camera.position.z === start; ++i) await new Promise(requestAnimationFrame);
+  found.walks = page.camera.position.z !== start;
+  for (let i = 0; i < 300; ++i) page.walker.advance(1 / 30);
+  key('keyup', 'w', 'KeyW');
+  key('keyup', 'Shift', 'ShiftLeft');
+  found.at_wall = page.model.to_scene(page.camera.position);
+  tap('1');
+  found.back_at = page.model.to_scene(page.camera.position);
+  tap('o');
+  await wait(100);
+  found.orbits = page.orbit.enabled_here;
+  tap('x');
+  found.errors = errors;
+  return found;
+})().catch((error) => ({failed: String(error.stack)}))
+    .then((found) => { element('result').textContent = encodeURIComponent(JSON.stringify(found)); });
+</script></body>)";
+
+std::string decoded(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%') {
+      result += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
+      i += 2;
+    } else {
+      result += text[i];
+    }
+  }
+  return result;
+}
+
+/// The box with light that changes over each wall, seen from the front.
+SolvedScene shaded_box() {
+  SolvedScene box = solved_box();
+  for (int v = 0; v < box.mesh.vertex_count(); ++v) {
+    const Eigen::Vector3d p = box.mesh.position(v);
+    box.solution.direct_irradiance.row(v) *=
+        static_cast<float>(1.0 + 0.5 * p.x() + 0.2 * p.y() + 0.1 * p.z() * p.x());
+  }
+  return box;
+}
+
+class InBrowser : public testing::Test {
+ protected:
+  void SetUp() override {
+    browser = find_browser();
+    if (browser.empty()) {
+      GTEST_SKIP()
+          << "no Chromium here, so the page is not opened; on Debian: apt install chromium";
+    }
+  }
+
+  Json run(const BakedModel& model) {
+    write_walkthrough(folder / "page.html", model, LuxRange{.low = 0.0, .high = 4000.0});
+    std::string page = content_of(folder / "page.html");
+    page.replace(page.find("<head>"), 6, watch);
+    const std::size_t end = page.rfind("</body>");
+    page.replace(end, 7, drive);
+    folder.write("driven.html", page);
+    const std::string dom = opened("--use-angle=swiftshader --enable-unsafe-swiftshader");
+    const std::string mark = "<pre id=\"result\">";
+    const std::size_t begin = dom.find(mark) + mark.size(), stop = dom.find("</pre>", begin);
+    if (dom.find(mark) == std::string::npos || stop == begin) {
+      ADD_FAILURE() << "the page was not driven to its end; the browser said: "
+                    << content_of(folder / "said").substr(0, 2000);
+      return {};
+    }
+    return Json::parse(decoded(dom.substr(begin, stop - begin)));
+  }
+
+  /// The document of driven.html in the end.
+  std::string opened(const std::string& options) {
+    const std::string sandbox = ::geteuid() == 0 ? " --no-sandbox " : " ";
+    return output_of(
+        "HOME='" + folder.path().string() + "' timeout 240 " + browser + " --headless" + sandbox +
+        options + " --window-size=640,640 --virtual-time-budget=60000 --dump-dom 'file://" +
+        (folder / "driven.html").string() + "' 2>'" + (folder / "said").string() + "'");
+  }
+
+  TemporaryFolder folder;
+  std::string browser;
+};
+
+double number(const Json& json) {
+  return std::stod(json.get<std::string>());
+}
+
+TEST_F(InBrowser, ThePageShowsAndMeasuresTheSolution) {
+  const SolvedScene box = shaded_box();
+  Scene scene = box_scene();
+  scene.surfaces[2].name = "</script><b>wall";
+  const BakedModel model = bake_model(box, scene);
+  const Json found = run(model);
+  ASSERT_FALSE(found.is_null());
+  ASSERT_FALSE(found.contains("failed")) << found["failed"];
+  EXPECT_EQ(found["errors"], Json::array());
+  EXPECT_EQ(found["message_hidden"], true);
+  EXPECT_EQ(found["options"], Json::array({"1 front"}));
+
+  // Readings are those of interpolate_irradiance at the same place. Half floats keep 2^-11 of the
+  // corners' values, and so of what lies between them; positions single precision of 4 m.
+  const ElementCaster caster(box.mesh);
+  for (const Json& reading : found["probes"]) {
+    ASSERT_TRUE(reading.contains("illuminance")) << reading;
+    const Eigen::Vector3d at(number(reading["x"]), number(reading["y"]), number(reading["z"]));
+    const bool on_floor = reading["surface"] == "floor";
+    const Probe probe{.position = at,
+                      .normal = on_floor ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(0, 0, -1)};
+    const BandArray E = interpolate_irradiance(caster, box.solution, {&probe, 1});
+    const double lux = luminous(rgb_bands(), E.row(0).transpose());
+    EXPECT_NEAR(number(reading["illuminance"]), lux, lux * 6e-4) << reading;
+    // Reflectance 1: the luminance is E / pi.
+    EXPECT_NEAR(number(reading["luminance"]), lux / std::numbers::pi, lux * 2e-4);
+  }
+  EXPECT_EQ(found["probes"][0]["surface"], "</script><b>wall");
+  EXPECT_EQ(found["probes"][2]["surface"], "floor");
+  EXPECT_EQ(found["outside"]["text"], "");
+
+  // Colours of a pixel: what display_colors makes of the light there.
+  const Probe middle{.position = {1, 1, 2}, .normal = {0, 0, -1}};
+  const BandArray L =
+      interpolate_irradiance(caster, box.solution, {&middle, 1}) / std::numbers::pi_v<float>;
+  const double scale = model.cameras[0].scale;
+  const auto wanted = display_colors(L, rgb_bands(), scale);
+  const auto brighter = display_colors(L, rgb_bands(), scale * std::exp2(1.0 / 3.0));
+  const double lux = luminous(rgb_bands(), L.row(0).transpose()) * std::numbers::pi;
+  const auto in_false_color = false_colors({static_cast<float>(lux)}, {.low = 0.0, .high = 4000.0});
+  for (std::size_t c = 0; c < 3; ++c) {
+    // The light of this wall is linear, so triangles show it as it is; two roundings.
+    EXPECT_NEAR(found["wall_pixel"][c].get<int>(), wanted[c], 2) << c;
+    EXPECT_NEAR(found["brighter_pixel"][c].get<int>(), brighter[c], 2) << c;
+    EXPECT_NEAR(found["false_color_pixel"][c].get<int>(), in_false_color[c], 2) << c;
+  }
+  // The same light in the same picture; pixels on edges, two or three in a hundred, may belong to
+  // either of two walls, whose light differs by less than two stops.
+  EXPECT_NEAR(std::log2(found["measured_exposure"].get<double>() / scale), 0.0, 0.05);
+
+  ASSERT_TRUE(found["legend"].is_array());
+  EXPECT_EQ(found["legend"].front(), "0");
+  EXPECT_EQ(found["legend"].back(), "4000");
+  EXPECT_EQ(found["help"], true);
+  EXPECT_EQ(found["orbits"], true);
+
+  // The eye stops a body's radius (a tenth of 2 m) before the wall at z = 2, and stands 0.65 of
+  // the room's height over its floor.
+  EXPECT_EQ(found["walks"], true);
+  const Json& eye = found["at_wall"];
+  EXPECT_NEAR(eye[0].get<double>(), 1.0, 1e-3);
+  EXPECT_NEAR(eye[1].get<double>(), 1.3, 1e-3);
+  EXPECT_NEAR(eye[2].get<double>(), 1.8, 1e-2);
+  const Json& back = found["back_at"];
+  EXPECT_NEAR(back[2].get<double>(), -3.0, 1e-5);
+}
+
+TEST_F(InBrowser, WithoutWebGlThePageSaysWhatToDo) {
+  write_walkthrough(folder / "driven.html", bake_model(solved_box(), box_scene()));
+  const std::string dom = opened("--disable-3d-apis");
+  const std::string mark = "<div id=\"message\">";
+  ASSERT_NE(dom.find(mark), std::string::npos) << content_of(folder / "said").substr(0, 2000);
+  EXPECT_TRUE(says(dom.substr(dom.find(mark), 200), "This browser shows no WebGL 2"));
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "viewer/appearance.h"
+#include "viewer/baked_model.h"
+
+namespace lightwell {
+
+// Each writes a model under a temporary name and renames it; throws std::runtime_error naming the
+// file if that fails.
+
+/// glTF 2.0, binary (.glb): metres, y upwards. A node and a mesh for each surface, a primitive for
+/// each lit side of it, cameras as nodes. Colours are COLOR_0, linear and unlit
+/// (KHR_materials_unlit): radiance times the exposure of the first camera, clipped to [0,1].
+/// `extras` of the asset says what 1 stands for; the attribute _ILLUMINANCE holds lx.
+void write_gltf(const std::filesystem::path& path, const BakedModel& model);
+
+/// Stanford PLY, binary: triangles in metres and the scene's axes. Vertices have the first camera's
+/// tone-mapped sRGB bytes, `radiosity_<band>` and `irradiance_<band>` (W/m^2) and `illuminance`
+/// (lx); faces have `surface` and `material`, whose names are comments of the header.
+void write_ply(const std::filesystem::path& path, const BakedModel& model);
+
+/// Wavefront OBJ with an MTL of the same stem beside it: triangles in metres and the scene's axes,
+/// an object for each surface, tone-mapped sRGB colours after the coordinates of `v` (an extension
+/// that most programs read).
+void write_obj(const std::filesystem::path& path, const BakedModel& model);
+
+/// A page for a web browser that holds all it needs: the model, the program that shows it
+/// (viewer/web) and a library for WebGL 2. `lux_range` is that of the false colours; without one they
+/// have what suits the solution. See docs/export.md for the data in it.
+void write_walkthrough(const std::filesystem::path& path, const BakedModel& model,
+                       const std::optional<LuxRange>& lux_range = {});
+
+}  // namespace lightwell

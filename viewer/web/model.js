@@ -1,0 +1,137 @@
+// The model: what the page's data hold, unpacked.
+
+/** All bytes of base64 text. A piece at a time, so that no string of a hundred megabytes is made twice. */
+function decode_base64(text) {
+  text = text.trim();
+  const padding = text.endsWith('==') ? 2 : text.endsWith('=') ? 1 : 0;
+  const bytes = new Uint8Array(text.length / 4 * 3 - padding);
+  const piece = 1 << 20;  // of text, a multiple of 4
+  for (let at = 0, out = 0; at < text.length; at += piece) {
+    const decoded = atob(text.slice(at, at + piece));
+    for (let i = 0; i < decoded.length; ++i) bytes[out++] = decoded.charCodeAt(i);
+  }
+  return bytes;
+}
+
+/** The numbers that the 65536 half floats stand for. */
+function table_of_halves() {
+  const table = new Float32Array(65536);
+  for (let bits = 0; bits < 65536; ++bits) {
+    const exponent = bits >> 10 & 31, fraction = bits & 1023;
+    const size = exponent === 0 ? fraction * 2 ** -24
+      : exponent < 31 ? (1 + fraction / 1024) * 2 ** (exponent - 15)
+      : fraction ? NaN : Infinity;
+    table[bits] = bits & 0x8000 ? -size : size;
+  }
+  return table;
+}
+
+/**
+ * Geometry and light. Positions are metres, y upwards, from the model's lowest corner. Light is a sum of bases, each
+ * with radiance (linear RGB, W/(m^2 sr)) and illuminance (lx) per vertex, times a weight that mix() sets.
+ */
+class Model {
+  constructor(about, bytes) {
+    this.about = about;
+    this.bytes = bytes;
+    const n = about.vertex_count;
+    this.positions = this.unpack_positions();
+    this.corners = new Uint32Array(bytes.buffer, about.corners.offset, 4 * about.face_count);
+    this.black_behind = new Uint8Array(bytes.buffer, about.black_behind.offset, about.face_count);
+    const halves = table_of_halves();
+    this.bases = about.bases.map((basis) => ({
+      name: basis.name,
+      weight: 1,
+      radiance: this.unpack_halves(basis.radiance, 3 * n, halves),
+      illuminance: this.unpack_halves(basis.illuminance, n, halves),
+    }));
+    this.radiance = new Float32Array(3 * n);
+    this.illuminance = new Float32Array(n);
+    this.mix();
+    this.split_faces();
+  }
+
+  unpack_positions() {
+    const {offset, step} = this.about.positions, n = this.about.vertex_count;
+    const words = new Uint32Array(this.bytes.buffer, offset, 2 * n), positions = new Float32Array(3 * n);
+    for (let v = 0; v < n; ++v) {
+      const low = words[2 * v], high = words[2 * v + 1];  // x, y, z: 21 bits each
+      positions[3 * v] = step * (low & 0x1fffff);
+      positions[3 * v + 1] = step * (low >>> 21 | (high & 0x3ff) << 11);
+      positions[3 * v + 2] = step * (high >>> 10 & 0x1fffff);
+    }
+    return positions;
+  }
+
+  unpack_halves({offset, scale}, count, halves) {
+    const bits = new Uint16Array(this.bytes.buffer, offset, count), values = new Float32Array(count);
+    for (let i = 0; i < count; ++i) values[i] = scale * halves[bits[i]];
+    return values;
+  }
+
+  /** Adds the bases up with their weights. */
+  mix() {
+    for (const quantity of ['radiance', 'illuminance']) {
+      const sum = this[quantity].fill(0);
+      for (const basis of this.bases) {
+        for (let i = 0; i < sum.length; ++i) sum[i] += basis.weight * basis[quantity][i];
+      }
+    }
+  }
+
+  /**
+   * Triangles of all faces, quads split from their first corner, in five groups: faces without and with a black other
+   * side, both again of faces without light, and glass.
+   */
+  split_faces() {
+    const {parts, materials, face_count} = this.about;
+    this.part_of_face = new Uint32Array(face_count);
+    const group_of_face = new Uint8Array(face_count), sizes = [0, 0, 0, 0, 0];
+    parts.forEach((part, p) => {
+      const is_glass = materials[part.material].kind === 'glass';
+      for (let f = part.first_face; f < part.first_face + part.face_count; ++f) {
+        this.part_of_face[f] = p;
+        group_of_face[f] = is_glass ? 4 : this.black_behind[f] + (this.is_lit(f) ? 0 : 2);
+        sizes[group_of_face[f]] += this.corner_count(f) - 2;
+      }
+    });
+    let count = 0;
+    const next = sizes.map((size) => (count += size) - size);
+    this.groups = next.map((first, g) => ({first, count: sizes[g]}));
+    this.triangles = new Uint32Array(3 * count);
+    this.face_of_triangle = new Uint32Array(count);
+    for (let f = 0; f < face_count; ++f) {
+      for (let c = 1; c < this.corner_count(f) - 1; ++c) {
+        const t = next[group_of_face[f]]++;
+        this.face_of_triangle[t] = f;
+        this.triangles.set([this.corners[4 * f], this.corners[4 * f + c], this.corners[4 * f + c + 1]], 3 * t);
+      }
+    }
+  }
+
+  corner_count(face) { return this.corners[4 * face + 3] === 0xffffffff ? 3 : 4; }
+
+  /** Whether any basis has light at any corner. */
+  is_lit(face) {
+    for (let c = 0; c < this.corner_count(face); ++c) {
+      const v = 3 * this.corners[4 * face + c];
+      for (const {radiance} of this.bases) {
+        if (radiance[v] !== 0 || radiance[v + 1] !== 0 || radiance[v + 2] !== 0) return true;
+      }
+    }
+    return false;
+  }
+
+  is_glass(face) { return this.about.materials[this.about.parts[this.part_of_face[face]].material].kind === 'glass'; }
+
+  corner(face, c) {
+    const v = this.corners[4 * face + c];
+    return new Library.Vector3().fromArray(this.positions, 3 * v);
+  }
+
+  /** A place of the page in the scene file's axes and unit. */
+  to_scene(p) {
+    const {to_scene, origin, metres_per_unit} = this.about, q = [p.x + origin[0], p.y + origin[1], p.z + origin[2]];
+    return to_scene.map((row) => (row[0] * q[0] + row[1] * q[1] + row[2] * q[2]) / metres_per_unit);
+  }
+}

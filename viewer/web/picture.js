@@ -1,0 +1,229 @@
+// Drawing: the same colours as Lightwell's pictures (docs/tone-mapping.md), a fragment at a time.
+
+const vertex_program = `
+in vec3 radiance;
+in float illuminance;
+out vec3 L;
+out float E;
+void main() {
+  L = radiance;
+  E = illuminance;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`;
+
+const fragment_program = `
+precision highp float;
+precision highp sampler2D;
+in vec3 L;
+in float E;
+out vec4 pixel;
+uniform int shows;         // 0: light, 1: illuminance in false colours, 2: radiance for the light meter
+uniform float scale;       // exposure
+uniform float opacity;
+uniform vec2 range;        // of the false colours; even from 0, else logarithmic
+uniform sampler2D palette;
+
+vec3 shoulder(vec3 x) {
+  return mix(0.5 + 0.5 * (1.0 - exp(-(x - 0.5) / 0.5)), x, lessThanEqual(x, vec3(0.5)));
+}
+vec3 srgb_encode(vec3 x) {
+  x = clamp(x, 0.0, 1.0);
+  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
+}
+void main() {
+  if (!gl_FrontFacing) {
+    pixel = vec4(0.0, 0.0, 0.0, 1.0);
+  } else if (shows == 2) {
+    pixel = vec4(L, 1.0);
+  } else if (shows == 1) {
+    float place = range.x == 0.0 ? E / range.y
+                : E > 0.0 ? log(E / range.x) / log(range.y / range.x) : 0.0;
+    // Texel centres are the ends of the scale.
+    pixel = vec4(texture(palette, vec2((clamp(place, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb, opacity);
+  } else {
+    pixel = vec4(srgb_encode(shoulder(scale * L)), opacity);
+  }
+}`;
+
+const line_vertex_program = `
+out float facing;
+void main() {
+  vec4 at = modelViewMatrix * vec4(position, 1.0);
+  facing = -dot(normalMatrix * normal, at.xyz);
+  at.xyz *= 0.998;  // before the faces it belongs to
+  gl_Position = projectionMatrix * at;
+}`;
+
+const line_fragment_program = `
+precision highp float;
+in float facing;
+out vec4 pixel;
+void main() {
+  if (facing <= 0.0) discard;
+  pixel = vec4(0.1, 0.1, 0.1, 1.0);
+}`;
+
+const glass_opacity = 0.2;
+const metering_width = 160;
+
+/** ITU-R BT.709. */
+function luminance_of(r, g, b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
+
+/**
+ * The multiplier that brings the typical luminance to 0.2 of white; null without light. The typical one is the
+ * geometric mean of what lies within a factor 10 of the median. `pixels`: r, g, b, a of each.
+ */
+function exposure_scale(pixels) {
+  const Y = [];
+  for (let i = 0; i < pixels.length; i += 4) {
+    const y = luminance_of(pixels[i], pixels[i + 1], pixels[i + 2]);
+    if (y > 0 && Number.isFinite(y)) Y.push(y);
+  }
+  if (Y.length === 0) return null;
+  Y.sort((a, b) => a - b);
+  const median = Y[Math.floor(Y.length / 2)];
+  const typical = Y.filter((y) => y >= median / 10 && y <= 10 * median);
+  return 0.2 / Math.exp(typical.reduce((sum, y) => sum + Math.log(y), 0) / typical.length);
+}
+
+function palette_texture(hex) {
+  const rgba = new Uint8Array(1024).fill(255);
+  for (let i = 0; i < 256; ++i) {
+    for (let c = 0; c < 3; ++c) rgba[4 * i + c] = parseInt(hex.substr(6 * i + 2 * c, 2), 16);
+  }
+  const texture = new Library.DataTexture(rgba, 256, 1);
+  texture.minFilter = texture.magFilter = Library.LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+class Picture {
+  constructor(model, canvas) {
+    this.model = model;
+    this.renderer = new Library.WebGLRenderer({canvas, antialias: true, alpha: false});
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    this.scene = new Library.Scene();
+    this.camera = new Library.PerspectiveCamera();
+    this.looks_through = false;
+    const colors = model.about.false_colors;
+    this.uniforms = {
+      shows: {value: 0},
+      scale: {value: 1},
+      range: {value: [colors.low, colors.high]},
+      palette: {value: palette_texture(colors.palette)},
+    };
+    this.geometry = new Library.BufferGeometry();
+    this.geometry.setAttribute('position', new Library.BufferAttribute(model.positions, 3));
+    this.geometry.setAttribute('radiance', new Library.BufferAttribute(model.radiance, 3));
+    this.geometry.setAttribute('illuminance', new Library.BufferAttribute(model.illuminance, 1));
+    this.geometry.setIndex(new Library.BufferAttribute(model.triangles, 1));
+    model.groups.forEach(({first, count}, g) => this.geometry.addGroup(3 * first, 3 * count, g));
+    this.materials = [1, 1, 1, 1, glass_opacity].map((opacity) => this.make_material(opacity));
+    [, this.backed, this.dark, this.dark_backed, this.glass] = this.materials;  // the groups of Model.split_faces
+    // Where a lit wall stands on a floor that is black under it, the edge is the wall's: several samples a pixel would
+    // else let black through. In pixels of the black face's slope; dots were seen at 1, none from 2 on.
+    for (const material of [this.dark, this.dark_backed]) {
+      Object.assign(material, {polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4});
+    }
+    const mesh = new Library.Mesh(this.geometry, this.materials);
+    mesh.frustumCulled = false;
+    this.scene.add(mesh);
+    this.look_through(false);
+  }
+
+  make_material(opacity) {
+    const is_glass = opacity < 1;
+    return new Library.ShaderMaterial({
+      glslVersion: Library.GLSL3, vertexShader: vertex_program, fragmentShader: fragment_program,
+      uniforms: {...this.uniforms, opacity: {value: opacity}},
+      transparent: is_glass, depthWrite: !is_glass,
+    });
+  }
+
+  /** Whether the dark backs of surfaces are left out. */
+  look_through(looks_through) {
+    this.looks_through = looks_through;
+    for (const material of [this.backed, this.dark_backed]) {
+      material.side = looks_through ? Library.FrontSide : Library.DoubleSide;
+      material.needsUpdate = true;
+    }
+  }
+
+  set_false_colors(on) { this.uniforms.shows.value = on ? 1 : 0; }
+  set_scale(scale) { this.uniforms.scale.value = scale; }
+
+  /** Tells the graphics card that the model has been mixed anew. */
+  light_changed() {
+    this.geometry.attributes.radiance.needsUpdate = true;
+    this.geometry.attributes.illuminance.needsUpdate = true;
+  }
+
+  show_outlines(on) {
+    if (on && !this.outlines) this.scene.add(this.outlines = this.make_outlines());
+    if (this.outlines) this.outlines.visible = on;
+  }
+
+  make_outlines() {
+    const {model} = this, lines = new Uint32Array(8 * model.about.face_count);
+    let count = 0;
+    for (let f = 0; f < model.about.face_count; ++f) {
+      const corners = model.corner_count(f);
+      for (let c = 0; c < corners; ++c) {
+        lines[count++] = model.corners[4 * f + c];
+        lines[count++] = model.corners[4 * f + (c + 1) % corners];
+      }
+    }
+    const geometry = new Library.BufferGeometry();
+    this.geometry.computeVertexNormals();
+    geometry.setAttribute('position', this.geometry.attributes.position);
+    geometry.setAttribute('normal', this.geometry.attributes.normal);
+    geometry.setIndex(new Library.BufferAttribute(lines.subarray(0, count), 1));
+    const outlines = new Library.LineSegments(geometry, new Library.ShaderMaterial({
+      glslVersion: Library.GLSL3, vertexShader: line_vertex_program, fragmentShader: line_fragment_program}));
+    outlines.frustumCulled = false;
+    return outlines;
+  }
+
+  resize(width, height) {
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+  }
+
+  draw() {
+    this.fit_depth();
+    this.renderer.setRenderTarget(null);
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /** From inside, as near as a depth buffer of 24 bits affords. */
+  fit_depth() {
+    const size = new Library.Vector3().fromArray(this.model.about.size);
+    const diagonal = size.length(), to_center = this.camera.position.distanceTo(size.multiplyScalar(0.5));
+    this.camera.near = Math.max(to_center - 0.51 * diagonal, 5e-4 * diagonal);
+    this.camera.far = Math.max(to_center + 0.51 * diagonal, 2 * this.camera.near);
+    this.camera.updateProjectionMatrix();
+  }
+
+  /** The exposure for what the camera sees now; null if that is dark or cannot be measured. */
+  meter() {
+    if (!this.renderer.extensions.has('EXT_color_buffer_float')) return null;
+    const width = metering_width, height = Math.max(1, Math.round(width / this.camera.aspect));
+    const target = new Library.WebGLRenderTarget(width, height, {type: Library.FloatType});
+    const pixels = new Float32Array(4 * width * height), shown = this.uniforms.shows.value;
+    const outlined = this.outlines?.visible;
+    this.uniforms.shows.value = 2;
+    this.glass.visible = false;  // a veil is not to be measured
+    this.show_outlines(false);
+    this.fit_depth();
+    this.renderer.setRenderTarget(target);
+    this.renderer.clear();
+    this.renderer.render(this.scene, this.camera);
+    this.renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
+    this.renderer.setRenderTarget(null);
+    target.dispose();
+    this.uniforms.shows.value = shown;
+    this.glass.visible = true;
+    this.show_outlines(Boolean(outlined));
+    return exposure_scale(pixels);
+  }
+}

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string_view>
+
+/// The files of viewer/web, which CMake turns into C++ (cmake/EmbedFile.cmake).
+namespace lightwell::web {
+
+extern const std::string_view page_html, page_css, library_js, licenses_txt;
+extern const std::string_view model_js, picture_js, probe_js, walk_js, page_js;
+
+}  // namespace lightwell::web

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace lightwell {
+
+/// Writes the pieces one after the other under a temporary name and renames the file; throws
+/// std::runtime_error naming the file and the system's reason if that fails.
+void write_whole(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
+
+/// Appends the bytes of plain values, least significant first, as every format here wants them.
+template <typename T>
+void append_bytes(std::string& bytes, const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+/// A name on one line of a text file: control characters become `_`.
+std::string one_line(std::string name);
+
+}  // namespace lightwell
