@@ -265,6 +265,12 @@ void SolveArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(whole_number(1, 1000000))
       ->group(group);
+  channels.add_to(command, group);
+  command
+      .add_option("--start-from", start_from,
+                  "a solution of the same geometry whose light the solver starts from")
+      ->type_name("SOLUTION")
+      ->group(group);
 }
 
 SolveOptions SolveArguments::options(const Scene& scene) const {
@@ -277,17 +283,18 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
   } else {
     options.solver_method = solver_method(solver);
   }
+  options.channels = channels.channels(scene);
   return options;
 }
 
 std::string SolveArguments::text(const Scene& scene) const {
   return fmt::format(
       "{}{} --form-factors {}{} --solver {} --rays {} --gather-rays {} --tolerance {:g} "
-      "--max-sweeps {}",
+      "--max-sweeps {}{}",
       mesh.text(scene), refinement_text(solve.refine), form_factors,
       hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
       solve.form_factors.rays_per_patch, solve.gather.rays, solve.solver.tolerance,
-      solve.solver.max_sweeps);
+      solve.solver.max_sweeps, channels.text());
 }
 
 void RenderArguments::add_to(CLI::App& command) {

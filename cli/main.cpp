@@ -28,6 +28,8 @@ constexpr const char* recipes =
   lightwell solve room.toml -o room.vtp                  solve, and keep the light on all surfaces
   lightwell mesh room.toml -o mesh.vtp                   the patches and elements of 'solve'
   lightwell render room.toml room.vtp -o room.png        a picture: mirrors, glass, exact shadows
+  lightwell relight room.vtp --channel desk=0.3 -o dim.vtp
+                                                         dim and recolour lamps, without solving
   lightwell view room.toml room.vtp                      walk through it
   lightwell probe room.toml room.vtp --points desk.csv -o lux.csv
                                                          irradiance and lux at points
@@ -43,15 +45,16 @@ struct NamedCommand {
   const char* name;
   Action (*add)(CLI::App&);
 };
-constexpr std::array<NamedCommand, 9> commands = {{{"run", add_run},
-                                                   {"solve", add_solve},
-                                                   {"mesh", add_mesh},
-                                                   {"render", add_render},
-                                                   {"probe", add_probe},
-                                                   {"view", add_view},
-                                                   {"compare", add_compare},
-                                                   {"form-factors", add_form_factors},
-                                                   {"info", add_info}}};
+constexpr std::array<NamedCommand, 10> commands = {{{"run", add_run},
+                                                    {"solve", add_solve},
+                                                    {"mesh", add_mesh},
+                                                    {"relight", add_relight},
+                                                    {"render", add_render},
+                                                    {"probe", add_probe},
+                                                    {"view", add_view},
+                                                    {"compare", add_compare},
+                                                    {"form-factors", add_form_factors},
+                                                    {"info", add_info}}};
 
 /// One blank line between groups, so that help fits a screen.
 class TightFormatter : public CLI::Formatter {

@@ -103,12 +103,28 @@ ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
           .weight = std::max(0.0, direction.dot(normal))};
 }
 
+// A patch of each facet's front; -1 where the mesh has none.
+std::vector<int> front_patches(const PatchMesh& mesh, std::size_t facet_count) {
+  std::vector<int> front(facet_count, -1);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    if (!mesh.is_back[p]) front[mesh.facet[e]] = p;
+  }
+  return front;
+}
+
 }  // namespace
 
-DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh)
-    : bands_(scene.bands.count()), samples_(most_shadow_rays) {
+DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels)
+    : bands_(scene.bands.count()),
+      channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
+      samples_(most_shadow_rays) {
   const std::vector<FacetRef> facets = scene_facets(scene);
   owned_.assign(facets.size(), 0);
+  first_column_.assign(facets.size(), 0);
+  for (std::size_t f = 0; f < facets.size() && !channels.empty(); ++f) {
+    first_column_[f] = bands_ * std::max(0, channels.of_surface[facets[f].surface]);
+  }
   double scene_area = 0.0;
   std::vector<EmittingFacet> emitting;
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
@@ -128,6 +144,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh)
   std::stable_sort(emitting.begin(), emitting.end(),
                    [](const auto& a, const auto& b) { return a.exitance > b.exitance; });
 
+  const std::vector<int> front = front_patches(mesh, facets.size());
   double taken = 0.0;
   for (std::size_t i = 0; i < emitting.size();) {
     std::size_t end = i;
@@ -145,6 +162,9 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh)
                       .exitance = material.emission,
                       .area = emitting[i].area,
                       .emits_both_sides = material.emits_both_sides};
+      if (const int p = front[emitter.facet]; p >= 0) {
+        emitter.exitance = mesh.emission.row(p).transpose();
+      }
       if (const auto* polygons = std::get_if<PolygonMesh>(&surface.shape)) {
         const Facet& facet = polygons->facets[ref.facet];
         emitter.normal = facet_normal(*polygons, facet);
@@ -223,17 +243,19 @@ std::optional<bool> DirectLight::sees(const Emitter& emitter, const ElementCaste
   return blocked == 0;
 }
 
-Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+template <class Add>
+void DirectLight::for_each_light(const ElementCaster& caster, const Eigen::Vector3d& point,
                                  const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                                 const ShadowOptions& options, EmitterSight* sight) const {
-  Spectrum E = Spectrum::Zero(bands_);
+                                 const ShadowOptions& options, EmitterSight* sight,
+                                 Add&& add) const {
   if (sight) *sight = {};
   for (std::size_t e = 0; e < emitters_.size(); ++e) {
+    if (!(emitters_[e].exitance > 0.0f).any()) continue;  // switched off
     const double F = unoccluded_form_factor(emitters_[e], point, normal, facet);
     if (!(F > 0.0)) continue;
     const double share =
         visible_share(emitters_[e], caster, point, normal, facet, random_key(key, e), options);
-    if (share > 0.0) E += emitters_[e].exitance * static_cast<float>(F * share);
+    if (share > 0.0) add(emitters_[e], static_cast<float>(F * share));
     if (!sight) continue;
     sight->unshadowed += F * emitters_[e].exitance.mean();
     constexpr std::size_t bits = 64;
@@ -241,7 +263,25 @@ Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vecto
     if (share == 1.0) sight->whole |= bit;
     if (share == 0.0) sight->hidden |= bit;
   }
+}
+
+Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                                 const ShadowOptions& options, EmitterSight* sight) const {
+  Spectrum E = Spectrum::Zero(bands_);
+  for_each_light(caster, point, normal, facet, key, options, sight,
+                 [&](const Emitter& emitter, float F) { E += emitter.exitance * F; });
   return E;
+}
+
+void DirectLight::add_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                                 const ShadowOptions& options, float* E,
+                                 EmitterSight* sight) const {
+  for_each_light(
+      caster, point, normal, facet, key, options, sight, [&](const Emitter& emitter, float F) {
+        Eigen::Map<Eigen::ArrayXf>(E + first_column(emitter.facet), bands_) += emitter.exitance * F;
+      });
 }
 
 }  // namespace lightwell

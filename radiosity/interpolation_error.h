@@ -7,6 +7,8 @@
 
 namespace lightwell {
 
+struct ChannelLight;
+
 /// How far irradiance interpolated over cells is from irradiance gathered inside them: the squared
 /// difference's mean over each cell, W^2/m^4, mean of the bands.
 ///
@@ -48,6 +50,10 @@ class InterpolationError {
   void gather(const std::vector<int>& vertices);
   /// What was gathered at vertices, in their order.
   GatheredIrradiance values(const std::vector<int>& vertices) const;
+  /// The same gathers, made again of light by channels: their sum is what values() would give after
+  /// gather().
+  GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
+                                       const ChannelLight& light) const;
   std::int64_t gathers() const { return gathers_; }
 
  private:
@@ -56,7 +62,8 @@ class InterpolationError {
   GatherPoint gather_point(int vertex) const;
   void make_room();
   void gather_direct_at(const std::vector<int>& vertices);
-  BandArray indirect_at(const std::vector<int>& vertices, std::uint64_t replica) const;
+  BandArray indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
+                        const BandArray& radiosity) const;
   double lattice_error(int cell, int side);
   double probed_error(int cell, int side);
   Spectrum total(int vertex) const;
