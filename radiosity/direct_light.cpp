@@ -108,7 +108,8 @@ std::vector<int> front_patches(const PatchMesh& mesh, std::size_t facet_count) {
   std::vector<int> front(facet_count, -1);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
-    if (!mesh.is_back[p]) front[mesh.facet[e]] = p;
+    const auto facet = static_cast<std::size_t>(mesh.facet[e]);
+    if (!mesh.is_back[p] && facet < facet_count) front[facet] = p;
   }
   return front;
 }

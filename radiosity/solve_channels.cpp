@@ -5,6 +5,9 @@
 namespace lightwell {
 namespace {
 
+// Form factors are floats, and solvers get no closer than those allow.
+constexpr double least_tolerance = 1e-7;
+
 // What solvers look at: the patches without their elements.
 PatchMesh patches_of(const PatchMesh& mesh) {
   PatchMesh patches;
@@ -45,7 +48,8 @@ void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors
   solution.full_emission = mesh.emission;
 
   SolverOptions part = options;
-  part.tolerance = options.tolerance / count;
+  part.tolerance =
+      std::max(options.tolerance / count, std::min(options.tolerance, least_tolerance));
   part.observer = {};
   double residual = 0.0;  // of the sum, at most; W/m^2
   PatchMesh lit = patches_of(mesh);

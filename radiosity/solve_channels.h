@@ -9,9 +9,10 @@ namespace lightwell {
 /// `channels` (all scales 1; irradiances are left to reconstruct), `patch_channel` and
 /// `full_emission` of `solution`, which holds the solution for all light together.
 ///
-/// No channel may be off by more than its part of options.tolerance, so that their sum keeps it;
-/// residual becomes a bound on that of the sum, and outcome tells if any channel was given up.
-/// `start` of the options has channels * bands columns here, or none. Throws as solve_radiosity.
+/// No channel may be off by more than its part of options.tolerance, so that their sum keeps it
+/// (but no part is below 1e-7 for being one of many); residual becomes a bound on that of the sum,
+/// and outcome tells if any channel was given up. `start` of the options has channels * bands
+/// columns here, or none. Throws as solve_radiosity.
 void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors& form_factors,
                     const EmitterChannels& channels, SolverMethod method,
                     const SolverOptions& options, RadiositySolution& solution);

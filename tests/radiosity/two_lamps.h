@@ -56,7 +56,7 @@ inline SolveOptions exact_and_even() {
   SolveOptions options;
   options.mesh.max_patch_size = 0.35;
   options.form_factors.rays_per_patch = 64;
-  options.solver.tolerance = 1e-9;
+  options.solver.tolerance = 1e-8;
   options.gather.rays = 64;
   options.gather.shadows = {.min_rays = 16, .max_rays = 32};
   options.refine.tolerance = 0.0;
