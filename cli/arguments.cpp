@@ -266,11 +266,6 @@ void SolveArguments::add_to(CLI::App& command) {
       ->check(whole_number(1, 1000000))
       ->group(group);
   channels.add_to(command, group);
-  command
-      .add_option("--start-from", start_from,
-                  "a solution of the same geometry whose light the solver starts from")
-      ->type_name("SOLUTION")
-      ->group(group);
 }
 
 SolveOptions SolveArguments::options(const Scene& scene) const {

@@ -43,27 +43,28 @@ void add_each(CLI::App& command, const std::string& name, const std::string& hel
 }  // namespace
 
 void ChannelArguments::add_to(CLI::App& command, const std::string& group) {
-  auto* const channels =
-      command
-          .add_option_function<std::string>(
-              "--channels",
-              [this](const std::string& text) { per_luminaire = text == "per-luminaire"; },
-              "keep light apart, to be dimmed by 'relight': off (default), per-luminaire")
-          ->type_name("WHICH")
-          ->check(one_of("choice of channels", {"off", "per-luminaire"}))
-          ->group(group);
   add_each(
-      command, "--channel-by",
-      "keep the light of emitters with such names apart, as channel NAME; may be repeated",
-      [this](const std::string& text) {
-        const auto [channel, glob] =
-            split("--channel-by", text, text.find('='),
-                  "NAME=PATTERN, such as desk='desk lamp*'; write a channel's name and what its "
-                  "emitters or their materials are called");
-        patterns.push_back({channel, glob});
-      },
-      "NAME=PATTERN");
-  command.get_option("--channel-by")->excludes(channels)->group(group);
+      command, "--channels",
+      "keep light apart for 'relight': per-luminaire, or NAME=PATTERN of emitters, which may be "
+      "repeated (default off)",
+      [this](const std::string& text) { add(text); }, "WHICH");
+  command.get_option("--channels")->group(group);
+}
+
+void ChannelArguments::add(const std::string& text) {
+  const char* const option = "--channels";
+  if (per_luminaire || is_off || (!patterns.empty() && text.find('=') == std::string::npos)) {
+    throw CLI::ValidationError(option,
+                               "give off, per-luminaire or patterns, and only one kind of them");
+  }
+  is_off = text == "off";
+  per_luminaire = text == "per-luminaire";
+  if (is_off || per_luminaire) return;
+  const auto [channel, glob] =
+      split(option, text, text.find('='),
+            "off, per-luminaire or NAME=PATTERN, such as desk='desk lamp*': a channel and what its "
+            "emitters or their materials are called");
+  patterns.push_back({channel, glob});
 }
 
 EmitterChannels ChannelArguments::channels(const Scene& scene) const {
@@ -74,7 +75,7 @@ EmitterChannels ChannelArguments::channels(const Scene& scene) const {
 std::string ChannelArguments::text() const {
   std::string text = per_luminaire ? " --channels per-luminaire" : "";
   for (const ChannelPattern& pattern : patterns) {
-    text += " --channel-by " + quoted(pattern.channel + "=" + pattern.glob);
+    text += " --channels " + quoted(pattern.channel + "=" + pattern.glob);
   }
   return text;
 }

@@ -13,6 +13,7 @@ namespace lightwell {
 
 /// Which light a solution keeps apart, as asked for on the command line.
 struct ChannelArguments {
+  bool is_off = false;  ///< said so
   bool per_luminaire = false;
   std::vector<ChannelPattern> patterns{};
 
@@ -21,6 +22,9 @@ struct ChannelArguments {
   EmitterChannels channels(const Scene& scene) const;
   /// The command line that repeats it, with a space before it; nothing by default.
   std::string text() const;
+
+ private:
+  void add(const std::string& text);
 };
 
 /// Channels by name with their settings: --channel NAME=VALUE, which may be repeated.

@@ -61,7 +61,7 @@ Action add_relight(CLI::App& command) {
       "scene as it was solved; a channel that is not named stays as it is.");
   command
       .add_option("solution", arguments->solution,
-                  "a solution made with --channels or --channel-by, .vtp")
+                  "a solution made with --channels, .vtp")
       ->required()
       ->type_name("SOLUTION");
   add_channel_settings(command, arguments->settings);

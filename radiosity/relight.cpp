@@ -146,7 +146,7 @@ int find_channel(const RadiositySolution& solution, std::string_view name) {
   if (names.empty()) {
     throw InputError(
         "its light was not kept apart in channels, so it cannot be relit; solve it with "
-        "--channels per-luminaire or --channel-by NAME=PATTERN");
+        "--channels per-luminaire or --channels NAME=PATTERN");
   }
   throw InputError(fmt::format("there is no channel '{}'; the solution has: {}.{}", name,
                                fmt::join(names, ", "), did_you_mean(name, names)));

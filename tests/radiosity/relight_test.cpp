@@ -191,7 +191,7 @@ TEST(Relight, DirectLightTracedAfreshIsThatOfTheFileWhateverIsOff) {
     expect_same_light(traced, relit.solution.direct_irradiance, name);
   }
   EXPECT_EQ(relit.solution.direct_irradiance.abs().maxCoeff(), 0.0f) << "only the wall is on";
-  EXPECT_GT(relit.solution.indirect_irradiance.minCoeff(), 0.0f);
+  EXPECT_GT(relit.solution.indirect_irradiance.mean(), 0.1f);
 }
 
 TEST(Relight, NeedsAScaleForEveryChannel) {
