@@ -59,9 +59,7 @@ Action add_relight(CLI::App& command) {
   command.description(
       "Dims and recolours the channels of a solution, without solving. Settings are against the\n"
       "scene as it was solved; a channel that is not named stays as it is.");
-  command
-      .add_option("solution", arguments->solution,
-                  "a solution made with --channels, .vtp")
+  command.add_option("solution", arguments->solution, "a solution made with --channels, .vtp")
       ->required()
       ->type_name("SOLUTION");
   add_channel_settings(command, arguments->settings);
