@@ -265,6 +265,7 @@ void SolveArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(whole_number(1, 1000000))
       ->group(group);
+  channels.add_to(command, group);
 }
 
 SolveOptions SolveArguments::options(const Scene& scene) const {
@@ -277,17 +278,18 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
   } else {
     options.solver_method = solver_method(solver);
   }
+  options.channels = channels.channels(scene);
   return options;
 }
 
 std::string SolveArguments::text(const Scene& scene) const {
   return fmt::format(
       "{}{} --form-factors {}{} --solver {} --rays {} --gather-rays {} --tolerance {:g} "
-      "--max-sweeps {}",
+      "--max-sweeps {}{}",
       mesh.text(scene), refinement_text(solve.refine), form_factors,
       hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
       solve.form_factors.rays_per_patch, solve.gather.rays, solve.solver.tolerance,
-      solve.solver.max_sweeps);
+      solve.solver.max_sweeps, channels.text());
 }
 
 void RenderArguments::add_to(CLI::App& command) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "cli/channels.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"
 
@@ -29,11 +30,13 @@ struct SolveArguments {
   MeshArguments mesh{};
   std::string form_factors = "auto";
   std::string solver = "auto";
-  std::int64_t memory = 0;  ///< bytes; 0: no limit given
+  ChannelArguments channels{};
+  std::string start_from{};  ///< a solution to start from; empty: none
+  std::int64_t memory = 0;   ///< bytes; 0: no limit given
   SolveOptions solve{};
 
   void add_to(CLI::App& command);
-  /// With lengths in metres; `progress` is left empty.
+  /// With lengths in metres; `progress` and `start` are left empty.
   SolveOptions options(const Scene& scene) const;
   /// The command line that repeats it, with every default spelled out.
   std::string text(const Scene& scene) const;

@@ -25,6 +25,7 @@ using Action = std::function<int(Console& console)>;
 Action add_run(CLI::App& command);
 Action add_solve(CLI::App& command);
 Action add_mesh(CLI::App& command);
+Action add_relight(CLI::App& command);
 Action add_render(CLI::App& command);
 Action add_probe(CLI::App& command);
 Action add_view(CLI::App& command);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "cli/arguments.h"
+#include "cli/channels.h"
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "mesh/mesh_quality.h"
@@ -124,21 +125,23 @@ Json scene_json(const Scene& scene) {
 
 Json solution_json(const SolvedScene& solved) {
   const RadiositySolution& solution = solved.solution;
-  return {{"kind", "solution"},
-          {"version", solution.provenance.version},
-          {"scene", solution.provenance.scene_file},
-          {"scene_hash", fmt::format("{:016x}", solution.provenance.scene_hash)},
-          {"options", solution.provenance.options},
-          {"unit", solution.unit_name},
-          {"light", light_name(solution.relative_units)},
-          {"bands", solution.bands.names},
-          {"patches", solved.mesh.patch_count()},
-          {"elements", solved.mesh.element_count()},
-          {"energy", energy_json(solution.energy)},
-          {"residual", solution.residual},
-          {"sweeps", solution.history.size()},
-          {"error_estimate", solution.error_estimate},
-          {"outcome", outcome_name(solution.outcome)}};
+  Json json = {{"kind", "solution"},
+               {"version", solution.provenance.version},
+               {"scene", solution.provenance.scene_file},
+               {"scene_hash", fmt::format("{:016x}", solution.provenance.scene_hash)},
+               {"options", solution.provenance.options},
+               {"unit", solution.unit_name},
+               {"light", light_name(solution.relative_units)},
+               {"bands", solution.bands.names},
+               {"patches", solved.mesh.patch_count()},
+               {"elements", solved.mesh.element_count()},
+               {"energy", energy_json(solution.energy)},
+               {"residual", solution.residual},
+               {"sweeps", solution.history.size()},
+               {"error_estimate", solution.error_estimate},
+               {"outcome", outcome_name(solution.outcome)}};
+  if (!solution.channels.empty()) json["channels"] = channels_json(solution);
+  return json;
 }
 
 Json picture_json(const Image& image) {

@@ -28,6 +28,8 @@ constexpr const char* recipes =
   lightwell solve room.toml -o room.vtp                  solve, and keep the light on all surfaces
   lightwell mesh room.toml -o mesh.vtp                   the patches and elements of 'solve'
   lightwell render room.toml room.vtp -o room.png        a picture: mirrors, glass, exact shadows
+  lightwell relight room.vtp --channel desk=0.3 -o dim.vtp
+                                                         dim and recolour lamps, without solving
   lightwell view room.toml room.vtp                      walk through it
   lightwell export room.vtp --scene room.toml -o room.html
                                                          a page to walk through in a browser, or
@@ -46,9 +48,10 @@ struct NamedCommand {
   const char* name;
   Action (*add)(CLI::App&);
 };
-constexpr std::array<NamedCommand, 10> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 11> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
+                                                    {"relight", add_relight},
                                                     {"render", add_render},
                                                     {"probe", add_probe},
                                                     {"view", add_view},

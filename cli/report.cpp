@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
 
+#include "cli/channels.h"
 #include "scene/atomic_file.h"
 #include "scene/parallel.h"
 
@@ -33,6 +35,23 @@ std::string storage_text(const Json& storage) {
                      size("budget_mb"));
 }
 
+// "desk 3.2 W (scale 0.3), sun 40 W": as it is now.
+std::string channel_text(const Json& channels) {
+  std::vector<std::string> parts;
+  for (const Json& channel : channels) {
+    const auto scale = channel["scale"].get<std::vector<double>>();
+    const bool is_even = std::ranges::all_of(scale, [&](double s) { return s == scale[0]; });
+    const bool is_in_watts = channel.contains("watts");
+    std::string part = fmt::format("{} {:.4g}{}", channel["name"].get<std::string>(),
+                                   channel[is_in_watts ? "watts" : "power"].get<double>(),
+                                   is_in_watts ? " W" : "");
+    if (!is_even) part += fmt::format(" (scale {:.3g})", fmt::join(scale, " "));
+    if (is_even && scale[0] != 1.0) part += fmt::format(" (scale {:.3g})", scale[0]);
+    parts.push_back(std::move(part));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 std::string to_text(const Json& json) {
   // File names may hold bytes that are no UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -54,6 +73,7 @@ void Report::add_solution(const SolvedScene& solved, bool solved_now) {
   facts_["bands"] = solution.bands.count();
   facts_["light"] = light_name(solution.relative_units);
   facts_["energy"] = energy_json(solution.energy);
+  if (!solution.channels.empty()) facts_["channels"] = channels_json(solution);
   if (solved_now) facts_["solver"] = solution.solver;
   facts_["residual"] = solution.residual;
   facts_["sweeps"] = solution.history.size();
@@ -117,6 +137,7 @@ std::string Report::for_people() const {
                      "unshot",
                      emitted, facts_["light"] == light_name(true) ? "(no known unit)" : "W",
                      percent("absorbed"), percent("escaped"), percent("unshot")));
+    if (facts_.contains("channels")) line("channels", channel_text(facts_["channels"]));
     const std::string by =
         facts_.contains("solver") ? " of " + facts_["solver"].get<std::string>() : "";
     line("residual",

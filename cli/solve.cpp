@@ -44,6 +44,10 @@ Action add_solve(CLI::App& command) {
       ->type_name("FILE")
       ->check(with_extension({".vtp"}));
   arguments->solve.add_to(command);
+  command
+      .add_option("--start-from", arguments->solve.start_from,
+                  "a solution of the same geometry whose light the solver starts from")
+      ->type_name("SOLUTION");
   command.footer(
       "Example: lightwell solve cornell/cornell.toml -o cornell.vtp --max-patch-size 25");
   return [arguments](Console& console) { return solve(*arguments, console); };

@@ -60,6 +60,11 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   options.progress = console.progress();
   options.form_factors.memory = std::make_shared<MemoryBudget>(
       MemoryOptions{.limit = arguments.memory, .folder = output.parent_path()});
+  std::optional<SolvedScene> start;
+  if (!arguments.start_from.empty()) {
+    start = read_solution(arguments.start_from);
+    options.start = &*start;
+  }
   console.say_verbose("solving with " + arguments.text(scene));
   SolveReport solve_report;
   SolvedScene solved = solve_scene(scene, options, &solve_report);

@@ -118,6 +118,7 @@ struct EmitterShadow {
   const Emitter* emitter = nullptr;
   int index = 0;
   double F = 0.0;
+  int channel = 0;
   std::uint64_t key = 0;
   int least = 0, most = 0;  // rays
 };
@@ -146,29 +147,48 @@ std::vector<ShadowTally> cast_shadows(std::span<const EmitterShadow> shadows,
 }
 
 // Stratified rays to a shadow's edge are off by n^(-3/4): the error of the sum over emitters that
-// would give shares w of the light is least where each has as w^(4/5). A first look of fewer than
-// 8 would often miss what hides a part.
-void set_effort(std::span<EmitterShadow> shadows, const ShadowOptions& options) {
+// would give shares w of the light is least where each has as w^(4/5). Channels have light of their
+// own, since the others may be dimmed. A first look of fewer than 8 would often miss what hides a
+// part.
+void set_effort(std::span<EmitterShadow> shadows, int channels, const ShadowOptions& options) {
   const auto light = [](const EmitterShadow& s) { return s.F * s.emitter->exitance.mean(); };
-  double most_light = 0.0;
-  for (const EmitterShadow& s : shadows) most_light += light(s);
+  std::vector<double> most_light(channels, 0.0);
+  for (const EmitterShadow& s : shadows) most_light[s.channel] += light(s);
   const int most = std::clamp(options.max_rays, 1, most_shadow_rays);
   const int least = std::clamp(options.min_rays, 1, most);
   constexpr int first_look = 8;
   for (EmitterShadow& s : shadows) {
-    const double effort = most_light > 0.0 ? std::pow(light(s) / most_light, 0.8) : 1.0;
+    const double all = most_light[s.channel];
+    const double effort = all > 0.0 ? std::pow(light(s) / all, 0.8) : 1.0;
     s.most = std::clamp(static_cast<int>(std::ceil(effort * most)), 1, most);
     s.least = std::min(
         s.most, std::max(std::min(first_look, least), static_cast<int>(std::ceil(effort * least))));
   }
 }
 
+// A patch of each facet's front; -1 where the mesh has none.
+std::vector<int> front_patches(const PatchMesh& mesh, std::size_t facet_count) {
+  std::vector<int> front(facet_count, -1);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    const auto facet = static_cast<std::size_t>(mesh.facet[e]);
+    if (!mesh.is_back[p] && facet < facet_count) front[facet] = p;
+  }
+  return front;
+}
+
 }  // namespace
 
-DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh)
-    : bands_(scene.bands.count()), samples_(most_shadow_rays) {
+DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels)
+    : bands_(scene.bands.count()),
+      channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
+      samples_(most_shadow_rays) {
   const std::vector<FacetRef> facets = scene_facets(scene);
   owned_.assign(facets.size(), 0);
+  first_column_.assign(facets.size(), 0);
+  for (std::size_t f = 0; f < facets.size() && !channels.empty(); ++f) {
+    first_column_[f] = bands_ * std::max(0, channels.of_surface[facets[f].surface]);
+  }
   double scene_area = 0.0;
   std::vector<EmittingFacet> emitting;
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
@@ -188,6 +208,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh)
   std::stable_sort(emitting.begin(), emitting.end(),
                    [](const auto& a, const auto& b) { return a.exitance > b.exitance; });
 
+  const std::vector<int> front = front_patches(mesh, facets.size());
   double taken = 0.0;
   for (std::size_t i = 0; i < emitting.size();) {
     std::size_t end = i;
@@ -205,6 +226,9 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh)
                       .exitance = material.emission,
                       .area = emitting[i].area,
                       .emits_both_sides = material.emits_both_sides};
+      if (const int p = front[emitter.facet]; p >= 0) {
+        emitter.exitance = mesh.emission.row(p).transpose();
+      }
       if (const auto* polygons = std::get_if<PolygonMesh>(&surface.shape)) {
         const Facet& facet = polygons->facets[ref.facet];
         emitter.normal = facet_normal(*polygons, facet);
@@ -243,7 +267,7 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
   EmitterShadow shadow{
       .emitter = &emitter, .F = unoccluded_form_factor(emitter, point, normal, facet), .key = key};
   if (!(shadow.F > 0.0)) return 0.0;
-  set_effort({&shadow, 1}, options);
+  set_effort({&shadow, 1}, 1, options);
   return shadow.F * cast_shadows({&shadow, 1}, caster, samples_, point, normal, facet)[0].share();
 }
 
@@ -257,27 +281,30 @@ std::optional<bool> DirectLight::sees(const Emitter& emitter, const ElementCaste
   return blocked == 0;
 }
 
-Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+template <class Add>
+void DirectLight::for_each_light(const ElementCaster& caster, const Eigen::Vector3d& point,
                                  const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                                 const ShadowOptions& options, EmitterSight* sight) const {
+                                 const ShadowOptions& options, EmitterSight* sight,
+                                 Add&& add) const {
   std::vector<EmitterShadow> shadows;
   for (int e = 0; e < static_cast<int>(emitters_.size()); ++e) {
+    if (!(emitters_[e].exitance > 0.0f).any()) continue;  // switched off
     const double F = unoccluded_form_factor(emitters_[e], point, normal, facet);
     if (!(F > 0.0)) continue;
     shadows.push_back({.emitter = &emitters_[e],
                        .index = e,
                        .F = F,
+                       .channel = first_column(emitters_[e].facet) / bands_,
                        .key = random_key(key, static_cast<std::uint64_t>(e))});
   }
-  set_effort(shadows, options);
+  set_effort(shadows, channel_count_, options);
   const std::vector<ShadowTally> tallies =
       cast_shadows(shadows, caster, samples_, point, normal, facet);
-  Spectrum E = Spectrum::Zero(bands_);
   if (sight) *sight = {};
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const EmitterShadow& s = shadows[i];
     const double share = tallies[i].share();
-    if (share > 0.0) E += s.emitter->exitance * static_cast<float>(s.F * share);
+    if (share > 0.0) add(*s.emitter, static_cast<float>(s.F * share));
     if (!sight) continue;
     sight->unshadowed += s.F * s.emitter->exitance.mean();
     constexpr int bits = 64;
@@ -285,7 +312,25 @@ Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vecto
     if (share == 1.0) sight->whole |= bit;
     if (share == 0.0) sight->hidden |= bit;
   }
+}
+
+Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                                 const ShadowOptions& options, EmitterSight* sight) const {
+  Spectrum E = Spectrum::Zero(bands_);
+  for_each_light(caster, point, normal, facet, key, options, sight,
+                 [&](const Emitter& emitter, float F) { E += emitter.exitance * F; });
   return E;
+}
+
+void DirectLight::add_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                                 const ShadowOptions& options, float* E,
+                                 EmitterSight* sight) const {
+  for_each_light(
+      caster, point, normal, facet, key, options, sight, [&](const Emitter& emitter, float F) {
+        Eigen::Map<Eigen::ArrayXf>(E + first_column(emitter.facet), bands_) += emitter.exitance * F;
+      });
 }
 
 }  // namespace lightwell

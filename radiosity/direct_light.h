@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/element_caster.h"
+#include "radiosity/emitter_channels.h"
 #include "radiosity/polygon_form_factor.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
@@ -16,7 +17,7 @@ namespace lightwell {
 /// An emitting facet whose light is computed by closed form times visibility, never left to chance.
 struct Emitter {
   int facet = 0;        ///< scene-wide facet number
-  Spectrum exitance{};  ///< M, W/m^2
+  Spectrum exitance{};  ///< M, W/m^2, as the mesh has it
   double area = 0.0;    ///< m^2, one side
   bool emits_both_sides = false;
   bool is_sphere = false;
@@ -46,15 +47,24 @@ struct EmitterSight {
 /// Light straight from the scene's emitters. Emitters are taken in order of falling exitance, all
 /// of one exitance together, while they add up to at most a quarter of the scene's area: those are
 /// small and bright, and a hemisphere of rays would find them by chance. What emits beyond that is
-/// large and is found by any hemisphere of rays.
+/// large and is found by any hemisphere of rays. What counts for that is the scene's exitance; the
+/// light is that of the mesh, whose emission relight() may have scaled since.
+///
+/// With `channels`, light of each is kept apart in columns of its own: channel c in those from
+/// c * bands on.
 class DirectLight {
  public:
-  DirectLight(const Scene& scene, const PatchMesh& mesh);
+  DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels = {});
 
   const std::vector<Emitter>& emitters() const { return emitters_; }
   /// Whether the facet's emission is accounted for here (and must not be counted again by other
   /// rays).
   bool owns(int facet) const { return owned_[facet] != 0; }
+  /// 1 if light is not kept apart.
+  int channel_count() const { return channel_count_; }
+  int column_count() const { return channel_count_ * bands_; }
+  /// The first column of what a facet emits; 0 if it does not.
+  int first_column(int facet) const { return first_column_[facet]; }
 
   /// Form factor from a differential element to one emitter: the unoccluded closed form times the
   /// visible share. The share is the ratio of the cosine kernel over samples that see the point to
@@ -74,15 +84,26 @@ class DirectLight {
                            const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
                            double u, double v) const;
 
-  /// Irradiance E = sum M F at a point, W/m^2 per band, from all emitters.
+  /// Irradiance E = sum M F at a point, W/m^2 per band, from all emitters and channels.
   Spectrum irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
                       const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                       const ShadowOptions& options = {}, EmitterSight* sight = nullptr) const;
 
+  /// The same, each channel's added to its columns of E, which has column_count() of them.
+  void add_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                      const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                      const ShadowOptions& options, float* E, EmitterSight* sight = nullptr) const;
+
  private:
+  template <class Add>
+  void for_each_light(const ElementCaster& caster, const Eigen::Vector3d& point,
+                      const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                      const ShadowOptions& options, EmitterSight* sight, Add&& add) const;
+
   std::vector<Emitter> emitters_;
   std::vector<char> owned_;
-  int bands_ = 0;
+  std::vector<int> first_column_;
+  int bands_ = 0, channel_count_ = 1;
   SobolPoints samples_;
 };
 

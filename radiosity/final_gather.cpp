@@ -43,7 +43,7 @@ class HemisphereGather {
   }
 
   // E = (1/N) sum B over cosine-distributed rays.
-  Spectrum irradiance(const GatherPoint& at, std::uint64_t key) const {
+  Eigen::ArrayXf irradiance(const GatherPoint& at, std::uint64_t key) const {
     Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(radiosity_.cols());
     const HemisphereSets& set = sets_.at(ray_count(at, options_));
     const HemisphereSets::Draw draw = set.draw(random_key(key, gather_rays));
@@ -75,8 +75,23 @@ class HemisphereGather {
     if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, sum);
     if (!paths_.is_specular(hit.facet)) return;
     paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
-      sum += (throughput * interpolate(mesh_, radiosity_, end)).cast<double>();
+      add_throughput(end, throughput, sum);
     });
+  }
+
+  // Bands go by the columns of one channel after the other.
+  void add_throughput(const ElementHit& hit, const Spectrum& throughput,
+                      Eigen::ArrayXd& sum) const {
+    if (hit.element < 0) return;
+    const Eigen::Index bands = throughput.size();
+    const auto& corners = mesh_.corners[hit.element];
+    for (Eigen::Index k = 0; k < sum.size(); k += bands) {
+      Spectrum B = Spectrum::Zero(bands);
+      for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
+        B += hit.weights[c] * radiosity_.row(corners[c]).segment(k, bands).transpose();
+      }
+      sum.segment(k, bands) += (throughput * B).cast<double>();
+    }
   }
 
   void add_radiosity(const ElementHit& hit, Eigen::ArrayXd& sum) const {
@@ -134,14 +149,13 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
                                      const GatherOptions& options) {
   const int count = static_cast<int>(points.size());
   const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
-  GatheredIrradiance result{.direct = BandArray::Zero(count, scene.bands.count()),
-                            .indirect = BandArray::Zero(count, scene.bands.count())};
+  GatheredIrradiance result{.direct = BandArray::Zero(count, direct_light.column_count()),
+                            .indirect = BandArray::Zero(count, radiosity.cols())};
   for_each_point(points, options, [&](int i, std::uint64_t key) {
     const GatherPoint& at = points[i];
-    result.direct.row(i) = direct_light
-                               .irradiance(caster, at.position, at.normal, at.facet,
-                                           random_key(key, gather_shadows), options.shadows)
-                               .transpose();
+    direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
+                                random_key(key, gather_shadows), options.shadows,
+                                result.direct.row(i).data());
     result.indirect.row(i) = hemisphere.irradiance(at, key).transpose();
   });
   return result;
@@ -150,15 +164,14 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
 BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
                         const DirectLight& direct_light, std::span<const GatherPoint> points,
                         const GatherOptions& options, std::vector<EmitterSight>* sights) {
-  BandArray direct(static_cast<Eigen::Index>(points.size()), scene.bands.count());
+  BandArray direct = BandArray::Zero(static_cast<Eigen::Index>(points.size()),
+                                     direct_light.channel_count() * scene.bands.count());
   if (sights) sights->assign(points.size(), {});
   for_each_point(points, options, [&](int i, std::uint64_t key) {
     const GatherPoint& at = points[i];
-    direct.row(i) =
-        direct_light
-            .irradiance(caster, at.position, at.normal, at.facet, random_key(key, gather_shadows),
-                        options.shadows, sights ? &(*sights)[i] : nullptr)
-            .transpose();
+    direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
+                                random_key(key, gather_shadows), options.shadows,
+                                direct.row(i).data(), sights ? &(*sights)[i] : nullptr);
   });
   return direct;
 }
@@ -167,7 +180,7 @@ BandArray gather_indirect(const Scene& scene, const ElementCaster& caster,
                           const BandArray& radiosity, std::span<const GatherPoint> points,
                           const GatherOptions& options) {
   const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
-  BandArray indirect(static_cast<Eigen::Index>(points.size()), scene.bands.count());
+  BandArray indirect(static_cast<Eigen::Index>(points.size()), radiosity.cols());
   for_each_point(points, options, [&](int i, std::uint64_t key) {
     indirect.row(i) = hemisphere.irradiance(points[i], key).transpose();
   });
@@ -177,11 +190,15 @@ BandArray gather_indirect(const Scene& scene, const ElementCaster& caster,
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
                                const BandArray& irradiance) {
   const std::vector<int> patch = vertex_patches(mesh);
+  const Eigen::Index bands = mesh.reflectance.cols();
   BandArray B(irradiance.rows(), irradiance.cols());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const int p = patch[v];
-    B.row(v) = mesh.reflectance.row(p) * irradiance.row(v);
-    if (!direct_light.owns(mesh.facet[mesh.first_element[p]])) B.row(v) += mesh.emission.row(p);
+    const int p = patch[v], facet = mesh.facet[mesh.first_element[p]];
+    for (Eigen::Index k = 0; k < B.cols(); k += bands) {
+      B.row(v).segment(k, bands) = mesh.reflectance.row(p) * irradiance.row(v).segment(k, bands);
+    }
+    if (direct_light.owns(facet)) continue;
+    B.row(v).segment(direct_light.first_column(facet), bands) += mesh.emission.row(p);
   }
   return B;
 }
@@ -192,7 +209,7 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
   const LightPaths paths(scene, caster, max_specular_depth);
   if (!paths.has_specular() || direct_light.emitters().empty()) return {};
   const int bands = scene.bands.count();
-  BandArray power = BandArray::Zero(mesh.element_count(), bands);
+  BandArray power = BandArray::Zero(mesh.element_count(), direct_light.column_count());
 
   // Every lit patch sends rays in proportion to its area. Pieces deposit into lists that are added
   // in order, so that the sum does not depend on threads.
@@ -240,12 +257,13 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
     });
     for (const auto& list : deposits) {
       for (const Deposit& deposit : list) {
-        power.row(deposit.element) += deposit.power.transpose();
+        power.row(deposit.element).segment(direct_light.first_column(facet), bands) +=
+            deposit.power.transpose();
       }
     }
   }
 
-  BandArray vertex_power = BandArray::Zero(mesh.vertex_count(), bands);
+  BandArray vertex_power = BandArray::Zero(mesh.vertex_count(), power.cols());
   Eigen::ArrayXf vertex_area = Eigen::ArrayXf::Zero(mesh.vertex_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
     for (int c = 0; c < mesh.corner_count(e); ++c) {

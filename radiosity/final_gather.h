@@ -32,7 +32,8 @@ struct GatherOptions {
   Progress progress{};
 };
 
-/// points x bands, W/m^2.
+/// points x bands, W/m^2. Where light is kept apart by channels (see DirectLight), here and below
+/// the columns of bands of one channel follow those of another.
 struct GatheredIrradiance {
   BandArray direct{};    ///< straight from DirectLight's emitters
   BandArray indirect{};  ///< from everything else that reflects or emits, also by way of mirrors

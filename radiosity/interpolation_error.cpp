@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "radiosity/refine_solution.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -114,8 +115,8 @@ void InterpolationError::gather_direct_at(const std::vector<int>& vertices) {
   gathers_ += static_cast<std::int64_t>(points.size());
 }
 
-BandArray InterpolationError::indirect_at(const std::vector<int>& vertices,
-                                          std::uint64_t replica) const {
+BandArray InterpolationError::indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
+                                          const BandArray& radiosity) const {
   const PatchMesh& mesh = elements_.base();
   std::vector<GatherPoint> points;
   for (const int v : vertices) {
@@ -127,7 +128,7 @@ BandArray InterpolationError::indirect_at(const std::vector<int>& vertices,
   GatherOptions options = options_;
   options.rays = std::max(1, options_.rays / share_of_rays);
   options.replica = options_.replica + draft_replica + replica;
-  return gather_indirect(scene_, caster_, radiosity_, points, options);
+  return gather_indirect(scene_, caster_, radiosity, points, options);
 }
 
 void InterpolationError::sharpen_radiosity(const BandArray& caustic) {
@@ -136,7 +137,7 @@ void InterpolationError::sharpen_radiosity(const BandArray& caustic) {
   std::iota(all.begin(), all.end(), 0);
   make_room();
   gather_direct_at(all);
-  BandArray irradiance = direct_.topRows(mesh.vertex_count()) + indirect_at(all, 2);
+  BandArray irradiance = direct_.topRows(mesh.vertex_count()) + indirect_at(all, 2, radiosity_);
   if (caustic.size() > 0) irradiance += caustic;
   radiosity_ = gatherable_radiosity(mesh, direct_light_, irradiance);
   gather(all);
@@ -151,7 +152,8 @@ void InterpolationError::gather(const std::vector<int>& vertices) {
     has_indirect_[v] = 1;
     fresh.push_back(v);
   }
-  const BandArray first = indirect_at(fresh, 0), second = indirect_at(fresh, 1);
+  const BandArray first = indirect_at(fresh, 0, radiosity_),
+                  second = indirect_at(fresh, 1, radiosity_);
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     first_.row(fresh[i]) = first.row(static_cast<Eigen::Index>(i));
     second_.row(fresh[i]) = second.row(static_cast<Eigen::Index>(i));
@@ -165,6 +167,39 @@ GatheredIrradiance InterpolationError::values(const std::vector<int>& vertices) 
   for (Eigen::Index i = 0; i < count; ++i) {
     result.direct.row(i) = direct_.row(vertices[i]);
     result.indirect.row(i) = 0.5f * (first_.row(vertices[i]) + second_.row(vertices[i]));
+  }
+  return result;
+}
+
+GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>& vertices,
+                                                         const ChannelLight& light) const {
+  const PatchMesh& mesh = elements_.base();
+  std::vector<int> base(mesh.vertex_count());
+  std::iota(base.begin(), base.end(), 0);
+  std::vector<int> places = base, row_of(elements_.vertex_count(), -1);
+  std::copy(base.begin(), base.end(), row_of.begin());
+  for (const int v : vertices) {
+    if (row_of[v] >= 0) continue;
+    row_of[v] = static_cast<int>(places.size());
+    places.push_back(v);
+  }
+  std::vector<GatherPoint> points;
+  for (const int v : places) {
+    points.push_back(gather_point(v));
+    points.back().key = static_cast<std::uint64_t>(v);
+  }
+  const BandArray direct = gather_direct(scene_, caster_, light.direct_light, points, options_);
+  BandArray irradiance =
+      direct.topRows(mesh.vertex_count()) + indirect_at(base, 2, light.radiosity);
+  if (light.caustic.size() > 0) irradiance += light.caustic;
+  const BandArray sharpened = gatherable_radiosity(mesh, light.direct_light, irradiance);
+
+  GatheredIrradiance result;
+  result.indirect =
+      0.5f * (indirect_at(vertices, 0, sharpened) + indirect_at(vertices, 1, sharpened));
+  result.direct.resize(result.indirect.rows(), direct.cols());
+  for (Eigen::Index i = 0; i < result.direct.rows(); ++i) {
+    result.direct.row(i) = direct.row(row_of[vertices[static_cast<std::size_t>(i)]]);
   }
   return result;
 }

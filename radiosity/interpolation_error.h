@@ -7,15 +7,15 @@
 
 namespace lightwell {
 
+struct ChannelLight;
+
 /// What errors of irradiance are relative to, W/m^2: the scene's mean irradiance or a quarter of
 /// the place's own, whichever is more. (Else a palm's breadth of lamp shade, lit a thousand times
 /// as brightly as the room, would decide over all of it.)
 double error_reference(double mean_irradiance, double own_irradiance);
 
 /// How far irradiance interpolated over cells is from irradiance gathered inside them: the squared
-/// difference's mean over each cell, mean of the bands, relative to the scene's mean irradiance or,
-/// on cells that have more, to their own. (Else a palm's breadth of lamp shade, lit a thousand
-/// times as brightly as the room, would decide over all of it.)
+/// difference's mean over each cell, mean of the bands, relative to the error_reference() squared.
 ///
 /// A cell is compared at the middles of its edges and in its centre (weights of Simpson's rule; in
 /// triangles at the middles alone), and those gathers are kept as the values of the vertices that
@@ -55,6 +55,10 @@ class InterpolationError {
   void gather(const std::vector<int>& vertices);
   /// What was gathered at vertices, in their order.
   GatheredIrradiance values(const std::vector<int>& vertices) const;
+  /// The same gathers, made again of light by channels: their sum is what values() would give after
+  /// gather().
+  GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
+                                       const ChannelLight& light) const;
   std::int64_t gathers() const { return gathers_; }
 
  private:
@@ -63,7 +67,8 @@ class InterpolationError {
   GatherPoint gather_point(int vertex) const;
   void make_room();
   void gather_direct_at(const std::vector<int>& vertices);
-  BandArray indirect_at(const std::vector<int>& vertices, std::uint64_t replica) const;
+  BandArray indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
+                        const BandArray& radiosity) const;
   double lattice_error(int cell, int side);
   double probed_error(int cell, int side);
   Spectrum total(int vertex) const;

@@ -20,8 +20,11 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
     const auto area = static_cast<float>(mesh.element_area[e]);
+    const int facet = mesh.facet[e];
     Eigen::Array<float, 1, Eigen::Dynamic> B = patch_radiosity.row(p);
-    if (direct_light.owns(mesh.facet[e])) B -= mesh.emission.row(p);
+    if (direct_light.owns(facet)) {
+      B.segment(direct_light.first_column(facet), mesh.emission.cols()) -= mesh.emission.row(p);
+    }
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       sum.row(mesh.corners[e][c]) += area * B;
       weight[mesh.corners[e][c]] += area;
@@ -48,7 +51,7 @@ class EvenCaustics {
     if (starts_coarse(options) && options.mesh.elements_per_patch_edge > 1) elements.split(all);
     const RefinedMesh even = elements.mesh();
     elements.merge(all);
-    values_ = BandArray::Zero(elements.vertex_count(), scene.bands.count());
+    values_ = BandArray::Zero(elements.vertex_count(), direct_light.column_count());
     const BandArray found = caustics(scene, ElementCaster(even.mesh), direct_light, options);
     if (found.size() == 0) return;
     known_ = elements.vertex_count();
@@ -84,14 +87,25 @@ class EvenCaustics {
 
 Draft refined_draft(const Scene& scene, const ElementCaster& caster,
                     const DirectLight& direct_light, const SolveOptions& options,
-                    const GatherOptions& gather_options, const BandArray& radiosity) {
+                    const GatherOptions& gather_options, const BandArray& radiosity,
+                    const BandArray& patch_radiosity) {
   RefinedElements elements(caster.mesh());
   EvenCaustics even_caustics(scene, direct_light, options, elements);
   std::vector<int> base_vertices(caster.mesh().vertex_count());
   std::iota(base_vertices.begin(), base_vertices.end(), 0);
-  RefinedSolution found = refine_solution(scene, caster, direct_light, radiosity,
-                                          even_caustics.at(elements, base_vertices), elements,
-                                          gather_options, options.refine);
+  const BandArray caustic = even_caustics.at(elements, base_vertices);
+  RefinedSolution found;
+  if (direct_light.channel_count() == 1) {
+    found = refine_solution(scene, caster, direct_light, radiosity, caustic, elements,
+                            gather_options, options.refine);
+  } else {
+    const DirectLight all_light(scene, caster.mesh());
+    const ChannelLight by_channel{direct_light, radiosity, caustic};
+    found = refine_solution(scene, caster, all_light,
+                            patch_to_vertex(caster.mesh(), all_light, patch_radiosity),
+                            channel_sum(caustic, scene.bands.count()), elements, gather_options,
+                            options.refine, &by_channel);
+  }
   return {.refined = std::move(found.refined.mesh),
           .direct = std::move(found.draft.direct),
           .indirect = std::move(found.draft.indirect),
@@ -109,15 +123,20 @@ GatherOptions gather_options(const SolveOptions& options) {
 }  // namespace
 
 Draft make_draft(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, const BandArray& patch_radiosity) {
-  const BandArray radiosity = patch_to_vertex(caster.mesh(), direct_light, patch_radiosity);
+                 const SolveOptions& options, const RadiositySolution& solution) {
+  const BandArray radiosity = patch_to_vertex(
+      caster.mesh(), direct_light,
+      solution.channels.empty() ? solution.patch_radiosity
+                                : side_by_side(solution.channels, &LightChannel::patch_radiosity));
   GatherOptions gather = gather_options(options);
   if (options.refine.tolerance > 0.0) {
-    return refined_draft(scene, caster, direct_light, options, gather, radiosity);
+    return refined_draft(scene, caster, direct_light, options, gather, radiosity,
+                         solution.patch_radiosity);
   }
   gather.rays = std::max(1, gather.rays / 4);
   gather.replica += draft_replica;
-  gather.shadows = {.min_rays = 16, .max_rays = 64};
+  gather.shadows = {.min_rays = std::max(1, gather.shadows.min_rays / 2),
+                    .max_rays = std::max(1, gather.shadows.max_rays / 4)};
   GatheredIrradiance draft = gather_irradiance(scene, caster, direct_light, radiosity,
                                                vertex_gather_points(caster.mesh()), gather);
   return {.direct = std::move(draft.direct),
@@ -147,6 +166,11 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (has_caustics) solution.indirect_irradiance += draft.caustic;
   solution.caustic_irradiance = std::move(draft.caustic);
   solution.interpolation_error = std::move(draft.interpolation_error);
+  if (solution.channels.empty()) return;
+  split_columns(solution.direct_irradiance, &LightChannel::direct_irradiance, solution.channels);
+  split_columns(solution.indirect_irradiance, &LightChannel::indirect_irradiance,
+                solution.channels);
+  split_columns(solution.caustic_irradiance, &LightChannel::caustic_irradiance, solution.channels);
 }
 
 }  // namespace lightwell

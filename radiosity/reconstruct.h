@@ -16,12 +16,15 @@ struct Draft {
   RefineReport refinement{};
 };
 
-/// Refines the elements, if options.refine says so, and gathers at their vertices.
+/// Refines the elements, if options.refine says so, and gathers at their vertices. `solution` has
+/// patch radiosities; `direct_light` keeps apart its channels, if there are any, and what is
+/// gathered has columns for each. Elements are split as all light together asks for.
 Draft make_draft(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, const BandArray& patch_radiosity);
+                 const SolveOptions& options, const RadiositySolution& solution);
 
 /// The final gather; `caster` is of the mesh whose vertices the draft is for. The direct light of
-/// a refined mesh has been gathered for good.
+/// a refined mesh has been gathered for good. With channels it is theirs that is filled in; their
+/// sum is left to relight().
 void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
                  const SolveOptions& options, Draft draft, RadiositySolution& solution);
 

@@ -199,7 +199,8 @@ std::string sentence(const RefineReport& report) {
 RefinedSolution refine_solution(const Scene& scene, const ElementCaster& caster,
                                 const DirectLight& direct_light, const BandArray& radiosity,
                                 const BandArray& caustic, RefinedElements& elements,
-                                const GatherOptions& gather, const RefineOptions& options) {
+                                const GatherOptions& gather, const RefineOptions& options,
+                                const ChannelLight* by_channel) {
   require_room(elements.base(), options);
   InterpolationError error(scene, caster, direct_light, radiosity, caustic, elements, gather,
                            options.max_level);
@@ -207,8 +208,12 @@ RefinedSolution refine_solution(const Scene& scene, const ElementCaster& caster,
   RefinedSolution result;
   result.report = refinement.run();
   result.refined = elements.mesh();
-  error.gather(result.refined.vertex);
-  result.draft = error.values(result.refined.vertex);
+  if (by_channel) {
+    result.draft = error.values_by_channel(result.refined.vertex, *by_channel);
+  } else {
+    error.gather(result.refined.vertex);
+    result.draft = error.values(result.refined.vertex);
+  }
   const PatchMesh& mesh = result.refined.mesh;
   result.error = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {

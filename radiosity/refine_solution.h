@@ -37,6 +37,13 @@ std::string sentence(const RefineReport& report);
 /// Throws InputError if a mesh to be refined has more elements than there may be.
 void require_room(const PatchMesh& mesh, const RefineOptions& options);
 
+/// The light of a scene with the columns of each channel side by side (see DirectLight).
+struct ChannelLight {
+  const DirectLight& direct_light;
+  const BandArray& radiosity;  ///< at the base's vertices, as gatherable_radiosity makes it
+  const BandArray& caustic;    ///< the same, or nothing; W/m^2
+};
+
 /// Refined elements, and a first gather at their vertices.
 struct RefinedSolution {
   RefinedMesh refined{};
@@ -55,10 +62,12 @@ struct RefinedSolution {
 /// shows not to matter is not measured.
 ///
 /// `radiosity` (as gatherable_radiosity makes it) and `caustic` irradiance (or nothing) are at the
-/// base's vertices; `caster` is of the base. Throws as require_room does.
+/// base's vertices; `caster` is of the base. With `by_channel` the draft is of that light, which
+/// has the same sum. Throws as require_room does.
 RefinedSolution refine_solution(const Scene& scene, const ElementCaster& caster,
                                 const DirectLight& direct_light, const BandArray& radiosity,
                                 const BandArray& caustic, RefinedElements& elements,
-                                const GatherOptions& gather, const RefineOptions& options);
+                                const GatherOptions& gather, const RefineOptions& options,
+                                const ChannelLight* by_channel = nullptr);
 
 }  // namespace lightwell

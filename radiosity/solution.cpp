@@ -2,6 +2,13 @@
 
 namespace lightwell {
 
+EnergyBalance total(const BandEnergy& by_band) {
+  return {.emitted = by_band.row(0).sum(),
+          .absorbed = by_band.row(1).sum(),
+          .escaped = by_band.row(2).sum(),
+          .unshot = by_band.row(3).sum()};
+}
+
 BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution) {
   BandArray B = solution.irradiance();
   std::vector<int> patch(mesh.vertex_count(), 0);

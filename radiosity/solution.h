@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/patch_mesh.h"
+#include "radiosity/light_channel.h"
 #include "scene/bands.h"
 
 namespace lightwell {
@@ -24,6 +25,9 @@ struct EnergyBalance {
   double escaped = 0.0;   ///< out of an open scene, or onto black backs
   double unshot = 0.0;    ///< what the solver left undistributed
 };
+
+/// All bands added.
+EnergyBalance total(const BandEnergy& by_band);
 
 struct PhaseSeconds {
   std::string phase{};
@@ -57,6 +61,12 @@ struct RadiositySolution {
   /// Per element: estimated RMS error of interpolated irradiance over it, of the mean irradiance.
   /// Empty if the mesh was not refined by the solution.
   Eigen::ArrayXf interpolation_error{};
+
+  /// The light above by who emits it (see relight.h); empty: it was not kept apart.
+  std::vector<LightChannel> channels{};
+  // Only with channels.
+  std::vector<int> patch_channel{};  ///< whose light a patch emits; -1: none
+  BandArray full_emission{};         ///< M_i with every scale at 1, W/m^2, patches x bands
 
   std::string solver{};  ///< the method that found it, or the methods; empty if read from a file
   std::vector<StepRecord> history{};

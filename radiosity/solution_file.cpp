@@ -13,6 +13,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "radiosity/channel_arrays.h"
 #include "radiosity/solution_seal.h"
 #include "radiosity/vtk_output.h"
 #include "scene/atomic_file.h"
@@ -190,6 +191,19 @@ void add_record(vtkFieldData* data, const RadiositySolution& s) {
   if (!s.provenance.refinement.empty()) add_strings(data, "refinement", {s.provenance.refinement});
 }
 
+// "channels: desk 0.3, sun 0.9 0.5 0.2"
+std::string channel_line(const RadiositySolution& s) {
+  std::vector<std::string> parts;
+  for (const LightChannel& channel : s.channels) {
+    const bool is_even = (channel.scale == channel.scale[0]).all();
+    const Eigen::Index shown = is_even ? 1 : channel.scale.size();
+    parts.push_back(
+        fmt::format("{} {:.4g}", channel.name,
+                    fmt::join(channel.scale.data(), channel.scale.data() + shown, " ")));
+  }
+  return parts.empty() ? "" : fmt::format("channels: {}\n", fmt::join(parts, ", "));
+}
+
 /// What a person wants to know first, for the top of the file.
 std::string summary(const SolvedScene& solved) {
   const PatchMesh& mesh = solved.mesh;
@@ -205,7 +219,7 @@ std::string summary(const SolvedScene& solved) {
       "view'\n"
       "scene: {} (hash {:016x}), 1 {} = {} m\n"
       "options: {}\n"
-      "mesh: {} patches, {} elements, {} vertices\n{}"
+      "mesh: {} patches, {} elements, {} vertices\n{}{}"
       "bands: {}, {} lm/W\n"
       "outcome: {} after {} sweeps, residual {:.3g}\n"
       "energy: {:.6g} {} emitted, {:.6g} absorbed, {:.6g} escaped, {:.3g} unshot\n"
@@ -215,7 +229,7 @@ std::string summary(const SolvedScene& solved) {
       s.metres_per_unit, s.provenance.options, mesh.patch_count(), mesh.element_count(),
       mesh.vertex_count(),
       s.provenance.refinement.empty() ? "" : "refined: " + s.provenance.refinement + "\n",
-      band_list, s.bands.lumens_per_watt,
+      channel_line(s), band_list, s.bands.lumens_per_watt,
       s.outcome == Outcome::converged ? "converged" : "stopped at the most sweeps allowed",
       s.history.size(), s.residual, s.energy.emitted, s.relative_units ? "(no known unit)" : "W",
       s.energy.absorbed, s.energy.escaped, s.energy.unshot, 100.0 * s.error_estimate, total);
@@ -235,6 +249,7 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
   add_elements(poly->GetCellData(), solved.mesh, solved.solution);
   add_patches(poly->GetFieldData(), solved.mesh, solved.solution);
   add_record(poly->GetFieldData(), solved.solution);
+  add_channels(poly, solved.solution);
 
   AtomicFile file(path);
   vtkNew<SealedWriter> writer;

@@ -9,7 +9,10 @@
 #include "mesh/patch_sampler.h"
 #include "radiosity/interpolation_error.h"
 #include "radiosity/reconstruct.h"
+#include "radiosity/relight.h"
+#include "radiosity/solve_channels.h"
 #include "radiosity/solve_radiosity.h"
+#include "radiosity/start_radiosity.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 
@@ -40,6 +43,14 @@ void require_light(const Scene& scene) {
       "{}: nothing emits light, so there is nothing to solve; give a material a 'radiance', "
       "'exitance' or 'power' (in OBJ files: Ke) and use it on a surface",
       scene.file.empty() ? "the scene" : scene.file.string()));
+}
+
+void require_equations(const SolveOptions& options) {
+  if (!options.progressive || (options.channels.empty() && !options.start)) return;
+  throw InputError(
+      fmt::format("the solver 'progressive' {}; use another, such as the default",
+                  options.start ? "starts from the emitters and cannot go on from another solution"
+                                : "shoots all light together and cannot keep channels apart"));
 }
 
 // Uniform over the area that reflects: independent gathers against the interpolation.
@@ -124,8 +135,14 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
   solver_options.name_of = [&](int i) {
     return fmt::format("surface '{}'", scene.surfaces[mesh.surface[i]].name);
   };
+  if (options.start) solver_options.start = start_radiosity(mesh, *options.start);
   RadiositySolution solution =
       solve_radiosity(options.solver_method, mesh, *form_factors, solver_options);
+  if (!options.channels.empty()) {
+    solver_options.start = start_by_channel(options.start, options.channels);
+    solve_channels(scene, mesh, *form_factors, options.channels, options.solver_method,
+                   solver_options, solution);
+  }
   solution.energy = energy_balance(scene, mesh, *form_factors, solution.patch_radiosity);
   solution.seconds = {{"form_factors", form_factor_seconds}, {"solve", watch.lap()}};
   return solution;
@@ -139,25 +156,12 @@ bool starts_coarse(const SolveOptions& options) {
 
 EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
                              const FormFactors& form_factors, const BandArray& B) {
-  const BandArray E = gather(form_factors, B);
-  EnergyBalance energy;
-  for (int i = 0; i < mesh.patch_count(); ++i) {
-    const double A = mesh.area[i];
-    const Spectrum B_i = B.row(i).transpose(), E_i = E.row(i).transpose();
-    const Spectrum M_i = mesh.emission.row(i).transpose(),
-                   rho = mesh.reflectance.row(i).transpose();
-    const Spectrum kept = 1.0f - rho - scene.materials[mesh.material[i]].specular;
-    energy.emitted += A * M_i.cast<double>().sum();
-    energy.absorbed +=
-        A * (kept * E_i + form_factors.absorbed_by_specular(i) * B_i).cast<double>().sum();
-    energy.escaped += A * (form_factors.escaped(i) * B_i).cast<double>().sum();
-    energy.unshot += A * (M_i + rho * E_i - B_i).cast<double>().sum();
-  }
-  return energy;
+  return total(band_energy(scene, mesh, form_factors, B));
 }
 
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveReport* report) {
   require_light(scene);
+  require_equations(options);
   SolvedScene solved;
   std::vector<PhaseSeconds> seconds;
   Stopwatch watch;
@@ -181,7 +185,10 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   solution.unit_name = scene.unit_name;
   solution.relative_units = scene.relative_units;
 
-  Draft draft = make_draft(scene, *caster, direct_light, options, solution.patch_radiosity);
+  std::optional<DirectLight> by_channel;
+  if (!options.channels.empty()) by_channel.emplace(scene, solved.mesh, options.channels);
+  const DirectLight& kept_apart = by_channel ? *by_channel : direct_light;
+  Draft draft = make_draft(scene, *caster, kept_apart, options, solution);
   if (draft.refined) {
     caster.reset();
     solved.mesh = std::move(*draft.refined);
@@ -190,7 +197,8 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
     solution.provenance.refinement = sentence(draft.refinement);
     if (report) report->refinement = draft.refinement;
   }
-  reconstruct(scene, *caster, direct_light, options, std::move(draft), solution);
+  reconstruct(scene, *caster, kept_apart, options, std::move(draft), solution);
+  relight(solved, scales_in_force(solution));
   seconds.push_back({"gather", watch.lap()});
   solution.error_estimate = estimate_error(scene, *caster, direct_light, options, solution);
   seconds.push_back({"error_estimate", watch.lap()});

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "radiosity/emitter_channels.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/progressive.h"
@@ -10,6 +11,8 @@
 #include "radiosity/solve_radiosity.h"
 
 namespace lightwell {
+
+struct SolvedScene;
 
 struct SolveOptions {
   MeshOptions mesh{};
@@ -22,7 +25,12 @@ struct SolveOptions {
   GatherOptions gather{.rays = 1024};
   RefineOptions refine{};
   int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
-  int error_points = 512;      ///< random points that the error estimate looks at
+  /// Whose light is kept apart, so that relight() can dim it; not with `progressive`.
+  EmitterChannels channels{};
+  /// A solution to start from, of the same patches: other reflectances or emission. Must outlive
+  /// the solving; not with `progressive`.
+  const SolvedScene* start = nullptr;
+  int error_points = 512;  ///< random points that the error estimate looks at
   Progress progress{};
 };
 
@@ -45,7 +53,8 @@ bool starts_coarse(const SolveOptions& options);
 /// The whole first pass: mesh, form factors, solver, refinement of the elements, final gather to
 /// their vertices, and an error estimate by independent gathers at random points (relative RMS
 /// difference from the interpolation; it holds the noise of both, so it errs on the high side).
-/// Throws InputError if nothing in the scene emits light or light never ends, Interrupted when
+/// Throws InputError if nothing in the scene emits light or light never ends, if the start has
+/// other patches, and where the progressive solver cannot do what is asked; Interrupted when
 /// progress says stop.
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);

@@ -1,0 +1,124 @@
+#include "cli/channels.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <stdexcept>
+
+#include "cli/arguments.h"
+
+namespace lightwell {
+namespace {
+
+// At the first '=' or the last: patterns may hold one, values never do.
+std::pair<std::string, std::string> split(const char* option, const std::string& text,
+                                          std::size_t at, const char* wanted) {
+  if (at == std::string::npos || at == 0 || at + 1 == text.size()) {
+    throw CLI::ValidationError(option, fmt::format("'{}' is not {}", text, wanted));
+  }
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+// For a shell, whatever is in it.
+std::string quoted(const std::string& word) {
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+void add_each(CLI::App& command, const std::string& name, const std::string& help,
+              const std::function<void(const std::string&)>& take, const std::string& type) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [take](const std::vector<std::string>& words) {
+            for (const std::string& word : words) take(word);
+          },
+          help)
+      ->type_name(type)
+      ->type_size(1)
+      ->allow_extra_args(false);
+}
+
+}  // namespace
+
+void ChannelArguments::add_to(CLI::App& command, const std::string& group) {
+  add_each(
+      command, "--channels",
+      "keep light apart for 'relight': per-luminaire, or NAME=PATTERN of emitters, which may be "
+      "repeated (default off)",
+      [this](const std::string& text) { add(text); }, "WHICH");
+  command.get_option("--channels")->group(group);
+}
+
+void ChannelArguments::add(const std::string& text) {
+  const char* const option = "--channels";
+  if (per_luminaire || is_off || (!patterns.empty() && text.find('=') == std::string::npos)) {
+    throw CLI::ValidationError(option,
+                               "give off, per-luminaire or patterns, and only one kind of them");
+  }
+  is_off = text == "off";
+  per_luminaire = text == "per-luminaire";
+  if (is_off || per_luminaire) return;
+  const auto [channel, glob] =
+      split(option, text, text.find('='),
+            "off, per-luminaire or NAME=PATTERN, such as desk='desk lamp*': a channel and what its "
+            "emitters or their materials are called");
+  patterns.push_back({channel, glob});
+}
+
+EmitterChannels ChannelArguments::channels(const Scene& scene) const {
+  if (per_luminaire) return channels_per_luminaire(scene);
+  return patterns.empty() ? EmitterChannels{} : channels_by_pattern(scene, patterns);
+}
+
+std::string ChannelArguments::text() const {
+  std::string text = per_luminaire ? " --channels per-luminaire" : "";
+  for (const ChannelPattern& pattern : patterns) {
+    text += " --channels " + quoted(pattern.channel + "=" + pattern.glob);
+  }
+  return text;
+}
+
+void add_channel_settings(CLI::App& command, ChannelSettings& settings) {
+  add_each(
+      command, "--channel",
+      "factor (0.3, off, on), colour (#ffd9b0) or both (0.3,#ffd9b0) of a channel; may be repeated",
+      [&settings](const std::string& text) {
+        const auto [name, value] =
+            split("--channel", text, text.rfind('='),
+                  "NAME=VALUE, such as desk=0.3, ceiling=#ffd9b0 or sun=off");
+        for (const auto& [other, setting] : settings) {
+          if (other != name) continue;
+          throw CLI::ValidationError(
+              "--channel", fmt::format("'{}' is set twice; give one value for each channel", name));
+        }
+        try {
+          settings.emplace_back(name, channel_setting(value));
+        } catch (const std::invalid_argument& error) {
+          throw CLI::ValidationError("--channel", error.what());
+        }
+      },
+      "NAME=VALUE");
+}
+
+Json channels_json(const RadiositySolution& solution) {
+  Json channels = Json::array();
+  for (const LightChannel& channel : solution.channels) {
+    const Spectrum flux = emitted_flux(channel);
+    Json json = {{"name", channel.name}};
+    const double watts = flux.cast<double>().sum();
+    if (solution.relative_units) {
+      json["power"] = watts;
+    } else {
+      json["watts"] = watts;
+      json["lumens"] = luminous(solution.bands, flux);
+    }
+    json["scale"] = std::vector<float>(channel.scale.begin(), channel.scale.end());
+    json["surfaces"] = channel.surfaces;
+    channels.push_back(std::move(json));
+  }
+  return channels;
+}
+
+}  // namespace lightwell

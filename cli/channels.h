@@ -1,0 +1,38 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/report.h"
+#include "radiosity/emitter_channels.h"
+#include "radiosity/relight.h"
+
+namespace lightwell {
+
+/// Which light a solution keeps apart, as asked for on the command line.
+struct ChannelArguments {
+  bool is_off = false;  ///< said so
+  bool per_luminaire = false;
+  std::vector<ChannelPattern> patterns{};
+
+  void add_to(CLI::App& command, const std::string& group);
+  /// Throws InputError where the scene has no such emitters.
+  EmitterChannels channels(const Scene& scene) const;
+  /// The command line that repeats it, with a space before it; nothing by default.
+  std::string text() const;
+
+ private:
+  void add(const std::string& text);
+};
+
+/// Channels by name with their settings: --channel NAME=VALUE, which may be repeated.
+using ChannelSettings = std::vector<std::pair<std::string, ChannelSetting>>;
+void add_channel_settings(CLI::App& command, ChannelSettings& settings);
+
+/// For JSON: of each channel its name, flux with its scale in force (watts and lumens, or power
+/// where light is relative), scale per band and surfaces.
+Json channels_json(const RadiositySolution& solution);
+
+}  // namespace lightwell

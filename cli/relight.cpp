@@ -1,0 +1,77 @@
+#include "radiosity/relight.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/arguments.h"
+#include "cli/channels.h"
+#include "cli/commands.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/steps.h"
+#include "radiosity/solution_file.h"
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+struct Arguments {
+  std::string solution, output;
+  ChannelSettings settings;
+};
+
+// What is not named stays as it is.
+std::vector<Spectrum> scales_asked_for(const Arguments& arguments,
+                                       const RadiositySolution& solution) {
+  std::vector<Spectrum> scales = scales_in_force(solution);
+  try {
+    for (const auto& [name, setting] : arguments.settings) {
+      const auto c = static_cast<std::size_t>(find_channel(solution, name));
+      scales[c] = channel_scale(solution.channels[c], solution.bands, setting);
+    }
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", arguments.solution, error.what()));
+  }
+  return scales;
+}
+
+int relight_solution(const Arguments& arguments, Console& console) {
+  Report report(console.options());
+  require_writable(arguments.output);
+  const Stopwatch reading;
+  SolvedScene solved = read_solution(arguments.solution);
+  report.add_phase("read_solution", reading.seconds());
+  const std::vector<Spectrum> scales = scales_asked_for(arguments, solved.solution);
+  const Stopwatch watch;
+  relight(solved, scales);
+  report.add_phase("relight", watch.seconds());
+  report.add_solution(solved, false);
+  write_solution_step(arguments.output, solved, console, report);
+  report.print();
+  return exit_done;
+}
+
+}  // namespace
+
+Action add_relight(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.description(
+      "Dims and recolours the channels of a solution, without solving. Settings are against the\n"
+      "scene as it was solved; a channel that is not named stays as it is.");
+  command.add_option("solution", arguments->solution, "a solution made with --channels, .vtp")
+      ->required()
+      ->type_name("SOLUTION");
+  add_channel_settings(command, arguments->settings);
+  command.get_option("--channel")->required();
+  command.add_option("-o,--output", arguments->output, "the solution with that light, .vtp")
+      ->required()
+      ->type_name("FILE")
+      ->check(with_extension({".vtp"}));
+  command.footer(
+      "Example: lightwell relight room.vtp --channel desk=0.3 --channel ceiling=1,#ffd9b0 \\\n"
+      "           --channel window=off -o evening.vtp");
+  return [arguments](Console& console) { return relight_solution(*arguments, console); };
+}
+
+}  // namespace lightwell

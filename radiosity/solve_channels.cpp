@@ -1,0 +1,95 @@
+#include "radiosity/solve_channels.h"
+
+#include <algorithm>
+
+namespace lightwell {
+namespace {
+
+// Form factors are floats, and solvers get no closer than those allow.
+constexpr double least_tolerance = 1e-7;
+
+// What solvers look at: the patches without their elements.
+PatchMesh patches_of(const PatchMesh& mesh) {
+  PatchMesh patches;
+  patches.area = mesh.area;
+  patches.reflectance = mesh.reflectance;
+  patches.material = mesh.material;
+  return patches;
+}
+
+BandArray emission_of(const PatchMesh& mesh, const std::vector<int>& patch_channel, int channel) {
+  BandArray M = mesh.emission;
+  for (Eigen::Index i = 0; i < M.rows(); ++i) {
+    if (patch_channel[static_cast<std::size_t>(i)] != channel) M.row(i).setZero();
+  }
+  return M;
+}
+
+std::vector<std::string> surfaces_of(const Scene& scene, const EmitterChannels& channels,
+                                     int channel) {
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    if (channels.of_surface[s] == channel) names.push_back(scene.surfaces[s].name);
+  }
+  return names;
+}
+
+}  // namespace
+
+void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors& form_factors,
+                    const EmitterChannels& channels, SolverMethod method,
+                    const SolverOptions& options, RadiositySolution& solution) {
+  const auto count = static_cast<int>(channels.names.size());
+  const Eigen::Index bands = mesh.emission.cols();
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const bool emits = (mesh.emission.row(p) > 0.0f).any();
+    solution.patch_channel.push_back(emits ? channels.of_surface[mesh.surface[p]] : -1);
+  }
+  solution.full_emission = mesh.emission;
+
+  SolverOptions part = options;
+  part.tolerance =
+      std::max(options.tolerance / count, std::min(options.tolerance, least_tolerance));
+  part.observer = {};
+  double residual = 0.0;  // of the sum, at most; W/m^2
+  PatchMesh lit = patches_of(mesh);
+  for (int c = 0; c < count; ++c) {
+    lit.emission = emission_of(mesh, solution.patch_channel, c);
+    part.start.resize(0, 0);
+    if (options.start.size() > 0) part.start = options.start.middleCols(c * bands, bands);
+    RadiositySolution solved = solve_radiosity(method, lit, form_factors, part);
+    residual += solved.residual * static_cast<double>(solved.patch_radiosity.maxCoeff());
+    if (solved.outcome != Outcome::converged) solution.outcome = solved.outcome;
+    solution.channels.push_back({.name = channels.names[c],
+                                 .surfaces = surfaces_of(scene, channels, c),
+                                 .scale = Spectrum::Ones(bands),
+                                 .patch_radiosity = std::move(solved.patch_radiosity),
+                                 .energy = {}});
+    LightChannel& channel = solution.channels.back();
+    channel.energy = band_energy(scene, lit, form_factors, channel.patch_radiosity);
+  }
+  solution.residual = residual / static_cast<double>(solution.patch_radiosity.maxCoeff());
+}
+
+BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFactors& form_factors,
+                       const BandArray& B) {
+  const BandArray E = gather(form_factors, B);
+  BandEnergy energy = BandEnergy::Zero(4, B.cols());
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    const double A = mesh.area[i];
+    const Spectrum B_i = B.row(i).transpose(), E_i = E.row(i).transpose();
+    const Spectrum M_i = mesh.emission.row(i).transpose(),
+                   rho = mesh.reflectance.row(i).transpose();
+    const Spectrum kept = 1.0f - rho - scene.materials[mesh.material[i]].specular;
+    const auto add = [&](int row, const Spectrum& per_area) {
+      energy.row(row) += A * per_area.cast<double>().transpose();
+    };
+    add(0, M_i);
+    add(1, kept * E_i + form_factors.absorbed_by_specular(i) * B_i);
+    add(2, form_factors.escaped(i) * B_i);
+    add(3, M_i + rho * E_i - B_i);
+  }
+  return energy;
+}
+
+}  // namespace lightwell
