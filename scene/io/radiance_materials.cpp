@@ -181,6 +181,13 @@ void RadianceMaterials::apply(const Definition& pattern, RadiancePattern& result
     factor[i] = constant_value(p.strings[std::min(i, functions - 1)], p);
     is_constant = factor[i] >= 0.0 && std::isfinite(factor[i]);
   }
+  if (p.type.ends_with("pict")) {
+    // A picture is its surface's whole colour, on a material of white.
+    remarks_.add("Pictures on surfaces were taken as a medium grey of 0.5", p.name);
+    is_constant = true;
+    factor.fill(0.5);
+    result.is_known = false;
+  }
   if (!is_constant) {
     remarks_.add("Patterns that change from place to place were taken as 1", p.name);
     result.is_known = false;

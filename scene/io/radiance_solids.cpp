@@ -246,8 +246,9 @@ void run_genblinds(const RadianceCall& call, const RadianceSink& sink) {
   // The slat seen from its end: a chord of length `depth`, or facets along its arc. A facet's
   // 3 degrees are what RADIANCE takes.
   const double half = bulge != 0.0 ? std::asin(depth / (2.0 * std::abs(bulge))) : 0.0;
+  constexpr double rounding = 1e-9;
   const int facets =
-      bulge != 0.0 ? static_cast<int>(std::ceil(half * 120.0 / std::numbers::pi)) : 1;
+      bulge != 0.0 ? static_cast<int>(std::ceil(half * 120.0 / std::numbers::pi - rounding)) : 1;
   const auto across = [&](int i) -> Eigen::Vector3d {
     const double turn = half * (2.0 * i / facets - 1.0);
     const double along =
