@@ -53,6 +53,7 @@ void run_genrev(const RadianceCall& call, const RadianceSink& sink) {
   constexpr int sides = 32;
   const int count = segments(call, 5);
   if (count > most_polygons / sides) call.fail("makes too many polygons; use fewer segments");
+  call.account(static_cast<std::int64_t>(count) * sides);
   const std::vector<double> z = samples(call, 3, count), r = samples(call, 4, count);
   if (!(*std::ranges::min_element(r) >= 0.0)) {
     call.fail(fmt::format("the radius '{}' is negative somewhere", call.words[4]));
@@ -83,6 +84,7 @@ void run_gensurf(const RadianceCall& call, const RadianceSink& sink) {
   if (m > most_polygons / n) {
     call.fail(fmt::format("makes more than {} polygons; use fewer segments", most_polygons));
   }
+  call.account(static_cast<std::int64_t>(m) * n);
   std::vector<RadianceExpression> formulas;
   for (std::size_t word = 3; word < 6; ++word) {
     formulas.emplace_back(call.words[word], std::vector<std::string>{"s", "t"}, call.place);
@@ -121,6 +123,7 @@ void run_genworm(const RadianceCall& call, const RadianceSink& sink) {
   call.require_words(8, "genworm material name 'x(t)' 'y(t)' 'z(t)' 'r(t)' segments");
   refuse_options(call, 8);
   const int count = segments(call, 7);
+  call.account(count);
   const std::array<std::vector<double>, 3> xyz = {samples(call, 3, count), samples(call, 4, count),
                                                   samples(call, 5, count)};
   const std::vector<double> radius = samples(call, 6, count);

@@ -75,6 +75,12 @@ void define_functions(mu::Parser& parser) {
   parser.DefineConst("PI", std::numbers::pi);
 }
 
+// What of a formula is fit for a message.
+std::string beginning(const std::string& text) {
+  constexpr std::size_t longest = 80;
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
+
 }  // namespace
 
 struct RadianceExpression::Impl {
@@ -100,10 +106,11 @@ RadianceExpression::RadianceExpression(const std::string& text,
     impl_->parser.SetExpr(text);
     impl_->parser.Eval();  // whatever is wrong with the text shows here
     if (impl_->parser.GetNumResults() != 1) {
-      place.fail(fmt::format("the formula '{}' gives several values", text));
+      place.fail(fmt::format("the formula '{}' gives several values", beginning(text)));
     }
   } catch (const mu::Parser::exception_type& error) {
-    place.fail(fmt::format("the formula '{}' cannot be read: {}", text, error.GetMsg()));
+    place.fail(fmt::format("the formula '{}' cannot be read: {}", beginning(text),
+                           beginning(error.GetMsg())));
   }
 }
 
@@ -122,7 +129,8 @@ double RadianceExpression::value_or_nan(std::span<const double> values) const {
 double RadianceExpression::operator()(std::span<const double> values) const {
   const double value = value_or_nan(values);
   if (!std::isfinite(value)) {
-    impl_->place.fail(fmt::format("the formula '{}' has no finite value everywhere", impl_->text));
+    impl_->place.fail(
+        fmt::format("the formula '{}' has no finite value everywhere", beginning(impl_->text)));
   }
   return value;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +19,8 @@ struct RadianceCall {
   Remarks& remarks;
   /// Opens a file that the call names, or throws InputError.
   std::function<TextFile(const std::string& name)> open;
+  /// To be told of facets before they are computed; throws InputError if the scene has too many.
+  std::function<void(std::int64_t facets)> account;
 
   /// Throws InputError "file:line: genbox: problem".
   [[noreturn]] void fail(std::string_view problem) const;

@@ -19,6 +19,7 @@ namespace {
 constexpr std::size_t most_nested = 32;         // files
 constexpr int most_commands = 200'000;          // files that include each other multiply quickly
 constexpr std::uintmax_t most_bytes = 1 << 30;  // read in all, again for every time
+constexpr std::int64_t most_generated = 10'000'000;
 
 const std::vector<std::string> known_programs = {"xform",     "cat",      "genbox",  "genprism",
                                                  "genblinds", "genrev",   "gensurf", "genworm",
@@ -97,6 +98,14 @@ void RadianceLoader::account(std::uintmax_t bytes, const RadiancePlace& place) {
   }
 }
 
+void RadianceLoader::account_facets(std::int64_t facets, const RadiancePlace& place) {
+  facets_ += facets;
+  if (facets_ > most_generated) {
+    place.fail(fmt::format("generators make more than {} facets; use fewer segments or copies",
+                           most_generated));
+  }
+}
+
 void RadianceLoader::run(const std::string& command, const RadiancePlace& place,
                          const RadianceSink& sink) {
   account(0, place);
@@ -126,7 +135,8 @@ void RadianceLoader::run_last(std::span<const Program> pipe, const RadiancePlace
       account(std::filesystem::file_size(path), place);
       return TextFile(keep(path));
     };
-    run_radiance_generator({program, place, remarks_, open}, sink);
+    const auto account = [&](std::int64_t facets) { account_facets(facets, place); };
+    run_radiance_generator({program, place, remarks_, open, account}, sink);
   } else if (makes_a_sky(name)) {
     skip_sky(program, place, sink);
   } else {

@@ -42,6 +42,7 @@ class RadianceLoader {
                  const RadianceSink& sink);
   void skip_sky(const Program& program, const RadiancePlace& place, const RadianceSink& sink);
   void account(std::uintmax_t bytes, const RadiancePlace& place);
+  void account_facets(std::int64_t facets, const RadiancePlace& place);
 
   std::filesystem::path folder_;
   Remarks& remarks_;
@@ -49,6 +50,7 @@ class RadianceLoader {
   std::vector<std::filesystem::path> open_;  // files that include the current one, and it
   int commands_ = 0;
   std::uintmax_t bytes_ = 0;
+  std::int64_t facets_ = 0;  // of generators, also those without area
 };
 
 }  // namespace lightwell

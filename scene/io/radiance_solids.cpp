@@ -249,6 +249,7 @@ void run_genblinds(const RadianceCall& call, const RadianceSink& sink) {
   constexpr double rounding = 1e-9;
   const int facets =
       bulge != 0.0 ? static_cast<int>(std::ceil(half * 120.0 / std::numbers::pi - rounding)) : 1;
+  call.account(static_cast<std::int64_t>(slats) * facets);
   const auto across = [&](int i) -> Eigen::Vector3d {
     const double turn = half * (2.0 * i / facets - 1.0);
     const double along =
