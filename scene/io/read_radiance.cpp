@@ -98,6 +98,7 @@ class RadianceReader {
         add_radiance_camera(views[i], name, {&loader_.keep(beside), views[i].line}, scene_,
                             remarks_);
       }
+      if (views.empty()) continue;
       remarks_.add("Views come from the file beside the scene", beside.filename().string());
     }
   }
@@ -169,7 +170,9 @@ class RadianceReader {
       return;  // a name like any other
     }
     const auto [zone, is_interior] = zone_of(project);
-    const Eigen::Vector3d size = zone.high - zone.low;
+    // A scene that is flat is looked at nevertheless.
+    const Eigen::Vector3d size =
+        (zone.high - zone.low).cwiseMax(0.01 * (zone.high - zone.low).norm());
     const double distance = is_interior ? 0.45 : 2.0;
     view.point = 0.5 * (zone.low + zone.high) + distance * side.cwiseProduct(size);
     view.direction = -side.cwiseProduct(size);

@@ -353,7 +353,7 @@ TEST_F(RadianceRunaway, GeneratorsAreRefused) {
   expect_refused_soon("!gensurf grey g s t 0 1e6 1e6", "makes more than 1000000 polygons");
   std::string flat;  // a million polygons without area on each line
   for (int i = 0; i < 1000; ++i) flat += "!gensurf grey g 0 0 0 1000 1000\n";
-  expect_refused_soon(flat, "generators make more than 10000000 facets");
+  expect_refused_soon(flat, "generators make more than 4000000 facets");
   expect_refused_soon("!genrev grey g t 1 1e9", "give from 1 to 1000000");
   expect_refused_soon("!genblinds grey b 1 1 1 1e9 0", "a whole number from 1 to 100000");
 }

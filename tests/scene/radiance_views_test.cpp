@@ -78,6 +78,7 @@ TEST_F(RadianceProjects, StandardViewsLookFromTheZonesSides) {
   expect_near(down.direction, {0, 0, -1});
   expect_near(down.up, {0, 1, 0});
   expect_near(camera("").direction, {-1, 0, 0});  // rad's own choice, and the scene's bounds
+  expect_near(camera("view= Z\nUP= Y\n").direction, {0, 0, -1});  // the scene is flat in z
 }
 
 TEST_F(RadianceProjects, OtherProjectionsAreLeftOutByName) {
