@@ -72,7 +72,8 @@ std::multimap<int, int> without_seams(const std::vector<std::pair<int, int>>& ed
   std::multimap<int, int> kept;
   for (const auto& [from, to] : edges) {
     const auto [first, last] = kept.equal_range(to);
-    const auto back = std::find_if(first, last, [&](const auto& e) { return e.second == from; });
+    const auto back =
+        std::find_if(first, last, [origin = from](const auto& e) { return e.second == origin; });
     if (back != last) {
       kept.erase(back);
     } else {
