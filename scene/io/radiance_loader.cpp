@@ -37,7 +37,7 @@ std::filesystem::path RadianceLoader::find(const std::string& name,
                                            const RadiancePlace& place) const {
   std::error_code error;
   for (const auto& folder : {place.file->parent_path(), folder_, folder_ / "lib"}) {
-    const auto path = (folder / name).lexically_normal();
+    auto path = (folder / name).lexically_normal();
     if (std::filesystem::exists(path, error)) return path;
   }
   place.fail(fmt::format(
