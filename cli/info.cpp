@@ -198,7 +198,8 @@ void print_for_people(const Json& facts) {
 Action add_info(CLI::App& command) {
   const auto file = std::make_shared<std::string>();
   command.description(
-      "What is in a scene (.toml, .obj, .ply, .stl, .gltf, .glb, .xml, .vs3), a solution (.vtp) or "
+      "What is in a scene (.toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3), a "
+      "solution (.vtp) or "
       "a picture (.exr).");
   command.add_option("file", *file, "the file")->required()->type_name("FILE");
   command.footer("Example: lightwell info cornell/cornell.toml");

@@ -41,7 +41,7 @@ constexpr const char* recipes =
   lightwell info room.toml                               what is in a scene, solution or picture
 
 'lightwell COMMAND --help' explains a command. A scene is a .toml file (docs/scene-format.md),
-.obj, .ply, .stl, .gltf, .glb, Mitsuba's .xml, or View3D's .vs3.
+.obj, .ply, .stl, .gltf, .glb, Mitsuba's .xml, RADIANCE's .rad and .rif, or View3D's .vs3.
 )";
 
 struct NamedCommand {

@@ -130,7 +130,7 @@ Action add_mesh(CLI::App& command) {
       "The patches and elements that 'solve' would use, and how well they are made.");
   command
       .add_option("scene", arguments->scene,
-                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .vs3")
+                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3")
       ->required()
       ->type_name("SCENE");
   auto* const output = command

@@ -54,7 +54,7 @@ Action add_run(CLI::App& command) {
       "Solves a scene and renders its cameras: solution.vtp, .exr and .png files, report.json.");
   command
       .add_option("scene", arguments->scene,
-                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .vs3")
+                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3")
       ->required()
       ->type_name("SCENE");
   command.add_option("-o,--output", arguments->output, "folder for the results (SCENE-output)")

@@ -36,7 +36,7 @@ Action add_solve(CLI::App& command) {
   command.description("Meshes a scene, solves for the light on all its surfaces, and saves it.");
   command
       .add_option("scene", arguments->scene,
-                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .vs3")
+                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3")
       ->required()
       ->type_name("SCENE");
   command.add_option("-o,--output", arguments->output, "the solution, .vtp (opens in ParaView)")

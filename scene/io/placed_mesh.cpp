@@ -70,6 +70,40 @@ std::vector<Loop> cylinder_loops() {
   return loops;
 }
 
+std::vector<Loop> cone_loops(double radius, double top_radius, double height) {
+  // n trapezia have the area n k (r + R) sin(pi/n) sqrt(h^2 + (k (R - r) cos(pi/n))^2) with radii
+  // made larger by k; that is to be pi (r + R) sqrt(h^2 + (R - r)^2), a quadratic equation in k^2.
+  const double half = std::numbers::pi / sides, hh = height * height;
+  const double dd = (top_radius - radius) * (top_radius - radius);
+  const double d = dd * std::cos(half) * std::cos(half);
+  const double c = half * half * (hh + dd) / (std::sin(half) * std::sin(half));
+  const double k = std::sqrt(2.0 * c / (hh + std::sqrt(hh * hh + 4.0 * d * c)));
+  std::vector<Loop> loops;
+  for (int i = 0; i < sides; ++i) {
+    const auto point = [&](int side, double r, double z) -> Eigen::Vector3d {
+      const Eigen::Vector2d p = on_circle(side, k * r);
+      return {p.x(), p.y(), z};
+    };
+    Loop loop = {point(i, radius, 0.0)};
+    if (radius > 0.0) loop.push_back(point(i + 1, radius, 0.0));
+    loop.push_back(point(i + 1, top_radius, height));
+    if (top_radius > 0.0) loop.push_back(point(i, top_radius, height));
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+Polygon ring_polygon(double inner, double outer) {
+  const auto scaled = [](double radius) {
+    Loop loop = disk_loops().front();
+    for (Eigen::Vector3d& p : loop) p *= radius;
+    return loop;
+  };
+  Polygon ring{.boundary = scaled(outer)};
+  if (inner > 0.0) ring.holes.push_back(scaled(inner));
+  return ring;
+}
+
 std::vector<Loop> sphere_loops() {
   std::vector<Loop> loops;
   double area = 0.0;

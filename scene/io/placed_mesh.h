@@ -19,6 +19,12 @@ std::vector<Loop> cube_loops();       ///< all coordinates from -1 to 1
 std::vector<Loop> disk_loops();
 /// Rectangles round the z axis from z = 0 to 1, with the area of the cylinder of radius 1; no caps.
 std::vector<Loop> cylinder_loops();
+/// Quadrilaterals (triangles where a radius is 0) round the z axis between circles at z = 0 and
+/// `height`, with the area of the cone that is cut off there; no caps. Radii >= 0, not both 0.
+std::vector<Loop> cone_loops(double radius, double top_radius, double height);
+/// A regular polygon about the origin, z = 0, with a hole of the same kind unless `inner` is 0, of
+/// the area of the ring between those radii.
+Polygon ring_polygon(double inner, double outer);
 /// Quadrilaterals and triangles between circles of latitude, of the area of the sphere of radius 1.
 std::vector<Loop> sphere_loops();
 

@@ -16,10 +16,17 @@ Scene read_scene(const std::filesystem::path& path) {
   if (extension == ".vs3") return read_vs3(path);
   if (extension == ".xml") return read_mitsuba(path);
   if (extension == ".gltf" || extension == ".glb") return read_gltf(path);
+  if (extension == ".rad" || extension == ".rif") return read_radiance(path);
+  if (extension == ".oct") {
+    throw InputError(
+        fmt::format("{}: an octree is compiled from RADIANCE's scene files; read those: a .rad, or "
+                    "a .rif that names several",
+                    path.string()));
+  }
   throw InputError(
       fmt::format("{}: the extension '{}' is of no known scene format; readable are "
                   ".toml (native), .obj, .ply and .stl, .gltf and .glb, Mitsuba's .xml, "
-                  "and View3D's .vs3",
+                  "RADIANCE's .rad and .rif, and View3D's .vs3",
                   path.string(), extension));
 }
 

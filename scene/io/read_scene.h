@@ -7,8 +7,8 @@
 namespace lightwell {
 
 /// Reads a scene; the format is told by the extension: .toml (native, docs/scene-format.md), .obj,
-/// .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb. The result has passed validate(). Throws
-/// InputError naming file, line or object, value and remedy.
+/// .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .rad and .rif (RADIANCE). The result has passed
+/// validate(). Throws InputError naming file, line or object, value and remedy.
 Scene read_scene(const std::filesystem::path& path);
 
 /// The native format. See docs/scene-format.md for the grammar.
@@ -36,5 +36,11 @@ Scene read_mitsuba(const std::filesystem::path& path);
 /// cameras. Metres, y upwards; emission in no known unit (Scene::relative_units). What else the
 /// file holds is named in the notes. See docs/scene-format.md.
 Scene read_gltf(const std::filesystem::path& path);
+
+/// RADIANCE: a scene file (.rad) or the variables for rad (.rif), which name scene files and views.
+/// Commands in them (xform, genbox ...) are evaluated here and never given to a shell. One metre
+/// per unit; radiance in W/(sr m^2) per band, 179 lm/W. What is approximated or left out is named
+/// in the notes. See docs/radiance-scenes.md.
+Scene read_radiance(const std::filesystem::path& path);
 
 }  // namespace lightwell

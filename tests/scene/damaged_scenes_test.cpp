@@ -76,6 +76,19 @@ TEST(DamagedScenes, OfMitsubaAreReadOrRefused) {
   expect_answers(where, "damaged.xml", content_of(folder / "mitsuba/cornell-box.xml"), 400);
 }
 
+TEST(DamagedScenes, OfRadianceAreReadOrRefused) {
+  const TemporaryFolder where;
+  // Materials, patterns, round shapes and generators in one file.
+  std::string scene;
+  for (const char* part : {"mug.norm", "cornerdesk.norm", "lights", "blinds"}) {
+    scene += content_of(folder / "radiance" / part);
+  }
+  expect_answers(where, "damaged.rad", scene, 400);
+  std::filesystem::copy(folder / "radiance", where.path(),
+                        std::filesystem::copy_options::recursive);
+  expect_answers(where, "damaged.rif", content_of(folder / "radiance/office.rif"), 400);
+}
+
 TEST(DamagedScenes, OfGltfAreReadOrRefused) {
   const TemporaryFolder where;
   std::filesystem::copy(folder / "gltf/17_ior.bin", where / "17_ior.bin");

@@ -1,0 +1,378 @@
+// What RADIANCE's primitives, materials, projects and views become.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "scene/errors.h"
+#include "scene/io/glossy.h"
+#include "scene/io/read_scene.h"
+#include "tests/scene/scene_questions.h"
+#include "tests/temporary_folder.h"
+
+namespace lightwell {
+namespace {
+
+using test::area_of;
+using test::has_note;
+using test::material_called;
+using test::mesh_of;
+using test::normal_of;
+
+constexpr double pi = std::numbers::pi;
+const std::string grey = "void plastic grey 0 0 5 .5 .5 .5 0 0\n";
+const std::string square = "polygon square 0 0 12 0 0 0 1 0 0 1 1 0 0 1 0\n";
+
+class Radiance : public testing::Test {
+ protected:
+  Scene read(const std::string& content, const std::string& name = "scene.rad") const {
+    return read_scene(folder.write(name, content));
+  }
+  // The surface of the material `grey` with that type and real arguments.
+  Scene shape(const std::string& type, const std::string& arguments) const {
+    return read(grey + "grey " + type + " thing 0 0 " + arguments);
+  }
+  // The material of a square, defined by the text under the name m.
+  Material material(const std::string& definitions) const {
+    const Scene scene = read(definitions + "\nm " + square);
+    return scene.materials.at(static_cast<std::size_t>(scene.surfaces.at(0).material));
+  }
+  std::string error(const std::string& content, const std::string& name = "scene.rad") const {
+    return message_of<InputError>([&] { read(content, name); });
+  }
+  TemporaryFolder folder;
+};
+
+void expect_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance = 1e-12) {
+  EXPECT_LT((a - b).norm(), tolerance) << a.transpose() << " is not " << b.transpose();
+}
+
+void expect_rgb(const Spectrum& spectrum, const std::array<double, 3>& rgb) {
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(spectrum[k], rgb[static_cast<std::size_t>(k)], 1e-6) << "band " << k;
+  }
+}
+
+// Share of the facets whose front looks away from the z axis.
+double outward_share(const PolygonMesh& mesh) {
+  int outward = 0;
+  for (const Facet& facet : mesh.facets) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const int v : facet.boundary) middle += mesh.vertices[static_cast<std::size_t>(v)];
+    middle.z() = 0.0;
+    if (facet_normal(mesh, facet).dot(middle) > 0.0) ++outward;
+  }
+  return static_cast<double>(outward) / static_cast<double>(mesh.facets.size());
+}
+
+TEST_F(Radiance, WordsMayStandOnAnyLinesWithCommentsAndQuotes) {
+  const Scene scene = read(
+      "# a comment\r\nvoid plastic \"two words\"# is part of no word\n0 0\n5 .5\t.5 5e-1 0\n+0\n"
+      "# another\n\"two words\" polygon 'the floor' # here too\n0\n0\n12 0 0 0  1 0 0\n1 1. 0 0 1 "
+      "0");
+  EXPECT_EQ(scene.surfaces.at(0).name, "the floor");
+  EXPECT_NEAR(area_of(mesh_of(scene)), 1.0, 1e-12);
+  EXPECT_FALSE(scene.relative_units);
+}
+
+TEST_F(Radiance, PolygonsFaceWhereTheirCornersRunCounterClockwise) {
+  const Scene scene = read(grey + "grey " + square);
+  expect_near(normal_of(scene), {0, 0, 1});
+  EXPECT_FALSE(scene.materials.at(0).one_sided);
+}
+
+TEST_F(Radiance, ASeamBecomesAHole) {
+  // The hole's last side lies on the seam, as in the front wall of the office.
+  const Scene scene = read(grey +
+                           "grey polygon wall 0 0 30  0 0 0  4 0 0  4 3 0  0 3 0  0 1 0 "
+                           " 1 1 0  1 2 0  3 2 0  3 1 0  0 1 0");
+  const Facet& wall = mesh_of(scene).facets.at(0);
+  EXPECT_EQ(mesh_of(scene).facets.size(), 1u);
+  ASSERT_EQ(wall.holes.size(), 1u);
+  EXPECT_EQ(wall.holes[0].size(), 4u);
+  EXPECT_NEAR(area_of(mesh_of(scene)), 12.0 - 2.0, 1e-12);
+  EXPECT_TRUE(scene.dropped_polygons == 0 && !has_note(scene, "split"));
+}
+
+TEST_F(Radiance, TwoHolesOnOneSeamAreTwoHoles) {
+  const Scene scene = read(grey +
+                           "grey polygon wall 0 0 48  0 0 0  9 0 0  9 4 0  0 4 0  0 0 0"
+                           " 1 1 0  1 2 0  2 2 0  2 1 0  5 1 0  5 2 0  6 2 0  6 1 0  5 1 0  2 1 0 "
+                           " 1 1 0");
+  ASSERT_EQ(mesh_of(scene).facets.size(), 1u);
+  EXPECT_EQ(mesh_of(scene).facets[0].holes.size(), 2u);
+  EXPECT_NEAR(area_of(mesh_of(scene)), 36.0 - 2.0, 1e-12);
+}
+
+TEST_F(Radiance, PolygonsNumberedOfOneMaterialAreOneSurface) {
+  const std::string p = " 0 0 9 0 0 0 1 0 0 0 1 0\n";
+  const Scene scene = read(grey + "void plastic red 0 0 5 .5 0 0 0 0\n" + "grey polygon box.1" + p +
+                           "grey polygon box.23" + p + "red polygon box.3" + p +
+                           "red polygon wall.left" + p + "red polygon wall.right" + p);
+  ASSERT_EQ(scene.surfaces.size(), 4u);
+  EXPECT_EQ(scene.surfaces[0].name, "box");
+  EXPECT_EQ(mesh_of(scene, 0).facets.size(), 2u);
+  EXPECT_EQ(scene.surfaces[1].name, "box 2");
+  EXPECT_EQ(scene.surfaces[2].name, "wall.left");
+}
+
+TEST_F(Radiance, SpheresAreExact) {
+  const Scene scene = shape("sphere", "4 1 2 3 .5");
+  const auto& sphere = std::get<Sphere>(scene.surfaces.at(0).shape);
+  expect_near(sphere.center, {1, 2, 3});
+  EXPECT_EQ(sphere.radius, 0.5);
+  // Both sides of plastic are alike.
+  EXPECT_TRUE(std::holds_alternative<Sphere>(shape("bubble", "4 0 0 0 1").surfaces[0].shape));
+}
+
+TEST_F(Radiance, BubblesShineInwards) {
+  const std::string lamp = "void light lamp 0 0 3 1 1 1\n";
+  const Scene scene = read(lamp + "lamp bubble b 0 0 4 0 0 0 2\nlamp sphere s 0 0 4 9 9 9 -1\n");
+  for (const std::size_t i : {0u, 1u}) {
+    const double radius = i == 0 ? 2.0 : 1.0;
+    EXPECT_NEAR(area_of(mesh_of(scene, i)), 4 * pi * radius * radius, 1e-9);
+  }
+  EXPECT_EQ(outward_share(mesh_of(scene, 0)), 0.0);
+}
+
+TEST_F(Radiance, CylindersAndTubesHaveTheirAreaAndFront) {
+  const Scene cylinder = shape("cylinder", "7 0 0 1 0 0 4 .5");
+  EXPECT_NEAR(area_of(mesh_of(cylinder)), 2 * pi * 0.5 * 3, 1e-12);
+  EXPECT_EQ(outward_share(mesh_of(cylinder)), 1.0);
+  EXPECT_EQ(outward_share(mesh_of(shape("cylinder", "7 0 0 4 0 0 1 .5"))), 1.0);
+  EXPECT_EQ(outward_share(mesh_of(shape("tube", "7 0 0 1 0 0 4 .5"))), 0.0);
+  EXPECT_EQ(outward_share(mesh_of(shape("cylinder", "7 0 0 1 0 0 4 -.5"))), 0.0);
+}
+
+TEST_F(Radiance, ConesAndCupsHaveTheirAreaAndFront) {
+  const Scene cone = shape("cone", "8 0 0 0 0 0 4 3 0");
+  EXPECT_NEAR(area_of(mesh_of(cone)), pi * 3 * 5, 1e-12);  // pi r s, slant 5
+  EXPECT_EQ(outward_share(mesh_of(cone)), 1.0);
+  for (const Facet& facet : mesh_of(cone).facets) EXPECT_EQ(facet.boundary.size(), 3u);
+  const Scene cup = shape("cup", "8 0 0 0 0 0 4 1 4");
+  EXPECT_NEAR(area_of(mesh_of(cup)), pi * (1 + 4) * 5, 1e-12);
+  EXPECT_EQ(outward_share(mesh_of(cup)), 0.0);
+  // As flat as a ring and as steep as a cylinder.
+  EXPECT_NEAR(area_of(mesh_of(shape("cone", "8 0 0 0 0 0 1e-5 1 2"))), pi * 3, 1e-6);
+  EXPECT_NEAR(area_of(mesh_of(shape("cone", "8 0 0 0 0 0 1 2 2"))), 2 * pi * 2, 1e-12);
+}
+
+TEST_F(Radiance, RingsHaveTheirAreaTheirHoleAndTheirNormal) {
+  for (const char* radii : {"1 2", "2 1"}) {
+    const Scene scene = shape("ring", std::string("8 5 6 7 0 -3 0 ") + radii);
+    EXPECT_NEAR(area_of(mesh_of(scene)), pi * (4 - 1), 1e-12);
+    EXPECT_EQ(mesh_of(scene).facets.at(0).holes.size(), 1u);
+    expect_near(normal_of(scene), {0, -1, 0});
+  }
+  EXPECT_NEAR(area_of(mesh_of(shape("ring", "8 0 0 0 1 1 1 0 1"))), pi, 1e-12);
+}
+
+TEST_F(Radiance, PlasticShinesWhiteAndMetalInItsColour) {
+  const Material plastic = material("void plastic m 0 0 5 .6 .4 .2 .1 0");
+  expect_rgb(plastic.reflectance, {0.54, 0.36, 0.18});
+  expect_rgb(plastic.specular, {0.1, 0.1, 0.1});
+  const Material metal = material("void metal m 0 0 5 .6 .4 .2 .9 0");
+  expect_rgb(metal.reflectance, {0.06, 0.04, 0.02});
+  expect_rgb(metal.specular, {0.54, 0.36, 0.18});
+}
+
+TEST_F(Radiance, WideHighlightsAreDiffuseLight) {
+  const Material rough = material("void metal2 m 4 1 0 0 . 0 6 .6 .4 .2 .9 .1 .3");
+  expect_rgb(rough.reflectance, {0.6, 0.4, 0.2});
+  expect_rgb(rough.specular, {0, 0, 0});
+}
+
+TEST_F(Radiance, LightIsPiTimesItsRadianceFromTheFrontAt179LumensPerWatt) {
+  const Scene scene = read("void light m 0 0 3 1 2 3\nm " + square);
+  const Material& light = scene.materials.at(0);
+  expect_rgb(light.emission / static_cast<float>(pi), {1, 2, 3});
+  EXPECT_TRUE(light.one_sided && !light.emits_both_sides);
+  expect_rgb(light.reflectance, {0, 0, 0});
+  // RADIANCE's own weights are 0.265, 0.670, 0.065 of its primaries; white (1, 1, 1) is the same.
+  EXPECT_NEAR(luminous(scene.bands, Spectrum::Ones(3)), 179.0, 179e-6);
+}
+
+TEST_F(Radiance, AGlowHasFourNumbersAndASpotThePowerOfItsBeam) {
+  expect_rgb(material("void glow m 0 0 4 1 1 1 0").emission / static_cast<float>(pi), {1, 1, 1});
+  // Half angle 30 degrees: sin^2 = 1/4.
+  expect_rgb(material("void spotlight m 0 0 7 8 8 8 60 0 0 1").emission / static_cast<float>(pi),
+             {2, 2, 2});
+}
+
+TEST_F(Radiance, GlassPassesWhatItsTwoFacesAndItsBodyLeave) {
+  // F = ((n - 1) / (n + 1))^2; with t = 1 a pane passes (1 - F) / (1 + F).
+  EXPECT_NEAR(material("void glass m 0 0 3 1 1 1").dielectric->tint[0], pane_transmittance(1.52),
+              1e-6);
+  const double F = 0.04, t = 0.5;  // n = 1.5
+  const Material tinted = material("void glass m 0 0 4 1 1 .5 1.5");
+  EXPECT_NEAR(tinted.dielectric->tint[2], (1 - F) * (1 - F) * t / (1 - F * F * t * t), 1e-6);
+  EXPECT_EQ(tinted.dielectric->index_of_refraction, 1.0f);
+}
+
+TEST_F(Radiance, DielectricsAndInterfacesRefract) {
+  EXPECT_FLOAT_EQ(material("void dielectric m 0 0 5 1 1 1 1.33 0").dielectric->index_of_refraction,
+                  1.33f);
+  EXPECT_FLOAT_EQ(
+      material("void interface m 0 0 8 1 1 1 1.5 1 1 1 1.2").dielectric->index_of_refraction,
+      1.25f);
+}
+
+TEST_F(Radiance, MirrorsAreBlackBehind) {
+  const Material mirror = material("void mirror m 0 0 3 .9 .9 .8");
+  expect_rgb(mirror.specular, {0.9, 0.9, 0.8});
+  EXPECT_TRUE(mirror.one_sided);
+}
+
+TEST_F(Radiance, TransIsAPaneWhereItIsClearAndElseItsReflection) {
+  const Material clear = material("void trans m 0 0 7 .9 .9 .9 0 0 .9 .9");
+  EXPECT_NEAR(clear.dielectric->tint[1], 0.9 * 0.9 * 0.9, 1e-6);
+  const Material paper = material("void trans m 0 0 7 .8 .8 .8 0 0 .5 0");
+  expect_rgb(paper.reflectance, {0.4, 0.4, 0.4});
+}
+
+TEST_F(Radiance, ConstantPatternsMultiply) {
+  const Material m = material(
+      "void colorfunc tint 4 1 A1 A1/2 . 0 1 .5\ntint brightfunc dim 2 .5 . 0 0\n"
+      "dim texfunc bumps 4 x y z f.cal 0 0\nbumps plastic m 0 0 5 .8 .8 .8 0 0");
+  expect_rgb(m.reflectance, {0.4, 0.2, 0.1});
+}
+
+TEST_F(Radiance, PatternsThatVaryAreNamed) {
+  const Scene scene = read(
+      "void brightfunc grain 2 xgrain wood.cal 0 0\ngrain plastic wood 0 0 5 .6 .4 .2 0 0\nwood " +
+      square);
+  expect_rgb(scene.materials[0].reflectance, {0.6, 0.4, 0.2});
+  EXPECT_TRUE(has_note(scene, "taken as 1: 'grain'"));
+  const Material picture = material(
+      "void colorpict p 7 red green blue a.hdr p.cal pic_u pic_v 0 0\np plastic m 0 0 5 1 1 1 0 0");
+  expect_rgb(picture.reflectance, {0.5, 0.5, 0.5});
+}
+
+TEST_F(Radiance, ANameMeansWhatWasDefinedLast) {
+  const Scene scene = read("void plastic m 0 0 5 .1 .1 .1 0 0\nm " + square +
+                           "void plastic m 0 0 5 .2 .2 .2 0 0\nm polygon other 0 0 9 0 0 0 1 0 0 "
+                           "0 1 0\n");
+  EXPECT_FLOAT_EQ(material_called(scene, "m").reflectance[0], 0.1f);
+  EXPECT_FLOAT_EQ(material_called(scene, "m 2").reflectance[0], 0.2f);
+  EXPECT_EQ(scene.surfaces.at(1).material, 1);
+}
+
+TEST_F(Radiance, AnAliasTakesOrInheritsModifiers) {
+  const std::string half = "void brightfunc half 2 .5 . 0 0\n";
+  EXPECT_FLOAT_EQ(
+      material(half + "half plastic a 0 0 5 .8 .8 .8 0 0\ninherit alias m a").reflectance[0], 0.4f);
+  EXPECT_FLOAT_EQ(
+      material(half + "void plastic a 0 0 5 .8 .8 .8 0 0\nhalf alias m a").reflectance[0], 0.4f);
+  EXPECT_FLOAT_EQ(
+      material(half + "half plastic a 0 0 5 .8 .8 .8 0 0\nvoid alias m a").reflectance[0], 0.8f);
+}
+
+TEST_F(Radiance, AMixtureIsAMean) {
+  const std::string parts =
+      "void plastic white 0 0 5 .8 .8 .8 0 0\nvoid plastic black 0 0 5 0 0 0 0 0\n";
+  EXPECT_FLOAT_EQ(material(parts + "void mixfunc m 4 white black .25 . 0 0").reflectance[0], 0.2f);
+  EXPECT_FLOAT_EQ(material(parts + "void mixpict m 4 white black a b 0 0").reflectance[0], 0.4f);
+}
+
+TEST_F(Radiance, AnIllumShinesUnlessItsPatternIsUnknown) {
+  EXPECT_TRUE(material("void illum m 1 void 0 3 1 1 1").is_emitter());
+  const Scene scene =
+      read("!gensky 7 12 17\nvoid glass pane 0 0 3 1 1 1\nskyfunc illum m 1 pane 0 3 1 1 1\nm " +
+           square);
+  EXPECT_TRUE(scene.materials.at(0).dielectric.has_value());
+  EXPECT_TRUE(has_note(scene, "Skies give no light here"));
+}
+
+TEST_F(Radiance, WhatCannotBeSeenIsLeftOutByName) {
+  const Scene scene =
+      read(grey + "grey " + square + "void polygon ghost 0 0 9 0 0 1 1 0 1 0 1 1\n" +
+           "grey source sun 0 0 4 0 0 1 .5\nvoid mist fog 0 0 0\nfog sphere cloud "
+           "0 0 4 0 0 0 9\n");
+  EXPECT_EQ(scene.surfaces.size(), 1u);
+  for (const char* name : {"'ghost'", "'sun'", "'cloud'"}) EXPECT_TRUE(has_note(scene, name));
+}
+
+TEST_F(Radiance, MixturesOfMixturesAreReadOnce) {
+  std::ostringstream text;
+  text << "void plastic m0 0 0 5 .8 .8 .8 0 0\n";
+  for (int i = 1; i <= 40; ++i) {  // 2^40 readings otherwise
+    text << "void mixfunc m" << i << " 4 m" << i - 1 << " m" << i - 1 << " .5 . 0 0\n";
+  }
+  const Scene scene = read(text.str() + "m40 " + square);
+  EXPECT_FLOAT_EQ(scene.materials.at(0).reflectance[0], 0.8f);
+}
+
+TEST_F(Radiance, WrongPrimitivesAreNamedWithFileAndLine) {
+  const auto wrong = [&](const std::string& text, const std::string& says_this) {
+    EXPECT_TRUE(says(error(grey + text), says_this));
+  };
+  wrong("grey " + square + "\ngrey polygone p 0 0 9\n", "scene.rad:4: 'grey polygone p'");
+  wrong("grey polygon p 0 0 12 1 2 three\n", "scene.rad:2: polygon 'p' has 'three' (line 2)");
+  wrong("grey polygon p 0 0 12 1 2 3\n", "ends with the file, before its 12 real arguments");
+  wrong("grey polygon p 0 0 6 1 2 3 4 5 6\n", "three corners");
+  wrong("grey polygon p -1 0 6\n", "has '-1' (line 2) where the number of its string arguments");
+  wrong("grey polygon p 0 2 1 1 0\n", "has integer arguments");
+  wrong("grey polygon 'p 0 0 9\n", "a quoted word does not end");
+  wrong("brown " + square, "modifier 'brown', which nothing before it defines");
+  wrong("inherit " + square, "modifier 'inherit'");
+  wrong("void alias a b\n", "modifier 'b'");
+  wrong("grey sphere s 0 0 3 1 2 3\n", "sphere 's' has 3 real arguments; it needs 4");
+  wrong("grey sphere s 0 0 4 1 2 3 1e300\n", "nothing may lie beyond");
+  wrong("grey sphere s 0 0 4 1 2 3 nan\n", "has 'nan'");
+  wrong("grey cone c 0 0 8 0 0 0 0 0 1 1 -1\n", "radii of different signs");
+  wrong("grey ring r 0 0 8 0 0 0 0 0 0 0 1\n", "has no normal");
+  wrong("void instance i 1 room.oct 0 0\n", "put '!xform FILE'");
+  wrong("void mesh i 1 room.rtm 0 0\n", "obj2rad");
+  wrong("void plastic m 0 0 5 -.5 0 0 0 0\nm " + square, "colour component -0.5");
+  wrong("void plastic m 0 0 5 .5 0 0 2 0\nm " + square, "specularity 2; it must lie in 0 to 1");
+  wrong("void plastic m 0 0 3 .5 0 0\nm " + square, "has 3 real arguments; it needs 5");
+  wrong("void dielectric m 0 0 5 1 1 1 0 0\nm " + square, "index of refraction 0");
+  EXPECT_TRUE(says(error(""), "has no surfaces that can be read"));
+  EXPECT_TRUE(says(error("", "room.oct"), "compiled from RADIANCE's scene files"));
+}
+
+TEST_F(Radiance, APolygonOfEndlessCornersIsRefusedSoon) {
+  std::string numbers;
+  for (int i = 0; i < 30'000; ++i) numbers += std::to_string(i % 7) + " ";
+  EXPECT_TRUE(says(error(grey + "grey polygon p 0 0 30000 " + numbers), "10000 corners"));
+  EXPECT_TRUE(says(error(grey + "grey polygon p 0 0 999999999 1 2 3"), "ends with the file"));
+}
+
+TEST(RadianceOffice, IsReadWhole) {
+  const Scene scene = read_scene(LIGHTWELL_TEST_DATA "/scene/radiance/office.rif");
+  EXPECT_EQ(scene.dropped_polygons, 0);
+  EXPECT_FALSE(has_note(scene, "split"));
+  const auto named = [&](const std::string& name) -> const Surface& {
+    for (const Surface& surface : scene.surfaces) {
+      if (surface.name == name) return surface;
+    }
+    throw std::runtime_error("no surface " + name);
+  };
+  // The room is 60 x 35.5 x 60; its front wall has a window of 47 x 17.
+  EXPECT_NEAR(surface_area(named("wall.front")), 60 * 35.5 - 47 * 17, 1e-9);
+  EXPECT_NEAR(surface_area(named("light1")), 100.0, 1e-9);
+  expect_near(facet_normal(std::get<PolygonMesh>(named("light1").shape),
+                           std::get<PolygonMesh>(named("light1").shape).facets[0]),
+              {0, -1, 0});
+  EXPECT_NEAR(surface_area(named("blind")), 24 * 48, 1e-9);  // slats of 1 x 48
+  EXPECT_NEAR(surface_area(named("mug.outside")), 2 * pi * 1.625 * 3.5 * 0.3333 * 0.3333, 1e-9);
+  for (const char* name : {"left_bookcase.base", "chair1.platform", "chair2.seat", "lamp.lightbulb",
+                           "book.page1", "right_bookcase.side.kj", "painting"}) {
+    EXPECT_NO_THROW(named(name)) << name;
+  }
+  const Bounds bounds = scene_bounds(scene);
+  expect_near(bounds.low, {-30, 15.5, -30}, 1e-3);
+  expect_near(bounds.high, {30, 51, 30}, 1e-3);
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  EXPECT_EQ(scene.cameras[0].name, "norm");
+  EXPECT_DOUBLE_EQ(scene.cameras[0].fov_degrees, 39.9);
+  // Square pixels: 512 tan(27.5 / 2) / tan(39.9 / 2).
+  EXPECT_EQ(scene.cameras[0].height, 345);
+  EXPECT_GT(scene.cameras[0].up.y(), 0.9);
+}
+
+}  // namespace
+}  // namespace lightwell
