@@ -12,6 +12,8 @@
 
 namespace lightwell {
 
+class Journal;
+
 /// Where irradiance is asked for.
 struct GatherPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< metres
@@ -29,6 +31,7 @@ struct GatherOptions {
   ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
   std::uint64_t replica = 0;  ///< another number gives an independent estimate
   Progress progress{};
+  Journal* journal = nullptr;  ///< what was gathered is kept there and taken from there
 };
 
 /// points x bands, W/m^2.
@@ -68,7 +71,8 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 /// they end (after Heckbert 1990), and vertices take the mean of the elements around. Empty if the
 /// scene has no mirrors or glass.
 BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
-                             const DirectLight& direct_light, int rays, int max_specular_depth);
+                             const DirectLight& direct_light, int rays, int max_specular_depth,
+                             const Progress& progress = {}, Journal* journal = nullptr);
 
 /// For every vertex, a point a hair inside one of its elements, so that it lies on no edge, and
 /// that element's facet and normal.
