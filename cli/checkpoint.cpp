@@ -35,7 +35,10 @@ std::string quoted(const std::string& word) {
 
 bool is_same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
-  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+  const auto whole = [&](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(path), error).lexically_normal();
+  };
+  return whole(a) == whole(b);
 }
 
 }  // namespace

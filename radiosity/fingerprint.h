@@ -14,8 +14,8 @@ namespace lightwell {
 struct PatchMesh;
 
 /// A number of 64 bits that all that is added decides, in its order: equal for equal input, and for
-/// other input as good as never. Steps of FNV-1a (Fowler, Noll & Vo), each over 8 bytes and with
-/// its upper half folded into the lower. Against accidents, not against forgery.
+/// other input as good as never. The steps are those by which XXH64 takes in 8 bytes (Collet 2012).
+/// Against accidents, not against forgery.
 class Fingerprint {
  public:
   void add_bytes(std::span<const std::byte> bytes);
@@ -40,12 +40,14 @@ class Fingerprint {
   std::uint64_t value() const { return state_; }
 
  private:
+  // One to one in the word and in the state: one changed word is always found out.
   void step(std::uint64_t word) {
-    state_ = (state_ ^ word) * 0x100000001b3u;
-    state_ ^= state_ >> 32U;
+    constexpr std::uint64_t p1 = 0x9e3779b185ebca87u, p2 = 0xc2b2ae3d27d4eb4fu,
+                            p4 = 0x85ebca77c2b2ae63u;
+    state_ = std::rotl(state_ ^ (std::rotl(word * p2, 31) * p1), 27) * p1 + p4;
   }
 
-  std::uint64_t state_ = 0xcbf29ce484222325u;
+  std::uint64_t state_ = 0x27d4eb2f165667c5u;
 };
 
 }  // namespace lightwell

@@ -239,8 +239,6 @@ struct Journal::Impl {
     failure = reason(error);
     buffer.clear();
     states.clear();
-    // What was half written goes; if it does not, it is torn and found out.
-    [[maybe_unused]] const int ignored = ::ftruncate(file.number(), end);
   }
 
   void close() {
@@ -250,6 +248,7 @@ struct Journal::Impl {
     }
     work.notify_one();
     if (writer.joinable()) writer.join();
+    file.close();
   }
 
   const fs::path name;

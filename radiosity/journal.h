@@ -64,7 +64,8 @@ class Journal {
   /// Why nothing is kept any more; empty while all is well.
   std::string failure() const;
 
-  /// Writes what is left and waits until it is safe. Nothing is kept afterwards.
+  /// Writes what is left, waits until it is safe, and lets go of the file: nothing is kept or
+  /// recalled afterwards.
   void close();
   /// Closes and deletes the file.
   void remove();

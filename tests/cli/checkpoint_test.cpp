@@ -63,7 +63,7 @@ void expect_same_solution(const std::filesystem::path& a, const std::filesystem:
 }
 
 TEST_F(CheckpointTest, AnInterruptSaysHowToGoOnAndThatWorks) {
-  ASSERT_EQ(run({"solve", "room.toml", "-o", "reference.vtp", "--quiet"} + work()).code, 0);
+  ASSERT_EQ(run(Words{"solve", "room.toml", "-o", "reference.vtp", "--quiet"} + work()).code, 0);
   for (const int signal : {SIGINT, SIGTERM}) {
     const Ended ended = stopped(solve + work() + kept, signal);
     EXPECT_EQ(ended.code, 130) << ended.err;
@@ -159,7 +159,7 @@ TEST_F(CheckpointTest, RefusesWithTheReason) {
   folder.write("C", damaged);
   refused(solve + quick(), "is damaged: what is at byte");
   std::string edited = whole;
-  edited.replace(whole.find("version: ") + 9, 1, "9");
+  edited[whole.find("version: ") + 9] = '9';
   folder.write("C", edited);
   refused(solve + quick(), "is damaged: its first lines");
   folder.write("C", small_room());
@@ -217,7 +217,7 @@ TEST_F(CheckpointTest, RunGoesOnWithItsPictures) {
 
 // As on a full disk, for the child alone: nothing may be longer than this.
 TEST_F(CheckpointTest, AFullDiskStopsTheCheckpointAndNotTheSolve) {
-  ASSERT_EQ(run({"solve", "room.toml", "-o", "reference.vtp", "--quiet"} + work()).code, 0);
+  ASSERT_EQ(run(Words{"solve", "room.toml", "-o", "reference.vtp", "--quiet"} + work()).code, 0);
   const auto needed = std::filesystem::file_size(folder / "reference.vtp");
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);
