@@ -3,6 +3,7 @@
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/progress.h"
 #include "scene/scene.h"
@@ -15,6 +16,7 @@ struct CommonOptions {
   bool json = false;     ///< standard output is one JSON object
   bool verbose = false;  ///< also say which options are in force
   int threads = 0;       ///< 0: one per core
+  std::vector<std::string> command_line{};  ///< all words as they were typed
 };
 
 /// Seconds since it was made, or since the last lap.

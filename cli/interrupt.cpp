@@ -2,8 +2,6 @@
 
 #include <csignal>
 
-#include "scene/errors.h"
-
 namespace lightwell {
 namespace {
 

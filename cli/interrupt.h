@@ -1,5 +1,10 @@
 #pragma once
 
+#include <string>
+#include <utility>
+
+#include "scene/errors.h"
+
 namespace lightwell {
 
 /// From now on SIGINT and SIGTERM raise a flag instead of ending the program; a second one ends it.
@@ -8,6 +13,16 @@ void catch_interrupts();
 
 /// Whether one of them has arrived.
 bool interrupt_requested();
+
+/// An Interrupted with a sentence for people, that takes the place of the usual one.
+class InterruptedWith : public Interrupted {
+ public:
+  explicit InterruptedWith(std::string sentence) : sentence_(std::move(sentence)) {}
+  const char* what() const noexcept override { return sentence_.c_str(); }
+
+ private:
+  std::string sentence_;
+};
 
 /// Throws Interrupted if one has: for moments between two pieces of work.
 void stop_if_interrupted();

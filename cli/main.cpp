@@ -139,6 +139,10 @@ int act(const Action& action, const CommonOptions& options) {
   } catch (const InputError& error) {
     console.finish_phase();
     return fail(exit_bad_input, error.what());
+  } catch (const InterruptedWith& interrupted) {
+    console.finish_phase();
+    fmt::print(stderr, "{}\n", interrupted.what());
+    return exit_interrupted;
   } catch (const Interrupted&) {
     console.finish_phase();
     fmt::print(stderr, "interrupted; nothing is left half-written\n");
@@ -155,6 +159,7 @@ int act(const Action& action, const CommonOptions& options) {
 
 int run_program(int argc, char** argv) {
   CommonOptions options;
+  options.command_line.assign(argv, argv + argc);
   CLI::App app("Radiosity with a ray-traced second pass.", "lightwell");
   add_common(app, options);
   app.require_subcommand(0, 1);

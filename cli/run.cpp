@@ -1,7 +1,11 @@
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "cli/arguments.h"
+#include "cli/checkpoint.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
@@ -13,11 +17,27 @@ namespace {
 struct Arguments {
   std::string scene, output;
   SolveArguments solve;
+  CheckpointArguments checkpoint;
   RenderArguments render;
 };
 
 fs::path default_folder(const fs::path& scene) {
   return scene.stem().string() + "-output";  // in the working folder
+}
+
+// What `output` holds already, if it was asked to go on with that; else solved and written now.
+SolvedScene solved_scene(const Scene& scene, const Arguments& arguments, const fs::path& output,
+                         Console& console, Report& report) {
+  const Provenance of = provenance(scene, arguments.solve);
+  if (auto done = finished_solution(arguments.checkpoint, of, output, console)) {
+    report.add_solution(*done, false);
+    return std::move(*done);
+  }
+  Checkpoint checkpoint(arguments.checkpoint, of, output, console);
+  SolvedScene solved = solve_step(scene, arguments.solve, output, checkpoint, console, report);
+  write_solution_step(output, solved, console, report);
+  checkpoint.finish(report);
+  return solved;
 }
 
 int run(const Arguments& arguments, Console& console) {
@@ -35,10 +55,16 @@ int run(const Arguments& arguments, Console& console) {
   require_writable(solution_file);
   require_writable(report_file);
 
-  const SolvedScene solved = solve_step(scene, arguments.solve, solution_file, console, report);
-  write_solution_step(solution_file, solved, console, report);
-  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-    render_step(scene, solved, scene.cameras[i], arguments.render, pictures[i], console, report);
+  const SolvedScene solved = solved_scene(scene, arguments, solution_file, console, report);
+  try {
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+      render_step(scene, solved, scene.cameras[i], arguments.render, pictures[i], console, report);
+    }
+  } catch (const Interrupted&) {
+    if (arguments.checkpoint.file.empty()) throw;
+    throw InterruptedWith(
+        fmt::format("interrupted; the light is solved, in '{}'. To go on with the pictures:\n  {}",
+                    solution_file.string(), command_to_resume(console.options())));
   }
   report.add_file(report_file);
   report.write(report_file);
@@ -60,6 +86,7 @@ Action add_run(CLI::App& command) {
   command.add_option("-o,--output", arguments->output, "folder for the results (SCENE-output)")
       ->type_name("DIR");
   arguments->solve.add_to(command);
+  arguments->checkpoint.add_to(command);
   arguments->render.add_to(command);
   command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");
   return [arguments](Console& console) { return run(*arguments, console); };

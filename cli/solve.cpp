@@ -17,14 +17,24 @@ namespace {
 struct Arguments {
   std::string scene, output;
   SolveArguments solve;
+  CheckpointArguments checkpoint;
 };
 
 int solve(const Arguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   require_writable(arguments.output);
-  const SolvedScene solved = solve_step(scene, arguments.solve, arguments.output, console, report);
+  const Provenance of = provenance(scene, arguments.solve);
+  if (const auto done = finished_solution(arguments.checkpoint, of, arguments.output, console)) {
+    report.add_solution(*done, false);
+    report.print();
+    return exit_code(done->solution);
+  }
+  Checkpoint checkpoint(arguments.checkpoint, of, arguments.output, console);
+  const SolvedScene solved =
+      solve_step(scene, arguments.solve, arguments.output, checkpoint, console, report);
   write_solution_step(arguments.output, solved, console, report);
+  checkpoint.finish(report);
   report.print();
   return exit_code(solved.solution);
 }
@@ -48,6 +58,7 @@ Action add_solve(CLI::App& command) {
       .add_option("--start-from", arguments->solve.start_from,
                   "a solution of the same geometry whose light the solver starts from")
       ->type_name("SOLUTION");
+  arguments->checkpoint.add_to(command);
   command.footer(
       "Example: lightwell solve cornell/cornell.toml -o cornell.vtp --max-patch-size 25");
   return [arguments](Console& console) { return solve(*arguments, console); };

@@ -54,10 +54,18 @@ void note_mesh(const Scene& scene, const PatchMesh& mesh, Console& console, Repo
   for (const std::string& note : mesh.notes) console.say("note: " + note);
 }
 
+Provenance provenance(const Scene& scene, const SolveArguments& arguments) {
+  return {.version = LIGHTWELL_VERSION,
+          .scene_file = scene.file.string(),
+          .scene_hash = scene_hash(scene),
+          .options = arguments.text(scene)};
+}
+
 SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, const fs::path& output,
-                       Console& console, Report& report) {
+                       Checkpoint& checkpoint, Console& console, Report& report) {
   SolveOptions options = arguments.options(scene);
-  options.progress = console.progress();
+  options.progress = checkpoint.watched(console.progress());
+  options.journal = checkpoint.journal();
   options.form_factors.memory = std::make_shared<MemoryBudget>(
       MemoryOptions{.limit = arguments.memory, .folder = output.parent_path()});
   std::optional<SolvedScene> start;
@@ -67,7 +75,13 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   }
   console.say_verbose("solving with " + arguments.text(scene));
   SolveReport solve_report;
-  SolvedScene solved = solve_scene(scene, options, &solve_report);
+  SolvedScene solved;
+  try {
+    solved = solve_scene(scene, options, &solve_report);
+    stop_if_interrupted();
+  } catch (const std::exception&) {
+    checkpoint.rethrow_stopped();
+  }
   console.finish_phase();
   note_mesh(scene, solved.mesh, console, report);
   solved.solution.provenance.version = LIGHTWELL_VERSION;
@@ -86,7 +100,6 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
                     solved.solution.solver, solved.solution.history.size(),
                     solved.solution.residual, options.solver.tolerance));
   }
-  stop_if_interrupted();
   return solved;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/arguments.h"
+#include "cli/checkpoint.h"
 #include "cli/console.h"
 #include "cli/report.h"
 #include "radiosity/solve.h"
@@ -24,9 +25,14 @@ Scene read_scene_step(const std::filesystem::path& file, Console& console, Repor
 /// Notes on the mesh go to the console, those on the scene and the mesh into the report.
 void note_mesh(const Scene& scene, const PatchMesh& mesh, Console& console, Report& report);
 
-/// Form factors that do not fit into memory go beside `output`.
+/// What a solution of the scene with these options, by this program, says of itself.
+Provenance provenance(const Scene& scene, const SolveArguments& arguments);
+
+/// Form factors that do not fit into memory go beside `output`. What was finished of an earlier run
+/// is taken from the checkpoint, if that holds any, and more is kept there.
 SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments,
-                       const std::filesystem::path& output, Console& console, Report& report);
+                       const std::filesystem::path& output, Checkpoint& checkpoint,
+                       Console& console, Report& report);
 
 void write_solution_step(const std::filesystem::path& file, const SolvedScene& solved,
                          Console& console, Report& report);

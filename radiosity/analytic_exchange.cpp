@@ -110,7 +110,8 @@ class PairVisibility {
 void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
                        const std::vector<char>& receives, double target_error,
                        const Progress& progress, std::vector<float>& row_error,
-                       const std::function<void(int, std::vector<FormFactor>&)>& take) {
+                       const std::function<void(int, std::vector<FormFactor>&)>& take,
+                       const JournalPhase& phase) {
   const PatchMesh& mesh = caster.mesh();
   const int n = mesh.patch_count();
   const PairVisibility visibility(caster, outlines, target_error);
@@ -132,6 +133,8 @@ void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutli
       for (int k = low; k < high; ++k) {
         const int i = begin + k;
         if (!receives[i] || !outlines[i].is_polygon()) continue;
+        if (phase.recall(i, rows[k].entries, rows[k].error)) continue;
+        rows[k] = {};
         for (int j = i + 1; j < n; ++j) {
           if (!receives[j] || !outlines[j].is_polygon()) continue;
           const double unoccluded = closed_form.between(i, j);
@@ -143,6 +146,7 @@ void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutli
           rows[k].entries.push_back({j, S});
           rows[k].error.push_back(static_cast<float>(unoccluded * std::sqrt(seen.variance)));
         }
+        phase.keep(i, rows[k].entries, rows[k].error);
       }
     });
     for (int k = 0; k < size; ++k) {

@@ -33,11 +33,21 @@ EmitterExchange::EmitterExchange(const ElementCaster& caster, const DirectLight&
   }
 }
 
-void EmitterExchange::compute(const std::vector<char>& receives, const FormFactorOptions& options) {
+void EmitterExchange::compute(const std::vector<char>& receives, const FormFactorOptions& options,
+                              const JournalPhase& phase) {
   const auto emitter_count = static_cast<int>(direct_light_.emitters().size());
   exchange_.setZero(2 * emitter_count, mesh_.patch_count());
   const SobolPoints sobol(options.emitter_points);
-  parallel_for(mesh_.patch_count(), 16, [&](int begin, int end) {
+  // A fraction of a second each, shadow rays included.
+  constexpr int form_factors_per_slice = 1 << 17;
+  const int each = std::max(1, options.emitter_points * emitter_count);
+  const int slice = std::max(16, form_factors_per_slice / each);
+  const auto columns = [&](int begin, int size) {
+    return std::tuple(std::span(exchange_.data() + begin * exchange_.rows(),
+                                static_cast<std::size_t>(size * exchange_.rows())));
+  };
+  const auto look = [&](int) { report(options.progress, "closed forms", 0.0); };
+  const auto fill = [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       if (!receives[i]) continue;
       const std::uint64_t key = random_key(static_cast<std::uint64_t>(i), emitter_points_key);
@@ -57,7 +67,8 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
         }
       }
     }
-  });
+  };
+  for_each_slice(phase, mesh_.patch_count(), slice, 16, columns, look, fill);
 }
 
 // An emitter's light is even, so its patches share it in proportion to their area.

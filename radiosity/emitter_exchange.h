@@ -1,6 +1,7 @@
 #pragma once
 
 #include "radiosity/form_factors.h"
+#include "radiosity/journal_phase.h"
 
 namespace lightwell {
 
@@ -15,8 +16,9 @@ class EmitterExchange {
   int emitter_of(int patch) const { return emitter_of_[patch]; }
 
   /// Computes what row() takes from. `receives[i]`: whether patch i takes part in diffuse exchange
-  /// at all.
-  void compute(const std::vector<char>& receives, const FormFactorOptions& options);
+  /// at all. What `phase` holds is not computed again.
+  void compute(const std::vector<char>& receives, const FormFactorOptions& options,
+               const JournalPhase& phase = {});
 
   /// Appends S_ij with patches j > i where i or j is an emitter's, j rising.
   void add_row(int i, std::vector<FormFactor>& row) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tuple>
 #include <vector>
 
 #include "radiosity/form_factors.h"
@@ -23,5 +24,11 @@ struct EstimatedRow {
   Spectrum specular_escaped{}, absorbed{}, cut{};  ///< lost behind mirrors and glass
   double rays = 0.0;                               ///< cast in all, for the report
 };
+
+/// What of a row is needed after `hidden` was looked at.
+inline auto kept_parts(EstimatedRow& row) {
+  return std::tie(row.trust, row.shares, row.escaped, row.specular, row.specular_patch,
+                  row.specular_share, row.specular_escaped, row.absorbed, row.cut, row.rays);
+}
 
 }  // namespace lightwell

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "mesh/patch_sampler.h"
+#include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
 #include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"
@@ -112,24 +113,49 @@ class HemisphereGather {
   std::map<int, HemisphereSets> sets_;  // by the rays of each
 };
 
-// Calls body(i, key) for every point, with the key of its random numbers. Slices keep progress and
-// interruption on this thread: each a fraction of a second of rays.
-template <class Body>
+// All that decides what is gathered, but for the scene.
+void add_inputs(Fingerprint& print, const PatchMesh& mesh, std::span<const GatherPoint> points,
+                const GatherOptions& options) {
+  print.add(mesh);
+  for (const GatherPoint& point : points) {
+    print.add(Eigen::Vector3d(point.position));
+    print.add(Eigen::Vector3d(point.normal));
+    print.add(point.facet);
+    print.add(point.key.has_value());
+    print.add(point.key.value_or(0));
+    print.add(point.rays);
+  }
+  print.add(options.rays);
+  print.add(options.max_specular_depth);
+  print.add(options.shadows.min_rays);
+  print.add(options.shadows.max_rays);
+  print.add(options.replica);
+}
+
+// Rows begin, begin + 1, ...
+std::span<float> rows_of(BandArray& values, int begin, int size) {
+  return {values.data() + begin * values.cols(), static_cast<std::size_t>(size * values.cols())};
+}
+
+// Calls body(i, key) for every point, with the key of its random numbers, unless `phase` holds the
+// `values(begin, size)` of its slice. Slices keep progress and interruption on this thread: each a
+// fraction of a second of rays.
+template <class Values, class Body>
 void for_each_point(std::span<const GatherPoint> points, const GatherOptions& options,
-                    Body&& body) {
+                    const JournalPhase& phase, Values values, Body&& body) {
   const int count = static_cast<int>(points.size());
   constexpr int rays_per_slice = 1 << 20;
   const int slice =
       std::clamp(rays_per_slice / std::max(options.rays, 1), 2, std::max(64, count / 100));
   const int grain = std::clamp(slice / 8, 1, 8);
-  for (int begin = 0; begin < count; begin += slice) {
+  const auto look = [&](int begin) {
     report(options.progress, "gather", static_cast<double>(begin) / count);
-    parallel_for(std::min(slice, count - begin), grain, [&](int low, int high) {
-      for (int i = begin + low; i < begin + high; ++i) {
-        body(i, random_key(points[i].key.value_or(static_cast<std::uint64_t>(i)), options.replica));
-      }
-    });
-  }
+  };
+  for_each_slice(phase, count, slice, grain, values, look, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      body(i, random_key(points[i].key.value_or(static_cast<std::uint64_t>(i)), options.replica));
+    }
+  });
   report(options.progress, "gather", 1.0);
 }
 
@@ -151,7 +177,15 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
   const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
   GatheredIrradiance result{.direct = BandArray::Zero(count, direct_light.column_count()),
                             .indirect = BandArray::Zero(count, radiosity.cols())};
-  for_each_point(points, options, [&](int i, std::uint64_t key) {
+  const JournalPhase phase(options.journal, "gather", [&](Fingerprint& print) {
+    add_inputs(print, caster.mesh(), points, options);
+    print.add(direct_light.column_count());
+    print.add(radiosity);
+  });
+  const auto values = [&](int begin, int size) {
+    return std::tuple(rows_of(result.direct, begin, size), rows_of(result.indirect, begin, size));
+  };
+  for_each_point(points, options, phase, values, [&](int i, std::uint64_t key) {
     const GatherPoint& at = points[i];
     direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
                                 random_key(key, gather_shadows), options.shadows,
@@ -167,7 +201,16 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
   BandArray direct = BandArray::Zero(static_cast<Eigen::Index>(points.size()),
                                      direct_light.channel_count() * scene.bands.count());
   if (sights) sights->assign(points.size(), {});
-  for_each_point(points, options, [&](int i, std::uint64_t key) {
+  const JournalPhase phase(options.journal, sights ? "sights" : "direct", [&](Fingerprint& print) {
+    add_inputs(print, caster.mesh(), points, options);
+    print.add(direct_light.column_count());
+  });
+  const auto values = [&](int begin, int size) {
+    std::span<EmitterSight> seen;
+    if (sights) seen = std::span(*sights).subspan(begin, size);
+    return std::tuple(rows_of(direct, begin, size), seen);
+  };
+  for_each_point(points, options, phase, values, [&](int i, std::uint64_t key) {
     const GatherPoint& at = points[i];
     direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
                                 random_key(key, gather_shadows), options.shadows,
@@ -181,7 +224,14 @@ BandArray gather_indirect(const Scene& scene, const ElementCaster& caster,
                           const GatherOptions& options) {
   const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
   BandArray indirect(static_cast<Eigen::Index>(points.size()), radiosity.cols());
-  for_each_point(points, options, [&](int i, std::uint64_t key) {
+  const JournalPhase phase(options.journal, "indirect", [&](Fingerprint& print) {
+    add_inputs(print, caster.mesh(), points, options);
+    print.add(radiosity);
+  });
+  const auto values = [&](int begin, int size) {
+    return std::tuple(rows_of(indirect, begin, size));
+  };
+  for_each_point(points, options, phase, values, [&](int i, std::uint64_t key) {
     indirect.row(i) = hemisphere.irradiance(points[i], key).transpose();
   });
   return indirect;
@@ -204,7 +254,8 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 }
 
 BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
-                             const DirectLight& direct_light, int rays, int max_specular_depth) {
+                             const DirectLight& direct_light, int rays, int max_specular_depth,
+                             const Progress& progress, Journal* journal) {
   const PatchMesh& mesh = caster.mesh();
   const LightPaths paths(scene, caster, max_specular_depth);
   if (!paths.has_specular() || direct_light.emitters().empty()) return {};
@@ -223,8 +274,16 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
     emitter_of_facet.resize(std::max<std::size_t>(emitter_of_facet.size(), facet + 1), -1);
     emitter_of_facet[facet] = e;
   }
+  JournalPhase phase(journal, "caustics", [&](Fingerprint& print) {
+    print.add(mesh);
+    print.add(direct_light.column_count());
+    print.add(rays);
+    print.add(max_specular_depth);
+  });
   const SobolPoints sobol(rays);
-  for (int p = 0; p < mesh.patch_count(); ++p) {
+  int first = 0;
+  phase.recall_state(first, power);
+  for (int p = first; p < mesh.patch_count(); ++p) {
     const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
     if (!direct_light.owns(facet) || !(mesh.emission.row(p) > 0.0f).any()) continue;
     const double share = mesh.area[p] / direct_light.emitters()[emitter_of_facet[facet]].area;
@@ -261,7 +320,10 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
             deposit.power.transpose();
       }
     }
+    report(progress, "caustics", static_cast<double>(p) / mesh.patch_count());
+    if (phase.is_state_due()) phase.keep_state(p + 1, power);
   }
+  phase.keep_state(mesh.patch_count(), power);
 
   BandArray vertex_power = BandArray::Zero(mesh.vertex_count(), power.cols());
   Eigen::ArrayXf vertex_area = Eigen::ArrayXf::Zero(mesh.vertex_count());

@@ -12,6 +12,8 @@
 
 namespace lightwell {
 
+class Journal;
+
 /// Where irradiance is asked for.
 struct GatherPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< metres
@@ -30,6 +32,7 @@ struct GatherOptions {
   ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
   std::uint64_t replica = 0;  ///< another number gives an independent estimate
   Progress progress{};
+  Journal* journal = nullptr;  ///< what was gathered is kept there and taken from there
 };
 
 /// points x bands, W/m^2. Where light is kept apart by channels (see DirectLight), here and below
@@ -70,7 +73,8 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 /// they end (after Heckbert 1990), and vertices take the mean of the elements around. Empty if the
 /// scene has no mirrors or glass.
 BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
-                             const DirectLight& direct_light, int rays, int max_specular_depth);
+                             const DirectLight& direct_light, int rays, int max_specular_depth,
+                             const Progress& progress = {}, Journal* journal = nullptr);
 
 /// Gives each point a share of the rays that falls with the square root of the area it stands for,
 /// which makes the mean noise over all area least for the work: `rays` where the larger elements

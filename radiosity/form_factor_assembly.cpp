@@ -15,7 +15,7 @@ using Eigen::ArrayXd;
 class Assembly {
  public:
   Assembly(const PatchMesh& mesh, RowEstimates rows, KnownExchange known, bool enforce_closure,
-           std::shared_ptr<MemoryBudget> budget, const Progress& progress)
+           std::shared_ptr<MemoryBudget> budget, const Progress& progress, const PhaseOf& phase_of)
       : mesh_(mesh),
         n_(mesh.patch_count()),
         rows_(std::move(rows)),
@@ -23,6 +23,7 @@ class Assembly {
         enforce_closure_(enforce_closure),
         budget_(std::move(budget)),
         progress_(progress),
+        phase_of_(phase_of),
         S_(budget_, n_),
         weight_(PerKind::Ones(n_, 2)),
         target_(ArrayXd::Zero(n_)),
@@ -47,7 +48,7 @@ class Assembly {
     }
     store(*result, found);
     if (rows_.has_specular()) {
-      assemble_specular(mesh_, rows_, enforce_closure_, budget_, *result);
+      assemble_specular(mesh_, rows_, enforce_closure_, budget_, phase_of_, *result);
     }
     result->rows.close();
     result->specular.close();
@@ -132,7 +133,7 @@ class Assembly {
         [&](const ArrayXd& x) -> Eigen::ArrayXXd {
           return whole * sums(whole * x).col(Exchange::known);
         },
-        fixed, wanted);
+        fixed, wanted, phase_of_("balance of closed forms"));
   }
 
   // What closed forms leave of a row is what its samples are scaled to.
@@ -148,7 +149,7 @@ class Assembly {
     left = left.max(has / most_stretch).min(has * most_stretch);
     weight_.col(Exchange::sampled) = symmetric_scaling(
         [&](const ArrayXd& x) -> Eigen::ArrayXXd { return sums(x).col(Exchange::sampled); }, open,
-        left);
+        left, phase_of_("balance of samples"));
     for (int i = 0; i < n_; ++i) {
       if (!is_whole(i)) open_[i] *= weight_(i, Exchange::sampled);
     }
@@ -157,7 +158,7 @@ class Assembly {
   void close_all_rows() {
     const ArrayXd d = symmetric_scaling(
         [&](const ArrayXd& x) -> Eigen::ArrayXXd { return sums(x).rowwise().sum(); }, open_,
-        target_);
+        target_, phase_of_("balance"));
     weight_.colwise() *= d;
     open_ *= d;
   }
@@ -209,6 +210,7 @@ class Assembly {
   bool enforce_closure_ = true;
   std::shared_ptr<MemoryBudget> budget_;
   const Progress& progress_;
+  const PhaseOf& phase_of_;
   int steps_ = 0;
   ExchangeMatrix S_;
   PerKind weight_;         // S_ij is scaled by those of i and j
@@ -221,9 +223,10 @@ std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, RowEst
                                                    KnownExchange known, bool enforce_closure,
                                                    std::shared_ptr<MemoryBudget> budget,
                                                    const Progress& progress,
+                                                   const PhaseOf& phase_of,
                                                    FormFactorReport* report) {
   return Assembly(mesh, std::move(rows), std::move(known), enforce_closure, std::move(budget),
-                  progress)
+                  progress, phase_of)
       .build(report);
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
+#include "radiosity/journal_phase.h"
 #include "radiosity/row_estimates.h"
 
 namespace lightwell {
@@ -18,13 +21,18 @@ struct KnownExchange {
   std::vector<char> is_whole;
 };
 
+/// The phase of a journal that has this name.
+using PhaseOf = std::function<JournalPhase(std::string_view name)>;
+
 /// Joins the two estimates of every pair, puts known exchange in its place, closes the rows if
 /// asked (what was sampled first, then everything), and stores the result. What it is given is
-/// given up piece by piece while the result grows.
+/// given up piece by piece while the result grows. `phase_of` names where scalings keep their
+/// states.
 std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, RowEstimates rows,
                                                    KnownExchange known, bool enforce_closure,
                                                    std::shared_ptr<MemoryBudget> budget,
                                                    const Progress& progress,
+                                                   const PhaseOf& phase_of,
                                                    FormFactorReport* report);
 
 }  // namespace lightwell

@@ -13,6 +13,7 @@
 #include "radiosity/emitter_exchange.h"
 #include "radiosity/form_factor_assembly.h"
 #include "radiosity/hemicube.h"
+#include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
 #include "radiosity/near_exchange.h"
 #include "radiosity/pair_shafts.h"
@@ -44,7 +45,24 @@ std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
   if (analytic) each += std::int64_t{sizeof(PatchSampler)};
   const bool clips =
       analytic || (options.method == FormFactorMethod::automatic && options.target_error > 0.0);
-  return mesh.patch_count() * each + (clips ? PairShafts::bytes_for(mesh) : 0);
+  const std::int64_t journal = options.journal ? 2 * Journal::most_buffered : 0;
+  return journal + mesh.patch_count() * each + (clips ? PairShafts::bytes_for(mesh) : 0);
+}
+
+// All that decides what form factors come out, but for the scene.
+void add_inputs(Fingerprint& print, const PatchMesh& mesh, const FormFactorOptions& options) {
+  print.add(mesh);
+  print.add(options.method);
+  print.add(options.rays_per_patch);
+  print.add(options.target_error);
+  print.add(options.most_rays_per_patch);
+  print.add(options.rays_per_emitter);
+  print.add(options.max_specular_depth);
+  print.add(options.emitter_points);
+  print.add(options.shadows.min_rays);
+  print.add(options.shadows.max_rays);
+  print.add(options.hemicube_resolution);
+  print.add(options.enforce_closure);
 }
 
 class Estimator {
@@ -129,18 +147,23 @@ class Estimator {
     estimate.row_error.assign(static_cast<std::size_t>(mesh_.patch_count()), 0.0f);
     const int longest = *std::max_element(rays_of.begin(), rays_of.end());
     const RowCaster caster(caster_, paths_, most_rays(longest));
+    const JournalPhase phase = phase_of("rays", &rays_of);
     for_each_row(mesh_, longest, options_.progress, [&](int i, RowCaster::Scratch& scratch) {
       std::vector<NearExchange::Pair> pairs;
-      for (int rays = rays_of[i];; rays *= 4) {
-        const EstimatedRow row = caster.cast(i, rays, scratch, look_behind);
-        pairs.clear();
-        const double error = error_of(i, row, pairs);
-        if (error > options_.target_error && 4 * rays <= most_rays(rays_of[i])) continue;
-        estimate.row_error[i] = static_cast<float>(error);
-        estimate.rows.add(i, row);
-        done(i, pairs);
-        break;
+      EstimatedRow row;
+      double error = 0.0;
+      if (!phase.recall(i, kept_parts(row), pairs, error)) {
+        for (int rays = rays_of[i];; rays *= 4) {
+          row = caster.cast(i, rays, scratch, look_behind);
+          pairs.clear();
+          error = error_of(i, row, pairs);
+          if (!(error > options_.target_error) || 4 * rays > most_rays(rays_of[i])) break;
+        }
+        phase.keep(i, kept_parts(row), pairs, error);
       }
+      estimate.row_error[i] = static_cast<float>(error);
+      estimate.rows.add(i, row);
+      done(i, pairs);
     });
     estimate.rows.close();
   }
@@ -169,9 +192,9 @@ class Estimator {
 
   Estimate hemicubes_alone() const {
     Estimate estimate = nothing_yet();
-    for_each_hemicube_row(caster_, paths_, {.resolution = options_.hemicube_resolution},
-                          options_.progress,
-                          [&](int i, const EstimatedRow& row) { estimate.rows.add(i, row); });
+    for_each_hemicube_row(
+        caster_, paths_, {.resolution = options_.hemicube_resolution}, options_.progress,
+        [&](int i, const EstimatedRow& row) { estimate.rows.add(i, row); }, phase_of("hemicubes"));
     estimate.rows.close();
     estimate.known.S.close();
     return estimate;
@@ -197,13 +220,16 @@ class Estimator {
     pairs.close();
     KnownExchange& known = estimate.known;
     for (int i = 0; i < n; ++i) known.is_whole[i] = emitters.emitter_of(i) >= 0 ? 1 : 0;
-    emitters.compute(receives_, options_);
-    near.exchange(std::move(pairs), options_.progress, [&](int i, std::vector<FormFactor>& row) {
-      const auto near_count = static_cast<std::ptrdiff_t>(row.size());
-      emitters.add_row(i, row);
-      std::inplace_merge(row.begin(), row.begin() + near_count, row.end(), by_patch);
-      known.S.append(i, row);
-    });
+    emitters.compute(receives_, options_, phase_of("emitters"));
+    near.exchange(
+        std::move(pairs), options_.progress,
+        [&](int i, std::vector<FormFactor>& row) {
+          const auto near_count = static_cast<std::ptrdiff_t>(row.size());
+          emitters.add_row(i, row);
+          std::inplace_merge(row.begin(), row.begin() + near_count, row.end(), by_patch);
+          known.S.append(i, row);
+        },
+        phase_of("closed forms"));
     known.S.close();
     return estimate;
   }
@@ -222,9 +248,17 @@ class Estimator {
     cast_counts(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)), is_count);
     analytic_exchange(
         caster_, outlines, receives_, options_.target_error, options_.progress, estimate.row_error,
-        [&](int i, std::vector<FormFactor>& row) { estimate.known.S.append(i, row); });
+        [&](int i, std::vector<FormFactor>& row) { estimate.known.S.append(i, row); },
+        phase_of("all pairs"));
     estimate.known.S.close();
     return estimate;
+  }
+
+  JournalPhase phase_of(std::string_view name, const std::vector<int>* rays_of = nullptr) const {
+    return {options_.journal, name, [&](Fingerprint& print) {
+              add_inputs(print, mesh_, options_);
+              if (rays_of) print.add(*rays_of);
+            }};
   }
 
   const PatchMesh& mesh_;
@@ -257,8 +291,12 @@ std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const Elem
   budget->plan(
       bytes_beside_rows(mesh, static_cast<std::int64_t>(direct_light.emitters().size()), options));
   Estimate estimate = Estimator(scene, caster, direct_light, options, budget).estimate();
-  auto result = assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
-                                      options.enforce_closure, budget, options.progress, report);
+  const auto phase_of = [&](std::string_view name) -> JournalPhase {
+    return {options.journal, name, [&](Fingerprint& print) { add_inputs(print, mesh, options); }};
+  };
+  auto result =
+      assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
+                            options.enforce_closure, budget, options.progress, phase_of, report);
   if (report) report->row_error = std::move(estimate.row_error);
   return result;
 }

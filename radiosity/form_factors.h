@@ -14,6 +14,8 @@
 
 namespace lightwell {
 
+class Journal;
+
 /// F_ij: share of what leaves patch i that arrives at patch j without meeting anything else.
 struct FormFactor {
   int patch = 0;
@@ -94,6 +96,7 @@ struct FormFactorOptions {
   /// result's rows stay where it put them. Null: a budget of its own, with MemoryOptions' defaults.
   std::shared_ptr<MemoryBudget> memory{};
   Progress progress{};
+  Journal* journal = nullptr;  ///< finished rows are kept there and taken from there; null: nowhere
 };
 
 /// What was measured before and after closure was enforced.

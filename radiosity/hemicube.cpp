@@ -129,7 +129,8 @@ class Tally {
 
 void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
                            const HemicubeOptions& options, const Progress& progress,
-                           const std::function<void(int, const EstimatedRow&)>& take) {
+                           const std::function<void(int, const EstimatedRow&)>& take,
+                           const JournalPhase& phase) {
   const PatchMesh& mesh = caster.mesh();
   const HemicubeCells cells(options.resolution);
   const HemicubeScan scan(caster);
@@ -153,20 +154,25 @@ void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
       std::vector<int> items(cells.cell_count());
       for (int i = begin + low; i < begin + high; ++i) {
         if (!paths.is_diffuse(mesh.facet[mesh.first_element[i]])) continue;
-        if (caster.hidden_elements(i) > 0) {
-          EstimatedRow row = row_caster.cast(i, rays_where_covered, ray_scratch);
-          row.trust = 1.0 / mesh.area[i];
+        EstimatedRow row;
+        if (phase.recall(i, kept_parts(row))) {
           take(i, row);
           continue;
         }
-        const HemicubeEye eye = hemicube_eye(mesh, i, !by_rays);
-        if (by_rays) {
-          cast_hemicube(caster, eye, cells, items);
+        if (caster.hidden_elements(i) > 0) {
+          row = row_caster.cast(i, rays_where_covered, ray_scratch);
+          row.trust = 1.0 / mesh.area[i];
         } else {
-          scan.draw(eye, cells, scratch, items);
+          const HemicubeEye eye = hemicube_eye(mesh, i, !by_rays);
+          if (by_rays) {
+            cast_hemicube(caster, eye, cells, items);
+          } else {
+            scan.draw(eye, cells, scratch, items);
+          }
+          row = tally.row(i, eye, items);
+          if (by_rays) row.rays += cells.cell_count();
         }
-        EstimatedRow row = tally.row(i, eye, items);
-        if (by_rays) row.rays += cells.cell_count();
+        phase.keep(i, kept_parts(row));
         take(i, row);
       }
     });

@@ -5,6 +5,7 @@
 
 #include "mesh/element_caster.h"
 #include "radiosity/estimated_row.h"
+#include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
 #include "scene/progress.h"
 
@@ -33,10 +34,12 @@ struct HemicubeOptions {
 /// two estimates of an exchange area the smaller patch's counts for more. The same bits for any
 /// number of threads. Throws std::invalid_argument for a resolution out of range, and Interrupted.
 ///
-/// `take(i, row)` gets the rows as they are done, from many threads.
+/// `take(i, row)` gets the rows as they are done, from many threads. Those that `phase` holds are
+/// not done again.
 void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
                            const HemicubeOptions& options, const Progress& progress,
-                           const std::function<void(int, const EstimatedRow&)>& take);
+                           const std::function<void(int, const EstimatedRow&)>& take,
+                           const JournalPhase& phase = {});
 
 /// All of them.
 std::vector<EstimatedRow> hemicube_rows(const ElementCaster& caster, const LightPaths& paths,

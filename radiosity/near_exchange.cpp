@@ -99,7 +99,8 @@ void NearExchange::add_row(const PairExchange& closed_form, int i, RecordSpan ro
 }
 
 void NearExchange::exchange(RecordStore pairs, const Progress& progress,
-                            const std::function<void(int, std::vector<FormFactor>&)>& take) const {
+                            const std::function<void(int, std::vector<FormFactor>&)>& take,
+                            const JournalPhase& phase) const {
   const PairExchange closed_form(outlines_);
   const int n = pairs.row_count();
   for (const ColumnRange range : column_ranges(pairs, pairs.budget().block_bytes())) {
@@ -111,8 +112,11 @@ void NearExchange::exchange(RecordStore pairs, const Progress& progress,
       std::vector<std::vector<FormFactor>> rows(static_cast<std::size_t>(size));
       parallel_for(size, 1, [&](int low, int high) {
         for (int k = low; k < high; ++k) {
-          add_row(closed_form, begin + k, pairs.row(begin + k), block.column(begin + k),
-                  rows[static_cast<std::size_t>(k)]);
+          std::vector<FormFactor>& row = rows[static_cast<std::size_t>(k)];
+          if (phase.recall(begin + k, row)) continue;
+          row.clear();
+          add_row(closed_form, begin + k, pairs.row(begin + k), block.column(begin + k), row);
+          phase.keep(begin + k, row);
         }
       });
       for (int k = 0; k < size; ++k) {

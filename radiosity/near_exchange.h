@@ -5,6 +5,7 @@
 
 #include "radiosity/column_block.h"
 #include "radiosity/estimated_row.h"
+#include "radiosity/journal_phase.h"
 #include "radiosity/pair_exchange.h"
 #include "radiosity/pair_shafts.h"
 #include "radiosity/row_store.h"
@@ -42,9 +43,10 @@ class NearExchange {
 
   /// Takes rows of pairs, kept so that columns below the diagonal are counted. `take(i, row)` gets
   /// the exchange of patch i with patches j > i, one row after another; both ends' counts of a pair
-  /// are added.
+  /// are added. Rows that `phase` holds are not computed again.
   void exchange(RecordStore pairs, const Progress& progress,
-                const std::function<void(int, std::vector<FormFactor>&)>& take) const;
+                const std::function<void(int, std::vector<FormFactor>&)>& take,
+                const JournalPhase& phase = {}) const;
 
  private:
   bool is_exact_due(int i, int j, double variance, Between& between) const;

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "radiosity/journal_phase.h"
 #include "radiosity/ray_cast_rows.h"
 #include "scene/parallel.h"
 
@@ -187,10 +188,17 @@ void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
   energy_.absorbed += (watts * (row.absorbed + row.cut).cast<double>()).sum();
 }
 
-RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive, const Progress& progress) {
+RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive, const Progress& progress,
+                                   JournalPhase* phase) {
   const auto start = std::chrono::steady_clock::now();
   RadiositySolution solution;
   solution.solver = "progressive";
+  JournalPhase none;
+  JournalPhase& kept = phase ? *phase : none;
+  kept.recall_state(progressive.state(), solution.residual, solution.history);
+  const auto keep = [&] {
+    kept.keep_state(progressive.state(), solution.residual, solution.history);
+  };
   while (progressive.step()) {
     const double largest = progressive.radiosity().abs().maxCoeff();
     solution.residual = progressive.unshot().abs().maxCoeff() / largest;
@@ -198,8 +206,15 @@ RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive, const Prog
         {.residual = solution.residual,
          .seconds =
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
-    report(progress, "solve", progressive.done());
+    try {
+      report(progress, "solve", progressive.done());
+    } catch (const Interrupted&) {
+      keep();
+      throw;
+    }
+    if (kept.is_state_due()) keep();
   }
+  if (kept.has_state()) keep();
   report(progress, "solve", 1.0);
   solution.patch_radiosity = progressive.radiosity();
   solution.energy = progressive.energy();

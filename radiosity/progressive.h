@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "radiosity/estimated_row.h"
@@ -10,6 +11,8 @@
 #include "scene/progress.h"
 
 namespace lightwell {
+
+class JournalPhase;
 
 /// A patch that shoots, and with how many rays if it comes to rays.
 struct RowRequest {
@@ -88,6 +91,8 @@ class ProgressiveRadiosity {
   Spectrum ambient() const;
   /// Where the light went so far.
   EnergyBalance energy() const;
+  /// All that changes from step to step: what is kept of it, to go on from there.
+  auto state() { return std::tie(radiosity_, unshot_, energy_, shots_); }
 
  private:
   std::vector<int> choose() const;
@@ -108,8 +113,8 @@ class ProgressiveRadiosity {
 /// Shoots until step() has no more to do. Fills patch_radiosity, solver ("progressive"), history (a
 /// record a round), residual, outcome and energy of the result; residual is max |unshot| over max
 /// B, which max |M + rho F B - B| over max B is never above. Throws Interrupted when progress says
-/// stop.
-RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive,
-                                   const Progress& progress = {});
+/// stop. Goes on from the state that `phase` holds, and keeps there where it has got to.
+RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive, const Progress& progress = {},
+                                   JournalPhase* phase = nullptr);
 
 }  // namespace lightwell

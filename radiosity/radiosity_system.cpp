@@ -34,13 +34,15 @@ RadiositySystem::RadiositySystem(const PatchMesh& mesh, const FormFactors& form_
       rho(with_lanes(mesh.reflectance)) {}
 
 LightVector RadiositySystem::residual(const LightVector& B) const {
-  LightVector r = all(B);
+  LightVector r;
+  pass([&] { r = all(B); }, r);
   r = M + rho * r - B;
   return r;
 }
 
 LightVector RadiositySystem::product(const LightVector& x) const {
-  LightVector y = all(x);
+  LightVector y;
+  pass([&] { y = all(x); }, y);
   y = x - rho * y;
   return y;
 }

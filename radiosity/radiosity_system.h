@@ -1,5 +1,6 @@
 #pragma once
 
+#include "radiosity/kept_passes.h"
 #include "radiosity/row_gather.h"
 
 namespace lightwell {
@@ -21,9 +22,25 @@ class RadiositySystem : public RowGather {
   /// (I - rho F) x: one pass.
   LightVector product(const LightVector& x) const;
 
+  /// `pass` of a solver over the rows, which fills `results` anew: they are recalled instead, where
+  /// they were kept.
+  template <class Pass, class... Results>
+  void pass(Pass pass, Results&... results) const {
+    if (passes_) {
+      passes_->next(pass, results...);
+    } else {
+      pass();
+    }
+  }
+  /// From now on; keeps the pointer. Null: no more.
+  void keep_passes(KeptPasses* passes) { passes_ = passes; }
+
   /// How far F is from reciprocal: about the root mean square of A_i F_ij - A_j F_ji over that of
   /// A_i F_ij, in the worst band. Two passes, with random vectors.
   double asymmetry() const;
+
+ private:
+  KeptPasses* passes_ = nullptr;
 };
 
 /// sum_i w_i a_i b_i in each lane; added up patch after patch.

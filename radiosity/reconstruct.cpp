@@ -36,7 +36,8 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 BandArray caustics(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
                    const SolveOptions& options) {
   return caustic_irradiance(scene, caster, direct_light, options.caustic_rays,
-                            options.form_factors.max_specular_depth);
+                            options.form_factors.max_specular_depth, options.progress,
+                            options.journal);
 }
 
 // Caustics on elements of even size, from which vertices of all others take theirs: on small ones
@@ -117,6 +118,7 @@ Draft refined_draft(const Scene& scene, const ElementCaster& caster,
 GatherOptions gather_options(const SolveOptions& options) {
   GatherOptions gather = options.gather;
   gather.progress = options.progress;
+  gather.journal = options.journal;
   return gather;
 }
 

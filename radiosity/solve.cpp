@@ -5,9 +5,12 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include "mesh/patch_sampler.h"
 #include "radiosity/interpolation_error.h"
+#include "radiosity/journal.h"
+#include "radiosity/journal_phase.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/relight.h"
 #include "radiosity/solve_channels.h"
@@ -94,6 +97,8 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
   GatherOptions gather_options = options.gather;
   gather_options.rays = 2 * options.gather.rays;
   gather_options.replica = options.gather.replica + 1;
+  gather_options.progress = options.progress;
+  gather_options.journal = options.journal;
   const GatheredIrradiance independent = gather_irradiance(
       scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
       gather_options);
@@ -114,7 +119,17 @@ RadiositySolution shoot(const Scene& scene, const ElementCaster& caster,
   ProgressiveRadiosity progressive(scene, caster.mesh(),
                                    cast_shots(caster, paths, options.progressive->most_rays),
                                    *options.progressive);
-  RadiositySolution solution = shoot_to_the_end(progressive, options.progress);
+  JournalPhase phase(options.journal, "shots", [&](Fingerprint& print) {
+    print.add(caster.mesh());
+    print.add(options.form_factors.max_specular_depth);
+    const ProgressiveOptions& shooting = *options.progressive;
+    print.add(shooting.tolerance);
+    print.add(shooting.max_shots);
+    print.add(shooting.rays);
+    print.add(shooting.most_rays);
+    print.add(shooting.overshooting);
+  });
+  RadiositySolution solution = shoot_to_the_end(progressive, options.progress, &phase);
   solution.seconds.push_back({"solve", watch.lap()});
   return solution;
 }
@@ -126,12 +141,14 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
   Stopwatch watch;
   FormFactorOptions form_factor_options = options.form_factors;
   form_factor_options.progress = options.progress;
+  form_factor_options.journal = options.journal;
   const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
                                                  report ? &report->form_factors : nullptr);
   const double form_factor_seconds = watch.lap();
 
   SolverOptions solver_options = options.solver;
   solver_options.progress = options.progress;
+  solver_options.journal = options.journal;
   solver_options.name_of = [&](int i) {
     return fmt::format("surface '{}'", scene.surfaces[mesh.surface[i]].name);
   };
@@ -162,6 +179,10 @@ EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveReport* report) {
   require_light(scene);
   require_equations(options);
+  const std::uint64_t hash = scene_hash(scene);
+  if (options.journal && options.journal->of().scene_hash != hash) {
+    throw std::invalid_argument("the journal is of another scene");
+  }
   SolvedScene solved;
   std::vector<PhaseSeconds> seconds;
   Stopwatch watch;
@@ -204,7 +225,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   seconds.push_back({"error_estimate", watch.lap()});
   solution.seconds = std::move(seconds);
   solution.provenance.scene_file = scene.file.string();
-  solution.provenance.scene_hash = scene_hash(scene);
+  solution.provenance.scene_hash = hash;
   return solved;
 }
 

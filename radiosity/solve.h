@@ -18,7 +18,7 @@ struct SolveOptions {
   MeshOptions mesh{};
   FormFactorOptions form_factors{};
   SolverMethod solver_method = SolverMethod::automatic;
-  SolverOptions solver{};  ///< but for `progress` and `name_of`
+  SolverOptions solver{};  ///< but for `progress`, `journal` and `name_of`
   /// Patches shoot, with rows found on the fly and forgotten, instead of all form factors and a
   /// solver: of the options above only `form_factors.max_specular_depth` then counts.
   std::optional<ProgressiveOptions> progressive{};
@@ -32,6 +32,9 @@ struct SolveOptions {
   const SolvedScene* start = nullptr;
   int error_points = 512;  ///< random points that the error estimate looks at
   Progress progress{};
+  /// Collects finished work, and gives it back to a solve that goes on with one that was ended:
+  /// with the same bits. Of this scene. Null: none.
+  Journal* journal = nullptr;
 };
 
 /// A mesh and the light on it.
@@ -55,7 +58,7 @@ bool starts_coarse(const SolveOptions& options);
 /// difference from the interpolation; it holds the noise of both, so it errs on the high side).
 /// Throws InputError if nothing in the scene emits light or light never ends, if the start has
 /// other patches, and where the progressive solver cannot do what is asked; Interrupted when
-/// progress says stop.
+/// progress says stop; std::invalid_argument if the journal is of another scene.
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);
 

@@ -90,6 +90,7 @@ RadiositySolution solve_radiosity(SolverMethod method, const PatchMesh& mesh,
                                   const FormFactors& form_factors, const SolverOptions& options) {
   SolverRun run(mesh, form_factors, options);
   method = chosen(run, method);
+  run.keep_passes(method);
   const LightVector B = solve(run, method);
   RadiositySolution solution;
   solution.patch_radiosity = run.system.without_lanes(B);

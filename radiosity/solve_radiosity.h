@@ -11,6 +11,8 @@
 
 namespace lightwell {
 
+class Journal;
+
 /// How B = M + rho F B is solved. All read the stored rows of F, extended form factors included,
 /// with all bands in one pass, and keep the same promise of accuracy.
 enum class SolverMethod {
@@ -75,6 +77,7 @@ struct SolverOptions {
   /// Sees every sweep, from the thread that called the solver.
   std::function<void(const SolverSweep&)> observer{};
   Progress progress{};
+  Journal* journal = nullptr;  ///< passes over the rows are kept there once they take long
   /// What messages call a patch; empty: "patch 12".
   std::function<std::string(int patch)> name_of{};
 };

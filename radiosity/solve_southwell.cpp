@@ -116,7 +116,7 @@ LightVector solve_by_southwell(SolverRun& run) {
   LightVector B = run.start(), r = run.system.residual(B);
   Shooter shooter(run.system, B, r);
   while (run.goes_on(SolverMethod::southwell, B, r)) {
-    shooter.shoot_for(factors);
+    run.system.pass([&] { shooter.shoot_for(factors); }, B, r);
     r = run.system.residual(B);  // reciprocity holds but for rounding
   }
   return B;

@@ -62,7 +62,7 @@ LightVector solve_by_gauss_seidel(SolverRun& run) {
   const UniformLight uniform(run);
   LightVector B = run.start(), r;
   do {
-    sweep(run.system, 1.0, B);
+    run.system.pass([&] { sweep(run.system, 1.0, B); }, B);
     r = run.system.residual(B);
     uniform.correct(r, B);
   } while (run.goes_on(SolverMethod::gauss_seidel, B, r));
@@ -73,7 +73,7 @@ LightVector solve_by_sor(SolverRun& run) {
   Relaxation relaxation(run.options.relaxation);
   LightVector B = run.start(), r;
   do {
-    sweep(run.system, relaxation.omega(), B);
+    run.system.pass([&] { sweep(run.system, relaxation.omega(), B); }, B);
     r = run.system.residual(B);
     relaxation.see(std::sqrt(weighted_dot(run.system.area, r, r).sum()));
   } while (run.goes_on(SolverMethod::sor, B, r));

@@ -50,6 +50,24 @@ SolverRun::SolverRun(const PatchMesh& mesh, const FormFactors& form_factors,
   find_ends();
 }
 
+void SolverRun::keep_passes(SolverMethod method) {
+  if (!options.journal) return;
+  // A pass tells other form factors from these.
+  const LightVector E = system.product(system.rho + system.M);
+  const JournalPhase phase(options.journal, "passes", [&](Fingerprint& print) {
+    print.add(method);
+    print.add(options.relaxation);
+    print.add(options.gmres_restart);
+    print.add(options.start);
+    print.add(system.area);
+    print.add(system.M);
+    print.add(system.rho);
+    print.add(E);
+  });
+  passes_.emplace(phase, options.journal->every());
+  system.keep_passes(&*passes_);
+}
+
 // Where the light of each group ends: |B's error| <= |residual| / (1 - rho_max).
 void SolverRun::find_ends() {
   const LightVector &M = system.M, &rho = system.rho;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 
 #include "radiosity/exchange_groups.h"
 #include "radiosity/radiosity_system.h"
@@ -16,9 +17,12 @@ class SolverRun {
   SolverRun(const SolverRun&) = delete;
   SolverRun& operator=(const SolverRun&) = delete;
 
-  const RadiositySystem system;
+  RadiositySystem system;
   const SolverOptions& options;
   const ExchangeGroups groups;
+
+  /// From now on passes of this method are kept in the journal of the options, if there is one.
+  void keep_passes(SolverMethod method);
 
   /// B to start from: M, or the start given, where light is at all; M where nothing is reflected.
   LightVector start() const;
@@ -34,6 +38,7 @@ class SolverRun {
   void find_ends();
   [[noreturn]] void refuse_endless(int patch, int lane) const;
 
+  std::optional<KeptPasses> passes_{};
   LightVector error_per_residual_;  // groups x lanes; 0 where there is no light
   Outcome outcome_ = Outcome::max_sweeps_reached;
   std::vector<StepRecord> history_{};

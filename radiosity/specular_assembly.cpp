@@ -63,7 +63,8 @@ Eigen::ArrayXXd product(const RecordStore& S, const Eigen::ArrayXXd& x) {
   return own + below;
 }
 
-Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const RecordStore& S) {
+Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const RecordStore& S,
+                        const PhaseOf& phase_of) {
   Eigen::ArrayXXd target = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
   for (int i = 0; i < rows.patch_count(); ++i) target.row(i) = mesh.area[i] * rows.specular_sum(i);
   // A row's few own rays may have found nothing of what others sent it, and some wishes exclude
@@ -74,8 +75,8 @@ Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const R
   target = target.max(has / most_stretch).min(has * most_stretch);
   constexpr double tolerance = 1e-8;
   return symmetric_scaling([&](const Eigen::ArrayXXd& x) { return product(S, x); },
-                           Eigen::ArrayXXd::Zero(target.rows(), target.cols()), target, tolerance,
-                           most_iterations)
+                           Eigen::ArrayXXd::Zero(target.rows(), target.cols()), target,
+                           phase_of("balance of mirrors and glass"), tolerance, most_iterations)
       .max(1.0 / largest_factor)
       .min(largest_factor);
 }
@@ -83,10 +84,11 @@ Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const R
 }  // namespace
 
 void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_closure,
-                       const std::shared_ptr<MemoryBudget>& budget, StoredFormFactors& result) {
+                       const std::shared_ptr<MemoryBudget>& budget, const PhaseOf& phase_of,
+                       StoredFormFactors& result) {
   RecordStore S = joined(mesh, rows, budget);
   Eigen::ArrayXXd d = Eigen::ArrayXXd::Ones(rows.patch_count(), rows.bands());
-  if (enforce_closure) d = balance(mesh, rows, S);
+  if (enforce_closure) d = balance(mesh, rows, S, phase_of);
   Eigen::ArrayXXd kept = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
   unfold_symmetric(S, [&](int i, RecordSpan below, RecordSpan upper) {
     std::vector<int> patches;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "radiosity/form_factor_assembly.h"
 #include "radiosity/row_estimates.h"
 #include "radiosity/stored_form_factors.h"
 
@@ -9,6 +10,7 @@ namespace lightwell {
 /// and what is lost there to `result`. With `enforce_closure` each band's exchange is scaled
 /// symmetrically until every row passes on what its own rays measured in all.
 void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_closure,
-                       const std::shared_ptr<MemoryBudget>& budget, StoredFormFactors& result);
+                       const std::shared_ptr<MemoryBudget>& budget, const PhaseOf& phase_of,
+                       StoredFormFactors& result);
 
 }  // namespace lightwell

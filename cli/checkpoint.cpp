@@ -1,0 +1,230 @@
+#include "cli/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+#include <vector>
+
+#include "cli/interrupt.h"
+#include "cli/outputs.h"
+#include "radiosity/solution_file.h"
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace fs = std::filesystem;
+namespace {
+
+std::string size_text(std::int64_t bytes) {
+  constexpr double kilobyte = 1e3, megabyte = 1e6;
+  const auto size = static_cast<double>(bytes);
+  return size < megabyte ? fmt::format("{:.1f} kB", size / kilobyte)
+                         : fmt::format("{:.1f} MB", size / megabyte);
+}
+
+// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+  constexpr const char* plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,%@";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  const auto whole = [&](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(path), error).lexically_normal();
+  };
+  return whole(a) == whole(b);
+}
+
+}  // namespace
+
+std::optional<double> parse_seconds(const std::string& text) {
+  double value = 0.0;
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  if (error != std::errc()) return std::nullopt;
+  std::string unit(end, last);
+  if (unit.starts_with(' ')) unit.erase(0, 1);
+  static const std::vector<std::pair<std::vector<std::string>, double>> units = {
+      {{"", "s", "sec"}, 1.0}, {{"ms"}, 1e-3}, {{"min", "m"}, 60.0}, {{"h"}, 3600.0}};
+  constexpr double least = 0.1, most = 86400.0;
+  for (const auto& [names, seconds] : units) {
+    if (std::find(names.begin(), names.end(), unit) == names.end()) continue;
+    const double asked = value * seconds;
+    if (!(asked >= least && asked <= most)) return std::nullopt;
+    return asked;
+  }
+  return std::nullopt;
+}
+
+void CheckpointArguments::add_to(CLI::App& command) {
+  const std::string group = "Long solves";
+  CLI::Option* const checkpoint =
+      command
+          .add_option("--checkpoint", file, "keep finished work there, so that it can be resumed")
+          ->type_name("FILE")
+          ->group(group);
+  command.add_flag("--resume", resume, "go on with the checkpoint, if there is one")
+      ->needs(checkpoint)
+      ->group(group);
+  command
+      .add_option_function<std::string>(
+          "--every",
+          [this](const std::string& text) {
+            const auto seconds = parse_seconds(text);
+            if (!seconds) {
+              throw CLI::ValidationError(
+                  "--every", fmt::format("'{}' is no time from 0.1 s to 24 h; write a number and "
+                                         "s, min or h, such as 10s or 2min",
+                                         text));
+            }
+            every = *seconds;
+          },
+          "time after which finished work is safe on the disk (default 10s)")
+      ->type_name("TIME")
+      ->needs(checkpoint)
+      ->group(group);
+  command.add_flag("--keep-checkpoint", keep, "do not remove it when the solution is written")
+      ->needs(checkpoint)
+      ->group(group);
+}
+
+Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& of,
+                       const fs::path& output, Console& console)
+    : arguments_(arguments), console_(console) {
+  const fs::path& file = arguments.file;
+  if (file.empty()) return;
+  if (is_same_file(file, output)) {
+    throw InputError(fmt::format(
+        "the checkpoint and the solution cannot both be '{}'; give another name", file.string()));
+  }
+  require_writable(file);
+  const bool exists = fs::exists(file);
+  if (exists && !arguments.resume) {
+    if (Journal::holds_work(file)) {
+      throw InputError(fmt::format(
+          "the checkpoint '{}' holds finished work already; add --resume to go on with it, or "
+          "remove it to start again",
+          file.string()));
+    }
+    fs::remove(file);
+  }
+  if (!exists && arguments.resume) {
+    console.say(fmt::format("note: there is no checkpoint '{}' yet; starting from the beginning",
+                            file.string()));
+  }
+  journal_ = std::make_unique<Journal>(file, of, arguments.every);
+  if (journal_->found() > 0) {
+    console.say(fmt::format("going on with '{}': {} of finished work", file.string(),
+                            size_text(journal_->found())));
+  }
+  if (journal_->torn() > 0) {
+    console.say(
+        fmt::format("note: behind that, {} were left unfinished by a sudden end; they are "
+                    "computed again",
+                    size_text(journal_->torn())));
+  }
+}
+
+Progress Checkpoint::watched(Progress progress) {
+  if (!journal_) return progress;
+  return [this, progress = std::move(progress)](std::string_view phase, double share) {
+    const std::string failure = has_warned_ ? std::string() : journal_->failure();
+    if (!failure.empty()) {
+      has_warned_ = true;
+      console_.say(fmt::format("warning: {}. Solving goes on; what it holds up to now stays usable",
+                               failure));
+    }
+    return progress(phase, share);
+  };
+}
+
+void Checkpoint::rethrow_stopped() {
+  if (!journal_) throw;
+  journal_->close();
+  const std::string file = arguments_.file.string();
+  try {
+    throw;
+  } catch (const Interrupted&) {
+    console_.finish_phase();
+    throw InterruptedWith(fmt::format("interrupted; what was done is in '{}' ({}). To go on:\n  {}",
+                                      file, size_text(journal_->size()),
+                                      command_to_resume(console_.options())));
+  } catch (...) {
+    // A file that holds nothing would only be in the way of the next start.
+    if (!Journal::holds_work(arguments_.file)) {
+      journal_->remove();
+    } else {
+      console_.say(fmt::format("note: what was done is in '{}' ({}); --resume goes on with it",
+                               file, size_text(journal_->size())));
+    }
+    throw;
+  }
+}
+
+void Checkpoint::finish(Report& report) {
+  if (!journal_) return;
+  journal_->close();
+  constexpr double megabyte = 1 << 20;
+  report.add("checkpoint", {{"file", arguments_.file.string()},
+                            {"mb", static_cast<double>(journal_->size()) / megabyte},
+                            {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});
+  const std::string text = fmt::format("the checkpoint '{}' ({})", arguments_.file.string(),
+                                       size_text(journal_->size()));
+  if (arguments_.keep) {
+    const std::string failure = journal_->failure();
+    if (!failure.empty() && !has_warned_) console_.say("warning: " + failure);
+    console_.say("kept " + text);
+  } else {
+    journal_->remove();
+    console_.say("removed " + text + ", which is not needed any more");
+  }
+}
+
+std::optional<SolvedScene> finished_solution(const CheckpointArguments& arguments,
+                                             const Provenance& of, const fs::path& output,
+                                             Console& console) {
+  std::error_code error;
+  if (!arguments.resume || !fs::exists(output, error)) return std::nullopt;
+  std::optional<SolvedScene> solved;
+  try {
+    solved = read_solution(output);
+  } catch (const InputError&) {
+    return std::nullopt;  // whatever it is, it will be replaced
+  }
+  const Provenance& found = solved->solution.provenance;
+  if (found.version != of.version || found.scene_hash != of.scene_hash ||
+      found.options != of.options) {
+    return std::nullopt;
+  }
+  console.say(fmt::format("'{}' is finished: it was solved from this scene with these options",
+                          output.string()));
+  if (!arguments.keep && fs::exists(arguments.file, error)) {
+    // Left by an end between the last two steps.
+    try {
+      Journal(arguments.file, of).remove();
+      console.say(fmt::format("removed the checkpoint '{}', which is not needed any more",
+                              arguments.file.string()));
+    } catch (const std::runtime_error& other) {
+      console.say(fmt::format("note: {}", other.what()));
+    }
+  }
+  return solved;
+}
+
+std::string command_to_resume(const CommonOptions& options) {
+  std::string text;
+  bool resumes = false;
+  for (const std::string& word : options.command_line) {
+    text += (text.empty() ? "" : " ") + quoted(word);
+    resumes = resumes || word == "--resume";
+  }
+  return resumes ? text : text + " --resume";
+}
+
+}  // namespace lightwell

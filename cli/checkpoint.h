@@ -1,0 +1,63 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/console.h"
+#include "cli/report.h"
+#include "radiosity/journal.h"
+
+namespace lightwell {
+
+/// Whether and where finished work is kept, as asked for on the command line.
+struct CheckpointArguments {
+  std::filesystem::path file{};  ///< empty: nowhere
+  double every = 10.0;           ///< seconds
+  bool resume = false, keep = false;
+
+  /// Adds --checkpoint FILE, --every TIME, --resume and --keep-checkpoint.
+  void add_to(CLI::App& command);
+};
+
+/// Seconds: "10s", "2 min", "1.5h", "90"; nothing for what is none or not from 0.1 s to a day.
+std::optional<double> parse_seconds(const std::string& text);
+
+/// What is left of a solve that is stopped, and how people hear of it.
+class Checkpoint {
+ public:
+  /// Opens what was asked for, or does nothing. Throws InputError if a file is there and was not
+  /// asked to be gone on with, or does not serve; std::runtime_error if it cannot be written.
+  Checkpoint(const CheckpointArguments& arguments, const Provenance& of,
+             const std::filesystem::path& output, Console& console);
+
+  /// Null if none was asked for.
+  Journal* journal() { return journal_.get(); }
+  /// Also says, once, if the checkpoint cannot be written any more.
+  Progress watched(Progress progress);
+
+  /// After an exception of the solve: closes the file. Says where the work is kept, and rethrows
+  /// what was thrown; an Interrupted says how to go on.
+  [[noreturn]] void rethrow_stopped();
+  /// The solution is written: removes the file, or says that it stays.
+  void finish(Report& report);
+
+ private:
+  CheckpointArguments arguments_;
+  Console& console_;
+  std::unique_ptr<Journal> journal_{};
+  bool has_warned_ = false;
+};
+
+/// The solution in `output`, if it was asked to go on and there is nothing left to do: it is of the
+/// same scene, options and version. Then no checkpoint is needed any more, and it is removed.
+std::optional<SolvedScene> finished_solution(const CheckpointArguments& arguments,
+                                             const Provenance& of,
+                                             const std::filesystem::path& output, Console& console);
+
+/// The command as it was typed, with --resume.
+std::string command_to_resume(const CommonOptions& options);
+
+}  // namespace lightwell
