@@ -265,6 +265,7 @@ void SolveArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(whole_number(1, 1000000))
       ->group(group);
+  add_accuracy(command, solve.accuracy, group);
   channels.add_to(command, group);
 }
 
@@ -283,13 +284,19 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
 }
 
 std::string SolveArguments::text(const Scene& scene) const {
+  std::string effort = accuracy_text(solve.accuracy);
+  if (solve.accuracy && solve.refine.max_elements > 0) {
+    effort += fmt::format(" --max-elements {}", solve.refine.max_elements);
+  }
+  if (!solve.accuracy) {
+    effort = refinement_text(solve.refine) + fmt::format(" --gather-rays {}", solve.gather.rays);
+  }
   return fmt::format(
-      "{}{} --form-factors {}{} --solver {} --rays {} --gather-rays {} --tolerance {:g} "
-      "--max-sweeps {}{}",
-      mesh.text(scene), refinement_text(solve.refine), form_factors,
+      "{}{} --form-factors {}{} --solver {} --rays {} --tolerance {:g} --max-sweeps {}{}",
+      mesh.text(scene), effort, form_factors,
       hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
-      solve.form_factors.rays_per_patch, solve.gather.rays, solve.solver.tolerance,
-      solve.solver.max_sweeps, channels.text());
+      solve.form_factors.rays_per_patch, solve.solver.tolerance, solve.solver.max_sweeps,
+      channels.text());
 }
 
 void RenderArguments::add_to(CLI::App& command) {

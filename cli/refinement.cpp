@@ -10,22 +10,41 @@
 namespace lightwell {
 namespace {
 
-// "0.5%", "0.5 %", or the same as a share, "0.005"; 0 for "off".
-std::optional<double> parse_tolerance(const std::string& text) {
-  if (text == "off") return 0.0;
+// "0.5%", "0.5 %", "5lx": a number and its unit.
+struct Quantity {
   double value = 0.0;
+  std::string unit{};
+};
+
+std::optional<Quantity> parse_quantity(const std::string& text) {
+  Quantity quantity;
   const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value);
+  const auto [end, error] = std::from_chars(text.data(), last, quantity.value);
   if (error != std::errc()) return std::nullopt;
-  std::string unit(end, last);
-  if (unit.starts_with(' ')) unit.erase(0, 1);
+  quantity.unit.assign(end, last);
+  if (quantity.unit.starts_with(' ')) quantity.unit.erase(0, 1);
+  return quantity;
+}
+
+// "0.5%", or the same as a share, "0.005".
+std::optional<double> parse_share(const std::string& text) {
+  const auto quantity = parse_quantity(text);
+  if (!quantity || (!quantity->unit.empty() && quantity->unit != "%")) return std::nullopt;
   constexpr double percent = 0.01;
-  const double tolerance = unit == "%" ? percent * value : value;
-  if (!unit.empty() && unit != "%") return std::nullopt;
+  const double share = quantity->unit == "%" ? percent * quantity->value : quantity->value;
   // Below a thousandth of a percent there is nothing but rounding; above all, nothing to refine.
   constexpr double least = 1e-5, most = 1.0;
-  if (!(tolerance >= least && tolerance <= most)) return std::nullopt;
-  return tolerance;
+  if (!(share >= least && share <= most)) return std::nullopt;
+  return share;
+}
+
+std::optional<Accuracy> parse_accuracy(const std::string& text) {
+  if (const auto share = parse_share(text)) return Accuracy{.share = *share};
+  const auto quantity = parse_quantity(text);
+  if (!quantity || quantity->unit != "lx") return std::nullopt;
+  constexpr double least = 1e-6, most = 1e9;
+  if (!(quantity->value >= least && quantity->value <= most)) return std::nullopt;
+  return Accuracy{.lux = quantity->value};
 }
 
 const char* outcome_name(RefineOutcome outcome) {
@@ -49,7 +68,7 @@ void add_refinement(CLI::App& command, RefineOptions& options, const std::string
       .add_option_function<std::string>(
           "--refine",
           [&options](const std::string& text) {
-            const auto tolerance = parse_tolerance(text);
+            const auto tolerance = text == "off" ? std::optional(0.0) : parse_share(text);
             if (!tolerance) {
               throw CLI::ValidationError(
                   "--refine",
@@ -67,10 +86,37 @@ void add_refinement(CLI::App& command, RefineOptions& options, const std::string
   command
       .add_option_function<int>(
           "--max-elements", [&options](int most) { options.max_elements = most; },
-          "elements that refinement may make (default: about those of an even mesh of half the edge)")
+          "elements that refinement may make (default: about those of an even mesh of half the "
+          "edge)")
       ->type_name("N")
       ->check(whole_number(1, most_elements))
       ->group(group);
+}
+
+void add_accuracy(CLI::App& command, std::optional<Accuracy>& accuracy, const std::string& group) {
+  command
+      .add_option_function<std::string>(
+          "--accuracy",
+          [&accuracy](const std::string& text) {
+            accuracy = parse_accuracy(text);
+            if (accuracy) return;
+            throw CLI::ValidationError(
+                "--accuracy",
+                fmt::format("'{}' is no accuracy; write a share of the mean irradiance from 0.001% "
+                            "to 100%, such as 1%, or an illuminance, such as 5lx",
+                            text));
+          },
+          "work until the estimated RMS error is below: 1% of the mean irradiance, or 5lx")
+      ->type_name("ERROR")
+      ->excludes(command.get_option("--refine"))
+      ->excludes(command.get_option("--gather-rays"))
+      ->group(group);
+}
+
+std::string accuracy_text(const std::optional<Accuracy>& accuracy) {
+  if (!accuracy) return "";
+  return accuracy->share > 0.0 ? fmt::format(" --accuracy {:g}%", 100.0 * accuracy->share)
+                               : fmt::format(" --accuracy {:g}lx", accuracy->lux);
 }
 
 std::string refinement_text(const RefineOptions& options) {

@@ -184,7 +184,15 @@ void write_json(const std::filesystem::path& file, const Json& json) {
 }
 
 std::string outcome_name(Outcome outcome) {
-  return outcome == Outcome::converged ? "converged" : "max_sweeps_reached";
+  switch (outcome) {
+    case Outcome::max_sweeps_reached:
+      return "max_sweeps_reached";
+    case Outcome::accuracy_missed:
+      return "accuracy_missed";
+    case Outcome::converged:
+      break;
+  }
+  return "converged";
 }
 
 std::string light_name(bool relative_units) {

@@ -92,7 +92,18 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   if (solve_report.refinement.outcome == RefineOutcome::max_elements_reached) {
     console.say("note: refinement " + sentence(solve_report.refinement));
   }
-  if (solved.solution.outcome != Outcome::converged) {
+  if (solve_report.accuracy > 0.0) {
+    report.add("accuracy", {{"asked", solve_report.accuracy},
+                            {"reached", solved.solution.error_estimate},
+                            {"gather_rays", solve_report.gather_rays}});
+  }
+  if (solved.solution.outcome == Outcome::accuracy_missed) {
+    console.say(fmt::format(
+        "warning: an error of {:.3g} % was asked for, and {:.3g} % is left by estimate; what there "
+        "is is written. Allow more --max-elements, or smaller ones with --max-patch-size",
+        100.0 * solve_report.accuracy, 100.0 * solved.solution.error_estimate));
+  }
+  if (solved.solution.outcome == Outcome::max_sweeps_reached) {
     console.say(
         fmt::format("warning: the solver ({}) stopped after {} sweeps at a residual of {:.2g}, "
                     "before the tolerance of {:g} was reached; what it has is written. Allow more "

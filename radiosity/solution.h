@@ -10,7 +10,8 @@
 
 namespace lightwell {
 
-enum class Outcome { converged, max_sweeps_reached };
+/// accuracy_missed: it converged, but the accuracy asked for was out of reach.
+enum class Outcome { converged, max_sweeps_reached, accuracy_missed };
 
 struct StepRecord {
   double residual = 0.0;  ///< max over patches of |M + rho F B - B| relative to the largest B
@@ -58,8 +59,8 @@ struct RadiositySolution {
   /// The part of indirect_irradiance that DirectLight's emitters send by way of mirrors and glass.
   BandArray caustic_irradiance{};
 
-  /// Per element: estimated RMS error of interpolated irradiance over it, of the mean irradiance.
-  /// Empty if the mesh was not refined by the solution.
+  /// Per element: estimated RMS error of interpolated irradiance over it, of the mean irradiance or
+  /// a quarter of the element's own, whichever is more. Empty if the mesh was not refined.
   Eigen::ArrayXf interpolation_error{};
 
   /// The light above by who emits it (see relight.h); empty: it was not kept apart.
@@ -74,7 +75,8 @@ struct RadiositySolution {
   double residual = 0.0;
   EnergyBalance energy{};
   /// Relative RMS error of interpolated irradiance: independent gathers at random points against
-  /// the interpolation.
+  /// the interpolation, relative to the mean irradiance or a quarter of the point's own, whichever
+  /// is more.
   double error_estimate = 0.0;
   std::vector<PhaseSeconds> seconds{};
   Provenance provenance{};

@@ -204,6 +204,18 @@ std::string channel_line(const RadiositySolution& s) {
   return parts.empty() ? "" : fmt::format("channels: {}\n", fmt::join(parts, ", "));
 }
 
+const char* how_it_ended(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::max_sweeps_reached:
+      return "stopped at the most sweeps allowed";
+    case Outcome::accuracy_missed:
+      return "converged, short of the accuracy asked for,";
+    case Outcome::converged:
+      break;
+  }
+  return "converged";
+}
+
 /// What a person wants to know first, for the top of the file.
 std::string summary(const SolvedScene& solved) {
   const PatchMesh& mesh = solved.mesh;
@@ -229,8 +241,7 @@ std::string summary(const SolvedScene& solved) {
       s.metres_per_unit, s.provenance.options, mesh.patch_count(), mesh.element_count(),
       mesh.vertex_count(),
       s.provenance.refinement.empty() ? "" : "refined: " + s.provenance.refinement + "\n",
-      channel_line(s), band_list, s.bands.lumens_per_watt,
-      s.outcome == Outcome::converged ? "converged" : "stopped at the most sweeps allowed",
+      channel_line(s), band_list, s.bands.lumens_per_watt, how_it_ended(s.outcome),
       s.history.size(), s.residual, s.energy.emitted, s.relative_units ? "(no known unit)" : "W",
       s.energy.absorbed, s.energy.escaped, s.energy.unshot, 100.0 * s.error_estimate, total);
 }

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
-#include "mesh/patch_sampler.h"
-#include "radiosity/interpolation_error.h"
+#include "radiosity/error_estimate.h"
 #include "radiosity/journal.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/reconstruct.h"
@@ -17,12 +19,9 @@
 #include "radiosity/solve_radiosity.h"
 #include "radiosity/start_radiosity.h"
 #include "scene/errors.h"
-#include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
-
-constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
 
 class Stopwatch {
  public:
@@ -54,61 +53,6 @@ void require_equations(const SolveOptions& options) {
       fmt::format("the solver 'progressive' {}; use another, such as the default",
                   options.start ? "starts from the emitters and cannot go on from another solution"
                                 : "shoots all light together and cannot keep channels apart"));
-}
-
-// Uniform over the area that reflects: independent gathers against the interpolation.
-double estimate_error(const Scene& scene, const ElementCaster& caster,
-                      const DirectLight& direct_light, const SolveOptions& options,
-                      const RadiositySolution& solution) {
-  const PatchMesh& mesh = caster.mesh();
-  std::vector<double> area_to(mesh.patch_count());
-  double total = 0.0;
-  for (int p = 0; p < mesh.patch_count(); ++p) {
-    // Nobody sees what another surface lies on; looking from above would find that surface.
-    const bool is_seen = caster.hidden_elements(p) == 0;
-    if (is_seen && (mesh.reflectance.row(p) > 0.0f).any()) total += mesh.area[p];
-    area_to[p] = total;
-  }
-  if (!(total > 0.0) || options.error_points < 1) return 0.0;
-
-  std::vector<GatherPoint> points(options.error_points);
-  BandArray caustic = BandArray::Zero(options.error_points, scene.bands.count());
-  BandArray interpolated(options.error_points, scene.bands.count());
-  const BandArray irradiance = solution.irradiance();
-  const SobolPoints sobol(options.error_points);
-  for (int i = 0; i < options.error_points; ++i) {
-    const Eigen::Array4f u = sobol.point(i, error_point_key);
-    const auto at = std::upper_bound(area_to.begin(), area_to.end() - 1, u[0] * total);
-    const int p = static_cast<int>(at - area_to.begin());
-    const PatchPoint point = PatchSampler(mesh, p).point(u[1], u[2]);
-    points[i] = {point.position, point.normal, mesh.facet[point.element]};
-    // The element's own interpolation: look at the point from just above it.
-    const double above = 1e-3 * std::sqrt(mesh.element_area[point.element]);
-    const Ray ray{.origin = point.position + above * point.normal, .direction = -point.normal};
-    ElementHit hit;
-    caster.closest_hits({&ray, 1}, {&hit, 1});
-    if (hit.element < 0)
-      hit = {.facet = mesh.facet[point.element], .element = point.element, .weights = {1, 0, 0, 0}};
-    interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
-    if (solution.caustic_irradiance.size() > 0) {
-      caustic.row(i) = interpolate(mesh, solution.caustic_irradiance, hit).transpose();
-    }
-  }
-  GatherOptions gather_options = options.gather;
-  gather_options.rays = 2 * options.gather.rays;
-  gather_options.replica = options.gather.replica + 1;
-  gather_options.progress = options.progress;
-  gather_options.journal = options.journal;
-  const GatheredIrradiance independent = gather_irradiance(
-      scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
-      gather_options);
-  const BandArray truth = independent.direct + independent.indirect + caustic;
-  const double mean = truth.cast<double>().mean();
-  if (!(mean > 0.0)) return 0.0;
-  const Eigen::ArrayXd reference = truth.cast<double>().rowwise().mean().unaryExpr(
-      [mean](double own) { return error_reference(mean, own); });
-  const Eigen::ArrayXd squares = (interpolated - truth).cast<double>().square().rowwise().mean();
-  return std::sqrt((squares / reference.square()).mean());
 }
 
 // Of patches; `seconds` of the result say what took how long.
@@ -165,6 +109,79 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
   return solution;
 }
 
+// Of the mean irradiance; 0: none is asked for.
+double target_of(const Scene& scene, const SolveOptions& options, const SolvedScene& patches) {
+  if (!options.accuracy) return 0.0;
+  if (options.accuracy->share > 0.0) return options.accuracy->share;
+  if (scene.relative_units) {
+    throw InputError(
+        "the scene's light is in no known unit, so no accuracy in lux can be kept; ask for a share "
+        "of the mean irradiance, such as 1%");
+  }
+  const double mean = mean_illuminance(scene.bands, patches.mesh, patches.solution.patch_radiosity);
+  return mean > 0.0 ? std::min(options.accuracy->lux / mean, 1.0) : 1.0;
+}
+
+// From the light on patches to that at vertices, refined and gathered as exactly as is asked for.
+// `kept_apart` is the direct light, by channel where there are channels.
+void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
+                         const DirectLight& kept_apart, const SolveOptions& options,
+                         SolvedScene& solved, std::vector<PhaseSeconds>& seconds,
+                         SolveReport* report) {
+  const double target = target_of(scene, options, solved);
+  SolveOptions in_force = options;
+  const auto take = [&](const Effort& effort) {
+    in_force.refine.tolerance = effort.refine_tolerance;
+    in_force.gather.rays = effort.gather_rays;
+  };
+  Effort effort{options.refine.tolerance, options.gather.rays};
+  if (target > 0.0) effort = first_effort(target, starts_coarse(options));
+  take(effort);
+  std::map<std::string, double> spent;
+  Stopwatch watch;
+  RadiositySolution& solution = solved.solution;
+  PatchMesh base = std::move(solved.mesh);
+  const bool may_try_again = target > 0.0;
+  std::optional<Draft> draft;
+  std::optional<ElementCaster> caster;
+  for (int attempt = 0;; ++attempt) {
+    if (!draft) {
+      caster.emplace(base);
+      draft = make_draft(scene, *caster, kept_apart, in_force, solution);
+      caster.reset();
+      PatchMesh& lit = draft->refined ? *draft->refined : base;
+      solved.mesh = may_try_again ? lit : std::move(lit);
+      if (!may_try_again) base = {};
+      caster.emplace(solved.mesh);
+      if (draft->refined) spent["refine"] += watch.lap();
+    }
+    reconstruct(scene, *caster, kept_apart, in_force, may_try_again ? *draft : std::move(*draft),
+                solution);
+    relight(solved, scales_in_force(solution));
+    spent["gather"] += watch.lap();
+    solution.error_estimate = estimate_error(scene, *caster, direct_light, in_force, solution);
+    spent["error_estimate"] += watch.lap();
+    if (!may_try_again || solution.error_estimate <= target) break;
+    const auto next =
+        next_effort(effort, target, solution.error_estimate, draft->refinement, attempt);
+    if (!next) {
+      if (solution.outcome == Outcome::converged) solution.outcome = Outcome::accuracy_missed;
+      break;
+    }
+    if (next->refine_tolerance < effort.refine_tolerance) draft.reset();
+    effort = *next;
+    take(effort);
+  }
+  if (draft->refined) solution.provenance.refinement = sentence(draft->refinement);
+  for (const char* phase : {"refine", "gather", "error_estimate"}) {
+    if (spent[phase] > 0.0) seconds.push_back({phase, spent[phase]});
+  }
+  if (!report) return;
+  report->refinement = draft->refinement;
+  report->accuracy = target;
+  report->gather_rays = effort.gather_rays;
+}
+
 }  // namespace
 
 bool starts_coarse(const SolveOptions& options) {
@@ -208,21 +225,9 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
 
   std::optional<DirectLight> by_channel;
   if (!options.channels.empty()) by_channel.emplace(scene, solved.mesh, options.channels);
-  const DirectLight& kept_apart = by_channel ? *by_channel : direct_light;
-  Draft draft = make_draft(scene, *caster, kept_apart, options, solution);
-  if (draft.refined) {
-    caster.reset();
-    solved.mesh = std::move(*draft.refined);
-    caster.emplace(solved.mesh);
-    seconds.push_back({"refine", watch.lap()});
-    solution.provenance.refinement = sentence(draft.refinement);
-    if (report) report->refinement = draft.refinement;
-  }
-  reconstruct(scene, *caster, kept_apart, options, std::move(draft), solution);
-  relight(solved, scales_in_force(solution));
-  seconds.push_back({"gather", watch.lap()});
-  solution.error_estimate = estimate_error(scene, *caster, direct_light, options, solution);
-  seconds.push_back({"error_estimate", watch.lap()});
+  caster.reset();
+  illuminate_elements(scene, direct_light, by_channel ? *by_channel : direct_light, options, solved,
+                      seconds, report);
   solution.seconds = std::move(seconds);
   solution.provenance.scene_file = scene.file.string();
   solution.provenance.scene_hash = hash;

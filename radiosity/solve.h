@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "radiosity/accuracy.h"
 #include "radiosity/emitter_channels.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/form_factors.h"
@@ -24,6 +25,10 @@ struct SolveOptions {
   std::optional<ProgressiveOptions> progressive{};
   GatherOptions gather{.rays = 1024};
   RefineOptions refine{};
+  /// Chooses the rays of `gather` and, where elements are split, the tolerance of `refine`, and
+  /// tries again with more until the error estimate is below. Where it gives up, the outcome of the
+  /// solution says so.
+  std::optional<Accuracy> accuracy{};
   int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
   /// Whose light is kept apart, so that relight() can dim it; not with `progressive`.
   EmitterChannels channels{};
@@ -47,6 +52,8 @@ struct SolvedScene {
 struct SolveReport {
   FormFactorReport form_factors{};
   RefineReport refinement{};
+  double accuracy = 0.0;  ///< what was asked for, of the mean irradiance; 0: nothing was
+  int gather_rays = 0;    ///< in force
 };
 
 /// Whether elements start twice as long as asked for, and are split where that matters: unless

@@ -44,8 +44,9 @@ LightVector solve_by_conjugate_gradients(SolverRun& run) {
   while (run.goes_on(SolverMethod::conjugate_gradients, B, r)) {
     LightVector p = r;
     uniform.deflate(weight, r, p);
-    LaneArray rr = weighted_dot(weight, r, r);
-    do {
+    LaneArray rr = weighted_dot(weight, r, r), least = rr;
+    bool goes_on = true, is_astray = false;
+    while (goes_on && !is_astray) {
       const LightVector q = system.product(p);
       const LaneArray alpha = quotient(rr, weighted_dot(weight, p, q));
       add(B, alpha, p);
@@ -54,8 +55,14 @@ LightVector solve_by_conjugate_gradients(SolverRun& run) {
       rr = weighted_dot(weight, r, r);
       scale_and_add(p, quotient(rr, before), r);
       uniform.deflate(weight, r, p);
-    } while (run.goes_on(SolverMethod::conjugate_gradients, B, r));
-    if (run.outcome() != Outcome::converged) break;
+      // Where a tolerance is asked for that rounding does not allow, directions lose their meaning
+      // and a band's B would run away.
+      constexpr double grown = 1e4;
+      least = least.min(rr);
+      is_astray = (rr > grown * least).any();
+      goes_on = run.goes_on(SolverMethod::conjugate_gradients, B, r);
+    }
+    if (!goes_on && run.outcome() != Outcome::converged) break;
     r = system.residual(B);  // r was carried along, with rounding
     uniform.correct(r, B);
   }

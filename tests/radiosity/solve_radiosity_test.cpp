@@ -244,6 +244,17 @@ TEST_P(Solver, FuseIsReported) {
   EXPECT_GT(s.residual, 1e-12);
 }
 
+// Rows are floats: a residual of 1e-16 is out of reach, and what is tried below rounding must not
+// lead away from what was found.
+TEST_P(Solver, StaysWhereRoundingEndsIt) {
+  const RandomRoom room(60, 3);
+  const GivenFormFactors F(room.F);
+  const auto found = solve(room.mesh, F, {.tolerance = 1e-6});
+  const auto beyond = solve(room.mesh, F, {.tolerance = 1e-18, .max_sweeps = 400});
+  EXPECT_LT((beyond.patch_radiosity - found.patch_radiosity).abs().maxCoeff(),
+            2e-6 * found.patch_radiosity.maxCoeff());
+}
+
 TEST_P(Solver, GoesOnFromWhatItIsGiven) {
   const RandomRoom room(50, 3);
   const GivenFormFactors F(room.F);

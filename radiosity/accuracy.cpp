@@ -1,0 +1,66 @@
+#include "radiosity/accuracy.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace lightwell {
+namespace {
+
+// Both are independent: 0.6^2 + 0.6^2 leaves room for what refinement has not seen.
+constexpr double share_of_interpolation = 0.6, share_of_noise = 0.6;
+constexpr int fewest_rays = 128, most_rays = 1 << 15;
+constexpr int most_attempts = 4;
+// The error of stratified rays in a room falls with about this power of their number.
+constexpr double order = 2.0 / 3.0;
+
+int power_of_two(double rays) {
+  const double limited = std::clamp(rays, double{fewest_rays}, double{most_rays});
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(limited))));
+}
+
+}  // namespace
+
+double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
+                        const BandArray& patch_radiosity) {
+  double sum = 0.0, area = 0.0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const Eigen::ArrayXf rho = mesh.reflectance.row(p).transpose();
+    const double known = (rho > 0.0f).cast<double>().sum();
+    if (!(known > 0.0)) continue;
+    const Eigen::ArrayXf reflected = (patch_radiosity.row(p) - mesh.emission.row(p)).transpose();
+    Spectrum E = (rho > 0.0f).select(reflected / rho.max(1e-30f), 0.0f);
+    // A band that is absorbed tells nothing; others stand for it.
+    const auto mean = static_cast<float>(E.cast<double>().sum() / known);
+    E = (rho > 0.0f).select(E, mean);
+    sum += mesh.area[p] * luminous(bands, E);
+    area += mesh.area[p];
+  }
+  return area > 0.0 ? sum / area : 0.0;
+}
+
+Effort first_effort(double target, bool refines) {
+  constexpr double rays_for_one_percent = 1024.0;
+  return {.refine_tolerance = refines ? share_of_interpolation * target : 0.0,
+          .gather_rays = power_of_two(rays_for_one_percent * std::pow(0.01 / target, 1.0 / order))};
+}
+
+std::optional<Effort> next_effort(const Effort& spent, double target, double error,
+                                  const RefineReport& refinement, int attempt) {
+  const bool can_split = refinement.outcome == RefineOutcome::tolerance_reached;
+  if (attempt + 1 >= most_attempts || (!can_split && refinement.estimate >= target)) {
+    return std::nullopt;
+  }
+  Effort next = spent;
+  const double noise =
+      std::sqrt(std::max(error * error - refinement.estimate * refinement.estimate, 0.0));
+  const double times = std::pow(noise / (share_of_noise * target), 1.0 / order);
+  if (times > 1.0) next.gather_rays = power_of_two(spent.gather_rays * std::min(times, 16.0));
+  // Rays alone did not do it, so interpolation misses more than was seen.
+  if (attempt > 0 && can_split) next.refine_tolerance *= 0.6;
+  const bool is_more =
+      next.gather_rays > spent.gather_rays || next.refine_tolerance < spent.refine_tolerance;
+  return is_more ? std::optional(next) : std::nullopt;
+}
+
+}  // namespace lightwell

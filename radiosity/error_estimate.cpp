@@ -1,0 +1,71 @@
+#include "radiosity/error_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/patch_sampler.h"
+#include "radiosity/interpolation_error.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
+
+}  // namespace
+
+double estimate_error(const Scene& scene, const ElementCaster& caster,
+                      const DirectLight& direct_light, const SolveOptions& options,
+                      const RadiositySolution& solution) {
+  const PatchMesh& mesh = caster.mesh();
+  std::vector<double> area_to(mesh.patch_count());
+  double total = 0.0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    // Nobody sees what another surface lies on; looking from above would find that surface.
+    const bool is_seen = caster.hidden_elements(p) == 0;
+    if (is_seen && (mesh.reflectance.row(p) > 0.0f).any()) total += mesh.area[p];
+    area_to[p] = total;
+  }
+  if (!(total > 0.0) || options.error_points < 1) return 0.0;
+
+  std::vector<GatherPoint> points(options.error_points);
+  BandArray caustic = BandArray::Zero(options.error_points, scene.bands.count());
+  BandArray interpolated(options.error_points, scene.bands.count());
+  const BandArray irradiance = solution.irradiance();
+  const SobolPoints sobol(options.error_points);
+  for (int i = 0; i < options.error_points; ++i) {
+    const Eigen::Array4f u = sobol.point(i, error_point_key);
+    const auto at = std::upper_bound(area_to.begin(), area_to.end() - 1, u[0] * total);
+    const int p = static_cast<int>(at - area_to.begin());
+    const PatchPoint point = PatchSampler(mesh, p).point(u[1], u[2]);
+    points[i] = {point.position, point.normal, mesh.facet[point.element]};
+    // The element's own interpolation: look at the point from just above it.
+    const double above = 1e-3 * std::sqrt(mesh.element_area[point.element]);
+    const Ray ray{.origin = point.position + above * point.normal, .direction = -point.normal};
+    ElementHit hit;
+    caster.closest_hits({&ray, 1}, {&hit, 1});
+    if (hit.element < 0)
+      hit = {.facet = mesh.facet[point.element], .element = point.element, .weights = {1, 0, 0, 0}};
+    interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
+    if (solution.caustic_irradiance.size() > 0) {
+      caustic.row(i) = interpolate(mesh, solution.caustic_irradiance, hit).transpose();
+    }
+  }
+  GatherOptions gather_options = options.gather;
+  gather_options.rays = 2 * options.gather.rays;
+  gather_options.replica = options.gather.replica + 1;
+  gather_options.progress = options.progress;
+  gather_options.journal = options.journal;
+  const GatheredIrradiance independent = gather_irradiance(
+      scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
+      gather_options);
+  const BandArray truth = independent.direct + independent.indirect + caustic;
+  const double mean = truth.cast<double>().mean();
+  if (!(mean > 0.0)) return 0.0;
+  const Eigen::ArrayXd reference = truth.cast<double>().rowwise().mean().unaryExpr(
+      [mean](double own) { return error_reference(mean, own); });
+  const Eigen::ArrayXd squares = (interpolated - truth).cast<double>().square().rowwise().mean();
+  return std::sqrt((squares / reference.square()).mean());
+}
+
+}  // namespace lightwell

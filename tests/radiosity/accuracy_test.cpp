@@ -1,0 +1,140 @@
+#include "radiosity/accuracy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "mesh/patch_sampler.h"
+#include "radiosity/solve.h"
+#include "scene/errors.h"
+#include "scene/sampling.h"
+#include "two_lamps.h"
+
+namespace lightwell {
+namespace {
+
+SolveOptions quick() {
+  SolveOptions options;
+  options.mesh.max_patch_size = 0.35;
+  return options;
+}
+
+// At places spread evenly over the area of `where`: places x bands, as `solved` interpolates it.
+BandArray irradiance_at_places(const SolvedScene& solved, const PatchMesh& where, int count) {
+  const ElementCaster caster(solved.mesh), hidden(where);
+  std::vector<int> patches;
+  double area = 0.0;
+  for (int p = 0; p < where.patch_count(); ++p) {
+    if (hidden.hidden_elements(p) > 0) continue;
+    patches.push_back(p);
+    area += where.area[p];
+  }
+  const BandArray E = solved.solution.irradiance();
+  BandArray found(count, E.cols());
+  const SobolPoints sobol(count);
+  std::size_t at = 0;
+  double passed = 0.0;
+  for (int i = 0; i < count; ++i) {
+    while (at + 1 < patches.size() && passed + where.area[patches[at]] < (i + 0.5) / count * area) {
+      passed += where.area[patches[at++]];
+    }
+    const Eigen::Array4f u = sobol.point(i, 77);
+    const PatchPoint place = PatchSampler(where, patches[at]).point(u[0], u[1]);
+    const Ray down{.origin = place.position + 1e-4 * place.normal, .direction = -place.normal};
+    ElementHit hit;
+    caster.closest_hits({&down, 1}, {&hit, 1});
+    found.row(i) = interpolate(solved.mesh, E, hit).transpose();
+  }
+  return found;
+}
+
+TEST(Accuracy, IsKept) {
+  const Scene scene = test::two_lamps();
+  SolveOptions exact = quick();
+  exact.mesh.elements_per_patch_edge = 6;
+  exact.refine.tolerance = 0.0;
+  exact.gather.rays = 4096;
+  exact.gather.shadows = {.min_rays = 128, .max_rays = 256};
+  const SolvedScene truth = solve_scene(scene, exact);
+  constexpr int places = 4096;
+  const BandArray E = irradiance_at_places(truth, truth.mesh, places);
+  for (const double share : {0.05, 0.02}) {
+    SolveOptions options = quick();
+    options.accuracy = Accuracy{.share = share};
+    SolveReport report;
+    const SolvedScene solved = solve_scene(scene, options, &report);
+    const BandArray off = irradiance_at_places(solved, truth.mesh, places) - E;
+    const double error = std::sqrt(off.cast<double>().square().mean()) / E.cast<double>().mean();
+    std::printf("asked for %.3f: estimated %.4f, off by %.4f; %d elements, %d rays\n", share,
+                solved.solution.error_estimate, error, solved.mesh.element_count(),
+                report.gather_rays);
+    EXPECT_EQ(solved.solution.outcome, Outcome::converged);
+    EXPECT_LE(solved.solution.error_estimate, share);
+    EXPECT_DOUBLE_EQ(report.accuracy, share);
+    // An RMS of 512 places, most of whose error is in the tenth that shadows' edges cross, is known
+    // to 1 / sqrt(2 * 51) = 10 %, twice that at worst; what the truth is off by itself comes on
+    // top.
+    EXPECT_LE(error, 1.2 * share + truth.solution.error_estimate / 2);
+    // Not at any price: the estimate is no more than five times the error.
+    EXPECT_LE(solved.solution.error_estimate, 5.0 * error);
+  }
+}
+
+TEST(Accuracy, OutOfReachIsSaid) {
+  SolveOptions options = quick();
+  options.accuracy = Accuracy{.share = 0.001};
+  options.refine.max_elements = 3000;
+  const SolvedScene solved = solve_scene(test::two_lamps(), options);
+  EXPECT_EQ(solved.solution.outcome, Outcome::accuracy_missed);
+  EXPECT_GT(solved.solution.error_estimate, 0.001);
+  EXPECT_LE(solved.mesh.element_count(), 3000);
+  EXPECT_TRUE((solved.solution.irradiance() >= 0.0f).all());
+}
+
+TEST(Accuracy, InLuxIsAShareOfTheMeanIlluminance) {
+  Scene scene = test::two_lamps();
+  SolveOptions options = quick();
+  options.accuracy = Accuracy{.lux = 50.0};
+  SolveReport report;
+  const SolvedScene solved = solve_scene(scene, options, &report);
+  const double mean = mean_illuminance(scene.bands, solved.mesh, solved.solution.patch_radiosity);
+  EXPECT_NEAR(report.accuracy, 50.0 / mean, 1e-6 * report.accuracy);
+  EXPECT_LE(solved.solution.error_estimate * mean, 50.0);
+  scene.relative_units = true;
+  EXPECT_THROW(solve_scene(scene, options), InputError);
+}
+
+// In a closed grey room B = M / (1 - rho) everywhere, and so is E.
+TEST(Accuracy, MeanIlluminanceOfAFurnace) {
+  Scene scene;
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 2.0f));
+  test::add_box(scene, {0, 0, 0}, {1, 2, 3}, {grey, grey, grey, grey, grey, grey}, true);
+  const PatchMesh mesh = build_patches(scene);
+  const BandArray B = BandArray::Constant(mesh.patch_count(), 3, 4.0f);
+  EXPECT_NEAR(mean_illuminance(scene.bands, mesh, B), 4.0 * scene.bands.lumens_per_watt, 1e-3);
+}
+
+TEST(Accuracy, EffortFollowsTheError) {
+  const Effort first = first_effort(0.01, true);
+  EXPECT_GT(first.refine_tolerance, 0.0);
+  EXPECT_LT(first.refine_tolerance, 0.01);
+  EXPECT_GT(first_effort(0.005, true).gather_rays, first.gather_rays);
+  EXPECT_EQ(first_effort(0.01, false).refine_tolerance, 0.0);
+
+  RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.006};
+  const auto noisy = next_effort(first, 0.01, 0.02, reached, 0);
+  ASSERT_TRUE(noisy);
+  EXPECT_GT(noisy->gather_rays, first.gather_rays);
+  EXPECT_EQ(noisy->refine_tolerance, first.refine_tolerance);
+  const auto again = next_effort(*noisy, 0.01, 0.012, reached, 1);
+  ASSERT_TRUE(again);
+  EXPECT_LT(again->refine_tolerance, first.refine_tolerance);
+
+  RefineReport full{.outcome = RefineOutcome::max_elements_reached, .estimate = 0.015};
+  EXPECT_FALSE(next_effort(first, 0.01, 0.02, full, 0));
+  EXPECT_FALSE(next_effort(first, 0.01, 0.02, reached, 20));
+}
+
+}  // namespace
+}  // namespace lightwell
