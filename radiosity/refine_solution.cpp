@@ -14,8 +14,8 @@
 namespace lightwell {
 namespace {
 
-// About as many as elements of a quarter of the edge everywhere would be, both sides; those that are
-// small already, leaves and crumbs, would stay what they are.
+// About as many as elements of a quarter of the edge everywhere would be, both sides; those that
+// are small already, leaves and crumbs, would stay what they are.
 std::int64_t default_room(const RefinedElements& elements) {
   std::vector<double> areas;
   double total = 0.0;
@@ -59,6 +59,13 @@ class Refinement {
                         .elements_at_first = elements_.element_count()};
     while (report.outcome == RefineOutcome::off) {
       std::vector<int> marks = cells_to_split();
+      // No more than there may be elements for, each split making three of them or more. (Bounds
+      // fall when they are measured, and others come to the front.)
+      const std::int64_t room =
+          std::max<std::int64_t>(max_elements_ - elements_.element_count(), 0);
+      constexpr std::size_t at_once = 4096;
+      const std::size_t most = std::max(static_cast<std::size_t>(room / 3 + 1), at_once);
+      if (marks.size() > most) marks.resize(most);
       if (sum_ <= allowed_) {
         report.outcome = RefineOutcome::tolerance_reached;
       } else if (marks.empty()) {
@@ -68,6 +75,7 @@ class Refinement {
         ++report.rounds;
       }
     }
+    expect_of_unmeasured();
     cells_to_split();
     report.estimate = error_.area() > 0.0 ? std::sqrt(sum_ / error_.area()) : 0.0;
     report.elements = elements_.element_count();
@@ -111,6 +119,15 @@ class Refinement {
       marks.push_back(cell);
     }
     return marks;
+  }
+
+  // A split leaves a sixteenth of the squared error where light is smooth, half of it along an edge:
+  // for those that nobody has measured since, something between.
+  void expect_of_unmeasured() {
+    for (const int cell : elements_.leaves()) {
+      if (measured_[cell] || elements_.level(cell) == 0) continue;
+      for (double& square : squares_[cell]) square *= 0.25;
+    }
   }
 
   // Whether any of them had not been measured yet.

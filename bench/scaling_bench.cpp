@@ -1,0 +1,148 @@
+// Time and memory of a solve over the number of elements.
+//
+//   scaling_bench [MOST_ELEMENTS [PLOT.svg]]     default: 100000
+//
+// A room with a lamp and 100 boxes on its floor, cut into even patches of falling size: the whole
+// first pass with the options of `lightwell solve` but for the even elements (refinement would
+// choose its own). Seconds are those of all cores together; peak memory is the process's, which
+// only grows, as the scenes do. With PLOT.svg it draws both.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "grey_scene.h"
+#include "radiosity/solve.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace {
+
+using namespace lightwell;
+
+constexpr double room_size = 10.0, room_height = 3.0;
+
+Scene furnished_room() {
+  Scene scene = grey_scene();
+  Material lamp = scene.materials[0];
+  lamp.name = "lamp";
+  lamp.emission = constant_spectrum(scene.bands, 100.0f);
+  scene.materials.push_back(lamp);
+  add_box(scene, {0, 0, 0}, {room_size, room_size, room_height}, true);
+  add_rectangle(scene, 1, {4.5, 4.5, 2.9}, Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
+  constexpr int rows = 10;
+  for (int i = 0; i < rows * rows; ++i) {
+    const auto key = static_cast<std::uint64_t>(i);
+    const double width = 0.2 + 0.4 * random_uniform(random_key(key, 1));
+    const double height = 0.3 + 1.2 * random_uniform(random_key(key, 2));
+    add_box(scene, {i % rows + 0.2, i / rows + 0.2, 0.0}, {width, width, height}, false);
+  }
+  return scene;
+}
+
+struct Row {
+  int elements = 0;
+  double seconds = 0.0, megabytes = 0.0;
+};
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  constexpr double kilobytes = 1024.0;
+  return static_cast<double>(usage.ru_maxrss) / kilobytes;
+}
+
+Row measure(const Scene& scene, double patch_size) {
+  const std::clock_t start = std::clock();
+  SolveOptions options{.mesh = {.max_patch_size = patch_size}, .refine = {.tolerance = 0.0}};
+  const SolvedScene solved = solve_scene(scene, options);
+  const Row row{.elements = solved.mesh.element_count(),
+                .seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC,
+                .megabytes = peak_megabytes()};
+  fmt::print("{:8} elements {:7} patches {:8.2f} s {:7.0f} MB  error {:.2f} %  (", row.elements,
+             solved.mesh.patch_count(), row.seconds, row.megabytes,
+             100.0 * solved.solution.error_estimate);
+  for (const PhaseSeconds& phase : solved.solution.seconds) {
+    fmt::print(" {} {:.1f}", phase.phase, phase.seconds);
+  }
+  fmt::print(" s of wall)\n");
+  std::fflush(stdout);
+  return row;
+}
+
+// Of seconds (or megabytes) over elements, from one row to the next.
+double exponent(const Row& a, const Row& b, double Row::*what) {
+  return std::log(b.*what / a.*what) / std::log(static_cast<double>(b.elements) / a.elements);
+}
+
+constexpr double width = 520, height = 300, left = 60, top = 30, decades = 3.0;
+
+std::string curve(const std::vector<Row>& rows, double Row::*what, double least,
+                  const std::string& colour) {
+  std::string path, dots;
+  for (const Row& row : rows) {
+    const double x = left + width * (std::log10(row.elements) - 3.0) / decades;
+    const double y = top + height * (1.0 - std::log10(row.*what / least) / (decades + 1.0));
+    path += fmt::format("{}{:.1f} {:.1f} ", path.empty() ? "M" : "L", x, y);
+    dots +=
+        fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x, y, colour);
+  }
+  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n{}", path,
+                     colour, dots);
+}
+
+void draw(const std::string& file, const std::vector<Row>& rows) {
+  std::ofstream out(file);
+  out << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 400" font-family="sans-serif" font-size="12">)"
+      << "\n<rect width=\"640\" height=\"400\" fill=\"white\"/>\n";
+  for (int d = 0; d <= 3; ++d) {
+    const double x = left + width * d / decades;
+    out << fmt::format(
+        "<path d=\"M{0:.1f} {1:.1f} V{2:.1f}\" stroke=\"#ddd\"/>\n"
+        "<text x=\"{0:.1f}\" y=\"{3:.1f}\" text-anchor=\"middle\">10<tspan dy=\"-5\" "
+        "font-size=\"9\">{4}</tspan></text>\n",
+        x, top, top + height, top + height + 18, d + 3);
+  }
+  constexpr double least_seconds = 0.1, least_megabytes = 10.0;
+  for (int d = 0; d <= 4; ++d) {
+    const double y = top + height * (1.0 - d / (decades + 1.0));
+    out << fmt::format(
+        "<path d=\"M{0:.1f} {1:.1f} H{2:.1f}\" stroke=\"#ddd\"/>\n"
+        "<text x=\"{3:.1f}\" y=\"{4:.1f}\" text-anchor=\"end\" fill=\"#c0392b\">{5:g} s</text>\n"
+        "<text x=\"{6:.1f}\" y=\"{4:.1f}\" fill=\"#2471a3\">{7:g} MB</text>\n",
+        left, y, left + width, left - 6, y + 4, least_seconds * std::pow(10.0, d), left + width + 4,
+        least_megabytes * std::pow(10.0, d));
+  }
+  out << curve(rows, &Row::seconds, least_seconds, "#c0392b")
+      << curve(rows, &Row::megabytes, least_megabytes, "#2471a3")
+      << fmt::format(
+             "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">elements</text>\n"
+             "<text x=\"{}\" y=\"18\" text-anchor=\"middle\">processor time and peak memory of "
+             "a solve</text>\n",
+             left + width / 2, top + height + 38, left + width / 2)
+      << "</svg>\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int most_elements = argc > 1 ? std::atoi(argv[1]) : 100000;
+  const Scene scene = furnished_room();
+  fmt::print("a room with 100 boxes, {} threads\n", thread_count());
+  std::vector<Row> rows;
+  for (double patch_size = 1.6;; patch_size /= std::sqrt(2.0)) {
+    rows.push_back(measure(scene, patch_size));
+    if (2 * rows.back().elements > most_elements) break;
+  }
+  const Row &first = rows[rows.size() > 7 ? rows.size() - 7 : 0], &last = rows.back();
+  fmt::print("from {} to {} elements seconds grow as n^{:.2f}, memory as n^{:.2f}\n",
+             first.elements, last.elements, exponent(first, last, &Row::seconds),
+             exponent(first, last, &Row::megabytes));
+  if (argc > 2) draw(argv[2], rows);
+}
