@@ -54,7 +54,7 @@ Action add_solve(CLI::App& command) {
       ->type_name("FILE")
       ->check(with_extension({".vtp"}));
   arguments->solve.add_to(command);
-  arguments->checkpoint.add_to(command);
+  arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::all);
   command.footer(
       "Example: lightwell solve cornell/cornell.toml -o cornell.vtp --max-patch-size 25");
   return [arguments](Console& console) { return solve(*arguments, console); };
