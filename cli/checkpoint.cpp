@@ -62,36 +62,45 @@ std::optional<double> parse_seconds(const std::string& text) {
   return std::nullopt;
 }
 
-void CheckpointArguments::add_to(CLI::App& command) {
-  const std::string group = "Long solves";
-  CLI::Option* const checkpoint =
-      command
-          .add_option("--checkpoint", file, "keep finished work there, so that it can be resumed")
-          ->type_name("FILE")
-          ->group(group);
-  command.add_flag("--resume", resume, "go on with the checkpoint, if there is one")
-      ->needs(checkpoint)
-      ->group(group);
+void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on) {
+  const std::string group = "How the light is solved";
+  const std::string more = help_on == HelpOn::all ? group : std::string();  // CLI11: hidden
   command
-      .add_option_function<std::string>(
-          "--every",
-          [this](const std::string& text) {
-            const auto seconds = parse_seconds(text);
-            if (!seconds) {
-              throw CLI::ValidationError(
-                  "--every", fmt::format("'{}' is no time from 0.1 s to 24 h; write a number and "
-                                         "s, min or h, such as 10s or 2min",
-                                         text));
-            }
-            every = *seconds;
-          },
-          "time after which finished work is safe on the disk (default 10s)")
-      ->type_name("TIME")
-      ->needs(checkpoint)
+      .add_option(
+          "--checkpoint", file,
+          help_on == HelpOn::all
+              ? "keep finished work there, so that --resume can go on with it"
+              : "keep finished work there; 'lightwell solve --help' shows what belongs to it")
+      ->type_name("FILE")
       ->group(group);
+  command.add_flag("--resume", resume, "go on with the checkpoint, if there is one")->group(more);
+  CLI::Option* const time =
+      command
+          .add_option_function<std::string>(
+              "--every",
+              [this](const std::string& text) {
+                const auto seconds = parse_seconds(text);
+                if (!seconds) {
+                  throw CLI::ValidationError(
+                      "--every", fmt::format("'{}' is no time from 0.1 s to 24 h; write a number "
+                                             "and s, min or h, such as 10s or 2min",
+                                             text));
+                }
+                every = *seconds;
+              },
+              "time after which finished work is safe on the disk (default 10s)")
+          ->type_name("TIME")
+          ->group(more);
   command.add_flag("--keep-checkpoint", keep, "do not remove it when the solution is written")
-      ->needs(checkpoint)
-      ->group(group);
+      ->group(more);
+  command.parse_complete_callback([this, time] {
+    if (!file.empty()) return;
+    for (const auto& [is_given, name] :
+         {std::pair(resume, "--resume"), std::pair(time->count() > 0, "--every"),
+          std::pair(keep, "--keep-checkpoint")}) {
+      if (is_given) throw CLI::ValidationError(name, "it needs --checkpoint FILE");
+    }
+  });
 }
 
 Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& of,

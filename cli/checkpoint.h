@@ -19,7 +19,8 @@ struct CheckpointArguments {
   bool resume = false, keep = false;
 
   /// Adds --checkpoint FILE, --every TIME, --resume and --keep-checkpoint.
-  void add_to(CLI::App& command);
+  enum class HelpOn { all, first };  ///< which of them --help shows
+  void add_to(CLI::App& command, HelpOn help_on);
 };
 
 /// Seconds: "10s", "2 min", "1.5h", "90"; nothing for what is none or not from 0.1 s to a day.

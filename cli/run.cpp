@@ -86,7 +86,7 @@ Action add_run(CLI::App& command) {
   command.add_option("-o,--output", arguments->output, "folder for the results (SCENE-output)")
       ->type_name("DIR");
   arguments->solve.add_to(command);
-  arguments->checkpoint.add_to(command);
+  arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
   command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");
   return [arguments](Console& console) { return run(*arguments, console); };

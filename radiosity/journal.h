@@ -47,7 +47,7 @@ class Journal {
   /// Bytes in the file now.
   std::int64_t size() const;
   /// Bytes of memory that are taken up at most, beside what is taken already.
-  static constexpr std::int64_t most_buffered = 4 << 20;
+  static constexpr std::int64_t most_buffered = 4 << 20;  // as JournalWriter's
 
   /// The number of a phase, which is begun if it is new.
   int phase(std::string_view name, std::uint64_t fingerprint);

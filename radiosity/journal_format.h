@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "radiosity/fingerprint.h"
 #include "radiosity/solution.h"
 
 namespace lightwell {
@@ -40,6 +42,21 @@ struct StateHead {
   std::uint64_t size = 0, checksum = 0;
 };
 
+/// The checksum of a record: of its head, then of its bytes.
+class RecordChecksum {
+ public:
+  explicit RecordChecksum(const RecordHead& head);
+  /// What comes next: pieces of `piece` bytes, but for the last.
+  void add(std::span<const std::byte> bytes) { print_.add_bytes(bytes); }
+  void add_in_pieces(std::span<const std::byte> bytes);
+  std::uint64_t value() const { return print_.value(); }
+
+  static constexpr std::size_t piece = 1 << 16;
+
+ private:
+  Fingerprint print_;
+};
+
 /// A whole record of the bytes; of slots, which have none yet, the head.
 std::vector<std::byte> journal_record(RecordHead head, std::span<const std::byte> bytes);
 std::uint64_t state_checksum(const StateHead& head, std::span<const std::byte> bytes);
@@ -64,8 +81,13 @@ struct JournalContents {
   std::int64_t torn = 0;  ///< bytes behind it, of records that a sudden end left unfinished
 };
 
-/// The lines a journal begins with.
+/// The lines a journal begins with, of which the last is the checksum of the others.
 std::string journal_header(const Provenance& of);
+std::string journal_checksum_line(std::string_view lines);
+inline constexpr std::string_view journal_first_words = "lightwell-checkpoint ";
+
+/// Throws the InputError that says "the checkpoint 'path' " and the reason.
+[[noreturn]] void reject_journal(const std::filesystem::path& path, const std::string& reason);
 
 /// Reads all of an open file once, in small pieces. What lies behind the last whole record is torn,
 /// unless the disk had confirmed it. Throws InputError naming `path`, with the reason: no journal,

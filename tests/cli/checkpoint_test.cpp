@@ -176,8 +176,9 @@ TEST_F(CheckpointTest, WrongUseIsSaidAtOnce) {
     EXPECT_TRUE(says(ended.err, reason));
     EXPECT_FALSE(exists("S.vtp"));
   };
-  refused({"--resume"}, 2, "--checkpoint");
-  refused({"--every", "10s"}, 2, "--checkpoint");
+  refused({"--resume"}, 2, "--resume: it needs --checkpoint FILE");
+  refused({"--every", "10s"}, 2, "--every: it needs --checkpoint FILE");
+  refused({"--keep-checkpoint"}, 2, "--keep-checkpoint: it needs --checkpoint FILE");
   refused({"--checkpoint", "C", "--every", "soon"}, 2, "'soon' is no time from 0.1 s to 24 h");
   refused({"--checkpoint", "C", "--every", "0"}, 2, "is no time");
   refused({"--checkpoint", "none/C"}, 1, "there is no folder 'none'");
