@@ -346,15 +346,18 @@ void share_rays(const PatchMesh& mesh, int rays, std::span<GatherPoint> points) 
   std::sort(sorted.begin(), sorted.end(), std::greater<>());
   const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
   double typical = 0.0, larger = 0.0;
-  for (std::size_t i = 0; i < sorted.size() && larger < 0.5 * total; ++i) {
+  constexpr double about_half = 0.47;  // no share that elements of a grid add up to
+  for (std::size_t i = 0; i < sorted.size() && larger < about_half * total; ++i) {
     typical = sorted[i];
     larger += sorted[i];
   }
   if (!(typical > 0.0)) return;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    // sqrt(area / typical), rounded to a power of two.
+    // sqrt(area / typical), to a power of two. It changes between the areas that a grid's vertices
+    // have, halves and quarters, so that rounding does not decide.
+    constexpr double between = 0.45;
     const double halvings = -0.5 * std::log2(std::max(area[v] / typical, 1e-6));
-    const int shift = std::clamp(static_cast<int>(std::lround(halvings)), -1, 3);
+    const int shift = std::clamp(static_cast<int>(std::floor(halvings + between)), -1, 3);
     points[v].rays = shift < 0 ? 2 * rays : std::max(1, rays >> shift);
   }
 }
