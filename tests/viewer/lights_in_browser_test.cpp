@@ -1,6 +1,8 @@
 // The lights of a walkthrough page in a browser, against relight().
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "channel_room.h"
 #include "in_browser.h"
 #include "mesh/element_caster.h"
@@ -29,9 +31,8 @@ constexpr const char* drive = R"(<pre id="result"></pre><script>
     }
     return readings;
   };
-  const rows = {power: 'checkbox', slider: 'slider', colour: 'colour', percent: 'output', name: 'span'};
-  const control = (kind, channel) =>
-    document.querySelectorAll(kind === 'percent' || kind === 'name' ? `#channels ${rows[kind]}` : `#channels .${rows[kind]}`)[channel];
+  const selectors = {power: '.checkbox', slider: '.slider', colour: '.colour', percent: 'output', name: 'span'};
+  const control = (kind, channel) => document.querySelectorAll(`#channels ${selectors[kind]}`)[channel];
   const put = (kind, channel, value) => {
     const input = control(kind, channel);
     if (kind === 'power') input.checked = value; else input.value = value;
