@@ -10,6 +10,7 @@
 
 #include "scene/errors.h"
 #include "viewer/appearance.h"
+#include "viewer/baked_channels.h"
 #include "viewer/start_view.h"
 
 namespace lightwell {
@@ -140,10 +141,6 @@ std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
   return vertex.order();
 }
 
-float finite_or_black(float value) {
-  return std::isfinite(value) ? value : 0.0f;
-}
-
 void add_vertices(const SolvedScene& solved, const BandArray& radiance,
                   const std::vector<int>& mesh_vertex, BakedModel& model) {
   const Bands& bands = solved.solution.bands;
@@ -194,12 +191,13 @@ Eigen::Matrix3d rotation_to_y_up(const Eigen::Vector3d& up_axis) {
 
 BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double exposure_ev) {
   check_input(solved, scene);
-  const std::vector<ElementKind> kinds = element_kinds(solved, scene.materials);
+  const std::vector<ElementKind> kinds = kinds_with_all_on(solved, scene.materials);
   const BandArray radiance = shown_radiance(solved, scene.materials);
   BakedModel model;
   model.title = scene.title;
   const std::vector<int> mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, model);
   add_vertices(solved, radiance, mesh_vertex, model);
+  model.channels = bake_channels(solved, scene.materials, mesh_vertex);
   const Eigen::Vector3d up_axis = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
   model.to_y_up = rotation_to_y_up(up_axis);
   add_cameras(solved, scene, kinds, radiance, up_axis, exposure_ev, model);

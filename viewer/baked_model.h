@@ -37,10 +37,22 @@ struct BakedCamera {
   double scale = 1.0;  ///< from radiance to display values (see exposure_scale)
 };
 
+/// Light of one channel of the solution, with the part of its scale that is not `weight`: times
+/// `weight`, the channels add up to the model's own.
+struct BakedChannel {
+  std::string name{};
+  // Per vertex.
+  RgbArray radiance{};  ///< as BakedModel::radiance
+  BandArray
+      illuminance{};  ///< lx, vertices x 3 of red, green and blue, which add up; spectral: x 1
+  Spectrum lumens{};  ///< of its emitters, in the columns of `illuminance`
+  Eigen::Array3f weight = Eigen::Array3f::Ones();  ///< in force; spectral: three times the same
+};
+
 /// A solution ready to be written in another program's format: triangles and quads with a colour at
 /// every vertex. Vertices are those of the mesh, so they are shared only where light is continuous.
 /// Of two sides that lie on each other one without light is left out, so that nothing flickers and
-/// a closed room can be looked into.
+/// a closed room can be looked into; light of a channel that is off counts as light.
 struct BakedModel {
   std::string title{};
   std::vector<BakedPart> parts{};
@@ -52,6 +64,8 @@ struct BakedModel {
   BandArray radiosity{};                    ///< B, W/m^2, vertices x bands
   BandArray irradiance{};                   ///< E, W/m^2, vertices x bands
   std::vector<float> illuminance{};         ///< lx
+
+  std::vector<BakedChannel> channels{};  ///< the light above by who emits it; empty: as one
 
   // Per face.
   /// Vertices counter-clockwise seen from the side that is lit; [3] is -1 for a triangle. A quad

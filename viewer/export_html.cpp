@@ -81,6 +81,7 @@ void write_walkthrough(const std::filesystem::path& path, const BakedModel& mode
   page.put("picture", web::picture_js);
   page.put("probe", web::probe_js);
   page.put("walk", web::walk_js);
+  page.put("lights", web::lights_js);
   page.put("page", web::page_js);
   write_whole(path, {page.finish()});
 }

@@ -72,14 +72,33 @@ Json append_halves(const Values& values, std::string& bytes) {
   return place;
 }
 
-/// What the light is a sum of: one for now, in the form of many.
+template <class Array>
+std::span<const float> numbers(const Array& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+Json append_channel(const BakedChannel& channel, std::string& bytes) {
+  Json basis = {{"name", channel.name},
+                {"weight", numbers(channel.weight)},
+                {"lumens", numbers(channel.lumens)}};
+  basis["radiance"] = append_halves(numbers(channel.radiance), bytes);
+  basis["illuminance"] = append_halves(numbers(channel.illuminance), bytes);
+  basis["illuminance"]["components"] = channel.illuminance.cols();
+  return basis;
+}
+
+/// What the light is a sum of: the channels, or one basis for all.
 Json append_bases(const BakedModel& model, std::string& bytes) {
-  const float* rgb = model.radiance.data();
+  Json bases = Json::array();
+  for (const BakedChannel& channel : model.channels) {
+    bases.push_back(append_channel(channel, bytes));
+  }
+  if (!bases.empty()) return bases;
   Json basis = {{"name", "all light"}};
-  basis["radiance"] = append_halves(
-      std::span<const float>(rgb, static_cast<std::size_t>(model.radiance.size())), bytes);
+  basis["radiance"] = append_halves(numbers(model.radiance), bytes);
   basis["illuminance"] = append_halves(model.illuminance, bytes);
-  return Json::array({std::move(basis)});
+  bases.push_back(std::move(basis));
+  return bases;
 }
 
 Json parts(const BakedModel& model) {

@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
-#include <cstring>
 
 #include "lit_sides.h"
+#include "page_values.h"
 #include "tests/temporary_folder.h"
 #include "viewer/export.h"
 
@@ -15,24 +14,6 @@ namespace lightwell {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class T>
-std::vector<T> values_at(const PageData& page, const Json& place, std::size_t count) {
-  const std::size_t offset = place["offset"];
-  EXPECT_EQ(offset % sizeof(T), 0u);  // so that a browser can look at them in place
-  EXPECT_LE(offset + count * sizeof(T), page.bytes.size());
-  std::vector<T> values(count);
-  std::memcpy(values.data(), page.bytes.data() + offset, count * sizeof(T));
-  return values;
-}
-
-/// IEEE 754 binary16.
-float half_to_float(std::uint16_t bits) {
-  const int exponent = bits >> 10 & 31, fraction = bits & 1023;
-  const double size =
-      exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
-  return static_cast<float>(bits & 0x8000 ? -size : size);
-}
 
 Eigen::Vector3d vector_of(const Json& json) {
   return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};

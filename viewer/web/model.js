@@ -28,7 +28,8 @@ function table_of_halves() {
 
 /**
  * Geometry and light. Positions are metres, y upwards, from the model's lowest corner. Light is a sum of bases, each
- * with radiance (linear RGB, W/(m^2 sr)) and illuminance (lx) per vertex, times a weight that mix() sets.
+ * with radiance (linear RGB, W/(m^2 sr)) and illuminance (lx) per vertex, times a weight for red, green and blue.
+ * mix() adds them up once weights have changed.
  */
 class Model {
   constructor(about, bytes) {
@@ -41,9 +42,10 @@ class Model {
     const halves = table_of_halves();
     this.bases = about.bases.map((basis) => ({
       name: basis.name,
-      weight: 1,
+      weight: basis.weight ?? [1, 1, 1],
+      components: basis.illuminance.components ?? 1,
       radiance: this.unpack_halves(basis.radiance, 3 * n, halves),
-      illuminance: this.unpack_halves(basis.illuminance, n, halves),
+      illuminance: this.unpack_halves(basis.illuminance, (basis.illuminance.components ?? 1) * n, halves),
     }));
     this.radiance = new Float32Array(3 * n);
     this.illuminance = new Float32Array(n);
@@ -71,10 +73,17 @@ class Model {
 
   /** Adds the bases up with their weights. */
   mix() {
-    for (const quantity of ['radiance', 'illuminance']) {
-      const sum = this[quantity].fill(0);
-      for (const basis of this.bases) {
-        for (let i = 0; i < sum.length; ++i) sum[i] += basis.weight * basis[quantity][i];
+    const L = this.radiance.fill(0), E = this.illuminance.fill(0);
+    for (const {weight: [r, g, b], components, radiance, illuminance} of this.bases) {
+      if (r === 0 && g === 0 && b === 0) continue;
+      for (let i = 0; i < L.length; i += 3) {
+        L[i] += r * radiance[i];
+        L[i + 1] += g * radiance[i + 1];
+        L[i + 2] += b * radiance[i + 2];
+      }
+      for (let v = 0; v < E.length; ++v) {
+        E[v] += components === 1 ? r * illuminance[v]
+          : r * illuminance[3 * v] + g * illuminance[3 * v + 1] + b * illuminance[3 * v + 2];
       }
     }
   }

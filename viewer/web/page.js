@@ -21,6 +21,7 @@ class Page {
     this.pointer = null;
     this.pinned = null;
     this.outlined = false;
+    this.lights = new Lights(model, () => { this.light_due = true; });
     this.set_up_text();
     this.set_up_buttons();
     this.set_up_keys();
@@ -57,6 +58,10 @@ class Page {
     click('lux', () => this.set_false_colors(!this.false_colors));
     click('lock', () => this.lock());
     click('ask', () => this.toggle_help());
+    // Keys walk again after the mouse has moved a slider.
+    element('lights').addEventListener('pointerup', (event) => {
+      if (event.target.type !== 'color') this.canvas.focus();
+    });
     element('exposure').addEventListener('input', () => this.apply_exposure());
     element('cameras').addEventListener('change', (event) => {
       this.go_to(Number(event.target.value));
@@ -68,6 +73,7 @@ class Page {
     window.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || event.target instanceof HTMLSelectElement) return;
       if (event.target instanceof HTMLInputElement && event.code.startsWith('Arrow')) return;
+      if (this.lights.takes(event)) return;
       if (this.press(event)) event.preventDefault();
     });
     window.addEventListener('keyup', (event) => this.walker.release(event.code));
@@ -82,6 +88,7 @@ class Page {
       case '+': case '=': return this.change_exposure(1 / 3);
       case '-': return this.change_exposure(-1 / 3);
       case 'v': return this.set_false_colors(!this.false_colors);
+      case 't': return this.lights.toggle();
       case 'm': return this.set_outlines(!this.outlined);
       case 'x': return this.look_through(!this.picture.looks_through);
       case 'o': return this.set_orbit(!this.orbit.enabled_here);
@@ -179,6 +186,7 @@ class Page {
   }
 
   expose() {
+    this.mix_light();
     this.camera.updateMatrixWorld();
     this.metered = this.picture.meter() ?? this.metered;
     element('exposure').value = 0;
@@ -265,11 +273,21 @@ class Page {
     element('pin').style.top = `${(1 - at.y) / 2 * this.canvas.clientHeight}px`;
   }
 
+  /** Brings picture and readings up to date with the lights. */
+  mix_light() {
+    if (!this.light_due) return;
+    this.light_due = false;
+    this.model.mix();
+    this.picture.light_changed();
+    this.due = true;
+  }
+
   frame(now) {
     // A page that was hidden does not leap when it is back.
     const seconds = Math.min(0.1, Math.max(0, (now - this.time) / 1000));
     this.time = now;
     if (!this.orbit.enabled_here && this.walker.advance(seconds)) this.due = true;
+    this.mix_light();
     if (this.due || this.probe_due) {
       show_reading(this.model, this.pinned ?? this.hit_at(this.pointer_place()), element('probe'));
       this.place_pin();

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "viewer/page_data.h"
+
+namespace lightwell {
+
+/// What stands at a place that the page's description names.
+template <class T>
+std::vector<T> values_at(const PageData& page, const nlohmann::ordered_json& place,
+                         std::size_t count) {
+  const std::size_t offset = place["offset"];
+  EXPECT_EQ(offset % sizeof(T), 0u);  // so that a browser can look at them in place
+  EXPECT_LE(offset + count * sizeof(T), page.bytes.size());
+  std::vector<T> values(count);
+  std::memcpy(values.data(), page.bytes.data() + offset, count * sizeof(T));
+  return values;
+}
+
+/// IEEE 754 binary16.
+inline float half_to_float(std::uint16_t bits) {
+  const int exponent = bits >> 10 & 31, fraction = bits & 1023;
+  const double size =
+      exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
+  return static_cast<float>(bits & 0x8000 ? -size : size);
+}
+
+}  // namespace lightwell
