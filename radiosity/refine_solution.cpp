@@ -113,16 +113,20 @@ class Refinement {
     }
     std::sort(by_error.begin(), by_error.end());
     std::vector<int> marks;
+    double last = 0.0;
     for (const auto& [minus_square, cell] : by_error) {
-      if (rest <= 0.5 * allowed_) break;
+      // Cells of equal error, by a scene's symmetry, are split together: rounding must not choose.
+      constexpr double about_equal = 0.999;
+      if (rest <= 0.5 * allowed_ && (marks.empty() || -minus_square < about_equal * last)) break;
       rest += minus_square;
+      last = -minus_square;
       marks.push_back(cell);
     }
     return marks;
   }
 
-  // A split leaves a sixteenth of the squared error where light is smooth, half of it along an edge:
-  // for those that nobody has measured since, something between.
+  // A split leaves a sixteenth of the squared error where light is smooth, half of it along an
+  // edge: for those that nobody has measured since, something between.
   void expect_of_unmeasured() {
     for (const int cell : elements_.leaves()) {
       if (measured_[cell] || elements_.level(cell) == 0) continue;
