@@ -110,14 +110,15 @@ void draw(const std::string& file, const std::vector<Row>& rows) {
         x, top, top + height, top + height + 18, d + 3);
   }
   constexpr double least_seconds = 0.1, least_megabytes = 10.0;
-  for (int d = 0; d <= 4; ++d) {
-    const double y = top + height * (1.0 - d / (decades + 1.0));
+  for (std::size_t d = 0; d <= 4; ++d) {
+    const double decade = static_cast<double>(d);
+    const double y = top + height * (1.0 - decade / (decades + 1.0));
     out << fmt::format(
         "<path d=\"M{0:.1f} {1:.1f} H{2:.1f}\" stroke=\"#ddd\"/>\n"
         "<text x=\"{3:.1f}\" y=\"{4:.1f}\" text-anchor=\"end\" fill=\"#c0392b\">{5:g} s</text>\n"
-        "<text x=\"{6:.1f}\" y=\"{4:.1f}\" fill=\"#2471a3\">{7:g} MB</text>\n",
-        left, y, left + width, left - 6, y + 4, least_seconds * std::pow(10.0, d), left + width + 4,
-        least_megabytes * std::pow(10.0, d));
+        "<text x=\"{6:.1f}\" y=\"{4:.1f}\" fill=\"#2471a3\">{7}</text>\n",
+        left, y, left + width, left - 6, y + 4, least_seconds * std::pow(10.0, decade),
+        left + width + 4, least_megabytes * std::pow(10.0, d));
   }
   out << curve(rows, &Row::seconds, least_seconds, "#c0392b")
       << curve(rows, &Row::megabytes, least_megabytes, "#2471a3")
