@@ -109,15 +109,18 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
   return solution;
 }
 
+void require_unit(const Scene& scene, const SolveOptions& options) {
+  if (!options.accuracy || options.accuracy->share > 0.0 || !scene.relative_units) return;
+  throw InputError(
+      "the scene's light is in no known unit, so no accuracy in lux can be kept; ask for a share "
+      "of "
+      "the mean irradiance, such as 1%");
+}
+
 // Of the mean irradiance; 0: none is asked for.
 double target_of(const Scene& scene, const SolveOptions& options, const SolvedScene& patches) {
   if (!options.accuracy) return 0.0;
   if (options.accuracy->share > 0.0) return options.accuracy->share;
-  if (scene.relative_units) {
-    throw InputError(
-        "the scene's light is in no known unit, so no accuracy in lux can be kept; ask for a share "
-        "of the mean irradiance, such as 1%");
-  }
   const double mean = mean_illuminance(scene.bands, patches.mesh, patches.solution.patch_radiosity);
   return mean > 0.0 ? std::min(options.accuracy->lux / mean, 1.0) : 1.0;
 }
@@ -196,6 +199,7 @@ EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveReport* report) {
   require_light(scene);
   require_equations(options);
+  require_unit(scene, options);
   const std::uint64_t hash = scene_hash(scene);
   if (options.journal && options.journal->of().scene_hash != hash) {
     throw std::invalid_argument("the journal is of another scene");
