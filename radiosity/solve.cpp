@@ -144,6 +144,11 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   Stopwatch watch;
   RadiositySolution& solution = solved.solution;
   PatchMesh base = std::move(solved.mesh);
+  if (target > 0.0 && in_force.refine.max_elements == 0) {
+    // Who asks for an accuracy asks for the elements it takes; about 1 GB of them.
+    constexpr std::int64_t plenty = 1000000;
+    in_force.refine.max_elements = std::max<std::int64_t>(plenty, 4 * base.element_count());
+  }
   const bool may_try_again = target > 0.0;
   std::optional<Draft> draft;
   std::optional<ElementCaster> caster;

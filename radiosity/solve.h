@@ -26,7 +26,8 @@ struct SolveOptions {
   GatherOptions gather{.rays = 1024};
   RefineOptions refine{};
   /// Chooses the rays of `gather` and, where elements are split, the tolerance of `refine`, and
-  /// tries again with more until the error estimate is below. Where it gives up, the outcome of the
+  /// tries again with more until the error estimate is below; a million elements, or four times
+  /// those of the start, if `refine` names no limit. Where it gives up, the outcome of the
   /// solution says so.
   std::optional<Accuracy> accuracy{};
   int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
