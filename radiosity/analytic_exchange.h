@@ -16,8 +16,8 @@ namespace lightwell {
 /// 2^18 while the standard error of F_ij is above `target_error` (0: 1e-3). Patches of spheres, and
 /// patches that lie on each other, are left to other methods. `row_error`, one per
 /// patch, is raised to the standard error of the row's worst F_ij. `take(i, row)` gets the exchange
-/// of patch i with patches j > i, one row after another. Rows
-/// that `phase` holds are not computed again.
+/// of patch i with patches j > i, one row after another. Rows that `phase` holds are not computed
+/// again.
 void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
                        const std::vector<char>& receives, double target_error,
                        const Progress& progress, std::vector<float>& row_error,

@@ -184,7 +184,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
       channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
       samples_(most_shadow_rays) {
   const std::vector<FacetRef> facets = scene_facets(scene);
-  owned_.assign(facets.size(), 0);
+  owned_.assign(facets.size(), Owned::nothing);
   first_column_.assign(facets.size(), 0);
   for (std::size_t f = 0; f < facets.size() && !channels.empty(); ++f) {
     first_column_[f] = bands_ * std::max(0, channels.of_surface[facets[f].surface]);
@@ -239,7 +239,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
         emitter.is_sphere = true;
         emitter.sphere = std::get<Sphere>(surface.shape);
       }
-      owned_[emitter.facet] = 1;
+      owned_[emitter.facet] = emitter.is_sphere ? Owned::front : Owned::whole;
       emitters_.push_back(std::move(emitter));
     }
   }

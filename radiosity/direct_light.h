@@ -57,9 +57,11 @@ class DirectLight {
   DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels = {});
 
   const std::vector<Emitter>& emitters() const { return emitters_; }
-  /// Whether the facet's emission is accounted for here (and must not be counted again by other
-  /// rays).
-  bool owns(int facet) const { return owned_[facet] != 0; }
+  /// Whether emission of that side of a facet is accounted for here (and must not be counted again
+  /// by other rays). Of a sphere that is its outside: its inside sees itself all around.
+  bool owns(int facet, bool is_back) const {
+    return owned_[facet] == Owned::whole || (owned_[facet] == Owned::front && !is_back);
+  }
   /// 1 if light is not kept apart.
   int channel_count() const { return channel_count_; }
   int column_count() const { return channel_count_ * bands_; }
@@ -101,7 +103,8 @@ class DirectLight {
                       const ShadowOptions& options, EmitterSight* sight, Add&& add) const;
 
   std::vector<Emitter> emitters_;
-  std::vector<char> owned_;
+  enum class Owned : char { nothing, front, whole };
+  std::vector<Owned> owned_;
   std::vector<int> first_column_;
   int bands_ = 0, channel_count_ = 1;
   SobolPoints samples_;

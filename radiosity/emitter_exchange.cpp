@@ -27,7 +27,9 @@ EmitterExchange::EmitterExchange(const ElementCaster& caster, const DirectLight&
     const auto facet = static_cast<std::size_t>(mesh_.facet[mesh_.first_element[i]]);
     if (facet >= emitter_of_facet.size() || emitter_of_facet[facet] < 0) continue;
     const int e = emitter_of_facet[facet];
-    if (mesh_.is_back[i] && !emitters[e].emits_both_sides) continue;
+    const bool is_back = mesh_.is_back[i] != 0;
+    if (is_back && !emitters[e].emits_both_sides) continue;
+    if (!direct_light.owns(static_cast<int>(facet), is_back)) continue;
     emitter_of_[i] = e;
     lit_.push_back(i);
   }

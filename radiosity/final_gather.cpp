@@ -247,7 +247,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
     for (Eigen::Index k = 0; k < B.cols(); k += bands) {
       B.row(v).segment(k, bands) = mesh.reflectance.row(p) * irradiance.row(v).segment(k, bands);
     }
-    if (direct_light.owns(facet)) continue;
+    if (direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
     B.row(v).segment(direct_light.first_column(facet), bands) += mesh.emission.row(p);
   }
   return B;
@@ -285,7 +285,8 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
   phase.recall_state(first, power);
   for (int p = first; p < mesh.patch_count(); ++p) {
     const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
-    if (!direct_light.owns(facet) || !(mesh.emission.row(p) > 0.0f).any()) continue;
+    if (!direct_light.owns(facet, mesh.is_back[p] != 0) || !(mesh.emission.row(p) > 0.0f).any())
+      continue;
     const double share = mesh.area[p] / direct_light.emitters()[emitter_of_facet[facet]].area;
     const int count = std::clamp(static_cast<int>(std::lround(rays * share)), 1, rays);
     const Spectrum power_per_ray =

@@ -22,7 +22,7 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
     const auto area = static_cast<float>(mesh.element_area[e]);
     const int facet = mesh.facet[e];
     Eigen::Array<float, 1, Eigen::Dynamic> B = patch_radiosity.row(p);
-    if (direct_light.owns(facet)) {
+    if (direct_light.owns(facet, mesh.is_back[p] != 0)) {
       B.segment(direct_light.first_column(facet), mesh.emission.cols()) -= mesh.emission.row(p);
     }
     for (int c = 0; c < mesh.corner_count(e); ++c) {

@@ -101,8 +101,8 @@ TEST(DirectLight, UnoccludedIrradianceIsTheClosedForm) {
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
   const ElementCaster caster(mesh);
   const DirectLight direct_light(scene, mesh);
-  EXPECT_TRUE(direct_light.owns(6));
-  EXPECT_FALSE(direct_light.owns(0));
+  EXPECT_TRUE(direct_light.owns(6, false));
+  EXPECT_FALSE(direct_light.owns(0, false));
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d p(2 * random_uniform(2 * i), 2 * random_uniform(2 * i + 1), 0.0);
     const Eigen::Vector3d n(0, 0, 1);

@@ -162,6 +162,31 @@ TEST(SolveScene, NoLightLeaksThroughAWallWithoutThickness) {
   }
 }
 
+// Half of the ball's light stays inside: its walls there reflect a part of it and see nothing else.
+TEST(SolveScene, ABallThatEmitsBothWaysLosesNothing) {
+  Scene scene;
+  Material lamp = test::diffuse(scene.bands, 0.4f, 10.0f);
+  lamp.one_sided = false;
+  lamp.emits_both_sides = true;
+  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, {wall, wall, wall, wall, wall, wall}, true);
+  scene.surfaces.push_back({.name = "ball",
+                            .material = test::add_material(scene, lamp),
+                            .shape = Sphere{.center = {1, 1, 1}, .radius = 0.2}});
+  const SolvedScene solved = solve_scene(scene, quick());
+  const EnergyBalance& energy = solved.solution.energy;
+  const double power = 2.0 * 3.0 * 10.0 * 4.0 * M_PI * 0.2 * 0.2;
+  // Elements have the sphere's area. Floats add up over some thousand patches.
+  EXPECT_NEAR(energy.emitted, power, 1e-5 * power);
+  EXPECT_NEAR(energy.absorbed, power, 1e-5 * power);
+  EXPECT_NEAR(energy.escaped, 0.0, 1e-5 * power);
+  // Inside, B = M + rho B everywhere.
+  for (int p = 0; p < solved.mesh.patch_count(); ++p) {
+    if (solved.mesh.is_back[p] == 0) continue;
+    EXPECT_NEAR(solved.solution.patch_radiosity(p, 0), 10.0 / (1.0 - 0.4), 1e-4);
+  }
+}
+
 TEST(SolveScene, IrradianceDoesNotDependOnTheUnitOfLength) {
   const auto mean_irradiance = [](double scale) {
     Scene scene = lit_room();
