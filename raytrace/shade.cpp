@@ -1,6 +1,7 @@
 #include "raytrace/shade.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -12,6 +13,7 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t shadow_purpose = 0x5ec07d;
+constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
 
 int root(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -55,8 +57,10 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       caster_(caster),
       direct_light_(direct_light),
       solution_(solution),
-      options_(options) {
-  if (options.pass == Pass::interpolate) irradiance_ = solution.irradiance();
+      options_(options),
+      with_layers_(std::any_of(options.layers.begin(), options.layers.end(),
+                               [](Layer layer) { return first_sampled_column(layer) >= 0; })),
+      white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))) {
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
     FacetShape shape{.material = surface.material};
@@ -99,12 +103,11 @@ void RayTree::follow(const Branch& branch, Walk& walk) const {
   }
   if (hit.facet < 0) return;  // the world outside is black
   const SurfacePoint at = surface_point(branch.ray, hit);
-  if (walk.shades && hit.element >= 0) {
-    const std::uint64_t key = random_key(walk.key, branch.place, shadow_purpose);
-    const ShadowOptions shadows =
-        shadows_for(options_.shadows, walk.effort * branch.weight.maxCoeff());
-    sight.radiance += branch.weight * diffuse_radiance(hit, at, key, shadows);
+  if (walk.shades && with_layers_ && branch.place == 1) {
+    const Eigen::Vector3d normal = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
+    sight.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
   }
+  if (walk.shades && hit.element >= 0) shade(branch, hit, at, walk);
   split(branch, hit, at, walk);
 }
 
@@ -155,28 +158,76 @@ RayTree::SurfacePoint RayTree::surface_point(const Ray& ray, const ElementHit& h
   return at;
 }
 
-// L = (M + rho E) / pi.
-Spectrum RayTree::diffuse_radiance(const ElementHit& hit, const SurfacePoint& at, std::uint64_t key,
-                                   const ShadowOptions& shadows) const {
+// The vertices' normals round off a tessellated surface, and are the facet's own on a flat one.
+Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const SurfacePoint& at) const {
+  if (facets_[hit.facet].is_sphere) return at.normal;
   const PatchMesh& mesh = caster_.mesh();
-  const int patch = mesh.patch[hit.element];
-  const Spectrum M = mesh.emission.row(patch).transpose();
-  const Spectrum rho = mesh.reflectance.row(patch).transpose();
-  constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
-  if (!(rho > 0.0f).any()) return one_over_pi * M;
-  if (options_.pass == Pass::interpolate) {
-    return one_over_pi * (M + rho * interpolate(mesh, irradiance_, hit));
-  }
-  // The vertices' normals round off a tessellated surface, and are the facet's own on a flat one.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (int c = 0; c < mesh.corner_count(hit.element); ++c) {
     normal += hit.weights[c] * mesh.vertex_normal[mesh.corners[hit.element][c]];
   }
-  const bool is_sphere = facets_[hit.facet].is_sphere;
-  if (is_sphere || !(normal.norm() > 0.0)) normal = at.normal;
-  const Spectrum direct =
-      direct_light_.irradiance(caster_, at.position, normal.normalized(), hit.facet, key, shadows);
-  return one_over_pi * (M + rho * (direct + interpolate(mesh, solution_.indirect_irradiance, hit)));
+  return normal.norm() > 0.0 ? normal.normalized() : at.normal;
+}
+
+// L = (M + rho E) / pi.
+void RayTree::shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at,
+                    Walk& walk) const {
+  const PatchMesh& mesh = caster_.mesh();
+  const int patch = mesh.patch[hit.element];
+  const Spectrum M = mesh.emission.row(patch).transpose();
+  const Spectrum rho = mesh.reflectance.row(patch).transpose();
+  Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
+  if (with_layers_ || (rho > 0.0f).any()) {
+    const std::uint64_t key = random_key(walk.key, branch.place, shadow_purpose);
+    E = arriving(hit, at, key,
+                 shadows_for(options_.shadows, walk.effort * branch.weight.maxCoeff()));
+  }
+  walk.sight.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
+  if (with_layers_) note_layers(branch, hit, E, walk);
+}
+
+RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& at,
+                                    std::uint64_t key, const ShadowOptions& shadows) const {
+  const PatchMesh& mesh = caster_.mesh();
+  return {.direct = options_.pass == Pass::interpolate
+                        ? interpolate(mesh, solution_.direct_irradiance, hit)
+                        : direct_light_.irradiance(caster_, at.position, smooth_normal(hit, at),
+                                                   hit.facet, key, shadows),
+          .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
+}
+
+void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Arriving& E,
+                          Walk& walk) const {
+  const PatchMesh& mesh = caster_.mesh();
+  const Bands& bands = scene_.bands;
+  const int patch = mesh.patch[hit.element];
+  const Spectrum M = mesh.emission.row(patch).transpose();
+  const Spectrum rho = mesh.reflectance.row(patch).transpose();
+  const auto three = [&](Layer layer) {
+    return walk.sight.layers.segment<3>(first_sampled_column(layer));
+  };
+  const auto light = [&](const Spectrum& radiosity) {
+    const Spectrum L = branch.weight * one_over_pi * radiosity;
+    return linear_rgb(bands, L);
+  };
+  if (branch.place == 1) {
+    // Bands that do not make up white, such as infrared, have no colour.
+    three(Layer::albedo) = (white_rgb_ > 0.0f).all()
+                               ? Eigen::Array3f(linear_rgb(bands, rho) / white_rgb_)
+                               : Eigen::Array3f::Constant(rho.mean());
+    three(Layer::emission) = light(M);
+    three(Layer::direct) = light(rho * E.direct);
+    three(Layer::indirect) = light(rho * E.indirect);
+  } else {
+    three(Layer::specular) += light(M + rho * (E.direct + E.indirect));
+  }
+  // Refracted children alone have odd places, so that straight through glass all bits are ones.
+  const bool is_straight = (branch.place & (branch.place + 1)) == 0;
+  if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
+    const Spectrum all = E.direct + E.indirect;
+    walk.sight.layers[first_sampled_column(Layer::illuminance)] =
+        static_cast<float>(luminous(bands, all));
+  }
 }
 
 }  // namespace lightwell

@@ -13,7 +13,9 @@ namespace lightwell {
 
 /// What one look along a ray found.
 struct Sight {
-  Spectrum radiance{};            ///< W/(m^2 sr)
+  Spectrum radiance{};  ///< W/(m^2 sr)
+  /// What a pixel averages beside radiance; zero unless RenderOptions::layers has any of them.
+  SampledLayers layers = SampledLayers::Zero();
   std::uint64_t fingerprint = 0;  ///< of the surfaces seen, see RayTree
   std::int64_t depth_cut = 0;     ///< branches that max_depth ended
 };
@@ -59,6 +61,10 @@ class RayTree {
     int depth = 0;
     std::uint64_t place = 1;  ///< 1 for the root, 2 p and 2 p + 1 for the children of p
   };
+  /// Irradiance at a place, W/m^2, by the way light takes.
+  struct Arriving {
+    Spectrum direct{}, indirect{};
+  };
   /// What is gathered while the tree grows.
   struct Walk {
     Sight sight{};
@@ -72,15 +78,20 @@ class RayTree {
   void grow(const Branch& parent, int child, const Eigen::Vector3d& direction,
             const Spectrum& share, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
   SurfacePoint surface_point(const Ray& ray, const ElementHit& hit) const;
-  Spectrum diffuse_radiance(const ElementHit& hit, const SurfacePoint& at, std::uint64_t key,
-                            const ShadowOptions& shadows) const;
+  Eigen::Vector3d smooth_normal(const ElementHit& hit, const SurfacePoint& at) const;
+  void shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
+  Arriving arriving(const ElementHit& hit, const SurfacePoint& at, std::uint64_t key,
+                    const ShadowOptions& shadows) const;
+  void note_layers(const Branch& branch, const ElementHit& hit, const Arriving& E,
+                   Walk& walk) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;
   const DirectLight& direct_light_;
   const RadiositySolution& solution_;
   const RenderOptions& options_;
-  BandArray irradiance_{};  ///< direct + indirect at vertices, for Pass::interpolate
+  bool with_layers_ = false;
+  Eigen::Array3f white_rgb_;  ///< of what reflects everything, under equal-energy light
   std::vector<FacetShape> facets_{};
 };
 
