@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cli/channels.h"
+#include "cli/film.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"
 
@@ -48,6 +49,7 @@ struct RenderArguments {
   std::string pass = "direct";
   int shadow_rays = 64;
   double exposure_ev = 0.0;
+  FilmArguments film{};
 
   void add_to(CLI::App& command);
   RenderOptions options() const;

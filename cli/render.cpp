@@ -23,6 +23,7 @@ int render(const Arguments& arguments, Console& console) {
   const Camera& camera = choose_camera(scene, arguments.camera);
   const std::vector<std::filesystem::path> files(arguments.outputs.begin(),
                                                  arguments.outputs.end());
+  arguments.render.film.check(scene, files);
   for (const std::filesystem::path& file : files) require_writable(file);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   report.add("camera", camera.name);
@@ -49,6 +50,7 @@ Action add_render(CLI::App& command) {
   command.add_option("--camera", arguments->camera, "which camera (default: the first)")
       ->type_name("NAME");
   arguments->render.add_to(command);
+  arguments->render.film.add_false_colour_to(command, "How pictures are made");
   command.footer(
       "Example: lightwell render cornell/cornell.toml cornell.vtp --size 256x256 -o small.png");
   return [arguments](Console& console) { return render(*arguments, console); };

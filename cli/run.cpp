@@ -50,6 +50,7 @@ int run(const Arguments& arguments, Console& console) {
   std::vector<std::vector<fs::path>> pictures;
   for (const Camera& camera : scene.cameras) {
     pictures.push_back({folder / (camera.name + ".exr"), folder / (camera.name + ".png")});
+    arguments.render.film.check(scene, pictures.back());
     for (const fs::path& picture : pictures.back()) require_writable(picture);
   }
   require_writable(solution_file);

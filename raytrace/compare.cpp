@@ -63,7 +63,7 @@ double perceptual_difference(const Image& a, const Image& b) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < b.radiance.rows(); ++i) {
     const auto shown = [&](const Image& image) {
-      return oklab(display_rgb(image.radiance.row(i).transpose(), scale, true));
+      return oklab(display_rgb(image.radiance.row(i).transpose(), scale));
     };
     sum += std::min(1.0f, (shown(a) - shown(b)).matrix().norm());
   }
