@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/arguments.h"
+#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
@@ -15,6 +16,7 @@ struct Arguments {
   std::string scene, solution, camera;
   std::vector<std::string> outputs;
   RenderArguments render;
+  CheckpointArguments checkpoint;
 };
 
 int render(const Arguments& arguments, Console& console) {
@@ -27,7 +29,11 @@ int render(const Arguments& arguments, Console& console) {
   for (const std::filesystem::path& file : files) require_writable(file);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   report.add("camera", camera.name);
-  render_step(scene, solved, camera, arguments.render, files, console, report);
+  Checkpoint checkpoint(arguments.checkpoint,
+                        picture_provenance(scene, solved.solution, arguments.render), files,
+                        console);
+  render_step(scene, solved, camera, arguments.render, files, checkpoint, console, report);
+  checkpoint.finish(report);
   report.print();
   return exit_done;
 }
@@ -50,6 +56,8 @@ Action add_render(CLI::App& command) {
   command.add_option("--camera", arguments->camera, "which camera (default: the first)")
       ->type_name("NAME");
   arguments->render.add_to(command);
+  arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first,
+                               "How pictures are made");
   arguments->render.film.add_false_colour_to(command, "How pictures are made");
   command.footer(
       "Example: lightwell render cornell/cornell.toml cornell.vtp --size 256x256 -o small.png");

@@ -119,22 +119,36 @@ SolvedScene read_solution_step(const fs::path& file, const Scene& scene, Console
   return solved;
 }
 
+Provenance picture_provenance(const Scene& scene, const RadiositySolution& solution,
+                              const RenderArguments& arguments) {
+  return {.version = LIGHTWELL_VERSION,
+          .scene_file = scene.file.string(),
+          .scene_hash = solution.provenance.scene_hash,
+          .options = fmt::format("render {} of a solution with {}", arguments.text(),
+                                 solution.provenance.options)};
+}
+
 void render_step(const Scene& scene, const SolvedScene& solved, const Camera& camera,
                  const RenderArguments& arguments, const std::vector<fs::path>& files,
-                 Console& console, Report& report) {
+                 Checkpoint& checkpoint, Console& console, Report& report) {
   const Stopwatch watch;
   console.say_verbose(fmt::format("rendering {} with {}", camera.name, arguments.text()));
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
   RenderOptions options = arguments.options();
   options.layers = arguments.film.rendered_layers(scene);
-  options.progress = console.progress();
+  options.progress = checkpoint.watched(console.progress());
+  options.journal = checkpoint.journal();
   RenderReport rendered;
   const Camera view = arguments.sized(camera);
-  const Image image =
-      render(scene, caster, direct_light, solved.solution, view, options, &rendered);
+  Image image;
+  try {
+    image = render(scene, caster, direct_light, solved.solution, view, options, &rendered);
+    stop_if_interrupted();
+  } catch (const std::exception&) {
+    checkpoint.rethrow_stopped();
+  }
   console.finish_phase();
-  stop_if_interrupted();
   const Picture picture{.image = image,
                         .solution = solved.solution,
                         .camera = view,

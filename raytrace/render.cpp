@@ -8,8 +8,10 @@
 #include <chrono>
 #include <span>
 #include <stdexcept>
+#include <tuple>
 #include <vector>
 
+#include "radiosity/journal_phase.h"
 #include "raytrace/camera_ray.h"
 #include "raytrace/layer_film.h"
 #include "raytrace/shade.h"
@@ -244,6 +246,65 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
   });
 }
 
+// All that decides a picture, but what the journal is of.
+void add_inputs(Fingerprint& print, const ElementCaster& caster, const RadiositySolution& solution,
+                const Camera& camera, const RenderOptions& options) {
+  print.add(caster.mesh());
+  print.add(solution.direct_irradiance);
+  print.add(solution.indirect_irradiance);
+  for (const Eigen::Vector3d* v : {&camera.position, &camera.direction, &camera.up}) print.add(*v);
+  print.add(camera.fov_degrees);
+  print.add(camera.width);
+  print.add(camera.height);
+  print.add(options.pass);
+  print.add(options.max_depth);
+  print.add(options.min_contribution);
+  print.add(options.shadows.min_rays);
+  print.add(options.shadows.max_rays);
+  print.add(options.max_subdivision);
+  print.add(options.contrast);
+}
+
+// A strip of the picture, as wide as it is: its rows are together in memory.
+std::span<float> rows_of(BandArray& values, int width, int first_row, int rows) {
+  const auto row = static_cast<std::size_t>(width * values.cols());
+  return {values.data() + first_row * row, rows * row};
+}
+
+// Renders tile by tile: strips that share a row of corners.
+class TileRenderer {
+ public:
+  TileRenderer(const Eye& eye, const RenderOptions& options, Image& image, LayerFilm& layers)
+      : eye_(eye),
+        options_(options),
+        image_(image),
+        layers_(layers),
+        corners_(tile_rows() + 1, CornerRow(image.width + 1)) {}
+
+  /// Small ones, to stop soon and to lose little; large enough to keep all threads busy.
+  int tile_rows() const {
+    constexpr int pixels_per_tile = 8192;
+    return std::max(1, pixels_per_tile / image_.width);
+  }
+  /// Its radiance and sampled layers.
+  void render(int first_row, int rows) {
+    if (row_of_corners_ != first_row) look_at_corners(eye_, first_row, {corners_.data(), 1});
+    look_at_corners(eye_, first_row + 1, {corners_.data() + 1, static_cast<std::size_t>(rows)});
+    average_pixels(eye_, options_, first_row, {corners_.data(), static_cast<std::size_t>(rows) + 1},
+                   image_, layers_);
+    std::swap(corners_.front(), corners_[rows]);
+    row_of_corners_ = first_row + rows;
+  }
+
+ private:
+  const Eye& eye_;
+  const RenderOptions& options_;
+  Image& image_;
+  LayerFilm& layers_;
+  std::vector<CornerRow> corners_;
+  int row_of_corners_ = -1;  // that the first of them is
+};
+
 }  // namespace
 
 Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
@@ -259,30 +320,37 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   image.radiance.resize(std::int64_t{camera.width} * camera.height, scene.bands.count());
   LayerFilm layers(options.layers, image);
 
-  // Strips keep memory small and let the caller stop the work soon; they share a row of corners.
-  constexpr int pixels_per_strip = 8192;
-  const int strip_rows = std::max(1, pixels_per_strip / camera.width);
-  std::vector<CornerRow> corners(strip_rows + 1, CornerRow(camera.width + 1));
+  const JournalPhase phase(options.journal, "picture", [&](Fingerprint& print) {
+    add_inputs(print, caster, solution, camera, options);
+    for (const std::string& name : image.layers.names) print.add(name);
+  });
+  TileRenderer tiles(eye, options, image, layers);
   report(options.progress, "render", 0.0);
-  look_at_corners(eye, 0, {corners.data(), 1});
-  for (int y = 0; y < camera.height; y += strip_rows) {
-    const int rows = std::min(strip_rows, camera.height - y);
-    look_at_corners(eye, y + 1, {corners.data() + 1, static_cast<std::size_t>(rows)});
-    average_pixels(eye, options, y, {corners.data(), static_cast<std::size_t>(rows) + 1}, image,
-                   layers);
-    parallel_for(rows, 1, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) {
-        layers.finish_row(y + i, scene.bands, camera, rays, caster);
-      }
-    });
-    std::swap(corners.front(), corners[rows]);
+  int tile = 0, recalled = 0;
+  for (int y = 0; y < camera.height; y += tiles.tile_rows(), ++tile) {
+    const int rows = std::min(tiles.tile_rows(), camera.height - y);
+    auto values = std::tuple(rows_of(image.radiance, camera.width, y, rows),
+                             rows_of(image.layers.values, camera.width, y, rows));
+    if (phase.recall(tile, values)) {
+      ++recalled;
+    } else {
+      tiles.render(y, rows);
+      parallel_for(rows, 1, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+          layers.finish_row(y + i, scene.bands, camera, rays, caster);
+        }
+      });
+      phase.keep(tile, values);
+    }
     report(options.progress, "render", static_cast<double>(y + rows) / camera.height);
   }
   if (render_report) {
     *render_report = {
         .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
         .eye_rays = counters.eye_rays,
-        .depth_cut = counters.depth_cut};
+        .depth_cut = counters.depth_cut,
+        .tiles = tile,
+        .recalled_tiles = recalled};
   }
   return image;
 }

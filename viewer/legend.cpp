@@ -96,7 +96,7 @@ LegendPicture with_legend(const std::vector<float>& values, int width, int heigh
   std::vector<Word> labels;
   int widest = title.width - layout.bar_width - layout.font / 2;
   for (const double step : steps) {
-    labels.push_back(draw(fmt::format("{:.4g}", step), layout.font));
+    labels.push_back(draw(fmt::format("{:.6g}", step), layout.font));
     widest = std::max(widest, labels.back().width);
   }
   const int bar_left = width + layout.margin;

@@ -112,7 +112,7 @@ TEST(ToneCurves, PassThroughTheirPublishedPoints) {
   EXPECT_NEAR(shown(1.0f, ToneCurve::filmic),
               (0.704 / 1.66 - 1.0 / 15) / (19.38 / 24.476 - 1.0 / 15), 1e-5);
   EXPECT_NEAR(shown(5.6f, ToneCurve::filmic), 1.0, 1e-6);
-  EXPECT_EQ(shown(0.0f, ToneCurve::filmic), 0.0f);
+  EXPECT_NEAR(shown(0.0f, ToneCurve::filmic), 0.0f, 1e-7);
   EXPECT_EQ(shown(0.3f, ToneCurve::linear), 0.3f);
   EXPECT_EQ(shown(7.0f, ToneCurve::linear), 1.0f);
 }
