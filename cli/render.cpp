@@ -8,6 +8,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "raytrace/camera_ray.h"
 
 namespace lightwell {
 namespace {
@@ -26,6 +27,7 @@ int render(const Arguments& arguments, Console& console) {
   const std::vector<std::filesystem::path> files(arguments.outputs.begin(),
                                                  arguments.outputs.end());
   arguments.render.film.check(scene, files);
+  static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws if it cannot be
   for (const std::filesystem::path& file : files) require_writable(file);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   report.add("camera", camera.name);

@@ -9,6 +9,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "raytrace/camera_ray.h"
 
 namespace lightwell {
 namespace fs = std::filesystem;
@@ -81,6 +82,7 @@ int run(const Arguments& arguments, Console& console) {
   for (const Camera& camera : scene.cameras) {
     pictures.push_back({folder / (camera.name + ".exr"), folder / (camera.name + ".png")});
     arguments.render.film.check(scene, pictures.back());
+    static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws if it cannot be
     for (const fs::path& picture : pictures.back()) require_writable(picture);
   }
   require_writable(solution_file);

@@ -279,10 +279,10 @@ FlipExposures flip_exposures(const Image& reference) {
   }
   std::sort(Y.begin(), Y.end());
   if (!(Y.back() > 0.0)) return {};
-  double median = Y[(Y.size() - 1) / 2];
+  double median = Y[Y.size() / 2];
   if (!(median > 0.0)) {
     const auto lit = std::upper_bound(Y.begin(), Y.end(), 0.0);
-    median = *(lit + (Y.end() - lit - 1) / 2);
+    median = *(lit + (Y.end() - lit) / 2);
   }
   constexpr double target = 0.85;
   const double x = aces_inverse(target);

@@ -18,10 +18,10 @@ Image reference() {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const bool in_block = y >= 8 && y < 16 && x >= 10 && x < 20;
-      const Eigen::Array3f gradient(0.2f + 0.6f * x / (width - 1.0f),
-                                    0.1f + 0.8f * y / (height - 1.0f), 0.5f);
-      image.radiance.row(y * width + x) =
-          in_block ? Eigen::Array3f(0.9f, 0.1f, 0.2f).transpose() : gradient.transpose();
+      const Eigen::Array3f gradient(0.2f + 0.6f * static_cast<float>(x) / (width - 1),
+                                    0.1f + 0.8f * static_cast<float>(y) / (height - 1), 0.5f);
+      const Eigen::Array3f rgb = in_block ? Eigen::Array3f(0.9f, 0.1f, 0.2f) : gradient;
+      image.radiance.row(y * width + x).head<3>() = rgb.transpose();
     }
   }
   return image;
@@ -67,14 +67,14 @@ TEST(HdrFlip, AgreesWithTheAuthorsProgram) {
   const Image picture = with_lamp(with_faults(), 150), known = with_lamp(reference(), 200);
   const FlipExposures range = flip_exposures(known);
   EXPECT_NEAR(range.first, -6.560559, 1e-5);
-  EXPECT_NEAR(range.last, 0.164614, 2e-3);  // an even number of pixels: either may be the median
+  EXPECT_NEAR(range.last, 0.164614, 1e-5);
   EXPECT_EQ(range.count, 7);
   const Eigen::ArrayXf error = hdr_flip(picture, known);
-  EXPECT_NEAR(error.mean(), 0.108129, 2e-4);
-  EXPECT_NEAR(at(error, 0, 0), 0.030227, 2e-4);
-  EXPECT_NEAR(at(error, 18, 6), 0.570371, 2e-4);
-  EXPECT_NEAR(at(error, 3, 3), 0.145428, 2e-4);
-  EXPECT_NEAR(error.maxCoeff(), 0.594730, 2e-4);
+  EXPECT_NEAR(error.mean(), 0.108129, 1e-4);
+  EXPECT_NEAR(at(error, 0, 0), 0.030227, 1e-4);
+  EXPECT_NEAR(at(error, 18, 6), 0.570371, 1e-4);
+  EXPECT_NEAR(at(error, 3, 3), 0.145428, 1e-4);
+  EXPECT_NEAR(error.maxCoeff(), 0.594730, 1e-4);
 }
 
 TEST(Flip, IsZeroForEqualOneForOppositeAndTheSameBothWays) {
@@ -84,8 +84,10 @@ TEST(Flip, IsZeroForEqualOneForOppositeAndTheSameBothWays) {
   EXPECT_LT((one_way - other_way).abs().maxCoeff(), 1e-6f);
   // Green against blue is the largest difference there is by definition.
   Image green{.width = 4, .height = 4}, blue = green;
-  green.radiance = Eigen::RowVector3f(0, 1, 0).array().replicate(16, 1);
-  blue.radiance = Eigen::RowVector3f(0, 0, 1).array().replicate(16, 1);
+  green.radiance.setZero(16, 3);
+  blue.radiance.setZero(16, 3);
+  green.radiance.col(1) = 1.0f;
+  blue.radiance.col(2) = 1.0f;
   EXPECT_NEAR(flip(green, blue).mean(), 1.0f, 1e-5f);
 }
 
