@@ -316,7 +316,6 @@ void RenderArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(whole_number(1, most_shadow_rays))
       ->group(group);
-  film.add_to(command, group);
 }
 
 RenderOptions RenderArguments::options() const {
