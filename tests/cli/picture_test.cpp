@@ -25,6 +25,16 @@ class Pictures : public CommandTest {
     return Words{"render", "room.toml", "S.vtp", "--size", "24x18", "--pass", "interpolate"} + more;
   }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
+  // Until a picture of so many channels has a tile in the checkpoint.
+  void wait_for_a_tile(const std::string& checkpoint, int channels) const {
+    const auto a_tile = static_cast<std::uintmax_t>(8000) * channels * sizeof(float);
+    std::error_code none;
+    for (int i = 0; i < 2400; ++i) {
+      const auto size = std::filesystem::file_size(folder / checkpoint, none);
+      if (!none && size > a_tile) break;
+      std::this_thread::sleep_for(25ms);
+    }
+  }
 };
 
 // A cube of lamps whose light is in no known unit.
@@ -101,10 +111,14 @@ TEST_F(Pictures, PngSaysWhatItsWhiteIs) {
   const std::string png = content_of(folder / "a.png");
   EXPECT_TRUE(says(png, "--tone-map linear --exposure 0 --ev100 8"));
   EXPECT_TRUE(says(png, std::string("whiteLuminance") + '\0' + "307.2"));  // 1.2 * 2^8 cd/m^2
-  // Twice the light through one stop less is the same picture.
+  // A stop less by one and a stop more by the other is the same picture.
   ASSERT_EQ(
       run(render({"-o", "b.png", "--ev100", "9", "--exposure", "1", "--tone-map", "linear"})).code,
       0);
+  const auto pixels = [](const std::string& file) { return file.substr(file.find("IDAT")); };
+  EXPECT_EQ(pixels(png), pixels(content_of(folder / "b.png")));
+  ASSERT_EQ(run(render({"-o", "b.png", "--ev100", "9", "--tone-map", "linear"})).code, 0);
+  EXPECT_NE(pixels(png), pixels(content_of(folder / "b.png")));
   const Ended wrong = run(render({"-o", "a.png", "--tone-map", "film"}));
   EXPECT_EQ(wrong.code, 2);
   EXPECT_TRUE(says(wrong.err, "Did you mean 'filmic'?")) << wrong.err;
@@ -126,21 +140,14 @@ TEST_F(Pictures, ImpossibleSizesAndPlacesAreRefusedAtOnce) {
   EXPECT_TRUE(says(nowhere.err, "no/folder")) << nowhere.err;
 }
 
-// Stops the picture once a tile of it is kept, and goes on as a person would.
-TEST_F(Pictures, InterruptedPictureGoesOnWithTheSameBytes) {
+TEST_F(Pictures, InterruptedPictureGoesOnWithTheSameBits) {
   const Words slow = {"render", "room.toml",     "S.vtp", "--size",   "400x400", "-o",
                       "P.exr",  "--shadow-rays", "256",   "--layers", "all"};
   Words reference = slow;
   reference[6] = "R.exr";
   ASSERT_EQ(run(reference).code, 0);
   Running running(folder / "", slow + Words{"--checkpoint", "C", "--every", "0.1s"});
-  constexpr std::uintmax_t a_tile = 8192 * 25 * sizeof(float);
-  std::error_code error;
-  for (int i = 0; i < 1200; ++i) {
-    const auto size = std::filesystem::file_size(folder / "C", error);
-    if (!error && size > a_tile) break;
-    std::this_thread::sleep_for(25ms);
-  }
+  wait_for_a_tile("C", 25);
   running.signal(SIGINT);
   const Ended ended = running.wait();
   ASSERT_EQ(ended.code, 130) << ended.err;
@@ -158,6 +165,30 @@ TEST_F(Pictures, InterruptedPictureGoesOnWithTheSameBytes) {
               whole = read_exr(folder / "R.exr", ExrChannels::all);
   EXPECT_TRUE((resumed.radiance == whole.radiance).all());
   EXPECT_TRUE((resumed.layers.values == whole.layers.values).all());
+}
+
+TEST_F(Pictures, RunKeepsTheTilesOfItsPictures) {
+  const Words slow = Words{"--size", "400x400", "--shadow-rays", "256"} + quick();
+  ASSERT_EQ(run(Words{"run", "room.toml", "-o", "R"} + slow).code, 0);
+  const Words kept =
+      Words{"run", "room.toml", "-o", "D"} + slow + Words{"--checkpoint", "C", "--every", "0.1s"};
+  Running running(folder / "", kept);
+  // The solve's checkpoint is gone once there is a solution; the next one is of the pictures.
+  for (int i = 0; i < 2400 && !exists("D/solution.vtp"); ++i) std::this_thread::sleep_for(25ms);
+  for (int i = 0; i < 400 && !says(running.err(), "removed the checkpoint"); ++i) {
+    std::this_thread::sleep_for(5ms);
+  }
+  wait_for_a_tile("C", 3);
+  running.signal(SIGTERM);
+  const Ended ended = running.wait();
+  ASSERT_EQ(ended.code, 130) << ended.err;
+  EXPECT_TRUE(says(ended.err, "what was done is in 'C' (")) << ended.err;
+  EXPECT_FALSE(exists("D/door.exr"));
+  const auto json = run_json(kept + Words{"--resume"});
+  EXPECT_GT(json["picture_checkpoint"]["resumed_mb"].get<double>(), 0.09);
+  EXPECT_FALSE(exists("C"));
+  EXPECT_TRUE(
+      (read_exr(folder / "D/door.exr").radiance == read_exr(folder / "R/door.exr").radiance).all());
 }
 
 TEST_F(Pictures, InterruptWithoutACheckpointLeavesNothing) {
