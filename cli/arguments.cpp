@@ -205,6 +205,13 @@ void MeshArguments::add_to(CLI::App& command, const std::string& group) {
       ->check(whole_number(1, 64))
       ->group(group);
   command
+      .add_option("--max-element-size", max_element_size,
+                  "longest element edge in the scene file's unit (default: half a patch)")
+      ->type_name("L")
+      ->check(positive())
+      ->excludes(command.get_option("--elements-per-patch-edge"))
+      ->group(group);
+  command
       .add_flag("--discontinuity", mesh.discontinuity,
                 "cut receivers along the bounds of umbra and penumbra")
       ->group(group);
@@ -213,13 +220,17 @@ void MeshArguments::add_to(CLI::App& command, const std::string& group) {
 MeshOptions MeshArguments::options(const Scene& scene) const {
   MeshOptions options = mesh;
   options.max_patch_size = max_patch_size * scene.metres_per_unit;
+  options.max_element_size = max_element_size * scene.metres_per_unit;
   return options;
 }
 
 std::string MeshArguments::text(const Scene& scene) const {
-  return fmt::format("--max-patch-size {:.6g} --elements-per-patch-edge {}{}",
-                     patch_size(scene, options(scene)) / scene.metres_per_unit,
-                     mesh.elements_per_patch_edge, mesh.discontinuity ? " --discontinuity" : "");
+  const CutSize cut = cut_size(scene, options(scene));
+  const std::string elements =
+      max_element_size > 0.0 ? fmt::format("--max-element-size {:.6g}", max_element_size)
+                             : fmt::format("--elements-per-patch-edge {}", cut.elements_per_edge);
+  return fmt::format("--max-patch-size {:.6g} {}{}", cut.patch_size / scene.metres_per_unit,
+                     elements, mesh.discontinuity ? " --discontinuity" : "");
 }
 
 void SolveArguments::add_to(CLI::App& command) {

@@ -15,7 +15,8 @@ namespace lightwell {
 
 /// How surfaces are cut into patches and elements, as asked for on the command line.
 struct MeshArguments {
-  double max_patch_size = 0.0;  ///< in the scene file's unit; 0: automatic
+  double max_patch_size = 0.0;    ///< in the scene file's unit; 0: automatic
+  double max_element_size = 0.0;  ///< the same
   MeshOptions mesh{};
 
   void add_to(CLI::App& command, const std::string& group);

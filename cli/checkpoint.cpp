@@ -93,6 +93,13 @@ void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on) {
           ->group(more);
   command.add_flag("--keep-checkpoint", keep, "do not remove it when the solution is written")
       ->group(more);
+  command
+      .add_option("--reuse", reuse,
+                  "form factors of an earlier solve of the same geometry: its kept checkpoint")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile)
+      ->excludes(command.get_option("--checkpoint"))
+      ->group(more);
   command.parse_complete_callback([this, time] {
     if (!file.empty()) return;
     for (const auto& [is_given, name] :
@@ -106,6 +113,7 @@ void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on) {
 Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& of,
                        const fs::path& output, Console& console)
     : arguments_(arguments), console_(console) {
+  if (!arguments.reuse.empty()) journal_ = Journal::of_another_solve(arguments.reuse, of.version);
   const fs::path& file = arguments.file;
   if (file.empty()) return;
   if (is_same_file(file, output)) {
@@ -141,7 +149,7 @@ Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& o
 }
 
 Progress Checkpoint::watched(Progress progress) {
-  if (!journal_) return progress;
+  if (!journal_ || journal_->is_read_only()) return progress;
   return [this, progress = std::move(progress)](std::string_view phase, double share) {
     const std::string failure = has_warned_ ? std::string() : journal_->failure();
     if (!failure.empty()) {
@@ -154,7 +162,7 @@ Progress Checkpoint::watched(Progress progress) {
 }
 
 void Checkpoint::rethrow_stopped() {
-  if (!journal_) throw;
+  if (!journal_ || journal_->is_read_only()) throw;
   journal_->close();
   const std::string file = arguments_.file.string();
   try {
@@ -178,8 +186,22 @@ void Checkpoint::rethrow_stopped() {
 
 void Checkpoint::finish(Report& report) {
   if (!journal_) return;
-  journal_->close();
   constexpr double megabyte = 1 << 20;
+  if (journal_->is_read_only()) {
+    report.add("reused", {{"file", arguments_.reuse.string()},
+                          {"mb", static_cast<double>(journal_->recalled()) / megabyte}});
+    if (journal_->recalled() == 0) {
+      console_.say(fmt::format(
+          "warning: nothing in '{}' could be used: it is of other geometry, mirrors, glass or "
+          "lamps, or of other options for form factors",
+          arguments_.reuse.string()));
+    } else {
+      console_.say_verbose(fmt::format("used {} of '{}'", size_text(journal_->recalled()),
+                                       arguments_.reuse.string()));
+    }
+    return;
+  }
+  journal_->close();
   report.add("checkpoint", {{"file", arguments_.file.string()},
                             {"mb", static_cast<double>(journal_->size()) / megabyte},
                             {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});

@@ -17,8 +17,9 @@ struct CheckpointArguments {
   std::filesystem::path file{};  ///< empty: nowhere
   double every = 10.0;           ///< seconds
   bool resume = false, keep = false;
+  std::filesystem::path reuse{};  ///< the kept checkpoint of another solve; empty: none
 
-  /// Adds --checkpoint FILE, --every TIME, --resume and --keep-checkpoint.
+  /// Adds --checkpoint FILE, --every TIME, --resume, --keep-checkpoint and --reuse FILE.
   enum class HelpOn { all, first };  ///< which of them --help shows
   void add_to(CLI::App& command, HelpOn help_on);
 };
