@@ -6,11 +6,13 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <vector>
 
 #include "raytrace/camera_ray.h"
+#include "raytrace/pixel_samples.h"
 #include "raytrace/shade.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -27,11 +29,17 @@ constexpr std::uint64_t edge_purpose = 0xed6e;
 
 void check(const RenderOptions& options) {
   const auto fail = [](const std::string& what) { throw std::invalid_argument("render: " + what); };
-  if (options.max_subdivision < 0 || options.max_subdivision > max_levels) {
-    fail(fmt::format("max_subdivision is {}, it must lie between 0 and {}", options.max_subdivision,
-                     max_levels));
-  }
-  if (options.max_depth < 0) fail("max_depth must not be negative");
+  const auto within = [&](const char* what, int value, int low, int high) {
+    if (value >= low && value <= high) return;
+    fail(fmt::format("{} is {}, it must lie between {} and {}", what, value, low, high));
+  };
+  within("max_subdivision", options.max_subdivision, 0, max_levels);
+  within("max_depth", options.max_depth, 0, deepest_tree);
+  within("gather_rays", options.gather_rays, 1, most_gather_rays);
+  within("glossy_rays", options.glossy_rays, 1, 256);
+  within("sampling.most", options.sampling.most, 0, SampleOptions::limit);
+  within("sampling.least", options.sampling.least, 1, SampleOptions::limit);
+  if (!(options.sampling.noise >= 0.0f)) fail("sampling.noise must not be negative");
   if (!(options.contrast > 0.0f)) fail("contrast must be above 0");
   if (!(options.min_contribution >= 0.0f)) fail("min_contribution must not be negative");
 }
@@ -219,6 +227,32 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
   });
 }
 
+// Many looks for every pixel of some rows.
+void sample_pixels(const PixelSamples& samples, int first_row, int rows, Counters& counters,
+                   Image& image) {
+  constexpr int grain = 8;
+  parallel_for(rows * image.width, grain, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const int x = i % image.width, y = first_row + i / image.width;
+      const PixelSamples::Result seen = samples(x, y);
+      image.radiance.row(y * image.width + x) =
+          (seen.sum.radiance / static_cast<float>(seen.count)).transpose();
+      counters.eye_rays.fetch_add(seen.count, std::memory_order_relaxed);
+      counters.depth_cut.fetch_add(seen.sum.depth_cut, std::memory_order_relaxed);
+    }
+  });
+}
+
+// Rough surfaces and lenses show nothing sharp that subdivision could find the edges of.
+SampleOptions sampling_for(const Scene& scene, const CameraRays& rays,
+                           const RenderOptions& options) {
+  SampleOptions sampling = options.sampling;
+  const auto is_rough = [](const Material& m) { return m.gloss_roughness() > 0.0f; };
+  const bool needed = rays.has_lens() || std::ranges::any_of(scene.materials, is_rough);
+  if (sampling.most == 0 && needed) sampling.most = SampleOptions::most_by_default;
+  return sampling;
+}
+
 }  // namespace
 
 Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
@@ -235,15 +269,24 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
 
   // Strips keep memory small and let the caller stop the work soon; they share a row of corners.
   constexpr int pixels_per_strip = 8192;
-  const int strip_rows = std::max(1, pixels_per_strip / camera.width);
+  const SampleOptions sampling = sampling_for(scene, rays, options);
+  const bool is_sampled = sampling.most > 0;
+  const std::optional<PixelSamples> samples =
+      is_sampled ? std::optional<PixelSamples>(std::in_place, rays, tree, sampling) : std::nullopt;
+  const int strip_rows =
+      std::max(1, (is_sampled ? pixels_per_strip / 8 : pixels_per_strip) / camera.width);
   std::vector<CornerRow> corners(strip_rows + 1, CornerRow(camera.width + 1));
   report(options.progress, "render", 0.0);
-  look_at_corners(eye, 0, {corners.data(), 1});
+  if (!is_sampled) look_at_corners(eye, 0, {corners.data(), 1});
   for (int y = 0; y < camera.height; y += strip_rows) {
     const int rows = std::min(strip_rows, camera.height - y);
-    look_at_corners(eye, y + 1, {corners.data() + 1, static_cast<std::size_t>(rows)});
-    average_pixels(eye, options, y, {corners.data(), static_cast<std::size_t>(rows) + 1}, image);
-    std::swap(corners.front(), corners[rows]);
+    if (is_sampled) {
+      sample_pixels(*samples, y, rows, counters, image);
+    } else {
+      look_at_corners(eye, y + 1, {corners.data() + 1, static_cast<std::size_t>(rows)});
+      average_pixels(eye, options, y, {corners.data(), static_cast<std::size_t>(rows) + 1}, image);
+      std::swap(corners.front(), corners[rows]);
+    }
     report(options.progress, "render", static_cast<double>(y + rows) / camera.height);
   }
   if (render_report) {
