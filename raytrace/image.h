@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "raytrace/layers.h"
 #include "scene/bands.h"
 
 namespace lightwell {
@@ -14,6 +15,7 @@ namespace lightwell {
 struct Image {
   int width = 0, height = 0;
   BandArray radiance{};
+  LayerColumns layers{};  ///< empty, or as many rows as radiance
 };
 
 /// The largest picture that is rendered, written or read: 805 MB of RGB. A hostile or torn header

@@ -68,6 +68,7 @@ PixelSamples::Result PixelSamples::operator()(int x, int y) const {
       result.sum = sight;
     } else {
       result.sum.radiance += sight.radiance;
+      result.sum.layers += sight.layers;
       result.sum.depth_cut += sight.depth_cut;
     }
     tally.add(static_cast<double>(sight.radiance.mean()));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "raytrace/camera_ray.h"
+#include "raytrace/layer_film.h"
 #include "raytrace/pixel_samples.h"
 #include "raytrace/shade.h"
 #include "scene/parallel.h"
@@ -74,6 +75,19 @@ class Eye {
   Counters& counters_;
 };
 
+// What a pixel is the mean of: radiance, and the layers that go with it.
+struct PixelValue {
+  Spectrum radiance{};
+  SampledLayers layers = SampledLayers::Zero();
+
+  static PixelValue zero(int bands) { return {.radiance = Spectrum::Zero(bands)}; }
+  template <class Seen>  // a Sight or another PixelValue
+  void add(const Seen& seen, float share) {
+    radiance += share * seen.radiance;
+    layers += share * seen.layers;
+  }
+};
+
 // Mean radiance over one pixel's square by adaptive subdivision (Whitted 1980): the mean of the
 // four corners where they agree, else of the four quarters.
 class PixelMean {
@@ -87,7 +101,7 @@ class PixelMean {
         known_(sights_.size()) {}
 
   // `corners`: top left, top right, bottom left, bottom right.
-  Spectrum operator()(int x, int y, const std::array<const Sight*, 4>& corners) {
+  PixelValue operator()(int x, int y, const std::array<const Sight*, 4>& corners) {
     x_ = x * lattice_steps;
     y_ = y * lattice_steps;
     if (!must_split(0, 0, cells_, corners) && (cells_ > 1 || look_alike(corners))) {
@@ -119,17 +133,24 @@ class PixelMean {
     return &sights_[slot(i, j)];
   }
 
-  Spectrum cell_mean(int i, int j, int size) {
+  PixelValue cell_mean(int i, int j, int size) {
     const Corners corners = {sight(i, j), sight(i + size, j), sight(i, j + size),
                              sight(i + size, j + size)};
     if (must_split(i, j, size, corners)) return split(i, j, size);
     return size == 1 && !look_alike(corners) ? edge_mean(i, j, corners) : mean(corners);
   }
 
-  Spectrum split(int i, int j, int size) {
+  PixelValue split(int i, int j, int size) {
     const int half = size / 2;
-    return 0.25f * (cell_mean(i, j, half) + cell_mean(i + half, j, half) +
-                    cell_mean(i, j + half, half) + cell_mean(i + half, j + half, half));
+    PixelValue sum = cell_mean(i, j, half);
+    sum.add(cell_mean(i + half, j, half), 1.0f);
+    sum.add(cell_mean(i, j + half, half), 1.0f);
+    sum.add(cell_mean(i + half, j + half, half), 1.0f);
+    return scaled(sum, 0.25f);
+  }
+
+  static PixelValue scaled(const PixelValue& value, float share) {
+    return {.radiance = share * value.radiance, .layers = share * value.layers};
   }
 
   // Largest difference between corners in any band, over the bands' mean of the largest value.
@@ -144,18 +165,20 @@ class PixelMean {
     return widest > 0.0f ? widest * static_cast<float>(c[0]->radiance.size()) / sum : 0.0f;
   }
 
-  static Spectrum mean(const Corners& c) {
-    return 0.25f * (c[0]->radiance + c[1]->radiance + c[2]->radiance + c[3]->radiance);
+  static PixelValue mean(const Corners& c) {
+    PixelValue sum{.radiance = c[0]->radiance, .layers = c[0]->layers};
+    for (int i = 1; i < 4; ++i) sum.add(*c[i], 1.0f);
+    return scaled(sum, 0.25f);
   }
 
   // The smallest cell with an edge in it: each corner weighs what share of the cell looks like it.
   // Shares come from rays without shadow rays, which makes edges many times finer than samples; a
   // lamp's edge against a wall a hundred times darker needs that.
-  Spectrum edge_mean(int i, int j, const Corners& c) const {
+  PixelValue edge_mean(int i, int j, const Corners& c) const {
     const double x = x_ + i * steps_per_cell_, y = y_ + j * steps_per_cell_;
     const std::uint64_t key =
         random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y), edge_purpose);
-    Spectrum sum = Spectrum::Zero(c[0]->radiance.size());
+    PixelValue sum = PixelValue::zero(static_cast<int>(c[0]->radiance.size()));
     int votes = 0;
     for (int s = 0; s < edge_points_.count(); ++s) {
       const Eigen::Array4f u = edge_points_.point(s, key);
@@ -166,10 +189,10 @@ class PixelMean {
       if (count == 0) continue;  // a third thing, which no corner shows
       ++votes;
       for (const Sight* sight : c) {
-        if (alike(sight)) sum += sight->radiance / static_cast<float>(count);
+        if (alike(sight)) sum.add(*sight, 1.0f / static_cast<float>(count));
       }
     }
-    return votes > 0 ? Spectrum(sum / static_cast<float>(votes)) : mean(c);
+    return votes > 0 ? scaled(sum, 1.0f / static_cast<float>(votes)) : mean(c);
   }
 
   static bool look_alike(const Corners& c) {
@@ -212,7 +235,7 @@ void look_at_corners(const Eye& eye, int first_row, std::span<CornerRow> rows) {
 }
 
 void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
-                    std::span<const CornerRow> corners, Image& image) {
+                    std::span<const CornerRow> corners, Image& image, LayerFilm& layers) {
   constexpr int grain = 32;
   const int rows = static_cast<int>(corners.size()) - 1;
   parallel_for(rows * image.width, grain, [&](int begin, int end) {
@@ -221,22 +244,26 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
       const int row = i / image.width, x = i % image.width, y = first_row + row;
       const CornerRow& top = corners[row];
       const CornerRow& bottom = corners[row + 1];
-      image.radiance.row(y * image.width + x) =
-          pixel_mean(x, y, {&top[x], &top[x + 1], &bottom[x], &bottom[x + 1]}).transpose();
+      const PixelValue value = pixel_mean(x, y, {&top[x], &top[x + 1], &bottom[x], &bottom[x + 1]});
+      const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
+      image.radiance.row(pixel) = value.radiance.transpose();
+      layers.set_sampled(pixel, value.layers);
     }
   });
 }
 
 // Many looks for every pixel of some rows.
 void sample_pixels(const PixelSamples& samples, int first_row, int rows, Counters& counters,
-                   Image& image) {
+                   Image& image, LayerFilm& layers) {
   constexpr int grain = 8;
   parallel_for(rows * image.width, grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const int x = i % image.width, y = first_row + i / image.width;
       const PixelSamples::Result seen = samples(x, y);
-      image.radiance.row(y * image.width + x) =
-          (seen.sum.radiance / static_cast<float>(seen.count)).transpose();
+      const float share = 1.0f / static_cast<float>(seen.count);
+      const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
+      image.radiance.row(pixel) = share * seen.sum.radiance.transpose();
+      layers.set_sampled(pixel, share * seen.sum.layers);
       counters.eye_rays.fetch_add(seen.count, std::memory_order_relaxed);
       counters.depth_cut.fetch_add(seen.sum.depth_cut, std::memory_order_relaxed);
     }
@@ -266,27 +293,34 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   const Eye eye(rays, tree, counters);
   Image image{.width = camera.width, .height = camera.height};
   image.radiance.resize(std::int64_t{camera.width} * camera.height, scene.bands.count());
+  LayerFilm layers(options.layers, image);
 
   // Strips keep memory small and let the caller stop the work soon; they share a row of corners.
   constexpr int pixels_per_strip = 8192;
   const SampleOptions sampling = sampling_for(scene, rays, options);
-  const bool is_sampled = sampling.most > 0;
-  const std::optional<PixelSamples> samples =
-      is_sampled ? std::optional<PixelSamples>(std::in_place, rays, tree, sampling) : std::nullopt;
+  std::optional<PixelSamples> samples;
+  if (sampling.most > 0) samples.emplace(rays, tree, sampling);
+  constexpr int sampled_pixels_per_strip = 1024;
   const int strip_rows =
-      std::max(1, (is_sampled ? pixels_per_strip / 8 : pixels_per_strip) / camera.width);
+      std::max(1, (samples ? sampled_pixels_per_strip : pixels_per_strip) / camera.width);
   std::vector<CornerRow> corners(strip_rows + 1, CornerRow(camera.width + 1));
   report(options.progress, "render", 0.0);
-  if (!is_sampled) look_at_corners(eye, 0, {corners.data(), 1});
+  if (!samples) look_at_corners(eye, 0, {corners.data(), 1});
   for (int y = 0; y < camera.height; y += strip_rows) {
     const int rows = std::min(strip_rows, camera.height - y);
-    if (is_sampled) {
-      sample_pixels(*samples, y, rows, counters, image);
+    if (samples) {
+      sample_pixels(*samples, y, rows, counters, image, layers);
     } else {
       look_at_corners(eye, y + 1, {corners.data() + 1, static_cast<std::size_t>(rows)});
-      average_pixels(eye, options, y, {corners.data(), static_cast<std::size_t>(rows) + 1}, image);
+      average_pixels(eye, options, y, {corners.data(), static_cast<std::size_t>(rows) + 1}, image,
+                     layers);
       std::swap(corners.front(), corners[rows]);
     }
+    parallel_for(rows, 1, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        layers.finish_row(y + i, scene.bands, camera, rays, caster);
+      }
+    });
     report(options.progress, "render", static_cast<double>(y + rows) / camera.height);
   }
   if (render_report) {

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <vector>
+
 #include "mesh/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
 #include "raytrace/image.h"
+#include "raytrace/layers.h"
 #include "scene/progress.h"
 
 namespace lightwell {
@@ -41,6 +44,7 @@ struct RenderOptions {
   /// error.
   int max_subdivision = 2;
   float contrast = 0.1f;
+  std::vector<Layer> layers{};  ///< what Image::layers shall hold
   Progress progress{};
 };
 

@@ -1,6 +1,7 @@
 #include "raytrace/shade.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -62,6 +63,9 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       direct_light_(direct_light),
       solution_(solution),
       options_(options),
+      with_layers_(std::any_of(options.layers.begin(), options.layers.end(),
+                               [](Layer layer) { return first_sampled_column(layer) >= 0; })),
+      white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
       gloss_points_(gloss_points) {
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
@@ -127,6 +131,10 @@ void RayTree::follow(Branch branch, Walk& walk) const {
     branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back, hit.t);
   }
   const SurfacePoint at = surface_point(branch.ray, hit);
+  if (walk.shades && with_layers_ && branch.place == 1) {
+    const Eigen::Vector3d normal = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
+    sight.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
+  }
   if (walk.shades && hit.element >= 0) shade(branch, hit, at, walk);
   split(branch, hit, at, walk);
 }
@@ -223,8 +231,9 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const SurfacePo
   const Spectrum M = mesh.emission.row(patch).transpose();
   const Spectrum rho = mesh.reflectance.row(patch).transpose();
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
-  if ((rho > 0.0f).any()) E = arriving(hit, at, branch, walk);
+  if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, walk);
   walk.sight.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
+  if (with_layers_) note_layers(branch, hit, E, walk);
 }
 
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& at,
@@ -251,6 +260,40 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& a
     E.indirect += interpolate(mesh, solution_.caustic_irradiance, hit);
   }
   return E;
+}
+
+void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Arriving& E,
+                          Walk& walk) const {
+  const PatchMesh& mesh = caster_.mesh();
+  const Bands& bands = scene_.bands;
+  const int patch = mesh.patch[hit.element];
+  const Spectrum M = mesh.emission.row(patch).transpose();
+  const Spectrum rho = mesh.reflectance.row(patch).transpose();
+  const auto three = [&](Layer layer) {
+    return walk.sight.layers.segment<3>(first_sampled_column(layer));
+  };
+  const auto light = [&](const Spectrum& radiosity) {
+    const Spectrum L = branch.weight * one_over_pi * radiosity;
+    return linear_rgb(bands, L);
+  };
+  if (branch.place == 1) {
+    // Bands that do not make up white, such as infrared, have no colour.
+    three(Layer::albedo) = (white_rgb_ > 0.0f).all()
+                               ? Eigen::Array3f(linear_rgb(bands, rho) / white_rgb_)
+                               : Eigen::Array3f::Constant(rho.mean());
+    three(Layer::emission) = light(M);
+    three(Layer::direct) = light(rho * E.direct);
+    three(Layer::indirect) = light(rho * E.indirect);
+  } else {
+    three(Layer::specular) += light(M + rho * (E.direct + E.indirect));
+  }
+  // Refracted children alone have odd places, so that straight through glass all bits are ones.
+  const bool is_straight = branch.is_sharp && (branch.place & (branch.place + 1)) == 0;
+  if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
+    const Spectrum all = E.direct + E.indirect;
+    walk.sight.layers[first_sampled_column(Layer::illuminance)] =
+        static_cast<float>(luminous(bands, all));
+  }
 }
 
 }  // namespace lightwell

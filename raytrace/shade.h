@@ -17,7 +17,9 @@ namespace lightwell {
 
 /// What one look along a ray found.
 struct Sight {
-  Spectrum radiance{};            ///< W/(m^2 sr)
+  Spectrum radiance{};  ///< W/(m^2 sr)
+  /// What a pixel averages beside radiance; zero unless RenderOptions::layers has any of them.
+  SampledLayers layers = SampledLayers::Zero();
   std::uint64_t fingerprint = 0;  ///< of the surfaces seen, see RayTree
   std::int64_t depth_cut = 0;     ///< branches that max_depth ended
 };
@@ -71,6 +73,10 @@ class RayTree {
     bool is_sharp = true;  ///< no rough surface on the way
     Media media{};
   };
+  /// Irradiance at a place, W/m^2, by the way light takes.
+  struct Arriving {
+    Spectrum direct{}, indirect{};
+  };
   /// What is gathered while the tree grows.
   struct Walk {
     Sight sight{};
@@ -79,10 +85,6 @@ class RayTree {
     bool shades = true;
     std::optional<int> number{};  ///< of many looks of one key
     std::uint64_t gloss_key = 0;  ///< the same in all of them
-  };
-  /// Irradiance at a place, W/m^2, by the way light takes.
-  struct Arriving {
-    Spectrum direct{}, indirect{};
   };
 
   void follow(Branch branch, Walk& walk) const;
@@ -96,12 +98,16 @@ class RayTree {
   void shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
   Arriving arriving(const ElementHit& hit, const SurfacePoint& at, const Branch& branch,
                     const Walk& walk) const;
+  void note_layers(const Branch& branch, const ElementHit& hit, const Arriving& E,
+                   Walk& walk) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;
   const DirectLight& direct_light_;
   const RadiositySolution& solution_;
   const RenderOptions& options_;
+  bool with_layers_ = false;
+  Eigen::Array3f white_rgb_;             ///< of what reflects everything, under equal-energy light
   std::optional<PixelGather> gather_{};  ///< for Pass::gather
   SobolPoints gloss_points_;
   bool absorbs_ = false;  ///< there is a body that does
