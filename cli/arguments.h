@@ -47,6 +47,9 @@ struct RenderArguments {
   std::optional<std::pair<int, int>> size{};  ///< pixels; else the camera's own
   std::string pass = "direct";
   int shadow_rays = 64;
+  int gather_samples = 256;
+  int samples = 0;      ///< most per pixel; 0: see SampleOptions
+  double noise = 0.02;  ///< share of a pixel that ends its sampling
   double exposure_ev = 0.0;
 
   void add_to(CLI::App& command);

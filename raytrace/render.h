@@ -51,7 +51,7 @@ struct RenderOptions {
 constexpr int most_gather_rays = 1 << 16;
 
 /// Deeper recursion might exhaust a thread's stack.
-constexpr int deepest_tree = 256;
+constexpr int deepest_tree = 1000;
 
 struct RenderReport {
   double seconds = 0.0;
