@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace lightwell {
 namespace {
@@ -17,22 +18,14 @@ double blackman_harris(double x) {
          0.01168 * std::cos(3.0 * a);
 }
 
-// Means of band-mean radiance, for the error of a pixel's mean.
-struct Tally {
-  double sum = 0.0, square = 0.0;
-
-  void add(double L) {
-    sum += L;
-    square += L * L;
-  }
-  bool is_good(int n, double noise) const {
-    const double mean = sum / n;
-    const double variance = std::max(0.0, square / n - mean * mean) / (n - 1);
-    return std::sqrt(variance) <= noise * mean;
-  }
-};
-
 }  // namespace
+
+bool PixelTally::is_good(float noise) const {
+  if (!(noise > 0.0f) || count < 2) return false;
+  const double mean = light / count;
+  const double variance = std::max(0.0, square / count - mean * mean) / (count - 1);
+  return std::sqrt(variance) <= static_cast<double>(noise) * mean;
+}
 
 FilterPlaces::FilterPlaces() {
   for (int i = 0; i < steps_; ++i) {
@@ -52,31 +45,42 @@ PixelSamples::PixelSamples(const CameraRays& rays, const RayTree& tree,
                            const SampleOptions& options)
     : rays_(rays), tree_(tree), options_(options), points_(options.most) {}
 
-PixelSamples::Result PixelSamples::operator()(int x, int y) const {
+PixelTally PixelSamples::first_looks(int x, int y) const {
+  PixelTally tally;
+  look(x, y, std::min(options_.least, options_.most), tally);
+  return tally;
+}
+
+void PixelSamples::look_on(int x, int y, bool is_beside_noise, PixelTally& tally) const {
+  constexpr int more_beside_noise = 4;
+  if (is_beside_noise) {
+    look(x, y, std::min(more_beside_noise * options_.least, options_.most), tally);
+  }
+  while (tally.count < options_.most && !tally.is_good(options_.noise)) {
+    look(x, y, std::min(2 * tally.count, options_.most), tally);
+  }
+}
+
+void PixelSamples::look(int x, int y, int until, PixelTally& tally) const {
   const auto column = static_cast<std::uint64_t>(x), row = static_cast<std::uint64_t>(y);
   const std::uint64_t place_key = random_key(column, row, place_purpose);
   const std::uint64_t look_key = random_key(column, row, look_purpose);
-  Result result;
-  Tally tally;
-  int judged_at = std::min(options_.least, options_.most);
-  while (result.count < options_.most) {
-    const Eigen::Array4d u = points_.point(result.count, place_key).cast<double>();
+  for (; tally.count < until; ++tally.count) {
+    const Eigen::Array4d u = points_.point(tally.count, place_key).cast<double>();
     const Ray ray =
         rays_.ray(x + 0.5 + filter_.offset(u[0]), y + 0.5 + filter_.offset(u[1]), u[2], u[3]);
-    const Sight sight = tree_.look_one_of_many(ray, look_key, result.count);
-    if (result.count == 0) {
-      result.sum = sight;
-    } else {
-      result.sum.radiance += sight.radiance;
-      result.sum.layers += sight.layers;
-      result.sum.depth_cut += sight.depth_cut;
+    Sight sight = tree_.look_one_of_many(ray, look_key, tally.count);
+    const auto light = static_cast<double>(sight.radiance.mean());
+    tally.light += light;
+    tally.square += light * light;
+    if (tally.count == 0) {
+      tally.sum = std::move(sight);
+      continue;
     }
-    tally.add(static_cast<double>(sight.radiance.mean()));
-    if (++result.count < judged_at) continue;
-    if (result.count > 1 && tally.is_good(result.count, options_.noise)) break;
-    judged_at *= 2;
+    tally.sum.radiance += sight.radiance;
+    tally.sum.layers += sight.layers;
+    tally.sum.depth_cut += sight.depth_cut;
   }
-  return result;
 }
 
 }  // namespace lightwell

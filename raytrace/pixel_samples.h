@@ -22,6 +22,17 @@ class FilterPlaces {
   std::array<double, steps_ + 1> cdf_{};
 };
 
+/// What looks through one pixel saw.
+struct PixelTally {
+  Sight sum{};  ///< of all looks; its fingerprint means nothing
+  int count = 0;
+  double light = 0.0, square = 0.0;  ///< sums of the bands' mean radiance and of its square
+
+  /// Whether the standard error of the mean is at most `noise`, above 0, of it: that of as many
+  /// independent looks; stratified ones are better.
+  bool is_good(float noise) const;
+};
+
 /// A pixel by many looks, each through a place of its own of picture and lens: for what no
 /// subdivision of the pixel's square resolves, gloss and depth of field (Cook, Porter & Carpenter
 /// 1984). Samples are points of one scrambled Sobol sequence per pixel, and neighbours share none.
@@ -29,16 +40,18 @@ class PixelSamples {
  public:
   PixelSamples(const CameraRays& rays, const RayTree& tree, const SampleOptions& options);
 
-  struct Result {
-    Sight sum{};  ///< of all looks: divide by `count`; its fingerprint means nothing
-    int count = 0;
-  };
-  /// Looks until the standard error of the mean is below SampleOptions::noise of it, at most
-  /// SampleOptions::most times. The error is that of as many independent looks: stratified ones are
-  /// better than that.
-  Result operator()(int x, int y) const;
+  /// SampleOptions::least looks.
+  PixelTally first_looks(int x, int y) const;
+  /// More, until the error is what SampleOptions::noise asks for, at most SampleOptions::most.
+  /// Beside a pixel whose first looks are not good, four times `least` come before the first
+  /// judgement: what is small and bright may have escaped them.
+  void look_on(int x, int y, bool is_beside_noise, PixelTally& tally) const;
+
+  const SampleOptions& options() const { return options_; }
 
  private:
+  void look(int x, int y, int until, PixelTally& tally) const;
+
   const CameraRays& rays_;
   const RayTree& tree_;
   SampleOptions options_;

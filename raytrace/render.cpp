@@ -252,21 +252,52 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
   });
 }
 
-// Many looks for every pixel of some rows.
-void sample_pixels(const PixelSamples& samples, int first_row, int rows, Counters& counters,
-                   Image& image, LayerFilm& layers) {
-  constexpr int grain = 8;
-  parallel_for(rows * image.width, grain, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      const int x = i % image.width, y = first_row + i / image.width;
-      const PixelSamples::Result seen = samples(x, y);
-      const float share = 1.0f / static_cast<float>(seen.count);
-      const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
-      image.radiance.row(pixel) = share * seen.sum.radiance.transpose();
-      layers.set_sampled(pixel, share * seen.sum.layers);
-      counters.eye_rays.fetch_add(seen.count, std::memory_order_relaxed);
-      counters.depth_cut.fetch_add(seen.sum.depth_cut, std::memory_order_relaxed);
+// Calls body(x, y) for each pixel of rows `first` to `end`, in slices that keep progress and
+// interruption on this thread.
+template <class Body>
+void for_each_pixel(int width, int first, int end, const Progress& progress, double part,
+                    Body&& body) {
+  constexpr int slice = 512, grain = 8;
+  const int count = (end - first) * width;
+  for (int begin = 0; begin < count; begin += slice) {
+    parallel_for(std::min(slice, count - begin), grain, [&](int from, int to) {
+      for (int i = begin + from; i < begin + to; ++i) body(i % width, first + i / width);
+    });
+    report(progress, "render", part);
+  }
+}
+
+// Many looks for every pixel of some rows; first ones also of the rows beside them.
+void sample_pixels(const PixelSamples& samples, int first_row, int rows, const Progress& progress,
+                   Counters& counters, Image& image, LayerFilm& layers) {
+  const int top = std::max(0, first_row - 1), bottom = std::min(image.height, first_row + rows + 1);
+  const double part = static_cast<double>(first_row) / image.height;
+  std::vector<PixelTally> tallies(static_cast<std::size_t>(bottom - top) * image.width);
+  std::vector<char> good(tallies.size());
+  const auto slot = [&](int x, int y) {
+    return static_cast<std::size_t>(y - top) * image.width + x;
+  };
+  for_each_pixel(image.width, top, bottom, progress, part, [&](int x, int y) {
+    PixelTally& tally = tallies[slot(x, y)] = samples.first_looks(x, y);
+    good[slot(x, y)] = tally.is_good(samples.options().noise);
+  });
+  const auto is_beside_noise = [&](int x, int y) {
+    for (int j = std::max(top, y - 1); j < std::min(bottom, y + 2); ++j) {
+      for (int i = std::max(0, x - 1); i < std::min(image.width, x + 2); ++i) {
+        if (!good[slot(i, j)]) return true;
+      }
     }
+    return false;
+  };
+  for_each_pixel(image.width, first_row, first_row + rows, progress, part, [&](int x, int y) {
+    PixelTally& tally = tallies[slot(x, y)];
+    samples.look_on(x, y, is_beside_noise(x, y), tally);
+    const float share = 1.0f / static_cast<float>(tally.count);
+    const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
+    image.radiance.row(pixel) = share * tally.sum.radiance.transpose();
+    layers.set_sampled(pixel, share * tally.sum.layers);
+    counters.eye_rays.fetch_add(tally.count, std::memory_order_relaxed);
+    counters.depth_cut.fetch_add(tally.sum.depth_cut, std::memory_order_relaxed);
   });
 }
 
@@ -300,16 +331,15 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   const SampleOptions sampling = sampling_for(scene, rays, options);
   std::optional<PixelSamples> samples;
   if (sampling.most > 0) samples.emplace(rays, tree, sampling);
-  constexpr int sampled_pixels_per_strip = 1024;
-  const int strip_rows =
-      std::max(1, (samples ? sampled_pixels_per_strip : pixels_per_strip) / camera.width);
+  constexpr int sampled_rows = 16;
+  const int strip_rows = samples ? sampled_rows : std::max(1, pixels_per_strip / camera.width);
   std::vector<CornerRow> corners(strip_rows + 1, CornerRow(camera.width + 1));
   report(options.progress, "render", 0.0);
   if (!samples) look_at_corners(eye, 0, {corners.data(), 1});
   for (int y = 0; y < camera.height; y += strip_rows) {
     const int rows = std::min(strip_rows, camera.height - y);
     if (samples) {
-      sample_pixels(*samples, y, rows, counters, image, layers);
+      sample_pixels(*samples, y, rows, options.progress, counters, image, layers);
     } else {
       look_at_corners(eye, y + 1, {corners.data() + 1, static_cast<std::size_t>(rows)});
       average_pixels(eye, options, y, {corners.data(), static_cast<std::size_t>(rows) + 1}, image,

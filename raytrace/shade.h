@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "mesh/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
+#include "raytrace/lamp_samples.h"
 #include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
 #include "scene/sampling.h"
@@ -71,6 +73,8 @@ class RayTree {
     /// 1 for the root, 2 p and 2 p + 1 for the children of p; any for those off rough surfaces.
     std::uint64_t place = 1;
     bool is_sharp = true;  ///< no rough surface on the way
+    /// Of its direction, 1/sr, off a rough surface, which samples lamps beside; else 0.
+    double lobe_density = 0.0;
     Media media{};
   };
   /// Irradiance at a place, W/m^2, by the way light takes.
@@ -91,6 +95,10 @@ class RayTree {
   void split(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
   void scatter(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
                const SurfacePoint& at, Walk& walk) const;
+  void add_lamp(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+                const SurfacePoint& at, const Eigen::Array4d& lot, float share, Walk& walk) const;
+  Spectrum emission(const Branch& branch, const ElementHit& hit, const SurfacePoint& at) const;
+  const RoughLobe& lobe(int material, bool from_back) const;
   void grow(const Branch& parent, std::uint64_t place, const Onward& way, const ElementHit& hit,
             const SurfacePoint& at, Walk& walk) const;
   SurfacePoint surface_point(const Ray& ray, const ElementHit& hit) const;
@@ -98,8 +106,8 @@ class RayTree {
   void shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
   Arriving arriving(const ElementHit& hit, const SurfacePoint& at, const Branch& branch,
                     const Walk& walk) const;
-  void note_layers(const Branch& branch, const ElementHit& hit, const Arriving& E,
-                   Walk& walk) const;
+  void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
+                   const Arriving& E, Walk& walk) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;
@@ -110,6 +118,9 @@ class RayTree {
   Eigen::Array3f white_rgb_;             ///< of what reflects everything, under equal-energy light
   std::optional<PixelGather> gather_{};  ///< for Pass::gather
   SobolPoints gloss_points_;
+  LampSamples lamps_;
+  /// Of the front and the back of each material; empty if it is not rough.
+  std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};
   bool absorbs_ = false;  ///< there is a body that does
   std::vector<FacetShape> facets_{};
 };

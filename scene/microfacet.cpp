@@ -13,6 +13,11 @@ double ggx_lambda(double cosine, double alpha) {
   return 0.5 * (std::sqrt(1.0 + alpha * alpha * tan2) - 1.0);
 }
 
+double ggx_normals(double cosine, double alpha) {
+  const double a2 = alpha * alpha, b = cosine * cosine * (a2 - 1.0) + 1.0;
+  return a2 / (std::numbers::pi * b * b);
+}
+
 Eigen::Vector3d ggx_visible_normal(const Eigen::Vector3d& outwards, double alpha, double u,
                                    double v) {
   // Stretched so that the microfacets are a hemisphere, of which a disk is seen, its far part

@@ -21,6 +21,7 @@ struct Onward {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit
   Spectrum share{};                                     ///< of the light that goes on this way
   bool crosses = false;                                 ///< to the other side of the surface
+  double density = 0.0;  ///< of the direction, 1/sr, where it was drawn and that is known
 };
 
 /// The ways from a smooth surface: a mirror's one; the reflected and, unless all is, the refracted
@@ -30,6 +31,10 @@ struct OnwardWays {
   int count = 0;
 };
 OnwardWays smooth_ways(const Meeting& meeting);
+
+/// Share of light that goes on by a way that crosses the surface or not, once that way is drawn: a
+/// mirror's reflectance, all that is reflected and the tint of what crosses a dielectric.
+Spectrum share_of(const Meeting& meeting, bool crosses);
 
 /// What decides between ways; in [0,1). `key` draws more numbers where the first ones are refused.
 struct OnwardLot {
@@ -46,6 +51,20 @@ struct OnwardLot {
 /// a mirror, and all light of glass, as it is. A rough thin pane passes the mirrored picture of
 /// what it reflects.
 Onward draw_way(const Meeting& meeting, const OnwardLot& lot);
+
+/// Density of draw_way's directions from one side of a rough surface, 1/sr: of single scattering
+/// over the share that is not lost to it, which is tabulated.
+class RoughLobe {
+ public:
+  /// A material with gloss_roughness() > 0.
+  RoughLobe(const Material& material, bool from_back);
+  /// In a unit direction; 0 where light does not go.
+  double density(const Meeting& meeting, const Eigen::Vector3d& onward) const;
+
+ private:
+  static constexpr int steps_ = 64;
+  std::array<double, steps_> kept_{};  // at cosines (i + 0.5) / steps
+};
 
 /// The clear bodies that light is within, as far as it crossed their surfaces: it enters one by its
 /// front and leaves it by its back.

@@ -69,7 +69,7 @@ TEST(Gloss, ScattersAlikeInBothPasses) {
                            .box({}, {-4, -4, -4}, {4, 4, 4}, true)
                            .square({.exitance = pi_f}, {-3.99, 0, 0}, {1, 0, 0}, 4)
                            .build());
-    const Ray ray{.origin = {0.5, 0.1, 2}, .direction = Eigen::Vector3d(-0.25, 0, -1).normalized()};
+    const Ray ray{.origin = {1.6, 0.1, 0.8}, .direction = Eigen::Vector3d(-2, 0, -1).normalized()};
     constexpr std::uint64_t count = 4096;
     const LightPaths paths(lit.scene, lit.caster, 400);
     ElementHit hit;
@@ -87,6 +87,36 @@ TEST(Gloss, ScattersAlikeInBothPasses) {
     // eight times as many.
     EXPECT_NEAR(seen, found, 4 * 0.008 * std::sqrt(1.0 + 1.0 / 8.0));
     EXPECT_GT(found, 0.05);
+  }
+}
+
+// Lamps that are sampled give what the lobe alone finds, which does not know them where they emit
+// too little to be DirectLight's: here the lamp is most of the scene.
+TEST(Gloss, ShowsALampByItsSamplesAsByItsLobe) {
+  for (const Paint& paint : {Paint{.specular = 0.8f, .roughness = 0.3f},
+                             Paint{.index_of_refraction = 1.5f, .roughness = 0.2f}}) {
+    for (const bool is_sphere : {false, true}) {
+      SceneBuilder builder;
+      builder.square(paint, {0, 0, 0}, up, 1.0).square(paint, {0, 0, -0.3}, -up, 1.0);
+      const Eigen::Vector3d lamp(0.4, 0.2, 1.5);
+      const Paint shines{.exitance = pi_f};
+      is_sphere ? builder.sphere(shines, lamp, 0.4) : builder.square(shines, lamp, -up, 0.4);
+      const LitScene large(builder.build());
+      ASSERT_TRUE(large.direct_light.emitters().empty() || is_sphere);
+      builder.square({}, {0, 0, -50}, up, 40);
+      const LitScene small(builder.build());
+      ASSERT_EQ(small.direct_light.emitters().size(), 1U);
+      const Ray ray{.origin = {-0.4, 0, 1}, .direction = Eigen::Vector3d(0.4, 0, -1).normalized()};
+      constexpr std::uint64_t count = 4000;
+      double by_lobe = 0.0, by_lamp = 0.0;
+      for (std::uint64_t key = 0; key < count; ++key) {
+        by_lobe += static_cast<double>(radiance(large, ray, to_the_end, key)) / count;
+        by_lamp += static_cast<double>(radiance(small, ray, to_the_end, key)) / count;
+      }
+      // Eight samples of 0 or 1 a look: sigma = 0.5 / sqrt(8 * 4000) = 0.003 each.
+      EXPECT_NEAR(by_lamp, by_lobe, 4 * 0.003 * std::numbers::sqrt2) << is_sphere;
+      EXPECT_GT(by_lobe, 0.02);
+    }
   }
 }
 
