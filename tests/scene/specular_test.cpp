@@ -96,14 +96,14 @@ TEST(RoughGlass, LosesNothingAndReflectsByFresnelWhereItIsNearlySmooth) {
       constexpr int count = 4096;
       double reflected = 0.0;
       for (int i = 0; i < count; ++i) {
-        const Onward way = draw(glass(0.01f), downwards(degrees), from_back, i);
+        const Onward way = draw(glass(0.001f), downwards(degrees), from_back, i);
         EXPECT_EQ(way.share[0], 1.0f);
         EXPECT_EQ(way.crosses, way.direction.z() < 0.0);
         reflected += way.crosses ? 0.0 : 1.0 / count;
       }
       const double R = fresnel_reflectance(std::cos(degrees * degree), from_back ? 1 / 1.5 : 1.5);
-      // Stratified: the bound of R crosses few strata. Slopes of 0.01 change R by 0.01 dR/dangle,
-      // which is below 1 at these angles.
+      // Stratified: the bound of R crosses few strata. Slopes of 0.001 change R by 0.001 dR/dangle,
+      // which is below 10 at these angles, the critical one being 41.8 degrees.
       EXPECT_NEAR(reflected, R, 0.01 + 1.0 / 64.0) << degrees << from_back;
     }
   }
