@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cli/channels.h"
+#include "cli/film.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"
 
@@ -51,6 +52,7 @@ struct RenderArguments {
   int samples = 0;      ///< most per pixel; 0: see SampleOptions
   double noise = 0.02;  ///< share of a pixel that ends its sampling
   double exposure_ev = 0.0;
+  FilmArguments film{};
 
   void add_to(CLI::App& command);
   RenderOptions options() const;

@@ -62,8 +62,7 @@ std::optional<double> parse_seconds(const std::string& text) {
   return std::nullopt;
 }
 
-void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on) {
-  const std::string group = "How the light is solved";
+void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on, const std::string& group) {
   const std::string more = help_on == HelpOn::all ? group : std::string();  // CLI11: hidden
   command
       .add_option(
@@ -91,7 +90,7 @@ void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on) {
               "time after which finished work is safe on the disk (default 10s)")
           ->type_name("TIME")
           ->group(more);
-  command.add_flag("--keep-checkpoint", keep, "do not remove it when the solution is written")
+  command.add_flag("--keep-checkpoint", keep, "do not remove it when the result is written")
       ->group(more);
   command.parse_complete_callback([this, time] {
     if (!file.empty()) return;
@@ -104,13 +103,14 @@ void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on) {
 }
 
 Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& of,
-                       const fs::path& output, Console& console)
+                       const std::vector<fs::path>& outputs, Console& console)
     : arguments_(arguments), console_(console) {
   const fs::path& file = arguments.file;
   if (file.empty()) return;
-  if (is_same_file(file, output)) {
+  for (const fs::path& output : outputs) {
+    if (!is_same_file(file, output)) continue;
     throw InputError(fmt::format(
-        "the checkpoint and the solution cannot both be '{}'; give another name", file.string()));
+        "the checkpoint and the result cannot both be '{}'; give another name", file.string()));
   }
   require_writable(file);
   const bool exists = fs::exists(file);
@@ -146,8 +146,8 @@ Progress Checkpoint::watched(Progress progress) {
     const std::string failure = has_warned_ ? std::string() : journal_->failure();
     if (!failure.empty()) {
       has_warned_ = true;
-      console_.say(fmt::format("warning: {}. Solving goes on; what it holds up to now stays usable",
-                               failure));
+      console_.say(fmt::format(
+          "warning: {}. The work goes on; what it holds up to now stays usable", failure));
     }
     return progress(phase, share);
   };
@@ -176,13 +176,13 @@ void Checkpoint::rethrow_stopped() {
   }
 }
 
-void Checkpoint::finish(Report& report) {
+void Checkpoint::finish(Report& report, const std::string& key) {
   if (!journal_) return;
   journal_->close();
   constexpr double megabyte = 1 << 20;
-  report.add("checkpoint", {{"file", arguments_.file.string()},
-                            {"mb", static_cast<double>(journal_->size()) / megabyte},
-                            {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});
+  report.add(key, {{"file", arguments_.file.string()},
+                   {"mb", static_cast<double>(journal_->size()) / megabyte},
+                   {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});
   const std::string text = fmt::format("the checkpoint '{}' ({})", arguments_.file.string(),
                                        size_text(journal_->size()));
   if (arguments_.keep) {
@@ -197,7 +197,7 @@ void Checkpoint::finish(Report& report) {
 
 std::optional<SolvedScene> finished_solution(const CheckpointArguments& arguments,
                                              const Provenance& of, const fs::path& output,
-                                             Console& console) {
+                                             Console& console, bool pictures_follow) {
   std::error_code error;
   if (!arguments.resume || !fs::exists(output, error)) return std::nullopt;
   std::optional<SolvedScene> solved;
@@ -220,7 +220,7 @@ std::optional<SolvedScene> finished_solution(const CheckpointArguments& argument
       console.say(fmt::format("removed the checkpoint '{}', which is not needed any more",
                               arguments.file.string()));
     } catch (const std::runtime_error& other) {
-      console.say(fmt::format("note: {}", other.what()));
+      if (!pictures_follow) console.say(fmt::format("note: {}", other.what()));
     }
   }
   return solved;

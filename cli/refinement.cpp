@@ -56,7 +56,7 @@ std::optional<double> parse_share(const std::string& text) {
   if (!quantity || (!quantity->unit.empty() && quantity->unit != "%")) return std::nullopt;
   constexpr double percent = 0.01;
   const double share = quantity->unit == "%" ? percent * quantity->value : quantity->value;
-  // Below a thousandth of a percent there is nothing but rounding; above all, nothing to ask for.
+  // Below a thousandth of a percent there is nothing but rounding; above all, nothing to refine.
   constexpr double least = 1e-5, most = 1.0;
   if (!(share >= least && share <= most)) return std::nullopt;
   return share;

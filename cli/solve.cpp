@@ -30,7 +30,7 @@ int solve(const Arguments& arguments, Console& console) {
     report.print();
     return exit_code(done->solution);
   }
-  Checkpoint checkpoint(arguments.checkpoint, of, arguments.output, console);
+  Checkpoint checkpoint(arguments.checkpoint, of, {arguments.output}, console);
   const SolvedScene solved =
       solve_step(scene, arguments.solve, arguments.output, checkpoint, console, report);
   write_solution_step(arguments.output, solved, console, report);

@@ -9,11 +9,14 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <tuple>
 #include <vector>
 
+#include "radiosity/journal_phase.h"
 #include "raytrace/camera_ray.h"
 #include "raytrace/layer_film.h"
 #include "raytrace/pixel_samples.h"
+#include "raytrace/sampled_rows.h"
 #include "raytrace/shade.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -252,55 +255,6 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
   });
 }
 
-// Calls body(x, y) for each pixel of rows `first` to `end`, in slices that keep progress and
-// interruption on this thread.
-template <class Body>
-void for_each_pixel(int width, int first, int end, const Progress& progress, double part,
-                    Body&& body) {
-  constexpr int slice = 512, grain = 8;
-  const int count = (end - first) * width;
-  for (int begin = 0; begin < count; begin += slice) {
-    parallel_for(std::min(slice, count - begin), grain, [&](int from, int to) {
-      for (int i = begin + from; i < begin + to; ++i) body(i % width, first + i / width);
-    });
-    report(progress, "render", part);
-  }
-}
-
-// Many looks for every pixel of some rows; first ones also of the rows beside them.
-void sample_pixels(const PixelSamples& samples, int first_row, int rows, const Progress& progress,
-                   Counters& counters, Image& image, LayerFilm& layers) {
-  const int top = std::max(0, first_row - 1), bottom = std::min(image.height, first_row + rows + 1);
-  const double part = static_cast<double>(first_row) / image.height;
-  std::vector<PixelTally> tallies(static_cast<std::size_t>(bottom - top) * image.width);
-  std::vector<char> good(tallies.size());
-  const auto slot = [&](int x, int y) {
-    return static_cast<std::size_t>(y - top) * image.width + x;
-  };
-  for_each_pixel(image.width, top, bottom, progress, part, [&](int x, int y) {
-    PixelTally& tally = tallies[slot(x, y)] = samples.first_looks(x, y);
-    good[slot(x, y)] = tally.is_good(samples.options().noise);
-  });
-  const auto is_beside_noise = [&](int x, int y) {
-    for (int j = std::max(top, y - 1); j < std::min(bottom, y + 2); ++j) {
-      for (int i = std::max(0, x - 1); i < std::min(image.width, x + 2); ++i) {
-        if (!good[slot(i, j)]) return true;
-      }
-    }
-    return false;
-  };
-  for_each_pixel(image.width, first_row, first_row + rows, progress, part, [&](int x, int y) {
-    PixelTally& tally = tallies[slot(x, y)];
-    samples.look_on(x, y, is_beside_noise(x, y), tally);
-    const float share = 1.0f / static_cast<float>(tally.count);
-    const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
-    image.radiance.row(pixel) = share * tally.sum.radiance.transpose();
-    layers.set_sampled(pixel, share * tally.sum.layers);
-    counters.eye_rays.fetch_add(tally.count, std::memory_order_relaxed);
-    counters.depth_cut.fetch_add(tally.sum.depth_cut, std::memory_order_relaxed);
-  });
-}
-
 // Rough surfaces and lenses show nothing sharp that subdivision could find the edges of.
 SampleOptions sampling_for(const Scene& scene, const CameraRays& rays,
                            const RenderOptions& options) {
@@ -310,6 +264,90 @@ SampleOptions sampling_for(const Scene& scene, const CameraRays& rays,
   if (sampling.most == 0 && needed) sampling.most = SampleOptions::most_by_default;
   return sampling;
 }
+
+// All that decides a picture, but what the journal is of.
+void add_inputs(Fingerprint& print, const ElementCaster& caster, const RadiositySolution& solution,
+                const Camera& camera, const RenderOptions& options) {
+  print.add(caster.mesh());
+  print.add(solution.direct_irradiance);
+  print.add(solution.indirect_irradiance);
+  for (const Eigen::Vector3d* v : {&camera.position, &camera.direction, &camera.up}) print.add(*v);
+  print.add(camera.fov_degrees);
+  print.add(camera.width);
+  print.add(camera.height);
+  print.add(options.pass);
+  print.add(options.max_depth);
+  print.add(options.min_contribution);
+  print.add(options.shadows.min_rays);
+  print.add(options.shadows.max_rays);
+  print.add(options.max_subdivision);
+  print.add(options.contrast);
+  print.add(solution.caustic_irradiance);
+  print.add(camera.lens_radius);
+  print.add(camera.focus_distance);
+  print.add(camera.blades);
+  print.add(options.gather_rays);
+  print.add(options.glossy_rays);
+  print.add(options.sampling.most);
+  print.add(options.sampling.least);
+  print.add(options.sampling.noise);
+}
+
+// A strip of the picture, as wide as it is: its rows are together in memory.
+std::span<float> rows_of(BandArray& values, int width, int first_row, int rows) {
+  const auto row = static_cast<std::size_t>(width * values.cols());
+  return {values.data() + first_row * row, rows * row};
+}
+
+// Renders tile by tile: strips that share a row of corners, or strips of many looks per pixel if
+// there are `samples`.
+class TileRenderer {
+ public:
+  TileRenderer(const Eye& eye, const PixelSamples* samples, const RenderOptions& options,
+               Counters& counters, Image& image, LayerFilm& layers)
+      : eye_(eye),
+        samples_(samples),
+        options_(options),
+        counters_(counters),
+        image_(image),
+        layers_(layers),
+        corners_(tile_rows() + 1, CornerRow(image.width + 1)) {}
+
+  /// Small ones, to stop soon and to lose little; large enough to keep all threads busy.
+  int tile_rows() const {
+    constexpr int sampled_rows = 16;  // and those beside them, whose first looks are lost
+    if (samples_) return sampled_rows;
+    constexpr int pixels_per_tile = 8192;
+    return std::max(1, pixels_per_tile / image_.width);
+  }
+  /// Its radiance and sampled layers.
+  void render(int first_row, int rows) {
+    if (samples_) {
+      const double part = static_cast<double>(first_row) / image_.height;
+      const SampledRows took =
+          sample_rows(*samples_, first_row, rows, options_.progress, part, image_, layers_);
+      counters_.eye_rays += took.looks;
+      counters_.depth_cut += took.depth_cut;
+      return;
+    }
+    if (row_of_corners_ != first_row) look_at_corners(eye_, first_row, {corners_.data(), 1});
+    look_at_corners(eye_, first_row + 1, {corners_.data() + 1, static_cast<std::size_t>(rows)});
+    average_pixels(eye_, options_, first_row, {corners_.data(), static_cast<std::size_t>(rows) + 1},
+                   image_, layers_);
+    std::swap(corners_.front(), corners_[rows]);
+    row_of_corners_ = first_row + rows;
+  }
+
+ private:
+  const Eye& eye_;
+  const PixelSamples* samples_;
+  const RenderOptions& options_;
+  Counters& counters_;
+  Image& image_;
+  LayerFilm& layers_;
+  std::vector<CornerRow> corners_;
+  int row_of_corners_ = -1;  // that the first of them is
+};
 
 }  // namespace
 
@@ -326,38 +364,40 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   image.radiance.resize(std::int64_t{camera.width} * camera.height, scene.bands.count());
   LayerFilm layers(options.layers, image);
 
-  // Strips keep memory small and let the caller stop the work soon; they share a row of corners.
-  constexpr int pixels_per_strip = 8192;
+  const JournalPhase phase(options.journal, "picture", [&](Fingerprint& print) {
+    add_inputs(print, caster, solution, camera, options);
+    for (const std::string& name : image.layers.names) print.add(name);
+  });
   const SampleOptions sampling = sampling_for(scene, rays, options);
   std::optional<PixelSamples> samples;
   if (sampling.most > 0) samples.emplace(rays, tree, sampling);
-  constexpr int sampled_rows = 16;
-  const int strip_rows = samples ? sampled_rows : std::max(1, pixels_per_strip / camera.width);
-  std::vector<CornerRow> corners(strip_rows + 1, CornerRow(camera.width + 1));
+  TileRenderer tiles(eye, samples ? &*samples : nullptr, options, counters, image, layers);
   report(options.progress, "render", 0.0);
-  if (!samples) look_at_corners(eye, 0, {corners.data(), 1});
-  for (int y = 0; y < camera.height; y += strip_rows) {
-    const int rows = std::min(strip_rows, camera.height - y);
-    if (samples) {
-      sample_pixels(*samples, y, rows, options.progress, counters, image, layers);
+  int tile = 0, recalled = 0;
+  for (int y = 0; y < camera.height; y += tiles.tile_rows(), ++tile) {
+    const int rows = std::min(tiles.tile_rows(), camera.height - y);
+    auto values = std::tuple(rows_of(image.radiance, camera.width, y, rows),
+                             rows_of(image.layers.values, camera.width, y, rows));
+    if (phase.recall(tile, values)) {
+      ++recalled;
     } else {
-      look_at_corners(eye, y + 1, {corners.data() + 1, static_cast<std::size_t>(rows)});
-      average_pixels(eye, options, y, {corners.data(), static_cast<std::size_t>(rows) + 1}, image,
-                     layers);
-      std::swap(corners.front(), corners[rows]);
+      tiles.render(y, rows);
+      parallel_for(rows, 1, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+          layers.finish_row(y + i, scene.bands, camera, rays, caster);
+        }
+      });
+      phase.keep(tile, values);
     }
-    parallel_for(rows, 1, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) {
-        layers.finish_row(y + i, scene.bands, camera, rays, caster);
-      }
-    });
     report(options.progress, "render", static_cast<double>(y + rows) / camera.height);
   }
   if (render_report) {
     *render_report = {
         .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
         .eye_rays = counters.eye_rays,
-        .depth_cut = counters.depth_cut};
+        .depth_cut = counters.depth_cut,
+        .tiles = tile,
+        .recalled_tiles = recalled};
   }
   return image;
 }

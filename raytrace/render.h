@@ -11,6 +11,8 @@
 
 namespace lightwell {
 
+class Journal;
+
 /// How a diffuse hit is shaded.
 enum class Pass {
   interpolate,  ///< the solution as it is
@@ -45,6 +47,9 @@ struct RenderOptions {
   int max_subdivision = 2;
   float contrast = 0.1f;
   std::vector<Layer> layers{};  ///< what Image::layers shall hold
+  /// Where finished tiles are kept, so that a picture that was ended can be gone on with: of this
+  /// scene and no other. Null: nowhere.
+  Journal* journal = nullptr;
   Progress progress{};
 };
 
@@ -55,8 +60,9 @@ constexpr int deepest_tree = 1000;
 
 struct RenderReport {
   double seconds = 0.0;
-  std::int64_t eye_rays = 0;   ///< pixel samples
-  std::int64_t depth_cut = 0;  ///< branches that max_depth ended
+  std::int64_t eye_rays = 0;          ///< pixel samples
+  std::int64_t depth_cut = 0;         ///< branches that max_depth ended
+  int tiles = 0, recalled_tiles = 0;  ///< all, and those the journal had; no rays are counted there
 };
 
 /// Second pass: Whitted's recursive ray tracing (1980) over the radiosity solution. A pixel is the
