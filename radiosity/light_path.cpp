@@ -76,8 +76,10 @@ PathLosses LightPaths::follow(
   ElementHit hit = first_hit;
   Media media;
   absorb(ray, hit, media, throughput, losses);
+  bool met_rough = false;
   for (int depth = 0;; ++depth) {
-    if (depth == max_depth_) {
+    met_rough = met_rough || scene_.materials[material_[hit.facet]].gloss_roughness() > 0.0f;
+    if (depth >= deepest_path(max_depth_, met_rough)) {
       losses.cut += throughput;
       return losses;
     }

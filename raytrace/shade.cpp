@@ -11,12 +11,8 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t shadow_purpose = 0x5ec07d, gather_purpose = 0x6a7e4,
-                        gloss_purpose = 0x61055, lamp_purpose = 0x1a4b;
+constexpr std::uint64_t shadow_purpose = 0x5ec07d, gather_purpose = 0x6a7e4;
 constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
-
-// Looks of one key; later ones use a new scrambling.
-constexpr int gloss_points = 1024;
 
 // What one of many looks does with light: a share of the rays of a look that stands alone.
 constexpr float share_of_many = 1.0f / 16.0f;
@@ -66,7 +62,7 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       with_layers_(std::any_of(options.layers.begin(), options.layers.end(),
                                [](Layer layer) { return first_sampled_column(layer) >= 0; })),
       white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
-      gloss_points_(gloss_points),
+      gloss_points_(gloss_point_count),
       lamps_(direct_light) {
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
@@ -161,86 +157,6 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const SurfacePo
   }
 }
 
-// The mean over directions of a rough surface's lobe.
-void RayTree::scatter(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                      const SurfacePoint& at, Walk& walk) const {
-  if (!walk.shades) return;
-  const bool is_first = branch.is_sharp && !walk.number;
-  const int count =
-      is_first ? std::max(1, static_cast<int>(std::lround(walk.effort * options_.glossy_rays))) : 1;
-  const int first = walk.number.value_or(0);
-  const std::uint64_t key = random_key(walk.gloss_key, branch.place, gloss_purpose,
-                                       static_cast<std::uint64_t>(first / gloss_points));
-  for (int i = 0; i < count; ++i) {
-    const int index = (first + i) % gloss_points;
-    const auto lot_key = random_key(key, static_cast<std::uint64_t>(index));
-    const Eigen::Array4d u = gloss_points_.point(index, key).cast<double>();
-    Onward way = draw_way(meeting, {.way = u[2], .u = u[0], .v = u[1], .key = lot_key});
-    way.share /= static_cast<float>(count);
-    way.density = lobe(facets_[hit.facet].material, hit.from_back).density(meeting, way.direction);
-    const Eigen::Array4d lamp_lot =
-        gloss_points_.point(index, random_key(key, lamp_purpose)).cast<double>();
-    add_lamp(branch, meeting, hit, at, lamp_lot, 1.0f / static_cast<float>(count), walk);
-    // Places of many looks are alike, so that theirs are spread over what lies behind as well.
-    const auto place =
-        random_key(branch.place, gloss_purpose, static_cast<std::uint64_t>(i), way.crosses);
-    Branch spread = branch;
-    spread.is_sharp = false;
-    grow(spread, place, way, hit, at, walk);
-  }
-}
-
-const RoughLobe& RayTree::lobe(int material, bool from_back) const {
-  return *lobes_[static_cast<std::size_t>(material)][from_back ? 1 : 0];
-}
-
-// Light of a lamp off a rough surface, by a direction drawn towards the lamp; those of the lobe
-// that meet it count for the rest (balance heuristic of Veach & Guibas 1995).
-void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                       const SurfacePoint& at, const Eigen::Array4d& lot, float share,
-                       Walk& walk) const {
-  if (branch.depth >= options_.max_depth) return;
-  const auto lamp = lamps_.draw(at.position, hit.facet, lot[0], lot[1], lot[2]);
-  if (!lamp) return;
-  const int material = facets_[hit.facet].material;
-  const double density = lobe(material, hit.from_back).density(meeting, lamp->direction);
-  const Onward way{.direction = lamp->direction,
-                   .crosses = lamp->direction.dot(meeting.normal) < 0.0};
-  const Spectrum L = lamp->emitter->exitance * one_over_pi;
-  Spectrum seen = branch.weight * share_of(meeting, way.crosses) * L *
-                  (share * static_cast<float>(density / (density + lamp->density)));
-  if (!((branch.weight > 0.0f).any() && density > 0.0)) return;
-  const Ray ray{.origin = at.position,
-                .direction = lamp->direction,
-                .t_max = lamp->distance,
-                .origin_group = hit.facet,
-                .target_group = lamp->emitter->facet};
-  std::uint8_t blocked = 0;
-  caster_.occluded({&ray, 1}, {&blocked, 1});
-  if (blocked != 0) return;
-  if (absorbs_) {
-    Media media = branch.media;
-    media.go_on(material, meeting.material, way, hit.from_back);
-    seen *= media.passed(scene_, facets_[lamp->emitter->facet].material, false, lamp->distance);
-  }
-  walk.sight.radiance += seen;
-  if (with_layers_) {
-    walk.sight.layers.segment<3>(first_sampled_column(Layer::specular)) +=
-        linear_rgb(scene_.bands, seen);
-  }
-}
-
-// M of the side that was met, without what add_lamp counts.
-Spectrum RayTree::emission(const Branch& branch, const ElementHit& hit,
-                           const SurfacePoint& at) const {
-  const PatchMesh& mesh = caster_.mesh();
-  const Spectrum M = mesh.emission.row(mesh.patch[hit.element]).transpose();
-  if (!(branch.lobe_density > 0.0) || !(M > 0.0f).any()) return M;
-  if (!direct_light_.owns(hit.facet, hit.from_back)) return M;
-  const double lamps = lamps_.density(branch.ray.origin, at.position, hit.facet);
-  return M * static_cast<float>(branch.lobe_density / (branch.lobe_density + lamps));
-}
-
 void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
                    const ElementHit& hit, const SurfacePoint& at, Walk& walk) const {
   Branch branch{.weight = parent.weight * way.share,
@@ -250,7 +166,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
                 .lobe_density = way.density,
                 .media = parent.media};
   if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
-  if (branch.depth > options_.max_depth) {
+  if (branch.depth > deepest_path(options_.max_depth, !branch.is_sharp)) {
     ++walk.sight.depth_cut;
     return;
   }

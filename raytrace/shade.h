@@ -117,7 +117,8 @@ class RayTree {
   bool with_layers_ = false;
   Eigen::Array3f white_rgb_;             ///< of what reflects everything, under equal-energy light
   std::optional<PixelGather> gather_{};  ///< for Pass::gather
-  SobolPoints gloss_points_;
+  static constexpr int gloss_point_count = 1024;
+  SobolPoints gloss_points_;  ///< of looks of one key; later ones use a new scrambling
   LampSamples lamps_;
   /// Of the front and the back of each material; empty if it is not rough.
   std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};

@@ -137,6 +137,11 @@ Onward draw_way(const Meeting& meeting, const OnwardLot& first) {
   return smooth_way(meeting, first.way);
 }
 
+int deepest_path(int most, bool met_rough) {
+  constexpr int by_chance = 64;
+  return met_rough && most > 0 ? std::max(most, by_chance) : most;
+}
+
 RoughLobe::RoughLobe(const Material& material, bool from_back) {
   constexpr int count = 256;
   const SobolPoints points(count);

@@ -52,6 +52,11 @@ struct OnwardLot {
 /// what it reflects.
 Onward draw_way(const Meeting& meeting, const OnwardLot& lot);
 
+/// How many mirrors and clear surfaces a path is followed by: at most `most` or, once it met a
+/// rough one, 64 if that is more. Light in a rough ball is caught beyond the critical angle and
+/// gets out by chance: after eight surfaces some percent of it are still within.
+int deepest_path(int most, bool met_rough);
+
 /// Density of draw_way's directions from one side of a rough surface, 1/sr: of single scattering
 /// over the share that is not lost to it, which is tabulated.
 class RoughLobe {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "radiosity/light_path.h"
+#include "radiosity/solve.h"
 #include "raytrace/shade.h"
 #include "scene/optics.h"
 #include "scene/parallel.h"
@@ -95,6 +96,29 @@ TEST(Gloss, ScattersAlikeInBothPasses) {
       // 8 times 500 and lamp samples, which are no worse.
       EXPECT_NEAR(seen, found, 4 * std::hypot(0.005, 0.5 / std::sqrt(4000.0)));
       EXPECT_GT(found, 0.1);
+    }
+  }
+}
+
+// Every wall shines with M and reflects rho: B = M / (1 - rho) whatever rough things are between
+// them.
+TEST(Gloss, NeitherTakesNorGivesLightInTheFirstPass) {
+  for (const Paint& paint : {Paint{.specular = 1.0f, .roughness = 0.4f},
+                             Paint{.index_of_refraction = 1.5f, .roughness = 0.1f}}) {
+    const Scene scene = SceneBuilder()
+                            .box({.reflectance = 0.5f, .exitance = 1.0f, .one_sided = true},
+                                 {0, 0, 0}, {2, 2, 2}, true)
+                            .sphere(paint, {1.1, 0.9, 0.8}, 0.6)
+                            .build();
+    const SolvedScene solved = solve_scene(scene, {.mesh = {.max_patch_size = 0.5}});
+    const BandArray irradiance = solved.solution.irradiance();
+    for (int p = 0; p < solved.mesh.patch_count(); ++p) {
+      if (!(solved.mesh.emission(p, 0) > 0.0f)) continue;
+      for (int e = solved.mesh.first_element[p]; e < solved.mesh.first_element[p + 1]; ++e) {
+        const float E = irradiance(solved.mesh.corners[e][0], 0);
+        // What is still within the ball after 64 surfaces.
+        EXPECT_NEAR(E, 2.0f, 2e-3f);
+      }
     }
   }
 }
