@@ -347,7 +347,6 @@ void RenderArguments::add_to(CLI::App& command) {
           "stop sampling a pixel when its standard error is below (default 2%)")
       ->type_name("ERROR")
       ->group(group);
-  film.add_to(command, group);
 }
 
 RenderOptions RenderArguments::options() const {

@@ -9,6 +9,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
+#include "cli/quoted.h"
 #include "radiosity/solution_file.h"
 #include "scene/errors.h"
 
@@ -21,16 +22,6 @@ std::string size_text(std::int64_t bytes) {
   const auto size = static_cast<double>(bytes);
   return size < megabyte ? fmt::format("{:.1f} kB", size / kilobyte)
                          : fmt::format("{:.1f} MB", size / megabyte);
-}
-
-// As a shell takes it for one word.
-std::string quoted(const std::string& word) {
-  constexpr const char* plain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,%@";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
 }
 
 bool is_same_file(const fs::path& a, const fs::path& b) {

@@ -136,8 +136,8 @@ int tell(const Difference& difference, const Arguments& arguments, Console& cons
 
 int compare(const Arguments& arguments, Console& console) {
   if (!arguments.output.empty()) require_writable(arguments.output);
-  const Image a = read_exr(arguments.picture, ExrChannels::all);
-  const Image b = read_exr(arguments.reference, ExrChannels::all);
+  const Image a = read_exr(arguments.picture, ExrChannels::bands);
+  const Image b = read_exr(arguments.reference, ExrChannels::bands);
   if (arguments.second_half.empty()) {
     const ImageDifference difference = compare_images(a, b, arguments.compare);
     if (!arguments.output.empty()) write_difference(arguments, a, b, difference.mean_b);

@@ -142,15 +142,21 @@ void write_false_colour(const fs::path& file, const Picture&, const FilmArgument
 
 }  // namespace
 
-void FilmArguments::add_to(CLI::App& command, const std::string& group) {
+void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn help_on) {
+  const std::string more = help_on == HelpOn::all ? group : std::string();  // CLI11: hidden
   command
-      .add_option_function<std::string>(
-          "--layers", [this](const std::string& words) { add_layers(words, *this); },
+      .add_option_function<std::vector<std::string>>(
+          "--layers",
+          [this](const std::vector<std::string>& given) {
+            for (const std::string& words : given) add_layers(words, *this);
+          },
           "also into the .exr: albedo, normal, depth, direct, indirect, specular, emission, "
           "luminance, illuminance, patch (with commas), or all")
       ->type_name("NAMES")
+      ->type_size(1)
+      ->allow_extra_args(false)
       ->group(group);
-  command.add_flag("--half", exr.half, "16-bit floats in the .exr")->group(group);
+  command.add_flag("--half", exr.half, "16-bit floats in the .exr")->group(more);
   command
       .add_option_function<std::string>(
           "--compression",
@@ -162,19 +168,27 @@ void FilmArguments::add_to(CLI::App& command, const std::string& group) {
           "of the .exr: none, rle, zips, zip (default), piz")
       ->type_name("KIND")
       ->check(one_of("compression", names_of(compressions)))
-      ->group(group);
+      ->group(more);
   command
       .add_option("--tone-map", tone_map, "of the .png: auto (default), linear, reinhard, filmic")
       ->type_name("CURVE")
       ->check(one_of("tone mapping", names_of(tone_curves)))
-      ->group(group);
+      ->group(more);
   command
       .add_option_function<double>(
-          "--ev100", [this](const double& ev) { ev100 = ev; },
+          "--ev100",
+          [this](const double& ev) {
+            constexpr double least = -20.0, most = 40.0;
+            if (!(ev >= least && ev <= most)) {
+              throw CLI::ValidationError(
+                  "--ev100", fmt::format("an exposure value lies between {} and {}; {} does not",
+                                         least, most, ev));
+            }
+            ev100 = ev;
+          },
           "expose the .png as a camera would: white is 1.2 * 2^EV cd/m^2 (default: by the picture)")
       ->type_name("EV")
-      ->check(CLI::Range(-20.0, 40.0))
-      ->group(group);
+      ->group(more);
 }
 
 void FilmArguments::add_false_colour_to(CLI::App& command, const std::string& group) {
@@ -190,11 +204,16 @@ void FilmArguments::add_false_colour_to(CLI::App& command, const std::string& gr
 }
 
 void FilmArguments::check(const Scene& scene, const std::vector<fs::path>& files) const {
-  const bool has_exr = std::any_of(files.begin(), files.end(), [](const fs::path& file) {
-    return lower_extension(file) == ".exr";
-  });
-  if (!has_exr && (all_layers || !layers.empty())) {
-    throw InputError("layers go into an .exr file, and none is to be written; add '-o FILE.exr'");
+  const auto has = [&files](const char* extension) {
+    return std::any_of(files.begin(), files.end(), [extension](const fs::path& file) {
+      return lower_extension(file) == extension;
+    });
+  };
+  if (false_colour && !has(".png")) {
+    throw InputError("false colours go into a .png, and none is to be written; add '-o FILE.png'");
+  }
+  if (!has(".exr") && (all_layers || !layers.empty())) {
+    throw InputError("layers go into an .exr, and none is to be written; add '-o FILE.exr'");
   }
   if (!scene.relative_units) {
 #ifndef LIGHTWELL_VIEWER

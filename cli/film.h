@@ -26,7 +26,8 @@ struct FilmArguments {
   std::optional<LuxRange> range{};      ///< of that
 
   /// Adds --layers, --half, --compression, --tone-map and --ev100.
-  void add_to(CLI::App& command, const std::string& group);
+  enum class HelpOn { all, first };  ///< which of them --help shows
+  void add_to(CLI::App& command, const std::string& group, HelpOn help_on);
   /// Adds --false-colour and --range.
   void add_false_colour_to(CLI::App& command, const std::string& group);
 

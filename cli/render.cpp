@@ -58,9 +58,10 @@ Action add_render(CLI::App& command) {
   command.add_option("--camera", arguments->camera, "which camera (default: the first)")
       ->type_name("NAME");
   arguments->render.add_to(command);
-  arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first,
-                               "How pictures are made");
-  arguments->render.film.add_false_colour_to(command, "How pictures are made");
+  const std::string group = "How pictures are made";
+  arguments->render.film.add_to(command, group, FilmArguments::HelpOn::all);
+  arguments->render.film.add_false_colour_to(command, group);
+  arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first, group);
   command.footer(
       "Example: lightwell render cornell/cornell.toml cornell.vtp --size 256x256 -o small.png");
   return [arguments](Console& console) { return render(*arguments, console); };

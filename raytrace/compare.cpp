@@ -81,11 +81,11 @@ double perceptual_difference(const Image& a, const Image& b) {
   return sum / static_cast<double>(b.radiance.rows());
 }
 
-// Spectral bands that came with the picture; what belongs to a layer has a dot in its name.
+// Spectral bands that came with the picture, by what they are called: "400-404nm".
 std::vector<std::string> band_names(const Image& image) {
   std::vector<std::string> names;
   for (const std::string& name : image.layers.names) {
-    if (name.find('.') == std::string::npos) names.push_back(name);
+    if (name.ends_with("nm")) names.push_back(name);
   }
   return names;
 }
@@ -97,6 +97,7 @@ BandArray column(const Image& image, const std::string& name) {
 
 void check_bands(const Image& a, const Image& b) {
   const std::vector<std::string> of_a = band_names(a), of_b = band_names(b);
+  if (of_a.empty() || of_b.empty()) return;  // their RGB can be compared
   const auto require_all = [](const std::vector<std::string>& names, const auto& in,
                               const char* which) {
     for (const std::string& name : names) {
@@ -218,7 +219,8 @@ ImageDifference compare_images(const Image& a, const Image& b, const CompareOpti
     const std::string name = A.cols() == 3 ? rgb[k] : std::to_string(k);
     result.bands.push_back(difference(name, A.col(k), B.col(k)));
   }
-  for (const std::string& name : band_names(b)) {
+  const bool both_are_spectral = !band_names(a).empty();
+  for (const std::string& name : both_are_spectral ? band_names(b) : std::vector<std::string>()) {
     result.bands.push_back(
         difference(name, kept.means(column(a, name)), kept.means(column(b, name))));
   }

@@ -31,7 +31,7 @@ struct ImageDifference {
   double max_difference = 0.0;
   double mean_a = 0.0, mean_b = 0.0;
   double excluded = 0.0;  ///< share of the pixels that were left out
-  /// R, G, B, and other bands that both images have among their layers.
+  /// R, G, B, and the spectral bands among the layers where both images have some.
   std::vector<BandDifference> bands{};
   // Of all pixels, tone-mapped under the reference's exposure.
   double perceptual = 0.0;  ///< mean distance in Oklab, [0,1]
@@ -39,8 +39,8 @@ struct ImageDifference {
   double hdr_flip = 0.0;    ///< mean FLIP at the worst of all exposures, [0,1]
 };
 
-/// Compares A with the reference B. Throws InputError unless the sizes match, both have the same
-/// bands, and all numbers are finite; or if everything is left out.
+/// Compares A with the reference B. Throws InputError unless the sizes match, spectral bands are
+/// the same in both or missing in one, and all numbers are finite; or if everything is left out.
 ImageDifference compare_images(const Image& a, const Image& b, const CompareOptions& options = {});
 
 /// What is left of a difference when the reference's noise is taken away.

@@ -188,9 +188,11 @@ Image read_image(Imf::InputFile& file, const std::string& name, ExrChannels whic
   image.radiance = read_channels(file, rgb, name);
   if (which == ExrChannels::rgb) return image;
   for (auto it = list.begin(); it != list.end(); ++it) {
-    if (std::ranges::find(rgb, it.name()) != rgb.end()) continue;
-    require_full_resolution(it.channel(), it.name(), name);
-    image.layers.names.emplace_back(it.name());
+    const std::string channel = it.name();
+    if (std::ranges::find(rgb, channel) != rgb.end()) continue;
+    if (which == ExrChannels::bands && !channel.ends_with("nm")) continue;
+    require_full_resolution(it.channel(), channel, name);
+    image.layers.names.push_back(channel);
   }
   if (!image.layers.is_empty()) image.layers.values = read_channels(file, image.layers.names, name);
   return image;

@@ -45,9 +45,10 @@ struct ExrOptions {
 void write_exr(const std::filesystem::path& path, const Image& image, const Bands& bands,
                const ImageMetadata& metadata = {}, const ExrOptions& options = {});
 
-/// Channels R, G, B of an EXR file (half or float) as radiance; with `all`, its other channels as
-/// layers, in the order of their names. Throws InputError if missing or not an EXR with R, G and B.
-enum class ExrChannels { rgb, all };
+/// Channels R, G, B of an EXR file (half or float) as radiance; with `bands`, those of wavelengths
+/// ("400-404nm") as layers, with `all`, all others, in the order of their names. Throws InputError
+/// if missing or not an EXR with R, G and B.
+enum class ExrChannels { rgb, bands, all };
 Image read_exr(const std::filesystem::path& path, ExrChannels which = ExrChannels::rgb);
 
 /// How exposed light becomes what a screen shows.

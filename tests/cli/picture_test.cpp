@@ -51,9 +51,32 @@ TEST_F(Pictures, LayersThatCannotBeAreRefusedBeforeTheWork) {
   EXPECT_TRUE(says(misspelt.err, "Did you mean 'normal'?")) << misspelt.err;
   const Ended nowhere = run(render({"-o", "a.png", "--layers", "albedo"}));
   EXPECT_EQ(nowhere.code, 3);
-  EXPECT_TRUE(says(nowhere.err, "layers go into an .exr file")) << nowhere.err;
+  EXPECT_TRUE(says(nowhere.err, "layers go into an .exr")) << nowhere.err;
   EXPECT_FALSE(exists("a.png"));
+  const Ended no_png = run(render({"-o", "a.exr", "--false-colour", "luminance"}));
+  EXPECT_EQ(no_png.code, 3);
+  EXPECT_TRUE(says(no_png.err, "false colours go into a .png")) << no_png.err;
 }
+
+#ifdef LIGHTWELL_VIEWER
+TEST_F(Pictures, FalseColoursHaveAScaleBesideThem) {
+  ASSERT_EQ(run(render({"-o", "a.png", "--false-colour", "illuminance", "--range", "0:500", "-o",
+                        "a.exr"}))
+                .code,
+            0);
+  const std::string png = content_of(folder / "a.png");
+  EXPECT_TRUE(says(png, "illuminance in lx, 0 to 500"));
+  EXPECT_FALSE(says(png, "toneMap"));
+  const auto edge = [&](std::size_t at) {
+    return (static_cast<unsigned char>(png[at]) << 24) +
+           (static_cast<unsigned char>(png[at + 1]) << 16) +
+           (static_cast<unsigned char>(png[at + 2]) << 8) + static_cast<unsigned char>(png[at + 3]);
+  };
+  EXPECT_GT(edge(16), 24 + 30) << "as wide as the picture and the scale";
+  EXPECT_GE(edge(20), 18);
+  EXPECT_EQ(read_exr(folder / "a.exr", ExrChannels::all).layers.names, Words{"illuminance.Y"});
+}
+#endif
 
 TEST_F(Pictures, WhatNeedsAUnitOfLightIsRefusedWhereThereIsNone) {
   folder.write("box.xml", relative_scene());
@@ -141,8 +164,7 @@ TEST_F(Pictures, InterruptWithoutACheckpointLeavesNothing) {
   const int before = folder.file_count();
   Running running(folder / "", {"render", "room.toml", "S.vtp", "--size", "2000x2000", "-o",
                                 "P.exr", "--shadow-rays", "256"});
-  for (int i = 0; i < 600 && running.err().empty(); ++i) std::this_thread::sleep_for(25ms);
-  std::this_thread::sleep_for(300ms);
+  std::this_thread::sleep_for(1s);  // of a quarter of a minute
   running.signal(SIGINT);
   EXPECT_EQ(running.wait().code, 130);
   EXPECT_EQ(folder.file_count(), before);

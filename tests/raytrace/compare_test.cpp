@@ -98,10 +98,13 @@ TEST(CompareImages, SpectralBandsAreBandsAndLayersAreNot) {
   EXPECT_EQ(d.rmse, 0.0);
 }
 
-TEST(CompareImages, BandThatOneImageLacksIsNamed) {
-  const auto message =
-      message_of<InputError>([] { compare_images(spectral_image(1.0f), flat_image(2, 2, 1.0f)); });
+TEST(CompareImages, OtherBandsAreRefusedByNameAndRgbIsComparedWhereOneHasNone) {
+  Image other = spectral_image(1.0f);
+  other.layers.names[0] = "510-520nm";
+  const auto message = message_of<InputError>([&] { compare_images(spectral_image(1.0f), other); });
   EXPECT_TRUE(says(message, "the second image has no channel '500-510nm'")) << message;
+  EXPECT_EQ(compare_images(spectral_image(1.0f), flat_image(2, 2, 1.0f)).bands.size(), 3u);
+  EXPECT_EQ(compare_images(flat_image(2, 2, 1.0f), spectral_image(1.0f)).bands.size(), 3u);
   Image broken = spectral_image(1.0f);
   broken.layers.values(3, 0) = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(says(message_of<InputError>([&] { compare_images(broken, spectral_image(1.0f)); }),

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/errors.h"
-#include "scene/io/read_scene.h"
 #include "tests/scene/gltf_text.h"
+#include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
-#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -22,26 +20,21 @@ using test::normal_of;
 constexpr float pi = std::numbers::pi_v<float>;
 const std::string one_node = R"(,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}])";
 
-class Gltf : public testing::Test {
+class Gltf : public test::SceneFileTest {
  protected:
-  Scene read(const std::string& text) const { return read_scene(folder.write("it.gltf", text)); }
+  Scene read(const std::string& text) const { return read_file("it.gltf", text); }
   Material material(const std::string& json) const {
     const Scene scene =
         read(square_gltf(one_node + R"(,"materials":[)" + json + "]", R"(,"material":0)"));
     return scene.materials.at(0);
   }
   void expect_error(const std::string& text, std::initializer_list<const char*> parts) const {
-    try {
-      read(text);
-      ADD_FAILURE() << "nothing was refused";
-    } catch (const InputError& refused) {
-      const std::string message = refused.what();
-      for (const char* part : parts) {
-        EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
-      }
+    const std::string message = message_of<InputError>([&] { read(text); });
+    EXPECT_NE(message, "") << "nothing was refused";
+    for (const char* part : parts) {
+      EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
     }
   }
-  TemporaryFolder folder;
 };
 
 TEST(GltfFile, StrengthMultipliesEmissionInBothMaterialModels) {

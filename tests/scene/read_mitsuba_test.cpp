@@ -5,11 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/errors.h"
 #include "scene/io/glossy.h"
-#include "scene/io/read_scene.h"
+#include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
-#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -22,26 +20,18 @@ using test::normal_of;
 constexpr double pi = std::numbers::pi;
 const std::string square = R"(<shape type="rectangle"><bsdf type="diffuse"/></shape>)";
 
-class Mitsuba : public testing::Test {
+class Mitsuba : public test::SceneFileTest {
  protected:
   Scene read(const std::string& content) const {
-    return read_scene(
-        folder.write("scene.xml", "<scene version=\"3.0.0\">\n" + content + "</scene>"));
+    return read_file("scene.xml", "<scene version=\"3.0.0\">\n" + content + "</scene>");
   }
   // The material of a rectangle with that BSDF.
   Material material(const std::string& bsdf) const {
-    const Scene scene = read("<shape type=\"rectangle\">" + bsdf + "</shape>");
-    return scene.materials.at(static_cast<std::size_t>(scene.surfaces.at(0).material));
+    return first_material(read("<shape type=\"rectangle\">" + bsdf + "</shape>"));
   }
   std::string error(const std::string& content) const {
-    try {
-      read(content);
-    } catch (const InputError& refused) {
-      return refused.what();
-    }
-    return "nothing was refused";
+    return message_of<InputError>([&] { read(content); });
   }
-  TemporaryFolder folder;
 };
 
 void expect_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance = 1e-12) {

@@ -7,11 +7,9 @@
 #include <numbers>
 #include <sstream>
 
-#include "scene/errors.h"
 #include "scene/io/glossy.h"
-#include "scene/io/read_scene.h"
+#include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
-#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -26,10 +24,10 @@ constexpr double pi = std::numbers::pi;
 const std::string grey = "void plastic grey 0 0 5 .5 .5 .5 0 0\n";
 const std::string square = "polygon square 0 0 12 0 0 0 1 0 0 1 1 0 0 1 0\n";
 
-class Radiance : public testing::Test {
+class Radiance : public test::SceneFileTest {
  protected:
   Scene read(const std::string& content, const std::string& name = "scene.rad") const {
-    return read_scene(folder.write(name, content));
+    return read_file(name, content);
   }
   // The surface of the material `grey` with that type and real arguments.
   Scene shape(const std::string& type, const std::string& arguments) const {
@@ -37,13 +35,11 @@ class Radiance : public testing::Test {
   }
   // The material of a square, defined by the text under the name m.
   Material material(const std::string& definitions) const {
-    const Scene scene = read(definitions + "\nm " + square);
-    return scene.materials.at(static_cast<std::size_t>(scene.surfaces.at(0).material));
+    return first_material(read(definitions + "\nm " + square));
   }
   std::string error(const std::string& content, const std::string& name = "scene.rad") const {
     return message_of<InputError>([&] { read(content, name); });
   }
-  TemporaryFolder folder;
 };
 
 void expect_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance = 1e-12) {
