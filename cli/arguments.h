@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cli/channels.h"
+#include "cli/film.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"
 
@@ -48,7 +49,11 @@ struct RenderArguments {
   std::optional<std::pair<int, int>> size{};  ///< pixels; else the camera's own
   std::string pass = "direct";
   int shadow_rays = 64;
+  int gather_samples = 256;
+  int samples = 0;      ///< most per pixel; 0: see SampleOptions
+  double noise = 0.02;  ///< share of a pixel that ends its sampling
   double exposure_ev = 0.0;
+  FilmArguments film{};
 
   void add_to(CLI::App& command);
   RenderOptions options() const;

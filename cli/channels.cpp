@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "cli/arguments.h"
+#include "cli/quoted.h"
 
 namespace lightwell {
 namespace {
@@ -17,13 +18,6 @@ std::pair<std::string, std::string> split(const char* option, const std::string&
     throw CLI::ValidationError(option, fmt::format("'{}' is not {}", text, wanted));
   }
   return {text.substr(0, at), text.substr(at + 1)};
-}
-
-// For a shell, whatever is in it.
-std::string quoted(const std::string& word) {
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
 }
 
 void add_each(CLI::App& command, const std::string& name, const std::string& help,

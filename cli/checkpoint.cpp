@@ -9,6 +9,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
+#include "cli/quoted.h"
 #include "radiosity/solution_file.h"
 #include "scene/errors.h"
 
@@ -21,16 +22,6 @@ std::string size_text(std::int64_t bytes) {
   const auto size = static_cast<double>(bytes);
   return size < megabyte ? fmt::format("{:.1f} kB", size / kilobyte)
                          : fmt::format("{:.1f} MB", size / megabyte);
-}
-
-// As a shell takes it for one word.
-std::string quoted(const std::string& word) {
-  constexpr const char* plain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,%@";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
 }
 
 bool is_same_file(const fs::path& a, const fs::path& b) {
@@ -62,8 +53,7 @@ std::optional<double> parse_seconds(const std::string& text) {
   return std::nullopt;
 }
 
-void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on) {
-  const std::string group = "How the light is solved";
+void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on, const std::string& group) {
   const std::string more = help_on == HelpOn::all ? group : std::string();  // CLI11: hidden
   command
       .add_option(
@@ -91,14 +81,7 @@ void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on) {
               "time after which finished work is safe on the disk (default 10s)")
           ->type_name("TIME")
           ->group(more);
-  command.add_flag("--keep-checkpoint", keep, "do not remove it when the solution is written")
-      ->group(more);
-  command
-      .add_option("--reuse", reuse,
-                  "form factors of an earlier solve of the same geometry: its kept checkpoint")
-      ->type_name("FILE")
-      ->check(CLI::ExistingFile)
-      ->excludes(command.get_option("--checkpoint"))
+  command.add_flag("--keep-checkpoint", keep, "do not remove it when the result is written")
       ->group(more);
   command.parse_complete_callback([this, time] {
     if (!file.empty()) return;
@@ -110,15 +93,26 @@ void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on) {
   });
 }
 
+void CheckpointArguments::add_reuse_to(CLI::App& command, HelpOn help_on) {
+  command
+      .add_option("--reuse", reuse,
+                  "form factors of an earlier solve of the same geometry: its kept checkpoint")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile)
+      ->excludes(command.get_option("--checkpoint"))
+      ->group(help_on == HelpOn::all ? "How the light is solved" : "");
+}
+
 Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& of,
-                       const fs::path& output, Console& console)
+                       const std::vector<fs::path>& outputs, Console& console)
     : arguments_(arguments), console_(console) {
   if (!arguments.reuse.empty()) journal_ = Journal::of_another_solve(arguments.reuse, of.version);
   const fs::path& file = arguments.file;
   if (file.empty()) return;
-  if (is_same_file(file, output)) {
+  for (const fs::path& output : outputs) {
+    if (!is_same_file(file, output)) continue;
     throw InputError(fmt::format(
-        "the checkpoint and the solution cannot both be '{}'; give another name", file.string()));
+        "the checkpoint and the result cannot both be '{}'; give another name", file.string()));
   }
   require_writable(file);
   const bool exists = fs::exists(file);
@@ -154,8 +148,8 @@ Progress Checkpoint::watched(Progress progress) {
     const std::string failure = has_warned_ ? std::string() : journal_->failure();
     if (!failure.empty()) {
       has_warned_ = true;
-      console_.say(fmt::format("warning: {}. Solving goes on; what it holds up to now stays usable",
-                               failure));
+      console_.say(fmt::format(
+          "warning: {}. The work goes on; what it holds up to now stays usable", failure));
     }
     return progress(phase, share);
   };
@@ -184,7 +178,7 @@ void Checkpoint::rethrow_stopped() {
   }
 }
 
-void Checkpoint::finish(Report& report) {
+void Checkpoint::finish(Report& report, const std::string& key) {
   if (!journal_) return;
   constexpr double megabyte = 1 << 20;
   if (journal_->is_read_only()) {
@@ -202,9 +196,9 @@ void Checkpoint::finish(Report& report) {
     return;
   }
   journal_->close();
-  report.add("checkpoint", {{"file", arguments_.file.string()},
-                            {"mb", static_cast<double>(journal_->size()) / megabyte},
-                            {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});
+  report.add(key, {{"file", arguments_.file.string()},
+                   {"mb", static_cast<double>(journal_->size()) / megabyte},
+                   {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});
   const std::string text = fmt::format("the checkpoint '{}' ({})", arguments_.file.string(),
                                        size_text(journal_->size()));
   if (arguments_.keep) {
@@ -219,7 +213,7 @@ void Checkpoint::finish(Report& report) {
 
 std::optional<SolvedScene> finished_solution(const CheckpointArguments& arguments,
                                              const Provenance& of, const fs::path& output,
-                                             Console& console) {
+                                             Console& console, bool pictures_follow) {
   std::error_code error;
   if (!arguments.resume || !fs::exists(output, error)) return std::nullopt;
   std::optional<SolvedScene> solved;
@@ -242,7 +236,7 @@ std::optional<SolvedScene> finished_solution(const CheckpointArguments& argument
       console.say(fmt::format("removed the checkpoint '{}', which is not needed any more",
                               arguments.file.string()));
     } catch (const std::runtime_error& other) {
-      console.say(fmt::format("note: {}", other.what()));
+      if (!pictures_follow) console.say(fmt::format("note: {}", other.what()));
     }
   }
   return solved;

@@ -14,6 +14,8 @@ namespace {
 constexpr double redraw_seconds = 0.1;  // faster flickers and costs time
 // Before that much is done, a guess at the time left jumps about.
 constexpr double least_share_for_guess = 0.02;
+// What is done so soon was recalled from a checkpoint, and does not tell how fast the rest goes.
+constexpr double recall_seconds = 0.5;
 
 double seconds_between(std::chrono::steady_clock::time_point a,
                        std::chrono::steady_clock::time_point b) {
@@ -56,11 +58,16 @@ void Console::show(std::string_view phase, double share) {
     last_drawn_ = -redraw_seconds;
   }
   const double seconds = phase_time_.seconds();
+  if (seconds < recall_seconds) {
+    start_ = {.share = share, .seconds = seconds};
+  }
   if (!on_terminal_ || seconds - last_drawn_ < redraw_seconds) return;
   last_drawn_ = seconds;
   std::string left;
-  if (share > least_share_for_guess && share < 1.0) {
-    left = fmt::format(", {:.0f} s left", std::ceil(seconds * (1.0 - share) / share));
+  const double done = share - start_.share;
+  if (done > least_share_for_guess && share < 1.0) {
+    const double left_seconds = (seconds - start_.seconds) * (1.0 - share) / done;
+    left = fmt::format(", {:.0f} s left", std::ceil(left_seconds));
   }
   // Back to the line's start, and clear to its end.
   fmt::print(stderr, "\r\033[K{}: {:.0f} %{}", phase_, std::floor(100.0 * share), left);

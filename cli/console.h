@@ -59,6 +59,10 @@ class Console {
   std::string phase_{};
   Stopwatch phase_time_{};
   double last_drawn_ = 0.0;  // seconds into the phase
+  struct Start {
+    double share = 0.0, seconds = 0.0;
+  };
+  Start start_{};  // from where on work is done at its own pace
 };
 
 }  // namespace lightwell

@@ -26,18 +26,6 @@ std::optional<Quantity> parse_quantity(const std::string& text) {
   return quantity;
 }
 
-// "0.5%", or the same as a share, "0.005".
-std::optional<double> parse_share(const std::string& text) {
-  const auto quantity = parse_quantity(text);
-  if (!quantity || (!quantity->unit.empty() && quantity->unit != "%")) return std::nullopt;
-  constexpr double percent = 0.01;
-  const double share = quantity->unit == "%" ? percent * quantity->value : quantity->value;
-  // Below a thousandth of a percent there is nothing but rounding; above all, nothing to refine.
-  constexpr double least = 1e-5, most = 1.0;
-  if (!(share >= least && share <= most)) return std::nullopt;
-  return share;
-}
-
 std::optional<Accuracy> parse_accuracy(const std::string& text) {
   if (const auto share = parse_share(text)) return Accuracy{.share = *share};
   const auto quantity = parse_quantity(text);
@@ -62,6 +50,17 @@ const char* outcome_name(RefineOutcome outcome) {
 }
 
 }  // namespace
+
+std::optional<double> parse_share(const std::string& text) {
+  const auto quantity = parse_quantity(text);
+  if (!quantity || (!quantity->unit.empty() && quantity->unit != "%")) return std::nullopt;
+  constexpr double percent = 0.01;
+  const double share = quantity->unit == "%" ? percent * quantity->value : quantity->value;
+  // Below a thousandth of a percent there is nothing but rounding; above all, nothing to refine.
+  constexpr double least = 1e-5, most = 1.0;
+  if (!(share >= least && share <= most)) return std::nullopt;
+  return share;
+}
 
 void add_refinement(CLI::App& command, RefineOptions& options, const std::string& group) {
   command

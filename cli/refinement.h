@@ -10,6 +10,9 @@
 
 namespace lightwell {
 
+/// "0.5%", or the same as a share, "0.005"; nothing for what is none or not from 0.001 % to 100 %.
+std::optional<double> parse_share(const std::string& text);
+
 /// Adds --refine PERCENT|off and --max-elements N.
 void add_refinement(CLI::App& command, RefineOptions& options, const std::string& group);
 

@@ -3,10 +3,12 @@
 #include <memory>
 
 #include "cli/arguments.h"
+#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "raytrace/camera_ray.h"
 
 namespace lightwell {
 namespace {
@@ -15,6 +17,7 @@ struct Arguments {
   std::string scene, solution, camera;
   std::vector<std::string> outputs;
   RenderArguments render;
+  CheckpointArguments checkpoint;
 };
 
 int render(const Arguments& arguments, Console& console) {
@@ -23,10 +26,16 @@ int render(const Arguments& arguments, Console& console) {
   const Camera& camera = choose_camera(scene, arguments.camera);
   const std::vector<std::filesystem::path> files(arguments.outputs.begin(),
                                                  arguments.outputs.end());
+  arguments.render.film.check(scene, files);
+  static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws if it cannot be
   for (const std::filesystem::path& file : files) require_writable(file);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   report.add("camera", camera.name);
-  render_step(scene, solved, camera, arguments.render, files, console, report);
+  Checkpoint checkpoint(arguments.checkpoint,
+                        picture_provenance(scene, solved.solution, arguments.render), files,
+                        console);
+  render_step(scene, solved, camera, arguments.render, files, checkpoint, console, report);
+  checkpoint.finish(report);
   report.print();
   return exit_done;
 }
@@ -49,6 +58,10 @@ Action add_render(CLI::App& command) {
   command.add_option("--camera", arguments->camera, "which camera (default: the first)")
       ->type_name("NAME");
   arguments->render.add_to(command);
+  const std::string group = "How pictures are made";
+  arguments->render.film.add_to(command, group, FilmArguments::HelpOn::all);
+  arguments->render.film.add_false_colour_to(command, group);
+  arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first, group);
   command.footer(
       "Example: lightwell render cornell/cornell.toml cornell.vtp --size 256x256 -o small.png");
   return [arguments](Console& console) { return render(*arguments, console); };

@@ -213,16 +213,4 @@ Json energy_json(const EnergyBalance& energy) {
           {"unshot", energy.unshot}};
 }
 
-ImageMetadata picture_metadata(const RadiositySolution& solution, const Camera& camera,
-                               const std::string& options) {
-  const Provenance& made = solution.provenance;
-  return {{"software", fmt::format("lightwell {}", LIGHTWELL_VERSION)},
-          {"scene", made.scene_file},
-          {"sceneHash", fmt::format("{:016x}", made.scene_hash)},
-          {"camera", camera.name},
-          {"renderOptions", options},
-          {"solveOptions", made.options},
-          {"unit", solution.relative_units ? "relative radiance per band" : "W/(m^2 sr) per band"}};
-}
-
 }  // namespace lightwell

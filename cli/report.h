@@ -8,7 +8,6 @@
 #include "cli/console.h"
 #include "mesh/planar_regions.h"
 #include "radiosity/solve.h"
-#include "raytrace/image.h"
 
 namespace lightwell {
 
@@ -63,9 +62,5 @@ Json energy_json(const EnergyBalance& energy);
 
 /// "converged" or "max_sweeps_reached".
 std::string outcome_name(Outcome outcome);
-
-/// What every picture carries in its header.
-ImageMetadata picture_metadata(const RadiositySolution& solution, const Camera& camera,
-                               const std::string& options);
 
 }  // namespace lightwell

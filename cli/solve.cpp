@@ -30,7 +30,7 @@ int solve(const Arguments& arguments, Console& console) {
     report.print();
     return exit_code(done->solution);
   }
-  Checkpoint checkpoint(arguments.checkpoint, of, arguments.output, console);
+  Checkpoint checkpoint(arguments.checkpoint, of, {arguments.output}, console);
   const SolvedScene solved =
       solve_step(scene, arguments.solve, arguments.output, checkpoint, console, report);
   write_solution_step(arguments.output, solved, console, report);
@@ -59,6 +59,7 @@ Action add_solve(CLI::App& command) {
                   "a solution of the same geometry whose light the solver starts from")
       ->type_name("SOLUTION");
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::all);
+  arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::all);
   command.footer(
       "Example: lightwell solve cornell/cornell.toml -o cornell.vtp --max-patch-size 25");
   return [arguments](Console& console) { return solve(*arguments, console); };

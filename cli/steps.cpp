@@ -11,23 +11,6 @@
 
 namespace lightwell {
 namespace fs = std::filesystem;
-namespace {
-
-void write_picture(const fs::path& file, const Image& image, const RadiositySolution& solution,
-                   const Camera& camera, const RenderArguments& arguments) {
-  if (lower_extension(file) == ".png") {
-    const ToneMapping tones{.exposure_ev = arguments.exposure_ev};
-    write_png(
-        file, image.width, image.height, tone_map(image, solution.bands, tones),
-        picture_metadata(solution, camera,
-                         fmt::format("{} --exposure {:g}", arguments.text(), tones.exposure_ev)));
-  } else {
-    write_exr(file, image, solution.bands, picture_metadata(solution, camera, arguments.text()));
-  }
-}
-
-}  // namespace
-
 Scene read_scene_step(const fs::path& file, Console& console, Report& report,
                       CleanUpReport* clean_up) {
   const Stopwatch watch;
@@ -136,23 +119,43 @@ SolvedScene read_solution_step(const fs::path& file, const Scene& scene, Console
   return solved;
 }
 
+Provenance picture_provenance(const Scene& scene, const RadiositySolution& solution,
+                              const RenderArguments& arguments) {
+  return {.version = LIGHTWELL_VERSION,
+          .scene_file = scene.file.string(),
+          .scene_hash = solution.provenance.scene_hash,
+          .options = fmt::format("render {} of a solution with {}", arguments.text(),
+                                 solution.provenance.options)};
+}
+
 void render_step(const Scene& scene, const SolvedScene& solved, const Camera& camera,
                  const RenderArguments& arguments, const std::vector<fs::path>& files,
-                 Console& console, Report& report) {
+                 Checkpoint& checkpoint, Console& console, Report& report) {
   const Stopwatch watch;
   console.say_verbose(fmt::format("rendering {} with {}", camera.name, arguments.text()));
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
   RenderOptions options = arguments.options();
-  options.progress = console.progress();
+  options.layers = arguments.film.rendered_layers(scene);
+  options.progress = checkpoint.watched(console.progress());
+  options.journal = checkpoint.journal();
   RenderReport rendered;
   const Camera view = arguments.sized(camera);
-  const Image image =
-      render(scene, caster, direct_light, solved.solution, view, options, &rendered);
+  Image image;
+  try {
+    image = render(scene, caster, direct_light, solved.solution, view, options, &rendered);
+    stop_if_interrupted();
+  } catch (const std::exception&) {
+    checkpoint.rethrow_stopped();
+  }
   console.finish_phase();
-  stop_if_interrupted();
+  const Picture picture{.image = image,
+                        .solution = solved.solution,
+                        .camera = view,
+                        .render_options = arguments.text(),
+                        .exposure_ev = arguments.exposure_ev};
   for (const fs::path& file : files) {
-    write_picture(file, image, solved.solution, view, arguments);
+    write_picture(file, picture, arguments.film);
     report.add_file(file);
   }
   report.add_phase("render_" + camera.name, watch.seconds());

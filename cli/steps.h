@@ -41,10 +41,15 @@ void write_solution_step(const std::filesystem::path& file, const SolvedScene& s
 SolvedScene read_solution_step(const std::filesystem::path& file, const Scene& scene,
                                Console& console, Report& report);
 
-/// Renders one camera's picture into every file given (.exr or .png).
+/// What pictures of the solution with these options, by this program, are made of.
+Provenance picture_provenance(const Scene& scene, const RadiositySolution& solution,
+                              const RenderArguments& arguments);
+
+/// Renders one camera's picture into every file given (.exr or .png). Its finished tiles are taken
+/// from the checkpoint, and more are kept there.
 void render_step(const Scene& scene, const SolvedScene& solved, const Camera& camera,
                  const RenderArguments& arguments, const std::vector<std::filesystem::path>& files,
-                 Console& console, Report& report);
+                 Checkpoint& checkpoint, Console& console, Report& report);
 
 /// 0, or 4 where the solver stopped early.
 int exit_code(const RadiositySolution& solution);

@@ -60,10 +60,15 @@ void add_inputs(Fingerprint& print, const Scene& scene, const PatchMesh& mesh,
     print.add(material.one_sided);
     print.add(material.emits_both_sides);
     print.add(material.specular);
+    print.add(material.specular_roughness);
     print.add(material.dielectric.has_value());
     if (!material.dielectric) continue;
-    print.add(material.dielectric->index_of_refraction);
-    print.add(material.dielectric->tint);
+    const Dielectric& glass = *material.dielectric;
+    print.add(glass.index_of_refraction);
+    print.add(glass.tint);
+    print.add(glass.absorption);
+    print.add(glass.roughness);
+    print.add(glass.thin);
   }
   print.add(options.method);
   print.add(options.rays_per_patch);

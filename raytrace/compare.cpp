@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "raytrace/display.h"
+#include "raytrace/flip.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -57,17 +58,131 @@ Eigen::Array3f oklab(const Eigen::Array3f& linear) {
   return (opponents * lms).array();
 }
 
-// Both pictures under the reference's exposure: a change of brightness must count.
+// As a screen shows it under the reference's exposure, linear: a change of brightness must count.
+Image shown(const Image& rgb, const Image& reference) {
+  const double scale = exposure_scale(reference, rgb_bands());
+  Image result{.width = rgb.width, .height = rgb.height};
+  result.radiance.resize(rgb.radiance.rows(), 3);
+  for (Eigen::Index i = 0; i < rgb.radiance.rows(); ++i) {
+    result.radiance.row(i).head<3>() =
+        display_rgb(rgb.radiance.row(i).head<3>().transpose(), scale).transpose();
+  }
+  return result;
+}
+
 double perceptual_difference(const Image& a, const Image& b) {
-  const double scale = exposure_scale(b, rgb_bands());
   double sum = 0.0;
   for (Eigen::Index i = 0; i < b.radiance.rows(); ++i) {
-    const auto shown = [&](const Image& image) {
-      return oklab(display_rgb(image.radiance.row(i).transpose(), scale, true));
+    const auto lab = [i](const Image& image) {
+      return oklab(image.radiance.row(i).head<3>().transpose());
     };
-    sum += std::min(1.0f, (shown(a) - shown(b)).matrix().norm());
+    sum += std::min(1.0f, (lab(a) - lab(b)).matrix().norm());
   }
   return sum / static_cast<double>(b.radiance.rows());
+}
+
+// Spectral bands that came with the picture, by what they are called: "400-404nm".
+std::vector<std::string> band_names(const Image& image) {
+  std::vector<std::string> names;
+  for (const std::string& name : image.layers.names) {
+    if (name.ends_with("nm")) names.push_back(name);
+  }
+  return names;
+}
+
+BandArray column(const Image& image, const std::string& name) {
+  const auto& names = image.layers.names;
+  return image.layers.values.col(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+void check_bands(const Image& a, const Image& b) {
+  const std::vector<std::string> of_a = band_names(a), of_b = band_names(b);
+  if (of_a.empty() || of_b.empty()) return;  // their RGB can be compared
+  const auto require_all = [](const std::vector<std::string>& names, const auto& in,
+                              const char* which) {
+    for (const std::string& name : names) {
+      if (std::find(in.begin(), in.end(), name) != in.end()) continue;
+      throw InputError(fmt::format(
+          "the {} image has no channel '{}', which the other has; compare pictures of one scene",
+          which, name));
+    }
+  };
+  require_all(of_a, of_b, "second");
+  require_all(of_b, of_a, "first");
+  for (const Image* image : {&a, &b}) {
+    for (const std::string& name : of_b) {
+      const BandArray values = column(*image, name);
+      for (Eigen::Index i = 0; i < values.rows(); ++i) {
+        if (std::isfinite(values(i, 0))) continue;
+        throw InputError(fmt::format(
+            "the {} image has a value that is not finite in channel '{}' at pixel ({}, {})",
+            image == &a ? "first" : "second", name, i % image->width, i / image->width));
+      }
+    }
+  }
+}
+
+// Which pixels count, and in which squares.
+class Kept {
+ public:
+  Kept(const Image& reference, const CompareOptions& options)
+      : width_(reference.width), height_(reference.height), block_(options.block) {
+    if (block_ < 1) throw InputError(fmt::format("a block of {} pixels; 1 is least", block_));
+    if (!(options.exclude_above > 0.0)) {
+      throw InputError(fmt::format("what is above {} cannot be left out; give a number above 0",
+                                   options.exclude_above));
+    }
+    for (Eigen::Index i = 0; i < reference.radiance.rows(); ++i) {
+      const bool is_out = reference.radiance.row(i).maxCoeff() > options.exclude_above;
+      out_.push_back(is_out ? 1 : 0);
+      out_count_ += is_out ? 1 : 0;
+    }
+    if (out_count_ == reference.radiance.rows()) {
+      throw InputError(
+          fmt::format("every pixel of the reference is above {:g}: nothing is left to "
+                      "compare",
+                      options.exclude_above));
+    }
+  }
+
+  double excluded() const {
+    return static_cast<double>(out_count_) / static_cast<double>(out_.size());
+  }
+
+  // Means over each square with anything in it: squares x bands.
+  Eigen::ArrayXXd means(const BandArray& values) const {
+    const Eigen::Index across = (width_ + block_ - 1) / block_,
+                       down = (height_ + block_ - 1) / block_;
+    Eigen::ArrayXXd sums = Eigen::ArrayXXd::Zero(across * down, values.cols());
+    Eigen::ArrayXd counts = Eigen::ArrayXd::Zero(across * down);
+    for (Eigen::Index i = 0; i < values.rows(); ++i) {
+      if (out_[static_cast<std::size_t>(i)]) continue;
+      const Eigen::Index square = i / width_ / block_ * across + i % width_ / block_;
+      sums.row(square) += values.row(i).cast<double>();
+      counts[square] += 1.0;
+    }
+    Eigen::Index filled = 0;
+    for (Eigen::Index square = 0; square < counts.size(); ++square) {
+      if (counts[square] > 0.0) sums.row(filled++) = (sums.row(square) / counts[square]).eval();
+    }
+    return sums.topRows(filled);
+  }
+
+ private:
+  int width_, height_, block_;
+  std::vector<char> out_{};
+  Eigen::Index out_count_ = 0;
+};
+
+BandDifference difference(const std::string& band, const Eigen::ArrayXXd& A,
+                          const Eigen::ArrayXXd& B) {
+  BandDifference result{.band = band,
+                        .rmse = std::sqrt((A - B).square().mean()),
+                        .max_difference = (A - B).abs().maxCoeff(),
+                        .mean_a = A.mean(),
+                        .mean_b = B.mean()};
+  result.relative_rmse = result.rmse > 0.0 ? result.rmse / result.mean_b : 0.0;
+  return result;
 }
 
 // Colours of a glowing body, even in lightness: black, violet, red, orange, yellow, white.
@@ -87,16 +202,53 @@ std::array<std::uint8_t, 3> false_colour(double share) {
 
 }  // namespace
 
-ImageDifference compare_images(const Image& a, const Image& b) {
+ImageDifference compare_images(const Image& a, const Image& b, const CompareOptions& options) {
   check_comparable(a, b);
-  const auto A = a.radiance.cast<double>(), B = b.radiance.cast<double>();
-  ImageDifference result;
-  result.rmse = std::sqrt((A - B).square().mean());
+  check_bands(a, b);
+  const Kept kept(b, options);
+  const Eigen::ArrayXXd A = kept.means(a.radiance), B = kept.means(b.radiance);
+  const BandDifference all = difference("", A, B);
+  ImageDifference result{.rmse = all.rmse,
+                         .relative_rmse = all.relative_rmse,
+                         .max_difference = all.max_difference,
+                         .mean_a = all.mean_a,
+                         .mean_b = all.mean_b,
+                         .excluded = kept.excluded()};
+  static constexpr std::array<const char*, 3> rgb = {"R", "G", "B"};
+  for (Eigen::Index k = 0; k < A.cols(); ++k) {
+    const std::string name = A.cols() == 3 ? rgb[k] : std::to_string(k);
+    result.bands.push_back(difference(name, A.col(k), B.col(k)));
+  }
+  const bool both_are_spectral = !band_names(a).empty();
+  for (const std::string& name : both_are_spectral ? band_names(b) : std::vector<std::string>()) {
+    result.bands.push_back(
+        difference(name, kept.means(column(a, name)), kept.means(column(b, name))));
+  }
+  const Image rgb_a = as_rgb(a), rgb_b = as_rgb(b);
+  const Image shown_a = shown(rgb_a, rgb_b), shown_b = shown(rgb_b, rgb_b);
+  result.perceptual = perceptual_difference(shown_a, shown_b);
+  result.flip = flip(shown_a, shown_b).cast<double>().mean();
+  result.hdr_flip = hdr_flip(rgb_a, rgb_b).cast<double>().mean();
+  return result;
+}
+
+HalvesDifference compare_with_halves(const Image& a, const Image& first, const Image& second,
+                                     const CompareOptions& options) {
+  check_comparable(a, first);
+  check_comparable(a, second);
+  Image reference{.width = a.width, .height = a.height};
+  reference.radiance = 0.5f * (first.radiance + second.radiance);
+  const Kept kept(reference, options);
+  const Eigen::ArrayXXd A = kept.means(a.radiance), H1 = kept.means(first.radiance),
+                        H2 = kept.means(second.radiance);
+  HalvesDifference result;
+  result.mean_square = ((A - H1) * (A - H2)).mean();
+  result.rmse = std::sqrt(std::max(0.0, result.mean_square));
+  result.reference_noise = 0.5 * std::sqrt((H1 - H2).square().mean());
   result.mean_a = A.mean();
-  result.mean_b = B.mean();
-  result.relative_rmse = result.rmse > 0.0 ? result.rmse / result.mean_b : 0.0;
-  result.max_difference = (A - B).abs().maxCoeff();
-  result.perceptual = perceptual_difference(as_rgb(a), as_rgb(b));
+  result.mean_reference = 0.5 * (H1.mean() + H2.mean());
+  result.relative_rmse = result.rmse > 0.0 ? result.rmse / result.mean_reference : 0.0;
+  result.excluded = kept.excluded();
   return result;
 }
 

@@ -6,11 +6,17 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <stdexcept>
+#include <tuple>
 #include <vector>
 
+#include "radiosity/journal_phase.h"
 #include "raytrace/camera_ray.h"
+#include "raytrace/layer_film.h"
+#include "raytrace/pixel_samples.h"
+#include "raytrace/sampled_rows.h"
 #include "raytrace/shade.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -27,11 +33,17 @@ constexpr std::uint64_t edge_purpose = 0xed6e;
 
 void check(const RenderOptions& options) {
   const auto fail = [](const std::string& what) { throw std::invalid_argument("render: " + what); };
-  if (options.max_subdivision < 0 || options.max_subdivision > max_levels) {
-    fail(fmt::format("max_subdivision is {}, it must lie between 0 and {}", options.max_subdivision,
-                     max_levels));
-  }
-  if (options.max_depth < 0) fail("max_depth must not be negative");
+  const auto within = [&](const char* what, int value, int low, int high) {
+    if (value >= low && value <= high) return;
+    fail(fmt::format("{} is {}, it must lie between {} and {}", what, value, low, high));
+  };
+  within("max_subdivision", options.max_subdivision, 0, max_levels);
+  within("max_depth", options.max_depth, 0, deepest_tree);
+  within("gather_rays", options.gather_rays, 1, most_gather_rays);
+  within("glossy_rays", options.glossy_rays, 1, 256);
+  within("sampling.most", options.sampling.most, 0, SampleOptions::limit);
+  within("sampling.least", options.sampling.least, 1, SampleOptions::limit);
+  if (!(options.sampling.noise >= 0.0f)) fail("sampling.noise must not be negative");
   if (!(options.contrast > 0.0f)) fail("contrast must be above 0");
   if (!(options.min_contribution >= 0.0f)) fail("min_contribution must not be negative");
 }
@@ -66,6 +78,19 @@ class Eye {
   Counters& counters_;
 };
 
+// What a pixel is the mean of: radiance, and the layers that go with it.
+struct PixelValue {
+  Spectrum radiance{};
+  SampledLayers layers = SampledLayers::Zero();
+
+  static PixelValue zero(int bands) { return {.radiance = Spectrum::Zero(bands)}; }
+  template <class Seen>  // a Sight or another PixelValue
+  void add(const Seen& seen, float share) {
+    radiance += share * seen.radiance;
+    layers += share * seen.layers;
+  }
+};
+
 // Mean radiance over one pixel's square by adaptive subdivision (Whitted 1980): the mean of the
 // four corners where they agree, else of the four quarters.
 class PixelMean {
@@ -79,7 +104,7 @@ class PixelMean {
         known_(sights_.size()) {}
 
   // `corners`: top left, top right, bottom left, bottom right.
-  Spectrum operator()(int x, int y, const std::array<const Sight*, 4>& corners) {
+  PixelValue operator()(int x, int y, const std::array<const Sight*, 4>& corners) {
     x_ = x * lattice_steps;
     y_ = y * lattice_steps;
     if (!must_split(0, 0, cells_, corners) && (cells_ > 1 || look_alike(corners))) {
@@ -111,17 +136,24 @@ class PixelMean {
     return &sights_[slot(i, j)];
   }
 
-  Spectrum cell_mean(int i, int j, int size) {
+  PixelValue cell_mean(int i, int j, int size) {
     const Corners corners = {sight(i, j), sight(i + size, j), sight(i, j + size),
                              sight(i + size, j + size)};
     if (must_split(i, j, size, corners)) return split(i, j, size);
     return size == 1 && !look_alike(corners) ? edge_mean(i, j, corners) : mean(corners);
   }
 
-  Spectrum split(int i, int j, int size) {
+  PixelValue split(int i, int j, int size) {
     const int half = size / 2;
-    return 0.25f * (cell_mean(i, j, half) + cell_mean(i + half, j, half) +
-                    cell_mean(i, j + half, half) + cell_mean(i + half, j + half, half));
+    PixelValue sum = cell_mean(i, j, half);
+    sum.add(cell_mean(i + half, j, half), 1.0f);
+    sum.add(cell_mean(i, j + half, half), 1.0f);
+    sum.add(cell_mean(i + half, j + half, half), 1.0f);
+    return scaled(sum, 0.25f);
+  }
+
+  static PixelValue scaled(const PixelValue& value, float share) {
+    return {.radiance = share * value.radiance, .layers = share * value.layers};
   }
 
   // Largest difference between corners in any band, over the bands' mean of the largest value.
@@ -136,18 +168,20 @@ class PixelMean {
     return widest > 0.0f ? widest * static_cast<float>(c[0]->radiance.size()) / sum : 0.0f;
   }
 
-  static Spectrum mean(const Corners& c) {
-    return 0.25f * (c[0]->radiance + c[1]->radiance + c[2]->radiance + c[3]->radiance);
+  static PixelValue mean(const Corners& c) {
+    PixelValue sum{.radiance = c[0]->radiance, .layers = c[0]->layers};
+    for (int i = 1; i < 4; ++i) sum.add(*c[i], 1.0f);
+    return scaled(sum, 0.25f);
   }
 
   // The smallest cell with an edge in it: each corner weighs what share of the cell looks like it.
   // Shares come from rays without shadow rays, which makes edges many times finer than samples; a
   // lamp's edge against a wall a hundred times darker needs that.
-  Spectrum edge_mean(int i, int j, const Corners& c) const {
+  PixelValue edge_mean(int i, int j, const Corners& c) const {
     const double x = x_ + i * steps_per_cell_, y = y_ + j * steps_per_cell_;
     const std::uint64_t key =
         random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y), edge_purpose);
-    Spectrum sum = Spectrum::Zero(c[0]->radiance.size());
+    PixelValue sum = PixelValue::zero(static_cast<int>(c[0]->radiance.size()));
     int votes = 0;
     for (int s = 0; s < edge_points_.count(); ++s) {
       const Eigen::Array4f u = edge_points_.point(s, key);
@@ -158,10 +192,10 @@ class PixelMean {
       if (count == 0) continue;  // a third thing, which no corner shows
       ++votes;
       for (const Sight* sight : c) {
-        if (alike(sight)) sum += sight->radiance / static_cast<float>(count);
+        if (alike(sight)) sum.add(*sight, 1.0f / static_cast<float>(count));
       }
     }
-    return votes > 0 ? Spectrum(sum / static_cast<float>(votes)) : mean(c);
+    return votes > 0 ? scaled(sum, 1.0f / static_cast<float>(votes)) : mean(c);
   }
 
   static bool look_alike(const Corners& c) {
@@ -204,7 +238,7 @@ void look_at_corners(const Eye& eye, int first_row, std::span<CornerRow> rows) {
 }
 
 void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
-                    std::span<const CornerRow> corners, Image& image) {
+                    std::span<const CornerRow> corners, Image& image, LayerFilm& layers) {
   constexpr int grain = 32;
   const int rows = static_cast<int>(corners.size()) - 1;
   parallel_for(rows * image.width, grain, [&](int begin, int end) {
@@ -213,11 +247,107 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
       const int row = i / image.width, x = i % image.width, y = first_row + row;
       const CornerRow& top = corners[row];
       const CornerRow& bottom = corners[row + 1];
-      image.radiance.row(y * image.width + x) =
-          pixel_mean(x, y, {&top[x], &top[x + 1], &bottom[x], &bottom[x + 1]}).transpose();
+      const PixelValue value = pixel_mean(x, y, {&top[x], &top[x + 1], &bottom[x], &bottom[x + 1]});
+      const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
+      image.radiance.row(pixel) = value.radiance.transpose();
+      layers.set_sampled(pixel, value.layers);
     }
   });
 }
+
+// Rough surfaces and lenses show nothing sharp that subdivision could find the edges of.
+SampleOptions sampling_for(const Scene& scene, const CameraRays& rays,
+                           const RenderOptions& options) {
+  SampleOptions sampling = options.sampling;
+  const auto is_rough = [](const Material& m) { return m.gloss_roughness() > 0.0f; };
+  const bool needed = rays.has_lens() || std::ranges::any_of(scene.materials, is_rough);
+  if (sampling.most == 0 && needed) sampling.most = SampleOptions::most_by_default;
+  return sampling;
+}
+
+// All that decides a picture, but what the journal is of.
+void add_inputs(Fingerprint& print, const ElementCaster& caster, const RadiositySolution& solution,
+                const Camera& camera, const RenderOptions& options) {
+  print.add(caster.mesh());
+  print.add(solution.direct_irradiance);
+  print.add(solution.indirect_irradiance);
+  for (const Eigen::Vector3d* v : {&camera.position, &camera.direction, &camera.up}) print.add(*v);
+  print.add(camera.fov_degrees);
+  print.add(camera.width);
+  print.add(camera.height);
+  print.add(options.pass);
+  print.add(options.max_depth);
+  print.add(options.min_contribution);
+  print.add(options.shadows.min_rays);
+  print.add(options.shadows.max_rays);
+  print.add(options.max_subdivision);
+  print.add(options.contrast);
+  print.add(solution.caustic_irradiance);
+  print.add(camera.lens_radius);
+  print.add(camera.focus_distance);
+  print.add(camera.blades);
+  print.add(options.gather_rays);
+  print.add(options.glossy_rays);
+  print.add(options.sampling.most);
+  print.add(options.sampling.least);
+  print.add(options.sampling.noise);
+}
+
+// A strip of the picture, as wide as it is: its rows are together in memory.
+std::span<float> rows_of(BandArray& values, int width, int first_row, int rows) {
+  const auto row = static_cast<std::size_t>(width * values.cols());
+  return {values.data() + first_row * row, rows * row};
+}
+
+// Renders tile by tile: strips that share a row of corners, or strips of many looks per pixel if
+// there are `samples`.
+class TileRenderer {
+ public:
+  TileRenderer(const Eye& eye, const PixelSamples* samples, const RenderOptions& options,
+               Counters& counters, Image& image, LayerFilm& layers)
+      : eye_(eye),
+        samples_(samples),
+        options_(options),
+        counters_(counters),
+        image_(image),
+        layers_(layers),
+        corners_(tile_rows() + 1, CornerRow(image.width + 1)) {}
+
+  /// Small ones, to stop soon and to lose little; large enough to keep all threads busy.
+  int tile_rows() const {
+    constexpr int sampled_rows = 16;  // and those beside them, whose first looks are lost
+    if (samples_) return sampled_rows;
+    constexpr int pixels_per_tile = 8192;
+    return std::max(1, pixels_per_tile / image_.width);
+  }
+  /// Its radiance and sampled layers.
+  void render(int first_row, int rows) {
+    if (samples_) {
+      const double part = static_cast<double>(first_row) / image_.height;
+      const SampledRows took =
+          sample_rows(*samples_, first_row, rows, options_.progress, part, image_, layers_);
+      counters_.eye_rays += took.looks;
+      counters_.depth_cut += took.depth_cut;
+      return;
+    }
+    if (row_of_corners_ != first_row) look_at_corners(eye_, first_row, {corners_.data(), 1});
+    look_at_corners(eye_, first_row + 1, {corners_.data() + 1, static_cast<std::size_t>(rows)});
+    average_pixels(eye_, options_, first_row, {corners_.data(), static_cast<std::size_t>(rows) + 1},
+                   image_, layers_);
+    std::swap(corners_.front(), corners_[rows]);
+    row_of_corners_ = first_row + rows;
+  }
+
+ private:
+  const Eye& eye_;
+  const PixelSamples* samples_;
+  const RenderOptions& options_;
+  Counters& counters_;
+  Image& image_;
+  LayerFilm& layers_;
+  std::vector<CornerRow> corners_;
+  int row_of_corners_ = -1;  // that the first of them is
+};
 
 }  // namespace
 
@@ -232,25 +362,42 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   const Eye eye(rays, tree, counters);
   Image image{.width = camera.width, .height = camera.height};
   image.radiance.resize(std::int64_t{camera.width} * camera.height, scene.bands.count());
+  LayerFilm layers(options.layers, image);
 
-  // Strips keep memory small and let the caller stop the work soon; they share a row of corners.
-  constexpr int pixels_per_strip = 8192;
-  const int strip_rows = std::max(1, pixels_per_strip / camera.width);
-  std::vector<CornerRow> corners(strip_rows + 1, CornerRow(camera.width + 1));
+  const JournalPhase phase(options.journal, "picture", [&](Fingerprint& print) {
+    add_inputs(print, caster, solution, camera, options);
+    for (const std::string& name : image.layers.names) print.add(name);
+  });
+  const SampleOptions sampling = sampling_for(scene, rays, options);
+  std::optional<PixelSamples> samples;
+  if (sampling.most > 0) samples.emplace(rays, tree, sampling);
+  TileRenderer tiles(eye, samples ? &*samples : nullptr, options, counters, image, layers);
   report(options.progress, "render", 0.0);
-  look_at_corners(eye, 0, {corners.data(), 1});
-  for (int y = 0; y < camera.height; y += strip_rows) {
-    const int rows = std::min(strip_rows, camera.height - y);
-    look_at_corners(eye, y + 1, {corners.data() + 1, static_cast<std::size_t>(rows)});
-    average_pixels(eye, options, y, {corners.data(), static_cast<std::size_t>(rows) + 1}, image);
-    std::swap(corners.front(), corners[rows]);
+  int tile = 0, recalled = 0;
+  for (int y = 0; y < camera.height; y += tiles.tile_rows(), ++tile) {
+    const int rows = std::min(tiles.tile_rows(), camera.height - y);
+    auto values = std::tuple(rows_of(image.radiance, camera.width, y, rows),
+                             rows_of(image.layers.values, camera.width, y, rows));
+    if (phase.recall(tile, values)) {
+      ++recalled;
+    } else {
+      tiles.render(y, rows);
+      parallel_for(rows, 1, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+          layers.finish_row(y + i, scene.bands, camera, rays, caster);
+        }
+      });
+      phase.keep(tile, values);
+    }
     report(options.progress, "render", static_cast<double>(y + rows) / camera.height);
   }
   if (render_report) {
     *render_report = {
         .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
         .eye_rays = counters.eye_rays,
-        .depth_cut = counters.depth_cut};
+        .depth_cut = counters.depth_cut,
+        .tiles = tile,
+        .recalled_tiles = recalled};
   }
   return image;
 }

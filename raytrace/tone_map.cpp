@@ -67,8 +67,9 @@ class ScaledPicture {
   // would show as lamp, and the edge as a staircase. It is shown as the mean of what lamp and wall
   // show: its brightest neighbour and the pixel opposite, in the proportion that makes its own
   // luminance.
-  Eigen::Array3f shown_softly(int x, int y) const {
-    Eigen::Array3f own = display_rgb(at(x, y), 1.0, true);
+  Eigen::Array3f shown_softly(int x, int y, ToneCurve curve) const {
+    const auto shown = [&](int i, int j) { return display_rgb(at(i, j), 1.0, curve); };
+    Eigen::Array3f own = shown(x, y);
     int dx = 0, dy = 0;
     double brightest = luminance(at(x, y));
     for (int j = -1; j <= 1; ++j) {
@@ -85,8 +86,8 @@ class ScaledPicture {
     const double darker = luminance(at(x - dx, y - dy)), Y = luminance(at(x, y));
     if (!(brightest > lamp && brightest > Y && Y >= darker)) return own;
     const auto covered = static_cast<float>((Y - darker) / (brightest - darker));
-    const Eigen::Array3f mixed = covered * display_rgb(at(x + dx, y + dy), 1.0, true) +
-                                 (1.0f - covered) * display_rgb(at(x - dx, y - dy), 1.0, true);
+    const Eigen::Array3f mixed =
+        covered * shown(x + dx, y + dy) + (1.0f - covered) * shown(x - dx, y - dy);
     return mixed.min(own);
   }
 
@@ -110,18 +111,40 @@ float srgb_encode(float linear) {
   return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
 }
 
-Eigen::Array3f display_rgb(const Eigen::Array3f& linear, double scale, bool with_shoulder) {
-  Eigen::Array3f result;
-  for (int c = 0; c < 3; ++c) {
-    const float x = linear[c] * static_cast<float>(scale);
-    const float shown = with_shoulder ? shoulder(x) : x;
-    result[c] = std::isnan(shown) ? 0.0f : std::clamp(shown, 0.0f, 1.0f);
+float filmic(float x) {
+  const auto curve = [](float y) {
+    constexpr float A = 0.15f, B = 0.50f, C = 0.10f, D = 0.20f, E = 0.02f, F = 0.30f;
+    return (y * (A * y + C * B) + D * E) / (y * (A * y + B) + D * F) - E / F;
+  };
+  constexpr float bias = 2.0f, white = 11.2f;
+  return curve(std::clamp(bias * x, 0.0f, white)) / curve(white);
+}
+
+Eigen::Array3f display_rgb(const Eigen::Array3f& linear, double scale, ToneCurve curve) {
+  const Eigen::Array3f x = linear * static_cast<float>(scale);
+  Eigen::Array3f shown = x;
+  if (curve == ToneCurve::shoulder) shown = x.unaryExpr([](float c) { return shoulder(c); });
+  if (curve == ToneCurve::filmic) shown = x.unaryExpr([](float c) { return filmic(c); });
+  if (curve == ToneCurve::reinhard) {
+    constexpr double white = 4.0;
+    const double Y = luminance(x);
+    if (Y > 0.0) shown *= static_cast<float>((1.0 + Y / (white * white)) / (1.0 + Y));
   }
-  return result;
+  return shown.unaryExpr([](float c) { return std::isnan(c) ? 0.0f : std::clamp(c, 0.0f, 1.0f); });
+}
+
+double luminance_of_white(double ev100) {
+  constexpr double q = 0.65;  // of lens and vignetting
+  return 78.0 / (100.0 * q) * std::exp2(ev100);
+}
+
+double ev100_of_scale(double scale, const Bands& bands) {
+  return std::log2(bands.lumens_per_watt / (scale * luminance_of_white(0.0)));
 }
 
 double exposure_scale(const Image& image, const Bands& bands, const ToneMapping& options) {
   const double stops = std::exp2(options.exposure_ev);
+  if (options.ev100) return stops * bands.lumens_per_watt / luminance_of_white(*options.ev100);
   if (!options.automatic) return stops;
   // Where the typical luminance of the picture lands, of white = 1 (sRGB byte 124): a little above
   // the photographic 0.18, because a room seen whole has no sky to leave headroom for.
@@ -133,12 +156,14 @@ double exposure_scale(const Image& image, const Bands& bands, const ToneMapping&
 std::vector<std::uint8_t> tone_map(const Image& image, const Bands& bands,
                                    const ToneMapping& options) {
   const ScaledPicture picture(image, bands, exposure_scale(image, bands, options));
+  // Equal radiance shall mean equal bytes where the curve is linear.
+  const bool is_soft = options.curve != ToneCurve::linear;
   std::vector<std::uint8_t> bytes(std::size_t{3} * image.width * image.height);
   parallel_for(image.height, 1, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       for (int x = 0; x < image.width; ++x) {
-        const Eigen::Array3f shown = options.automatic ? picture.shown_softly(x, y)
-                                                       : display_rgb(picture.at(x, y), 1.0, false);
+        const Eigen::Array3f shown = is_soft ? picture.shown_softly(x, y, options.curve)
+                                             : display_rgb(picture.at(x, y), 1.0, options.curve);
         std::uint8_t* pixel = bytes.data() + 3 * (std::size_t(y) * image.width + x);
         for (int c = 0; c < 3; ++c) {
           pixel[c] = static_cast<std::uint8_t>(std::lround(255.0f * srgb_encode(shown[c])));

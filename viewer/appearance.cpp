@@ -87,7 +87,7 @@ std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands&
   parallel_for(count, vertex_grain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       const Spectrum L = radiance.row(v).transpose();
-      const Eigen::Array3f shown = display_rgb(linear_rgb(bands, L), scale, true);
+      const Eigen::Array3f shown = display_rgb(linear_rgb(bands, L), scale);
       for (int c = 0; c < 3; ++c) {
         bytes[std::size_t{3} * v + c] =
             static_cast<std::uint8_t>(255.0f * srgb_encode(shown[c]) + 0.5f);

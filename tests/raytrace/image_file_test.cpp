@@ -3,11 +3,15 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfVecAttribute.h>
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "raytrace/image.h"
 #include "scene/errors.h"
@@ -93,6 +97,84 @@ TEST(Exr, HalfFloatsInAWindowOffTheOriginAreRead) {
   ASSERT_EQ(image.width, 3);
   ASSERT_EQ(image.height, 2);
   for (int i = 0; i < 18; ++i) EXPECT_EQ(image.radiance.data()[i], static_cast<float>(i));
+}
+
+// Radiance, and a layer of each kind.
+Image layered() {
+  Image image = noise(6, 4, 3);
+  image.radiance = image.radiance.abs().min(6e4f);
+  image.layers.names = {"albedo.R", "albedo.G", "albedo.B", "depth.Z", "luminance.Y", "patch.id"};
+  image.layers.values.resize(24, 6);
+  for (int i = 0; i < 24; ++i) {
+    image.layers.values.row(i) << 0.1f, 0.2f, 0.3f, 1.0f + 0.001f * i, 1e6f + i, 70001.0f + i;
+  }
+  image.layers.values(0, 3) = std::numeric_limits<float>::infinity();
+  return image;
+}
+
+TEST(Exr, LayersComeBackUnderTheirNamesEveryBitOfThem) {
+  for (const auto compression : {ExrCompression::none, ExrCompression::rle, ExrCompression::zips,
+                                 ExrCompression::zip, ExrCompression::piz}) {
+    const TemporaryFolder folder;
+    const Image written = layered();
+    write_exr(folder / "a.exr", written, rgb_bands(), {}, {.compression = compression});
+    const Image read = read_exr(folder / "a.exr", ExrChannels::all);
+    EXPECT_TRUE((read.radiance == written.radiance).all());
+    std::vector<std::string> sorted = written.layers.names;  // as OpenEXR keeps them
+    std::sort(sorted.begin(), sorted.end());
+    ASSERT_EQ(read.layers.names, sorted);
+    for (std::size_t k = 0; k < sorted.size(); ++k) {
+      const auto& names = written.layers.names;
+      const auto from = std::find(names.begin(), names.end(), sorted[k]) - names.begin();
+      EXPECT_TRUE(
+          (read.layers.values.col(static_cast<Eigen::Index>(k)) == written.layers.values.col(from))
+              .all())
+          << sorted[k];
+    }
+    EXPECT_TRUE(read_exr(folder / "a.exr").layers.is_empty());
+  }
+}
+
+TEST(Exr, HalfFloatsRoundLightButNotDistancesPatchesOrCandelas) {
+  const TemporaryFolder folder;
+  const Image written = layered();
+  write_exr(folder / "a.exr", written, rgb_bands(), {}, {.half = true});
+  const Image read = read_exr(folder / "a.exr", ExrChannels::all);
+  // 11 bits: half a unit in the last place is 2^-11 relative, or 2^-25 below the smallest normal.
+  EXPECT_TRUE(
+      ((read.radiance - written.radiance).abs() <= 0x1p-11f * written.radiance + 0x1p-25f).all());
+  EXPECT_FALSE((read.radiance == written.radiance).all());
+  EXPECT_TRUE((read.layers.values.rightCols(3) == written.layers.values.rightCols(3)).all());
+  const Imf::InputFile file((folder / "a.exr").c_str());
+  const Imf::ChannelList& channels = file.header().channels();
+  for (const char* name : {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B"}) {
+    EXPECT_EQ(channels[name].type, Imf::HALF) << name;
+  }
+  for (const char* name : {"depth.Z", "luminance.Y", "patch.id"}) {
+    EXPECT_EQ(channels[name].type, Imf::FLOAT) << name;
+  }
+}
+
+TEST(Exr, ValueBeyondHalfFloatsIsNamedAndNothingIsWritten) {
+  const TemporaryFolder folder;
+  Image bright = layered();
+  bright.radiance(8, 1) = 7e4f;
+  const auto message = message_of<std::runtime_error>(
+      [&] { write_exr(folder / "a.exr", bright, rgb_bands(), {}, {.half = true}); });
+  EXPECT_TRUE(says(message, "a.exr"));
+  EXPECT_TRUE(says(message, "channel 'G' is 70000 at pixel (2, 1)")) << message;
+  EXPECT_EQ(folder.file_count(), 0);
+}
+
+TEST(Exr, NumbersAndDirectionsKeepTheirTypesAsAttributes) {
+  const TemporaryFolder folder;
+  write_exr(folder / "a.exr", noise(2, 2, 3), rgb_bands(),
+            {{"whiteLuminance", 683.0}, {"cameraPosition", Eigen::Vector3d(1, 2, 0.1)}});
+  const Imf::InputFile file((folder / "a.exr").c_str());
+  EXPECT_EQ(Imf::whiteLuminance(file.header()), 683.0f);
+  const auto& at = file.header().typedAttribute<Imf::V3dAttribute>("cameraPosition").value();
+  EXPECT_EQ(at, Imath::V3d(1, 2, 0.1));
+  EXPECT_TRUE(Imf::hasChromaticities(file.header()));
 }
 
 TEST(Exr, FailedWriteNamesTheFileAndLeavesNothing) {
@@ -203,8 +285,9 @@ TEST(Png, ReadsBackWithSizePixelsAndText) {
   const TemporaryFolder folder;
   std::vector<std::uint8_t> rgb(3 * 7 * 5);
   for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<std::uint8_t>(i * 37);
-  const ImageMetadata texts = {{"Title", "Cornell box"}, {"Comment", "\xc2\xb5-facets"}};
-  write_png(folder / "a.png", 7, 5, rgb, texts);
+  const std::vector<std::pair<std::string, std::string>> texts = {
+      {"Title", "Cornell box"}, {"Comment", "\xc2\xb5-facets"}};
+  write_png(folder / "a.png", 7, 5, rgb, {texts.begin(), texts.end()});
   const ReadPng png = read_png(folder / "a.png");
   EXPECT_EQ(png.width, 7u);
   EXPECT_EQ(png.height, 5u);

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "radiosity/journal.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "tests/raytrace/lit_scene.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -38,7 +40,8 @@ TEST_P(Furnace, EveryPixelShowsBOverPi) {
 }
 
 INSTANTIATE_TEST_SUITE_P(PassesAndBands, Furnace,
-                         ::testing::Combine(::testing::Values(Pass::interpolate, Pass::direct),
+                         ::testing::Combine(::testing::Values(Pass::interpolate, Pass::direct,
+                                                              Pass::gather),
                                             ::testing::Values(3, 7)));
 
 TEST(Render, InterpolatedLinearIrradianceIsExactInEveryPixel) {
@@ -215,6 +218,72 @@ TEST(Render, ProgressRisesToOneAndStopsTheWork) {
   const Progress stop = [&](std::string_view, double) { return ++calls < 2; };
   EXPECT_THROW(lit.render(camera, {.progress = stop}), Interrupted);
   EXPECT_EQ(calls, 2);
+}
+
+/// A tall picture, so that it has several tiles.
+Camera tall_camera() {
+  Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 8);
+  camera.height = 3000;
+  return camera;
+}
+
+TEST(Render, StoppedAnywhereAndGoneOnWithItHasTheSameBits) {
+  const LitScene& lit = furnished_room();
+  const Camera camera = tall_camera();
+  RenderOptions options{.pass = Pass::interpolate,
+                        .max_subdivision = 1,
+                        .layers = {Layer::normal, Layer::depth, Layer::luminance}};
+  const Image whole = lit.render(camera, options);
+  const TemporaryFolder folder;
+  const Provenance of{.version = "1", .scene_hash = 7};
+  // 3000 rows of 8 pixels are 3 tiles of 8192 pixels; each time one more is done, on other threads.
+  for (int done = 1; done <= 3; ++done) {
+    Journal journal(folder / "J", of);
+    options.journal = &journal;
+    int calls = 0;
+    options.progress = [&](std::string_view, double) { return ++calls <= done; };
+    const ThreadLimit limit(done);
+    EXPECT_THROW(lit.render(camera, options), Interrupted);
+    journal.close();
+  }
+  Journal journal(folder / "J", of);
+  options.journal = &journal;
+  options.progress = {};
+  RenderReport report;
+  const Image image = lit.render(camera, options, &report);
+  EXPECT_TRUE((image.radiance == whole.radiance).all());
+  EXPECT_TRUE((image.layers.values == whole.layers.values).all());
+  EXPECT_EQ(report.tiles, 3);
+  EXPECT_EQ(report.recalled_tiles, 3);
+}
+
+TEST(Render, TilesOfAnotherPictureAreNotTaken) {
+  LitScene& lit = furnished_room();
+  const Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 8);
+  const TemporaryFolder folder;
+  const auto recalled = [&](const Camera& from, const RenderOptions& asked) {
+    Journal journal(folder / "J", {.version = "1"});
+    RenderOptions options = asked;
+    options.journal = &journal;
+    RenderReport report;
+    lit.render(from, options, &report);
+    journal.close();
+    return report.recalled_tiles;
+  };
+  const RenderOptions plain{.pass = Pass::interpolate};
+  EXPECT_EQ(recalled(camera, plain), 0);
+  EXPECT_EQ(recalled(camera, plain), 1);
+  Camera moved = camera;
+  moved.position.x() += 1e-9;
+  EXPECT_EQ(recalled(moved, plain), 0);
+  EXPECT_EQ(recalled(camera, {.pass = Pass::direct}), 0);
+  EXPECT_EQ(recalled(camera, {.pass = Pass::interpolate, .contrast = 0.2f}), 0);
+  EXPECT_EQ(recalled(camera, {.pass = Pass::interpolate, .layers = {Layer::depth}}), 0);
+  const BandArray indirect = lit.solution.indirect_irradiance;
+  lit.solution.indirect_irradiance(3, 0) += 0.5f;
+  EXPECT_EQ(recalled(camera, plain), 0);
+  lit.solution.indirect_irradiance = indirect;
+  EXPECT_EQ(recalled(camera, plain), 1);
 }
 
 TEST(Render, ImpossibleOptionsAreRefused) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "raytrace/display.h"
@@ -15,6 +16,9 @@ Image flat_image(int width, int height, const Eigen::Array3f& L) {
   image.radiance = L.transpose().replicate(width * height, 1);
   return image;
 }
+
+constexpr std::array all_curves = {ToneCurve::shoulder, ToneCurve::linear, ToneCurve::reinhard,
+                                   ToneCurve::filmic};
 
 // A wall whose luminance varies by a factor 16, as rooms do.
 Image wall(int pixels) {
@@ -49,18 +53,74 @@ TEST(ToneMap, BrighterRadianceIsNeverDarkerOnScreen) {
   Image image{.width = 1000, .height = 1};
   image.radiance.resize(1000, 3);
   for (int i = 0; i < 1000; ++i) image.radiance.row(i) = std::exp2(0.02f * i - 10.0f);
-  for (const bool automatic : {true, false}) {
-    const auto bytes = tone_map(image, rgb_bands(), {.automatic = automatic});
-    EXPECT_TRUE(std::is_sorted(bytes.begin(), bytes.end()));
+  for (const ToneCurve curve : all_curves) {
+    for (const bool automatic : {true, false}) {
+      const auto bytes = tone_map(image, rgb_bands(), {.automatic = automatic, .curve = curve});
+      EXPECT_TRUE(std::is_sorted(bytes.begin(), bytes.end()));
+      EXPECT_EQ(bytes.back(), 255);
+    }
   }
 }
 
 TEST(ToneMap, NeutralGreysStayNeutral) {
-  const auto bytes = tone_map(wall(256), rgb_bands());
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    EXPECT_EQ(bytes[i], bytes[i + 1]);
-    EXPECT_EQ(bytes[i], bytes[i + 2]);
+  for (const ToneCurve curve : all_curves) {
+    const auto bytes = tone_map(wall(256), rgb_bands(), {.curve = curve});
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+      EXPECT_EQ(bytes[i], bytes[i + 1]);
+      EXPECT_EQ(bytes[i], bytes[i + 2]);
+    }
   }
+}
+
+TEST(ToneMap, ExposureValueMakesOnePointTwoTimesTwoToTheEvWhite) {
+  // ISO 12232: L = 78 / (0.65 * 100) 2^EV = 1.2 * 2^EV; EV 10 is 1228.8 cd/m^2. A surface of that
+  // luminance has the radiance 1228.8 / 683 in every band.
+  EXPECT_DOUBLE_EQ(luminance_of_white(10), 1228.8);
+  const auto L = static_cast<float>(1228.8 / 683);
+  const ToneMapping photo{.ev100 = 10.0, .curve = ToneCurve::linear};
+  const Image half_white = flat_image(1, 1, Eigen::Array3f::Constant(0.5f * L));
+  EXPECT_NEAR(L * exposure_scale(half_white, rgb_bands(), photo), 1.0, 1e-6);
+  EXPECT_EQ(tone_map(half_white, rgb_bands(), photo)[0], 188);  // sRGB of 0.5
+  // Whatever else is in the picture, and whatever lumens a watt has.
+  Image lamp = flat_image(2, 1, Eigen::Array3f::Constant(0.5f * L));
+  lamp.radiance.row(1) = 1e4f;
+  EXPECT_EQ(tone_map(lamp, rgb_bands(), photo)[0], 188);
+  EXPECT_NEAR(exposure_scale(lamp, rgb_bands(179), photo) * 683,
+              179 * exposure_scale(lamp, rgb_bands(), photo), 1e-9);
+  ToneMapping brighter = photo;
+  brighter.exposure_ev = 1.0;
+  EXPECT_EQ(tone_map(half_white, rgb_bands(), brighter)[0], 255);
+}
+
+TEST(ToneMap, ExposureValueOfAScaleIsTheInverseOfItsScale) {
+  const Image image = wall(8);
+  for (const double ev : {-3.0, 0.0, 12.5}) {
+    const double scale = exposure_scale(image, rgb_bands(179), {.ev100 = ev});
+    EXPECT_NEAR(ev100_of_scale(scale, rgb_bands(179)), ev, 1e-12);
+  }
+}
+
+TEST(ToneCurves, PassThroughTheirPublishedPoints) {
+  const auto shown = [](float x, ToneCurve curve) {
+    return display_rgb(Eigen::Array3f::Constant(x), 1.0, curve)[0];
+  };
+  // Equation 4 with a white of 4: x (1 + x / 16) / (1 + x); 1 at x = 4.
+  EXPECT_NEAR(shown(1.0f, ToneCurve::reinhard), 1.0625 / 2, 1e-6);
+  EXPECT_NEAR(shown(4.0f, ToneCurve::reinhard), 1.0, 1e-6);
+  // Hable's curve at 2 x = 2: (2 (0.3 + 0.05) + 0.004) / (2 (0.3 + 0.5) + 0.06) - 1/15, over
+  // its value at 11.2, (11.2 (1.68 + 0.05) + 0.004) / (11.2 (1.68 + 0.5) + 0.06) - 1/15.
+  EXPECT_NEAR(shown(1.0f, ToneCurve::filmic),
+              (0.704 / 1.66 - 1.0 / 15) / (19.38 / 24.476 - 1.0 / 15), 1e-5);
+  EXPECT_NEAR(shown(5.6f, ToneCurve::filmic), 1.0, 1e-6);
+  EXPECT_NEAR(shown(0.0f, ToneCurve::filmic), 0.0f, 1e-7);
+  EXPECT_EQ(shown(0.3f, ToneCurve::linear), 0.3f);
+  EXPECT_EQ(shown(7.0f, ToneCurve::linear), 1.0f);
+}
+
+TEST(ToneCurves, ReinhardKeepsTheRatiosOfColours) {
+  const Eigen::Array3f shown = display_rgb({0.4f, 0.2f, 0.1f}, 1.0, ToneCurve::reinhard);
+  EXPECT_NEAR(shown[0] / shown[1], 2.0, 1e-5);
+  EXPECT_NEAR(shown[1] / shown[2], 2.0, 1e-5);
 }
 
 TEST(ToneMap, ExposureDoesNotDependOnTheUnitOfRadiance) {
@@ -91,7 +151,7 @@ TEST(ToneMap, OneStopDoublesTheScale) {
 
 TEST(ToneMap, ManualIsPlainSrgbWithClipping) {
   const auto bytes = tone_map(flat_image(2, 2, {0.25f, 0.5f, 1.0f}), rgb_bands(),
-                              {.exposure_ev = 1.0, .automatic = false});
+                              {.exposure_ev = 1.0, .automatic = false, .curve = ToneCurve::linear});
   EXPECT_EQ(bytes[0], 188);  // 255 (1.055 0.5^(1/2.4) - 0.055) = 187.5
   EXPECT_EQ(bytes[1], 255);
   EXPECT_EQ(bytes[2], 255);

@@ -9,11 +9,9 @@
 #include <map>
 #include <numbers>
 
-#include "scene/errors.h"
 #include "scene/io/radiance_expression.h"
-#include "scene/io/read_scene.h"
+#include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
-#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -26,13 +24,13 @@ using test::normal_of;
 constexpr double pi = std::numbers::pi;
 const std::string grey = "void plastic grey 0 0 5 .5 .5 .5 0 0\n";
 
-class RadianceCommands : public testing::Test {
+class RadianceCommands : public test::SceneFileTest {
  protected:
   RadianceCommands() {
     folder.write("square.rad", "grey polygon square 0 0 12 1 0 0 2 0 0 2 1 0 1 1 0\n");
   }
   Scene read(const std::string& content) const {
-    return read_scene(folder.write("scene.rad", grey + content + "\n"));
+    return read_file("scene.rad", grey + content + "\n");
   }
   // The square (1,0) to (2,1) after xform with these arguments; its first corner.
   Eigen::Vector3d corner(const std::string& arguments) const {
@@ -41,7 +39,6 @@ class RadianceCommands : public testing::Test {
   std::string error(const std::string& content) const {
     return message_of<InputError>([&] { read(content); });
   }
-  TemporaryFolder folder;
 };
 
 void expect_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance = 1e-12) {

@@ -142,7 +142,7 @@ TEST(Snapshot, APixelShowsItsMeanLight) {
   const Picture picture = draw(wall, options);
   const SolutionView view(wall, options);
   const float full =
-      display_rgb(grey / std::numbers::pi_v<float>, view.look().metered_scale, true)[0];
+      display_rgb(grey / std::numbers::pi_v<float>, view.look().metered_scale)[0];
   const auto byte = [](float linear) {
     return static_cast<int>(255.0f * srgb_encode(linear) + 0.5f);
   };

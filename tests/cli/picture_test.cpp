@@ -1,0 +1,208 @@
+// Pictures: what they hold, how they are exposed, going on with them, comparing them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include "raytrace/image.h"
+#include "tests/cli/program.h"
+
+namespace lightwell {
+namespace {
+using namespace std::chrono_literals;
+using Words = std::vector<std::string>;
+
+class Pictures : public CommandTest {
+ protected:
+  Pictures() {
+    folder.write("room.toml", small_room());
+    EXPECT_EQ(run(Words{"solve", "room.toml", "-o", "S.vtp", "--quiet"} + quick()).code, 0);
+  }
+  Words render(const Words& more) const {
+    return Words{"render", "room.toml", "S.vtp", "--size", "24x18", "--pass", "interpolate"} + more;
+  }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
+};
+
+// A cube of lamps whose light is in no known unit.
+std::string relative_scene() {
+  return R"(<scene version="3.0.0"><shape type="cube"><emitter type="area"/></shape>
+      <sensor type="perspective"><transform name="to_world">
+      <lookat origin="0,0,5" target="0,0,0"/></transform><film type="hdrfilm">
+      <integer name="width" value="8"/><integer name="height" value="8"/></film></sensor></scene>)";
+}
+
+TEST_F(Pictures, LayersComeIntoTheExr) {
+  ASSERT_EQ(run(render({"-o", "a.exr", "--layers", "normal,depth", "--layers", "patch"})).code, 0);
+  const Image some = read_exr(folder / "a.exr", ExrChannels::all);
+  EXPECT_EQ(some.layers.names, (Words{"depth.Z", "normal.X", "normal.Y", "normal.Z", "patch.id"}));
+  ASSERT_EQ(run(render({"-o", "all.exr", "--layers", "all"})).code, 0);
+  EXPECT_EQ(read_exr(folder / "all.exr", ExrChannels::all).layers.names.size(), 22u);
+  EXPECT_TRUE((read_exr(folder / "all.exr").radiance == some.radiance).all());
+}
+
+TEST_F(Pictures, LayersThatCannotBeAreRefusedBeforeTheWork) {
+  const Ended misspelt = run(render({"-o", "a.exr", "--layers", "albedo,normals"}));
+  EXPECT_EQ(misspelt.code, 2);
+  EXPECT_TRUE(says(misspelt.err, "there is no layer 'normals'")) << misspelt.err;
+  EXPECT_TRUE(says(misspelt.err, "Did you mean 'normal'?")) << misspelt.err;
+  const Ended nowhere = run(render({"-o", "a.png", "--layers", "albedo"}));
+  EXPECT_EQ(nowhere.code, 3);
+  EXPECT_TRUE(says(nowhere.err, "layers go into an .exr")) << nowhere.err;
+  EXPECT_FALSE(exists("a.png"));
+  const Ended no_png = run(render({"-o", "a.exr", "--false-colour", "luminance"}));
+  EXPECT_EQ(no_png.code, 3);
+  EXPECT_TRUE(says(no_png.err, "false colours go into a .png")) << no_png.err;
+}
+
+#ifdef LIGHTWELL_VIEWER
+TEST_F(Pictures, FalseColoursHaveAScaleBesideThem) {
+  ASSERT_EQ(run(render({"-o", "a.png", "--false-colour", "illuminance", "--range", "0:500", "-o",
+                        "a.exr"}))
+                .code,
+            0);
+  const std::string png = content_of(folder / "a.png");
+  EXPECT_TRUE(says(png, "illuminance in lx, 0 to 500"));
+  EXPECT_FALSE(says(png, "toneMap"));
+  const auto edge = [&](std::size_t at) {
+    return (static_cast<unsigned char>(png[at]) << 24) +
+           (static_cast<unsigned char>(png[at + 1]) << 16) +
+           (static_cast<unsigned char>(png[at + 2]) << 8) + static_cast<unsigned char>(png[at + 3]);
+  };
+  EXPECT_GT(edge(16), 24 + 30) << "as wide as the picture and the scale";
+  EXPECT_GE(edge(20), 18);
+  EXPECT_EQ(read_exr(folder / "a.exr", ExrChannels::all).layers.names, Words{"illuminance.Y"});
+}
+#endif
+
+TEST_F(Pictures, WhatNeedsAUnitOfLightIsRefusedWhereThereIsNone) {
+  folder.write("box.xml", relative_scene());
+  ASSERT_EQ(run(Words{"solve", "box.xml", "-o", "B.vtp", "--quiet"} + quick()).code, 0);
+  const Words box = {"render", "box.xml", "B.vtp", "-o", "b.exr", "-o", "b.png"};
+  for (const Words& words :
+       {Words{"--ev100", "10"}, Words{"--layers", "luminance"}, Words{"--layers", "illuminance"},
+        Words{"--false-colour", "luminance"}}) {
+    const Ended ended = run(box + words);
+    EXPECT_EQ(ended.code, 3) << words[0];
+    EXPECT_TRUE(says(ended.err, "box.xml: names no unit of light")) << ended.err;
+    EXPECT_FALSE(exists("b.exr"));
+  }
+  ASSERT_EQ(run(box + Words{"--layers", "all"}).code, 0);
+  const auto names = read_exr(folder / "b.exr", ExrChannels::all).layers.names;
+  EXPECT_EQ(names.size(), 20u) << "all but luminance and illuminance";
+  EXPECT_EQ(std::count(names.begin(), names.end(), "luminance.Y"), 0);
+}
+
+TEST_F(Pictures, PngSaysWhatItsWhiteIs) {
+  ASSERT_EQ(run(render({"-o", "a.png", "--ev100", "8", "--tone-map", "linear"})).code, 0);
+  const std::string png = content_of(folder / "a.png");
+  EXPECT_TRUE(says(png, "--tone-map linear --exposure 0 --ev100 8"));
+  EXPECT_TRUE(says(png, std::string("whiteLuminance") + '\0' + "307.2"));  // 1.2 * 2^8 cd/m^2
+  // Twice the light through one stop less is the same picture.
+  ASSERT_EQ(
+      run(render({"-o", "b.png", "--ev100", "9", "--exposure", "1", "--tone-map", "linear"})).code,
+      0);
+  const Ended wrong = run(render({"-o", "a.png", "--tone-map", "film"}));
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(says(wrong.err, "Did you mean 'filmic'?")) << wrong.err;
+}
+
+TEST_F(Pictures, ImpossibleSizesAndPlacesAreRefusedAtOnce) {
+  for (const char* size : {"0x10", "10x0", "100000x10", "-3x4", "640"}) {
+    const Ended ended = run({"render", "room.toml", "missing.vtp", "--size", size, "-o", "a.png"});
+    EXPECT_EQ(ended.code, 2) << size;
+    EXPECT_TRUE(says(ended.err, "is no picture size")) << ended.err;
+  }
+  // The solution, which would take time to read, is not even looked for.
+  const Ended large =
+      run({"render", "room.toml", "missing.vtp", "--size", "32768x32768", "-o", "a.png"});
+  EXPECT_EQ(large.code, 3);
+  EXPECT_TRUE(says(large.err, "32768 x 32768 pixels")) << large.err;
+  const Ended nowhere = run({"render", "room.toml", "missing.vtp", "-o", "no/folder/a.png"});
+  EXPECT_EQ(nowhere.code, 1);
+  EXPECT_TRUE(says(nowhere.err, "no/folder")) << nowhere.err;
+}
+
+// Stops the picture once a tile of it is kept, and goes on as a person would.
+TEST_F(Pictures, InterruptedPictureGoesOnWithTheSameBytes) {
+  const Words slow = {"render", "room.toml",     "S.vtp", "--size",   "400x400", "-o",
+                      "P.exr",  "--shadow-rays", "256",   "--layers", "all"};
+  Words reference = slow;
+  reference[6] = "R.exr";
+  ASSERT_EQ(run(reference).code, 0);
+  Running running(folder / "", slow + Words{"--checkpoint", "C", "--every", "0.1s"});
+  constexpr std::uintmax_t a_tile = 8192 * 25 * sizeof(float);
+  std::error_code error;
+  for (int i = 0; i < 1200; ++i) {
+    const auto size = std::filesystem::file_size(folder / "C", error);
+    if (!error && size > a_tile) break;
+    std::this_thread::sleep_for(25ms);
+  }
+  running.signal(SIGINT);
+  const Ended ended = running.wait();
+  ASSERT_EQ(ended.code, 130) << ended.err;
+  EXPECT_FALSE(exists("P.exr"));
+  EXPECT_TRUE(says(ended.err, "interrupted; what was done is in 'C' (")) << ended.err;
+  const std::size_t at = ended.err.find("To go on:\n  ");
+  ASSERT_NE(at, std::string::npos) << ended.err;
+  std::string shell = "cd '" + folder.path().string() + "' && " + ended.err.substr(at + 12);
+  shell.erase(shell.find_last_not_of('\n') + 1);
+  ASSERT_EQ(std::system((shell + " --json >out 2>err").c_str()), 0) << content_of(folder / "err");
+  const auto json = nlohmann::json::parse(content_of(folder / "out"));
+  EXPECT_GT(json["checkpoint"]["resumed_mb"].get<double>(), 0.5);
+  EXPECT_FALSE(exists("C"));
+  const Image resumed = read_exr(folder / "P.exr", ExrChannels::all),
+              whole = read_exr(folder / "R.exr", ExrChannels::all);
+  EXPECT_TRUE((resumed.radiance == whole.radiance).all());
+  EXPECT_TRUE((resumed.layers.values == whole.layers.values).all());
+}
+
+TEST_F(Pictures, InterruptWithoutACheckpointLeavesNothing) {
+  const int before = folder.file_count();
+  Running running(folder / "", {"render", "room.toml", "S.vtp", "--size", "2000x2000", "-o",
+                                "P.exr", "--shadow-rays", "256"});
+  std::this_thread::sleep_for(1s);  // of a quarter of a minute
+  running.signal(SIGINT);
+  EXPECT_EQ(running.wait().code, 130);
+  EXPECT_EQ(folder.file_count(), before);
+}
+
+TEST_F(Pictures, CompareFailsAboveTheErrorThatIsAllowed) {
+  ASSERT_EQ(run(render({"-o", "a.exr"})).code, 0);
+  ASSERT_EQ(run({"render", "room.toml", "S.vtp", "--size", "24x18", "-o", "b.exr"}).code, 0);
+  const auto json = run_json({"compare", "a.exr", "b.exr", "-o", "d.png"});
+  const double error = json["relative_rmse"];
+  ASSERT_GT(error, 1e-4);
+  ASSERT_LT(error, 0.5);
+  EXPECT_EQ(json["bands"].size(), 3u);
+  EXPECT_GT(json["flip"].get<double>(), 0.0);
+  EXPECT_GE(json["hdr_flip"].get<double>(), json["flip"].get<double>() / 4);
+  EXPECT_TRUE(exists("d.png"));
+  const auto with_bound = [&](double share) {
+    return run({"compare", "a.exr", "b.exr", "--fail-above", std::to_string(share), "--json"});
+  };
+  const Ended passes = with_bound(1.1 * error), fails = with_bound(0.9 * error);
+  EXPECT_EQ(passes.code, 0) << passes.err;
+  EXPECT_EQ(fails.code, 1);
+  EXPECT_TRUE(says(fails.err, "is above the")) << fails.err;
+  EXPECT_EQ(nlohmann::json::parse(fails.out)["passed"], false);
+  EXPECT_EQ(run({"compare", "a.exr", "b.exr", "--fail-above", "much"}).code, 2);
+}
+
+TEST_F(Pictures, CompareTakesTwoNoisyReferences) {
+  ASSERT_EQ(run(render({"-o", "a.exr"})).code, 0);
+  const auto json = run_json({"compare", "a.exr", "a.exr", "a.exr", "--block", "4"});
+  EXPECT_EQ(json["mean_square"].get<double>(), 0.0);
+  EXPECT_EQ(json["reference_noise"].get<double>(), 0.0);
+  ASSERT_EQ(run(Words{"render", "room.toml", "S.vtp", "--size", "18x24", "-o", "turned.exr"}).code,
+            0);
+  const Ended ended = run({"compare", "a.exr", "a.exr", "turned.exr"});
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_TRUE(says(ended.err, "24 x 18 and 18 x 24")) << ended.err;
+}
+
+}  // namespace
+}  // namespace lightwell

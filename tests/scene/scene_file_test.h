@@ -1,0 +1,26 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "scene/errors.h"
+#include "scene/io/read_scene.h"
+#include "tests/temporary_folder.h"
+
+namespace lightwell::test {
+
+/// A folder of its own, and scene files in it.
+class SceneFileTest : public testing::Test {
+ protected:
+  Scene read_file(const std::string& name, const std::string& content) const {
+    return read_scene(folder.write(name, content));
+  }
+  /// The material of the scene's first surface.
+  static Material first_material(const Scene& scene) {
+    return scene.materials.at(static_cast<std::size_t>(scene.surfaces.at(0).material));
+  }
+  TemporaryFolder folder;
+};
+
+}  // namespace lightwell::test
