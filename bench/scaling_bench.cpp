@@ -2,10 +2,10 @@
 //
 //   scaling_bench [MOST_ELEMENTS [PLOT.svg]]     default: 100000
 //
-// A room with a lamp and 100 boxes on its floor, cut into even patches of falling size: the whole
-// first pass with the options of `lightwell solve` but for the even elements (refinement would
-// choose its own). Seconds are those of all cores together; peak memory is the process's, which
-// only grows, as the scenes do. With PLOT.svg it draws both.
+// A room with a lamp and 100 boxes on its floor, cut into even elements of falling size: the whole
+// first pass as by `lightwell solve --max-element-size L --refine off --accuracy 3%` (refinement
+// would choose elements of its own). Seconds are those of all cores together; peak memory is the
+// process's, which only grows, as the scenes do. With PLOT.svg it draws both.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -58,9 +58,11 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / kilobytes;
 }
 
-Row measure(const Scene& scene, double patch_size) {
+Row measure(const Scene& scene, double element_size) {
   const std::clock_t start = std::clock();
-  SolveOptions options{.mesh = {.max_patch_size = patch_size}, .refine = {.tolerance = 0.0}};
+  SolveOptions options{.mesh = {.max_element_size = element_size},
+                       .refine = {.tolerance = 0.0},
+                       .accuracy = Accuracy{.share = 0.03}};
   const SolvedScene solved = solve_scene(scene, options);
   const Row row{.elements = solved.mesh.element_count(),
                 .seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC,
@@ -137,8 +139,8 @@ int main(int argc, char** argv) {
   const Scene scene = furnished_room();
   fmt::print("a room with 100 boxes, {} threads\n", thread_count());
   std::vector<Row> rows;
-  for (double patch_size = 1.6;; patch_size /= std::sqrt(2.0)) {
-    rows.push_back(measure(scene, patch_size));
+  for (double element_size = 0.8;; element_size /= std::sqrt(2.0)) {
+    rows.push_back(measure(scene, element_size));
     if (2 * rows.back().elements > most_elements) break;
   }
   const Row &first = rows[rows.size() > 7 ? rows.size() - 7 : 0], &last = rows.back();

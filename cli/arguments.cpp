@@ -205,6 +205,13 @@ void MeshArguments::add_to(CLI::App& command, const std::string& group) {
       ->check(whole_number(1, 64))
       ->group(group);
   command
+      .add_option("--max-element-size", max_element_size,
+                  "longest element edge in the scene file's unit (default: half a patch)")
+      ->type_name("L")
+      ->check(positive())
+      ->excludes(command.get_option("--elements-per-patch-edge"))
+      ->group(group);
+  command
       .add_flag("--discontinuity", mesh.discontinuity,
                 "cut receivers along the bounds of umbra and penumbra")
       ->group(group);
@@ -213,13 +220,17 @@ void MeshArguments::add_to(CLI::App& command, const std::string& group) {
 MeshOptions MeshArguments::options(const Scene& scene) const {
   MeshOptions options = mesh;
   options.max_patch_size = max_patch_size * scene.metres_per_unit;
+  options.max_element_size = max_element_size * scene.metres_per_unit;
   return options;
 }
 
 std::string MeshArguments::text(const Scene& scene) const {
-  return fmt::format("--max-patch-size {:.6g} --elements-per-patch-edge {}{}",
-                     patch_size(scene, options(scene)) / scene.metres_per_unit,
-                     mesh.elements_per_patch_edge, mesh.discontinuity ? " --discontinuity" : "");
+  const CutSize cut = cut_size(scene, options(scene));
+  const std::string elements =
+      max_element_size > 0.0 ? fmt::format("--max-element-size {:.6g}", max_element_size)
+                             : fmt::format("--elements-per-patch-edge {}", cut.elements_per_edge);
+  return fmt::format("--max-patch-size {:.6g} {}{}", cut.patch_size / scene.metres_per_unit,
+                     elements, mesh.discontinuity ? " --discontinuity" : "");
 }
 
 void SolveArguments::add_to(CLI::App& command) {
@@ -306,9 +317,10 @@ void RenderArguments::add_to(CLI::App& command) {
   for (const char* name : {"--size", "--exposure"}) command.get_option(name)->group(group);
   command
       .add_option("--pass", pass,
-                  "direct: exact shadows per pixel (default); interpolate: the solution as it is")
+                  "direct: exact shadows per pixel (default); gather: indirect light anew at "
+                  "every pixel too; interpolate: the solution as it is")
       ->type_name("PASS")
-      ->check(one_of("pass", {"interpolate", "direct"}))
+      ->check(one_of("pass", {"interpolate", "direct", "gather"}))
       ->group(group);
   command
       .add_option("--shadow-rays", shadow_rays,
@@ -316,18 +328,56 @@ void RenderArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(whole_number(1, most_shadow_rays))
       ->group(group);
+  command
+      .add_option("--gather-samples", gather_samples,
+                  "rays over the hemisphere of a point, for --pass gather (default 256)")
+      ->type_name("N")
+      ->check(whole_number(1, most_gather_rays))
+      ->group(group);
+  command
+      .add_option("--samples", samples,
+                  "most samples per pixel (default: 256 where there is gloss or a lens; else "
+                  "edges alone are sampled)")
+      ->type_name("N")
+      ->check(whole_number(1, SampleOptions::limit))
+      ->group(group);
+  command
+      .add_option_function<std::string>(
+          "--noise",
+          [this](const std::string& text) {
+            const auto share = parse_share(text);
+            if (!share) {
+              throw CLI::ValidationError(
+                  "--noise",
+                  fmt::format("'{}' is no noise to stop at; write a share of a pixel's light from "
+                              "0.001% to 100%, such as 2%",
+                              text));
+            }
+            noise = *share;
+          },
+          "stop sampling a pixel when its standard error is below (default 2%)")
+      ->type_name("ERROR")
+      ->group(group);
 }
 
 RenderOptions RenderArguments::options() const {
   RenderOptions options;
-  options.pass = pass == "interpolate" ? Pass::interpolate : Pass::direct;
+  options.pass = pass == "interpolate" ? Pass::interpolate
+                 : pass == "gather"    ? Pass::gather
+                                       : Pass::direct;
+  options.gather_rays = gather_samples;
+  options.sampling.most = samples;
+  options.sampling.noise = static_cast<float>(noise);
   options.shadows.max_rays = shadow_rays;
   options.shadows.min_rays = std::min(options.shadows.min_rays, shadow_rays);
   return options;
 }
 
 std::string RenderArguments::text() const {
-  return fmt::format("--pass {} --shadow-rays {}", pass, shadow_rays);
+  std::string text = fmt::format("--pass {} --shadow-rays {}", pass, shadow_rays);
+  if (pass == "gather") text += fmt::format(" --gather-samples {}", gather_samples);
+  if (samples > 0) text += fmt::format(" --samples {}", samples);
+  return text + fmt::format(" --noise {:g}%", 100.0 * noise);
 }
 
 Camera RenderArguments::sized(Camera camera) const {

@@ -16,7 +16,8 @@ namespace lightwell {
 
 /// How surfaces are cut into patches and elements, as asked for on the command line.
 struct MeshArguments {
-  double max_patch_size = 0.0;  ///< in the scene file's unit; 0: automatic
+  double max_patch_size = 0.0;    ///< in the scene file's unit; 0: automatic
+  double max_element_size = 0.0;  ///< the same
   MeshOptions mesh{};
 
   void add_to(CLI::App& command, const std::string& group);
@@ -48,6 +49,9 @@ struct RenderArguments {
   std::optional<std::pair<int, int>> size{};  ///< pixels; else the camera's own
   std::string pass = "direct";
   int shadow_rays = 64;
+  int gather_samples = 256;
+  int samples = 0;      ///< most per pixel; 0: see SampleOptions
+  double noise = 0.02;  ///< share of a pixel that ends its sampling
   double exposure_ev = 0.0;
   FilmArguments film{};
 

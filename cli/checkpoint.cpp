@@ -93,9 +93,20 @@ void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on, const std::s
   });
 }
 
+void CheckpointArguments::add_reuse_to(CLI::App& command, HelpOn help_on) {
+  command
+      .add_option("--reuse", reuse,
+                  "form factors of an earlier solve of the same geometry: its kept checkpoint")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile)
+      ->excludes(command.get_option("--checkpoint"))
+      ->group(help_on == HelpOn::all ? "How the light is solved" : "");
+}
+
 Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& of,
                        const std::vector<fs::path>& outputs, Console& console)
     : arguments_(arguments), console_(console) {
+  if (!arguments.reuse.empty()) journal_ = Journal::of_another_solve(arguments.reuse, of.version);
   const fs::path& file = arguments.file;
   if (file.empty()) return;
   for (const fs::path& output : outputs) {
@@ -132,7 +143,7 @@ Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& o
 }
 
 Progress Checkpoint::watched(Progress progress) {
-  if (!journal_) return progress;
+  if (!journal_ || journal_->is_read_only()) return progress;
   return [this, progress = std::move(progress)](std::string_view phase, double share) {
     const std::string failure = has_warned_ ? std::string() : journal_->failure();
     if (!failure.empty()) {
@@ -145,7 +156,7 @@ Progress Checkpoint::watched(Progress progress) {
 }
 
 void Checkpoint::rethrow_stopped() {
-  if (!journal_) throw;
+  if (!journal_ || journal_->is_read_only()) throw;
   journal_->close();
   const std::string file = arguments_.file.string();
   try {
@@ -169,8 +180,22 @@ void Checkpoint::rethrow_stopped() {
 
 void Checkpoint::finish(Report& report, const std::string& key) {
   if (!journal_) return;
-  journal_->close();
   constexpr double megabyte = 1 << 20;
+  if (journal_->is_read_only()) {
+    report.add("reused", {{"file", arguments_.reuse.string()},
+                          {"mb", static_cast<double>(journal_->recalled()) / megabyte}});
+    if (journal_->recalled() == 0) {
+      console_.say(fmt::format(
+          "warning: nothing in '{}' could be used: it is of other geometry, mirrors, glass or "
+          "lamps, or of other options for form factors",
+          arguments_.reuse.string()));
+    } else {
+      console_.say_verbose(fmt::format("used {} of '{}'", size_text(journal_->recalled()),
+                                       arguments_.reuse.string()));
+    }
+    return;
+  }
+  journal_->close();
   report.add(key, {{"file", arguments_.file.string()},
                    {"mb", static_cast<double>(journal_->size()) / megabyte},
                    {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});

@@ -18,11 +18,14 @@ struct CheckpointArguments {
   std::filesystem::path file{};  ///< empty: nowhere
   double every = 10.0;           ///< seconds
   bool resume = false, keep = false;
+  std::filesystem::path reuse{};  ///< the kept checkpoint of another solve; empty: none
 
   /// Adds --checkpoint FILE, --every TIME, --resume and --keep-checkpoint.
   enum class HelpOn { all, first };  ///< which of them --help shows
   void add_to(CLI::App& command, HelpOn help_on,
               const std::string& group = "How the light is solved");
+  /// Adds --reuse FILE, after those.
+  void add_reuse_to(CLI::App& command, HelpOn help_on);
 };
 
 /// Seconds: "10s", "2 min", "1.5h", "90"; nothing for what is none or not from 0.1 s to a day.

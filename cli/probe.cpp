@@ -34,8 +34,10 @@ int probe(const Arguments& arguments, Console& console) {
   const Stopwatch watch;
   const ElementCaster caster(solved.mesh);
   BandArray irradiance;
+  Eigen::ArrayXd lux_within;
   if (arguments.interpolate) {
     irradiance = interpolate_irradiance(caster, solved.solution, probes);
+    lux_within = interpolation_bound(caster, solved.solution, probes);
   } else {
     const DirectLight direct_light(scene, solved.mesh);
     irradiance = probe_irradiance(scene, caster, direct_light, solved.solution, probes,
@@ -43,7 +45,8 @@ int probe(const Arguments& arguments, Console& console) {
   }
   console.finish_phase();
   stop_if_interrupted();
-  write_probes(arguments.output, probes, irradiance, scene.bands, scene.metres_per_unit);
+  write_probes(arguments.output, probes, irradiance, scene.bands, scene.metres_per_unit,
+               lux_within);
   report.add_file(arguments.output);
   report.add("points", probes.size());
   report.add("method", arguments.interpolate ? "interpolate" : "gather");

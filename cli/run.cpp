@@ -49,6 +49,7 @@ struct Outputs {
 void render_pictures(const Scene& scene, const SolvedScene& solved, const Arguments& arguments,
                      const Outputs& outputs, Console& console, Report& report) {
   CheckpointArguments kept = arguments.checkpoint;
+  kept.reuse.clear();
   if (kept.keep) kept.file.clear();                    // there is the solve in it
   kept.resume = kept.resume && fs::exists(kept.file);  // pictures need not have been begun
   std::vector<fs::path> files = {outputs.solution};
@@ -111,6 +112,7 @@ Action add_run(CLI::App& command) {
       ->type_name("DIR");
   arguments->solve.add_to(command);
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first);
+  arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
   arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::first);
   command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");

@@ -59,6 +59,7 @@ Action add_solve(CLI::App& command) {
                   "a solution of the same geometry whose light the solver starts from")
       ->type_name("SOLUTION");
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::all);
+  arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::all);
   command.footer(
       "Example: lightwell solve cornell/cornell.toml -o cornell.vtp --max-patch-size 25");
   return [arguments](Console& console) { return solve(*arguments, console); };

@@ -92,6 +92,20 @@ void check_energy(const Subject& subject, Verdict& verdict) {
                  100.0 * std::abs(energy.emitted - exact) / exact, 0.001);
 }
 
+// What the solution says that probes may be off by, in lux of the bands' mean, against what they
+// are.
+void check_bounds(const Subject& subject, const Eigen::ArrayXd& bound, const BandArray& E,
+                  const BandArray& R, Verdict& verdict) {
+  if (bound.size() == 0) return;  // refinement was off
+  const double lux = luminous(subject.scene.bands, constant_spectrum(subject.scene.bands, 1.0f));
+  const Eigen::ArrayXd off = lux * (E - R).cast<double>().rowwise().mean().abs();
+  verdict.figure(
+      "bounds of irradiance at probes: missed by",
+      100.0 * static_cast<double>((off > bound).count()) / static_cast<double>(off.size()), 5.0);
+  verdict.figure("bounds of irradiance at probes: their RMS, of the RMS error",
+                 100.0 * std::sqrt(bound.square().mean() / off.square().mean()), 500.0);
+}
+
 void check_probes(const Subject& subject, Verdict& verdict) {
   const fs::path csv = subject.folder / "reference" / "irradiance.csv";
   const BandArray R = read_reference_irradiance(csv);
@@ -112,6 +126,8 @@ void check_probes(const Subject& subject, Verdict& verdict) {
   verdict.figure(of + "95th percentile of |E - R| / R",
                  100.0 * relative[static_cast<std::size_t>(0.95 * relative.size())], 4.0);
   verdict.remark(of + "largest |E - R| / R", 100.0 * relative.back());
+  check_bounds(subject, interpolation_bound(caster, subject.solved.solution, probes), E, R,
+               verdict);
 }
 
 // sqrt(mean (P - A)(P - B)) / mean (A + B) / 2 over what is not masked. With A = B an ordinary

@@ -65,14 +65,25 @@ void check(const Scene& scene, const MeshOptions& options) {
         "the largest patch size is {} m; give a positive length, or 0 to have it chosen",
         options.max_patch_size));
   }
-  if (options.auto_patch_count < 1) {
-    throw InputError(
-        fmt::format("{} patches are asked for; give at least 1", options.auto_patch_count));
+  for (const int count : {options.auto_patch_count, options.most_patches}) {
+    if (count >= 1) continue;
+    throw InputError(fmt::format("{} patches are asked for; give at least 1", count));
   }
   if (!(options.discontinuity_growth >= 0.0)) {
     throw InputError(fmt::format(
         "discontinuity lines may add {} times the elements; give a number that is not negative",
         options.discontinuity_growth));
+  }
+  if (!(options.max_element_size >= 0.0) || !std::isfinite(options.max_element_size)) {
+    throw InputError(fmt::format(
+        "the largest element size is {} m; give a positive length, or 0 to have it chosen",
+        options.max_element_size));
+  }
+  if (options.max_element_size > 0.0 && options.max_patch_size > 0.0 &&
+      options.max_element_size > options.max_patch_size) {
+    throw InputError(fmt::format(
+        "elements of {:.6g} m do not fit into patches of {:.6g} m; give elements that are smaller",
+        options.max_element_size, options.max_patch_size));
   }
   constexpr int most_per_edge = 1000;
   if (options.elements_per_patch_edge < 1 || options.elements_per_patch_edge > most_per_edge) {
@@ -81,14 +92,14 @@ void check(const Scene& scene, const MeshOptions& options) {
   }
 }
 
-void check_count(const Scene& scene, double size, const CutSize& cut) {
+void check_count(const Scene& scene, const CutSize& cut) {
   const double count = predicted_elements(scene, cut.element_size());
   if (count <= most_elements) return;
   throw InputError(fmt::format(
       "{}{}patches of {:.6g} m with {} elements along an edge would make about {:.3g} million "
       "elements; the limit is {:.0f} million. Use a larger patch size",
-      scene.file.string(), scene.file.empty() ? "" : ": ", size, cut.elements_per_edge, count / 1e6,
-      most_elements / 1e6));
+      scene.file.string(), scene.file.empty() ? "" : ": ", cut.patch_size, cut.elements_per_edge,
+      count / 1e6, most_elements / 1e6));
 }
 
 // What discontinuity meshing left out.
@@ -163,6 +174,20 @@ FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut
   return result;
 }
 
+// Mirrors and glass need no patches, but are cut like everything: a great mirror in a scene with
+// few diffuse surfaces must not make millions.
+double area_to_mesh(const Scene& scene) {
+  double diffuse = 0.0, all = 0.0;
+  for (const Surface& surface : scene.surfaces) {
+    const Material& material = scene.materials[surface.material];
+    const double area = side_count(material) * surface_area(surface);
+    all += area;
+    if (!material.is_specular()) diffuse += area;
+  }
+  constexpr double most_of_all = 16.0;
+  return std::max(diffuse, all / most_of_all);
+}
+
 // The smallest tolerance with which all contact lines can be kept; else the one that keeps most.
 FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOptions& options) {
   const double diagonal = scene_bounds(scene).diagonal();
@@ -179,30 +204,33 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOption
 
 }  // namespace
 
-double patch_size(const Scene& scene, const MeshOptions& options) {
+CutSize cut_size(const Scene& scene, const MeshOptions& options) {
   check(scene, options);
-  if (options.max_patch_size > 0.0) return options.max_patch_size;
-  double diffuse = 0.0, all = 0.0;
-  for (const Surface& surface : scene.surfaces) {
-    const Material& material = scene.materials[surface.material];
-    const double area = side_count(material) * surface_area(surface);
-    all += area;
-    if (!material.is_specular()) diffuse += area;
+  const auto even_patches = [&](int count) { return std::sqrt(area_to_mesh(scene) / count); };
+  if (!(options.max_element_size > 0.0)) {
+    return {.patch_size = options.max_patch_size > 0.0 ? options.max_patch_size
+                                                       : even_patches(options.auto_patch_count),
+            .elements_per_edge = options.elements_per_patch_edge};
   }
-  // Mirrors and glass need no patches, but are cut like everything: a great mirror in a scene with
-  // few diffuse surfaces must not make millions.
-  constexpr double most_of_all = 16.0;
-  const double area = std::max(diffuse, all / most_of_all);
-  return std::sqrt(area / options.auto_patch_count);
+  const double element = options.max_element_size;
+  if (options.max_patch_size > 0.0) {
+    constexpr double rounding = 1e-5;  // of lengths that were written down and read again
+    const double along = std::floor(options.max_patch_size / element + rounding);
+    const auto count = static_cast<int>(std::clamp(along, 1.0, 1e3));
+    return {.patch_size = std::min(options.max_patch_size, count * element),
+            .elements_per_edge = count};
+  }
+  const double along = std::ceil(even_patches(options.most_patches) / element);
+  const auto count = static_cast<int>(std::clamp(along, 2.0, 1e3));
+  return {.patch_size = count * element, .elements_per_edge = count};
 }
 
 PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
-  const double size = patch_size(scene, options);
-  const CutSize sphere_cut{.patch_size = size,
-                           .elements_per_edge = options.elements_per_patch_edge};
+  const CutSize sphere_cut = cut_size(scene, options);
+  const double size = sphere_cut.patch_size;
   CutSize cut = sphere_cut;
   if (options.to_be_refined) cut.elements_per_edge = (cut.elements_per_edge + 1) / 2;
-  check_count(scene, size, cut);
+  check_count(scene, cut);
   report(options.progress, "mesh", 0.0);
   FacetMeshes facet_meshes = mesh_facets(scene, cut, options);
 

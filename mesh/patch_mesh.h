@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/cut_size.h"
 #include "scene/progress.h"
 #include "scene/scene.h"
 
@@ -92,6 +93,12 @@ struct MeshOptions {
   int auto_patch_count = 1600;
   /// Elements along a patch edge, >= 1. More follow shadows more closely at the square of the cost.
   int elements_per_patch_edge = 2;
+  /// Longest element edge, metres. 0: what the two above say. Else it decides instead of
+  /// `elements_per_patch_edge`, and unless `max_patch_size` says otherwise patches are two elements
+  /// long, or longer where there would be more than `most_patches` of them: light between patches
+  /// then takes a time of its own, and what is left grows with the elements alone.
+  double max_element_size = 0.0;
+  int most_patches = 6400;
   /// Elements of polygons are twice as long, since RefinedElements will split those that matter
   /// (odd numbers per patch edge are rounded up); those of spheres, which it does not split, are
   /// not.
@@ -113,11 +120,12 @@ struct MeshOptions {
 /// along their contact lines first, so no element straddles one, and with `discontinuity` no
 /// element straddles an important bound of a shadow; parts of a facet that are covered
 /// by another surface lying on it become elements of their own. Throws InputError for a scene
-/// without surfaces, or when `max_patch_size` asks for more than 20 million elements.
+/// without surfaces, or when the sizes ask for more than 20 million elements.
 PatchMesh build_patches(const Scene& scene, const MeshOptions& options = {});
 
-/// The size build_patches uses: options.max_patch_size, or the automatic one. Metres.
-double patch_size(const Scene& scene, const MeshOptions& options);
+/// What build_patches uses, but for `to_be_refined`: what the options say, or what they leave to
+/// it.
+CutSize cut_size(const Scene& scene, const MeshOptions& options);
 
 /// A point of a patch.
 struct PatchPoint {

@@ -45,22 +45,35 @@ Effort first_effort(double target, bool refines) {
           .gather_rays = power_of_two(rays_for_one_percent * std::pow(0.01 / target, 1.0 / order))};
 }
 
-std::optional<Effort> next_effort(const Effort& spent, double target, double error,
+std::optional<Effort> next_effort(const Effort& spent, double target, double error, double noise,
                                   const RefineReport& refinement, int attempt) {
   const bool can_split = refinement.outcome == RefineOutcome::tolerance_reached;
   if (attempt + 1 >= most_attempts || (!can_split && refinement.estimate >= target)) {
     return std::nullopt;
   }
+  // Random places are gathered with noise of their own, which is in the error as well: nearly as
+  // much, since they have twice the rays, but are not means of corners.
+  const double in_error = std::sqrt(2.0) * noise;
+  const double without = std::sqrt(std::max(error * error - in_error * in_error, 0.0));
+  if (!can_split && without >= target) return std::nullopt;
   Effort next = spent;
-  const double noise =
-      std::sqrt(std::max(error * error - refinement.estimate * refinement.estimate, 0.0));
-  const double times = std::pow(noise / (share_of_noise * target), 1.0 / order);
+  const double times = std::pow(in_error / (share_of_noise * target), 1.0 / order);
   if (times > 1.0) next.gather_rays = power_of_two(spent.gather_rays * std::min(times, 16.0));
-  // Rays alone did not do it, so interpolation misses more than was seen.
-  if (attempt > 0 && can_split) next.refine_tolerance *= 0.6;
+  // Rays alone will not do it: interpolation misses more than was seen.
+  if (can_split && (attempt > 0 || without >= target)) next.refine_tolerance *= 0.6;
   const bool is_more =
       next.gather_rays > spent.gather_rays || next.refine_tolerance < spent.refine_tolerance;
   return is_more ? std::optional(next) : std::nullopt;
+}
+
+double rms_noise(const PatchMesh& mesh, const RadiositySolution& solution) {
+  double sum = 0.0, area = 0.0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
+    sum += mesh.element_area[e] * std::pow(double{solution.gather_noise[e]}, 2);
+    area += mesh.element_area[e];
+  }
+  return area > 0.0 ? std::sqrt(sum / area) : 0.0;
 }
 
 }  // namespace lightwell

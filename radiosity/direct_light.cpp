@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 
+#include "radiosity/emitter_point.h"
 #include "radiosity/shadow_rays.h"
 
 namespace lightwell {
@@ -60,16 +61,6 @@ void tile(const PatchMesh& mesh, Emitter& emitter) {
     emitter.area_cdf.push_back(sum);
   }
   for (double& share : emitter.area_cdf) share /= sum;
-}
-
-Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
-  const auto at = std::upper_bound(emitter.area_cdf.begin(), emitter.area_cdf.end() - 1, u);
-  const auto i = static_cast<std::size_t>(at - emitter.area_cdf.begin());
-  const double low = i == 0 ? 0.0 : emitter.area_cdf[i - 1];
-  const double within = std::clamp((u - low) / (emitter.area_cdf[i] - low), 0.0, 1.0);
-  const Eigen::Vector3d w = triangle_point(static_cast<float>(within), static_cast<float>(v));
-  const auto& t = emitter.triangles[i];
-  return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
 }
 
 // Shadow rays to samples of the emitter, and their shares of the unoccluded kernel.
@@ -178,6 +169,16 @@ std::vector<int> front_patches(const PatchMesh& mesh, std::size_t facet_count) {
 }
 
 }  // namespace
+
+Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
+  const auto at = std::upper_bound(emitter.area_cdf.begin(), emitter.area_cdf.end() - 1, u);
+  const auto i = static_cast<std::size_t>(at - emitter.area_cdf.begin());
+  const double low = i == 0 ? 0.0 : emitter.area_cdf[i - 1];
+  const double within = std::clamp((u - low) / (emitter.area_cdf[i] - low), 0.0, 1.0);
+  const Eigen::Vector3d w = triangle_point(static_cast<float>(within), static_cast<float>(v));
+  const auto& t = emitter.triangles[i];
+  return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+}
 
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels)
     : bands_(scene.bands.count()),

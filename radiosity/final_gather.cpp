@@ -36,16 +36,19 @@ class HemisphereGather {
         caster_(caster),
         radiosity_(radiosity),
         paths_(scene, caster, options.max_specular_depth),
-        options_(options) {
+        options_(options),
+        bands_(scene.bands.count()) {
     for (const GatherPoint& at : points) {
       const int rays = ray_count(at, options);
       if (!sets_.contains(rays)) sets_.emplace(rays, HemisphereSets(rays));
     }
   }
 
-  // E = (1/N) sum B over cosine-distributed rays.
-  Eigen::ArrayXf irradiance(const GatherPoint& at, std::uint64_t key) const {
-    Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(radiosity_.cols());
+  // E = (1/N) sum B over cosine-distributed rays, columns of `irradiance`. The first half of a
+  // sequence and the second are stratified each.
+  void gather(const GatherPoint& at, std::uint64_t key, float* irradiance, float& variance) const {
+    const Eigen::Index columns = radiosity_.cols();
+    std::array<Eigen::ArrayXd, 2> sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
     const HemisphereSets& set = sets_.at(ray_count(at, options_));
     const HemisphereSets::Draw draw = set.draw(random_key(key, gather_rays));
     const Eigen::Matrix3d frame = draw.frame(at.normal);
@@ -64,10 +67,14 @@ class HemisphereGather {
       caster_.closest_hits({ray.data(), n}, {hit.data(), n});
       for (std::size_t r = 0; r < n; ++r) {
         const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;
-        add(ray[r], hit[r], random_key(key, gather_branches, index), sum);
+        const int place = begin / HemisphereSets::block * HemisphereSets::block + points[r].rank;
+        add(ray[r], hit[r], random_key(key, gather_branches, index),
+            sum[place < set.count() / 2 ? 0 : 1]);
       }
     }
-    return (sum / set.count()).cast<float>();
+    Eigen::Map<Eigen::ArrayXf>(irradiance, columns) =
+        ((sum[0] + sum[1]) / set.count()).cast<float>();
+    variance = half_difference(sum, set.count());
   }
 
  private:
@@ -105,11 +112,24 @@ class HemisphereGather {
     }
   }
 
+  // The square of half the difference between the halves' means.
+  float half_difference(const std::array<Eigen::ArrayXd, 2>& sum, int count) const {
+    const int first = count / 2, second = count - first;
+    const Eigen::ArrayXd by_column =
+        0.5 * (first > 0 ? Eigen::ArrayXd(sum[1] / second - sum[0] / first) : 2.0 * sum[1]);
+    Eigen::ArrayXd difference = Eigen::ArrayXd::Zero(bands_);
+    for (Eigen::Index k = 0; k < by_column.size(); k += bands_) {
+      difference += by_column.segment(k, bands_);
+    }
+    return static_cast<float>(difference.square().mean());
+  }
+
   const PatchMesh& mesh_;
   const ElementCaster& caster_;
   const BandArray& radiosity_;
   LightPaths paths_;
   const GatherOptions& options_;
+  Eigen::Index bands_;
   std::map<int, HemisphereSets> sets_;  // by the rays of each
 };
 
@@ -176,21 +196,23 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
   const int count = static_cast<int>(points.size());
   const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
   GatheredIrradiance result{.direct = BandArray::Zero(count, direct_light.column_count()),
-                            .indirect = BandArray::Zero(count, radiosity.cols())};
+                            .indirect = BandArray::Zero(count, radiosity.cols()),
+                            .variance = Eigen::ArrayXf::Zero(count)};
   const JournalPhase phase(options.journal, "gather", [&](Fingerprint& print) {
     add_inputs(print, caster.mesh(), points, options);
     print.add(direct_light.column_count());
     print.add(radiosity);
   });
   const auto values = [&](int begin, int size) {
-    return std::tuple(rows_of(result.direct, begin, size), rows_of(result.indirect, begin, size));
+    return std::tuple(rows_of(result.direct, begin, size), rows_of(result.indirect, begin, size),
+                      std::span(result.variance.data() + begin, static_cast<std::size_t>(size)));
   };
   for_each_point(points, options, phase, values, [&](int i, std::uint64_t key) {
     const GatherPoint& at = points[i];
     direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
                                 random_key(key, gather_shadows), options.shadows,
                                 result.direct.row(i).data());
-    result.indirect.row(i) = hemisphere.irradiance(at, key).transpose();
+    hemisphere.gather(at, key, result.indirect.row(i).data(), result.variance[i]);
   });
   return result;
 }
@@ -219,22 +241,25 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
   return direct;
 }
 
-BandArray gather_indirect(const Scene& scene, const ElementCaster& caster,
-                          const BandArray& radiosity, std::span<const GatherPoint> points,
-                          const GatherOptions& options) {
+GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
+                                   const BandArray& radiosity, std::span<const GatherPoint> points,
+                                   const GatherOptions& options) {
   const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
-  BandArray indirect(static_cast<Eigen::Index>(points.size()), radiosity.cols());
+  const auto count = static_cast<Eigen::Index>(points.size());
+  GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
+                            .variance = Eigen::ArrayXf(count)};
   const JournalPhase phase(options.journal, "indirect", [&](Fingerprint& print) {
     add_inputs(print, caster.mesh(), points, options);
     print.add(radiosity);
   });
   const auto values = [&](int begin, int size) {
-    return std::tuple(rows_of(indirect, begin, size));
+    return std::tuple(rows_of(result.indirect, begin, size),
+                      std::span(result.variance.data() + begin, static_cast<std::size_t>(size)));
   };
   for_each_point(points, options, phase, values, [&](int i, std::uint64_t key) {
-    indirect.row(i) = hemisphere.irradiance(points[i], key).transpose();
+    hemisphere.gather(points[i], key, result.indirect.row(i).data(), result.variance[i]);
   });
-  return indirect;
+  return result;
 }
 
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
@@ -352,6 +377,7 @@ void share_rays(const PatchMesh& mesh, int rays, std::span<GatherPoint> points) 
     typical = sorted[i];
     larger += sorted[i];
   }
+  for (GatherPoint& point : points) point.rays = rays;
   if (!(typical > 0.0)) return;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     // sqrt(area / typical), to a power of two. It changes between the areas that a grid's vertices

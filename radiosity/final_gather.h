@@ -41,6 +41,10 @@ struct GatheredIrradiance {
   BandArray direct{};    ///< straight from DirectLight's emitters
   BandArray indirect{};  ///< from everything else that reflects or emits, also by way of mirrors
                          ///< and glass
+  /// Of the indirect light, channels added: the variance that its rays leave, mean of the bands,
+  /// (W/m^2)^2, as half of them against the other half tells. Of one point that is little more than
+  /// a guess; means over neighbours are good.
+  Eigen::ArrayXf variance{};
 };
 
 /// Irradiance at points of a solved scene: direct light by closed form times visibility, the rest
@@ -58,10 +62,10 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
                         const DirectLight& direct_light, std::span<const GatherPoint> points,
                         const GatherOptions& options, std::vector<EmitterSight>* sights = nullptr);
 
-/// Only the indirect light.
-BandArray gather_indirect(const Scene& scene, const ElementCaster& caster,
-                          const BandArray& radiosity, std::span<const GatherPoint> points,
-                          const GatherOptions& options);
+/// Only the indirect light; `direct` is left empty.
+GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
+                                   const BandArray& radiosity, std::span<const GatherPoint> points,
+                                   const GatherOptions& options);
 
 /// rho E, plus the emission of patches that `direct_light` does not own: what gather_irradiance
 /// reads. `irradiance` is vertices x bands.

@@ -17,14 +17,18 @@ void Fingerprint::add_bytes(std::span<const std::byte> bytes) {
 }
 
 void Fingerprint::add(const PatchMesh& mesh) {
+  add_geometry(mesh);
+  add(mesh.reflectance);
+  add(mesh.emission);
+}
+
+void Fingerprint::add_geometry(const PatchMesh& mesh) {
   add(mesh.patch);
   add(mesh.facet);
   add(mesh.first_element);
   add(mesh.material);
   add(mesh.is_back);
   add(mesh.area);
-  add(mesh.reflectance);
-  add(mesh.emission);
   for (const std::array<int, 4>& corners : mesh.corners) {
     add_bytes(std::as_bytes(std::span(corners)));
   }

@@ -36,6 +36,8 @@ class Fingerprint {
   }
   /// What of a mesh decides the light on it.
   void add(const PatchMesh& mesh);
+  /// Only where its patches and elements are, and which material they are of.
+  void add_geometry(const PatchMesh& mesh);
 
   std::uint64_t value() const { return state_; }
 

@@ -49,9 +49,27 @@ std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
   return journal + mesh.patch_count() * each + (clips ? PairShafts::bytes_for(mesh) : 0);
 }
 
-// All that decides what form factors come out, but for the scene.
-void add_inputs(Fingerprint& print, const PatchMesh& mesh, const FormFactorOptions& options) {
-  print.add(mesh);
+// All that decides what form factors come out: not how much surfaces reflect and emit, as long as
+// it is the same ones that do.
+void add_inputs(Fingerprint& print, const Scene& scene, const PatchMesh& mesh,
+                const FormFactorOptions& options) {
+  print.add_geometry(mesh);
+  for (const Material& material : scene.materials) {
+    print.add((material.reflectance > 0.0f).any());
+    print.add(material.is_emitter());
+    print.add(material.one_sided);
+    print.add(material.emits_both_sides);
+    print.add(material.specular);
+    print.add(material.specular_roughness);
+    print.add(material.dielectric.has_value());
+    if (!material.dielectric) continue;
+    const Dielectric& glass = *material.dielectric;
+    print.add(glass.index_of_refraction);
+    print.add(glass.tint);
+    print.add(glass.absorption);
+    print.add(glass.roughness);
+    print.add(glass.thin);
+  }
   print.add(options.method);
   print.add(options.rays_per_patch);
   print.add(options.target_error);
@@ -69,7 +87,8 @@ class Estimator {
  public:
   Estimator(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
             const FormFactorOptions& options, std::shared_ptr<MemoryBudget> budget)
-      : mesh_(caster.mesh()),
+      : scene_(scene),
+        mesh_(caster.mesh()),
         budget_(std::move(budget)),
         caster_(caster),
         direct_light_(direct_light),
@@ -256,11 +275,12 @@ class Estimator {
 
   JournalPhase phase_of(std::string_view name, const std::vector<int>* rays_of = nullptr) const {
     return {options_.journal, name, [&](Fingerprint& print) {
-              add_inputs(print, mesh_, options_);
+              add_inputs(print, scene_, mesh_, options_);
               if (rays_of) print.add(*rays_of);
             }};
   }
 
+  const Scene& scene_;
   const PatchMesh& mesh_;
   std::shared_ptr<MemoryBudget> budget_;
   const ElementCaster& caster_;
@@ -292,7 +312,8 @@ std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const Elem
       bytes_beside_rows(mesh, static_cast<std::int64_t>(direct_light.emitters().size()), options));
   Estimate estimate = Estimator(scene, caster, direct_light, options, budget).estimate();
   const auto phase_of = [&](std::string_view name) -> JournalPhase {
-    return {options.journal, name, [&](Fingerprint& print) { add_inputs(print, mesh, options); }};
+    return {options.journal, name,
+            [&](Fingerprint& print) { add_inputs(print, scene, mesh, options); }};
   };
   auto result =
       assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),

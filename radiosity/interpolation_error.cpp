@@ -34,6 +34,18 @@ double error_reference(double mean_irradiance, double own_irradiance) {
   return std::max(mean_irradiance, own_irradiance / bright);
 }
 
+Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradiance) {
+  const Eigen::ArrayXd own = element_mean(mesh, irradiance).cast<double>().rowwise().mean();
+  double sum = 0.0, area = 0.0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
+    sum += mesh.element_area[e] * own[e];
+    area += mesh.element_area[e];
+  }
+  const double mean = area > 0.0 ? sum / area : 0.0;
+  return own.unaryExpr([mean](double E) { return error_reference(mean, E); });
+}
+
 InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& caster,
                                        const DirectLight& direct_light, const BandArray& radiosity,
                                        const BandArray& caustic, RefinedElements& elements,
@@ -128,7 +140,7 @@ BandArray InterpolationError::indirect_at(const std::vector<int>& vertices, std:
   GatherOptions options = options_;
   options.rays = std::max(1, options_.rays / share_of_rays);
   options.replica = options_.replica + draft_replica + replica;
-  return gather_indirect(scene_, caster_, radiosity, points, options);
+  return gather_indirect(scene_, caster_, radiosity, points, options).indirect;
 }
 
 void InterpolationError::sharpen_radiosity(const BandArray& caustic) {
@@ -249,7 +261,7 @@ struct Differences {
 
 // Simpson's rule in both directions: 16/36 in the centre, 4/36 at each edge, nothing at the
 // corners, where interpolation is exact. In triangles a third at each edge.
-double InterpolationError::lattice_error(int cell, int side) {
+InterpolationError::Squares InterpolationError::lattice_error(int cell, int side) {
   const int n = elements_.corner_count(cell);
   const double at_edge = n == 4 ? 4.0 / 36.0 : 1.0 / 3.0, at_center = 16.0 / 36.0;
   Differences differences;
@@ -285,7 +297,10 @@ double InterpolationError::lattice_error(int cell, int side) {
   constexpr double beyond_doubt = 2.0;
   const bool indirect_counts = differences.indirect > beyond_doubt * differences.noise;
   const double error = indirect_counts ? differences.both : differences.direct;
-  return error > beyond_doubt * shadow_noise ? error - shadow_noise : 0.0;
+  const bool shadow_counts = error > beyond_doubt * shadow_noise;
+  return {.error = shadow_counts ? error - shadow_noise : 0.0,
+          .hidden = (indirect_counts ? 0.0 : differences.noise) +
+                    (shadow_counts ? 0.0 : std::clamp(error, 0.0, shadow_noise))};
 }
 
 double InterpolationError::probed_error(int cell, int side) {
@@ -335,7 +350,8 @@ double InterpolationError::probed_error(int cell, int side) {
   return error;
 }
 
-std::vector<std::array<double, 2>> InterpolationError::measure(const std::vector<int>& cells) {
+std::vector<InterpolationError::Measured> InterpolationError::measure(
+    const std::vector<int>& cells) {
   std::vector<int> vertices;
   for (const int cell : cells) {
     for (int side = 0; side < elements_.side_count(cell); ++side) {
@@ -350,7 +366,7 @@ std::vector<std::array<double, 2>> InterpolationError::measure(const std::vector
   }
   gather(vertices);
   const int count = static_cast<int>(cells.size());
-  std::vector<std::array<double, 2>> errors(cells.size(), {0.0, 0.0});
+  std::vector<Measured> measured(cells.size());
   constexpr int slice = 4096;  // cells between two looks at the stop request
   for (int begin = 0; begin < count; begin += slice) {
     report(options_.progress, "refine", static_cast<double>(begin) / count);
@@ -360,13 +376,14 @@ std::vector<std::array<double, 2>> InterpolationError::measure(const std::vector
           if (!matters(elements_.element(cells[i], side))) continue;
           const double E = reference(cells[i], side);
           if (!(E > 0.0)) continue;
-          errors[i][side] =
-              (lattice_error(cells[i], side) + probed_error(cells[i], side)) / (E * E);
+          const Squares lattice = lattice_error(cells[i], side);
+          measured[i].error[side] = (lattice.error + probed_error(cells[i], side)) / (E * E);
+          measured[i].hidden[side] = lattice.hidden / (E * E);
         }
       }
     });
   }
-  return errors;
+  return measured;
 }
 
 }  // namespace lightwell

@@ -14,6 +14,10 @@ struct ChannelLight;
 /// as brightly as the room, would decide over all of it.)
 double error_reference(double mean_irradiance, double own_irradiance);
 
+/// That of every element, for irradiance at vertices: the mean over all area that reflects, and
+/// that of the element's corners.
+Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradiance);
+
 /// How far irradiance interpolated over cells is from irradiance gathered inside them: the squared
 /// difference's mean over each cell, mean of the bands, relative to the error_reference() squared.
 ///
@@ -49,7 +53,11 @@ class InterpolationError {
   /// squared.
   double expected(int cell, int side) const;
   /// Gathers what it takes, and gives the error of each cell's two sides.
-  std::vector<std::array<double, 2>> measure(const std::vector<int>& cells);
+  struct Measured {
+    std::array<double, 2> error{0.0, 0.0};
+    std::array<double, 2> hidden{0.0, 0.0};  ///< what might be there besides, below the noise
+  };
+  std::vector<Measured> measure(const std::vector<int>& cells);
 
   /// Gathers at those of these vertices where nobody has yet.
   void gather(const std::vector<int>& vertices);
@@ -69,7 +77,10 @@ class InterpolationError {
   void gather_direct_at(const std::vector<int>& vertices);
   BandArray indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
                         const BandArray& radiosity) const;
-  double lattice_error(int cell, int side);
+  struct Squares {
+    double error = 0.0, hidden = 0.0;
+  };
+  Squares lattice_error(int cell, int side);
   double probed_error(int cell, int side);
   Spectrum total(int vertex) const;
   double reference(int cell, int side) const;

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <map>
@@ -95,6 +96,26 @@ struct Journal::Impl {
     writer.emplace(file.number(), contents.end, std::move(slots), every);
   }
 
+  // To read from alone.
+  Impl(fs::path path, const std::string& version)
+      : name(std::move(path)), every(forever), file(name, O_RDONLY) {
+    if (file.number() < 0) {
+      throw InputError(
+          fmt::format("the checkpoint '{}' cannot be read: {}", name.string(), reason(errno)));
+    }
+    if (::flock(file.number(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      throw InputError(fmt::format(
+          "the checkpoint '{}' is in use by a solve that goes on; wait for it", name.string()));
+    }
+    contents = read_journal(file.number(), name);
+    Provenance wanted = contents.of;
+    wanted.version = version;
+    check_journal_of(name, contents.of, wanted);
+    for (std::size_t p = 0; p < contents.phases.size(); ++p) {
+      numbers[{contents.phases[p].name, contents.phases[p].fingerprint}] = static_cast<int>(p);
+    }
+  }
+
   static Descriptor open(const fs::path& path, const Provenance& provenance) {
     std::error_code error;
     if (!fs::exists(path, error)) make_file(path, provenance);
@@ -102,17 +123,19 @@ struct Journal::Impl {
   }
 
   void close() {
-    writer->close();
+    if (writer) writer->close();
     file.close();
   }
 
+  static constexpr double forever = 1e9;  // seconds
   const fs::path name;
   const double every;
   Descriptor file;
   JournalContents contents{};  // as they were at first
   std::mutex mutex{};
   std::map<std::pair<std::string, std::uint64_t>, int> numbers{};  // of phases
-  std::optional<JournalWriter> writer{};
+  std::optional<JournalWriter> writer{};                           // none where nothing is kept
+  std::atomic<std::int64_t> recalled{0};
 };
 
 Journal::Journal(fs::path file, const Provenance& of, double every) {
@@ -120,6 +143,12 @@ Journal::Journal(fs::path file, const Provenance& of, double every) {
     throw std::invalid_argument(fmt::format("a journal is written every {} seconds", every));
   }
   impl_ = std::make_unique<Impl>(std::move(file), of, every);
+}
+
+Journal::Journal(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+std::unique_ptr<Journal> Journal::of_another_solve(fs::path file, const std::string& version) {
+  return std::unique_ptr<Journal>(new Journal(std::make_unique<Impl>(std::move(file), version)));
 }
 
 Journal::~Journal() = default;
@@ -142,6 +171,10 @@ const Provenance& Journal::of() const {
   return impl_->contents.of;
 }
 
+bool Journal::is_read_only() const {
+  return !impl_->writer;
+}
+
 double Journal::every() const {
   return impl_->every;
 }
@@ -155,8 +188,12 @@ std::int64_t Journal::torn() const {
   return impl_->contents.torn;
 }
 
+std::int64_t Journal::recalled() const {
+  return impl_->recalled;
+}
+
 std::int64_t Journal::size() const {
-  return impl_->writer->end();
+  return impl_->writer ? impl_->writer->end() : impl_->contents.end;
 }
 
 int Journal::phase(std::string_view name, std::uint64_t fingerprint) {
@@ -165,7 +202,7 @@ int Journal::phase(std::string_view name, std::uint64_t fingerprint) {
   const auto [at, is_new] =
       impl_->numbers.try_emplace({std::string(name), fingerprint}, impl_->numbers.size());
   const int number = at->second;
-  if (!is_new) return number;
+  if (!is_new || !impl_->writer) return number;
   std::vector<std::byte> bytes(sizeof fingerprint + name.size());
   std::memcpy(bytes.data(), &fingerprint, sizeof fingerprint);
   std::memcpy(bytes.data() + sizeof fingerprint, name.data(), name.size());
@@ -183,11 +220,13 @@ bool Journal::recall(int phase, int block, std::vector<std::byte>& bytes) const 
   const JournalPlace& place = phases[p].blocks[b];
   if (place.offset == 0) return false;
   bytes.resize(place.size);
-  return read_at(impl_->file.number(), place.offset, bytes);
+  if (!read_at(impl_->file.number(), place.offset, bytes)) return false;
+  impl_->recalled += static_cast<std::int64_t>(place.size);
+  return true;
 }
 
 void Journal::keep(int phase, int block, std::span<const std::byte> bytes) {
-  if (impl_->writer->has_failed()) return;
+  if (!impl_->writer || impl_->writer->has_failed()) return;
   impl_->writer->append(journal_record({.kind = RecordKind::block,
                                         .phase = static_cast<std::uint32_t>(phase),
                                         .block = static_cast<std::uint32_t>(block),
@@ -204,11 +243,11 @@ bool Journal::recall_state(int phase, std::vector<std::byte>& state) const {
 }
 
 void Journal::keep_state(int phase, std::span<const std::byte> state) {
-  impl_->writer->keep_state(phase, state);
+  if (impl_->writer) impl_->writer->keep_state(phase, state);
 }
 
 std::string Journal::failure() const {
-  if (!impl_->writer->has_failed()) return {};
+  if (!impl_->writer || !impl_->writer->has_failed()) return {};
   return fmt::format("the checkpoint '{}' cannot be written any more: {}", impl_->name.string(),
                      impl_->writer->failure());
 }

@@ -31,6 +31,12 @@ class Journal {
   /// is safe on the disk, > 0. Throws InputError if it is damaged, or not `of` the same scene,
   /// options and version, or in use by another process; std::runtime_error if it cannot be written.
   Journal(std::filesystem::path file, const Provenance& of, double every = 10.0);
+
+  /// What there is in `file`, of whatever scene and options, for a solve that may take from it all
+  /// that it shares with the one before: nothing more is kept. Throws InputError if it cannot be
+  /// read, is damaged, of another version, or in use by a solve that goes on.
+  static std::unique_ptr<Journal> of_another_solve(std::filesystem::path file,
+                                                   const std::string& version);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -40,10 +46,14 @@ class Journal {
 
   const std::filesystem::path& file() const;
   const Provenance& of() const;
+  /// Whether nothing is kept: it is another solve's.
+  bool is_read_only() const;
   double every() const;
   /// Bytes of finished work that were there at first, and behind them, of a torn record.
   std::int64_t found() const;
   std::int64_t torn() const;
+  /// Bytes of blocks that have been recalled up to now.
+  std::int64_t recalled() const;
   /// Bytes in the file now.
   std::int64_t size() const;
   /// Bytes of memory that are taken up at most, beside what is taken already.
@@ -72,6 +82,7 @@ class Journal {
 
  private:
   struct Impl;
+  explicit Journal(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

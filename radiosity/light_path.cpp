@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "scene/optics.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -22,10 +21,11 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
                                : Eigen::Vector3d::Zero());
     sphere_.push_back(polygons ? nullptr : &std::get<Sphere>(surface.shape));
     has_specular_ = has_specular_ || material.is_specular();
+    absorbs_ = absorbs_ || (material.dielectric && (material.dielectric->absorption > 0.0f).any());
   }
 }
 
-bool LightPaths::continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key,
+bool LightPaths::continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key, Media& media,
                              Spectrum& throughput, PathLosses& losses) const {
   const Material& material = scene_.materials[material_[hit.facet]];
   // The back of a one-sided mirror is black; glass is clear from both sides.
@@ -33,32 +33,37 @@ bool LightPaths::continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key,
     losses.escaped += throughput;
     return false;
   }
-  const Eigen::Vector3d direction = ray.direction.normalized();
   const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
   const Sphere* sphere = sphere_[hit.facet];
   Eigen::Vector3d normal = sphere ? (point - sphere->center).normalized() : normal_[hit.facet];
   if (hit.from_back) normal = -normal;
-
-  Spectrum share = material.specular;
-  Eigen::Vector3d onward = reflect(direction, normal);
-  if (material.dielectric) {
-    const double index = material.dielectric->index_of_refraction;
-    const double relative = hit.from_back ? 1.0 / index : index;
-    share = Spectrum::Ones(throughput.size());
-    const double reflected = fresnel_reflectance(-direction.dot(normal), relative);
-    if (random_uniform(key) >= reflected) {
-      if (const auto refracted = refract(direction, normal, relative)) {
-        onward = *refracted;
-        share = material.dielectric->tint;
-      }
-    }
+  OnwardLot lot{.way = random_uniform(key), .key = key};
+  if (material.gloss_roughness() > 0.0f) {
+    constexpr std::uint64_t microfacets = 0x66c3;
+    lot.u = random_uniform(random_key(key, microfacets, 1));
+    lot.v = random_uniform(random_key(key, microfacets, 2));
   }
+  const Onward way = draw_way({.material = material,
+                               .direction = ray.direction.normalized(),
+                               .normal = normal,
+                               .from_back = hit.from_back},
+                              lot);
+  media.go_on(material_[hit.facet], material, way, hit.from_back);
   // What a partly diffuse surface does not mirror was taken up by its diffuse side, where the
   // caller counts it.
-  if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - share);
-  throughput *= share;
-  ray = {.origin = point, .direction = onward, .origin_group = hit.facet};
+  if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - way.share);
+  throughput *= way.share;
+  ray = {.origin = point, .direction = way.direction, .origin_group = hit.facet};
   return (throughput > 0.0f).any();
+}
+
+void LightPaths::absorb(const Ray& ray, const ElementHit& hit, const Media& media,
+                        Spectrum& throughput, PathLosses& losses) const {
+  if (!absorbs_ || hit.facet < 0) return;
+  const Spectrum passed =
+      media.passed(scene_, material_[hit.facet], hit.from_back, hit.t * ray.direction.norm());
+  losses.absorbed += throughput * (1.0f - passed);
+  throughput *= passed;
 }
 
 PathLosses LightPaths::follow(
@@ -69,16 +74,21 @@ PathLosses LightPaths::follow(
   Spectrum throughput = Spectrum::Ones(bands);
   Ray ray = first_ray;
   ElementHit hit = first_hit;
+  Media media;
+  absorb(ray, hit, media, throughput, losses);
+  bool met_rough = false;
   for (int depth = 0;; ++depth) {
-    if (depth == max_depth_) {
+    met_rough = met_rough || scene_.materials[material_[hit.facet]].gloss_roughness() > 0.0f;
+    if (depth >= deepest_path(max_depth_, met_rough)) {
       losses.cut += throughput;
       return losses;
     }
-    if (!continue_at(ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), throughput,
-                     losses)) {
+    if (!continue_at(ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), media,
+                     throughput, losses)) {
       return losses;
     }
     caster_.closest_hits({&ray, 1}, {&hit, 1});
+    absorb(ray, hit, media, throughput, losses);
     const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));
     if (leaves) {
       losses.escaped += throughput;

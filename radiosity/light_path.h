@@ -5,19 +5,21 @@
 
 #include "mesh/element_caster.h"
 #include "scene/scene.h"
+#include "scene/specular.h"
 
 namespace lightwell {
 
 /// What happened to a ray's unit of light beyond the places where it arrived.
 struct PathLosses {
   Spectrum escaped{};   ///< left the scene or met a black back
-  Spectrum absorbed{};  ///< taken up by mirrors and tinted glass
+  Spectrum absorbed{};  ///< taken up by mirrors and by glass that is tinted or absorbs
   Spectrum cut{};       ///< still under way when the depth limit was reached
 };
 
 /// Follows rays through mirrors and clear glass until something diffuse takes them up (extended
 /// form factors, Sillion & Puech 1989). At glass one branch is followed, picked with Fresnel's
-/// probability, so that a ray stays a ray and the mean is exact.
+/// probability, and at rough surfaces one direction of their lobe (see draw_way), so that a ray
+/// stays a ray and the mean is exact. Bodies that absorb do so along the way, see Media.
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth);
@@ -36,13 +38,15 @@ class LightPaths {
                     const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const;
 
  private:
-  bool continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key, Spectrum& throughput,
-                   PathLosses& losses) const;
+  bool continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key, Media& media,
+                   Spectrum& throughput, PathLosses& losses) const;
+  void absorb(const Ray& ray, const ElementHit& hit, const Media& media, Spectrum& throughput,
+              PathLosses& losses) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;
   int max_depth_ = 8;
-  bool has_specular_ = false;
+  bool has_specular_ = false, absorbs_ = false;
   std::vector<char> specular_, diffuse_;
   std::vector<int> material_;            // per facet
   std::vector<Eigen::Vector3d> normal_;  // per facet; zero for spheres

@@ -162,10 +162,13 @@ void read_light(const SolutionArrays& in, const PatchMesh& mesh, RadiositySoluti
   if (in.points()->GetAbstractArray("caustic_irradiance")) {  // only where mirrors or glass are
     s.caustic_irradiance = in.bands(in.points(), "caustic_irradiance", mesh.vertex_count(), K);
   }
-  if (in.cells()->GetAbstractArray("interpolation_error")) {  // only where elements were refined
-    const auto error = in.required<float>(in.cells(), "interpolation_error", mesh.element_count());
-    s.interpolation_error = Eigen::Map<const Eigen::ArrayXf>(error.data, error.rows);
-  }
+  const auto of_elements = [&](const char* name, Eigen::ArrayXf& values) {
+    if (!in.cells()->GetAbstractArray(name)) return;
+    const auto read = in.required<float>(in.cells(), name, mesh.element_count());
+    values = Eigen::Map<const Eigen::ArrayXf>(read.data, read.rows);
+  };
+  of_elements("interpolation_error", s.interpolation_error);  // only where elements were refined
+  of_elements("gather_noise", s.gather_noise);
 }
 
 void read_record(const SolutionArrays& in, RadiositySolution& s) {

@@ -1,9 +1,11 @@
 #include "radiosity/reconstruct.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
+#include "radiosity/interpolation_error.h"
 #include "radiosity/light_path.h"
 
 namespace lightwell {
@@ -115,6 +117,35 @@ Draft refined_draft(const Scene& scene, const ElementCaster& caster,
           .refinement = found.report};
 }
 
+// Of the error in an element's interpolated irradiance, see RadiositySolution. `ray_variance`: at
+// vertices, that of a single ray. What one vertex says of it is little more than a guess, so that a
+// patch's vertices say it together.
+Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
+                            const Eigen::ArrayXf& ray_variance,
+                            std::span<const GatherPoint> points) {
+  Eigen::ArrayXd of_patch = Eigen::ArrayXd::Zero(mesh.patch_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int n = mesh.corner_count(e);
+    for (int c = 0; c < n; ++c) {
+      of_patch[mesh.patch[e]] += mesh.element_area[e] / n * ray_variance[mesh.corners[e][c]];
+    }
+  }
+  const Eigen::ArrayXd reference = error_references(mesh, irradiance);
+  Eigen::ArrayXf noise = Eigen::ArrayXf::Zero(mesh.element_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int n = mesh.corner_count(e), p = mesh.patch[e];
+    if (!(reference[e] > 0.0) || !(mesh.area[p] > 0.0)) continue;
+    double of_corners = 0.0;
+    for (int c = 0; c < n; ++c) of_corners += 1.0 / points[mesh.corners[e][c]].rays / n;
+    // What is left of independent errors at the corners, over the element: the mean of the sum of
+    // squared weights.
+    const double interpolated = n == 4 ? 4.0 / 9.0 : 1.0 / 2.0;
+    const double variance = of_patch[p] / mesh.area[p] * of_corners * interpolated;
+    noise[e] = static_cast<float>(std::sqrt(variance) / reference[e]);
+  }
+  return noise;
+}
+
 GatherOptions gather_options(const SolveOptions& options) {
   GatherOptions gather = options.gather;
   gather.progress = options.progress;
@@ -156,15 +187,24 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   const GatherOptions gather = gather_options(options);
   std::vector<GatherPoint> points = vertex_gather_points(mesh);
   share_rays(mesh, gather.rays, points);
+  Eigen::ArrayXf variance;
   if (draft.refined) {
     solution.direct_irradiance = std::move(draft.direct);
-    solution.indirect_irradiance = gather_indirect(scene, caster, radiosity, points, gather);
+    GatheredIrradiance gathered = gather_indirect(scene, caster, radiosity, points, gather);
+    solution.indirect_irradiance = std::move(gathered.indirect);
+    variance = std::move(gathered.variance);
   } else {
     GatheredIrradiance gathered =
         gather_irradiance(scene, caster, direct_light, radiosity, points, gather);
     solution.direct_irradiance = std::move(gathered.direct);
     solution.indirect_irradiance = std::move(gathered.indirect);
+    variance = std::move(gathered.variance);
   }
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    variance[v] *= static_cast<float>(points[v].rays);
+  }
+  solution.gather_noise =
+      gather_noise(mesh, channel_sum(irradiance, scene.bands.count()), variance, points);
   if (has_caustics) solution.indirect_irradiance += draft.caustic;
   solution.caustic_irradiance = std::move(draft.caustic);
   solution.interpolation_error = std::move(draft.interpolation_error);

@@ -82,18 +82,22 @@ class Refinement {
     return report;
   }
 
+  /// With what noise may hide.
   float relative_error(int cell, int side) const {
-    return static_cast<float>(std::sqrt(squares_[cell][side]));
+    return static_cast<float>(std::sqrt(squares_[cell][side] + hidden_[cell][side]));
   }
 
  private:
   void resize() {
     squares_.resize(elements_.cell_count(), {0.0, 0.0});
+    hidden_.resize(elements_.cell_count(), {0.0, 0.0});
     is_known_.resize(elements_.cell_count(), 0);
     measured_.resize(elements_.cell_count(), 0);
   }
-  void set(int cell, const std::array<double, 2>& squares) {
+  void set(int cell, const std::array<double, 2>& squares,
+           const std::array<double, 2>& hidden = {0.0, 0.0}) {
     squares_[cell] = squares;
+    hidden_[cell] = hidden;
     is_known_[cell] = 1;
   }
 
@@ -131,6 +135,7 @@ class Refinement {
     for (const int cell : elements_.leaves()) {
       if (measured_[cell] || elements_.level(cell) == 0) continue;
       for (double& square : squares_[cell]) square *= 0.25;
+      for (double& square : hidden_[cell]) square *= 0.25;
     }
   }
 
@@ -140,9 +145,9 @@ class Refinement {
     for (const int cell : cells) {
       if (!measured_[cell]) fresh.push_back(cell);
     }
-    const std::vector<std::array<double, 2>> errors = error_.measure(fresh);
+    const std::vector<InterpolationError::Measured> measured = error_.measure(fresh);
     for (std::size_t i = 0; i < fresh.size(); ++i) {
-      set(fresh[i], errors[i]);
+      set(fresh[i], measured[i].error, measured[i].hidden);
       measured_[fresh[i]] = 1;
     }
     return !fresh.empty();
@@ -169,7 +174,8 @@ class Refinement {
     // Until they are measured, children are as bad as what they were split from. (Their numbers may
     // be old: what was merged is split into the same again.)
     for (const int cell : elements_.leaves()) {
-      if (!is_known_[cell]) set(cell, squares_[elements_.parent(cell)]);
+      if (is_known_[cell]) continue;
+      set(cell, squares_[elements_.parent(cell)], hidden_[elements_.parent(cell)]);
     }
     return all;
   }
@@ -179,8 +185,9 @@ class Refinement {
   const RefineOptions& options_;
   std::int64_t max_elements_;
   double allowed_;
-  double sum_ = 0.0;                            // squared error times area, over all leaves
-  std::vector<std::array<double, 2>> squares_;  // per cell and side
+  double sum_ = 0.0;  // squared error times area, over all leaves
+  // Per cell and side; of those split since nobody measured, as of what they were split from.
+  std::vector<std::array<double, 2>> squares_, hidden_;
   std::vector<char> is_known_, measured_;
 };
 

@@ -48,7 +48,7 @@ struct ChannelLight {
 struct RefinedSolution {
   RefinedMesh refined{};
   GatheredIrradiance draft{};  ///< vertices x bands; the direct light is as good as it gets
-  /// Per element: estimated relative RMS error of interpolation over it.
+  /// Per element: estimated relative RMS error of interpolation over it, with what noise may hide.
   Eigen::ArrayXf error{};
   RefineReport report{};
 };

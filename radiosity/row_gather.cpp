@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "scene/parallel.h"
 
@@ -18,27 +19,60 @@ void fetch_ahead(const FormFactor* at) {
   __builtin_prefetch(reinterpret_cast<const char*>(at) + bytes_ahead);
 }
 
+// As the compiler knows it: one register where the processor has such long ones, else two.
+using Packet [[gnu::vector_size(packet * sizeof(double))]] = double;
+
+template <class Values>
+[[gnu::always_inline]] inline void load(const double* from, Values& values) {
+  std::memcpy(&values, from, sizeof values);
+}
+
 // Terms are added by turns to a few sums, for one addition need not wait for the other then.
-template <int Lanes, int Sums>
-void gather_straight(std::span<const FormFactor> row, const double* B, double* E) {
-  using Values = Eigen::Array<double, Lanes, 1>;
-  using Map = Eigen::Map<const Values, Lanes == 1 ? Eigen::Unaligned : Eigen::Aligned16>;
+template <class Values, int Sums>
+[[gnu::always_inline]] inline void gather_straight(std::span<const FormFactor> row, const double* B,
+                                                   double* E) {
+  constexpr auto lanes = static_cast<std::ptrdiff_t>(sizeof(Values) / sizeof(double));
   constexpr std::size_t line = 64 / sizeof(FormFactor);
-  std::array<Values, Sums> sum;
-  sum.fill(Values::Zero());
-  const auto add = [&](std::size_t k, std::size_t turn) {
-    sum[turn] += static_cast<double>(row[k].value) *
-                 Map(B + static_cast<std::ptrdiff_t>(Lanes) * row[k].patch);
-  };
+  std::array<Values, Sums> sum{};
   std::size_t k = 0;
   for (; k + line <= row.size(); k += line) {
     fetch_ahead(&row[k]);
-    for (std::size_t t = 0; t < line; ++t) add(k + t, t % Sums);
+    for (std::size_t t = 0; t < line; ++t) {
+      Values values;
+      load(B + lanes * row[k + t].patch, values);
+      sum[t % Sums] += static_cast<double>(row[k + t].value) * values;
+    }
   }
-  for (; k < row.size(); ++k) add(k, k % Sums);
+  for (; k < row.size(); ++k) {
+    Values values;
+    load(B + lanes * row[k].patch, values);
+    sum[k % Sums] += static_cast<double>(row[k].value) * values;
+  }
   for (int s = 1; s < Sums; ++s) sum[0] += sum[s];
-  Eigen::Map<Values>{E} = sum[0];
+  std::memcpy(E, sum.data(), sizeof(Values));
 }
+
+using GatherPacket = void (*)(std::span<const FormFactor>, const double*, double*);
+
+void gather_packet(std::span<const FormFactor> row, const double* B, double* E) {
+  gather_straight<Packet, 2>(row, B, E);
+}
+
+#if defined(__x86_64__)
+// Products and sums are rounded as above: no fused ones, so that all machines find the same bits.
+[[gnu::target("avx2")]] void gather_packet_avx2(std::span<const FormFactor> row, const double* B,
+                                                double* E) {
+  gather_straight<Packet, 2>(row, B, E);
+}
+
+GatherPacket best_gather_packet() {
+  return __builtin_cpu_supports("avx2") ? gather_packet_avx2 : gather_packet;
+}
+#else
+GatherPacket best_gather_packet() {
+  return gather_packet;
+}
+#endif
 
 void gather_straight(std::span<const FormFactor> row, const double* B, int lanes, double* E) {
   using Map = Eigen::Map<const Eigen::Array<double, packet, 1>>;
@@ -58,7 +92,8 @@ RowGather::RowGather(const FormFactors& form_factors, int bands, std::function<v
     : form_factors_(form_factors),
       pause_(std::move(pause)),
       bands_(bands),
-      lanes_(bands == 1 ? 1 : (bands + packet - 1) / packet * packet) {
+      lanes_(bands == 1 ? 1 : (bands + packet - 1) / packet * packet),
+      gather_packet_(best_gather_packet()) {
   for (int i = 0; i < form_factors.patch_count() && !has_specular_; ++i) {
     has_specular_ = !form_factors.specular_row(i).patch.empty();
   }
@@ -68,10 +103,10 @@ void RowGather::row(int i, const LightVector& B, double* E) const {
   const std::span<const FormFactor> straight = form_factors_.row(i);
   switch (lanes()) {
     case 1:
-      gather_straight<1, packet>(straight, B.data(), E);
+      gather_straight<double, packet>(straight, B.data(), E);
       break;
     case packet:
-      gather_straight<packet, 2>(straight, B.data(), E);
+      gather_packet_(straight, B.data(), E);
       break;
     default:
       gather_straight(straight, B.data(), lanes(), E);

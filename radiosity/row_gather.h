@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <span>
 
 #include "radiosity/form_factors.h"
 
@@ -41,6 +42,7 @@ class RowGather {
   const FormFactors& form_factors_;
   std::function<void()> pause_;
   int bands_ = 0, lanes_ = 0;
+  void (*gather_packet_)(std::span<const FormFactor>, const double*, double*);
   bool has_specular_ = false;
 };
 

@@ -9,6 +9,12 @@ EnergyBalance total(const BandEnergy& by_band) {
           .unshot = by_band.row(3).sum()};
 }
 
+Eigen::ArrayXf error_bound(const RadiositySolution& solution) {
+  const Eigen::ArrayXf &a = solution.interpolation_error, &b = solution.gather_noise;
+  if (a.size() == 0 || a.size() != b.size()) return {};
+  return 2.0f * (a.square() + b.square()).sqrt();
+}
+
 BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution) {
   BandArray B = solution.irradiance();
   std::vector<int> patch(mesh.vertex_count(), 0);

@@ -59,9 +59,13 @@ struct RadiositySolution {
   /// The part of indirect_irradiance that DirectLight's emitters send by way of mirrors and glass.
   BandArray caustic_irradiance{};
 
-  /// Per element: estimated RMS error of interpolated irradiance over it, of the mean irradiance or
-  /// a quarter of the element's own, whichever is more. Empty if the mesh was not refined.
+  /// Per element: estimated RMS error of interpolated irradiance over it, with what the noise of its
+  /// estimate may hide, of the mean irradiance or a quarter of the element's own, whichever is more.
+  /// Empty if the mesh was not refined.
   Eigen::ArrayXf interpolation_error{};
+  /// Per element: estimated RMS error that the rays of the final gather leave in it, relative to
+  /// the same. Empty in files of earlier versions.
+  Eigen::ArrayXf gather_noise{};
 
   /// The light above by who emits it (see relight.h); empty: it was not kept apart.
   std::vector<LightChannel> channels{};
@@ -83,6 +87,11 @@ struct RadiositySolution {
 
   BandArray irradiance() const { return direct_irradiance + indirect_irradiance; }
 };
+
+/// Per element: what irradiance anywhere in it is off by at most, with odds of about 19 to 1, mean
+/// of the bands, relative as interpolation_error is: twice the root of both errors' squares. Empty
+/// unless both are known.
+Eigen::ArrayXf error_bound(const RadiositySolution& solution);
 
 /// B = M + rho E at every vertex, W/m^2 (each vertex belongs to patches of one material).
 BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution);

@@ -127,6 +127,7 @@ void add_elements(vtkCellData* data, const PatchMesh& mesh, const RadiositySolut
   add_values(data, "area", mesh.element_area.data(), n);
   add_values(data, "interpolation_error", s.interpolation_error.data(),
              s.interpolation_error.size());
+  add_values(data, "gather_noise", s.gather_noise.data(), s.gather_noise.size());
 }
 
 void add_patches(vtkFieldData* data, const PatchMesh& mesh, const RadiositySolution& s) {

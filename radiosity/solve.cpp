@@ -170,8 +170,8 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
     solution.error_estimate = estimate_error(scene, *caster, direct_light, in_force, solution);
     spent["error_estimate"] += watch.lap();
     if (!may_try_again || solution.error_estimate <= target) break;
-    const auto next =
-        next_effort(effort, target, solution.error_estimate, draft->refinement, attempt);
+    const auto next = next_effort(effort, target, solution.error_estimate,
+                                  rms_noise(solved.mesh, solution), draft->refinement, attempt);
     if (!next) {
       if (solution.outcome == Outcome::converged) solution.outcome = Outcome::accuracy_missed;
       break;
@@ -193,7 +193,8 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
 }  // namespace
 
 bool starts_coarse(const SolveOptions& options) {
-  return options.refine.tolerance > 0.0 && !options.mesh.discontinuity;
+  return options.refine.tolerance > 0.0 && !options.mesh.discontinuity &&
+         !(options.mesh.max_element_size > 0.0);
 }
 
 EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
@@ -206,7 +207,8 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   require_equations(options);
   require_unit(scene, options);
   const std::uint64_t hash = scene_hash(scene);
-  if (options.journal && options.journal->of().scene_hash != hash) {
+  if (options.journal && !options.journal->is_read_only() &&
+      options.journal->of().scene_hash != hash) {
     throw std::invalid_argument("the journal is of another scene");
   }
   SolvedScene solved;

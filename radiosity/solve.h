@@ -39,7 +39,9 @@ struct SolveOptions {
   int error_points = 512;  ///< random points that the error estimate looks at
   Progress progress{};
   /// Collects finished work, and gives it back to a solve that goes on with one that was ended:
-  /// with the same bits. Of this scene. Null: none.
+  /// with the same bits. Of this scene, or another solve's (Journal::of_another_solve), which gives
+  /// what both have in common: form factors, where only reflectances or emission have changed.
+  /// Null: none.
   Journal* journal = nullptr;
 };
 
@@ -58,7 +60,8 @@ struct SolveReport {
 };
 
 /// Whether elements start twice as long as asked for, and are split where that matters: unless
-/// nothing is refined, and unless lines of discontinuity are drawn, which need the size asked for.
+/// nothing is refined, and unless a longest size is given or lines of discontinuity are drawn,
+/// which need the size asked for.
 bool starts_coarse(const SolveOptions& options);
 
 /// The whole first pass: mesh, form factors, solver, refinement of the elements, final gather to

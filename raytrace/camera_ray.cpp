@@ -8,6 +8,7 @@
 
 #include "raytrace/image.h"
 #include "scene/errors.h"
+#include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
@@ -32,12 +33,30 @@ void check(const Camera& camera) {
       !(std::abs(camera.direction.dot(camera.up)) < tolerance)) {
     fail("direction and up must be unit vectors at right angles to each other");
   }
+  if (!(camera.lens_radius >= 0.0) || !std::isfinite(camera.lens_radius)) {
+    fail(fmt::format("a lens of radius {} m; it must be finite, and 0 for a pinhole",
+                     camera.lens_radius));
+  }
+  if (!(camera.focus_distance > 0.0) || !std::isfinite(camera.focus_distance)) {
+    fail(fmt::format("it is focused at {} m; the distance must be finite and above 0",
+                     camera.focus_distance));
+  }
+  if (camera.blades != 0 && (camera.blades < 3 || camera.blades > max_blades)) {
+    fail(fmt::format("an aperture of {} blades; give 3 to {}, or 0 for a round one", camera.blades,
+                     max_blades));
+  }
 }
 
 }  // namespace
 
-CameraRays::CameraRays(const Camera& camera) : position_(camera.position) {
+CameraRays::CameraRays(const Camera& camera)
+    : position_(camera.position),
+      lens_radius_(camera.lens_radius),
+      focus_distance_(camera.focus_distance),
+      blades_(camera.blades) {
   check(camera);
+  lens_right_ = lens_radius_ * camera.direction.cross(camera.up).normalized();
+  lens_up_ = lens_radius_ * camera.up;
   const double half_width = std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0);
   const double pixel = 2.0 * half_width / camera.width;
   step_right_ = pixel * camera.direction.cross(camera.up).normalized();
@@ -49,6 +68,29 @@ CameraRays::CameraRays(const Camera& camera) : position_(camera.position) {
 Ray CameraRays::ray(double x, double y) const {
   return {.origin = position_,
           .direction = (top_left_ + x * step_right_ + y * step_down_).normalized()};
+}
+
+Ray CameraRays::ray(double x, double y, double u, double v) const {
+  if (!has_lens()) return ray(x, y);
+  const Eigen::Vector2d at = lens_point(u, v);
+  const Eigen::Vector3d from = at.x() * lens_right_ + at.y() * lens_up_;
+  const Eigen::Vector3d sharp = focus_distance_ * (top_left_ + x * step_right_ + y * step_down_);
+  return {.origin = position_ + from, .direction = (sharp - from).normalized()};
+}
+
+Eigen::Vector2d CameraRays::lens_point(double u, double v) const {
+  if (blades_ == 0) {
+    return cosine_direction(static_cast<float>(u), static_cast<float>(v)).head<2>();
+  }
+  // One of the triangles between the centre and a side; the first corner is at the top.
+  const double turn = u * blades_;
+  const int blade = std::min(static_cast<int>(turn), blades_ - 1);
+  const Eigen::Vector3d w = triangle_point(static_cast<float>(turn - blade), static_cast<float>(v));
+  const auto corner = [&](int i) {
+    const double angle = 2.0 * std::numbers::pi * i / blades_;
+    return Eigen::Vector2d(std::sin(angle), std::cos(angle));
+  };
+  return w[1] * corner(blade) + w[2] * corner(blade + 1);
 }
 
 }  // namespace lightwell

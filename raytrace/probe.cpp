@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "radiosity/interpolation_error.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 
@@ -169,11 +170,13 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   return E.direct + E.indirect + caustic;
 }
 
-BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySolution& solution,
-                                 std::span<const Probe> probes) {
+namespace {
+
+// The elements they lie on. Throws InputError naming the first that lies on none.
+std::vector<ElementHit> on_elements(const ElementCaster& caster, const RadiositySolution& solution,
+                                    std::span<const Probe> probes) {
   const ProbeSurface surface(caster);
-  const BandArray E = solution.irradiance();
-  BandArray result(static_cast<Eigen::Index>(probes.size()), E.cols());
+  std::vector<ElementHit> hits;
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const auto place = surface.find(probes[i]);
     if (!place || place->hit.element < 0) {
@@ -184,8 +187,37 @@ BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySol
                                          : "lies on no surface that faces its way",
                                    "there is nothing to interpolate; gather instead, or move it"));
     }
-    result.row(static_cast<Eigen::Index>(i)) =
-        interpolate(caster.mesh(), E, place->hit).transpose();
+    hits.push_back(place->hit);
+  }
+  return hits;
+}
+
+}  // namespace
+
+BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySolution& solution,
+                                 std::span<const Probe> probes) {
+  const std::vector<ElementHit> hits = on_elements(caster, solution, probes);
+  const BandArray E = solution.irradiance();
+  BandArray result(static_cast<Eigen::Index>(probes.size()), E.cols());
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    result.row(static_cast<Eigen::Index>(i)) = interpolate(caster.mesh(), E, hits[i]).transpose();
+  }
+  return result;
+}
+
+Eigen::ArrayXd interpolation_bound(const ElementCaster& caster, const RadiositySolution& solution,
+                                   std::span<const Probe> probes) {
+  const Eigen::ArrayXf relative = error_bound(solution);
+  if (relative.size() == 0) return {};
+  const Eigen::ArrayXd reference = error_references(caster.mesh(), solution.irradiance());
+  const std::vector<ElementHit> hits = on_elements(caster, solution, probes);
+  const int bands = solution.bands.count();
+  Eigen::ArrayXd result(static_cast<Eigen::Index>(probes.size()));
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const int e = hits[i].element;
+    const auto grey = static_cast<float>(reference[e] * relative[e]);
+    result[static_cast<Eigen::Index>(i)] =
+        luminous(solution.bands, Spectrum::Constant(bands, grey));
   }
   return result;
 }

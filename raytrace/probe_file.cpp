@@ -126,7 +126,8 @@ std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_p
 }
 
 void write_probes(const std::filesystem::path& csv, std::span<const Probe> probes,
-                  const BandArray& irradiance, const Bands& bands, double metres_per_unit) {
+                  const BandArray& irradiance, const Bands& bands, double metres_per_unit,
+                  const Eigen::ArrayXd& lux_within) {
   AtomicFile file(csv);
   std::ofstream stream(file.temporary());
   if (!stream) {
@@ -135,7 +136,7 @@ void write_probes(const std::filesystem::path& csv, std::span<const Probe> probe
   }
   stream << "x,y,z,nx,ny,nz";
   for (const std::string& name : bands.names) stream << ",E_" << name;
-  stream << ",lux\n";
+  stream << (lux_within.size() > 0 ? ",lux,lux_within\n" : ",lux\n");
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const Eigen::Vector3d p = probes[i].position / metres_per_unit;
     const Eigen::Vector3d& n = probes[i].normal;
@@ -143,7 +144,11 @@ void write_probes(const std::filesystem::path& csv, std::span<const Probe> probe
                           n.y(), n.z());
     const Spectrum E = irradiance.row(static_cast<Eigen::Index>(i)).transpose();
     for (float E_k : E) stream << fmt::format(",{:.9g}", E_k);
-    stream << fmt::format(",{:.9g}\n", luminous(bands, E));
+    stream << fmt::format(",{:.9g}", luminous(bands, E));
+    if (lux_within.size() > 0) {
+      stream << fmt::format(",{:.3g}", lux_within[static_cast<Eigen::Index>(i)]);
+    }
+    stream << '\n';
   }
   stream.close();
   if (!stream) {

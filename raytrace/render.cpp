@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <tuple>
@@ -14,6 +15,8 @@
 #include "radiosity/journal_phase.h"
 #include "raytrace/camera_ray.h"
 #include "raytrace/layer_film.h"
+#include "raytrace/pixel_samples.h"
+#include "raytrace/sampled_rows.h"
 #include "raytrace/shade.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -30,11 +33,17 @@ constexpr std::uint64_t edge_purpose = 0xed6e;
 
 void check(const RenderOptions& options) {
   const auto fail = [](const std::string& what) { throw std::invalid_argument("render: " + what); };
-  if (options.max_subdivision < 0 || options.max_subdivision > max_levels) {
-    fail(fmt::format("max_subdivision is {}, it must lie between 0 and {}", options.max_subdivision,
-                     max_levels));
-  }
-  if (options.max_depth < 0) fail("max_depth must not be negative");
+  const auto within = [&](const char* what, int value, int low, int high) {
+    if (value >= low && value <= high) return;
+    fail(fmt::format("{} is {}, it must lie between {} and {}", what, value, low, high));
+  };
+  within("max_subdivision", options.max_subdivision, 0, max_levels);
+  within("max_depth", options.max_depth, 0, deepest_tree);
+  within("gather_rays", options.gather_rays, 1, most_gather_rays);
+  within("glossy_rays", options.glossy_rays, 1, 256);
+  within("sampling.most", options.sampling.most, 0, SampleOptions::limit);
+  within("sampling.least", options.sampling.least, 1, SampleOptions::limit);
+  if (!(options.sampling.noise >= 0.0f)) fail("sampling.noise must not be negative");
   if (!(options.contrast > 0.0f)) fail("contrast must be above 0");
   if (!(options.min_contribution >= 0.0f)) fail("min_contribution must not be negative");
 }
@@ -246,6 +255,16 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
   });
 }
 
+// Rough surfaces and lenses show nothing sharp that subdivision could find the edges of.
+SampleOptions sampling_for(const Scene& scene, const CameraRays& rays,
+                           const RenderOptions& options) {
+  SampleOptions sampling = options.sampling;
+  const auto is_rough = [](const Material& m) { return m.gloss_roughness() > 0.0f; };
+  const bool needed = rays.has_lens() || std::ranges::any_of(scene.materials, is_rough);
+  if (sampling.most == 0 && needed) sampling.most = SampleOptions::most_by_default;
+  return sampling;
+}
+
 // All that decides a picture, but what the journal is of.
 void add_inputs(Fingerprint& print, const ElementCaster& caster, const RadiositySolution& solution,
                 const Camera& camera, const RenderOptions& options) {
@@ -263,6 +282,15 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
   print.add(options.shadows.max_rays);
   print.add(options.max_subdivision);
   print.add(options.contrast);
+  print.add(solution.caustic_irradiance);
+  print.add(camera.lens_radius);
+  print.add(camera.focus_distance);
+  print.add(camera.blades);
+  print.add(options.gather_rays);
+  print.add(options.glossy_rays);
+  print.add(options.sampling.most);
+  print.add(options.sampling.least);
+  print.add(options.sampling.noise);
 }
 
 // A strip of the picture, as wide as it is: its rows are together in memory.
@@ -271,23 +299,37 @@ std::span<float> rows_of(BandArray& values, int width, int first_row, int rows) 
   return {values.data() + first_row * row, rows * row};
 }
 
-// Renders tile by tile: strips that share a row of corners.
+// Renders tile by tile: strips that share a row of corners, or strips of many looks per pixel if
+// there are `samples`.
 class TileRenderer {
  public:
-  TileRenderer(const Eye& eye, const RenderOptions& options, Image& image, LayerFilm& layers)
+  TileRenderer(const Eye& eye, const PixelSamples* samples, const RenderOptions& options,
+               Counters& counters, Image& image, LayerFilm& layers)
       : eye_(eye),
+        samples_(samples),
         options_(options),
+        counters_(counters),
         image_(image),
         layers_(layers),
         corners_(tile_rows() + 1, CornerRow(image.width + 1)) {}
 
   /// Small ones, to stop soon and to lose little; large enough to keep all threads busy.
   int tile_rows() const {
+    constexpr int sampled_rows = 16;  // and those beside them, whose first looks are lost
+    if (samples_) return sampled_rows;
     constexpr int pixels_per_tile = 8192;
     return std::max(1, pixels_per_tile / image_.width);
   }
   /// Its radiance and sampled layers.
   void render(int first_row, int rows) {
+    if (samples_) {
+      const double part = static_cast<double>(first_row) / image_.height;
+      const SampledRows took =
+          sample_rows(*samples_, first_row, rows, options_.progress, part, image_, layers_);
+      counters_.eye_rays += took.looks;
+      counters_.depth_cut += took.depth_cut;
+      return;
+    }
     if (row_of_corners_ != first_row) look_at_corners(eye_, first_row, {corners_.data(), 1});
     look_at_corners(eye_, first_row + 1, {corners_.data() + 1, static_cast<std::size_t>(rows)});
     average_pixels(eye_, options_, first_row, {corners_.data(), static_cast<std::size_t>(rows) + 1},
@@ -298,7 +340,9 @@ class TileRenderer {
 
  private:
   const Eye& eye_;
+  const PixelSamples* samples_;
   const RenderOptions& options_;
+  Counters& counters_;
   Image& image_;
   LayerFilm& layers_;
   std::vector<CornerRow> corners_;
@@ -324,7 +368,10 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
     add_inputs(print, caster, solution, camera, options);
     for (const std::string& name : image.layers.names) print.add(name);
   });
-  TileRenderer tiles(eye, options, image, layers);
+  const SampleOptions sampling = sampling_for(scene, rays, options);
+  std::optional<PixelSamples> samples;
+  if (sampling.most > 0) samples.emplace(rays, tree, sampling);
+  TileRenderer tiles(eye, samples ? &*samples : nullptr, options, counters, image, layers);
   report(options.progress, "render", 0.0);
   int tile = 0, recalled = 0;
   for (int y = 0; y < camera.height; y += tiles.tile_rows(), ++tile) {

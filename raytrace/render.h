@@ -17,6 +17,19 @@ class Journal;
 enum class Pass {
   interpolate,  ///< the solution as it is
   direct,       ///< direct light re-traced with shadow rays, indirect light interpolated
+  gather,       ///< direct light as above, indirect light by a final gather at every hit
+};
+
+/// Many looks per pixel instead of subdivision: for pictures with gloss or a lens.
+struct SampleOptions {
+  int most = 0;  ///< 0: most_by_default where a lens or rough surfaces ask for it, else none
+  int least = 16;
+  /// A pixel is done when its standard error is below this share of it. A half of it takes four
+  /// times as many samples.
+  float noise = 0.02f;
+
+  static constexpr int most_by_default = 256;
+  static constexpr int limit = 1 << 16;
 };
 
 struct RenderOptions {
@@ -24,6 +37,9 @@ struct RenderOptions {
   int max_depth = 10;              ///< mirror and glass events along one path of the ray tree
   float min_contribution = 1e-3f;  ///< branches that weigh less are not followed
   ShadowOptions shadows{};
+  int gather_rays = 256;  ///< over the hemisphere of a hit, for Pass::gather; 1 to most_gather_rays
+  int glossy_rays = 8;    ///< from the first rough surface; one from those behind it. 1 to 256
+  SampleOptions sampling{};
   /// Whitted's adaptive supersampling: a pixel whose corners differ by more than `contrast`
   /// (relative) or show different surfaces is split in four, at most `max_subdivision` times, 0 to
   /// 6. Measured on the Cornell box: contrast 0.05 takes 1.7 times as long as 0.1 for the same
@@ -37,6 +53,11 @@ struct RenderOptions {
   Progress progress{};
 };
 
+constexpr int most_gather_rays = 1 << 16;
+
+/// Deeper recursion might exhaust a thread's stack.
+constexpr int deepest_tree = 1000;
+
 struct RenderReport {
   double seconds = 0.0;
   std::int64_t eye_rays = 0;          ///< pixel samples
@@ -45,7 +66,8 @@ struct RenderReport {
 };
 
 /// Second pass: Whitted's recursive ray tracing (1980) over the radiosity solution. A pixel is the
-/// mean radiance over its square. The same bits for any number of threads.
+/// mean radiance over its square or, with a lens or gloss, what PixelSamples finds. The same bits
+/// for any number of threads.
 Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
              const RadiositySolution& solution, const Camera& camera,
              const RenderOptions& options = {}, RenderReport* report = nullptr);

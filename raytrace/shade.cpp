@@ -6,14 +6,16 @@
 #include <numbers>
 #include <numeric>
 
-#include "scene/optics.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t shadow_purpose = 0x5ec07d;
+constexpr std::uint64_t shadow_purpose = 0x5ec07d, gather_purpose = 0x6a7e4;
 constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
+
+// What one of many looks does with light: a share of the rays of a look that stands alone.
+constexpr float share_of_many = 1.0f / 16.0f;
 
 int root(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -40,8 +42,7 @@ std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
 
 // Noise that weighs less may be larger: half the weight, half the rays. Powers of two stay ones,
 // which stratify best.
-ShadowOptions shadows_for(ShadowOptions shadows, float weight) {
-  constexpr int fewest = 8;
+ShadowOptions shadows_for(ShadowOptions shadows, float weight, int fewest) {
   for (; weight <= 0.5f && shadows.min_rays >= 2 * fewest; weight *= 2.0f) {
     shadows.min_rays /= 2;
     shadows.max_rays /= 2;
@@ -60,7 +61,20 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       options_(options),
       with_layers_(std::any_of(options.layers.begin(), options.layers.end(),
                                [](Layer layer) { return first_sampled_column(layer) >= 0; })),
-      white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))) {
+      white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
+      gloss_points_(gloss_point_count),
+      lamps_(direct_light) {
+  if (options.pass == Pass::gather) {
+    gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
+  }
+  for (const Material& material : scene.materials) {
+    const auto& glass = material.dielectric;
+    absorbs_ = absorbs_ || (glass && (glass->absorption > 0.0f).any());
+    auto& of_sides = lobes_.emplace_back();
+    for (const bool is_back : {false, true}) {
+      if (material.gloss_roughness() > 0.0f) of_sides[is_back].emplace(material, is_back);
+    }
+  }
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
     FacetShape shape{.material = surface.material};
@@ -81,7 +95,19 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
 
 Sight RayTree::look(const Ray& ray, std::uint64_t key, float effort) const {
   const int bands = scene_.bands.count();
-  Walk walk{.sight = {.radiance = Spectrum::Zero(bands)}, .key = key, .effort = effort};
+  Walk walk{
+      .sight = {.radiance = Spectrum::Zero(bands)}, .key = key, .effort = effort, .gloss_key = key};
+  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
+  return walk.sight;
+}
+
+Sight RayTree::look_one_of_many(const Ray& ray, std::uint64_t key, int number) const {
+  const int bands = scene_.bands.count();
+  Walk walk{.sight = {.radiance = Spectrum::Zero(bands)},
+            .key = random_key(key, static_cast<std::uint64_t>(number)),
+            .effort = share_of_many,
+            .number = number,
+            .gloss_key = key};
   follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
   return walk.sight;
 }
@@ -92,17 +118,21 @@ std::uint64_t RayTree::fingerprint(const Ray& ray) const {
   return walk.sight.fingerprint;
 }
 
-void RayTree::follow(const Branch& branch, Walk& walk) const {
+void RayTree::follow(Branch branch, Walk& walk) const {
   ElementHit hit;
   caster_.closest_hits({&branch.ray, 1}, {&hit, 1});
   Sight& sight = walk.sight;
-  if (branch.weight.maxCoeff() >= options_.contrast) {
+  if (branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
     sight.fingerprint = random_key(sight.fingerprint, branch.place,
                                    static_cast<std::uint64_t>(seen), hit.from_back);
   }
   if (hit.facet < 0) return;  // the world outside is black
   const SurfacePoint at = surface_point(branch.ray, hit);
+  if (absorbs_) {
+    branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
+                                         (at.position - branch.ray.origin).norm());
+  }
   if (walk.shades && with_layers_ && branch.place == 1) {
     const Eigen::Vector3d normal = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
     sight.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
@@ -114,34 +144,36 @@ void RayTree::follow(const Branch& branch, Walk& walk) const {
 void RayTree::split(const Branch& branch, const ElementHit& hit, const SurfacePoint& at,
                     Walk& walk) const {
   const Material& material = scene_.materials[facets_[hit.facet].material];
-  const Eigen::Vector3d& d = branch.ray.direction;
-  if (const auto& glass = material.dielectric) {
-    const double n = hit.from_back ? 1.0 / glass->index_of_refraction : glass->index_of_refraction;
-    const double cos_i = std::min(1.0, -d.dot(at.normal));
-    const auto R = static_cast<float>(fresnel_reflectance(cos_i, n));
-    grow(branch, 0, reflect(d, at.normal), Spectrum::Constant(scene_.bands.count(), R), hit, at,
-         walk);
-    if (const auto refracted = refract(d, at.normal, n)) {
-      grow(branch, 1, *refracted, (1.0f - R) * glass->tint, hit, at, walk);
-    }
-  } else if (hit.element >= 0 && (material.specular > 0.0f).any()) {
-    grow(branch, 0, reflect(d, at.normal), material.specular, hit, at, walk);
+  // The back of a one-sided mirror is black.
+  if (!material.is_specular() || (!material.dielectric && hit.element < 0)) return;
+  const Meeting meeting{.material = material,
+                        .direction = branch.ray.direction,
+                        .normal = at.normal,
+                        .from_back = hit.from_back};
+  if (material.gloss_roughness() > 0.0f) return scatter(branch, meeting, hit, at, walk);
+  const OnwardWays ways = smooth_ways(meeting);
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(ways.count); ++i) {
+    grow(branch, 2 * branch.place + i, ways.way[i], hit, at, walk);
   }
 }
 
-void RayTree::grow(const Branch& parent, int child, const Eigen::Vector3d& direction,
-                   const Spectrum& share, const ElementHit& hit, const SurfacePoint& at,
-                   Walk& walk) const {
-  Branch branch{.weight = parent.weight * share,
+void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
+                   const ElementHit& hit, const SurfacePoint& at, Walk& walk) const {
+  Branch branch{.weight = parent.weight * way.share,
                 .depth = parent.depth + 1,
-                .place = 2 * parent.place + static_cast<std::uint64_t>(child)};
+                .place = place,
+                .is_sharp = parent.is_sharp,
+                .lobe_density = way.density,
+                .media = parent.media};
   if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
-  if (branch.depth > options_.max_depth) {
+  if (branch.depth > deepest_path(options_.max_depth, !branch.is_sharp)) {
     ++walk.sight.depth_cut;
     return;
   }
+  const int material = facets_[hit.facet].material;
+  branch.media.go_on(material, scene_.materials[material], way, hit.from_back);
   branch.ray = {
-      .origin = at.position, .direction = direction.normalized(), .origin_group = hit.facet};
+      .origin = at.position, .direction = way.direction.normalized(), .origin_group = hit.facet};
   follow(branch, walk);
 }
 
@@ -174,35 +206,45 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const SurfacePo
                     Walk& walk) const {
   const PatchMesh& mesh = caster_.mesh();
   const int patch = mesh.patch[hit.element];
-  const Spectrum M = mesh.emission.row(patch).transpose();
+  const Spectrum M = emission(branch, hit, at);
   const Spectrum rho = mesh.reflectance.row(patch).transpose();
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
-  if (with_layers_ || (rho > 0.0f).any()) {
-    const std::uint64_t key = random_key(walk.key, branch.place, shadow_purpose);
-    E = arriving(hit, at, key,
-                 shadows_for(options_.shadows, walk.effort * branch.weight.maxCoeff()));
-  }
+  if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, walk);
   walk.sight.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
-  if (with_layers_) note_layers(branch, hit, E, walk);
+  if (with_layers_) note_layers(branch, hit, M, E, walk);
 }
 
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& at,
-                                    std::uint64_t key, const ShadowOptions& shadows) const {
+                                    const Branch& branch, const Walk& walk) const {
   const PatchMesh& mesh = caster_.mesh();
-  return {.direct = options_.pass == Pass::interpolate
-                        ? interpolate(mesh, solution_.direct_irradiance, hit)
-                        : direct_light_.irradiance(caster_, at.position, smooth_normal(hit, at),
-                                                   hit.facet, key, shadows),
-          .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
+  if (options_.pass == Pass::interpolate) {
+    return {.direct = interpolate(mesh, solution_.direct_irradiance, hit),
+            .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
+  }
+  const Eigen::Vector3d normal = smooth_normal(hit, at);
+  const float share = walk.effort * branch.weight.maxCoeff();
+  const ShadowOptions shadows = shadows_for(options_.shadows, share, walk.number ? 4 : 8);
+  Arriving E;
+  E.direct = direct_light_.irradiance(caster_, at.position, normal, hit.facet,
+                                      random_key(walk.key, branch.place, shadow_purpose), shadows);
+  if (!gather_) {
+    E.indirect = interpolate(mesh, solution_.indirect_irradiance, hit);
+    return E;
+  }
+  E.indirect = gather_->indirect_irradiance(
+      {.position = at.position, .normal = at.normal, .smooth_normal = normal, .facet = hit.facet},
+      random_key(walk.key, branch.place, gather_purpose), share);
+  if (solution_.caustic_irradiance.size() > 0) {
+    E.indirect += interpolate(mesh, solution_.caustic_irradiance, hit);
+  }
+  return E;
 }
 
-void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Arriving& E,
-                          Walk& walk) const {
-  const PatchMesh& mesh = caster_.mesh();
+void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
+                          const Arriving& E, Walk& walk) const {
   const Bands& bands = scene_.bands;
-  const int patch = mesh.patch[hit.element];
-  const Spectrum M = mesh.emission.row(patch).transpose();
-  const Spectrum rho = mesh.reflectance.row(patch).transpose();
+  const Spectrum rho =
+      caster_.mesh().reflectance.row(caster_.mesh().patch[hit.element]).transpose();
   const auto three = [&](Layer layer) {
     return walk.sight.layers.segment<3>(first_sampled_column(layer));
   };
@@ -222,7 +264,7 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Arr
     three(Layer::specular) += light(M + rho * (E.direct + E.indirect));
   }
   // Refracted children alone have odd places, so that straight through glass all bits are ones.
-  const bool is_straight = (branch.place & (branch.place + 1)) == 0;
+  const bool is_straight = branch.is_sharp && (branch.place & (branch.place + 1)) == 0;
   if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
     const Spectrum all = E.direct + E.indirect;
     walk.sight.layers[first_sampled_column(Layer::illuminance)] =

@@ -1,13 +1,19 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "mesh/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
+#include "raytrace/lamp_samples.h"
+#include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
+#include "scene/sampling.h"
 #include "scene/scene.h"
+#include "scene/specular.h"
 
 namespace lightwell {
 
@@ -22,14 +28,16 @@ struct Sight {
 
 /// Whitted's ray tree (1980) over a radiosity solution. Where a ray meets something diffuse,
 /// L = (M + rho E) / pi; mirrors add specular * L(reflected); clear dielectrics add
-/// R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R.
+/// R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R. Rough ones add the mean over some
+/// directions of their lobe, see draw_way. Within a body that absorbs, L is less by Beer and
+/// Lambert's law, see Media.
 ///
 /// L inside a dielectric is the basic radiance L/n^2, which refraction leaves unchanged; a path
 /// that ends outside again needs no factor n^2.
 ///
 /// The *fingerprint* is equal for two rays whose trees see the same smooth surfaces from the same
 /// sides in the same order; branches that weigh less than RenderOptions::contrast are left out, for
-/// they alone cannot change a pixel by more.
+/// they alone cannot change a pixel by more, and so is what is seen by way of rough surfaces.
 class RayTree {
  public:
   RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
@@ -38,6 +46,9 @@ class RayTree {
   /// `key` decides the shadow samples; `effort`, (0, 1], scales their number, for looks that are
   /// averaged with others.
   Sight look(const Ray& ray, std::uint64_t key, float effort = 1.0f) const;
+  /// One of many looks that are averaged with others of the same key, numbered from 0: with few
+  /// shadow and gather rays and one direction per rough surface, well spread over all of them.
+  Sight look_one_of_many(const Ray& ray, std::uint64_t key, int number) const;
   /// The fingerprint alone, without shadow rays.
   std::uint64_t fingerprint(const Ray& ray) const;
 
@@ -59,7 +70,12 @@ class RayTree {
     Ray ray{};
     Spectrum weight{};  ///< share of what it sees that reaches the eye
     int depth = 0;
-    std::uint64_t place = 1;  ///< 1 for the root, 2 p and 2 p + 1 for the children of p
+    /// 1 for the root, 2 p and 2 p + 1 for the children of p; any for those off rough surfaces.
+    std::uint64_t place = 1;
+    bool is_sharp = true;  ///< no rough surface on the way
+    /// Of its direction, 1/sr, off a rough surface, which samples lamps beside; else 0.
+    double lobe_density = 0.0;
+    Media media{};
   };
   /// Irradiance at a place, W/m^2, by the way light takes.
   struct Arriving {
@@ -71,19 +87,27 @@ class RayTree {
     std::uint64_t key = 0;
     float effort = 1.0f;
     bool shades = true;
+    std::optional<int> number{};  ///< of many looks of one key
+    std::uint64_t gloss_key = 0;  ///< the same in all of them
   };
 
-  void follow(const Branch& branch, Walk& walk) const;
+  void follow(Branch branch, Walk& walk) const;
   void split(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
-  void grow(const Branch& parent, int child, const Eigen::Vector3d& direction,
-            const Spectrum& share, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
+  void scatter(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+               const SurfacePoint& at, Walk& walk) const;
+  void add_lamp(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+                const SurfacePoint& at, const Eigen::Array4d& lot, float share, Walk& walk) const;
+  Spectrum emission(const Branch& branch, const ElementHit& hit, const SurfacePoint& at) const;
+  const RoughLobe& lobe(int material, bool from_back) const;
+  void grow(const Branch& parent, std::uint64_t place, const Onward& way, const ElementHit& hit,
+            const SurfacePoint& at, Walk& walk) const;
   SurfacePoint surface_point(const Ray& ray, const ElementHit& hit) const;
   Eigen::Vector3d smooth_normal(const ElementHit& hit, const SurfacePoint& at) const;
   void shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
-  Arriving arriving(const ElementHit& hit, const SurfacePoint& at, std::uint64_t key,
-                    const ShadowOptions& shadows) const;
-  void note_layers(const Branch& branch, const ElementHit& hit, const Arriving& E,
-                   Walk& walk) const;
+  Arriving arriving(const ElementHit& hit, const SurfacePoint& at, const Branch& branch,
+                    const Walk& walk) const;
+  void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
+                   const Arriving& E, Walk& walk) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;
@@ -91,7 +115,14 @@ class RayTree {
   const RadiositySolution& solution_;
   const RenderOptions& options_;
   bool with_layers_ = false;
-  Eigen::Array3f white_rgb_;  ///< of what reflects everything, under equal-energy light
+  Eigen::Array3f white_rgb_;             ///< of what reflects everything, under equal-energy light
+  std::optional<PixelGather> gather_{};  ///< for Pass::gather
+  static constexpr int gloss_point_count = 1024;
+  SobolPoints gloss_points_;  ///< of looks of one key; later ones use a new scrambling
+  LampSamples lamps_;
+  /// Of the front and the back of each material; empty if it is not rough.
+  std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};
+  bool absorbs_ = false;  ///< there is a body that does
   std::vector<FacetShape> facets_{};
 };
 

@@ -4,16 +4,26 @@
 
 namespace lightwell {
 
-double fresnel_reflectance(double cos_incident, double relative_index) {
+PolarisedReflectance polarised_reflectance(double cos_incident, double relative_index) {
   const double sin2_transmitted =
       (1.0 - cos_incident * cos_incident) / (relative_index * relative_index);
-  if (sin2_transmitted >= 1.0) return 1.0;
+  if (sin2_transmitted >= 1.0) return {1.0, 1.0};
   const double cos_transmitted = std::sqrt(1.0 - sin2_transmitted);
   const double s = (cos_incident - relative_index * cos_transmitted) /
                    (cos_incident + relative_index * cos_transmitted);
   const double p = (relative_index * cos_incident - cos_transmitted) /
                    (relative_index * cos_incident + cos_transmitted);
-  return 0.5 * (s * s + p * p);
+  return {s * s, p * p};
+}
+
+double fresnel_reflectance(double cos_incident, double relative_index) {
+  const PolarisedReflectance R = polarised_reflectance(cos_incident, relative_index);
+  return 0.5 * (R.s + R.p);
+}
+
+double pane_reflectance(double cos_incident, double index) {
+  const PolarisedReflectance R = polarised_reflectance(cos_incident, index);
+  return R.s / (1.0 + R.s) + R.p / (1.0 + R.p);
 }
 
 Eigen::Vector3d reflect(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal) {

@@ -10,6 +10,17 @@ namespace lightwell {
 /// reflection. Born & Wolf, Principles of Optics, section 1.5.
 double fresnel_reflectance(double cos_incident, double relative_index);
 
+/// The same for light polarised across (s) and in (p) the plane of incidence.
+struct PolarisedReflectance {
+  double s = 0.0, p = 0.0;
+};
+PolarisedReflectance polarised_reflectance(double cos_incident, double relative_index);
+
+/// Share that a thin clear pane reflects of unpolarised light: both faces, and all reflections
+/// between them, 2 R / (1 + R), the mean of both polarisations. `index` of the pane, relative to
+/// what is on both sides of it. The rest passes.
+double pane_reflectance(double cos_incident, double index);
+
 /// Mirror direction of `direction` (unit, towards the surface) about the unit normal.
 Eigen::Vector3d reflect(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal);
 

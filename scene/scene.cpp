@@ -49,6 +49,43 @@ void check_share(const Scene& scene, const Material& material, const char* what,
   }
 }
 
+void check_roughness(const Scene& scene, const Material& material, float roughness) {
+  if (!(roughness >= 0.0f && roughness <= 1.0f)) {
+    fail(scene, fmt::format("material '{}': roughness is {}; it must lie between 0 (smooth) and 1",
+                            material.name, roughness));
+  }
+}
+
+void check_dielectric(const Scene& scene, const Material& m, const Dielectric& glass) {
+  check_share(scene, m, "dielectric tint", glass.tint);
+  check_roughness(scene, m, glass.roughness);
+  const float index = glass.index_of_refraction;
+  if (!(index >= lowest_index && index <= highest_index)) {
+    fail(scene,
+         fmt::format("material '{}': index of refraction {}; it is that behind the surface over "
+                     "that before it and must lie between {} and {} (glass: 1.5)",
+                     m.name, index, lowest_index, highest_index));
+  }
+  if (glass.absorption.size() == 0) return;
+  if (glass.absorption.size() != scene.bands.count()) {
+    fail(scene, fmt::format("material '{}': absorption has {} bands, the scene has {}", m.name,
+                            glass.absorption.size(), scene.bands.count()));
+  }
+  for (int k = 0; k < glass.absorption.size(); ++k) {
+    if (!(glass.absorption[k] >= 0.0f && glass.absorption[k] <= highest_absorption)) {
+      fail(scene,
+           fmt::format("material '{}': absorption is {} per metre in band {}; it must lie "
+                       "between 0 and {:g}",
+                       m.name, glass.absorption[k], scene.bands.names[k], highest_absorption));
+    }
+  }
+  if (glass.thin && (glass.absorption > 0.0f).any()) {
+    fail(scene, fmt::format("material '{}' is a thin pane, in which light goes no distance to be "
+                            "absorbed along; give it a tint instead of an absorption",
+                            m.name));
+  }
+}
+
 void check_material(const Scene& scene, const Material& m) {
   check_share(scene, m, "reflectance", m.reflectance);
   check_share(scene, m, "specular reflectance", m.specular);
@@ -63,13 +100,9 @@ void check_material(const Scene& scene, const Material& m) {
                m.name, m.reflectance[k], m.specular[k], sum, scene.bands.names[k]));
     }
   }
+  check_roughness(scene, m, m.specular_roughness);
   if (m.dielectric) {
-    check_share(scene, m, "dielectric tint", m.dielectric->tint);
-    if (!(m.dielectric->index_of_refraction > 0.0f) ||
-        !std::isfinite(m.dielectric->index_of_refraction)) {
-      fail(scene, fmt::format("material '{}': index of refraction {} must be positive (glass: 1.5)",
-                              m.name, m.dielectric->index_of_refraction));
-    }
+    check_dielectric(scene, m, *m.dielectric);
     if ((m.reflectance > 0.0f).any() || (m.specular > 0.0f).any()) {
       fail(scene, fmt::format(
                       "material '{}' is a dielectric and also has a diffuse or mirror reflectance; "
@@ -156,6 +189,24 @@ class Hash {
  private:
   std::uint64_t state_ = 0xcbf29ce484222325ull;
 };
+
+// Only where there is any, so that solutions of scenes without keep their hash. Each kind begins
+// with a word of its own that no reflectance has.
+void add_gloss(const Material& m, Hash& hash) {
+  constexpr std::uint64_t rough_mirror = 0x6d17707e, glass_body = 0x61a55b0d;
+  if (m.specular_roughness > 0.0f && (m.specular > 0.0f).any()) {
+    hash.add(rough_mirror);
+    hash.add(static_cast<double>(m.specular_roughness));
+  }
+  if (!m.dielectric) return;
+  const Dielectric& glass = *m.dielectric;
+  if (glass.roughness > 0.0f || glass.thin || (glass.absorption > 0.0f).any()) {
+    hash.add(glass_body);
+    hash.add(static_cast<double>(glass.roughness));
+    hash.add(static_cast<std::uint64_t>(glass.thin));
+    hash.add(glass.absorption);
+  }
+}
 
 }  // namespace
 
@@ -246,6 +297,7 @@ std::uint64_t scene_hash(const Scene& scene) {
       hash.add(static_cast<double>(m.dielectric->index_of_refraction));
       hash.add(m.dielectric->tint);
     }
+    add_gloss(m, hash);
   }
   for (const Surface& surface : scene.surfaces) {
     hash.add(static_cast<std::uint64_t>(surface.material));

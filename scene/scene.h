@@ -12,24 +12,44 @@
 
 namespace lightwell {
 
-/// Clear, smooth dielectric: glass, water. Reflection and refraction follow Fresnel's equations.
+/// Clear dielectric: glass, water. Reflection and refraction follow Fresnel's equations.
 struct Dielectric {
-  float index_of_refraction = 1.5f;  ///< relative to the outside (front) of the surface, > 0
-  Spectrum tint{};  ///< share of the refracted light that passes, [0,1] per crossing
+  float index_of_refraction = 1.5f;  ///< behind its front over before it
+  Spectrum tint{};         ///< share of the refracted light that passes, [0,1] per crossing
+  Spectrum absorption{};   ///< 1/m behind the front: exp(-absorption d) passes d metres (Beer and
+                           ///< Lambert); empty: none
+  float roughness = 0.0f;  ///< GGX alpha of the surface, [0,1]; 0 is smooth
+  /// A pane without thickness: both its faces at once, light goes straight through. `tint` is then
+  /// the share of what passes the pane, and there is no absorption.
+  bool thin = false;
 };
+
+/// Indices of refraction that validate() accepts: liquid over glass is 0.88, diamond 2.4, germanium
+/// in the infrared 4.
+inline constexpr float lowest_index = 0.1f, highest_index = 10.0f;
+
+/// 1/m; light is then gone within a micrometre.
+inline constexpr float highest_absorption = 1e6f;
 
 /// How a surface gives light back. Energy: reflectance + specular <= 1 in every band.
 struct Material {
   std::string name{};
-  Spectrum reflectance{};                  ///< diffuse rho, [0,1]
-  Spectrum specular{};                     ///< perfect mirror reflectance, [0,1]
+  Spectrum reflectance{};           ///< diffuse rho, [0,1]
+  Spectrum specular{};              ///< mirror reflectance, [0,1]
+  float specular_roughness = 0.0f;  ///< GGX alpha of the mirror, [0,1]: spreads what it reflects,
+                                    ///< and leaves the share as it is; 0 is a perfect mirror
   std::optional<Dielectric> dielectric{};  ///< if set, the surface is clear; rho and specular are 0
   Spectrum emission{};            ///< exitance M = pi L of a Lambertian emitter, W/m^2, >= 0
   bool one_sided = false;         ///< nothing is reflected from behind; the back is black
   bool emits_both_sides = false;  ///< emission leaves the back as well as the front
 
-  /// Light continues through or off it undiffused.
+  /// Light continues through or off it, undiffused or spread by its roughness.
   bool is_specular() const { return dielectric.has_value() || (specular > 0.0f).any(); }
+  /// The roughness of what light continues through or off, GGX alpha; 0: none, or smooth.
+  float gloss_roughness() const {
+    if (dielectric) return dielectric->roughness;
+    return (specular > 0.0f).any() ? specular_roughness : 0.0f;
+  }
   bool is_emitter() const { return (emission > 0.0f).any(); }
 };
 
@@ -59,8 +79,8 @@ struct Surface {
   std::variant<PolygonMesh, Sphere> shape{};
 };
 
-/// Pinhole camera. The picture's x axis is direction x up, so with direction +z and up +y world +x
-/// is on the left; row 0 is the top.
+/// Pinhole camera, or one with a thin lens. The picture's x axis is direction x up, so with
+/// direction +z and up +y world +x is on the left; row 0 is the top.
 struct Camera {
   std::string name{};
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
@@ -68,7 +88,12 @@ struct Camera {
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();  ///< unit length, perpendicular to direction
   double fov_degrees = 40.0;                      ///< full horizontal angle, (0, 180)
   int width = 512, height = 512;                  ///< pixels
+  double lens_radius = 0.0;     ///< m; 0 is a pinhole, in whose picture all is sharp
+  double focus_distance = 1.0;  ///< m along `direction` to the plane that is sharp, > 0
+  int blades = 0;               ///< of the aperture, 3 to max_blades; 0: it is round
 };
+
+inline constexpr int max_blades = 64;
 
 /// A room and what is in it, as plain data: metres and watts.
 struct Scene {

@@ -1,5 +1,6 @@
 #include "scene/io/glossy.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/optics.h"
@@ -36,11 +37,32 @@ double pane_transmittance(double index) {
   return (1.0 - F) / (1.0 + F);
 }
 
+Dielectric thin_pane(double index, const Spectrum& tint, double alpha) {
+  return {.index_of_refraction = static_cast<float>(index),
+          .tint = tint,
+          .roughness = roughness_of(alpha),
+          .thin = true};
+}
+
+float roughness_of(double alpha) {
+  return alpha > smooth_alpha ? static_cast<float>(std::min(alpha, 1.0)) : 0.0f;
+}
+
+void add_highlight(Material& material, const Spectrum& share, double alpha) {
+  if (!(share > 0.0f).any()) return;
+  if (alpha > glossy_alpha) {
+    material.reflectance += share;
+    return;
+  }
+  material.specular += share;
+  material.specular_roughness = roughness_of(alpha);
+}
+
 void set_metallic(Material& material, const Spectrum& color, double metallic, double alpha) {
   const Spectrum metal = static_cast<float>(metallic) * color;
-  const bool is_mirror = alpha <= mirror_alpha;
-  material.specular = is_mirror ? metal : Spectrum(Spectrum::Zero(color.size()));
-  material.reflectance = is_mirror ? Spectrum(color - metal) : color;
+  material.reflectance = color - metal;
+  material.specular = Spectrum::Zero(color.size());
+  add_highlight(material, metal, alpha);
 }
 
 }  // namespace lightwell

@@ -5,9 +5,13 @@
 
 namespace lightwell {
 
-/// Largest GGX width alpha of a metal that is read as a perfect mirror: its lobe is then narrower
-/// than about 10 degrees. Rougher metals are read as diffuse.
-inline constexpr double mirror_alpha = 0.2;
+/// Largest GGX width alpha of a metal or a highlight that is read as glossy. Rougher ones are read
+/// as diffuse, which they nearly are: the first pass then solves for them, and need not follow rays
+/// that most of the room may be at the end of.
+inline constexpr double glossy_alpha = 0.5;
+
+/// Up to here (a lobe of a thirtieth of a degree) a surface is read as smooth.
+inline constexpr double smooth_alpha = 1e-3;
 
 /// Least share of clear glass in a material that is read as wholly clear; the others are opaque.
 inline constexpr double mostly_clear = 0.5;
@@ -30,8 +34,18 @@ Spectrum metal_reflectance(const Spectrum& eta, const Spectrum& k);
 /// its two faces included: (1 - F) / (1 + F).
 double pane_transmittance(double index);
 
+/// A pane without thickness of that index, which passes `tint` of what it does not reflect.
+Dielectric thin_pane(double index, const Spectrum& tint, double alpha = 0.0);
+
+/// A share of light that is mirrored with a lobe of that width: glossy, or diffuse beyond
+/// glossy_alpha.
+void add_highlight(Material& material, const Spectrum& share, double alpha);
+
+/// The roughness of a surface of that alpha: none up to smooth_alpha, at most 1.
+float roughness_of(double alpha);
+
 /// What a surface is called that is part metal (share `metallic` of it, [0,1]) and part diffuse, of
-/// one color: diffuse below, a mirror if its `alpha` is at most mirror_alpha.
+/// one color: diffuse below, with the metal as a highlight.
 void set_metallic(Material& material, const Spectrum& color, double metallic, double alpha);
 
 }  // namespace lightwell

@@ -29,13 +29,30 @@ double share_or(const std::optional<GltfObject>& owner, const char* key, double 
   return std::clamp(number_or(owner, key, otherwise), 0.0, 1.0);
 }
 
-// Share of light that an absorbing body passes on a straight way through it, for each of the two
-// crossings of its surface.
-Spectrum absorption(const std::optional<GltfObject>& volume, double thickness) {
+// What passes KHR_materials_volume's attenuationDistance; nothing where it does not absorb.
+std::optional<Spectrum> attenuation(const std::optional<GltfObject>& volume) {
+  if (!(number_or(volume, "attenuationDistance", 0.0) > 0.0)) return std::nullopt;
+  return color(volume, "attenuationColor", 3).max(0.0f).min(1.0f);
+}
+
+// 1/m: exp(-absorption distance) is the attenuation colour.
+Spectrum absorption(const std::optional<GltfObject>& volume) {
+  const auto passed = attenuation(volume);
+  if (!passed) return {};
+  constexpr double shortest = 1e-6;  // m
+  const auto distance =
+      static_cast<float>(std::max(shortest, number_or(volume, "attenuationDistance", 0.0)));
+  constexpr float black = 1e-6f;  // a colour of 0 would absorb without bound
+  return (-passed->max(black).log() / distance).min(highest_absorption);
+}
+
+// Share that a body passes on a straight way through it, for each of the two crossings of its
+// surface.
+Spectrum passed_by_each_face(const std::optional<GltfObject>& volume, double thickness) {
+  const auto passed = attenuation(volume);
+  if (!passed) return Spectrum::Ones(3);
   const double distance = number_or(volume, "attenuationDistance", 0.0);
-  if (!(distance > 0.0 && thickness > 0.0)) return Spectrum::Ones(3);
-  const Spectrum passed = color(volume, "attenuationColor", 3).max(0.0f).min(1.0f);
-  return passed.pow(static_cast<float>(0.5 * thickness / distance));
+  return passed->pow(static_cast<float>(0.5 * thickness / distance));
 }
 
 bool is_cut_by_alpha(const GltfObject& from) {
@@ -151,35 +168,34 @@ void GltfMaterials::set_surface(const GltfObject& from, bool is_closed, Material
     if (passed < 1.0) {
       remarks_.add("Materials at least half clear were read as wholly clear", material.name);
     }
-    if (alpha > mirror_alpha) remarks_.add("Frosted glass was read as clear", material.name);
-    return set_clear(from, base, is_closed, material);
+    return set_clear(from, base, alpha, is_closed, material);
   }
   if (passed > 0.0) {
     remarks_.add("Materials less than half clear were read as opaque", material.name);
   }
-  if (metallic > 0.0) {
-    remarks_.add("Metals were read as perfect mirrors (roughness up to 0.45) or as diffuse",
-                 material.name);
+  if (metallic > 0.0 && alpha > glossy_alpha) {
+    remarks_.add("Metals of roughness above 0.7 were read as diffuse", material.name);
   }
   set_metallic(material, base, metallic, alpha);
 }
 
-void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, bool is_closed,
-                              Material& material) {
+void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, double alpha,
+                              bool is_closed, Material& material) {
   double index = number_or(from.extension("KHR_materials_ior"), "ior", 1.5);
   if (index == 0.0) index = 1.5;  // a mode of old, without an index
-  if (!(index >= 1.0 && index < 100.0))
+  if (!(index >= 1.0 && index <= highest_index))
     from.fail("has an index of refraction below 1 or beyond all");
   const auto volume = from.extension("KHR_materials_volume");
   const double thickness = number_or(volume, "thicknessFactor", 0.0);
-  const bool is_solid = is_closed || thickness > 0.0;
-  Dielectric glass{.index_of_refraction = static_cast<float>(index),
-                   .tint = base * absorption(volume, thickness)};
-  if (!is_solid) {
-    remarks_.add("Thin panes let light straight through and absorb what they would reflect",
-                 material.name);
-    glass = {.index_of_refraction = 1.0f,
-             .tint = base * static_cast<float>(pane_transmittance(index))};
+  Dielectric glass = thin_pane(index, base, alpha);
+  if (is_closed || thickness > 0.0) {
+    glass.thin = false;
+    // A body is as thick as it is; only where it is none does the file's thickness matter.
+    if (is_closed) {
+      glass.absorption = absorption(volume);
+    } else {
+      glass.tint *= passed_by_each_face(volume, thickness);
+    }
   }
   material.dielectric = glass;
   material.reflectance.setZero();

@@ -26,7 +26,8 @@ class GltfMaterials {
   Material read(const GltfObject& from, bool is_closed);
   Spectrum base_color(const GltfObject& from);
   void set_surface(const GltfObject& from, bool is_closed, Material& material);
-  void set_clear(const GltfObject& from, const Spectrum& base, bool is_closed, Material& material);
+  void set_clear(const GltfObject& from, const Spectrum& base, double alpha, bool is_closed,
+                 Material& material);
   Spectrum emission(const GltfObject& from);
   // Mean of the texture that `owner` names with `key`: white without one, grey 0.5 with a remark if
   // its format is not read. `from` is the material.

@@ -57,6 +57,20 @@ int pixels(const MitsubaNode* film, const char* property, int otherwise) {
   return static_cast<int>(count);
 }
 
+// Scene units are metres there; without an aperture Mitsuba refuses the file.
+void read_lens(const MitsubaNode& sensor, Camera& camera) {
+  camera.lens_radius = sensor.number_or("aperture_radius", 0.0);
+  camera.focus_distance = sensor.number_or("focus_distance", 1.0);
+  if (!(camera.lens_radius >= 0.0 && std::isfinite(camera.lens_radius))) {
+    sensor.fail(fmt::format("has an aperture radius of {}; it must not be negative",
+                            camera.lens_radius));
+  }
+  if (!(camera.focus_distance > 0.0 && std::isfinite(camera.focus_distance))) {
+    sensor.fail(fmt::format("is focused at a distance of {}; it must be above 0",
+                            camera.focus_distance));
+  }
+}
+
 }  // namespace
 
 void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scene& scene,
@@ -65,9 +79,6 @@ void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scen
     remarks.add(fmt::format("Cameras of the plugin '{}' were left out", sensor.type),
                 sensor.label());
     return;
-  }
-  if (sensor.type == "thinlens") {
-    remarks.add("Cameras with a lens were read as pinholes", sensor.label());
   }
   Camera camera{.name = camera_name(sensor.id, scene)};
   const auto films = tree.children(sensor, "film");
@@ -81,6 +92,7 @@ void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scen
   if (!place_camera(read_to_world(sensor), Eigen::Vector3d::UnitZ(), camera, remarks)) {
     sensor.fail("has a transformation that leaves it no direction or no upright");
   }
+  if (sensor.type == "thinlens") read_lens(sensor, camera);
   scene.cameras.push_back(camera);
 }
 

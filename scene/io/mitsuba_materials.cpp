@@ -30,8 +30,13 @@ Material clear(double index, const Spectrum& tint) {
   return material;
 }
 
-const char* const rough_metal =
-    "Rough metals were read as perfect mirrors (alpha up to 0.2) or as diffuse";
+Material pane(double index, const Spectrum& tint, double alpha) {
+  Material material = clear(index, tint);
+  material.dielectric = thin_pane(index, tint, alpha);
+  return material;
+}
+
+const char* const rough_metal = "Metals of alpha above 0.5 were read as diffuse";
 
 }  // namespace
 
@@ -140,16 +145,20 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
     }
   }
   reflectance *= colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
-  double alpha = 0.0;
+  const double alpha = bsdf.type == "roughconductor" ? roughness(bsdf) : 0.0;
   if (bsdf.type == "roughconductor") {
-    alpha =
-        std::max(colors_.number_or(bsdf, "alpha_u", 0.0), colors_.number_or(bsdf, "alpha_v", 0.0));
-    alpha = colors_.number_or(bsdf, "alpha", alpha > 0.0 ? alpha : 0.1);
-    remarks_.add(rough_metal, bsdf.label());
+    if (alpha > glossy_alpha) remarks_.add(rough_metal, bsdf.label());
   }
   Material material = opaque(zero());
   set_metallic(material, reflectance, 1.0, alpha);
   return material;
+}
+
+// GGX's alpha, also of Beckmann's distribution, whose middle is alike; the larger one of two.
+double MitsubaMaterials::roughness(const MitsubaNode& bsdf) {
+  const double alpha =
+      std::max(colors_.number_or(bsdf, "alpha_u", 0.0), colors_.number_or(bsdf, "alpha_v", 0.0));
+  return colors_.number_or(bsdf, "alpha", alpha > 0.0 ? alpha : 0.1);
 }
 
 // A number, or the name of a material.
@@ -168,8 +177,7 @@ double MitsubaMaterials::index(const MitsubaNode& bsdf, std::string_view propert
 // Of the inside over the outside.
 double MitsubaMaterials::index_ratio(const MitsubaNode& bsdf, double inside) {
   const double ratio = index(bsdf, "int_ior", inside) / index(bsdf, "ext_ior", air);
-  constexpr double extreme = 100.0;
-  if (!(ratio > 1.0 / extreme && ratio < extreme)) {
+  if (!(ratio >= lowest_index && ratio <= highest_index)) {
     bsdf.fail(fmt::format("has a ratio of refractive indices of {}; glass has 1.5", ratio));
   }
   return ratio;
@@ -179,18 +187,11 @@ Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf, Pixels pixels) {
   const double ratio = index_ratio(bsdf, bk7);
   const Spectrum tint = colors_.share_or(bsdf, "specular_transmittance", 1.0f, pixels);
   if (bsdf.type == "thindielectric") {
-    return pane(bsdf, ratio, tint);
+    return pane(ratio, tint, 0.0);
   }
-  if (bsdf.type == "roughdielectric") {
-    remarks_.add("Frosted glass was read as clear", bsdf.label());
-  }
-  return clear(ratio, tint);
-}
-
-Material MitsubaMaterials::pane(const MitsubaNode& bsdf, double index, const Spectrum& tint) {
-  remarks_.add("Thin panes let light straight through and absorb what they would reflect",
-               bsdf.label());
-  return clear(1.0, tint * static_cast<float>(pane_transmittance(index)));
+  Material glass = clear(ratio, tint);
+  if (bsdf.type == "roughdielectric") glass.dielectric->roughness = roughness_of(roughness(bsdf));
+  return glass;
 }
 
 Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
@@ -207,18 +208,20 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
   const auto share = [&](const char* property, double otherwise) {
     return std::clamp(colors_.number_or(bsdf, property, otherwise), 0.0, 1.0);
   };
+  const double alpha = share("roughness", 0.5) * share("roughness", 0.5);
   if (share("spec_trans", 0.0) >= mostly_clear) {
     const double eta = index(bsdf, "eta", 1.5);
-    if (!(eta > 0.0 && eta < 100.0)) bsdf.fail("has no index of refraction that glass has");
-    if (bsdf.type == "principledthin") return pane(bsdf, eta, color);
-    remarks_.add("Principled BSDFs that are mostly clear were read as clear glass", bsdf.label());
-    return clear(eta, color);
+    if (!(eta >= lowest_index && eta <= highest_index)) bsdf.fail("has no index of refraction that glass has");
+    if (bsdf.type == "principledthin") return pane(eta, color, alpha);
+    remarks_.add("Principled BSDFs that are mostly clear were read as glass", bsdf.label());
+    Material glass = clear(eta, color);
+    glass.dielectric->roughness = roughness_of(alpha);
+    return glass;
   }
   remarks_.add("Principled BSDFs were read by their base colour, metallic and roughness",
                bsdf.label());
-  const double roughness = share("roughness", 0.5);
   Material material = opaque(zero());
-  set_metallic(material, color, share("metallic", 0.0), roughness * roughness);
+  set_metallic(material, color, share("metallic", 0.0), alpha);
   return material;
 }
 
@@ -270,6 +273,7 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
     }
     sum.reflectance += weights[i] * part.reflectance;
     sum.specular += weights[i] * part.specular;
+    sum.specular_roughness = std::max(sum.specular_roughness, part.specular_roughness);
   }
   // Weights of a mixture may add up to more than 1; light must not.
   const Spectrum excess = (sum.reflectance + sum.specular).max(1.0f);

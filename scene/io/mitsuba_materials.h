@@ -35,7 +35,7 @@ class MitsubaMaterials {
   Material wrapped(const MitsubaNode& bsdf, Pixels pixels);
   Material two_sided(const MitsubaNode& bsdf, Pixels pixels);
   Material blend(const MitsubaNode& bsdf, Pixels pixels);
-  Material pane(const MitsubaNode& bsdf, double index, const Spectrum& tint);
+  double roughness(const MitsubaNode& bsdf);
   static double index(const MitsubaNode& bsdf, std::string_view property, double otherwise);
   static double index_ratio(const MitsubaNode& bsdf, double inside);
   void add_emission(const MitsubaNode& emitter, const std::string& name, Material& material);

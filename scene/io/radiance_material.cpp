@@ -72,16 +72,16 @@ Material clear(double index, const Spectrum& tint) {
   return material;
 }
 
-// Diffuse light and a highlight, which is a mirror's if it is narrow.
+// Diffuse light and a highlight. Ward's roughness (1992) is the width of a Gaussian of slopes, and
+// GGX's alpha that of a lobe with the same middle.
 Material glossy(const Given& given, const Spectrum& diffuse, const Spectrum& specular,
                 double roughness) {
   Material material = opaque(diffuse);
   if (!(specular > 0.0f).any()) return material;
-  if (roughness > 0.0) {
-    given.remark(
-        "Rough highlights were read as a mirror's (roughness up to 0.2) or as diffuse light");
+  if (roughness > glossy_alpha) {
+    given.remark("Highlights of a roughness above 0.5 were read as diffuse light");
   }
-  (roughness <= mirror_alpha ? material.specular : material.reflectance) += specular;
+  add_highlight(material, specular, roughness);
   // Rounding alone could make this exceed 1.
   material.reflectance = material.reflectance.min(1.0f - material.specular);
   return material;
@@ -155,8 +155,7 @@ Maybe ashik2(const Given& given) {
 
 double index_of(const Given& given, std::size_t i) {
   const double index = given.p.reals[i];
-  constexpr double extreme = 100.0;
-  if (!(index > 1.0 / extreme && index < extreme)) {
+  if (!(index >= lowest_index && index <= highest_index)) {
     given.p.fail(fmt::format("has the index of refraction {}; glass has 1.52", index));
   }
   return index;
@@ -169,8 +168,10 @@ Maybe glass(const Given& given) {
   const double index = given.p.reals.size() == 4 ? index_of(given, 3) : window_glass;
   const auto F = static_cast<float>(fresnel_reflectance(1.0, index));
   const Spectrum t = given.color(0);
-  given.remark("Panes let light straight through and absorb what they would reflect");
-  return clear(1.0, (1.0f - F) * (1.0f - F) * t / (1.0f - F * F * t.square()));
+  const Spectrum passed = (1.0f - F) * (1.0f - F) * t / (1.0f - F * F * t.square());
+  Material material = opaque(zero());
+  material.dielectric = thin_pane(index, passed / static_cast<float>(pane_transmittance(index)));
+  return material;
 }
 
 Maybe dielectric(const Given& given) {

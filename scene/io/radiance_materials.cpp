@@ -148,6 +148,7 @@ std::optional<Material> RadianceMaterials::mixed(const Definition& mixture, int 
   const auto a = static_cast<float>(share), b = static_cast<float>(1.0 - share);
   sum.reflectance = a * front->reflectance + b * back->reflectance;
   sum.specular = a * front->specular + b * back->specular;
+  sum.specular_roughness = std::max(front->specular_roughness, back->specular_roughness);
   sum.emission = a * front->emission + b * back->emission;
   sum.one_sided = front->one_sided && back->one_sided;
   return sum;

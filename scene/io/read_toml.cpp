@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
@@ -43,6 +45,36 @@ Eigen::Vector3d read_view_direction(const TomlTable& table, const Eigen::Vector3
   return direction.stableNormalized();
 }
 
+// An f-number is that of a camera with a film 36 mm wide, whose focal length follows from fov.
+void read_lens(const TomlTable& table, double metres_per_unit, Camera& camera) {
+  const auto given = table.present({"aperture_radius", "f_number"});
+  if (given.size() > 1) {
+    table.require(given[1]).fail("is a second statement of the aperture, after 'aperture_radius'");
+  }
+  if (given.empty()) {
+    for (const auto& key : table.present({"focus_distance", "blades"})) {
+      table.require(key).fail(
+          "needs a lens; give 'f_number' or 'aperture_radius', or remove it: a pinhole camera "
+          "shows everything sharp");
+    }
+    return;
+  }
+  const TomlValue aperture = table.require(given[0]);
+  if (given[0] == "aperture_radius") {
+    camera.lens_radius = metres_per_unit * aperture.positive();
+  } else {
+    constexpr double half_film = 0.018;  // m
+    const double focal_length =
+        half_film / std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0);
+    camera.lens_radius = 0.5 * focal_length / aperture.positive();
+  }
+  if (!std::isfinite(camera.lens_radius)) aperture.fail("is no aperture");
+  camera.focus_distance = metres_per_unit * table.require("focus_distance").positive();
+  if (const auto blades = table.find("blades")) {
+    camera.blades = static_cast<int>(blades->integer_within(3, max_blades));
+  }
+}
+
 Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scene) {
   const auto given = value.member("name");
   Camera camera{.name = given ? given->name() : fmt::format("camera{}", number)};
@@ -54,7 +86,8 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
   }
   const TomlTable table =
       value.renamed(fmt::format("camera '{}'", camera.name))
-          .table({"name", "position", "direction", "look_at", "up", "fov", "size"});
+          .table({"name", "position", "direction", "look_at", "up", "fov", "size",
+                  "aperture_radius", "f_number", "focus_distance", "blades"});
   const auto same = [&](const Camera& other) { return other.name == camera.name; };
   if (std::any_of(scene.cameras.begin(), scene.cameras.end(), same)) {
     table.fail("has a name that an earlier camera has; give it another");
@@ -85,6 +118,7 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
     camera.width = static_cast<int>(pixels[0].integer_within(1, most));
     camera.height = static_cast<int>(pixels[1].integer_within(1, most));
   }
+  read_lens(table, scene.metres_per_unit, camera);
   return camera;
 }
 

@@ -115,20 +115,44 @@ Spectrum spectral_or(const TomlTable& table, const char* key, const TomlBands& b
                : constant_spectrum(bands.bands, otherwise);
 }
 
+float read_roughness(const TomlTable& table) {
+  const auto value = table.find("roughness");
+  return value ? static_cast<float>(value->number_within(0.0, 1.0)) : 0.0f;
+}
+
 void read_glass(const TomlTable& table, const TomlBands& bands, Material& material) {
   const auto glass = table.find("glass");
   if (!glass) return;
-  const TomlTable t = glass->table({"ior", "tint"});
+  const TomlTable t = glass->table({"ior", "tint", "roughness", "absorption", "thin"});
   const TomlValue ior = t.require("ior");
   const auto index = static_cast<float>(ior.positive());
-  if (!(index > 0.0f) || !std::isfinite(index)) ior.fail("is no index of refraction (glass: 1.5)");
-  material.dielectric =
-      Dielectric{.index_of_refraction = index, .tint = spectral_or(t, "tint", bands, 1.0f)};
-  for (const char* other : {"reflectance", "specular", "radiance", "exitance", "power"}) {
+  if (!(index >= lowest_index && index <= highest_index)) {
+    ior.fail(
+        fmt::format("is {:g}, but the index behind a surface over that before it must lie "
+                    "between {} and {} (glass: 1.5)",
+                    ior.number(), lowest_index, highest_index));
+  }
+  Dielectric dielectric{.index_of_refraction = index, .tint = spectral_or(t, "tint", bands, 1.0f)};
+  dielectric.roughness = read_roughness(t);
+  if (const auto thin = t.find("thin")) dielectric.thin = thin->boolean();
+  if (const auto absorption = t.find("absorption")) {
+    dielectric.absorption = spectral(*absorption, bands, Quantity::emission);
+    if (!(dielectric.absorption <= highest_absorption).all()) {
+      absorption->fail(
+          fmt::format("is above {:g} per metre, which nothing passes", highest_absorption));
+    }
+    if (dielectric.thin) {
+      absorption->fail(
+          "does not go with thin = true: light goes no distance in a thin pane; give it a 'tint'");
+    }
+  }
+  material.dielectric = dielectric;
+  for (const char* other :
+       {"reflectance", "specular", "roughness", "radiance", "exitance", "power"}) {
     if (const auto value = table.find(other)) {
       value->fail(
           "contradicts 'glass': a clear surface reflects by Fresnel's law alone and emits "
-          "nothing; remove one of the two keys");
+          "nothing (and its roughness is a key of 'glass'); remove one of the two keys");
     }
   }
 }
@@ -207,8 +231,8 @@ TomlBands read_toml_bands(const TomlValue& value) {
 
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands) {
-  const TomlTable table = value.table(
-      {"reflectance", "specular", "glass", "sides", "radiance", "exitance", "power", "emits"});
+  const TomlTable table = value.table({"reflectance", "specular", "roughness", "glass", "sides",
+                                       "radiance", "exitance", "power", "emits"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
@@ -223,6 +247,10 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
               bands.bands.names[static_cast<std::size_t>(k)]));
     }
   }
+  if (table.has("roughness") && !table.has("specular") && !table.has("glass")) {
+    table.require("roughness").fail("spreads what 'specular' mirrors; give that too, or remove it");
+  }
+  material.specular_roughness = read_roughness(table);
   if (const auto sides = table.find("sides")) {
     material.one_sided = sides->one_of({"one", "two"}) == "one";
   }

@@ -57,6 +57,7 @@ void expect_same_solution(const std::filesystem::path& a, const std::filesystem:
   EXPECT_TRUE(same_bits(x.solution.indirect_irradiance, y.solution.indirect_irradiance));
   EXPECT_TRUE(same_bits(x.solution.caustic_irradiance, y.solution.caustic_irradiance));
   EXPECT_TRUE(same_bits(x.solution.interpolation_error, y.solution.interpolation_error));
+  EXPECT_TRUE(same_bits(x.solution.gather_noise, y.solution.gather_noise));
   EXPECT_EQ(x.solution.residual, y.solution.residual);
   EXPECT_EQ(x.solution.error_estimate, y.solution.error_estimate);
   EXPECT_EQ(x.mesh.corners, y.mesh.corners);
@@ -167,6 +168,22 @@ TEST_F(CheckpointTest, RefusesWithTheReason) {
   EXPECT_EQ(content_of(folder / "C"), small_room());
   EXPECT_EQ(run(solve + quick() + kept).code, 3) << "nor without --resume";
   EXPECT_EQ(content_of(folder / "C"), small_room());
+}
+
+TEST_F(CheckpointTest, FormFactorsServeOtherReflectances) {
+  make_checkpoint();
+  std::string text = small_room();
+  text.replace(text.find("0.7, 0.5, 0.3"), 13, "0.7, 0.5, 0.4");
+  folder.write("room.toml", text);
+  const nlohmann::json json = run_json(solve + quick() + Words{"--reuse", "C"});
+  EXPECT_EQ(json["reused"]["file"], "C");
+  EXPECT_GT(json["reused"]["mb"], 0.001);
+  std::filesystem::rename(folder / "S.vtp", folder / "reused.vtp");
+  ASSERT_EQ(run(solve + quick()).code, 0);
+  expect_same_solution(folder / "S.vtp", folder / "reused.vtp");
+  const Ended other = run(solve + Words{"--max-patch-size", "0.5", "--reuse", "C"});
+  EXPECT_EQ(other.code, 0);
+  EXPECT_TRUE(says(other.err, "warning: nothing in 'C' could be used"));
 }
 
 TEST_F(CheckpointTest, WrongUseIsSaidAtOnce) {

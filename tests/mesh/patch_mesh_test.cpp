@@ -66,6 +66,27 @@ TEST(PatchMesh, RectangleIsAGridOfSquarePatches) {
   }
 }
 
+TEST(PatchMesh, ElementsOfAGivenSizeMakeNoMorePatchesThanAllowed) {
+  Scene scene = empty_scene();
+  add_polygon(scene, "wall", {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {}, 1);
+  // Two elements along a patch, until those were more than 64.
+  PatchMesh mesh = build_patches(scene, {.max_element_size = 0.25, .most_patches = 64});
+  EXPECT_EQ(mesh.patch_count(), 64);
+  EXPECT_EQ(mesh.element_count(), 256);
+  mesh = build_patches(scene, {.max_element_size = 0.125, .most_patches = 64});
+  EXPECT_EQ(mesh.patch_count(), 64);
+  EXPECT_EQ(mesh.element_count(), 1024);
+  // Asked for, patches are what they are.
+  mesh = build_patches(scene, {.max_patch_size = 0.25, .max_element_size = 0.125});
+  EXPECT_EQ(mesh.patch_count(), 256);
+  EXPECT_EQ(mesh.element_count(), 1024);
+  // Written as text and read again, a size may lose its last digits.
+  EXPECT_EQ(cut_size(scene, {.max_patch_size = 0.7, .max_element_size = 0.1}).elements_per_edge, 7);
+  EXPECT_THROW(build_patches(scene, {.max_patch_size = 0.1, .max_element_size = 0.2}), InputError);
+  EXPECT_THROW(build_patches(scene, {.max_element_size = -1.0}), InputError);
+  EXPECT_THROW(build_patches(scene, {.max_element_size = 1e-5}), InputError);  // 1.6e11 of them
+}
+
 TEST(PatchMesh, SlightlyTrapezoidalWallStaysAGridOfQuadrilaterals) {
   Scene scene = empty_scene();
   // The Cornell floor: opposite edges differ by 0.6 %, so that rounding up may differ by one.

@@ -123,17 +123,27 @@ TEST(Accuracy, EffortFollowsTheError) {
   EXPECT_EQ(first_effort(0.01, false).refine_tolerance, 0.0);
 
   RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.006};
-  const auto noisy = next_effort(first, 0.01, 0.02, reached, 0);
+  const auto noisy = next_effort(first, 0.01, 0.02, 0.013, reached, 0);
   ASSERT_TRUE(noisy);
   EXPECT_GT(noisy->gather_rays, first.gather_rays);
   EXPECT_EQ(noisy->refine_tolerance, first.refine_tolerance);
-  const auto again = next_effort(*noisy, 0.01, 0.012, reached, 1);
+  const auto again = next_effort(*noisy, 0.01, 0.012, 0.003, reached, 1);
   ASSERT_TRUE(again);
   EXPECT_LT(again->refine_tolerance, first.refine_tolerance);
+  EXPECT_EQ(again->gather_rays, noisy->gather_rays);
 
   RefineReport full{.outcome = RefineOutcome::max_elements_reached, .estimate = 0.015};
-  EXPECT_FALSE(next_effort(first, 0.01, 0.02, full, 0));
-  EXPECT_FALSE(next_effort(first, 0.01, 0.02, reached, 20));
+  EXPECT_FALSE(next_effort(first, 0.01, 0.02, 0.013, full, 0));
+  EXPECT_FALSE(next_effort(first, 0.01, 0.02, 0.013, reached, 20));
+}
+
+// Elements that may not be split interpolate as they do, however many rays there are.
+TEST(Accuracy, RaysAreNotCastWhereElementsAreTooLarge) {
+  const Effort first = first_effort(0.03, false);
+  EXPECT_FALSE(next_effort(first, 0.03, 0.2, 0.005, RefineReport{}, 0));
+  const auto noisy = next_effort(first, 0.03, 0.045, 0.03, RefineReport{}, 0);
+  ASSERT_TRUE(noisy);
+  EXPECT_GT(noisy->gather_rays, first.gather_rays);
 }
 
 }  // namespace

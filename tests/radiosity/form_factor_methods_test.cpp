@@ -97,7 +97,7 @@ TEST_P(Catalogue, IsMet) {
     if (hemicube && !is_for_hemicube(c.name)) continue;
     const Scene scene = scene_of(c);
     // The hemicube looks from patches' centres, so those must be small.
-    const double patch = hemicube ? patch_size(scene, {.auto_patch_count = 1600}) : 1e3;
+    const double patch = hemicube ? cut_size(scene, {.auto_patch_count = 1600}).patch_size : 1e3;
     const Computed computed = compute(scene, patch, options);
     expect_laws(computed, c.name);
     const double error = std::abs(between(computed, 0, 1) - c.F12);

@@ -105,6 +105,7 @@ void expect_same_solve(const SolvedScene& a, const SolvedScene& b) {
   expect_same_bits(x.indirect_irradiance, y.indirect_irradiance, "indirect");
   expect_same_bits(x.caustic_irradiance, y.caustic_irradiance, "caustic");
   expect_same_bits(x.interpolation_error, y.interpolation_error, "interpolation error");
+  expect_same_bits(x.gather_noise, y.gather_noise, "gather noise");
   EXPECT_EQ(a.mesh.corners, b.mesh.corners);
   EXPECT_EQ(x.solver, y.solver);
   EXPECT_EQ(x.outcome, y.outcome);
@@ -245,6 +246,51 @@ TEST(Resume, OtherOptionsTakeNothingFromAJournal) {
   const SolvedScene found = solve_scene(scene, options);
   options.journal = nullptr;
   expect_same_solve(found, solve_scene(scene, options));
+}
+
+// Form factors do not depend on how much surfaces reflect and lamps emit.
+TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
+  TemporaryFolder folder;
+  Scene scene = room(true);
+  SolveOptions options = quick();
+  {
+    Journal journal(folder / "C", {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
+    options.journal = &journal;
+    solve_scene(scene, options);
+  }
+  for (Material& material : scene.materials) {
+    material.reflectance *= 0.9f;
+    material.emission *= 2.0f;
+  }
+  const auto journal = Journal::of_another_solve(folder / "C", "1");
+  const std::int64_t size = journal->size();
+  options.journal = journal.get();
+  const SolvedScene reused = solve_scene(scene, options);
+  EXPECT_GT(journal->recalled(), 0);
+  options.journal = nullptr;
+  expect_same_solve(reused, solve_scene(scene, options));
+  EXPECT_EQ(std::filesystem::file_size(folder / "C"), size);  // nothing was written
+
+  // Mirrors are in the form factors; so is whether a lamp is one.
+  for (Material& material : scene.materials) material.specular *= 0.9f;
+  const auto other = Journal::of_another_solve(folder / "C", "1");
+  options.journal = other.get();
+  solve_scene(scene, options);
+  EXPECT_EQ(other->recalled(), 0);
+}
+
+TEST(Resume, AnotherSolvesJournalMustBeOfThisVersion) {
+  TemporaryFolder folder;
+  EXPECT_THROW(Journal::of_another_solve(folder / "none", "1"), InputError);
+  { Journal journal(folder / "C", {.version = "1"}, 1.0); }
+  EXPECT_THROW(Journal::of_another_solve(folder / "C", "2"), InputError);
+  {
+    Journal in_use(folder / "C", {.version = "1"}, 1.0);
+    EXPECT_THROW(Journal::of_another_solve(folder / "C", "1"), InputError);
+  }
+  const auto first = Journal::of_another_solve(folder / "C", "1");
+  const auto second = Journal::of_another_solve(folder / "C", "1");  // readers do not mind
+  EXPECT_TRUE(first->is_read_only());
 }
 
 }  // namespace

@@ -55,6 +55,60 @@ TEST(CameraRays, PixelCentresAreEvenlySpacedOnThePlane) {
   }
 }
 
+TEST(CameraRays, RaysOfALensMeetWhereItIsFocused) {
+  const Camera camera{.position = {1, 2, 3},
+                      .fov_degrees = 60.0,
+                      .width = 40,
+                      .height = 30,
+                      .lens_radius = 0.05,
+                      .focus_distance = 2.5};
+  const CameraRays rays(camera);
+  for (const double x : {0.0, 11.5, 40.0}) {
+    const Ray through_centre = rays.ray(x, 7);
+    const Eigen::Vector3d sharp =
+        camera.position + through_centre.direction * (2.5 / through_centre.direction.z());
+    for (const double u : {0.1, 0.5, 0.93}) {
+      const Ray ray = rays.ray(x, 7, u, 0.3);
+      const Eigen::Vector3d at = ray.origin + ray.direction * (2.5 / ray.direction.z());
+      EXPECT_LT((at - sharp).norm(), 1e-12);
+      EXPECT_LE((ray.origin - camera.position).norm(), 0.05 + 1e-12);
+      EXPECT_NEAR(ray.origin.z(), 3.0, 1e-12);
+    }
+  }
+}
+
+// A regular polygon of n sides in the unit circle: its second moment about an axis in its plane
+// over its area is (1 + 2 cos^2(pi/n)) / 12; of the disk it is 1/4.
+TEST(CameraRays, ALensIsEvenlyCoveredWhateverItsBlades) {
+  constexpr int steps = 64;
+  for (const int blades : {0, 3, 5, 8}) {
+    const CameraRays rays({.lens_radius = 1.0, .blades = blades});
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero(), square = mean;
+    for (int i = 0; i < steps * steps; ++i) {
+      const double u = (i % steps + 0.5) / steps, v = (i / steps + 0.5) / steps;
+      const Eigen::Vector2d p = rays.ray(1, 1, u, v).origin.head<2>();
+      mean += p / (steps * steps);
+      square += p.cwiseAbs2() / (steps * steps);
+      EXPECT_LE(p.norm(), 1.0 + 1e-6);
+    }
+    const double c = blades > 0 ? std::cos(std::numbers::pi / blades) : 1.0;
+    // Midpoints miss means of functions this smooth by about a step squared; blades that do not
+    // divide the steps add a step of a blade's share.
+    EXPECT_LT(mean.norm(), 1.0 / steps) << blades;
+    EXPECT_NEAR(square.x(), (1 + 2 * c * c) / 12, 1.0 / steps) << blades;
+    EXPECT_NEAR(square.y(), (1 + 2 * c * c) / 12, 1.0 / steps) << blades;
+  }
+}
+
+TEST(CameraRays, ImpossibleLensesAreRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(CameraRays({.lens_radius = -0.1}), InputError);
+  EXPECT_THROW(CameraRays({.lens_radius = nan}), InputError);
+  EXPECT_THROW(CameraRays({.lens_radius = 0.1, .focus_distance = 0.0}), InputError);
+  EXPECT_THROW(CameraRays({.lens_radius = 0.1, .focus_distance = nan}), InputError);
+  EXPECT_THROW(CameraRays({.lens_radius = 0.1, .blades = 2}), InputError);
+}
+
 TEST(CameraRays, ImpossibleCamerasAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(CameraRays({.width = 0}), InputError);

@@ -24,6 +24,9 @@ struct Paint {
   std::optional<float> index_of_refraction{};
   float tint = 1.0f;
   bool one_sided = false, emits_both_sides = false;
+  float roughness = 0.0f;   ///< of the mirror or the dielectric
+  float absorption = 0.0f;  ///< 1/m
+  bool thin = false;
 };
 
 /// Builds a scene surface by surface.
@@ -79,12 +82,16 @@ class SceneBuilder {
     Material material{.name = "paint " + std::to_string(scene_.materials.size()),
                       .reflectance = constant_spectrum(bands, paint.reflectance),
                       .specular = constant_spectrum(bands, paint.specular),
+                      .specular_roughness = paint.index_of_refraction ? 0.0f : paint.roughness,
                       .emission = constant_spectrum(bands, paint.exitance),
                       .one_sided = paint.one_sided,
                       .emits_both_sides = paint.emits_both_sides};
     if (paint.index_of_refraction) {
       material.dielectric = Dielectric{.index_of_refraction = *paint.index_of_refraction,
-                                       .tint = constant_spectrum(bands, paint.tint)};
+                                       .tint = constant_spectrum(bands, paint.tint),
+                                       .absorption = constant_spectrum(bands, paint.absorption),
+                                       .roughness = paint.roughness,
+                                       .thin = paint.thin};
     }
     scene_.materials.push_back(std::move(material));
     scene_.surfaces.push_back({.name = "surface " + std::to_string(scene_.surfaces.size()),

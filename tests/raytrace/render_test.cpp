@@ -40,7 +40,8 @@ TEST_P(Furnace, EveryPixelShowsBOverPi) {
 }
 
 INSTANTIATE_TEST_SUITE_P(PassesAndBands, Furnace,
-                         ::testing::Combine(::testing::Values(Pass::interpolate, Pass::direct),
+                         ::testing::Combine(::testing::Values(Pass::interpolate, Pass::direct,
+                                                              Pass::gather),
                                             ::testing::Values(3, 7)));
 
 TEST(Render, InterpolatedLinearIrradianceIsExactInEveryPixel) {

@@ -27,6 +27,20 @@ Eigen::Vector3d vector(const nlohmann::json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 
+TEST(Pane, PassesWhatASlabOfGlassDoesWithoutItsThickness) {
+  const auto item = reference("slab-clear");
+  for (const auto& [angle, expected] : item.at("expected").items()) {
+    const double cosine = std::cos(std::stod(angle) * degree);
+    EXPECT_NEAR(1.0 - pane_reflectance(cosine, item.at("parameters").at("n").get<double>()),
+                expected.at("T").get<double>(), tolerance)
+        << angle;
+  }
+}
+
+TEST(Pane, ReflectsAllWhereOneOfItsFacesDoes) {
+  EXPECT_EQ(pane_reflectance(0.5, 0.6), 1.0);
+}
+
 class Boundary : public testing::TestWithParam<const char*> {};
 
 TEST_P(Boundary, ReflectsByFresnelAndRefractsBySnell) {

@@ -106,11 +106,13 @@ TEST_F(Gltf, BinaryFilesSayTheSame) {
   EXPECT_EQ(scene_hash(read_scene(folder.write("it.glb", glb(json)))), scene_hash(text));
 }
 
-TEST_F(Gltf, MetalsAreMirrorsWhereTheyAreSmooth) {
+// Alpha is the square of roughness.
+TEST_F(Gltf, MetalsAreGlossyAndOnlyTheRoughestDiffuse) {
   const Material smooth = material(
       R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":1,"roughnessFactor":0.1}})");
   EXPECT_FLOAT_EQ(smooth.specular[0], 0.5f);
   EXPECT_FLOAT_EQ(smooth.reflectance[0], 0.0f);
+  EXPECT_FLOAT_EQ(smooth.specular_roughness, 0.01f);
   const Material rough = material(
       R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":1,"roughnessFactor":0.9}})");
   EXPECT_FLOAT_EQ(rough.reflectance[2], 0.7f);
@@ -126,19 +128,20 @@ TEST_F(Gltf, SheetsShineToBothSidesWhereTheyAreDoubleSided) {
   EXPECT_FLOAT_EQ(front.emission[0], pi);
 }
 
-// Transmittance of a pane of index 1.5: 0.96 / 1.04, times its colour.
 TEST_F(Gltf, ClearSheetsAreThinPanesUnlessTheyHaveAThickness) {
   const std::string base =
       R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,1,1,1],"metallicFactor":0,"roughnessFactor":0},
       "extensions":{"KHR_materials_transmission":{"transmissionFactor":1})";
   const Material pane = material(base + "}}");
   ASSERT_TRUE(pane.dielectric.has_value());
-  EXPECT_FLOAT_EQ(pane.dielectric->index_of_refraction, 1.0f);
-  EXPECT_NEAR(pane.dielectric->tint[0], 0.5 * 0.96 / 1.04, 1e-6);
+  EXPECT_TRUE(pane.dielectric->thin);
+  EXPECT_FLOAT_EQ(pane.dielectric->index_of_refraction, 1.5f);
+  EXPECT_FLOAT_EQ(pane.dielectric->tint[0], 0.5f);
   // Half of the light is left after 1 m; 2 m leave a quarter, so each crossing passes a half.
   const Material solid = material(base + R"(,"KHR_materials_ior":{"ior":1.3},"KHR_materials_volume":
       {"thicknessFactor":2,"attenuationDistance":1,"attenuationColor":[0.5,0.5,0.5]}}})");
   ASSERT_TRUE(solid.dielectric.has_value());
+  EXPECT_FALSE(solid.dielectric->thin);
   EXPECT_FLOAT_EQ(solid.dielectric->index_of_refraction, 1.3f);
   EXPECT_NEAR(solid.dielectric->tint[1], 0.5, 1e-6);
   EXPECT_NEAR(solid.dielectric->tint[0], 0.25, 1e-6);

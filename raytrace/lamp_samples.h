@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "radiosity/direct_light.h"
+
+namespace lightwell {
+
+/// A direction in which a lamp lies.
+struct LampSample {
+  const Emitter* emitter = nullptr;
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+  double distance = 0.0;                                 ///< m
+  double density = 0.0;                                  ///< 1/sr
+};
+
+/// Directions towards the emitters of DirectLight, for rough surfaces: a highlight that is left to
+/// the lobe's own directions is noise, since few of them find a small lamp (Veach & Guibas 1995).
+/// An emitter is drawn by its power, a polygon's points evenly by area, a sphere's by solid angle.
+class LampSamples {
+ public:
+  explicit LampSamples(const DirectLight& direct_light);
+
+  /// From a place on a facet; three numbers in [0,1). Nothing where the lamp drawn sends no light
+  /// to it. What lies between is not looked at.
+  std::optional<LampSample> draw(const Eigen::Vector3d& from, int facet, double which, double u,
+                                 double v) const;
+  /// Density of draw() in the direction of a place on the lit side of a facet; 0 if that is none of
+  /// DirectLight's emitters.
+  double density(const Eigen::Vector3d& from, const Eigen::Vector3d& place, int facet) const;
+
+ private:
+  double density_of(const Emitter& emitter, const Eigen::Vector3d& from,
+                    const Eigen::Vector3d& direction, double distance) const;
+
+  const std::vector<Emitter>& emitters_;
+  std::vector<double> share_{};  // probability of each
+  std::vector<double> cdf_{};    // its running sum
+  std::vector<int> of_facet_{};  // emitter of a facet; -1: none
+};
+
+}  // namespace lightwell

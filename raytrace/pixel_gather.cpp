@@ -1,0 +1,77 @@
+#include "raytrace/pixel_gather.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "radiosity/final_gather.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t direction_purpose = 0x6a7e, branch_purpose = 0x6a7f;
+constexpr int batch = 64;
+
+// A smooth normal's hemisphere reaches below the surface it rounds off; what would go there meets
+// that surface's neighbourhood, of which the side above is the best picture.
+Eigen::Vector3d above(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal) {
+  const double height = direction.dot(normal);
+  return height < 0.0 ? Eigen::Vector3d(direction - 2.0 * height * normal) : direction;
+}
+
+}  // namespace
+
+PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
+                         const DirectLight& direct_light, const RadiositySolution& solution,
+                         int most_rays, int max_specular_depth)
+    : caster_(caster),
+      paths_(scene, caster, max_specular_depth),
+      radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance())) {
+  constexpr int fewest = 8;
+  for (int rays = most_rays; rays >= std::min(fewest, most_rays) && rays > 0; rays /= 2) {
+    sets_.emplace_back(rays);
+  }
+}
+
+Spectrum PixelGather::indirect_irradiance(const GatherPlace& at, std::uint64_t key,
+                                          float share) const {
+  std::size_t level = 0;
+  for (; share <= 0.5f && level + 1 < sets_.size(); share *= 2.0f) ++level;
+  const HemisphereSets::Draw draw = sets_[level].draw(random_key(key, direction_purpose));
+  const Eigen::Matrix3d frame = draw.frame(at.smooth_normal);
+  const auto points = draw.all();
+  std::array<Ray, batch> rays;
+  std::array<ElementHit, batch> hits;
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(radiosity_.cols());
+  for (std::size_t begin = 0; begin < points.size(); begin += batch) {
+    const std::size_t n = std::min<std::size_t>(batch, points.size() - begin);
+    for (std::size_t r = 0; r < n; ++r) {
+      const HemispherePoint& p = points[begin + r];
+      rays[r] = {.origin = at.position,
+                 .direction = above(frame * Eigen::Vector3d(p.x, p.y, p.z), at.normal),
+                 .origin_group = at.facet};
+    }
+    caster_.closest_hits({rays.data(), n}, {hits.data(), n});
+    for (std::size_t r = 0; r < n; ++r) {
+      if (hits[r].facet < 0) continue;
+      const std::uint64_t ray_key = random_key(key, branch_purpose, begin + r);
+      sum += arriving(rays[r], hits[r], ray_key).cast<double>();
+    }
+  }
+  return (sum / static_cast<double>(points.size())).cast<float>();
+}
+
+// B of what the ray ends on.
+Spectrum PixelGather::arriving(const Ray& ray, const ElementHit& hit, std::uint64_t key) const {
+  const PatchMesh& mesh = caster_.mesh();
+  Spectrum B = Spectrum::Zero(radiosity_.cols());
+  if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) B = interpolate(mesh, radiosity_, hit);
+  if (!paths_.is_specular(hit.facet)) return B;
+  paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+    B += throughput * interpolate(mesh, radiosity_, end);
+  });
+  return B;
+}
+
+}  // namespace lightwell

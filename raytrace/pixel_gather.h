@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "radiosity/direct_light.h"
+#include "radiosity/light_path.h"
+#include "radiosity/solution.h"
+#include "scene/hemisphere_sets.h"
+
+namespace lightwell {
+
+/// A place that a pixel shows.
+struct GatherPlace {
+  Eigen::Vector3d position, normal;  ///< the surface's own, unit, towards the eye
+  Eigen::Vector3d smooth_normal;     ///< that light is measured about
+  int facet = -1;
+};
+
+/// Final gather (Reichert 1992) at places of a picture: indirect irradiance, E = (1/N) sum B over
+/// cosine-distributed rays of a scrambled Sobol sequence that read the solution's radiosity
+/// where they end, going on through mirrors and clear glass. Light that emitters of DirectLight
+/// send by way of those is not in it: see RadiositySolution::caustic_irradiance.
+class PixelGather {
+ public:
+  /// `most_rays` per place, at least 1; a power of two stratifies best.
+  PixelGather(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+              const RadiositySolution& solution, int most_rays, int max_specular_depth);
+
+  /// By about `share`, (0, 1], of the rays: the nearest power of two less, at least 8.
+  Spectrum indirect_irradiance(const GatherPlace& at, std::uint64_t key, float share) const;
+
+ private:
+  Spectrum arriving(const Ray& ray, const ElementHit& hit, std::uint64_t key) const;
+
+  const ElementCaster& caster_;
+  LightPaths paths_;
+  BandArray radiosity_{};               // vertices x bands, W/m^2
+  std::vector<HemisphereSets> sets_{};  // each of half as many rays as the one before
+};
+
+}  // namespace lightwell

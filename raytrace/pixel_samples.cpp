@@ -1,0 +1,86 @@
+#include "raytrace/pixel_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t place_purpose = 0x9face, look_purpose = 0x9faced;
+constexpr double filter_radius = 1.5;  // pixels
+
+// x in [-1, 1] over the window's width; 1 in the middle.
+double blackman_harris(double x) {
+  const double a = std::numbers::pi * (x + 1.0);
+  return 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2.0 * a) -
+         0.01168 * std::cos(3.0 * a);
+}
+
+}  // namespace
+
+bool PixelTally::is_good(float noise) const {
+  if (!(noise > 0.0f) || count < 2) return false;
+  const double mean = light / count;
+  const double variance = std::max(0.0, square / count - mean * mean) / (count - 1);
+  return std::sqrt(variance) <= static_cast<double>(noise) * mean;
+}
+
+FilterPlaces::FilterPlaces() {
+  for (int i = 0; i < steps_; ++i) {
+    cdf_[i + 1] = cdf_[i] + blackman_harris(2.0 * (i + 0.5) / steps_ - 1.0);
+  }
+  for (double& share : cdf_) share /= cdf_[steps_];
+}
+
+double FilterPlaces::offset(double u) const {
+  const auto above = std::upper_bound(cdf_.begin() + 1, cdf_.end() - 1, u);
+  const auto step = above - cdf_.begin() - 1;
+  const double within = (u - *(above - 1)) / (*above - *(above - 1));
+  return filter_radius * (2.0 * (static_cast<double>(step) + within) / steps_ - 1.0);
+}
+
+PixelSamples::PixelSamples(const CameraRays& rays, const RayTree& tree,
+                           const SampleOptions& options)
+    : rays_(rays), tree_(tree), options_(options), points_(options.most) {}
+
+PixelTally PixelSamples::first_looks(int x, int y) const {
+  PixelTally tally;
+  look(x, y, std::min(options_.least, options_.most), tally);
+  return tally;
+}
+
+void PixelSamples::look_on(int x, int y, bool is_beside_noise, PixelTally& tally) const {
+  constexpr int more_beside_noise = 4;
+  if (is_beside_noise) {
+    look(x, y, std::min(more_beside_noise * options_.least, options_.most), tally);
+  }
+  while (tally.count < options_.most && !tally.is_good(options_.noise)) {
+    look(x, y, std::min(2 * tally.count, options_.most), tally);
+  }
+}
+
+void PixelSamples::look(int x, int y, int until, PixelTally& tally) const {
+  const auto column = static_cast<std::uint64_t>(x), row = static_cast<std::uint64_t>(y);
+  const std::uint64_t place_key = random_key(column, row, place_purpose);
+  const std::uint64_t look_key = random_key(column, row, look_purpose);
+  for (; tally.count < until; ++tally.count) {
+    const Eigen::Array4d u = points_.point(tally.count, place_key).cast<double>();
+    const Ray ray =
+        rays_.ray(x + 0.5 + filter_.offset(u[0]), y + 0.5 + filter_.offset(u[1]), u[2], u[3]);
+    Sight sight = tree_.look_one_of_many(ray, look_key, tally.count);
+    const auto light = static_cast<double>(sight.radiance.mean());
+    tally.light += light;
+    tally.square += light * light;
+    if (tally.count == 0) {
+      tally.sum = std::move(sight);
+      continue;
+    }
+    tally.sum.radiance += sight.radiance;
+    tally.sum.layers += sight.layers;
+    tally.sum.depth_cut += sight.depth_cut;
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+
+#include "raytrace/camera_ray.h"
+#include "raytrace/shade.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+
+/// Places about a pixel's centre with the density of the Blackman-Harris window over three pixels
+/// (Harris 1978), a reconstruction filter without negative lobes: a plain mean of samples at such
+/// places is the filtered picture (Ernst, Stamminger & Greiner 2006).
+class FilterPlaces {
+ public:
+  FilterPlaces();
+  /// Of u in [0,1): -1.5 to 1.5 pixels.
+  double offset(double u) const;
+
+ private:
+  static constexpr int steps_ = 256;
+  std::array<double, steps_ + 1> cdf_{};
+};
+
+/// What looks through one pixel saw.
+struct PixelTally {
+  Sight sum{};  ///< of all looks; its fingerprint means nothing
+  int count = 0;
+  double light = 0.0, square = 0.0;  ///< sums of the bands' mean radiance and of its square
+
+  /// Whether the standard error of the mean is at most `noise`, above 0, of it: that of as many
+  /// independent looks; stratified ones are better.
+  bool is_good(float noise) const;
+};
+
+/// A pixel by many looks, each through a place of its own of picture and lens: for what no
+/// subdivision of the pixel's square resolves, gloss and depth of field (Cook, Porter & Carpenter
+/// 1984). Samples are points of one scrambled Sobol sequence per pixel, and neighbours share none.
+class PixelSamples {
+ public:
+  PixelSamples(const CameraRays& rays, const RayTree& tree, const SampleOptions& options);
+
+  /// SampleOptions::least looks.
+  PixelTally first_looks(int x, int y) const;
+  /// More, until the error is what SampleOptions::noise asks for, at most SampleOptions::most.
+  /// Beside a pixel whose first looks are not good, four times `least` come before the first
+  /// judgement: what is small and bright may have escaped them.
+  void look_on(int x, int y, bool is_beside_noise, PixelTally& tally) const;
+
+  const SampleOptions& options() const { return options_; }
+
+ private:
+  void look(int x, int y, int until, PixelTally& tally) const;
+
+  const CameraRays& rays_;
+  const RayTree& tree_;
+  SampleOptions options_;
+  SobolPoints points_;
+  FilterPlaces filter_;
+};
+
+}  // namespace lightwell

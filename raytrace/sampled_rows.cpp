@@ -1,0 +1,68 @@
+#include "raytrace/sampled_rows.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+// Calls body(x, y) for each pixel of rows `first` to `end`, in slices that keep progress and
+// interruption on this thread.
+template <class Body>
+void for_each_pixel(int width, int first, int end, const Progress& progress, double part,
+                    Body&& body) {
+  constexpr int slice = 512, grain = 8;
+  const int count = (end - first) * width;
+  for (int begin = 0; begin < count; begin += slice) {
+    parallel_for(std::min(slice, count - begin), grain, [&](int from, int to) {
+      for (int i = begin + from; i < begin + to; ++i) body(i % width, first + i / width);
+    });
+    report(progress, "render", part);
+  }
+}
+
+}  // namespace
+
+SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
+                        const Progress& progress, double part, Image& image, LayerFilm& layers) {
+  const int top = std::max(0, first_row - 1), bottom = std::min(image.height, first_row + rows + 1);
+  std::vector<PixelTally> tallies(static_cast<std::size_t>(bottom - top) *
+                                  static_cast<std::size_t>(image.width));
+  std::vector<char> good(tallies.size());
+  const auto slot = [&](int x, int y) {
+    return static_cast<std::size_t>(y - top) * static_cast<std::size_t>(image.width) +
+           static_cast<std::size_t>(x);
+  };
+  for_each_pixel(image.width, top, bottom, progress, part, [&](int x, int y) {
+    PixelTally& tally = tallies[slot(x, y)] = samples.first_looks(x, y);
+    good[slot(x, y)] = tally.is_good(samples.options().noise);
+  });
+  const auto is_beside_noise = [&](int x, int y) {
+    for (int j = std::max(top, y - 1); j < std::min(bottom, y + 2); ++j) {
+      for (int i = std::max(0, x - 1); i < std::min(image.width, x + 2); ++i) {
+        if (!good[slot(i, j)]) return true;
+      }
+    }
+    return false;
+  };
+  for_each_pixel(image.width, first_row, first_row + rows, progress, part, [&](int x, int y) {
+    PixelTally& tally = tallies[slot(x, y)];
+    samples.look_on(x, y, is_beside_noise(x, y), tally);
+    const float share = 1.0f / static_cast<float>(tally.count);
+    const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
+    image.radiance.row(pixel) = share * tally.sum.radiance.transpose();
+    layers.set_sampled(pixel, share * tally.sum.layers);
+  });
+  SampledRows result;
+  for (int y = first_row; y < first_row + rows; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      result.looks += tallies[slot(x, y)].count;
+      result.depth_cut += tallies[slot(x, y)].sum.depth_cut;
+    }
+  }
+  return result;
+}
+
+}  // namespace lightwell

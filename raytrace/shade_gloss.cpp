@@ -1,0 +1,98 @@
+// What RayTree sees by way of rough surfaces.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "raytrace/shade.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t gloss_purpose = 0x61055, lamp_purpose = 0x1a4b;
+constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
+
+}  // namespace
+
+// The mean over directions of a rough surface's lobe.
+void RayTree::scatter(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+                      const SurfacePoint& at, Walk& walk) const {
+  if (!walk.shades) return;
+  const bool is_first = branch.is_sharp && !walk.number;
+  const int count =
+      is_first ? std::max(1, static_cast<int>(std::lround(walk.effort * options_.glossy_rays))) : 1;
+  const int first = walk.number.value_or(0);
+  const std::uint64_t key = random_key(walk.gloss_key, branch.place, gloss_purpose,
+                                       static_cast<std::uint64_t>(first / gloss_point_count));
+  for (int i = 0; i < count; ++i) {
+    const int index = (first + i) % gloss_point_count;
+    const auto lot_key = random_key(key, static_cast<std::uint64_t>(index));
+    const Eigen::Array4d u = gloss_points_.point(index, key).cast<double>();
+    Onward way = draw_way(meeting, {.way = u[2], .u = u[0], .v = u[1], .key = lot_key});
+    way.share /= static_cast<float>(count);
+    way.density = lobe(facets_[hit.facet].material, hit.from_back).density(meeting, way.direction);
+    const Eigen::Array4d lamp_lot =
+        gloss_points_.point(index, random_key(key, lamp_purpose)).cast<double>();
+    add_lamp(branch, meeting, hit, at, lamp_lot, 1.0f / static_cast<float>(count), walk);
+    // Places of many looks are alike, so that theirs are spread over what lies behind as well.
+    const auto place =
+        random_key(branch.place, gloss_purpose, static_cast<std::uint64_t>(i), way.crosses);
+    Branch spread = branch;
+    spread.is_sharp = false;
+    grow(spread, place, way, hit, at, walk);
+  }
+}
+
+const RoughLobe& RayTree::lobe(int material, bool from_back) const {
+  return *lobes_[static_cast<std::size_t>(material)][from_back ? 1 : 0];
+}
+
+// Light of a lamp off a rough surface, by a direction drawn towards the lamp; those of the lobe
+// that meet it count for the rest (balance heuristic of Veach & Guibas 1995).
+void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+                       const SurfacePoint& at, const Eigen::Array4d& lot, float share,
+                       Walk& walk) const {
+  if (branch.depth >= deepest_path(options_.max_depth, true)) return;
+  const auto lamp = lamps_.draw(at.position, hit.facet, lot[0], lot[1], lot[2]);
+  if (!lamp) return;
+  const int material = facets_[hit.facet].material;
+  const double density = lobe(material, hit.from_back).density(meeting, lamp->direction);
+  const Onward way{.direction = lamp->direction,
+                   .crosses = lamp->direction.dot(meeting.normal) < 0.0};
+  const Spectrum L = lamp->emitter->exitance * one_over_pi;
+  Spectrum seen = branch.weight * share_of(meeting, way.crosses) * L *
+                  (share * static_cast<float>(density / (density + lamp->density)));
+  if (!((branch.weight > 0.0f).any() && density > 0.0)) return;
+  const Ray ray{.origin = at.position,
+                .direction = lamp->direction,
+                .t_max = lamp->distance,
+                .origin_group = hit.facet,
+                .target_group = lamp->emitter->facet};
+  std::uint8_t blocked = 0;
+  caster_.occluded({&ray, 1}, {&blocked, 1});
+  if (blocked != 0) return;
+  if (absorbs_) {
+    Media media = branch.media;
+    media.go_on(material, meeting.material, way, hit.from_back);
+    seen *= media.passed(scene_, facets_[lamp->emitter->facet].material, false, lamp->distance);
+  }
+  walk.sight.radiance += seen;
+  if (with_layers_) {
+    walk.sight.layers.segment<3>(first_sampled_column(Layer::specular)) +=
+        linear_rgb(scene_.bands, seen);
+  }
+}
+
+// M of the side that was met, without what add_lamp counts.
+Spectrum RayTree::emission(const Branch& branch, const ElementHit& hit,
+                           const SurfacePoint& at) const {
+  const PatchMesh& mesh = caster_.mesh();
+  const Spectrum M = mesh.emission.row(mesh.patch[hit.element]).transpose();
+  if (!(branch.lobe_density > 0.0) || !(M > 0.0f).any()) return M;
+  if (!direct_light_.owns(hit.facet, hit.from_back)) return M;
+  const double lamps = lamps_.density(branch.ray.origin, at.position, hit.facet);
+  return M * static_cast<float>(branch.lobe_density / (branch.lobe_density + lamps));
+}
+
+}  // namespace lightwell

@@ -1,0 +1,215 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "radiosity/light_path.h"
+#include "radiosity/solve.h"
+#include "raytrace/shade.h"
+#include "scene/optics.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+#include "tests/raytrace/lit_scene.h"
+
+namespace lightwell {
+namespace {
+
+constexpr auto pi_f = std::numbers::pi_v<float>;
+const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+
+float radiance(const LitScene& lit, const Ray& ray, const RenderOptions& options = {},
+               std::uint64_t key = 1) {
+  return RayTree(lit.scene, lit.caster, lit.direct_light, lit.solution, options)
+      .look(ray, key)
+      .radiance[0];
+}
+
+// A branch carries all of what it sees, so that no path but those cut off can be missing.
+const RenderOptions to_the_end{.max_depth = 400, .min_contribution = 1e-9f};
+
+class GlossInAFurnace : public testing::TestWithParam<Paint> {};
+
+// What is rough neither absorbs nor shines: in a world of radiance 1 it cannot be seen.
+TEST_P(GlossInAFurnace, IsInvisible) {
+  const LitScene lit(SceneBuilder()
+                         .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
+                         .sphere(GetParam(), {0.1, 0, 0}, 1.0)
+                         .box(GetParam(), {1.5, -1, -1}, {2.5, 1, 1}, false)
+                         .build());
+  for (int i = 0; i <= 60; ++i) {
+    const Ray ray{.origin = {-1.0 + 3.5 * i / 60.0, 0.3, 2.5}, .direction = -up};
+    EXPECT_NEAR(radiance(lit, ray, to_the_end, static_cast<std::uint64_t>(i)), 1.0, 1e-3) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    MetalAndGlass, GlossInAFurnace,
+    ::testing::Values(Paint{.specular = 1.0f, .roughness = 0.05f},
+                      Paint{.specular = 1.0f, .roughness = 0.4f},
+                      Paint{.specular = 1.0f, .roughness = 1.0f},
+                      Paint{.index_of_refraction = 1.5f, .roughness = 0.05f},
+                      Paint{.index_of_refraction = 1.5f, .roughness = 0.4f},
+                      Paint{.index_of_refraction = 1.5f, .roughness = 1.0f},
+                      Paint{.index_of_refraction = 1.5f, .roughness = 0.3f, .thin = true}));
+
+TEST(Gloss, ReflectsTheShareThatItIsGiven) {
+  const LitScene lit(SceneBuilder()
+                         .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
+                         .square({.specular = 0.6f, .roughness = 0.5f}, {0, 0, 0}, up, 1.0)
+                         .build());
+  EXPECT_NEAR(radiance(lit, {.origin = {0.5, 0.1, 2}, .direction = -up}), 0.6, 1e-6);
+}
+
+// What is seen of a lamp by way of a rough surface, for which the eye samples lamps beside the
+// lobe, is the share of the lobe's rays that end on it, which is all the first pass knows.
+TEST(Gloss, ScattersAlikeInBothPasses) {
+  for (const Paint& paint : {Paint{.specular = 0.9f, .roughness = 0.5f},
+                             Paint{.index_of_refraction = 1.5f, .roughness = 0.3f}}) {
+    for (const bool is_sphere : {false, true}) {
+      SceneBuilder builder;
+      builder.square(paint, {0, 0, 0}, up, 1.0).box({}, {-4, -4, -4}, {4, 4, 4}, true);
+      const Paint shines{.exitance = pi_f};
+      for (const double z : {-1.5, 1.5}) {  // one is reflected, the other refracted
+        const Eigen::Vector3d at(-0.8, 0.1, z);
+        is_sphere ? builder.sphere(shines, at, 0.5) : builder.square(shines, at, -z * up, 0.5);
+      }
+      const LitScene lit(builder.build());
+      ASSERT_EQ(lit.direct_light.emitters().size(), 2U);
+      const RayTree tree(lit.scene, lit.caster, lit.direct_light, lit.solution, to_the_end);
+      const LightPaths paths(lit.scene, lit.caster, 400);
+      const Ray ray{.origin = {0.8, 0.1, 1},
+                    .direction = Eigen::Vector3d(-0.8, 0, -1).normalized()};
+      ElementHit hit;
+      lit.caster.closest_hits({&ray, 1}, {&hit, 1});
+      ASSERT_TRUE(paths.is_specular(hit.facet));
+      constexpr std::uint64_t count = 10000;
+      double found = 0.0, seen = 0.0;
+      for (std::uint64_t key = 0; key < count; ++key) {
+        paths.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+          const float L = lit.mesh.emission(lit.mesh.patch[end.element], 0) / pi_f;
+          found += static_cast<double>(throughput[0] * L) / count;
+        });
+        if (key % 20 == 0)
+          seen += static_cast<double>(tree.look(ray, key).radiance[0]) * 20 / count;
+      }
+      // A share p of independent rays: sigma = sqrt(p (1 - p) / count), at most 0.005; the eye has
+      // 8 times 500 and lamp samples, which are no worse.
+      EXPECT_NEAR(seen, found, 4 * std::hypot(0.005, 0.5 / std::sqrt(4000.0)));
+      EXPECT_GT(found, 0.1);
+    }
+  }
+}
+
+// Every wall shines with M and reflects rho: B = M / (1 - rho) whatever rough things are between
+// them.
+TEST(Gloss, NeitherTakesNorGivesLightInTheFirstPass) {
+  for (const Paint& paint : {Paint{.specular = 1.0f, .roughness = 0.4f},
+                             Paint{.index_of_refraction = 1.5f, .roughness = 0.1f}}) {
+    const Scene scene = SceneBuilder()
+                            .box({.reflectance = 0.5f, .exitance = 1.0f, .one_sided = true},
+                                 {0, 0, 0}, {2, 2, 2}, true)
+                            .sphere(paint, {1.1, 0.9, 0.8}, 0.6)
+                            .build();
+    const SolvedScene solved = solve_scene(scene, {.mesh = {.max_patch_size = 0.5}});
+    const BandArray irradiance = solved.solution.irradiance();
+    for (int p = 0; p < solved.mesh.patch_count(); ++p) {
+      if (!(solved.mesh.emission(p, 0) > 0.0f)) continue;
+      for (int e = solved.mesh.first_element[p]; e < solved.mesh.first_element[p + 1]; ++e) {
+        const float E = irradiance(solved.mesh.corners[e][0], 0);
+        // What is still within the ball after 64 surfaces.
+        EXPECT_NEAR(E, 2.0f, 2e-3f);
+      }
+    }
+  }
+}
+
+// An index of 1 neither bends nor reflects: exp(-a 2 r) of the world is seen through the middle.
+TEST(Absorption, FollowsBeerAndLambertThroughABall) {
+  const LitScene lit(SceneBuilder()
+                         .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
+                         .sphere({.index_of_refraction = 1.0f, .absorption = 0.7f}, {0, 0, 0}, 1.0)
+                         .build());
+  for (const double off : {0.0, 0.3, 0.8}) {
+    const double chord = 2.0 * std::sqrt(1.0 - off * off);
+    EXPECT_NEAR(radiance(lit, {.origin = {off, 0, 2}, .direction = -up}), std::exp(-0.7 * chord),
+                1e-5);
+  }
+  // An eye within sees half of it.
+  EXPECT_NEAR(radiance(lit, {.origin = {0, 0, 0}, .direction = -up}), std::exp(-0.7), 1e-5);
+}
+
+// A slab with all of its inner reflections: T = (1-R)^2 a / (1 - R^2 a^2), a = exp(-absorption d).
+TEST(Absorption, SlabPassesWhatItsManyReflectionsLeave) {
+  const LitScene lit(
+      SceneBuilder()
+          .box({.index_of_refraction = 1.5f, .absorption = 2.0f}, {-5, -5, 0}, {5, 5, 0.25}, false)
+          .square({.exitance = pi_f}, {0, 0, -4}, up, 20)
+          .build());
+  const double R = 0.04, a = std::exp(-0.5);
+  EXPECT_NEAR(radiance(lit, {.origin = {0.1, 0.2, 3}, .direction = -up}, to_the_end),
+              (1 - R) * (1 - R) * a / (1 - R * R * a * a), 1e-6);
+}
+
+// T1 T2 / (1 - R1 R2); 0.857142... for two panes of index 1.5.
+TEST(ThinPanes, TwoPassWhatTheirReflectionsLeave) {
+  const Paint pane{.index_of_refraction = 1.5f, .thin = true};
+  const LitScene lit(SceneBuilder()
+                         .square(pane, {0, 0, 0}, up, 5)
+                         .square(pane, {0, 0, 0.5}, up, 5)
+                         .square({.exitance = pi_f}, {0, 0, -4}, up, 20)
+                         .build());
+  const double R = pane_reflectance(1.0, 1.5);
+  EXPECT_NEAR(radiance(lit, {.origin = {0.1, 0.2, 3}, .direction = -up}, to_the_end),
+              (1 - R) * (1 - R) / (1 - R * R), 1e-6);
+  EXPECT_NEAR((1 - R) * (1 - R) / (1 - R * R), 0.857142857, 1e-9);
+}
+
+TEST(Gloss, GivesTheSameBitsOnOneTwoAndThreeThreads) {
+  const LitScene lit(
+      SceneBuilder()
+          .box({.reflectance = 0.6f}, {-3, -3, -3}, {3, 3, 3}, true)
+          .sphere({.specular = 0.9f, .roughness = 0.2f}, {-1, 0, 0}, 0.9)
+          .sphere({.index_of_refraction = 1.5f, .roughness = 0.1f, .absorption = 1}, {1, 0, 0}, 0.9)
+          .square({.exitance = pi_f}, {0, 0, 2.9}, -up, 0.5)
+          .build());
+  Camera camera = camera_towards({0, 2.5, 0.5}, {0, 0, 0}, 70, 24);
+  camera.lens_radius = 0.05;
+  camera.focus_distance = 2.0;
+  BandArray first;
+  for (const int threads : {1, 2, 3}) {
+    const ThreadLimit limit(threads);
+    const Image image =
+        lit.render(camera, {.pass = Pass::gather, .gather_rays = 64, .sampling = {.most = 32}});
+    ASSERT_TRUE(image.radiance.isFinite().all());
+    if (threads == 1) first = image.radiance;
+    EXPECT_TRUE((image.radiance == first).all()) << threads;
+  }
+  EXPECT_GT(first.mean(), 0.0f);
+}
+
+TEST(Depth, OfAThousandMirrorsIsFollowedAndBeyondRefused) {
+  const LitScene lit(SceneBuilder()
+                         .square({.specular = 1.0f}, {0, 0, 0}, up, 5)
+                         .square({.specular = 1.0f}, {0, 0, 1}, -up, 5)
+                         .build());
+  const Camera camera = camera_towards({0, 0, 0.5}, {0, 0, 1}, 1, 2);
+  RenderReport report;
+  lit.render(camera, {.max_depth = deepest_tree}, &report);
+  EXPECT_GT(report.depth_cut, 0);
+  EXPECT_THROW(lit.render(camera, {.max_depth = 10000}), std::invalid_argument);
+}
+
+TEST(Eye, WithinAnOpaqueObjectSeesItsInside) {
+  LitScene lit(SceneBuilder()
+                   .sphere({.reflectance = 0.5f}, {0, 0, 0}, 1.0)
+                   .sphere({.reflectance = 0.5f, .one_sided = true}, {3, 0, 0}, 1.0)
+                   .square({.exitance = pi_f}, {0, 0, 5}, -up, 1)
+                   .build());
+  const Image within = lit.render(camera_towards({0, 0, 0}, {1, 0, 0}, 60, 8));
+  const Image behind = lit.render(camera_towards({3, 0, 0}, {4, 0, 0}, 60, 8));
+  EXPECT_TRUE((within.radiance == 0.0f).all());  // no light gets in
+  EXPECT_TRUE((behind.radiance == 0.0f).all());
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,100 @@
+#include "raytrace/pixel_samples.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/raytrace/lit_scene.h"
+
+namespace lightwell {
+namespace {
+
+constexpr auto pi_f = std::numbers::pi_v<float>;
+
+// The window a0 - a1 cos + a2 cos 2 - a3 cos 3 over [-1.5, 1.5], with variance
+// 1.5^2 (1/3 - (2 / pi^2 a0) (a1 - a2/4 + a3/9)) pixels^2.
+double filter_variance() {
+  const double pi = std::numbers::pi;
+  return 2.25 * (1.0 / 3.0 - 2.0 / (pi * pi * 0.35875) * (0.48829 - 0.14128 / 4.0 + 0.01168 / 9.0));
+}
+
+TEST(FilterPlaces, HaveTheMomentsOfTheWindow) {
+  const FilterPlaces places;
+  constexpr int count = 100000;
+  double mean = 0.0, square = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const double x = places.offset((i + 0.5) / count);
+    EXPECT_LE(std::abs(x), 1.5);
+    mean += x / count;
+    square += x * x / count;
+  }
+  EXPECT_NEAR(mean, 0.0, 1e-6);
+  // Steps of 3/256 pixels in which the window is constant.
+  EXPECT_NEAR(square, filter_variance(), 3.0 / 256 * 3.0 / 256);
+}
+
+TEST(PixelSamples, EvenlyLitPixelsAreDoneAtOnceAndExact) {
+  const LitScene lit(SceneBuilder().box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true).build());
+  const Camera camera = camera_towards({0, 0, 0}, {1, 1, 0}, 50, 8);
+  RenderReport report;
+  const Image image = lit.render(camera, {.sampling = {.most = 512, .least = 16}}, &report);
+  EXPECT_EQ(report.eye_rays, 16 * 64);  // the least
+  EXPECT_LT((image.radiance - 1.0f).abs().maxCoeff(), 1e-5f);
+}
+
+TEST(PixelSamples, StopWhereTheErrorIsAskedFor) {
+  // Half of the picture's middle column shines: its pixels' samples are 0 or 1.
+  const LitScene lit(SceneBuilder()
+                         .polygon({.exitance = pi_f, .emits_both_sides = true},
+                                  {{0, -9, -9}, {0, 9, -9}, {0, 9, 0}, {0, -9, 0}})
+                         .build());
+  const Camera camera{.position = {-5, 0, 0},
+                      .direction = {1, 0, 0},
+                      .up = {0, 0, 1},
+                      .fov_degrees = 20,
+                      .width = 5,
+                      .height = 5};
+  RenderReport coarse, fine;
+  lit.render(camera, {.sampling = {.most = 4096, .noise = 0.1f}}, &coarse);
+  lit.render(camera, {.sampling = {.most = 4096, .noise = 0.025f}}, &fine);
+  EXPECT_GT(fine.eye_rays, 2 * coarse.eye_rays);
+  EXPECT_LT(fine.eye_rays, 25 * 4096);
+}
+
+// A small lamp at distance d, seen by a lens of radius r focused at f, is a disk of radius
+// r |1/d - 1/f| on the picture plane at distance 1, of variance radius^2 / 4 each way; its power
+// stays what a pinhole sees.
+TEST(DepthOfField, BlursAPointToADiskOfTheThinLens) {
+  const double d = 2.0, lamp_radius = 0.01;
+  const LitScene lit(SceneBuilder().sphere({.exitance = pi_f}, {d, 0, 0}, lamp_radius).build());
+  for (const double f : {1.2, 2.0, 4.0}) {
+    Camera camera{.position = {0, 0, 0},
+                  .direction = {1, 0, 0},
+                  .up = {0, 0, 1},
+                  .fov_degrees = 10,
+                  .width = 48,
+                  .height = 48,
+                  .lens_radius = 0.06,
+                  .focus_distance = f};
+    const SampleOptions sampling{.most = 1024, .noise = 0.0f};
+    const Image image = lit.render(camera, {.sampling = sampling});
+    const double pixel = 2.0 * std::tan(5.0 * std::numbers::pi / 180.0) / 48;
+    const Eigen::Vector2d middle = centroid(image);
+    EXPECT_LT((middle - Eigen::Vector2d(24, 24)).norm(), 0.1);
+    double power = 0.0, square = 0.0;
+    for (Eigen::Index i = 0; i < image.radiance.rows(); ++i) {
+      const double x = static_cast<double>(i % 48) + 0.5 - middle.x(), L = image.radiance(i, 0);
+      power += L;
+      square += L * x * x;
+    }
+    const double disk = 0.06 * std::abs(1.0 / d - 1.0 / f) / pixel, lamp = lamp_radius / d / pixel;
+    EXPECT_NEAR(power, std::numbers::pi * lamp * lamp, 0.05 * power) << f;
+    EXPECT_NEAR(square / power, (disk * disk + lamp * lamp) / 4.0 + filter_variance(),
+                0.05 * square / power)
+        << f;
+  }
+}
+
+}  // namespace
+}  // namespace lightwell
