@@ -144,7 +144,7 @@ void write_false_colour(const fs::path& file, const Picture&, const FilmArgument
 }  // namespace
 
 void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn help_on) {
-  const std::string more = help_on == HelpOn::all ? group : std::string();  // CLI11: hidden
+  const std::string more = help_on == HelpOn::shown ? group : std::string();  // CLI11: hidden
   command
       .add_option_function<std::vector<std::string>>(
           "--layers",
@@ -156,7 +156,7 @@ void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn h
       ->type_name("NAMES")
       ->type_size(1)
       ->allow_extra_args(false)
-      ->group(group);
+      ->group(more);
   command.add_flag("--half", exr.half, "16-bit floats in the .exr")->group(more);
   command
       .add_option_function<std::string>(

@@ -26,7 +26,7 @@ struct FilmArguments {
   std::optional<LuxRange> range{};      ///< of that
 
   /// Adds --layers, --half, --compression, --tone-map and --ev100.
-  enum class HelpOn { all, first };  ///< which of them --help shows
+  enum class HelpOn { shown, hidden };  ///< whether --help shows them
   void add_to(CLI::App& command, const std::string& group, HelpOn help_on);
   /// Adds --false-colour and --range.
   void add_false_colour_to(CLI::App& command, const std::string& group);

@@ -59,7 +59,7 @@ Action add_render(CLI::App& command) {
       ->type_name("NAME");
   arguments->render.add_to(command);
   const std::string group = "How pictures are made";
-  arguments->render.film.add_to(command, group, FilmArguments::HelpOn::all);
+  arguments->render.film.add_to(command, group, FilmArguments::HelpOn::shown);
   arguments->render.film.add_false_colour_to(command, group);
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first, group);
   command.footer(

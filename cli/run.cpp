@@ -114,7 +114,7 @@ Action add_run(CLI::App& command) {
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first);
   arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
-  arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::first);
+  arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::hidden);
   command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");
   return [arguments](Console& console) { return run(*arguments, console); };
 }
