@@ -26,7 +26,7 @@ namespace {
 /// driver's largest picture or memory is the limit.
 constexpr int samples_along_pixel = 4;
 
-vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char* unit) {
+void set_range(vtkScalarBarActor* legend, const LuxRange& range) {
   constexpr int entries = 256;
   vtkNew<vtkLookupTable> table;
   table->SetNumberOfTableValues(entries);
@@ -36,12 +36,16 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char
     const Eigen::Array3f c = false_color(static_cast<float>(i) / (entries - 1));
     table->SetTableValue(i, c[0], c[1], c[2]);
   }
-  auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
   legend->SetLookupTable(table);
-  legend->SetTitle(unit);
   vtkNew<vtkDoubleArray> labels;
   for (const double value : scale_steps(range)) labels->InsertNextValue(value);
   legend->SetCustomLabels(labels);
+}
+
+vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char* unit) {
+  auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
+  set_range(legend, range);
+  legend->SetTitle(unit);
   legend->UseCustomLabelsOn();
   legend->SetLabelFormat("%.4g");
   legend->UnconstrainedFontSizeOn();
@@ -90,8 +94,11 @@ std::vector<std::uint8_t> encode(const std::vector<float>& sums, int width, int 
 
 SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options)
     : solved_(solved),
+      materials_(options.materials),
+      keeps_range_(options.lux_range.has_value()),
       caster_(solved.mesh),
       kinds_(element_kinds(solved, options.materials)),
+      irradiance_(solved.solution.irradiance()),
       radiance_(shown_radiance(solved, options.materials)),
       lux_(vertex_illuminance(solved.solution)),
       lux_range_(options.lux_range.value_or(lux_range(lux_))),
@@ -143,6 +150,23 @@ void SolutionView::set_look(const Look& look) {
   legend_->SetVisibility(look.illuminance && !look.interpolation_error);
   if (recolor) apply_colors();
   apply_camera();
+}
+
+void SolutionView::light_changed() {
+  irradiance_ = solved_.solution.irradiance();
+  radiance_ = shown_radiance(solved_, materials_);
+  lux_ = vertex_illuminance(solved_.solution);
+  apply_colors();
+}
+
+void SolutionView::light_arrived() {
+  kinds_ = element_kinds(solved_.mesh, solved_.solution.direct_irradiance, materials_);
+  light_changed();
+  actor_.set_shapes(solved_.mesh, kinds_, radiance_);
+  if (keeps_range_) return;
+  lux_range_ = lux_range(lux_);
+  set_range(legend_, lux_range_);
+  if (look_.illuminance) apply_colors();
 }
 
 void SolutionView::apply_colors() {

@@ -26,7 +26,7 @@ struct Look {
   bool interpolation_error = false;  ///< see error_colors; goes before illuminance
 };
 
-/// A solution set up for drawing with VTK. Keeps references to both arguments.
+/// A solution set up for drawing with VTK. Keeps a reference to the solution.
 class SolutionView {
  public:
   SolutionView(const SolvedScene& solved, const ViewOptions& options);
@@ -34,9 +34,19 @@ class SolutionView {
 
   const Look& look() const { return look_; }
   void set_look(const Look& look);
+  /// Shows the light that the solution has now, in colours of the same scale.
+  void light_changed();
+  /// The same while light is arriving: its scale of false colours follows it, unless the options
+  /// name one. What has no direct irradiance counts as unlit, for the rest is foretold.
+  void light_arrived();
   /// The exposure_scale of the picture the camera sees.
   double meter(const Camera& camera) const;
 
+  const ElementCaster& caster() const { return caster_; }
+  const std::vector<ElementKind>& kinds() const { return kinds_; }
+  /// At vertices, W/m^2, vertices x bands.
+  const BandArray& irradiance() const { return irradiance_; }
+  const SolvedScene& solved() const { return solved_; }
   const Camera& start_camera() const { return start_camera_; }
   const Bounds& bounds() const { return bounds_; }
   const Eigen::Vector3d& up_axis() const { return up_axis_; }
@@ -47,8 +57,11 @@ class SolutionView {
   void apply_colors();
 
   const SolvedScene& solved_;
+  std::vector<Material> materials_;
+  bool keeps_range_;
   ElementCaster caster_;
   std::vector<ElementKind> kinds_;
+  BandArray irradiance_;
   BandArray radiance_;
   std::vector<float> lux_;
   LuxRange lux_range_;
