@@ -14,10 +14,12 @@
 #include "radiosity/relight.h"
 #include "scene/errors.h"
 #ifdef LIGHTWELL_VIEWER
+#include "viewer/camera_path.h"
 #include "viewer/view.h"
 #endif
 
 namespace lightwell {
+namespace fs = std::filesystem;
 namespace {
 
 struct Arguments {
@@ -29,6 +31,11 @@ struct Arguments {
   MeshArguments mesh;
   std::vector<int> shots;
   bool no_ambient = false;
+  std::string path;
+  int frames = 0, turntable = 0;
+  std::vector<double> isolux;
+  double eye_height = 0.0;  // in the scene file's unit; 0: a person's
+  bool walk = false;
 };
 
 #ifdef LIGHTWELL_VIEWER
@@ -43,6 +50,13 @@ ViewOptions view_options(const Arguments& arguments, const Scene& scene) {
   options.lux_range = arguments.range;
   options.relative_units = scene.relative_units;
   options.solution_file = arguments.output;
+  options.isolux = arguments.isolux;
+  options.eye_height = arguments.eye_height * scene.metres_per_unit;
+  options.walk = arguments.walk;
+  fs::path beside = scene.file.filename();
+  if (!arguments.output.empty()) beside = arguments.output;
+  if (!arguments.solution.empty()) beside = arguments.solution;
+  options.bookmark_file = beside.replace_extension(".views.json");
   if (!arguments.camera.empty()) options.camera = choose_camera(scene, arguments.camera);
   // Off screen, the picture that 'render' would make; a window is as large as suits a screen.
   if (!arguments.offscreen.empty() && !scene.cameras.empty()) {
@@ -98,7 +112,13 @@ int view(const Arguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   const ViewOptions options = view_options(arguments, scene);
-  for (const std::string& file : {arguments.offscreen, arguments.output}) {
+  const bool is_film = arguments.frames > 0 || arguments.turntable > 0;
+  if (is_film && arguments.solution.empty()) {
+    throw InputError("a film needs a solution: lightwell view SCENE SOLUTION.vtp --frames ...");
+  }
+  const std::string first_picture =
+      is_film ? frame_name(arguments.offscreen, 0).string() : arguments.offscreen;
+  for (const std::string& file : {first_picture, arguments.output}) {
     if (!file.empty()) require_writable(file);
   }
   if (arguments.solution.empty()) return view_live(arguments, scene, options, console, report);
@@ -121,9 +141,18 @@ int view(const Arguments& arguments, Console& console) {
     return exit_done;
   }
   const Stopwatch watch;
-  write_snapshot(solved, options, arguments.offscreen);
+  if (is_film) {
+    const FilmOptions film{arguments.path, std::max(arguments.frames, arguments.turntable)};
+    for (const fs::path& file :
+         write_film(solved, options, film, arguments.offscreen, console.progress())) {
+      report.add_file(file);
+    }
+    console.finish_phase();
+  } else {
+    write_snapshot(solved, options, arguments.offscreen);
+    report.add_file(arguments.offscreen);
+  }
   report.add_phase("draw", watch.seconds());
-  report.add_file(arguments.offscreen);
   report.print();
   return exit_done;
 }
@@ -149,10 +178,11 @@ Action add_view(CLI::App& command) {
       .add_option("solution", arguments->solution,
                   "its solution, .vtp (default: solve while it is watched)")
       ->type_name("SOLUTION");
-  command
-      .add_option("--offscreen", arguments->offscreen, "draw into this .png instead of a window")
-      ->type_name("FILE")
-      ->check(with_extension({".png"}));
+  auto* const offscreen = command
+                              .add_option("--offscreen", arguments->offscreen,
+                                          "draw into this .png instead of a window")
+                              ->type_name("FILE")
+                              ->check(with_extension({".png"}));
   command.add_option("--camera", arguments->camera, "where to start (default: the first camera)")
       ->type_name("NAME");
   add_size(command, arguments->size);
@@ -170,6 +200,36 @@ Action add_view(CLI::App& command) {
           ->type_name("WHAT")
           ->check(one_of("quantity", {"lux", "error"}));
   add_lux_range(command, arguments->range)->needs(false_colour);
+  command
+      .add_option("--isolux", arguments->isolux,
+                  "begin with lines of equal illuminance at these lux, as 100,300,500 (key I)")
+      ->type_name("LUX")
+      ->delimiter(',')
+      ->check(positive());
+  command.add_flag("--walk", arguments->walk, "begin on foot (key G)");
+  command
+      .add_option("--eye-height", arguments->eye_height,
+                  "of a person on foot (default: 1.6 m, less in a scene smaller than a room)")
+      ->type_name("LENGTH")
+      ->check(positive());
+  auto* const path =
+      command.add_option("--path", arguments->path, "a path recorded with the key J, for --frames")
+          ->type_name("FILE");
+  auto* const frames =
+      command
+          .add_option("--frames", arguments->frames,
+                      "with --offscreen out-%04d.png: so many pictures along the path")
+          ->type_name("N")
+          ->check(whole_number(1, 1000000));
+  path->needs(frames);
+  frames->needs(path)->needs(offscreen);
+  command
+      .add_option("--turntable", arguments->turntable,
+                  "with --offscreen out-%04d.png: so many pictures around the scene")
+      ->type_name("N")
+      ->check(whole_number(1, 1000000))
+      ->needs(offscreen)
+      ->excludes(path);
   add_channel_settings(command, arguments->channels);
   command
       .add_option("-o,--output", arguments->output,
@@ -185,6 +245,7 @@ Action add_view(CLI::App& command) {
       ->type_name("N")
       ->delimiter(',')
       ->check(whole_number(0, 1 << 24))
+      ->needs(offscreen)
       ->group(live);
   command
       .add_flag("--no-ambient", arguments->no_ambient,

@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "raytrace/image.h"
+#include "scene/errors.h"
+#include "viewer/camera_path.h"
 #include "viewer/live_solve.h"
 #include "viewer/solution_view.h"
 #include "viewer/walk_window.h"
@@ -40,6 +42,40 @@ void write_snapshot(const SolvedScene& solved, const ViewOptions& options,
   const SolutionView view(solved, options);
   write_png(png, options.width, options.height,
             draw_offscreen(view, options.width, options.height));
+}
+
+std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& options,
+                                              const FilmOptions& film, const std::string& pattern,
+                                              const Progress& progress) {
+  require_size(options);
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < film.frames; ++i) files.push_back(frame_name(pattern, i));
+  CameraPath path;
+  if (!film.path.empty()) {
+    path = read_views(film.path).path;
+    if (path.empty()) {
+      throw InputError(
+          fmt::format("{}: there is no path in it; record one in the window with the key J",
+                      film.path.string()));
+    }
+  }
+  const DisplayConnection display;
+  SolutionView view(solved, options);
+  const Eigen::Vector3d center = 0.5 * (view.bounds().low + view.bounds().high);
+  const std::vector<Camera> cameras =
+      path.empty() ? turntable(view.start_camera(), center, view.up_axis(), film.frames)
+                   : frames_along(path, film.frames);
+  Look look = view.look();
+  look.metered_scale = view.meter(cameras.front());
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    report(progress, "draw", static_cast<double>(i) / static_cast<double>(cameras.size()));
+    look.camera =
+        path.empty() ? cameras[i] : fit_to_window(cameras[i], options.width, options.height);
+    view.set_look(look);
+    write_png(files[i], options.width, options.height,
+              draw_offscreen(view, options.width, options.height));
+  }
+  return files;
 }
 
 void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& options) {

@@ -51,6 +51,19 @@ struct ViewOptions {
 /// where no display can be opened.
 void show_window(const SolvedScene& solved, const ViewOptions& options);
 
+/// Which pictures make a film: one of the two.
+struct FilmOptions {
+  std::filesystem::path path{};  ///< a recorded path (see camera_path.h); empty: a turntable
+  int frames = 0;                ///< pictures, > 0: evenly along the path, or around the scene
+};
+
+/// Draws as write_snapshot does, all exposed as the first, into files numbered from 0 by a pattern
+/// such as "out-%04d.png". Returns their names. Throws as write_snapshot and read_views do, and
+/// InputError for a path that is empty or a pattern without a number.
+std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& options,
+                                              const FilmOptions& film, const std::string& pattern,
+                                              const Progress& progress = {});
+
 struct LiveViewOptions {
   SolveOptions solve{};     ///< mesh, progressive refinement, refining and gathering
   Provenance provenance{};  ///< of the solution that comes of it

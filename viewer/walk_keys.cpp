@@ -24,19 +24,26 @@ std::span<const WalkWindow::Key> WalkWindow::keys() {
       Key{"W S  Up Down", "walk"},
       Key{"A D  Left Right", "step aside"},
       Key{"Q E", "turn"},
-      Key{"Space C", "up, down"},
+      Key{"Space C", "up, down; Space on foot: jump", {"space"}, &W::jump},
       Key{"Shift", "run"},
+      Key{"G", "walk on foot, fly", {"g"}, &W::switch_walking},
       Key{"drag", "look around"},
+      Key{"O", "orbit what is in the middle", {"o"}, &W::switch_orbit},
       Key{"wheel", "move along the view"},
-      Key{"1 ... 9", "go to a camera"},
+      Key{"1 ... 9", "go to a bookmark or camera"},
+      Key{"Ctrl+1 ... 9", "keep this view as a bookmark"},
+      Key{"J", "record a path, stop", {"j"}, &W::switch_recording},
+      Key{"Y", "play it, stop", {"y"}, &W::switch_playing},
       Key{"Home", "back to the start", {"home"}, &W::go_to_start},
       Key{"F", "see the whole scene", {"f"}, &W::show_all},
       Key{"+ -", "exposure, 1/3 stop", {"plus", "equal", "kp_add"}, &W::brighter},
       Key{"", "", {"minus", "kp_subtract"}, &W::darker},
       Key{"0", "expose for this view", {"0"}, &W::expose_for_view},
       Key{"V", "false colours of illuminance", {"v"}, &W::switch_false_colours},
+      Key{"I", "isolux lines", {"i"}, &W::switch_isolux},
       Key{"M", "mesh", {"m"}, &W::switch_mesh},
       Key{"X", "look through unlit surfaces", {"x"}, &W::switch_unlit},
+      Key{"R", "ray-trace this view, cancel", {"r"}, &W::switch_still},
       Key{"P  F12", "save a picture", {"p", "f12"}, &W::save_screenshot},
       Key{"Esc", "close", {"escape"}, &W::close},
       Key{"click", "read the light at a point"},
@@ -72,7 +79,7 @@ std::string walk_help() {
   return text +
          "\n"
          "Mirrors are drawn as if matte, glass as a veil: what they show depends on the eye,\n"
-         "and is left to the rendered picture.";
+         "and is left to the ray-traced picture.";
 }
 
 WalkKeys WalkWindow::held_keys() const {
@@ -96,7 +103,10 @@ void WalkWindow::press(const std::string& key_symbol) {
   if (with_control && key.rfind("control", 0) != 0) key = "ctrl+" + key;
   // A key held down reports again and again; switches act once.
   if (!held_.insert(key).second) return;
-  if (key.size() == 1 && key[0] >= '1' && key[0] <= '9') return press_digit(key[0] - '0');
+  const char last = key.back();
+  if (last >= '1' && last <= '9' && (key.size() == 1 || key == std::string("ctrl+") + last)) {
+    return key.size() == 1 ? press_digit(last - '0') : keep_bookmark(last - '0');
+  }
   for (const Key& known : keys()) {
     if (std::find(known.symbols.begin(), known.symbols.end(), key) == known.symbols.end()) continue;
     return (this->*known.act)();
@@ -115,11 +125,15 @@ void WalkWindow::release(const std::string& key_symbol) {
 
 void WalkWindow::press_digit(int digit) {
   const auto index = static_cast<std::size_t>(digit - 1);
-  if (index < options_.cameras.size()) {
+  if (views_.bookmarks[index]) {
+    go_to(*views_.bookmarks[index]);
+    say(fmt::format("bookmark {}", digit));
+  } else if (index < options_.cameras.size()) {
     go_to(options_.cameras[index]);
     say(options_.cameras[index].name);
   } else {
-    say(fmt::format("the scene has {} cameras", options_.cameras.size()));
+    say(fmt::format("the scene has {} cameras; Ctrl+{} keeps this view as a bookmark",
+                    options_.cameras.size(), digit));
   }
 }
 

@@ -55,6 +55,7 @@ void WalkWindow::relight_now() {
     own_ = std::make_unique<SolvedScene>(view_->solved());
     replace_view(*own_);
   }
+  still_.discard();
   relight(*own_, lights_.scales());
   view_->light_changed();
   pointer_.light_changed(*view_, true);
@@ -99,6 +100,7 @@ void WalkWindow::watch() {
 }
 
 void WalkWindow::show_arriving_light() {
+  still_.discard();
   RadiositySolution& shown = own_->solution;
   shown.direct_irradiance = arrived_.irradiance;
   shown.indirect_irradiance.setZero();

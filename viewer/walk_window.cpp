@@ -57,13 +57,23 @@ WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> ow
       live_(live),
       view_(std::make_unique<SolutionView>(own_ ? *own_ : *shown, options_)),
       walk_(view_->start_camera(), view_->up_axis(), walking_speed(view_->bounds().diagonal())),
+      physics_(walk_body(view_->bounds().diagonal(), options.eye_height), view_->up_axis()),
+      walking_(options.walk),
       lights_(view_->solved().solution),
       pointer_(options.scene),
       window_(vtkSmartPointer<vtkRenderWindow>::New()),
       interactor_(vtkSmartPointer<vtkRenderWindowInteractor>::New()) {
+  still_.add_to(view_->renderer());
   overlay_.add_to(view_->renderer());
   marks_.add_to(view_->renderer());
   say("H shows the keys");
+  try {
+    if (std::filesystem::exists(options_.bookmark_file)) {
+      views_ = read_views(options_.bookmark_file);
+    }
+  } catch (const std::exception& error) {
+    say(error.what());
+  }
 
   const std::string scene =
       std::filesystem::path(solved().solution.provenance.scene_file).filename().string();
@@ -110,7 +120,11 @@ std::pair<int, int> WalkWindow::size() const {
 
 void WalkWindow::drag(int right, int down) {
   const double per_pixel = drag_degrees * std::numbers::pi / 180.0 / size().first;
-  walk_.look(right * per_pixel, -down * per_pixel);
+  if (pivot_) {
+    walk_.orbit(*pivot_, 2.0 * right * per_pixel, -2.0 * down * per_pixel);
+  } else {
+    walk_.look(right * per_pixel, -down * per_pixel);
+  }
   change(current_look());
 }
 
@@ -137,10 +151,11 @@ void WalkWindow::pointer_left() {
 }
 
 void WalkWindow::tick(double seconds) {
-  const bool walked = walk_.advance(held_keys(), std::min(seconds, longest_step));
+  const bool walked = advance(std::min(seconds, longest_step));
   const auto [width, height] = size();
   if (walked || width != drawn_width_ || height != drawn_height_) change(current_look());
   watch();
+  advance_still(seconds);
   if (!message_.empty()) {
     message_seconds_ -= seconds;
     if (message_seconds_ <= 0.0) say("");
@@ -162,6 +177,9 @@ Look WalkWindow::current_look() const {
 
 void WalkWindow::go_to(const Camera& camera) {
   walk_.place(camera);
+  physics_.stand_still();
+  pivot_.reset();
+  playing_ = false;
   Look look = current_look();
   look.metered_scale = view_->meter(camera);
   change(look);
@@ -210,6 +228,12 @@ void WalkWindow::switch_unlit() {
   change(look);
 }
 
+void WalkWindow::switch_isolux() {
+  Look look = current_look();
+  look.isolux = !look.isolux;
+  change(look);
+}
+
 void WalkWindow::switch_help() {
   help_ = !help_;
   const auto [width, height] = size();
@@ -244,6 +268,7 @@ void WalkWindow::update_pointer() {
 }
 
 void WalkWindow::change(const Look& look) {
+  still_.discard();
   view_->set_look(look);
   if (pointer_.is_probing()) update_pointer();
   update_text();
@@ -260,6 +285,13 @@ void WalkWindow::say(const std::string& message) {
 void WalkWindow::update_text() {
   const Look& look = view_->look();
   status_ = look.illuminance ? "illuminance" : fmt::format("{:+.1f} EV", look.exposure_ev);
+  if (walking_) status_ += "   on foot";
+  if (pivot_) status_ += "   orbiting";
+  if (recording_) status_ += fmt::format("   recording {:.1f} s", path_seconds_);
+  if (playing_) status_ += fmt::format("   playing {:.1f} s", path_seconds_);
+  if (still_.phase() == StillPhase::rendering) {
+    status_ += fmt::format("   ray-tracing {:.0f} %", 100.0 * still_.progress());
+  }
   if (live_) status_ += "   " + text_of(live_state_);
   if (lights_.has_channels()) status_ += "   " + lights_.text();
   if (!message_.empty()) status_ += "   " + message_;
@@ -270,6 +302,7 @@ void WalkWindow::replace_view(const SolvedScene& solved) {
   const Look look = view_->look();
   window_->RemoveRenderer(view_->renderer());
   view_ = std::make_unique<SolutionView>(solved, options_);
+  still_.add_to(view_->renderer());
   overlay_.add_to(view_->renderer());
   marks_.add_to(view_->renderer());
   window_->AddRenderer(view_->renderer());
@@ -277,6 +310,7 @@ void WalkWindow::replace_view(const SolvedScene& solved) {
 }
 
 void WalkWindow::save_screenshot() {
+  if (save_still()) return;
   std::filesystem::path file;
   for (int i = 1; file.empty() || std::filesystem::exists(file); ++i) {
     file = options_.screenshot_folder / fmt::format("lightwell-{}.png", i);

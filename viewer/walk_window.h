@@ -4,17 +4,21 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "viewer/camera_path.h"
 #include "viewer/light_board.h"
 #include "viewer/live_solve.h"
 #include "viewer/marks.h"
 #include "viewer/overlay.h"
 #include "viewer/pointer_tools.h"
 #include "viewer/solution_view.h"
+#include "viewer/still.h"
+#include "viewer/walk_body.h"
 #include "viewer/walk_state.h"
 
 class vtkRenderWindow;
@@ -61,6 +65,8 @@ class WalkWindow {
   const std::string& message() const { return message_; }
   const std::string& status() const { return status_; }
   const PointerTools& pointer() const { return pointer_; }
+  bool is_walking() const { return walking_; }
+  const Still& still() const { return still_; }
   /// What is shown.
   const SolvedScene& solved() const { return view_->solved(); }
   vtkRenderWindowInteractor* interactor() const;
@@ -80,6 +86,7 @@ class WalkWindow {
              const ViewOptions& options);
   WalkKeys held_keys() const;
   void press_digit(int digit);
+  void keep_bookmark(int digit);
   /// The look from where the walk is now, in the window as large as it is now.
   Look current_look() const;
   void go_to(const Camera& camera);
@@ -92,6 +99,7 @@ class WalkWindow {
   void switch_false_colours();
   void switch_mesh();
   void switch_unlit();
+  void switch_isolux();
   void switch_help();
   void switch_probe();
   void switch_measuring();
@@ -103,6 +111,23 @@ class WalkWindow {
   void update_text();
   void update_pointer();
   std::pair<int, int> size() const;
+
+  // Ways to move.
+  bool advance(double seconds);
+  bool walk_on_foot(const Eigen::Vector3d& before, double seconds);
+  void switch_walking();
+  void jump();
+  void switch_orbit();
+  void switch_recording();
+  void switch_playing();
+  void record(double seconds);
+  bool play(double seconds);
+  void keep_views();
+
+  // The second pass.
+  void switch_still();
+  void advance_still(double seconds);
+  bool save_still();
 
   // Light channels.
   void next_channel() { choose_channel(1); }
@@ -131,6 +156,12 @@ class WalkWindow {
   LiveSolve* live_;
   std::unique_ptr<SolutionView> view_;
   WalkState walk_;
+  WalkPhysics physics_;
+  bool walking_ = false, recording_ = false, playing_ = false;
+  std::optional<Eigen::Vector3d> pivot_{};  ///< of orbiting
+  KeptViews views_{};
+  CameraPath recorded_{};
+  double path_seconds_ = 0.0;
   LightBoard lights_;
   PointerTools pointer_;
   LiveLight arrived_{};
@@ -145,6 +176,7 @@ class WalkWindow {
   bool changed_ = true;
   Overlay overlay_;
   Marks marks_;
+  Still still_;
   vtkSmartPointer<vtkRenderWindow> window_;
   vtkSmartPointer<vtkRenderWindowInteractor> interactor_;
 };
