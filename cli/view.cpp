@@ -85,6 +85,7 @@ int view_live(const Arguments& arguments, const Scene& scene, const ViewOptions&
                      .scene_file = scene.file.string(),
                      .scene_hash = scene_hash(scene),
                      .options = solving.text(scene)};
+  live.solve.progress = console.progress();
   if (arguments.offscreen.empty()) {
     show_live_window(scene, live, options);
     return exit_done;
@@ -97,7 +98,6 @@ int view_live(const Arguments& arguments, const Scene& scene, const ViewOptions&
   if (!std::is_sorted(arguments.shots.begin(), arguments.shots.end())) {
     throw InputError("'--shots' must rise, as in 1,10,100: light that was shot is not taken back");
   }
-  live.solve.progress = console.progress();
   const Stopwatch watch;
   const int shots = write_live_snapshot(scene, live, arguments.shots, options, arguments.offscreen);
   console.finish_phase();

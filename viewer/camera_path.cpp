@@ -188,8 +188,10 @@ std::filesystem::path frame_name(const std::string& pattern, int index) {
   const std::size_t end = pattern.find_first_not_of("0123456789", at + 1);
   if (end == std::string::npos || pattern[end] != 'd' || end - at > 3) fail();
   const std::string digits = pattern.substr(at + 1, end - at - 1);
-  const int width = digits.empty() ? 0 : std::stoi(digits);
-  return pattern.substr(0, at) + fmt::format("{:0{}}", index, width) + pattern.substr(end + 1);
+  std::string number = std::to_string(index);
+  const std::size_t width = digits.empty() ? 0 : std::stoul(digits);
+  if (number.size() < width) number.insert(0, width - number.size(), '0');
+  return pattern.substr(0, at) + number + pattern.substr(end + 1);
 }
 
 }  // namespace lightwell

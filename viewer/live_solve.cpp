@@ -242,6 +242,8 @@ SolvedScene LiveSolve::dark() const {
 void LiveSolve::shoot(int shots) {
   const Clock::time_point start = Clock::now();
   while (impl_->progressive.shots() < shots && impl_->step(shots)) {
+    const double share = static_cast<double>(impl_->progressive.shots()) / shots;
+    report(impl_->options.progress, "solve", std::max(share, impl_->progressive.done()));
   }
   impl_->shooting_seconds += seconds_since(start);
 }

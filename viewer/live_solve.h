@@ -44,8 +44,8 @@ std::string text_of(const LiveState& state);
 /// thread that made it. Keeps a reference to the scene.
 class LiveSolve {
  public:
-  /// Cuts the scene into patches. `options.journal` and `channels` are not used; `progress` is by
-  /// meshing and finish() alone. Throws InputError where nothing emits light.
+  /// Cuts the scene into patches. `options.journal` and `channels` are not used; `progress` is not
+  /// by the thread that start() begins. Throws InputError where nothing emits light.
   LiveSolve(const Scene& scene, const SolveOptions& options, const Provenance& provenance);
   /// Ends the thread after the shot it is at, or within a second of gathering.
   ~LiveSolve();
@@ -56,7 +56,8 @@ class LiveSolve {
   SolvedScene dark() const;
 
   /// Shoots until `shots` patches have shot in all, or the tolerance is reached: one by one up to a
-  /// hundred, then in rounds. The same bits for any number of threads. Not after start().
+  /// hundred, then in rounds. The same bits for any number of threads. Not after start(). Throws
+  /// Interrupted when progress says stop.
   void shoot(int shots);
   /// The light now. Not after start().
   LiveLight light() const;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace lightwell {
 namespace {
 
@@ -75,9 +77,12 @@ std::string PointerTools::panel(const SolutionView& view) const {
                                : "measuring: click the second point";
     }
     const double scale = solution.metres_per_unit;
-    const Eigen::Vector3d way = (measured_[1] - measured_[0]) / scale;
+    // What rounding of rays leaves is not worth digits.
+    const Eigen::Vector3d way = (measured_[1] - measured_[0]).unaryExpr([&](double along) {
+      return std::abs(along) < 1e-6 * *length ? 0.0 : along / scale;
+    });
     return fmt::format("distance {:.5g} {}\nalong x, y, z  {:.4g}, {:.4g}, {:.4g}", *length / scale,
-                       solution.unit_name, way.x() + 0.0, way.y() + 0.0, way.z() + 0.0);
+                       solution.unit_name, way.x(), way.y(), way.z());
   }
   return reading_ ? full_text(*reading_, solution.bands, units_of(solution)) : "";
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "channel_room.h"
 #include "raytrace/probe.h"
@@ -49,7 +50,7 @@ TEST(PointReading, LuminanceIsRadiosityOverPi) {
   const PointReading reading =
       read_point(box.mesh, box.solution.bands, box.solution.irradiance(), nullptr, seen);
   EXPECT_NEAR(reading.lux, 2.0 * 683.0, 0.1);
-  EXPECT_NEAR(reading.luminance, 2.0 * 683.0 / M_PI, 0.1);
+  EXPECT_NEAR(reading.luminance, 2.0 * 683.0 / std::numbers::pi, 0.1);
   EXPECT_NEAR((reading.position - Eigen::Vector3d(1, 1, 2)).norm(), 0.0, 1e-5);
   EXPECT_NEAR((reading.normal - Eigen::Vector3d(0, 0, -1)).norm(), 0.0, 1e-12);
   EXPECT_EQ(reading.surface, "surface 2");
@@ -92,7 +93,7 @@ class PointerToolsTest : public testing::Test {
 /// (1, 0, 2) and (1, 2, 2), 5 m away: 1 m is 100 / (5 tan 20 deg) = 54.95 pixels.
 TEST_F(PointerToolsTest, MeasuresBetweenTwoClicks) {
   tools_.switch_measuring();
-  const double high = 100.0 / (5.0 * std::tan(20.0 * M_PI / 180.0));
+  const double high = 100.0 / (5.0 * std::tan(20.0 * std::numbers::pi / 180.0));
   tools_.click(view_, 100, 75 + 0.9 * high);
   EXPECT_FALSE(tools_.distance());
   tools_.click(view_, 100, 75 - 0.9 * high);
