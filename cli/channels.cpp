@@ -7,6 +7,7 @@
 
 #include "cli/arguments.h"
 #include "cli/quoted.h"
+#include "scene/errors.h"
 
 namespace lightwell {
 namespace {
@@ -94,6 +95,20 @@ void add_channel_settings(CLI::App& command, ChannelSettings& settings) {
         }
       },
       "NAME=VALUE");
+}
+
+std::vector<Spectrum> channel_scales(const RadiositySolution& solution,
+                                     const ChannelSettings& settings, const std::string& file) {
+  std::vector<Spectrum> scales = scales_in_force(solution);
+  try {
+    for (const auto& [name, setting] : settings) {
+      const auto c = static_cast<std::size_t>(find_channel(solution, name));
+      scales[c] = channel_scale(solution.channels[c], solution.bands, setting);
+    }
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+  return scales;
 }
 
 Json channels_json(const RadiositySolution& solution) {

@@ -31,6 +31,11 @@ struct ChannelArguments {
 using ChannelSettings = std::vector<std::pair<std::string, ChannelSetting>>;
 void add_channel_settings(CLI::App& command, ChannelSettings& settings);
 
+/// For relight(): what is not named stays as it is. Throws InputError that names the `file` of the
+/// solution where it has no such channel.
+std::vector<Spectrum> channel_scales(const RadiositySolution& solution,
+                                     const ChannelSettings& settings, const std::string& file);
+
 /// For JSON: of each channel its name, flux with its scale in force (watts and lumens, or power
 /// where light is relative), scale per band and surfaces.
 Json channels_json(const RadiositySolution& solution);

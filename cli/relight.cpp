@@ -1,7 +1,5 @@
 #include "radiosity/relight.h"
 
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "cli/arguments.h"
@@ -11,7 +9,6 @@
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "radiosity/solution_file.h"
-#include "scene/errors.h"
 
 namespace lightwell {
 namespace {
@@ -21,28 +18,14 @@ struct Arguments {
   ChannelSettings settings;
 };
 
-// What is not named stays as it is.
-std::vector<Spectrum> scales_asked_for(const Arguments& arguments,
-                                       const RadiositySolution& solution) {
-  std::vector<Spectrum> scales = scales_in_force(solution);
-  try {
-    for (const auto& [name, setting] : arguments.settings) {
-      const auto c = static_cast<std::size_t>(find_channel(solution, name));
-      scales[c] = channel_scale(solution.channels[c], solution.bands, setting);
-    }
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", arguments.solution, error.what()));
-  }
-  return scales;
-}
-
 int relight_solution(const Arguments& arguments, Console& console) {
   Report report(console.options());
   require_writable(arguments.output);
   const Stopwatch reading;
   SolvedScene solved = read_solution(arguments.solution);
   report.add_phase("read_solution", reading.seconds());
-  const std::vector<Spectrum> scales = scales_asked_for(arguments, solved.solution);
+  const std::vector<Spectrum> scales =
+      channel_scales(solved.solution, arguments.settings, arguments.solution);
   const Stopwatch watch;
   relight(solved, scales);
   report.add_phase("relight", watch.seconds());

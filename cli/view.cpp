@@ -1,40 +1,62 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 
 #include "cli/arguments.h"
+#include "cli/channels.h"
 #include "cli/commands.h"
 #include "cli/lux_range.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "radiosity/relight.h"
 #include "scene/errors.h"
 #ifdef LIGHTWELL_VIEWER
+#include "viewer/camera_path.h"
 #include "viewer/view.h"
 #endif
 
 namespace lightwell {
+namespace fs = std::filesystem;
 namespace {
 
 struct Arguments {
-  std::string scene, solution, camera, offscreen, overlay, false_colour;
+  std::string scene, solution, camera, offscreen, overlay, false_colour, output;
   std::optional<LuxRange> range;
   std::optional<std::pair<int, int>> size;
   double exposure_ev = 0.0;
+  ChannelSettings channels;
+  MeshArguments mesh;
+  std::vector<int> shots;
+  bool no_ambient = false;
+  std::string path;
+  int frames = 0, turntable = 0;
+  std::vector<double> isolux;
+  double eye_height = 0.0;  // in the scene file's unit; 0: a person's
+  bool walk = false;
 };
 
 #ifdef LIGHTWELL_VIEWER
-int view(const Arguments& arguments, Console& console) {
-  Report report(console.options());
-  const Scene scene = read_scene_step(arguments.scene, console, report);
-  ViewOptions options{
-      .cameras = scene.cameras, .exposure_ev = arguments.exposure_ev, .materials = scene.materials};
+ViewOptions view_options(const Arguments& arguments, const Scene& scene) {
+  ViewOptions options{.cameras = scene.cameras,
+                      .exposure_ev = arguments.exposure_ev,
+                      .materials = scene.materials,
+                      .scene = &scene};
   options.mesh = !arguments.overlay.empty();
   options.illuminance = arguments.false_colour == "lux";
   options.interpolation_error = arguments.false_colour == "error";
   options.lux_range = arguments.range;
   options.relative_units = scene.relative_units;
+  options.solution_file = arguments.output;
+  options.isolux = arguments.isolux;
+  options.eye_height = arguments.eye_height * scene.metres_per_unit;
+  options.walk = arguments.walk;
+  fs::path beside = scene.file.filename();
+  if (!arguments.output.empty()) beside = arguments.output;
+  if (!arguments.solution.empty()) beside = arguments.solution;
+  options.bookmark_file = beside.replace_extension(".views.json");
   if (!arguments.camera.empty()) options.camera = choose_camera(scene, arguments.camera);
   // Off screen, the picture that 'render' would make; a window is as large as suits a screen.
   if (!arguments.offscreen.empty() && !scene.cameras.empty()) {
@@ -42,22 +64,95 @@ int view(const Arguments& arguments, Console& console) {
     std::tie(options.width, options.height) = std::pair(camera.width, camera.height);
   }
   if (arguments.size) std::tie(options.width, options.height) = *arguments.size;
-  if (!arguments.offscreen.empty()) require_writable(arguments.offscreen);
-  const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  return options;
+}
+
+// Without a solution: the light arrives while one looks.
+int view_live(const Arguments& arguments, const Scene& scene, const ViewOptions& options,
+              Console& console, Report& report) {
+  if (options.interpolation_error || !arguments.channels.empty()) {
+    throw InputError(fmt::format(
+        "{} needs a solution; give one: lightwell view {} SOLUTION.vtp",
+        options.interpolation_error ? "'--false-colour error'" : "'--channel'", arguments.scene));
+  }
+  SolveArguments solving;
+  solving.mesh = arguments.mesh;
+  solving.solver = "progressive";
+  LiveViewOptions live;
+  live.solve = solving.options(scene);
+  live.ambient = !arguments.no_ambient;
+  live.provenance = {.version = LIGHTWELL_VERSION,
+                     .scene_file = scene.file.string(),
+                     .scene_hash = scene_hash(scene),
+                     .options = solving.text(scene)};
+  live.solve.progress = console.progress();
+  if (arguments.offscreen.empty()) {
+    show_live_window(scene, live, options);
+    return exit_done;
+  }
+  if (arguments.shots.empty()) {
+    throw InputError(
+        "off screen, light cannot be watched arriving; say after how many shots to draw, such as "
+        "'--shots 100', or give a solution");
+  }
+  if (!std::is_sorted(arguments.shots.begin(), arguments.shots.end())) {
+    throw InputError("'--shots' must rise, as in 1,10,100: light that was shot is not taken back");
+  }
+  const Stopwatch watch;
+  const int shots = write_live_snapshot(scene, live, arguments.shots, options, arguments.offscreen);
+  console.finish_phase();
+  report.add("shots", shots);
+  report.add_phase("draw", watch.seconds());
+  report.add_file(arguments.offscreen);
+  report.print();
+  return exit_done;
+}
+
+int view(const Arguments& arguments, Console& console) {
+  Report report(console.options());
+  const Scene scene = read_scene_step(arguments.scene, console, report);
+  const ViewOptions options = view_options(arguments, scene);
+  const bool is_film = arguments.frames > 0 || arguments.turntable > 0;
+  if (is_film && arguments.solution.empty()) {
+    throw InputError("a film needs a solution: lightwell view SCENE SOLUTION.vtp --frames ...");
+  }
+  const std::string first_picture =
+      is_film ? frame_name(arguments.offscreen, 0).string() : arguments.offscreen;
+  for (const std::string& file : {first_picture, arguments.output}) {
+    if (!file.empty()) require_writable(file);
+  }
+  if (arguments.solution.empty()) return view_live(arguments, scene, options, console, report);
+  if (!arguments.shots.empty()) {
+    throw InputError(fmt::format("'--shots' is for light that is still arriving, and {} is solved",
+                                 arguments.solution));
+  }
+  SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   if (options.interpolation_error && solved.solution.interpolation_error.size() == 0) {
     throw InputError(fmt::format(
         "{}: it was not refined, so there is no error of interpolation to show; solve it without "
         "'--refine off'",
         arguments.solution));
   }
+  if (!arguments.channels.empty()) {
+    relight(solved, channel_scales(solved.solution, arguments.channels, arguments.solution));
+  }
   if (arguments.offscreen.empty()) {
     show_window(solved, options);
     return exit_done;
   }
   const Stopwatch watch;
-  write_snapshot(solved, options, arguments.offscreen);
+  if (is_film) {
+    const FilmOptions film{arguments.path, std::max(arguments.frames, arguments.turntable)};
+    for (const fs::path& file :
+         write_film(solved, options, film, arguments.offscreen, console.progress())) {
+      report.add_file(file);
+    }
+    console.finish_phase();
+  } else {
+    write_snapshot(solved, options, arguments.offscreen);
+    report.add_file(arguments.offscreen);
+  }
   report.add_phase("draw", watch.seconds());
-  report.add_file(arguments.offscreen);
   report.print();
   return exit_done;
 }
@@ -75,12 +170,19 @@ Action add_view(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.description(
       "Walk through a solved scene in a window: W A S D or arrows to walk, the mouse to look\n"
-      "around, 1 to 9 for the scene's cameras, H for all keys, Escape to leave.");
-  add_solved_scene(command, arguments->scene, arguments->solution);
+      "around, 1 to 9 for the scene's cameras, H for all keys, Escape to leave. Without a "
+      "solution\n"
+      "the light is solved for while you walk, and arrives shot by shot.");
+  command.add_option("scene", arguments->scene, "the scene file")->required()->type_name("SCENE");
   command
-      .add_option("--offscreen", arguments->offscreen, "draw into this .png instead of a window")
-      ->type_name("FILE")
-      ->check(with_extension({".png"}));
+      .add_option("solution", arguments->solution,
+                  "its solution, .vtp (default: solve while it is watched)")
+      ->type_name("SOLUTION");
+  auto* const offscreen = command
+                              .add_option("--offscreen", arguments->offscreen,
+                                          "draw into this .png instead of a window")
+                              ->type_name("FILE")
+                              ->check(with_extension({".png"}));
   command.add_option("--camera", arguments->camera, "where to start (default: the first camera)")
       ->type_name("NAME");
   add_size(command, arguments->size);
@@ -98,6 +200,58 @@ Action add_view(CLI::App& command) {
           ->type_name("WHAT")
           ->check(one_of("quantity", {"lux", "error"}));
   add_lux_range(command, arguments->range)->needs(false_colour);
+  command
+      .add_option("--isolux", arguments->isolux,
+                  "begin with lines of equal illuminance at these lux, as 100,300,500 (key I)")
+      ->type_name("LUX")
+      ->delimiter(',')
+      ->check(positive());
+  command.add_flag("--walk", arguments->walk, "begin on foot (key G)");
+  command
+      .add_option("--eye-height", arguments->eye_height,
+                  "of a person on foot (default: 1.6 m, less in a scene smaller than a room)")
+      ->type_name("LENGTH")
+      ->check(positive());
+  auto* const path =
+      command.add_option("--path", arguments->path, "a path recorded with the key J, for --frames")
+          ->type_name("FILE");
+  auto* const frames =
+      command
+          .add_option("--frames", arguments->frames,
+                      "with --offscreen out-%04d.png: so many pictures along the path")
+          ->type_name("N")
+          ->check(whole_number(1, 1000000));
+  path->needs(frames);
+  frames->needs(path)->needs(offscreen);
+  command
+      .add_option("--turntable", arguments->turntable,
+                  "with --offscreen out-%04d.png: so many pictures around the scene")
+      ->type_name("N")
+      ->check(whole_number(1, 1000000))
+      ->needs(offscreen)
+      ->excludes(path);
+  add_channel_settings(command, arguments->channels);
+  command
+      .add_option("-o,--output", arguments->output,
+                  "where Ctrl+S and Enter save the solution (default: a free name here), .vtp")
+      ->type_name("FILE")
+      ->check(with_extension({".vtp"}));
+  const char* const live = "Without a solution";
+  command
+      .add_option(
+          "--shots", arguments->shots,
+          "with --offscreen: draw after this many shots, or when all light is shot; several, "
+          "as 1,10,100, are drawn side by side")
+      ->type_name("N")
+      ->delimiter(',')
+      ->check(whole_number(0, 1 << 24))
+      ->needs(offscreen)
+      ->group(live);
+  command
+      .add_flag("--no-ambient", arguments->no_ambient,
+                "with --shots: only the light that was shot, not what is foretold of the rest")
+      ->group(live);
+  arguments->mesh.add_to(command, live);
   command.footer("Example: lightwell view cornell/cornell.toml cornell.vtp");
   return [arguments](Console& console) { return view(*arguments, console); };
 }

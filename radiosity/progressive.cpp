@@ -122,9 +122,9 @@ EnergyBalance ProgressiveRadiosity::energy() const {
   return energy;
 }
 
-bool ProgressiveRadiosity::step() {
+bool ProgressiveRadiosity::step(int most) {
   if (shots_ >= options_.max_shots || has_converged()) return false;
-  const std::vector<int> chosen = choose();
+  const std::vector<int> chosen = choose(std::max(most, 1));
   const auto foreseen =
       options_.overshooting == Overshooting::ambient ? ambient() : Spectrum::Zero(unshot_.cols());
   std::vector<RowRequest> requests;
@@ -147,14 +147,15 @@ bool ProgressiveRadiosity::step() {
 }
 
 // Most unshot power first, and of equals the first.
-std::vector<int> ProgressiveRadiosity::choose() const {
+std::vector<int> ProgressiveRadiosity::choose(int most) const {
   std::vector<std::pair<double, int>> order;
   for (int i = 0; i < mesh_.patch_count(); ++i) {
     const double unshot = power(mesh_, unshot_, i);
     if (unshot > 0.0) order.emplace_back(-unshot, i);
   }
   const int round = std::max(least_round, mesh_.patch_count() / 128);
-  const auto wanted = static_cast<std::size_t>(std::min(round, options_.max_shots - shots_));
+  const auto wanted =
+      static_cast<std::size_t>(std::min({round, most, options_.max_shots - shots_}));
   const std::size_t count = std::min(wanted, order.size());
   std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end());
   std::vector<int> chosen;

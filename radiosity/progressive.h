@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -70,8 +71,9 @@ class ProgressiveRadiosity {
   ProgressiveRadiosity(const Scene& scene, const PatchMesh& mesh, ShotRows rows,
                        const ProgressiveOptions& options = {});
 
-  /// One round. False, having done nothing, once the tolerance or the fuse is reached.
-  bool step();
+  /// One round, of at most `most` shooters (1: the single brightest). False, having done nothing,
+  /// once the tolerance or the fuse is reached.
+  bool step(int most = std::numeric_limits<int>::max());
 
   /// Who shot in the last round: what an observer passes on to vertices, or shows.
   const std::vector<Shot>& last_shots() const { return last_shots_; }
@@ -95,7 +97,7 @@ class ProgressiveRadiosity {
   auto state() { return std::tie(radiosity_, unshot_, energy_, shots_); }
 
  private:
-  std::vector<int> choose() const;
+  std::vector<int> choose(int most) const;
   int rays_of(int patch) const;
   void receive(const Shot& shot, const EstimatedRow& row);
 

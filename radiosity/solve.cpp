@@ -190,7 +190,28 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   report->gather_rays = effort.gather_rays;
 }
 
+// What of a solution does not depend on the light.
+void describe(const Scene& scene, RadiositySolution& solution) {
+  solution.bands = scene.bands;
+  solution.metres_per_unit = scene.metres_per_unit;
+  solution.unit_name = scene.unit_name;
+  solution.relative_units = scene.relative_units;
+  solution.provenance.scene_file = scene.file.string();
+  solution.provenance.scene_hash = scene_hash(scene);
+}
+
 }  // namespace
+
+SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const SolveOptions& options,
+                               SolveReport* report) {
+  SolvedScene solved = std::move(patches);
+  describe(scene, solved.solution);
+  std::vector<PhaseSeconds> seconds = std::move(solved.solution.seconds);
+  const DirectLight direct_light(scene, solved.mesh);
+  illuminate_elements(scene, direct_light, direct_light, options, solved, seconds, report);
+  solved.solution.seconds = std::move(seconds);
+  return solved;
+}
 
 bool starts_coarse(const SolveOptions& options) {
   return options.refine.tolerance > 0.0 && !options.mesh.discontinuity &&
@@ -229,10 +250,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   RadiositySolution& solution = solved.solution;
   for (const PhaseSeconds& phase : solution.seconds) seconds.push_back(phase);
   watch.lap();
-  solution.bands = scene.bands;
-  solution.metres_per_unit = scene.metres_per_unit;
-  solution.unit_name = scene.unit_name;
-  solution.relative_units = scene.relative_units;
+  describe(scene, solution);
 
   std::optional<DirectLight> by_channel;
   if (!options.channels.empty()) by_channel.emplace(scene, solved.mesh, options.channels);
@@ -240,8 +258,6 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   illuminate_elements(scene, direct_light, by_channel ? *by_channel : direct_light, options, solved,
                       seconds, report);
   solution.seconds = std::move(seconds);
-  solution.provenance.scene_file = scene.file.string();
-  solution.provenance.scene_hash = hash;
   return solved;
 }
 

@@ -73,6 +73,13 @@ bool starts_coarse(const SolveOptions& options);
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);
 
+/// The second half of solve_scene, for light that was found otherwise: `patches` has a mesh of the
+/// scene with patch_radiosity, energy, residual, outcome, history and seconds of its own; elements
+/// are refined as `options` say, light is gathered to vertices, and the rest of the solution filled
+/// in. `channels` must be empty. Throws Interrupted when progress says stop.
+SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches,
+                               const SolveOptions& options = {}, SolveReport* report = nullptr);
+
 /// Where the light of patch radiosities B went; `residual` = M + rho F B - B. Mirrors' share is
 /// taken from the scene's materials.
 EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,

@@ -39,8 +39,11 @@ std::vector<double> even_steps(double high) {
 
 std::vector<ElementKind> element_kinds(const SolvedScene& solved,
                                        const std::vector<Material>& materials) {
-  const PatchMesh& mesh = solved.mesh;
-  const BandArray E = solved.solution.irradiance();
+  return element_kinds(solved.mesh, solved.solution.irradiance(), materials);
+}
+
+std::vector<ElementKind> element_kinds(const PatchMesh& mesh, const BandArray& E,
+                                       const std::vector<Material>& materials) {
   std::vector<ElementKind> kinds(static_cast<std::size_t>(mesh.element_count()));
   for (int e = 0; e < mesh.element_count(); ++e) {
     const Material* material = find_material(mesh, materials, e);

@@ -23,6 +23,10 @@ inline constexpr double glass_opacity = 0.2;
 std::vector<ElementKind> element_kinds(const SolvedScene& solved,
                                        const std::vector<Material>& materials);
 
+/// The same by the light at vertices, E (vertices x bands), where it is not all of the solution's.
+std::vector<ElementKind> element_kinds(const PatchMesh& mesh, const BandArray& E,
+                                       const std::vector<Material>& materials);
+
 /// Radiance that stands for each vertex, W/(m^2 sr), vertices x bands: B / pi; mirrors and glass
 /// add what they would send out if they scattered the mirrored or the refracted light evenly.
 BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>& materials);

@@ -63,17 +63,23 @@ SolutionActor::SolutionActor(const PatchMesh& mesh, const std::vector<ElementKin
   for (int v = 0; v < mesh.vertex_count(); ++v) points->SetPoint(v, mesh.position(v).data());
 
   for (const ElementKind kind : {ElementKind::lit, ElementKind::unlit, ElementKind::glass}) {
-    const auto polygons = polygons_of_kind(mesh, kinds, radiance, kind);
-    if (polygons->GetNumberOfCells() == 0) continue;
     auto data = vtkSmartPointer<vtkPolyData>::New();
     data->SetPoints(points);
-    data->SetPolys(polygons);
     data->GetPointData()->SetScalars(colors_);
     parts_.push_back({kind, data, make_actor(data, kind == ElementKind::glass)});
   }
+  set_shapes(mesh, kinds, radiance);
 }
 
 SolutionActor::~SolutionActor() = default;
+
+void SolutionActor::set_shapes(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
+                               const BandArray& radiance) {
+  for (const Part& part : parts_) {
+    const auto polygons = polygons_of_kind(mesh, kinds, radiance, part.kind);
+    part.data->SetPolys(polygons);
+  }
+}
 
 void SolutionActor::add_to(vtkRenderer* renderer) const {
   for (const Part& part : parts_) renderer->AddActor(part.actor);

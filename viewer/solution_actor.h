@@ -27,6 +27,10 @@ class SolutionActor {
                 const BandArray& radiance);
   ~SolutionActor();
 
+  /// Of the same mesh: what its elements are, and how quads are split, with other light.
+  void set_shapes(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
+                  const BandArray& radiance);
+
   void add_to(vtkRenderer* renderer) const;
   /// 8-bit sRGB, 3 bytes a vertex.
   void set_colors(const std::vector<std::uint8_t>& rgb);

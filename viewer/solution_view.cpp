@@ -4,6 +4,7 @@
 #include <vtkDoubleArray.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
+#include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
@@ -26,7 +27,7 @@ namespace {
 /// driver's largest picture or memory is the limit.
 constexpr int samples_along_pixel = 4;
 
-vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char* unit) {
+void set_range(vtkScalarBarActor* legend, const LuxRange& range) {
   constexpr int entries = 256;
   vtkNew<vtkLookupTable> table;
   table->SetNumberOfTableValues(entries);
@@ -36,14 +37,21 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char
     const Eigen::Array3f c = false_color(static_cast<float>(i) / (entries - 1));
     table->SetTableValue(i, c[0], c[1], c[2]);
   }
-  auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
   legend->SetLookupTable(table);
-  legend->SetTitle(unit);
   vtkNew<vtkDoubleArray> labels;
   for (const double value : scale_steps(range)) labels->InsertNextValue(value);
   legend->SetCustomLabels(labels);
+}
+
+vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char* unit) {
+  auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
+  set_range(legend, range);
+  legend->SetTitle(unit);
   legend->UseCustomLabelsOn();
   legend->SetLabelFormat("%.4g");
+  legend->DrawBackgroundOn();
+  legend->GetBackgroundProperty()->SetColor(0.05, 0.05, 0.05);
+  legend->GetBackgroundProperty()->SetOpacity(0.6);
   legend->UnconstrainedFontSizeOn();
   legend->SetMaximumWidthInPixels(80);
   legend->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
@@ -90,8 +98,11 @@ std::vector<std::uint8_t> encode(const std::vector<float>& sums, int width, int 
 
 SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options)
     : solved_(solved),
+      materials_(options.materials),
+      keeps_range_(options.lux_range.has_value()),
       caster_(solved.mesh),
       kinds_(element_kinds(solved, options.materials)),
+      irradiance_(solved.solution.irradiance()),
       radiance_(shown_radiance(solved, options.materials)),
       lux_(vertex_illuminance(solved.solution)),
       lux_range_(options.lux_range.value_or(lux_range(lux_))),
@@ -99,7 +110,8 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       up_axis_(guess_up_axis(options.cameras, bounds_)),
       actor_(solved.mesh, kinds_, radiance_),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
-      legend_(make_legend(lux_range_, options.relative_units ? "relative" : "lx")) {
+      legend_(make_legend(lux_range_, options.relative_units ? "relative" : "lx")),
+      isolux_levels_(options.isolux) {
   if (options.camera) {
     start_camera_ = *options.camera;
   } else if (!options.cameras.empty()) {
@@ -108,6 +120,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
     start_camera_ = find_start(caster_, kinds_, radiance_, up_axis_, options.width, options.height);
   }
   actor_.add_to(renderer_);
+  isolux_.add_to(renderer_);
   renderer_->AddViewProp(legend_);
   renderer_->SetBackground(0.0, 0.0, 0.0);
   look_.camera = start_camera_;
@@ -116,10 +129,12 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   look_.mesh = options.mesh;
   look_.illuminance = options.illuminance;
   look_.interpolation_error = options.interpolation_error;
+  look_.isolux = !options.isolux.empty();
   actor_.show_mesh(look_.mesh);
   legend_->SetVisibility(look_.illuminance);
   apply_camera();
   apply_colors();
+  apply_isolux();
 }
 
 SolutionView::~SolutionView() = default;
@@ -143,6 +158,46 @@ void SolutionView::set_look(const Look& look) {
   legend_->SetVisibility(look.illuminance && !look.interpolation_error);
   if (recolor) apply_colors();
   apply_camera();
+  apply_isolux();
+}
+
+std::vector<double> SolutionView::isolux_levels() const {
+  if (!isolux_levels_.empty()) return isolux_levels_;
+  std::vector<double> steps = scale_steps(lux_range_);
+  std::erase_if(steps, [](double step) { return !(step > 0.0); });
+  return steps;
+}
+
+// Found when they are first looked at.
+void SolutionView::apply_isolux() {
+  if (look_.isolux && isolux_is_stale_) {
+    constexpr double lift = 1e-3;  // of the scene, so that no depth buffer mixes them with walls
+    isolux_.set(solved_.mesh, kinds_, lux_, radiance_, isolux_levels(), lift * bounds_.diagonal());
+    isolux_is_stale_ = false;
+  }
+  isolux_.show(look_.isolux);
+  isolux_.look_from(caster_, kinds_, look_.camera, {.unlit = look_.unlit});
+}
+
+void SolutionView::light_changed() {
+  irradiance_ = solved_.solution.irradiance();
+  radiance_ = shown_radiance(solved_, materials_);
+  lux_ = vertex_illuminance(solved_.solution);
+  isolux_is_stale_ = true;
+  apply_colors();
+  apply_isolux();
+}
+
+void SolutionView::light_arrived() {
+  kinds_ = element_kinds(solved_.mesh, solved_.solution.direct_irradiance, materials_);
+  light_changed();
+  actor_.set_shapes(solved_.mesh, kinds_, radiance_);
+  if (keeps_range_) return;
+  lux_range_ = lux_range(lux_);
+  set_range(legend_, lux_range_);
+  if (look_.illuminance) apply_colors();
+  isolux_is_stale_ = isolux_levels_.empty();
+  apply_isolux();
 }
 
 void SolutionView::apply_colors() {

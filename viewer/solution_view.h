@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "viewer/appearance.h"
+#include "viewer/isolux.h"
 #include "viewer/solution_actor.h"
 #include "viewer/start_view.h"
 #include "viewer/view.h"
@@ -24,9 +25,10 @@ struct Look {
   bool unlit = true;           ///< surfaces without light are drawn, black; else looked through
   bool illuminance = false;    ///< false colours with a legend instead of light
   bool interpolation_error = false;  ///< see error_colors; goes before illuminance
+  bool isolux = false;               ///< lines of equal illuminance
 };
 
-/// A solution set up for drawing with VTK. Keeps references to both arguments.
+/// A solution set up for drawing with VTK. Keeps a reference to the solution.
 class SolutionView {
  public:
   SolutionView(const SolvedScene& solved, const ViewOptions& options);
@@ -34,9 +36,21 @@ class SolutionView {
 
   const Look& look() const { return look_; }
   void set_look(const Look& look);
+  /// Shows the light that the solution has now, in colours of the same scale.
+  void light_changed();
+  /// The same while light is arriving: its scale of false colours follows it, unless the options
+  /// name one. What has no direct irradiance counts as unlit, for the rest is foretold.
+  void light_arrived();
   /// The exposure_scale of the picture the camera sees.
   double meter(const Camera& camera) const;
 
+  const ElementCaster& caster() const { return caster_; }
+  const std::vector<ElementKind>& kinds() const { return kinds_; }
+  /// At vertices, W/m^2, vertices x bands.
+  const BandArray& irradiance() const { return irradiance_; }
+  const SolvedScene& solved() const { return solved_; }
+  /// Levels of the isolux lines, lx.
+  std::vector<double> isolux_levels() const;
   const Camera& start_camera() const { return start_camera_; }
   const Bounds& bounds() const { return bounds_; }
   const Eigen::Vector3d& up_axis() const { return up_axis_; }
@@ -45,10 +59,14 @@ class SolutionView {
  private:
   void apply_camera();
   void apply_colors();
+  void apply_isolux();
 
   const SolvedScene& solved_;
+  std::vector<Material> materials_;
+  bool keeps_range_;
   ElementCaster caster_;
   std::vector<ElementKind> kinds_;
+  BandArray irradiance_;
   BandArray radiance_;
   std::vector<float> lux_;
   LuxRange lux_range_;
@@ -59,6 +77,9 @@ class SolutionView {
   SolutionActor actor_;
   vtkSmartPointer<vtkRenderer> renderer_;
   vtkSmartPointer<vtkScalarBarActor> legend_;
+  std::vector<double> isolux_levels_;  ///< asked for; empty: the steps of the scale
+  bool isolux_is_stale_ = true;
+  IsoluxLines isolux_;
 };
 
 /// Draws off screen, 4 x 4 samples a pixel on a regular grid, averaged in linear light. 8-bit sRGB,

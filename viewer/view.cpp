@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "raytrace/image.h"
+#include "scene/errors.h"
+#include "viewer/camera_path.h"
+#include "viewer/live_solve.h"
 #include "viewer/solution_view.h"
 #include "viewer/walk_window.h"
 #include "viewer/x_display.h"
@@ -16,8 +20,9 @@ void show_window(const SolvedScene& solved, const ViewOptions& options) {
   WalkWindow(solved, options).run();
 }
 
-void write_snapshot(const SolvedScene& solved, const ViewOptions& options,
-                    const std::filesystem::path& png) {
+namespace {
+
+void require_size(const ViewOptions& options) {
   constexpr int largest = 8192;
   for (const int side : {options.width, options.height}) {
     if (side < 1 || side > largest) {
@@ -26,10 +31,96 @@ void write_snapshot(const SolvedScene& solved, const ViewOptions& options,
                       options.width, options.height, largest));
     }
   }
+}
+
+}  // namespace
+
+void write_snapshot(const SolvedScene& solved, const ViewOptions& options,
+                    const std::filesystem::path& png) {
+  require_size(options);
   const DisplayConnection display;
   const SolutionView view(solved, options);
   write_png(png, options.width, options.height,
             draw_offscreen(view, options.width, options.height));
+}
+
+std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& options,
+                                              const FilmOptions& film, const std::string& pattern,
+                                              const Progress& progress) {
+  require_size(options);
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < film.frames; ++i) files.push_back(frame_name(pattern, i));
+  CameraPath path;
+  if (!film.path.empty()) {
+    path = read_views(film.path).path;
+    if (path.empty()) {
+      throw InputError(
+          fmt::format("{}: there is no path in it; record one in the window with the key J",
+                      film.path.string()));
+    }
+  }
+  const DisplayConnection display;
+  SolutionView view(solved, options);
+  const Eigen::Vector3d center = 0.5 * (view.bounds().low + view.bounds().high);
+  const std::vector<Camera> cameras =
+      path.empty() ? turntable(view.start_camera(), center, view.up_axis(), film.frames)
+                   : frames_along(path, film.frames);
+  Look look = view.look();
+  look.metered_scale = view.meter(cameras.front());
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    report(progress, "draw", static_cast<double>(i) / static_cast<double>(cameras.size()));
+    look.camera =
+        path.empty() ? cameras[i] : fit_to_window(cameras[i], options.width, options.height);
+    view.set_look(look);
+    write_png(files[i], options.width, options.height,
+              draw_offscreen(view, options.width, options.height));
+  }
+  return files;
+}
+
+void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& options) {
+  const DisplayConnection display;
+  LiveSolve solve(scene, live.solve, live.provenance);
+  WalkWindow window(solve, options);
+  solve.start();
+  window.run();
+}
+
+int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::span<const int> shots,
+                        const ViewOptions& options, const std::filesystem::path& png) {
+  ViewOptions strip = options;
+  strip.width = options.width * static_cast<int>(shots.size());
+  require_size(options);
+  require_size(strip);
+  const DisplayConnection display;
+  LiveSolve solve(scene, live.solve, live.provenance);
+  std::vector<SolvedScene> stages;
+  int shot = 0;
+  for (const int wanted : shots) {
+    solve.shoot(wanted);
+    const LiveLight light = solve.light();
+    shot = light.shots;
+    RadiositySolution& shown = stages.emplace_back(solve.dark()).solution;
+    shown.direct_irradiance = light.irradiance;
+    if (!live.ambient) continue;
+    shown.indirect_irradiance.rowwise() += light.ambient.max(0.0f).transpose();
+  }
+  const double exposure = SolutionView(stages.back(), options).look().metered_scale;
+  std::vector<std::uint8_t> picture(std::size_t{3} * strip.width * strip.height);
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    SolutionView view(stages[k], options);
+    Look look = view.look();
+    look.metered_scale = exposure;
+    view.set_look(look);
+    const auto drawn = draw_offscreen(view, options.width, options.height);
+    const std::size_t row = std::size_t{3} * options.width;
+    for (int y = 0; y < options.height; ++y) {
+      std::copy_n(drawn.begin() + static_cast<std::ptrdiff_t>(row * y), row,
+                  picture.begin() + static_cast<std::ptrdiff_t>(row * (stages.size() * y + k)));
+    }
+  }
+  write_png(png, strip.width, strip.height, picture);
+  return shot;
 }
 
 }  // namespace lightwell

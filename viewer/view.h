@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,14 +21,27 @@ struct ViewOptions {
   /// The scene's materials, so that mirrors and glass can be told from black surfaces; a solution
   /// alone knows only diffuse light. May be left empty.
   std::vector<Material> materials{};
+  /// For the names of what is pointed at. May be left out; must outlive the window.
+  const Scene* scene = nullptr;
   bool mesh = false;                    ///< begin with the elements' outlines
   bool illuminance = false;             ///< begin in false colours
   std::optional<LuxRange> lux_range{};  ///< of those; else what suits the solution
   /// Begin with the error of interpolation that refinement estimated, in the false colours of
   /// error_colors; of a solution that has it.
   bool interpolation_error = false;
-  bool relative_units = false;                   ///< what the scale calls lux is in no known unit
-  std::filesystem::path screenshot_folder{"."};  ///< where the screenshot key leaves its PNGs
+  bool relative_units = false;  ///< what the scale calls lux is in no known unit
+  /// Where the solution is saved when a key asks for that; empty: beside the pictures, under a name
+  /// that is free.
+  std::filesystem::path solution_file{};
+  std::filesystem::path screenshot_folder{"."};  ///< where keys leave pictures and solutions
+  /// Where the keys for bookmarks and paths keep them (JSON); empty: they last as long as the
+  /// window.
+  std::filesystem::path bookmark_file{};
+  /// Isolux lines begin shown at these levels, lx; empty: at the scale's steps, and hidden.
+  std::vector<double> isolux{};
+  double eye_height =
+      0.0;            ///< of a person who walks, m; 0: 1.6, less in a scene smaller than a room
+  bool walk = false;  ///< begin on foot, with weight and stopped by walls
 };
 
 /// Opens a window with the smooth-shaded solution and walk controls (the key H lists them); returns
@@ -36,6 +50,37 @@ struct ViewOptions {
 /// depends on the eye and is the second pass's work. Throws std::runtime_error, saying what to do,
 /// where no display can be opened.
 void show_window(const SolvedScene& solved, const ViewOptions& options);
+
+/// Which pictures make a film: one of the two.
+struct FilmOptions {
+  std::filesystem::path path{};  ///< a recorded path (see camera_path.h); empty: a turntable
+  int frames = 0;                ///< pictures, > 0: evenly along the path, or around the scene
+};
+
+/// Draws as write_snapshot does, all exposed as the first, into files numbered from 0 by a pattern
+/// such as "out-%04d.png". Returns their names. Throws as write_snapshot and read_views do, and
+/// InputError for a path that is empty or a pattern without a number.
+std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& options,
+                                              const FilmOptions& film, const std::string& pattern,
+                                              const Progress& progress = {});
+
+struct LiveViewOptions {
+  SolveOptions solve{};     ///< mesh, progressive refinement, refining and gathering
+  Provenance provenance{};  ///< of the solution that comes of it
+  bool ambient = true;      ///< off screen: with the ambient term of unshot light
+};
+
+/// Opens the window at once and shows light arriving, shot by shot, while a thread solves
+/// (progressive refinement, see live_solve.h); then the solution. Keys pause, shoot once, show the
+/// ambient term, and stop and save. Throws as show_window does, and InputError where nothing emits
+/// light.
+void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& options);
+
+/// What the window shows after so many shots (or once the tolerance is reached, at less), as
+/// write_snapshot draws it: for each of `shots`, which rise, one picture beside the other, all
+/// exposed as the last. Returns how many shot in the end. The same picture whatever the computer.
+int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::span<const int> shots,
+                        const ViewOptions& options, const std::filesystem::path& png);
 
 /// Draws the same picture off screen, antialiased, and writes it as a PNG (temporary name, then
 /// renamed). Needs an X display all the same. Throws std::runtime_error where none can be opened or

@@ -64,6 +64,17 @@ bool WalkState::advance(const WalkKeys& keys, double seconds) {
 }
 
 void WalkState::look(double yaw, double pitch) {
+  turn(yaw, pitch);
+}
+
+void WalkState::orbit(const Eigen::Vector3d& pivot, double yaw, double pitch) {
+  const Eigen::Matrix3d turned = turn(yaw, pitch);
+  camera_.position = pivot + turned * (camera_.position - pivot);
+  velocity_.setZero();
+}
+
+// Turns the eye, and returns by what.
+Eigen::Matrix3d WalkState::turn(double yaw, double pitch) {
   const double from_zenith = std::acos(std::clamp(camera_.direction.dot(up_axis_), -1.0, 1.0));
   // A start closer to the pole than the limit may stay there, but goes no closer.
   const double lowest = std::min(from_zenith, closest_to_pole);
@@ -77,6 +88,7 @@ void WalkState::look(double yaw, double pitch) {
   camera_.direction = (turn * camera_.direction).normalized();
   const Eigen::Vector3d up = turn * camera_.up;
   camera_.up = (up - up.dot(camera_.direction) * camera_.direction).normalized();
+  return turn;
 }
 
 void WalkState::dolly(double distance) {

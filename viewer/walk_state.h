@@ -31,10 +31,17 @@ class WalkState {
   /// zenith or the nadir.
   void look(double yaw, double pitch);
 
+  /// The same about a point: the eye goes around it, and what it looked at stays in view.
+  void orbit(const Eigen::Vector3d& pivot, double yaw, double pitch);
+
   /// Moves along the line of sight, metres.
   void dolly(double distance);
 
+  /// Puts the eye where it came to, on foot; speed and direction stay.
+  void move_eye_to(const Eigen::Vector3d& position) { camera_.position = position; }
+
  private:
+  Eigen::Matrix3d turn(double yaw, double pitch);
   Eigen::Vector3d wanted_velocity(const WalkKeys& keys) const;
 
   Camera camera_;

@@ -84,7 +84,7 @@ TEST_F(WalkWindowTest, TheWheelMovesAlongTheView) {
   EXPECT_GT(window_.look().camera.position.z(), -3.0);
 }
 
-TEST_F(WalkWindowTest, NumbersGoToCamerasAndRGoesBack) {
+TEST_F(WalkWindowTest, NumbersGoToCamerasAndHomeGoesBack) {
   tap("2");
   EXPECT_EQ(window_.look().camera.position.z(), -1.0);
   EXPECT_EQ(window_.message(), "near");
@@ -96,7 +96,7 @@ TEST_F(WalkWindowTest, NumbersGoToCamerasAndRGoesBack) {
   tap("7");
   EXPECT_EQ(window_.look().camera.position.z(), -1.0);
   EXPECT_NE(window_.message().find("2 cameras"), std::string::npos);
-  tap("r");
+  tap("Home");
   EXPECT_EQ(window_.look().camera.position, box_camera().position);
 }
 

@@ -1,0 +1,93 @@
+#include "viewer/still.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "channel_room.h"
+#include "raytrace/render.h"
+#include "tests/temporary_folder.h"
+#include "viewer/appearance.h"
+#include "viewer/walk_window.h"
+
+namespace lightwell {
+namespace {
+
+using namespace std::chrono_literals;
+
+class StillTest : public testing::Test {
+ protected:
+  static const Scene& scene() {
+    static const Scene room = channel_room();
+    return room;
+  }
+  static const SolvedScene& solved() {
+    static const SolvedScene solution = solve_by_channel(scene());
+    return solution;
+  }
+  ViewOptions options() const {
+    ViewOptions options;
+    options.cameras = scene().cameras;
+    options.materials = scene().materials;
+    options.scene = &scene();
+    options.width = options.height = 60;
+    options.screenshot_folder = folder_.path();
+    return options;
+  }
+  static bool tick_until(WalkWindow& window, StillPhase phase) {
+    for (int i = 0; i < 6000 && window.still().phase() != phase; ++i) {
+      window.tick(0.01);
+      std::this_thread::sleep_for(5ms);
+    }
+    return window.still().phase() == phase;
+  }
+  TemporaryFolder folder_{};
+};
+
+/// What is faded in is the second pass's picture to the last bit, in the window's exposure.
+TEST_F(StillTest, IsThePictureThatRenderMakes) {
+  WalkWindow window(solved(), options());
+  window.tick(0.01);
+  window.press("r");
+  window.release("r");
+  EXPECT_EQ(window.still().phase(), StillPhase::rendering);
+  ASSERT_TRUE(tick_until(window, StillPhase::shown));
+  const ElementCaster caster(solved().mesh);
+  const DirectLight direct_light(scene(), solved().mesh);
+  const Image wanted =
+      render(scene(), caster, direct_light, solved().solution, window.look().camera);
+  EXPECT_TRUE((window.still().image().radiance == wanted.radiance).all());
+  EXPECT_EQ(window.still().picture(),
+            display_colors(wanted.radiance, solved().solution.bands, window.look().metered_scale));
+  for (int i = 0; i < 100; ++i) window.tick(0.01);
+  window.press("p");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "lightwell-1.png")) << window.message();
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "lightwell-1.exr")) << window.message();
+  EXPECT_EQ(read_exr(folder_ / "lightwell-1.exr").width, 60);
+}
+
+TEST_F(StillTest, IsThrownAwayWhenTheCameraMoves) {
+  WalkWindow window(solved(), options());
+  window.tick(0.01);
+  window.press("r");
+  window.release("r");
+  ASSERT_TRUE(tick_until(window, StillPhase::shown));
+  window.drag(5, 0);
+  EXPECT_EQ(window.still().phase(), StillPhase::none);
+  window.press("r");
+  window.release("r");
+  window.press("r");
+  EXPECT_EQ(window.still().phase(), StillPhase::none) << "R again cancels";
+}
+
+TEST_F(StillTest, NeedsTheScene) {
+  ViewOptions without = options();
+  without.scene = nullptr;
+  WalkWindow window(solved(), without);
+  window.press("r");
+  EXPECT_NE(window.message().find("scene"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lightwell

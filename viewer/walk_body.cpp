@@ -1,0 +1,145 @@
+#include "viewer/walk_body.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace lightwell {
+namespace {
+
+constexpr int around = 16, below = 8;
+constexpr int most_pushes = 6;
+/// Tilt from which a surface is a wall and not a slope: the level share of its normal.
+constexpr double steep = 0.7;
+constexpr double moment = 1.0 / 120.0;  ///< s
+constexpr double step_seconds = 0.06;   ///< tau with which a step is taken
+constexpr double ring_share = 0.7;      ///< of the radius: where feet look for ground
+constexpr double slack = 1e-3;          ///< of the radius, that counts as touching
+
+}  // namespace
+
+WalkBody walk_body(double scene_diagonal, double eye_height) {
+  constexpr double room = 7.0;  ///< m
+  WalkBody body;
+  const double scale =
+      eye_height > 0.0 ? eye_height / body.eye_height : std::min(1.0, scene_diagonal / room);
+  for (double* length : {&body.eye_height, &body.radius, &body.step, &body.above_eye,
+                         &body.jump_height, &body.gravity}) {
+    *length *= scale;
+  }
+  return body;
+}
+
+WalkPhysics::WalkPhysics(const WalkBody& body, const Eigen::Vector3d& up_axis)
+    : body_(body), up_(up_axis), a_(up_axis.unitOrthogonal()), b_(up_axis.cross(a_)) {}
+
+// Out of what is nearer than the radius, by the deepest first. False if that leads nowhere.
+bool WalkPhysics::push_out(const Obstacles& obstacles, Eigen::Vector3d& eye,
+                           const Eigen::Vector3d& way) const {
+  const std::array<double, 5> drops = {body_.eye_height - 1.05 * body_.step, 0.6 * body_.eye_height,
+                                       0.3 * body_.eye_height, 0.0, -body_.above_eye};
+  std::vector<Eigen::Vector3d> directions;
+  for (int i = 0; i < around; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / around;
+    directions.emplace_back(std::cos(angle) * a_ + std::sin(angle) * b_);
+  }
+  if (way.norm() > 0.0) directions.emplace_back(way.normalized());
+  for (int push = 0; push < most_pushes; ++push) {
+    std::vector<Ray> rays;
+    for (const double drop : drops) {
+      for (const Eigen::Vector3d& direction : directions) {
+        rays.push_back({.origin = eye - drop * up_, .direction = direction, .t_max = body_.radius});
+      }
+    }
+    const std::vector<Seen> seen = see(obstacles.caster, obstacles.kinds, rays, obstacles.options);
+    double deepest = slack * body_.radius;
+    Eigen::Vector3d out = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (!seen[i]) continue;
+      const Eigen::Vector3d n = element_center(obstacles.caster.mesh(), seen[i].hit.element).normal;
+      const Eigen::Vector3d level = n - n.dot(up_) * up_;
+      if (level.norm() < steep) continue;
+      const Eigen::Vector3d wall = level.normalized();
+      const double depth = body_.radius + seen[i].distance * rays[i].direction.dot(wall);
+      if (!(depth > deepest)) continue;
+      deepest = depth;
+      out = depth * wall;
+    }
+    if (out.isZero(0.0)) return true;
+    eye += out;
+  }
+  return false;
+}
+
+Eigen::Vector3d WalkPhysics::move(const Obstacles& obstacles, const Eigen::Vector3d& eye,
+                                  const Eigen::Vector3d& way) const {
+  // Half a radius at a time never crosses what the body keeps a radius away from.
+  const int pieces = std::max(1, static_cast<int>(std::ceil(way.norm() / (0.5 * body_.radius))));
+  Eigen::Vector3d at = eye;
+  for (int i = 0; i < pieces; ++i) {
+    Eigen::Vector3d next = at + way / pieces;
+    if (!push_out(obstacles, next, way)) break;
+    at = next;
+  }
+  return at;
+}
+
+Eigen::Vector3d WalkPhysics::settle(const Obstacles& obstacles, const Eigen::Vector3d& eye,
+                                    double seconds) {
+  Eigen::Vector3d at = eye;
+  for (double left = seconds; left > 0.0; left -= moment) {
+    at = settle_a_moment(obstacles, at, std::min(left, moment));
+  }
+  return at;
+}
+
+Eigen::Vector3d WalkPhysics::settle_a_moment(const Obstacles& obstacles, const Eigen::Vector3d& eye,
+                                             double seconds) {
+  const Eigen::Vector3d knee = eye - (body_.eye_height - body_.step) * up_;
+  std::vector<Ray> rays = {{.origin = knee, .direction = -up_}};
+  for (int i = 0; i < below; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / below;
+    rays.push_back(
+        {.origin = knee + ring_share * body_.radius * (std::cos(angle) * a_ + std::sin(angle) * b_),
+         .direction = -up_});
+  }
+  rays.push_back({.origin = eye, .direction = up_});
+  const std::vector<Seen> seen = see(obstacles.caster, obstacles.kinds, rays, obstacles.options);
+  std::optional<double> ground;  // above the feet
+  for (std::size_t i = 0; i + 1 < seen.size(); ++i) {
+    if (!seen[i]) continue;
+    ground = std::max(ground.value_or(-1e300), body_.step - seen[i].distance);
+  }
+  if (!ground) {
+    rising_ = 0.0;
+    on_ground_ = true;
+    return eye;
+  }
+  // Feet stay on steps going down too, unless they have just left the ground in a jump.
+  if (rising_ <= 0.0 && *ground >= (on_ground_ ? -body_.step : 0.0)) {
+    on_ground_ = true;
+    rising_ = 0.0;
+    return eye + *ground * (1.0 - std::exp(-seconds / step_seconds)) * up_;
+  }
+  on_ground_ = false;
+  const double before = rising_;
+  rising_ -= body_.gravity * seconds;
+  double rise = 0.5 * (before + rising_) * seconds;
+  const double headroom = seen.back() ? seen.back().distance - body_.above_eye : 1e300;
+  if (rise > headroom) {
+    rise = std::max(headroom, 0.0);
+    rising_ = 0.0;
+  }
+  return eye + std::max(rise, *ground) * up_;
+}
+
+void WalkPhysics::jump() {
+  if (!on_ground_) return;
+  on_ground_ = false;
+  rising_ = std::sqrt(2.0 * body_.gravity * body_.jump_height);
+}
+
+}  // namespace lightwell
