@@ -62,12 +62,12 @@ void read_lens(const MitsubaNode& sensor, Camera& camera) {
   camera.lens_radius = sensor.number_or("aperture_radius", 0.0);
   camera.focus_distance = sensor.number_or("focus_distance", 1.0);
   if (!(camera.lens_radius >= 0.0 && std::isfinite(camera.lens_radius))) {
-    sensor.fail(fmt::format("has an aperture radius of {}; it must not be negative",
-                            camera.lens_radius));
+    sensor.fail(
+        fmt::format("has an aperture radius of {}; it must not be negative", camera.lens_radius));
   }
   if (!(camera.focus_distance > 0.0 && std::isfinite(camera.focus_distance))) {
-    sensor.fail(fmt::format("is focused at a distance of {}; it must be above 0",
-                            camera.focus_distance));
+    sensor.fail(
+        fmt::format("is focused at a distance of {}; it must be above 0", camera.focus_distance));
   }
 }
 

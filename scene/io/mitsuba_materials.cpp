@@ -211,7 +211,8 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
   const double alpha = share("roughness", 0.5) * share("roughness", 0.5);
   if (share("spec_trans", 0.0) >= mostly_clear) {
     const double eta = index(bsdf, "eta", 1.5);
-    if (!(eta >= lowest_index && eta <= highest_index)) bsdf.fail("has no index of refraction that glass has");
+    if (!(eta >= lowest_index && eta <= highest_index))
+      bsdf.fail("has no index of refraction that glass has");
     if (bsdf.type == "principledthin") return pane(eta, color, alpha);
     remarks_.add("Principled BSDFs that are mostly clear were read as glass", bsdf.label());
     Material glass = clear(eta, color);

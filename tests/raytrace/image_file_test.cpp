@@ -285,8 +285,8 @@ TEST(Png, ReadsBackWithSizePixelsAndText) {
   const TemporaryFolder folder;
   std::vector<std::uint8_t> rgb(3 * 7 * 5);
   for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<std::uint8_t>(i * 37);
-  const std::vector<std::pair<std::string, std::string>> texts = {
-      {"Title", "Cornell box"}, {"Comment", "\xc2\xb5-facets"}};
+  const std::vector<std::pair<std::string, std::string>> texts = {{"Title", "Cornell box"},
+                                                                  {"Comment", "\xc2\xb5-facets"}};
   write_png(folder / "a.png", 7, 5, rgb, {texts.begin(), texts.end()});
   const ReadPng png = read_png(folder / "a.png");
   EXPECT_EQ(png.width, 7u);

@@ -141,8 +141,7 @@ TEST(Snapshot, APixelShowsItsMeanLight) {
   const ViewOptions options = options_for(camera);
   const Picture picture = draw(wall, options);
   const SolutionView view(wall, options);
-  const float full =
-      display_rgb(grey / std::numbers::pi_v<float>, view.look().metered_scale)[0];
+  const float full = display_rgb(grey / std::numbers::pi_v<float>, view.look().metered_scale)[0];
   const auto byte = [](float linear) {
     return static_cast<int>(255.0f * srgb_encode(linear) + 0.5f);
   };
