@@ -209,7 +209,7 @@ Action add_view(CLI::App& command) {
   command.add_flag("--walk", arguments->walk, "begin on foot (key G)");
   command
       .add_option("--eye-height", arguments->eye_height,
-                  "of a person on foot (default: 1.6 m, less in a scene smaller than a room)")
+                  "of a person on foot (default: 1.6 m, less in a model smaller than a room)")
       ->type_name("LENGTH")
       ->check(positive());
   auto* const path =

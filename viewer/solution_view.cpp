@@ -48,7 +48,7 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char
   set_range(legend, range);
   legend->SetTitle(unit);
   legend->UseCustomLabelsOn();
-  legend->SetLabelFormat("%.4g");
+  legend->SetLabelFormat("%.6g");
   legend->DrawBackgroundOn();
   legend->GetBackgroundProperty()->SetColor(0.05, 0.05, 0.05);
   legend->GetBackgroundProperty()->SetOpacity(0.6);
@@ -163,9 +163,20 @@ void SolutionView::set_look(const Look& look) {
 
 std::vector<double> SolutionView::isolux_levels() const {
   if (!isolux_levels_.empty()) return isolux_levels_;
-  std::vector<double> steps = scale_steps(lux_range_);
-  std::erase_if(steps, [](double step) { return !(step > 0.0); });
-  return steps;
+  if (lux_range_.is_even()) {
+    std::vector<double> steps = scale_steps(lux_range_);
+    std::erase(steps, 0.0);
+    return steps;
+  }
+  std::vector<double> levels;
+  for (double power = std::pow(10.0, std::floor(std::log10(lux_range_.low)));
+       power <= lux_range_.high; power *= 10.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double level = factor * power;
+      if (level > lux_range_.low && level < lux_range_.high) levels.push_back(level);
+    }
+  }
+  return levels;
 }
 
 // Found when they are first looked at.

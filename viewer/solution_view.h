@@ -77,7 +77,7 @@ class SolutionView {
   SolutionActor actor_;
   vtkSmartPointer<vtkRenderer> renderer_;
   vtkSmartPointer<vtkScalarBarActor> legend_;
-  std::vector<double> isolux_levels_;  ///< asked for; empty: the steps of the scale
+  std::vector<double> isolux_levels_;  ///< asked for; empty: they suit the scale
   bool isolux_is_stale_ = true;
   IsoluxLines isolux_;
 };

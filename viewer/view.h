@@ -37,11 +37,11 @@ struct ViewOptions {
   /// Where the keys for bookmarks and paths keep them (JSON); empty: they last as long as the
   /// window.
   std::filesystem::path bookmark_file{};
-  /// Isolux lines begin shown at these levels, lx; empty: at the scale's steps, and hidden.
+  /// Isolux lines begin shown at these levels, lx; empty: at 1, 2 and 5 times the powers of
+  /// ten on the scale (the steps of an even one), and hidden.
   std::vector<double> isolux{};
-  double eye_height =
-      0.0;            ///< of a person who walks, m; 0: 1.6, less in a scene smaller than a room
-  bool walk = false;  ///< begin on foot, with weight and stopped by walls
+  double eye_height = 0.0;  ///< of a person who walks, m; 0: 1.6, less in a model
+  bool walk = false;        ///< begin on foot, with weight and stopped by walls
 };
 
 /// Opens a window with the smooth-shaded solution and walk controls (the key H lists them); returns

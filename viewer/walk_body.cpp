@@ -21,11 +21,14 @@ constexpr double slack = 1e-3;          ///< of the radius, that counts as touch
 
 }  // namespace
 
-WalkBody walk_body(double scene_diagonal, double eye_height) {
-  constexpr double room = 7.0;  ///< m
+WalkBody walk_body(const Bounds& bounds, const Eigen::Vector3d& up_axis, double eye_height) {
+  constexpr double room_height = 2.5, room_diagonal = 7.0;  ///< m
   WalkBody body;
+  const double height = std::abs((bounds.high - bounds.low).dot(up_axis));
   const double scale =
-      eye_height > 0.0 ? eye_height / body.eye_height : std::min(1.0, scene_diagonal / room);
+      eye_height > 0.0
+          ? eye_height / body.eye_height
+          : std::min(1.0, std::max(height / room_height, bounds.diagonal() / room_diagonal));
   for (double* length : {&body.eye_height, &body.radius, &body.step, &body.above_eye,
                          &body.jump_height, &body.gravity}) {
     *length *= scale;

@@ -16,10 +16,10 @@ struct WalkBody {
   double gravity = 9.81;  ///< m/s^2
 };
 
-/// A person, or, where the scene is smaller than a room of 7 m across, a doll in the same
-/// proportion, so that one can walk through a model. An eye height above 0 is kept and the rest
-/// goes with it.
-WalkBody walk_body(double scene_diagonal, double eye_height = 0.0);
+/// A person, or, in a scene that is neither as high as a room (2.5 m) nor as large (7 m across), a
+/// doll in the proportion that is nearer, so that one can walk through a model. An eye height above
+/// 0 is kept and the rest goes with it.
+WalkBody walk_body(const Bounds& bounds, const Eigen::Vector3d& up_axis, double eye_height = 0.0);
 
 /// What is drawn of a scene, as an obstacle. What shows only its back does not stop anybody, as it
 /// does not stop the eye.

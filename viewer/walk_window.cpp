@@ -57,7 +57,7 @@ WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> ow
       live_(live),
       view_(std::make_unique<SolutionView>(own_ ? *own_ : *shown, options_)),
       walk_(view_->start_camera(), view_->up_axis(), walking_speed(view_->bounds().diagonal())),
-      physics_(walk_body(view_->bounds().diagonal(), options.eye_height), view_->up_axis()),
+      physics_(walk_body(view_->bounds(), view_->up_axis(), options.eye_height), view_->up_axis()),
       walking_(options.walk),
       lights_(view_->solved().solution),
       pointer_(options.scene),

@@ -217,6 +217,56 @@ TEST(Progressive, SolvesASceneAsTheEquationsDo) {
   }
 }
 
+/// One at a time, each is the brightest there is then: what is left unshot falls with every shot
+/// of a scene without mirrors, by what the shooter held less what its receivers reflect.
+TEST(Progressive, ShootsOneByOneWhenAsked) {
+  const Solved room(lamp_room(0.5f, false));
+  ProgressiveRadiosity progressive(room.scene, room.mesh,
+                                   cast_shots(room.caster, room.paths, 1 << 12));
+  for (int shots = 1; shots <= 20; ++shots) {
+    Eigen::ArrayXd power(room.mesh.patch_count());
+    for (int i = 0; i < power.size(); ++i) {
+      power[i] = room.mesh.area[i] * progressive.unshot().row(i).cast<double>().sum();
+    }
+    const double before = progressive.unshot_share();
+    ASSERT_TRUE(progressive.step(1));
+    EXPECT_EQ(progressive.shots(), shots);
+    ASSERT_EQ(progressive.last_shots().size(), 1u);
+    EXPECT_EQ(power[progressive.last_shots()[0].patch], power.maxCoeff());
+    EXPECT_LT(progressive.unshot_share(), before);
+  }
+}
+
+/// Shots of one's own, gathered, are the solution that solve_scene makes of them, bit for bit.
+TEST(Progressive, GatheringCanBeHadForItself) {
+  const Scene scene = lamp_room(0.5f, true);
+  SolveOptions options;
+  options.mesh.auto_patch_count = 300;
+  options.progressive.emplace(ProgressiveOptions{.tolerance = 1e-2});
+  options.gather.rays = 64;
+  options.error_points = 16;
+  const SolvedScene wanted = solve_scene(scene, options);
+
+  SolvedScene patches;
+  MeshOptions mesh_options = options.mesh;
+  mesh_options.to_be_refined = starts_coarse(options);
+  patches.mesh = build_patches(scene, mesh_options);
+  {
+    const ElementCaster caster(patches.mesh);
+    const LightPaths paths(scene, caster, options.form_factors.max_specular_depth);
+    ProgressiveRadiosity progressive(scene, patches.mesh,
+                                     cast_shots(caster, paths, options.progressive->most_rays),
+                                     *options.progressive);
+    patches.solution = shoot_to_the_end(progressive);
+  }
+  const SolvedScene solved = gather_to_elements(scene, std::move(patches), options);
+  ASSERT_EQ(solved.mesh.element_count(), wanted.mesh.element_count());
+  EXPECT_TRUE((solved.solution.irradiance() == wanted.solution.irradiance()).all());
+  EXPECT_EQ(solved.solution.error_estimate, wanted.solution.error_estimate);
+  EXPECT_EQ(solved.solution.energy.absorbed, wanted.solution.energy.absorbed);
+  EXPECT_EQ(solved.solution.provenance.scene_hash, scene_hash(scene));
+}
+
 TEST(Progressive, WithoutLightThereIsNothingToDo) {
   const Solved room(test::furnace(0.5f, 0.0f, false));
   ProgressiveRadiosity progressive(room.scene, room.mesh, cast_shots(room.caster, room.paths, 64));

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "scene/errors.h"
 #include "solved_box.h"
 #include "tests/temporary_folder.h"
@@ -196,8 +194,8 @@ TEST(WalkWindowViews, OrbitsAroundWhatIsInTheMiddle) {
   EXPECT_GT((camera.position - box_camera().position).norm(), 0.5);
 }
 
-/// On foot in the box, 2 m wide: eyes at 1.6 * 2 sqrt(3) / 7 = 0.79 m over the floor, a radius of
-/// 0.124 m from the walls.
+/// On foot in the box, 2 m high: all at 2/2.5 of a person's, eyes 1.28 m over the floor, a radius
+/// of 0.2 m from the walls.
 TEST(WalkWindowViews, WalksOnTheFloorAndStopsAtTheWall) {
   const SolvedScene box = solved_box();
   ViewOptions options;
@@ -209,7 +207,7 @@ TEST(WalkWindowViews, WalksOnTheFloorAndStopsAtTheWall) {
   EXPECT_TRUE(window.is_walking());
   window.press("w");
   for (int i = 0; i < 300; ++i) window.tick(0.02);
-  const double scale = 2.0 * std::numbers::sqrt3 / 7.0;
+  const double scale = 2.0 / 2.5;
   EXPECT_NEAR(window.look().camera.position.y(), 1.6 * scale, 2e-3);
   EXPECT_NEAR(window.look().camera.position.z(), 2.0 - 0.25 * scale, 2e-3);
   window.release("w");

@@ -36,7 +36,7 @@ class WalkBodyTest : public testing::Test {
   ElementCaster caster_{hall_.mesh};
   std::vector<ElementKind> kinds_ = element_kinds(hall_, {});
   Obstacles obstacles_{caster_, kinds_};
-  WalkPhysics person_{walk_body(20.0), Eigen::Vector3d::UnitZ()};
+  WalkPhysics person_{WalkBody{}, Eigen::Vector3d::UnitZ()};
 
   Eigen::Vector3d walk(Eigen::Vector3d eye, const Eigen::Vector3d& velocity, double seconds) {
     for (double t = 0.0; t < seconds; t += frame) {
@@ -48,12 +48,16 @@ class WalkBodyTest : public testing::Test {
 };
 
 TEST(WalkBody, IsAPersonInARoomAndADollInAModel) {
-  EXPECT_DOUBLE_EQ(walk_body(20.0).eye_height, 1.6);
-  EXPECT_DOUBLE_EQ(walk_body(20.0).radius, 0.25);
-  EXPECT_DOUBLE_EQ(walk_body(0.7).eye_height, 0.16);
-  EXPECT_DOUBLE_EQ(walk_body(0.7).step, 0.03);
-  EXPECT_DOUBLE_EQ(walk_body(0.7, 0.8).eye_height, 0.8);
-  EXPECT_DOUBLE_EQ(walk_body(0.7, 0.8).radius, 0.125);
+  const auto in = [](const Eigen::Vector3d& size, double eye_height = 0.0) {
+    return walk_body({Eigen::Vector3d::Zero(), size}, Eigen::Vector3d::UnitZ(), eye_height);
+  };
+  EXPECT_DOUBLE_EQ(in({4, 3, 2.5}).eye_height, 1.6);
+  EXPECT_DOUBLE_EQ(in({4, 3, 2.5}).radius, 0.25);
+  EXPECT_DOUBLE_EQ(in({40, 30, 0}).eye_height, 1.6) << "a flat field";
+  EXPECT_DOUBLE_EQ(in({0.5, 0.5, 0.5}).eye_height, 0.32);
+  EXPECT_DOUBLE_EQ(in({0.5, 0.5, 0.5}).step, 0.06);
+  EXPECT_DOUBLE_EQ(in({0.5, 0.5, 0.5}, 0.4).eye_height, 0.4);
+  EXPECT_DOUBLE_EQ(in({0.5, 0.5, 0.5}, 0.4).radius, 0.0625);
 }
 
 TEST_F(WalkBodyTest, StopsARadiusBeforeAWall) {
