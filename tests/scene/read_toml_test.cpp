@@ -105,6 +105,46 @@ TEST(ReadToml, MaterialsReflect) {
   expect_spectrum(glass.dielectric->tint, {0.9f, 0.95f, 0.9f});
 }
 
+TEST(ReadToml, GlossGlassAndLensesAreAsTheySay) {
+  const Scene scene = read_text(R"(
+unit = "cm"
+[materials.metal]
+specular = 0.8
+roughness = 0.25
+[materials.frosted]
+glass = { ior = 1.4, roughness = 0.1, absorption = [1, 2, 3] }
+[materials.pane]
+glass = { ior = 1.5, thin = true }
+[[surfaces]]
+name = "floor"
+material = "metal"
+polygon = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+[[cameras]]
+position = [0, 0, 1]
+direction = [1, 0, 0]
+fov = 90
+f_number = 2
+focus_distance = 150
+blades = 6
+[[cameras]]
+position = [0, 0, 1]
+direction = [1, 0, 0]
+aperture_radius = 3
+focus_distance = 50
+)");
+  EXPECT_FLOAT_EQ(scene.materials.at(1).specular_roughness, 0.25f);
+  const Dielectric& frosted = scene.materials.at(0).dielectric.value();
+  EXPECT_FLOAT_EQ(frosted.roughness, 0.1f);
+  EXPECT_FLOAT_EQ(frosted.absorption[2], 3.0f);  // per metre, whatever the unit
+  EXPECT_FALSE(frosted.thin);
+  EXPECT_TRUE(scene.materials.at(2).dielectric.value().thin);
+  // 90 degrees over 36 mm: a focal length of 18 mm, an aperture of 9 mm across.
+  EXPECT_NEAR(scene.cameras.at(0).lens_radius, 0.0045, 1e-12);
+  EXPECT_DOUBLE_EQ(scene.cameras.at(0).focus_distance, 1.5);
+  EXPECT_EQ(scene.cameras.at(0).blades, 6);
+  EXPECT_DOUBLE_EQ(scene.cameras.at(1).lens_radius, 0.03);
+}
+
 TEST(ReadToml, MaterialsEmit) {
   const Scene& s = everything();
   // M = pi L; twice the band means 17, 11.8 and 4 of the broken line.
