@@ -9,9 +9,8 @@ namespace lightwell {
 /// A share 1 / (1 + Lambda) of the microfacets that face that way is seen from there.
 double ggx_lambda(double cosine, double alpha);
 
-/// GGX's density of normals D, 1/sr, at `cosine` to the surface's normal: a^2 / (pi (cos^2 (a^2 -
-/// 1)
-/// + 1)^2).
+/// GGX's density of normals D, 1/sr, at `cosine` to the surface's normal:
+/// a^2 / (pi (cos^2 (a^2 - 1) + 1)^2).
 double ggx_normals(double cosine, double alpha);
 
 /// Normal of a microfacet as it is met from `outwards` (unit, z > 0, about the normal +z): with the
