@@ -205,11 +205,20 @@ void MeshArguments::add_to(CLI::App& command, const std::string& group) {
       ->check(whole_number(1, 64))
       ->group(group);
   command
-      .add_option("--max-element-size", max_element_size,
-                  "longest element edge in the scene file's unit (default: half a patch)")
+      .add_option_function<double>(
+          "--max-element-size",
+          [this, &command](double size) {
+            // CLI11's excludes() would take another line of help on each side.
+            if (command.get_option("--elements-per-patch-edge")->count() > 0) {
+              throw CLI::ValidationError("--max-element-size",
+                                         "it decides instead of --elements-per-patch-edge; give "
+                                         "one of them");
+            }
+            max_element_size = size;
+          },
+          "longest element edge in the scene file's unit (default: half a patch)")
       ->type_name("L")
       ->check(positive())
-      ->excludes(command.get_option("--elements-per-patch-edge"))
       ->group(group);
   command
       .add_flag("--discontinuity", mesh.discontinuity,
