@@ -48,7 +48,7 @@ inline SolveOptions even(SolveOptions options) {
 class Lit {
  public:
   Lit(const Scene& scene, const SolveOptions& options)
-      : element_size(patch_size(scene, options.mesh) / options.mesh.elements_per_patch_edge),
+      : element_size(cut_size(scene, options.mesh).element_size()),
         solved(solve_scene(scene, options)),
         E(solved.solution.irradiance()),
         caster_(solved.mesh) {}
