@@ -191,6 +191,15 @@ std::string hemicube_text(const std::string& method, int resolution) {
   return method == "hemicube" ? fmt::format(" --hemicube-resolution {}", resolution) : "";
 }
 
+void refuse_beside(const CLI::App& command, const char* option,
+                   const std::vector<const char*>& others) {
+  for (const char* other : others) {
+    if (command.get_option(other)->count() == 0) continue;
+    throw CLI::ValidationError(option,
+                               fmt::format("it decides instead of {}; give one of them", other));
+  }
+}
+
 void MeshArguments::add_to(CLI::App& command, const std::string& group) {
   command
       .add_option("--max-patch-size", max_patch_size,
@@ -208,12 +217,7 @@ void MeshArguments::add_to(CLI::App& command, const std::string& group) {
       .add_option_function<double>(
           "--max-element-size",
           [this, &command](double size) {
-            // CLI11's excludes() would take another line of help on each side.
-            if (command.get_option("--elements-per-patch-edge")->count() > 0) {
-              throw CLI::ValidationError("--max-element-size",
-                                         "it decides instead of --elements-per-patch-edge; give "
-                                         "one of them");
-            }
+            refuse_beside(command, "--max-element-size", {"--elements-per-patch-edge"});
             max_element_size = size;
           },
           "longest element edge in the scene file's unit (default: half a patch)")

@@ -80,6 +80,11 @@ void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size);
 /// Adds --exposure EV.
 void add_exposure(CLI::App& command, double& exposure_ev);
 
+/// For the callback of `option`, which decides what the `others`, defined before it, would decide.
+/// CLI11's excludes() takes a line of help on each side.
+void refuse_beside(const CLI::App& command, const char* option,
+                   const std::vector<const char*>& others);
+
 CLI::Validator whole_number(int least, int most);
 
 /// For numbers that must be above zero (a NaN is not).

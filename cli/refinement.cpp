@@ -96,7 +96,8 @@ void add_accuracy(CLI::App& command, std::optional<Accuracy>& accuracy, const st
   command
       .add_option_function<std::string>(
           "--accuracy",
-          [&accuracy](const std::string& text) {
+          [&accuracy, &command](const std::string& text) {
+            refuse_beside(command, "--accuracy", {"--refine", "--gather-rays"});
             accuracy = parse_accuracy(text);
             if (accuracy) return;
             throw CLI::ValidationError(
@@ -107,8 +108,6 @@ void add_accuracy(CLI::App& command, std::optional<Accuracy>& accuracy, const st
           },
           "work until the estimated RMS error is below: 1% of the mean irradiance, or 5lx")
       ->type_name("ERROR")
-      ->excludes(command.get_option("--refine"))
-      ->excludes(command.get_option("--gather-rays"))
       ->group(group);
 }
 

@@ -52,7 +52,7 @@ box = { min = [0, 0, 0], max = [300, 400, 250], inward = true }
       std::stringstream fields(line);
       std::vector<double> values;
       for (std::string field; std::getline(fields, field, ',');) values.push_back(std::stod(field));
-      ASSERT_EQ(values.size(), 10u);
+      ASSERT_GE(values.size(), 10u);
       // Every ray sees the same radiance, so nothing is left to chance: what remains is rounding to
       // float, and the solver's tolerance of 1e-5 over 1 - rho.
       const double exact[] = {1.0, 2.0 / 0.5, 3.0 / 0.2};

@@ -116,7 +116,9 @@ TEST_F(Output, ProbeWritesIrradianceAndLux) {
     std::string header, first;
     std::getline(in, header);
     std::getline(in, first);
-    EXPECT_EQ(header, "x,y,z,nx,ny,nz,E_r,E_g,E_b,lux");
+    const bool has_bound = !how.empty() && how[0] == "--interpolate";
+    EXPECT_EQ(header,
+              std::string("x,y,z,nx,ny,nz,E_r,E_g,E_b,lux") + (has_bound ? ",lux_within" : ""));
     EXPECT_EQ(first.rfind("2,1.5,0,0,0,1,", 0), 0u) << first;
   }
 }
