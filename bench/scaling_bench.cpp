@@ -126,7 +126,8 @@ void draw(const std::string& file, const std::vector<Row>& rows) {
       << curve(rows, &Row::megabytes, least_megabytes, "#2471a3")
       << fmt::format(
              "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">elements</text>\n"
-             "<text x=\"{}\" y=\"18\" text-anchor=\"middle\">processor time and peak memory (MB) of "
+             "<text x=\"{}\" y=\"18\" text-anchor=\"middle\">processor time and peak memory (MB) "
+             "of "
              "a solve</text>\n",
              left + width / 2, top + height + 38, left + width / 2)
       << "</svg>\n";
