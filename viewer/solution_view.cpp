@@ -58,6 +58,7 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char
   legend->GetPositionCoordinate()->SetValue(0.9, 0.25);
   legend->SetWidth(0.09);
   legend->SetHeight(0.5);
+  legend->SetVerticalTitleSeparation(10);  // pixels; the highest label is as high as the bar
   for (vtkTextProperty* text : {legend->GetTitleTextProperty(), legend->GetLabelTextProperty()}) {
     text->SetFontSize(14);
     text->ItalicOff();
