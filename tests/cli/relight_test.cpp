@@ -79,14 +79,16 @@ TEST_F(RelightCommand, InfoListsChannelsWithTheirFluxAndScale) {
   EXPECT_EQ(desk["name"], "desk");
   EXPECT_EQ(desk["surfaces"], nlohmann::json::array({"desk lamp"}));
   EXPECT_EQ(desk["scale"], nlohmann::json::array({0.5, 0.5, 0.5}));
-  // 690 W/m2 of all bands on 0.04 m2; half of it is left.
-  EXPECT_NEAR(desk["watts"].get<double>(), 13.8, 1e-4);
+  // 690 W/m2 of all bands on 0.04 m2; half of it is left. Exitances, scales and colours are floats,
+  // each off by 6e-8 of itself; a few of them are multiplied and added.
+  constexpr double rounding = 1e-6;
+  EXPECT_NEAR(desk["watts"].get<double>(), 13.8, rounding * 13.8);
   // A colour keeps the lumens and changes the watts.
   EXPECT_NEAR(ceiling["lumens"].get<double>() / before["channels"][1]["lumens"].get<double>(), 1.0,
-              1e-5);
+              rounding);
   EXPECT_GT(std::abs(ceiling["watts"].get<double>() - 30.0), 1.0);
   EXPECT_NEAR(after["energy"]["emitted"].get<double>(),
-              desk["watts"].get<double>() + ceiling["watts"].get<double>(), 1e-4);
+              desk["watts"].get<double>() + ceiling["watts"].get<double>(), rounding * 40.0);
   EXPECT_EQ(before["scene_hash"], after["scene_hash"]);
 }
 
@@ -100,9 +102,10 @@ TEST_F(RelightCommand, LightAddsUpAtEveryPoint) {
   const auto all = probed("S.vtp"), ceiling = probed("ceiling.vtp"), desk = probed("desk.vtp"),
              bright = probed("bright.vtp"), again = probed("again.vtp");
   for (std::size_t i = 0; i < all.size(); ++i) {
-    // The files have 7 digits.
-    EXPECT_NEAR(ceiling[i] + desk[i], all[i], 1e-5 * all[i]);
-    EXPECT_NEAR(bright[i], 2.0 * ceiling[i], 1e-5 * all[i]);
+    // What rays read is a float at every vertex: of each channel and of their sum, off by 6e-8 of
+    // itself and, on average over many, by less. Direct light is summed over lamps in floats.
+    EXPECT_NEAR(ceiling[i] + desk[i], all[i], 5e-7 * all[i]);
+    EXPECT_NEAR(bright[i], 2.0 * ceiling[i], 5e-7 * all[i]);
     EXPECT_EQ(again[i], all[i]);
     EXPECT_GT(desk[i], 0.0);
     EXPECT_GT(ceiling[i], 0.0);
@@ -120,9 +123,11 @@ TEST_F(RelightCommand, PicturesAddUpWithTheOriginalScene) {
   const BandArray all = read_exr(folder / "S.exr").radiance;
   const BandArray sum =
       read_exr(folder / "ceiling.exr").radiance + read_exr(folder / "desk.exr").radiance;
-  // Half floats have 11 bits; supersampling splits other pixels where the light is another.
+  // Shadow rays go by each lamp's share of the light, and pixels are split by the contrast of what
+  // is lit: one that is split in one picture alone is off by up to that contrast, 10 %. One in a
+  // hundred of such pixels, at the edges of shadows, would make 1 %.
   const double rms = std::sqrt((all - sum).cast<double>().square().mean());
-  EXPECT_LT(rms, 0.03 * all.cast<double>().mean());
+  EXPECT_LT(rms, 0.01 * all.cast<double>().mean());
 }
 
 TEST_F(RelightCommand, PerLuminaireThereIsAChannelForEach) {
