@@ -51,9 +51,11 @@ std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
 
 // All that decides what form factors come out: not how much surfaces reflect and emit, as long as
 // it is the same ones that do.
-void add_inputs(Fingerprint& print, const Scene& scene, const PatchMesh& mesh,
-                const FormFactorOptions& options) {
+void add_inputs(Fingerprint& print, const Scene& scene, const DirectLight& direct_light,
+                const PatchMesh& mesh, const FormFactorOptions& options) {
   print.add_geometry(mesh);
+  // Which of them are found by closed form, and in what order, goes by their brightness.
+  for (const Emitter& emitter : direct_light.emitters()) print.add(emitter.facet);
   for (const Material& material : scene.materials) {
     print.add((material.reflectance > 0.0f).any());
     print.add(material.is_emitter());
@@ -275,7 +277,7 @@ class Estimator {
 
   JournalPhase phase_of(std::string_view name, const std::vector<int>* rays_of = nullptr) const {
     return {options_.journal, name, [&](Fingerprint& print) {
-              add_inputs(print, scene_, mesh_, options_);
+              add_inputs(print, scene_, direct_light_, mesh_, options_);
               if (rays_of) print.add(*rays_of);
             }};
   }
@@ -313,7 +315,7 @@ std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const Elem
   Estimate estimate = Estimator(scene, caster, direct_light, options, budget).estimate();
   const auto phase_of = [&](std::string_view name) -> JournalPhase {
     return {options.journal, name,
-            [&](Fingerprint& print) { add_inputs(print, scene, mesh, options); }};
+            [&](Fingerprint& print) { add_inputs(print, scene, direct_light, mesh, options); }};
   };
   auto result =
       assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),

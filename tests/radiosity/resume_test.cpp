@@ -10,6 +10,7 @@
 #include "scene/parallel.h"
 #include "test_scenes.h"
 #include "tests/temporary_folder.h"
+#include "two_lamps.h"
 
 namespace lightwell {
 namespace {
@@ -277,6 +278,30 @@ TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
   options.journal = other.get();
   solve_scene(scene, options);
   EXPECT_EQ(other->recalled(), 0);
+}
+
+// Emitters are numbered by their brightness, in the journal as well.
+TEST(Resume, FormFactorsOfLampsAreNotMistakenForThoseOfOthers) {
+  TemporaryFolder folder;
+  Scene scene = test::two_lamps();
+  SolveOptions options = quick();
+  {
+    Journal journal(folder / "C", {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
+    options.journal = &journal;
+    solve_scene(scene, options);
+  }
+  // The dimmest lamp becomes the brightest.
+  Material* dimmest = nullptr;
+  for (Material& material : scene.materials) {
+    if (!material.is_emitter()) continue;
+    if (!dimmest || material.emission.sum() < dimmest->emission.sum()) dimmest = &material;
+  }
+  dimmest->emission *= 100.0f;
+  const auto journal = Journal::of_another_solve(folder / "C", "1");
+  options.journal = journal.get();
+  const SolvedScene reused = solve_scene(scene, options);
+  options.journal = nullptr;
+  expect_same_solve(reused, solve_scene(scene, options));
 }
 
 TEST(Resume, AnotherSolvesJournalMustBeOfThisVersion) {
