@@ -124,15 +124,20 @@ TEST(Film, WritesAPictureAFrame) {
   EXPECT_THROW(write_film(solved_box(), options, {folder / "none.json", 3}, pattern), InputError);
 }
 
-/// Ctrl and a digit keep a view, in a file that the next window reads.
-TEST(WalkWindowViews, BookmarksOutliveTheWindow) {
-  const TemporaryFolder folder;
-  const SolvedScene box = solved_box();
+ViewOptions with_bookmarks(const std::filesystem::path& file) {
   ViewOptions options;
   options.cameras = {box_camera()};
   options.width = 200;
   options.height = 150;
-  options.bookmark_file = folder / "box.views.json";
+  options.bookmark_file = file;
+  return options;
+}
+
+/// Ctrl and a digit keep a view, in a file that the next window reads.
+TEST(WalkWindowViews, BookmarksOutliveTheWindow) {
+  const TemporaryFolder folder;
+  const SolvedScene box = solved_box();
+  const ViewOptions options = with_bookmarks(folder / "box.views.json");
   Eigen::Vector3d kept;
   {
     WalkWindow window(box, options);
@@ -154,11 +159,7 @@ TEST(WalkWindowViews, BookmarksOutliveTheWindow) {
 TEST(WalkWindowViews, AWalkThatWasRecordedIsPlayed) {
   const TemporaryFolder folder;
   const SolvedScene box = solved_box();
-  ViewOptions options;
-  options.cameras = {box_camera()};
-  options.width = 200;
-  options.height = 150;
-  options.bookmark_file = folder / "box.views.json";
+  const ViewOptions options = with_bookmarks(folder / "box.views.json");
   WalkWindow window(box, options);
   window.press("y");
   EXPECT_NE(window.message().find("no path"), std::string::npos);
