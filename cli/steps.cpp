@@ -48,7 +48,9 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
                        Checkpoint& checkpoint, Console& console, Report& report) {
   SolveOptions options = arguments.options(scene);
   options.progress = checkpoint.watched(console.progress());
-  options.journal = checkpoint.journal();
+  Journal* const journal = checkpoint.journal();
+  const bool is_of_another = journal && journal->is_read_only();
+  (is_of_another ? options.form_factors.journal : options.journal) = journal;
   options.form_factors.memory = std::make_shared<MemoryBudget>(
       MemoryOptions{.limit = arguments.memory, .folder = output.parent_path()});
   std::optional<SolvedScene> start;

@@ -85,7 +85,7 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
   Stopwatch watch;
   FormFactorOptions form_factor_options = options.form_factors;
   form_factor_options.progress = options.progress;
-  form_factor_options.journal = options.journal;
+  if (options.journal) form_factor_options.journal = options.journal;
   const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
                                                  report ? &report->form_factors : nullptr);
   const double form_factor_seconds = watch.lap();
@@ -228,8 +228,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   require_equations(options);
   require_unit(scene, options);
   const std::uint64_t hash = scene_hash(scene);
-  if (options.journal && !options.journal->is_read_only() &&
-      options.journal->of().scene_hash != hash) {
+  if (options.journal && options.journal->of().scene_hash != hash) {
     throw std::invalid_argument("the journal is of another scene");
   }
   SolvedScene solved;

@@ -39,9 +39,8 @@ struct SolveOptions {
   int error_points = 512;  ///< random points that the error estimate looks at
   Progress progress{};
   /// Collects finished work, and gives it back to a solve that goes on with one that was ended:
-  /// with the same bits. Of this scene, or another solve's (Journal::of_another_solve), which gives
-  /// what both have in common: form factors, where only reflectances or emission have changed.
-  /// Null: none.
+  /// with the same bits. Of this scene. Null: none. (That of another solve, whose form factors
+  /// serve where only reflectances or emission have changed, belongs into `form_factors`.)
   Journal* journal = nullptr;
 };
 

@@ -265,19 +265,43 @@ TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
   }
   const auto journal = Journal::of_another_solve(folder / "C", "1");
   const std::int64_t size = journal->size();
-  options.journal = journal.get();
+  options.journal = nullptr;
+  options.form_factors.journal = journal.get();
   const SolvedScene reused = solve_scene(scene, options);
   EXPECT_GT(journal->recalled(), 0);
-  options.journal = nullptr;
+  options.form_factors.journal = nullptr;
   expect_same_solve(reused, solve_scene(scene, options));
   EXPECT_EQ(std::filesystem::file_size(folder / "C"), size);  // nothing was written
 
-  // Mirrors are in the form factors; so is whether a lamp is one.
+  // Mirrors are in the form factors.
   for (Material& material : scene.materials) material.specular *= 0.9f;
   const auto other = Journal::of_another_solve(folder / "C", "1");
-  options.journal = other.get();
+  options.journal = nullptr;
+  options.form_factors.journal = other.get();
   solve_scene(scene, options);
   EXPECT_EQ(other->recalled(), 0);
+}
+
+// What a mirror throws is not in form factors alone.
+TEST(Resume, AnotherMirrorTakesNothing) {
+  TemporaryFolder folder;
+  Scene scene = room(true);
+  SolveOptions options = quick();
+  {
+    Journal journal(folder / "C", {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
+    options.journal = &journal;
+    solve_scene(scene, options);
+  }
+  for (Material& material : scene.materials) material.specular *= 0.5f;
+  const auto journal = Journal::of_another_solve(folder / "C", "1");
+  options.journal = journal.get();
+  EXPECT_THROW(solve_scene(scene, options), std::invalid_argument);
+  options.journal = nullptr;
+  options.form_factors.journal = journal.get();
+  const SolvedScene found = solve_scene(scene, options);
+  EXPECT_EQ(journal->recalled(), 0);
+  options.form_factors.journal = nullptr;
+  expect_same_solve(found, solve_scene(scene, options));
 }
 
 // Emitters are numbered by their brightness, in the journal as well.
@@ -298,9 +322,10 @@ TEST(Resume, FormFactorsOfLampsAreNotMistakenForThoseOfOthers) {
   }
   dimmest->emission *= 100.0f;
   const auto journal = Journal::of_another_solve(folder / "C", "1");
-  options.journal = journal.get();
-  const SolvedScene reused = solve_scene(scene, options);
   options.journal = nullptr;
+  options.form_factors.journal = journal.get();
+  const SolvedScene reused = solve_scene(scene, options);
+  options.form_factors.journal = nullptr;
   expect_same_solve(reused, solve_scene(scene, options));
 }
 
