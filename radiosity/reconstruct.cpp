@@ -13,26 +13,52 @@ namespace {
 
 constexpr std::uint64_t draft_replica = 1000;
 
-// First guess for the gather: patch radiosities, smoothed to vertices by the mean of the elements
-// around.
-BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,
-                          const BandArray& patch_radiosity) {
-  BandArray sum = BandArray::Zero(mesh.vertex_count(), patch_radiosity.cols());
+// Patch radiosities less what DirectLight accounts for, patches x columns of its channels.
+BandArray without_owned_emission(const PatchMesh& mesh, const DirectLight& direct_light,
+                                 const BandArray& patch_radiosity) {
+  BandArray B = patch_radiosity;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
+    if (!direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
+    B.row(p).segment(direct_light.first_column(facet), mesh.emission.cols()) -=
+        mesh.emission.row(p);
+  }
+  return B;
+}
+
+// The mean of the patches around each vertex, by the area of their elements there.
+BandArray to_vertices(const PatchMesh& mesh, const BandArray& of_patches) {
+  BandArray sum = BandArray::Zero(mesh.vertex_count(), of_patches.cols());
   Eigen::ArrayXf weight = Eigen::ArrayXf::Zero(mesh.vertex_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const int p = mesh.patch[e];
     const auto area = static_cast<float>(mesh.element_area[e]);
-    const int facet = mesh.facet[e];
-    Eigen::Array<float, 1, Eigen::Dynamic> B = patch_radiosity.row(p);
-    if (direct_light.owns(facet, mesh.is_back[p] != 0)) {
-      B.segment(direct_light.first_column(facet), mesh.emission.cols()) -= mesh.emission.row(p);
-    }
     for (int c = 0; c < mesh.corner_count(e); ++c) {
-      sum.row(mesh.corners[e][c]) += area * B;
+      sum.row(mesh.corners[e][c]) += area * of_patches.row(mesh.patch[e]);
       weight[mesh.corners[e][c]] += area;
     }
   }
   return sum.colwise() / weight.max(1e-30f);
+}
+
+// First guess for the gather: patch radiosities, smoothed to vertices.
+BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,
+                          const BandArray& patch_radiosity) {
+  return to_vertices(mesh, without_owned_emission(mesh, direct_light, patch_radiosity));
+}
+
+// Adds to what is read at vertices (W/m^2 of reflected light, interpolated over elements) what
+// patches lack of the power that their equations balanced: interpolation cuts peaks off, and would
+// lose it. Linear, so that channels add up. What a patch's value is off by on its own is smoothed
+// away among its neighbours.
+void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
+                const BandArray& patch_radiosity, BandArray& radiosity) {
+  BandArray lack = without_owned_emission(mesh, direct_light, patch_radiosity);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int n = mesh.corner_count(e), p = mesh.patch[e];
+    const auto share = static_cast<float>(mesh.element_area[e] / (n * mesh.area[p]));
+    for (int c = 0; c < n; ++c) lack.row(p) -= share * radiosity.row(mesh.corners[e][c]);
+  }
+  radiosity += to_vertices(mesh, lack);
 }
 
 BandArray caustics(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
@@ -146,6 +172,12 @@ Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
   return noise;
 }
 
+// Of patches, with columns of every channel.
+BandArray unscaled_radiosity(const RadiositySolution& solution) {
+  if (solution.channels.empty()) return solution.patch_radiosity;
+  return side_by_side(solution.channels, &LightChannel::patch_radiosity);
+}
+
 GatherOptions gather_options(const SolveOptions& options) {
   GatherOptions gather = options.gather;
   gather.progress = options.progress;
@@ -157,10 +189,8 @@ GatherOptions gather_options(const SolveOptions& options) {
 
 Draft make_draft(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
                  const SolveOptions& options, const RadiositySolution& solution) {
-  const BandArray radiosity = patch_to_vertex(
-      caster.mesh(), direct_light,
-      solution.channels.empty() ? solution.patch_radiosity
-                                : side_by_side(solution.channels, &LightChannel::patch_radiosity));
+  const BandArray radiosity =
+      patch_to_vertex(caster.mesh(), direct_light, unscaled_radiosity(solution));
   GatherOptions gather = gather_options(options);
   if (options.refine.tolerance > 0.0) {
     return refined_draft(scene, caster, direct_light, options, gather, radiosity,
@@ -183,7 +213,8 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   const bool has_caustics = draft.caustic.size() > 0;
   BandArray irradiance = draft.direct + draft.indirect;
   if (has_caustics) irradiance += draft.caustic;
-  const BandArray radiosity = gatherable_radiosity(mesh, direct_light, irradiance);
+  BandArray radiosity = gatherable_radiosity(mesh, direct_light, irradiance);
+  keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
   const GatherOptions gather = gather_options(options);
   std::vector<GatherPoint> points = vertex_gather_points(mesh);
   share_rays(mesh, gather.rays, points);
