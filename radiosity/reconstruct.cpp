@@ -46,19 +46,30 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
   return to_vertices(mesh, without_owned_emission(mesh, direct_light, patch_radiosity));
 }
 
-// Adds to what is read at vertices (W/m^2 of reflected light, interpolated over elements) what
-// patches lack of the power that their equations balanced: interpolation cuts peaks off, and would
-// lose it. Linear, so that channels add up. What a patch's value is off by on its own is smoothed
-// away among its neighbours.
+// Scales what is read at vertices (W/m^2 of reflected light, interpolated over elements, in columns
+// of every channel) to leave patches with the power that their equations balanced: between vertices
+// that are far apart interpolation cuts peaks off, and would lose it at each reflection. What a
+// patch's value is off by on its own is smoothed away among its neighbours. All light together says
+// how much, so that channels add up.
 void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
                 const BandArray& patch_radiosity, BandArray& radiosity) {
-  BandArray lack = without_owned_emission(mesh, direct_light, patch_radiosity);
+  const Eigen::Index bands = mesh.reflectance.cols();
+  const BandArray balanced = channel_sum(
+      without_owned_emission(mesh, direct_light, patch_radiosity), static_cast<int>(bands));
+  const BandArray read = channel_sum(radiosity, static_cast<int>(bands));
+  BandArray interpolated = BandArray::Zero(mesh.patch_count(), bands);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int n = mesh.corner_count(e), p = mesh.patch[e];
     const auto share = static_cast<float>(mesh.element_area[e] / (n * mesh.area[p]));
-    for (int c = 0; c < n; ++c) lack.row(p) -= share * radiosity.row(mesh.corners[e][c]);
+    for (int c = 0; c < n; ++c) interpolated.row(p) += share * read.row(mesh.corners[e][c]);
   }
-  radiosity += to_vertices(mesh, lack);
+  const BandArray wanted = to_vertices(mesh, balanced), found = to_vertices(mesh, interpolated);
+  constexpr float most = 1.25f;  // more, and the edge of a shadow is what patches do not know of
+  const BandArray factor =
+      (found > 0.0f).select(wanted / found.max(1e-30f), 1.0f).max(1.0f / most).min(most);
+  for (Eigen::Index k = 0; k < radiosity.cols(); k += bands) {
+    radiosity.middleCols(k, bands) *= factor;
+  }
 }
 
 BandArray caustics(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
@@ -214,7 +225,7 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   BandArray irradiance = draft.direct + draft.indirect;
   if (has_caustics) irradiance += draft.caustic;
   BandArray radiosity = gatherable_radiosity(mesh, direct_light, irradiance);
-  keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
+  if (draft.refined) keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
   const GatherOptions gather = gather_options(options);
   std::vector<GatherPoint> points = vertex_gather_points(mesh);
   share_rays(mesh, gather.rays, points);
