@@ -11,6 +11,7 @@
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "mesh/element_caster.h"
+#include "scene/errors.h"
 
 namespace lightwell {
 namespace {
@@ -21,7 +22,27 @@ struct Arguments {
   int rays = 1024;
 };
 
+// What the points read, and no more.
+SolvedScene solve_for_probes(const Scene& scene, Console& console, Report& report) {
+  SolveOptions options = options_for_probes();
+  options.progress = console.progress();
+  SolvedScene solved = solve_scene(scene, options);
+  console.finish_phase();
+  stop_if_interrupted();
+  note_mesh(scene, solved.mesh, console, report);
+  solved.solution.provenance.version = LIGHTWELL_VERSION;
+  solved.solution.provenance.options = "what probes read";
+  report.add_solution(solved, true);
+  report.remove("error_estimate");  // nobody estimated one
+  return solved;
+}
+
 int probe(const Arguments& arguments, Console& console) {
+  if (arguments.interpolate && arguments.solution.empty()) {
+    throw InputError(
+        "--interpolate reads the mesh of a solution: name one after the scene, as 'solve' makes "
+        "it");
+  }
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   if (scene.relative_units) {
@@ -29,7 +50,9 @@ int probe(const Arguments& arguments, Console& console) {
   }
   const std::vector<Probe> probes = read_probes(arguments.points, scene.metres_per_unit);
   require_writable(arguments.output);
-  const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  const SolvedScene solved = arguments.solution.empty()
+                                 ? solve_for_probes(scene, console, report)
+                                 : read_solution_step(arguments.solution, scene, console, report);
 
   const Stopwatch watch;
   const ElementCaster caster(solved.mesh);
@@ -59,9 +82,14 @@ int probe(const Arguments& arguments, Console& console) {
 
 Action add_probe(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command.description(
-      "Irradiance (W/m2 per band) and illuminance (lx) at points of a solved scene.");
-  add_solved_scene(command, arguments->scene, arguments->solution);
+  command.description("Irradiance (W/m2 per band) and illuminance (lx) at points of a scene.");
+  command.add_option("scene", arguments->scene, "scene file, as for 'solve'")
+      ->required()
+      ->type_name("SCENE");
+  command
+      .add_option("solution", arguments->solution,
+                  "its solution, .vtp (default: solves now, as far as the points need)")
+      ->type_name("SOLUTION");
   command
       .add_option("--points", arguments->points,
                   "CSV with columns x,y,z,nx,ny,nz in the scene file's unit")
@@ -78,8 +106,7 @@ Action add_probe(CLI::App& command) {
       ->type_name("N")
       ->check(power_of_two())
       ->excludes(interpolate);
-  command.footer(
-      "Example: lightwell probe office.toml office.vtp --points desk.csv -o desk-lux.csv");
+  command.footer("Example: lightwell probe office.toml --points desk.csv -o desk-lux.csv");
   return [arguments](Console& console) { return probe(*arguments, console); };
 }
 

@@ -103,6 +103,10 @@ void Report::add(const std::string& key, Json value) {
   facts_[key] = std::move(value);
 }
 
+void Report::remove(const std::string& key) {
+  facts_.erase(key);
+}
+
 Json Report::json() const {
   Json json = facts_;
   Json seconds = Json::object();
@@ -143,8 +147,10 @@ std::string Report::for_people() const {
     line("residual",
          fmt::format("{:.2g} after {} sweeps{} ({})", facts_["residual"].get<double>(),
                      facts_["sweeps"].get<int>(), by, facts_["outcome"].get<std::string>()));
-    line("error", fmt::format("{:.2f} % of the mean irradiance, estimated (relative RMS)",
-                              100.0 * facts_["error_estimate"].get<double>()));
+    if (facts_.contains("error_estimate")) {
+      line("error", fmt::format("{:.2f} % of the mean irradiance, estimated (relative RMS)",
+                                100.0 * facts_["error_estimate"].get<double>()));
+    }
   }
   std::vector<std::string> phases;
   for (const PhaseSeconds& phase : phases_) {

@@ -27,6 +27,7 @@ class Report {
   void add_phase(const std::string& phase, double seconds);
   void add_file(const std::filesystem::path& file);
   void add(const std::string& key, Json value);
+  void remove(const std::string& key);
 
   /// All of it, with the totals up to now.
   Json json() const;

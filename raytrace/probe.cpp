@@ -142,6 +142,13 @@ class ProbeSurface {
 
 }  // namespace
 
+SolveOptions options_for_probes() {
+  // Light on vertices is read by many rays of many probes, which add up what few rays leave in it.
+  return {.gather = {.rays = 64, .shadows = {.min_rays = 16, .max_rays = 64}},
+          .refine = {.tolerance = 0.0},
+          .error_points = 0};
+}
+
 BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            std::span<const Probe> probes, const GatherOptions& options) {

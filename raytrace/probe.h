@@ -6,6 +6,7 @@
 
 #include "radiosity/final_gather.h"
 #include "radiosity/solution.h"
+#include "radiosity/solve.h"
 
 namespace lightwell {
 
@@ -18,6 +19,10 @@ struct Probe {
 /// Reads columns x,y,z,nx,ny,nz (a header line names them; more columns are ignored) in the scene
 /// file's units. Throws InputError naming file, line and value.
 std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_per_unit);
+
+/// A solve that finds what probe_irradiance reads and nothing else: no mesh of elements refined to
+/// be looked at, no estimate of its error.
+SolveOptions options_for_probes();
 
 /// Irradiance (W/m^2) at each probe, probes x bands: a fresh gather of the solved scene.
 BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,

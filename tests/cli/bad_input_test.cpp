@@ -235,6 +235,10 @@ const Mistake mistakes[] = {
      {"probe", "room.toml", "junk.vtp", "--points", "points.csv", "-o", "E.csv"},
      3,
      {"points.csv", "nx"}},
+    {"ProbesOfAMeshThatIsNotThere",
+     {"probe", "room.toml", "--points", "points.csv", "-o", "E.csv", "--interpolate"},
+     3,
+     {"--interpolate", "name one after the scene"}},
     {"PictureThatIsNone", {"compare", "junk.exr", "junk.exr"}, 3, {"junk.exr"}},
     {"PictureThatIsMissing", {"info", "no.exr"}, 3, {"no.exr"}},
 };

@@ -39,10 +39,10 @@ box = { min = [0, 0, 0], max = [300, 400, 250], inward = true }
       run_lightwell(folder / "", {"solve", "furnace.toml", "-o", "S.vtp", "--max-patch-size", "50"})
           .code,
       0);
-  for (const Words& how : {Words{"--interpolate"}, Words{}}) {
-    const Ended ended = run_lightwell(
-        folder / "",
-        Words{"probe", "furnace.toml", "S.vtp", "--points", "points.csv", "-o", "E.csv"} + how);
+  for (const Words& how : {Words{"S.vtp", "--interpolate"}, Words{"S.vtp"}, Words{}}) {
+    const Ended ended =
+        run_lightwell(folder / "", Words{"probe", "furnace.toml"} + how +
+                                       Words{"--points", "points.csv", "-o", "E.csv"});
     ASSERT_EQ(ended.code, 0) << ended.err;
     std::ifstream in(folder / "E.csv");
     std::string line;

@@ -123,6 +123,15 @@ TEST_F(Output, ProbeWritesIrradianceAndLux) {
   }
 }
 
+TEST_F(Output, ProbeSolvesWhatItHasNoSolutionOf) {
+  folder.write("points.csv", "x,y,z,nx,ny,nz\n2,1.5,0,0,0,1\n1.5,1,0,0,0,1\n");
+  const auto json = run_json({"probe", "room.toml", "--points", "points.csv", "-o", "E.csv"});
+  EXPECT_EQ(json["points"], 2);
+  EXPECT_NEAR(json["energy"]["emitted"].get<double>(), 30.0, 1e-4);
+  EXPECT_FALSE(json.contains("error_estimate"));  // nothing estimates one
+  EXPECT_EQ(json["files"], nlohmann::json::array({"E.csv"}));
+}
+
 TEST_F(Output, InfoTellsPowerInWattsAndLumens) {
   const auto json = run_json({"info", "room.toml"});
   ASSERT_EQ(json["emitters"].size(), 1u);
