@@ -17,34 +17,13 @@
 #include <string>
 #include <vector>
 
-#include "grey_scene.h"
+#include "bench/rooms.h"
 #include "radiosity/solve.h"
 #include "scene/parallel.h"
-#include "scene/sampling.h"
 
 namespace {
 
 using namespace lightwell;
-
-constexpr double room_size = 10.0, room_height = 3.0;
-
-Scene furnished_room() {
-  Scene scene = grey_scene();
-  Material lamp = scene.materials[0];
-  lamp.name = "lamp";
-  lamp.emission = constant_spectrum(scene.bands, 100.0f);
-  scene.materials.push_back(lamp);
-  add_box(scene, {0, 0, 0}, {room_size, room_size, room_height}, true);
-  add_rectangle(scene, 1, {4.5, 4.5, 2.9}, Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
-  constexpr int rows = 10;
-  for (int i = 0; i < rows * rows; ++i) {
-    const auto key = static_cast<std::uint64_t>(i);
-    const double width = 0.2 + 0.4 * random_uniform(random_key(key, 1));
-    const double height = 0.3 + 1.2 * random_uniform(random_key(key, 2));
-    add_box(scene, {i % rows + 0.2, i / rows + 0.2, 0.0}, {width, width, height}, false);
-  }
-  return scene;
-}
 
 struct Row {
   int elements = 0;
@@ -137,7 +116,7 @@ void draw(const std::string& file, const std::vector<Row>& rows) {
 
 int main(int argc, char** argv) {
   const int most_elements = argc > 1 ? std::atoi(argv[1]) : 100000;
-  const Scene scene = furnished_room();
+  const Scene scene = room_of_boxes();
   fmt::print("a room with 100 boxes, {} threads\n", thread_count());
   std::vector<Row> rows;
   for (double element_size = 0.8;; element_size /= std::sqrt(2.0)) {

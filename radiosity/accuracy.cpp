@@ -39,6 +39,11 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
   return area > 0.0 ? sum / area : 0.0;
 }
 
+ShadowOptions Effort::shadows() const {
+  const int most = std::clamp(gather_rays / 2, 64, most_shadow_rays);
+  return {.min_rays = std::max(16, most / 8), .max_rays = most};
+}
+
 Effort first_effort(double target, bool refines) {
   constexpr double rays_for_one_percent = 1024.0;
   return {.refine_tolerance = refines ? share_of_interpolation * target : 0.0,

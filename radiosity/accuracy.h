@@ -18,6 +18,10 @@ struct Accuracy {
 struct Effort {
   double refine_tolerance = 0.0;  ///< 0: nothing is refined
   int gather_rays = 0;
+
+  /// Shadow rays that leave about as much in penumbras as those rays leave elsewhere: half of
+  /// them, 64 to 256, and first an eighth of that, 16 or more.
+  ShadowOptions shadows() const;
 };
 
 /// Mean illuminance of the patches that reflect, lx.

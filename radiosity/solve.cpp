@@ -136,6 +136,7 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   const auto take = [&](const Effort& effort) {
     in_force.refine.tolerance = effort.refine_tolerance;
     in_force.gather.rays = effort.gather_rays;
+    if (target > 0.0) in_force.gather.shadows = effort.shadows();
   };
   Effort effort{options.refine.tolerance, options.gather.rays};
   if (target > 0.0) effort = first_effort(target, starts_coarse(options));

@@ -1,0 +1,165 @@
+// How exact a solve is after how much time, and whether it matters how a scene arrives cut up.
+//
+//   rooms_bench
+//
+// Two scenes that radiosity programs were measured with before: a furnished room of 41 polygons,
+// the same in 708 and in 2832; and 30 000 patches with 2000 shots (Cohen, Chen, Wallace & Greenberg
+// 1988, "A progressive refinement approach to fast radiosity image generation", whose hall took
+// five hours), here a room of 100 boxes. The error is that of irradiance interpolated at 2000
+// random points, against gathers of 8192 rays each in a solution made last, many times as exact as
+// the others (of whose light only what is reflected again counts); peak memory is the process's up
+// to then.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "bench/rooms.h"
+#include "bench/stopwatch.h"
+#include "mesh/patch_sampler.h"
+#include "mesh/planar_regions.h"
+#include "radiosity/solve.h"
+#include "raytrace/probe.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace {
+
+using namespace lightwell;
+
+struct Case {
+  std::string name{};
+  SolveOptions options{};
+};
+
+struct Result {
+  std::string name{};
+  int patches = 0, elements = 0;
+  double seconds = 0.0, processor_seconds = 0.0, megabytes = 0.0, estimate = 0.0;
+  std::vector<PhaseSeconds> phases{};
+  BandArray irradiance{};
+};
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  constexpr double kilobytes = 1024.0;
+  return static_cast<double>(usage.ru_maxrss) / kilobytes;
+}
+
+// On all that reflects and can be seen, as likely on any area as on any other.
+std::vector<Probe> random_places(const Scene& scene, int count) {
+  const PatchMesh mesh = build_patches(scene);
+  const ElementCaster caster(mesh);
+  std::vector<double> area_to(mesh.patch_count());
+  double total = 0.0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const bool counts = caster.hidden_elements(p) == 0 && (mesh.reflectance.row(p) > 0.0f).any();
+    area_to[p] = total += counts ? mesh.area[p] : 0.0;
+  }
+  std::vector<Probe> places;
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t key = random_key(static_cast<std::uint64_t>(i), 77);
+    const double at = (i + random_uniform(random_key(key, 0))) / count * total;
+    const auto p = static_cast<int>(std::upper_bound(area_to.begin(), area_to.end() - 1, at) -
+                                    area_to.begin());
+    const PatchPoint point = PatchSampler(mesh, p).point(random_uniform(random_key(key, 1)),
+                                                         random_uniform(random_key(key, 2)));
+    places.push_back({point.position, point.normal});
+  }
+  return places;
+}
+
+// The whole of a solve, from polygons as they arrive.
+Result measure(const Scene& scene, const Case& what, const std::vector<Probe>& places) {
+  Result result{.name = what.name};
+  const std::clock_t start = std::clock();
+  SolvedScene solved;
+  result.seconds =
+      seconds_of([&] { solved = solve_scene(merge_planar_regions(scene), what.options); });
+  result.processor_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  result.megabytes = peak_megabytes();
+  result.patches = solved.mesh.patch_count();
+  result.elements = solved.mesh.element_count();
+  result.phases = solved.solution.seconds;
+  result.estimate = solved.solution.error_estimate;
+  result.irradiance = interpolate_irradiance(ElementCaster(solved.mesh), solved.solution, places);
+  return result;
+}
+
+BandArray reference(const Scene& raw, double accuracy, const std::vector<Probe>& places) {
+  const Scene scene = merge_planar_regions(raw);
+  const SolvedScene solved = solve_scene(scene, {.accuracy = Accuracy{.share = accuracy}});
+  const ElementCaster caster(solved.mesh);
+  return probe_irradiance(scene, caster, DirectLight(scene, solved.mesh), solved.solution, places,
+                          {.rays = 8192, .shadows = {.min_rays = 256, .max_rays = 256}});
+}
+
+void print(const std::vector<Result>& results, const BandArray& truth) {
+  const double mean = truth.cast<double>().mean();
+  for (const Result& r : results) {
+    const auto error = (r.irradiance - truth).cast<double>();
+    fmt::print(
+        "{:<46} {:5.2f} CPU s {:5.2f} s {:5.0f} MB {:6} patches {:6} elements  "
+        "error {:.2f} %  (estimated {:.2f} %) ",
+        r.name, r.processor_seconds, r.seconds, r.megabytes, r.patches, r.elements,
+        100.0 * std::sqrt(error.square().mean()) / mean, 100.0 * r.estimate);
+    for (const PhaseSeconds& phase : r.phases) fmt::print(" {} {:.2f}", phase.phase, phase.seconds);
+    fmt::print(" s\n");
+  }
+  std::fflush(stdout);
+}
+
+SolveOptions to(double accuracy) {
+  return {.accuracy = Accuracy{.share = accuracy}};
+}
+
+// As few patches as the room's light bounces between, and elements along the bounds of shadows.
+SolveOptions coarse_room() {
+  return {.mesh = {.max_patch_size = 0.2, .elements_per_patch_edge = 4, .discontinuity = true},
+          .form_factors = {.rays_per_patch = 64},
+          .gather = {.rays = 128},
+          .refine = {.tolerance = 0.0}};
+}
+
+void furnished_room() {
+  const Scene whole = room_of_polygons(0);
+  const std::vector<Probe> places = random_places(merge_planar_regions(whole), 2000);
+  std::vector<Result> results;
+  for (const int cells : {0, 10, 20}) {
+    const Scene scene = room_of_polygons(cells);
+    const std::string in = fmt::format("{} polygons, ", scene_facets(scene).size());
+    results.push_back(
+        measure(scene, {in + "large patches, --discontinuity", coarse_room()}, places));
+    results.push_back(measure(scene, {in + "--accuracy 5%", to(0.05)}, places));
+    results.push_back(measure(scene, {in + "--accuracy 2%", to(0.02)}, places));
+    results.push_back(measure(scene, {in + "default options", {}}, places));
+  }
+  print(results, reference(whole, 0.003, places));
+}
+
+void hall_of_1988() {
+  const Scene scene = room_of_boxes();
+  const std::vector<Probe> places = random_places(merge_planar_regions(scene), 2000);
+  SolveOptions shots{.mesh = {.max_patch_size = 0.13, .elements_per_patch_edge = 1},
+                     .progressive = ProgressiveOptions{.max_shots = 2000},
+                     .gather = {.rays = 64, .shadows = {.min_rays = 16, .max_rays = 64}},
+                     .refine = {.tolerance = 0.0}};
+  std::vector<Result> results;
+  results.push_back(measure(scene, {"2000 shots of 30 000 patches", shots}, places));
+  results.push_back(measure(scene, {"--accuracy 5%", to(0.05)}, places));
+  results.push_back(measure(scene, {"--accuracy 2%", to(0.02)}, places));
+  results.push_back(measure(scene, {"--accuracy 1%", to(0.01)}, places));
+  print(results, reference(scene, 0.01, places));
+}
+
+}  // namespace
+
+int main() {
+  fmt::print("{} threads\n", thread_count());
+  hall_of_1988();
+  furnished_room();
+}
