@@ -13,6 +13,8 @@ build_packages=(
 )
 # A virtual display and a software OpenGL, for the tests of the viewer.
 display_packages=(xvfb xauth libgl1-mesa-dri)
+# What opens exported pages and checks exported models, in the tests.
+browser_packages=(chromium nodejs)
 
 say() { printf '==> %s\n' "$*"; }
 die() { printf 'error: %s\n' "$*" >&2; exit 1; }
@@ -22,7 +24,7 @@ need_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     say "This is not Debian, so nothing is installed for you. What is needed: a C++20 compiler, CMake 3.25,"
     say "Ninja, Eigen 3.4, oneTBB, fmt, Embree 3.13 or 4, CGAL 5.5, OpenMesh, VTK 9.1, toml++,"
-    say "assimp, pugixml, muParser, libjpeg, OpenEXR, libpng, CLI11, nlohmann-json, GoogleTest; Xvfb for the tests of the viewer."
+    say "assimp, pugixml, muParser, libjpeg, OpenEXR, libpng, CLI11, nlohmann-json, GoogleTest; for the tests Xvfb, Chromium and node."
     return 0
   fi
   local name missing=()
@@ -38,7 +40,7 @@ need_packages() {
 Run that as root (or install sudo), then start this again."
     as_root=(sudo)
   fi
-  say "Installing ${#missing[@]} Debian packages and what they need (up to 0.6 GB to download): ${missing[*]}"
+  say "Installing ${#missing[@]} Debian packages and what they need (up to 0.7 GB to download): ${missing[*]}"
   local log=build/install.log
   mkdir -p build
   local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=600 -o Acquire::Retries=3)
