@@ -68,8 +68,7 @@ class HemisphereGather {
       for (std::size_t r = 0; r < n; ++r) {
         const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;
         const int place = begin / HemisphereSets::block * HemisphereSets::block + points[r].rank;
-        add(ray[r], hit[r], random_key(key, gather_branches, index),
-            sum[place < set.count() / 2 ? 0 : 1]);
+        add(ray[r], hit[r], key, index, sum[place < set.count() / 2 ? 0 : 1]);
       }
     }
     Eigen::Map<Eigen::ArrayXf>(irradiance, columns) =
@@ -78,13 +77,15 @@ class HemisphereGather {
   }
 
  private:
-  void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, Eigen::ArrayXd& sum) const {
+  void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, std::uint64_t index,
+           Eigen::ArrayXd& sum) const {
     if (hit.facet < 0) return;
     if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, sum);
     if (!paths_.is_specular(hit.facet)) return;
-    paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
-      add_throughput(end, throughput, sum);
-    });
+    paths_.follow(ray, hit, random_key(key, gather_branches, index),
+                  [&](const ElementHit& end, const Spectrum& throughput) {
+                    add_throughput(end, throughput, sum);
+                  });
   }
 
   // Bands go by the columns of one channel after the other.
