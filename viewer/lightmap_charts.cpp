@@ -1,0 +1,231 @@
+#include "viewer/lightmap_charts.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "mesh/sphere_grid.h"
+#include "scene/sampling.h"
+#include "viewer/chart_plane.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Of a projected face at least nine tenths of the area are left.
+const double most_turned = std::cos(25.0 * std::numbers::pi / 180.0);
+
+/// Twice the area, along the normal.
+Vector3d face_vector(const BakedModel& model, int f) {
+  const auto& c = model.faces[f];
+  const auto& p = model.position;
+  if (c[3] < 0) return (p[c[1]] - p[c[0]]).cross(p[c[2]] - p[c[0]]);
+  return (p[c[2]] - p[c[0]]).cross(p[c[3]] - p[c[1]]);
+}
+
+/// The faces around each vertex of a part.
+class FacesAround {
+ public:
+  FacesAround(const BakedModel& model, std::span<const int> faces) : model_(model) {
+    for (const int f : faces) {
+      for (int c = 0; c < model.corner_count(f); ++c) pairs_.emplace_back(model.faces[f][c], f);
+    }
+    std::sort(pairs_.begin(), pairs_.end());
+  }
+  template <class See>
+  void neighbours(int f, See&& see) const {
+    for (int c = 0; c < model_.corner_count(f); ++c) {
+      const int v = model_.faces[f][c];
+      for (auto at = std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(v, -1));
+           at != pairs_.end() && at->first == v; ++at) {
+        see(at->second);
+      }
+    }
+  }
+
+ private:
+  const BakedModel& model_;
+  std::vector<std::pair<int, int>> pairs_{};
+};
+
+/// Groups of ascending faces that hang together by vertices and face much as the first of their
+/// group does. Faces of a group ascend, and so do groups by their first.
+std::vector<std::vector<int>> connected_groups(const BakedModel& model,
+                                               std::span<const int> faces) {
+  const FacesAround around(model, faces);
+  const int first = faces.front();
+  std::vector<char> is_taken(static_cast<std::size_t>(faces.back() - first + 1), 0);
+  std::vector<std::vector<int>> groups;
+  for (const int seed : faces) {
+    if (std::exchange(is_taken[seed - first], 1) != 0) continue;
+    std::vector<int> group = {seed};
+    const Vector3d normal = face_vector(model, seed).normalized();
+    for (std::size_t next = 0; next < group.size(); ++next) {
+      around.neighbours(group[next], [&](int f) {
+        char& taken = is_taken[f - first];
+        if (taken != 0 || face_vector(model, f).normalized().dot(normal) < most_turned) return;
+        taken = 1;
+        group.push_back(f);
+      });
+    }
+    std::sort(group.begin(), group.end());
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+/// Numbers the vertices of the faces and projects them on their mean plane.
+LightmapChart project(const BakedModel& model, std::vector<int> faces) {
+  LightmapChart chart;
+  Vector3d normal = Vector3d::Zero(), a, b;
+  std::map<int, int> number;
+  for (const int f : faces) {
+    normal += face_vector(model, f);
+    std::array<int, 4> corners{-1, -1, -1, -1};
+    for (int c = 0; c < model.corner_count(f); ++c) {
+      const int v = model.faces[f][c];
+      const auto [at, is_new] = number.try_emplace(v, static_cast<int>(chart.vertices.size()));
+      if (is_new) chart.vertices.push_back(v);
+      corners[c] = at->second;
+    }
+    chart.corners.push_back(corners);
+  }
+  chart.faces = std::move(faces);
+  tangent_frame(normal.normalized(), a, b);
+  const Vector3d origin = model.position[chart.vertices.front()];
+  for (const int v : chart.vertices) {
+    const Vector3d p = model.position[v] - origin;
+    chart.place.emplace_back(p.dot(a), p.dot(b));
+  }
+  return chart;
+}
+
+/// Turned so that it fills a rectangle as well as it can, its longer side along x.
+void straighten(LightmapChart& chart) {
+  const Vector2d x = box_direction(chart.place), y(-x.y(), x.x());
+  Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (Vector2d& p : chart.place) {
+    p = Vector2d(p.dot(x), p.dot(y));
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  for (Vector2d& p : chart.place) p -= low;
+  chart.size = high - low;
+}
+
+/// Along the first line that separates borders too near to each other, again and again.
+void cut_and_add(const BakedModel& model, std::vector<int> faces, double gap,
+                 std::vector<LightmapChart>& charts) {
+  std::vector<std::vector<int>> waiting = {std::move(faces)};
+  while (!waiting.empty()) {
+    LightmapChart chart = project(model, std::move(waiting.back()));
+    waiting.pop_back();
+    const std::vector<CutLine> lines = narrow_gaps(chart.corners, chart.place, gap);
+    if (lines.empty()) {
+      straighten(chart);
+      charts.push_back(std::move(chart));
+      continue;
+    }
+    std::array<std::vector<int>, 2> sides;
+    for (std::size_t f = 0; f < chart.faces.size(); ++f) {
+      const int count = model.corner_count(chart.faces[f]);
+      Vector2d center = Vector2d::Zero();
+      for (int c = 0; c < count; ++c) center += chart.place[chart.corners[f][c]] / count;
+      const bool is_beyond = (center - lines.front().point).dot(lines.front().normal) > 0.0;
+      sides[is_beyond ? 1 : 0].push_back(chart.faces[f]);
+    }
+    for (const auto& side : sides) {  // neither is empty: a face lies on each
+      for (auto& group : connected_groups(model, side)) waiting.push_back(std::move(group));
+    }
+  }
+}
+
+/// By longitude and latitude, so that texels between vertices have the place that light is
+/// interpolated for. A pole has a vertex for each sector.
+LightmapChart unroll(const BakedModel& model, const PatchMesh& mesh, int sphere,
+                     std::vector<int> faces) {
+  const SphereGrid& grid = mesh.sphere_grids[sphere];
+  std::map<int, int> cell_of;
+  for (std::size_t i = 0; i < grid.element.size(); ++i) {
+    cell_of[grid.element[i]] = static_cast<int>(i);
+  }
+  const double r = grid.sphere.radius;
+  LightmapChart chart;
+  chart.sphere = sphere;
+  chart.size = {2.0 * std::numbers::pi * r, std::numbers::pi * r};
+  std::map<std::pair<int, int>, int> number;  // of a vertex in a column of half sectors
+  for (const int f : faces) {
+    const int e = model.element[f];
+    const auto found = cell_of.find(e);
+    const int cell = found != cell_of.end() ? found->second : cell_of.at(mesh.twin[e]);
+    const int ring = cell / grid.sectors, sector = cell % grid.sectors;
+    std::array<int, 4> corners{-1, -1, -1, -1};
+    for (int c = 0; c < model.corner_count(f); ++c) {
+      const int v = model.faces[f][c];
+      const Vector3d towards = (model.position[v] - grid.sphere.center).normalized();
+      const double across = std::hypot(towards.x(), towards.y());
+      const bool is_pole = !(across > 0.25 * std::numbers::pi / grid.rings);
+      // Longitude to the nearest edge of this cell, whichever way round.
+      const double phi = std::atan2(towards.y(), towards.x()) / (2.0 * std::numbers::pi);
+      const double turned = phi * grid.sectors - (sector + 0.5);
+      const double wrapped = turned - grid.sectors * std::round(turned / grid.sectors);
+      const int column = 2 * sector + (is_pole ? 1 : wrapped > 0.0 ? 2 : 0);
+      const double latitude = std::atan2(across, towards.z()) / std::numbers::pi * grid.rings;
+      const int row = latitude < ring + 0.5 ? ring : ring + 1;
+      const auto [at, is_new] =
+          number.try_emplace({v, column}, static_cast<int>(chart.vertices.size()));
+      if (is_new) {
+        chart.vertices.push_back(v);
+        chart.place.emplace_back(0.5 * column / grid.sectors * chart.size.x(),
+                                 (1.0 - static_cast<double>(row) / grid.rings) * chart.size.y());
+      }
+      corners[c] = at->second;
+    }
+    chart.corners.push_back(corners);
+  }
+  chart.faces = std::move(faces);
+  return chart;
+}
+
+bool is_dark(const BakedModel& model, const LightmapChart& chart) {
+  return std::ranges::none_of(chart.vertices, [&](int v) {
+    return (model.irradiance.row(v) > 0.0f).any() || (model.radiosity.row(v) > 0.0f).any();
+  });
+}
+
+int sphere_of(const PatchMesh& mesh, int element) {
+  const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[element]);
+  return grid ? static_cast<int>(grid - mesh.sphere_grids.data()) : -1;
+}
+
+}  // namespace
+
+std::vector<LightmapChart> cut_charts(const BakedModel& model, const PatchMesh& mesh, double gap) {
+  std::vector<LightmapChart> charts;
+  for (const BakedPart& part : model.parts) {
+    std::map<int, std::vector<int>> by_sphere;
+    for (int f = part.first_face; f < part.first_face + part.face_count; ++f) {
+      by_sphere[sphere_of(mesh, model.element[f])].push_back(f);
+    }
+    for (auto& [sphere, faces] : by_sphere) {
+      if (sphere >= 0) {
+        charts.push_back(unroll(model, mesh, sphere, std::move(faces)));
+        continue;
+      }
+      for (auto& group : connected_groups(model, faces)) {
+        cut_and_add(model, std::move(group), gap, charts);
+      }
+    }
+  }
+  for (LightmapChart& chart : charts) chart.is_dark = is_dark(model, chart);
+  return charts;
+}
+
+}  // namespace lightwell
