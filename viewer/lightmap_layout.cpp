@@ -127,17 +127,17 @@ void pack_densely(LightmapLayout& layout, Packing& packing) {
 [[noreturn]] void refuse_density(const BakedModel& model, const LightmapLayout& layout,
                                  double density) {
   const int room = layout.size - 2 * layout.padding;
-  for (const LightmapChart& chart : layout.charts) {
-    const double longest = chart.is_dark ? 0.0 : chart.size.maxCoeff();
-    if (Packing::texels(longest, density) <= room) continue;
+  const auto length = [](const LightmapChart& c) { return c.is_dark ? 0.0 : c.size.maxCoeff(); };
+  const LightmapChart& longest = *std::ranges::max_element(layout.charts, {}, length);
+  const double texels = Packing::texels(length(longest), density);
+  if (texels > room) {
     const auto part = std::ranges::find_if(model.parts, [&](const BakedPart& p) {
-      return chart.faces.front() < p.first_face + p.face_count;
+      return longest.faces.front() < p.first_face + p.face_count;
     });
     throw InputError(fmt::format(
         "'{}' is {:.4g} m long, which is {:.0f} texels at {:g} per metre, and a lightmap of {} "
         "texels holds {}; take a larger size or at most {:.4g} texels per metre",
-        part->name, longest, Packing::texels(longest, density), density, layout.size, room,
-        room / longest));
+        part->name, length(longest), texels, density, layout.size, room, room / length(longest)));
   }
   throw InputError(fmt::format(
       "at {:g} texels per metre there would be more than {} lightmaps of {} x {} texels; take a "
