@@ -148,9 +148,11 @@ class LightmapBuffer {
       root["images"].push_back({{"name", name}, {"bufferView", view}, {"mimeType", "image/png"}});
       root["textures"].push_back({{"name", name}, {"sampler", 0}, {"source", i}});
     }
-    constexpr int linear = 9729, linear_mipmap_linear = 9987, clamp_to_edge = 33071;
+    // Without mipmaps: coarse ones, which are taken where a surface is seen at a grazing angle,
+    // would mix it with its neighbours in the atlas.
+    constexpr int linear = 9729, clamp_to_edge = 33071;
     root["samplers"].push_back({{"magFilter", linear},
-                                {"minFilter", linear_mipmap_linear},
+                                {"minFilter", linear},
                                 {"wrapS", clamp_to_edge},
                                 {"wrapT", clamp_to_edge}});
   }

@@ -42,7 +42,7 @@ double face_area(const BakedModel& model) {
   return area;
 }
 
-/// A density at which charts were packed, and how.
+/// Packs charts at a density.
 class Packing {
  public:
   Packing(const std::vector<LightmapChart>& charts, int padding)
@@ -52,19 +52,35 @@ class Packing {
   static double texels(double length, double density) {
     return std::max<double>(least_texels, std::ceil(length * density - 1e-6));
   }
-  std::optional<std::vector<PackedPlace>> pack(double density, int size, int most) {
-    sizes_.clear();
+  std::optional<std::vector<ChartPlace>> pack(double density, int size, int most) const {
+    std::vector<Eigen::Vector2i> sizes;
+    std::vector<int> number;  // of the rectangle that a chart lies in
+    std::optional<int> dark;  // that of all that are dark: they look alike
     for (const LightmapChart& chart : charts_) {
-      // Nothing is to be seen on what is dark.
+      if (chart.is_dark && dark) {
+        number.push_back(*dark);
+        continue;
+      }
+      number.push_back(static_cast<int>(sizes.size()));
+      if (chart.is_dark) dark = number.back();
       Eigen::Vector2d wanted = Eigen::Vector2d::Constant(least_texels);
       for (int i = 0; i < 2 && !chart.is_dark; ++i) wanted[i] = texels(chart.size[i], density);
       if (wanted.maxCoeff() + 2.0 * padding_ > size) return std::nullopt;
-      sizes_.push_back(wanted.cast<int>() + Eigen::Vector2i::Constant(2 * padding_));
+      sizes.push_back(wanted.cast<int>() + Eigen::Vector2i::Constant(2 * padding_));
     }
-    return pack_rectangles(sizes_, size, most);
+    const auto packed = pack_rectangles(sizes, size, most);
+    if (!packed) return std::nullopt;
+    std::vector<ChartPlace> places;
+    for (const int n : number) {
+      const PackedPlace& at = (*packed)[n];
+      places.push_back({.atlas = at.square,
+                        .x = at.x + padding_,
+                        .y = at.y + padding_,
+                        .width = sizes[n].x() - 2 * padding_,
+                        .height = sizes[n].y() - 2 * padding_});
+    }
+    return places;
   }
-  /// Of the last pack() that succeeded, padding included.
-  const std::vector<Eigen::Vector2i>& sizes() const { return sizes_; }
   double box_area() const {
     double area = 0.0;
     for (const LightmapChart& c : charts_) area += c.is_dark ? 0.0 : c.size.x() * c.size.y();
@@ -74,23 +90,9 @@ class Packing {
  private:
   const std::vector<LightmapChart>& charts_;
   int padding_;
-  std::vector<Eigen::Vector2i> sizes_{};
 };
 
-void add_places(const std::vector<PackedPlace>& packed, const std::vector<Eigen::Vector2i>& sizes,
-                LightmapLayout& layout) {
-  const int p = layout.padding;
-  for (std::size_t i = 0; i < packed.size(); ++i) {
-    layout.place.push_back({.atlas = packed[i].square,
-                            .x = packed[i].x + p,
-                            .y = packed[i].y + p,
-                            .width = sizes[i].x() - 2 * p,
-                            .height = sizes[i].y() - 2 * p});
-    layout.atlas_count = std::max(layout.atlas_count, packed[i].square + 1);
-  }
-}
-
-[[noreturn]] void refuse_size(const LightmapLayout& layout, Packing& packing) {
+[[noreturn]] void refuse_size(const LightmapLayout& layout, const Packing& packing) {
   const std::string asked = fmt::format("{} charts do not fit into one lightmap of {} x {} texels",
                                         layout.charts.size(), layout.size, layout.size);
   for (int size = 2 * layout.size; size <= most_lightmap_size; size *= 2) {
@@ -104,24 +106,23 @@ void add_places(const std::vector<PackedPlace>& packed, const std::vector<Eigen:
       "{}, nor into the largest; say how many texels per metre are wanted and get several", asked));
 }
 
-void pack_densely(LightmapLayout& layout, Packing& packing) {
+void pack_densely(LightmapLayout& layout, const Packing& packing) {
   constexpr int halvings = 10;
   // No packing is better than one without padding and gaps.
   const double area = packing.box_area();
   double high = area > 0.0 ? layout.size / std::sqrt(area) : 0.0, low = 0.0;
   auto best = packing.pack(low, layout.size, 1);
   if (!best) refuse_size(layout, packing);
-  std::vector<Eigen::Vector2i> sizes = packing.sizes();
   for (int i = 0; i < halvings && high > 0.0; ++i) {
     const double middle = 0.5 * (low + high);
     auto packed = packing.pack(middle, layout.size, 1);
     (packed ? low : high) = middle;
     if (!packed) continue;
     best = std::move(packed);
-    sizes = packing.sizes();
   }
   layout.texels_per_metre = low;
-  add_places(*best, sizes, layout);
+  layout.place = std::move(*best);
+  layout.atlas_count = 1;
 }
 
 [[noreturn]] void refuse_density(const BakedModel& model, const LightmapLayout& layout,
@@ -163,15 +164,18 @@ LightmapLayout lay_out_lightmap(const BakedModel& model, const PatchMesh& mesh,
                              ? options.texels_per_metre
                              : options.size / std::sqrt(face_area(model));
   layout.charts = cut_charts(model, mesh, least_gap / density);
-  Packing packing(layout.charts, options.padding);
+  const Packing packing(layout.charts, options.padding);
   if (!(options.texels_per_metre > 0.0)) {
     pack_densely(layout, packing);
     return layout;
   }
-  const auto packed = packing.pack(density, options.size, most_atlases);
+  auto packed = packing.pack(density, options.size, most_atlases);
   if (!packed) refuse_density(model, layout, density);
   layout.texels_per_metre = density;
-  add_places(*packed, packing.sizes(), layout);
+  layout.place = std::move(*packed);
+  for (const ChartPlace& at : layout.place) {
+    layout.atlas_count = std::max(layout.atlas_count, at.atlas + 1);
+  }
   return layout;
 }
 

@@ -163,8 +163,9 @@ LightmapAtlas paint_atlas(const LightmapLayout& layout, int atlas, const BakedMo
     painted.radiance.row(at).head<3>() =
         finite_rgb(bands, (M + shown * e) / std::numbers::pi_v<float>).transpose();
     is_known[static_cast<std::size_t>(at)] = 1;
-    if (!texel.is_inside) continue;
-    painted.face[static_cast<std::size_t>(at)] = texel.face;
+    int& face = painted.face[static_cast<std::size_t>(at)];
+    if (!texel.is_inside || face >= 0) continue;
+    face = texel.face;
     ++painted.covered;
   }
   BandArray* const pictures[] = {&painted.irradiance, &painted.radiosity, &painted.radiance};
