@@ -11,6 +11,7 @@
 
 #include "mesh/sphere_grid.h"
 #include "scene/sampling.h"
+#include "viewer/chart_neighbours.h"
 #include "viewer/chart_plane.h"
 
 namespace lightwell {
@@ -19,59 +20,24 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Of a projected face at least nine tenths of the area are left.
-const double most_turned = std::cos(25.0 * std::numbers::pi / 180.0);
-
-/// Twice the area, along the normal.
-Vector3d face_vector(const BakedModel& model, int f) {
-  const auto& c = model.faces[f];
-  const auto& p = model.position;
-  if (c[3] < 0) return (p[c[1]] - p[c[0]]).cross(p[c[2]] - p[c[0]]);
-  return (p[c[2]] - p[c[0]]).cross(p[c[3]] - p[c[1]]);
-}
-
-/// The faces around each vertex of a part.
-class FacesAround {
- public:
-  FacesAround(const BakedModel& model, std::span<const int> faces) : model_(model) {
-    for (const int f : faces) {
-      for (int c = 0; c < model.corner_count(f); ++c) pairs_.emplace_back(model.faces[f][c], f);
-    }
-    std::sort(pairs_.begin(), pairs_.end());
-  }
-  template <class See>
-  void neighbours(int f, See&& see) const {
-    for (int c = 0; c < model_.corner_count(f); ++c) {
-      const int v = model_.faces[f][c];
-      for (auto at = std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(v, -1));
-           at != pairs_.end() && at->first == v; ++at) {
-        see(at->second);
-      }
-    }
-  }
-
- private:
-  const BakedModel& model_;
-  std::vector<std::pair<int, int>> pairs_{};
-};
-
-/// Groups of ascending faces that hang together by vertices and face much as the first of their
-/// group does. Faces of a group ascend, and so do groups by their first.
-std::vector<std::vector<int>> connected_groups(const BakedModel& model,
+/// Groups of ascending faces that hang together and face much as the first of their group does.
+/// Faces of a group ascend, and so do groups by their first.
+std::vector<std::vector<int>> connected_groups(const BakedModel& model, const ChartNeighbours& near,
                                                std::span<const int> faces) {
-  const FacesAround around(model, faces);
+  constexpr char elsewhere = 2;
   const int first = faces.front();
-  std::vector<char> is_taken(static_cast<std::size_t>(faces.back() - first + 1), 0);
+  std::vector<char> is_taken(static_cast<std::size_t>(faces.back() - first + 1), elsewhere);
+  for (const int f : faces) is_taken[f - first] = 0;
   std::vector<std::vector<int>> groups;
   for (const int seed : faces) {
     if (std::exchange(is_taken[seed - first], 1) != 0) continue;
     std::vector<int> group = {seed};
     const Vector3d normal = face_vector(model, seed).normalized();
     for (std::size_t next = 0; next < group.size(); ++next) {
-      around.neighbours(group[next], [&](int f) {
-        char& taken = is_taken[f - first];
-        if (taken != 0 || face_vector(model, f).normalized().dot(normal) < most_turned) return;
-        taken = 1;
+      near.around(group[next], [&](int f) {
+        if (f < first || f > faces.back() || is_taken[f - first] != 0) return;
+        if (face_vector(model, f).normalized().dot(normal) < most_turned) return;
+        is_taken[f - first] = 1;
         group.push_back(f);
       });
     }
@@ -120,14 +86,32 @@ void straighten(LightmapChart& chart) {
   chart.size = high - low;
 }
 
+/// The corners of a chart's faces with one vertex where creases join several.
+std::vector<std::array<int, 4>> joined_corners(const LightmapChart& chart,
+                                               const ChartNeighbours& near) {
+  std::map<int, int> first;  // of the chart's vertices that are joined
+  std::vector<int> number;
+  for (std::size_t v = 0; v < chart.vertices.size(); ++v) {
+    number.push_back(
+        first.try_emplace(near.joined(chart.vertices[v]), static_cast<int>(v)).first->second);
+  }
+  std::vector<std::array<int, 4>> corners = chart.corners;
+  for (auto& face : corners) {
+    for (int& c : face) {
+      if (c >= 0) c = number[c];
+    }
+  }
+  return corners;
+}
+
 /// Along the first line that separates borders too near to each other, again and again.
-void cut_and_add(const BakedModel& model, std::vector<int> faces, double gap,
-                 std::vector<LightmapChart>& charts) {
+void cut_and_add(const BakedModel& model, const ChartNeighbours& near, std::vector<int> faces,
+                 double gap, std::vector<LightmapChart>& charts) {
   std::vector<std::vector<int>> waiting = {std::move(faces)};
   while (!waiting.empty()) {
     LightmapChart chart = project(model, std::move(waiting.back()));
     waiting.pop_back();
-    const std::vector<CutLine> lines = narrow_gaps(chart.corners, chart.place, gap);
+    const std::vector<CutLine> lines = narrow_gaps(joined_corners(chart, near), chart.place, gap);
     if (lines.empty()) {
       straighten(chart);
       charts.push_back(std::move(chart));
@@ -142,7 +126,7 @@ void cut_and_add(const BakedModel& model, std::vector<int> faces, double gap,
       sides[is_beyond ? 1 : 0].push_back(chart.faces[f]);
     }
     for (const auto& side : sides) {  // neither is empty: a face lies on each
-      for (auto& group : connected_groups(model, side)) waiting.push_back(std::move(group));
+      for (auto& group : connected_groups(model, near, side)) waiting.push_back(std::move(group));
     }
   }
 }
@@ -219,8 +203,9 @@ std::vector<LightmapChart> cut_charts(const BakedModel& model, const PatchMesh& 
         charts.push_back(unroll(model, mesh, sphere, std::move(faces)));
         continue;
       }
-      for (auto& group : connected_groups(model, faces)) {
-        cut_and_add(model, std::move(group), gap, charts);
+      const ChartNeighbours near(model, part);
+      for (auto& group : connected_groups(model, near, faces)) {
+        cut_and_add(model, near, std::move(group), gap, charts);
       }
     }
   }

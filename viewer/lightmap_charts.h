@@ -9,8 +9,9 @@
 namespace lightwell {
 
 /// A stretch of one side of a surface, laid flat: faces of a BakedModel that hang together by
-/// vertices, so that light is continuous in it. What is curved is cut where it turns away by more
-/// than 25 degrees and projected on its mean plane; a sphere is laid out by longitude and latitude.
+/// vertices or meet in a blunt crease, so that light does not jump in it. What is curved is cut
+/// where it turns away by more than 25 degrees and projected on its mean plane; a sphere is laid
+/// out by longitude and latitude.
 struct LightmapChart {
   std::vector<int> faces{};                   ///< of the model, ascending
   std::vector<std::array<int, 4>> corners{};  ///< of each face: its own vertices, in its own order
