@@ -36,7 +36,8 @@ struct LightmapLayout {
   int size = 0, padding = 0, atlas_count = 0;
   double texels_per_metre = 0.0;
   std::vector<LightmapChart> charts{};
-  std::vector<ChartPlace> place{};  ///< of each chart; those that are dark share one
+  std::vector<ChartPlace> place{};  ///< of each chart; those that are dark share one, or have their
+                                    ///< host's
 
   /// Of a place of a chart, in texels from its atlas's upper left corner, y downwards: a chart
   /// fills its rectangle, which is a whole number of texels.

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "mesh/element_caster.h"
 #include "mesh/sphere_grid.h"
 #include "scene/sampling.h"
 #include "viewer/chart_neighbours.h"
@@ -47,6 +48,14 @@ std::vector<std::vector<int>> connected_groups(const BakedModel& model, const Ch
   return groups;
 }
 
+void lay_flat(const BakedModel& model, LightmapChart& chart) {
+  chart.place.clear();
+  for (const int v : chart.vertices) {
+    const Vector3d p = model.position[v] - chart.origin;
+    chart.place.emplace_back(p.dot(chart.x_axis), p.dot(chart.y_axis));
+  }
+}
+
 /// Numbers the vertices of the faces and projects them on their mean plane.
 LightmapChart project(const BakedModel& model, std::vector<int> faces) {
   LightmapChart chart;
@@ -65,23 +74,26 @@ LightmapChart project(const BakedModel& model, std::vector<int> faces) {
   }
   chart.faces = std::move(faces);
   tangent_frame(normal.normalized(), a, b);
-  const Vector3d origin = model.position[chart.vertices.front()];
-  for (const int v : chart.vertices) {
-    const Vector3d p = model.position[v] - origin;
-    chart.place.emplace_back(p.dot(a), p.dot(b));
-  }
+  chart.origin = model.position[chart.vertices.front()];
+  chart.x_axis = a;
+  chart.y_axis = b;
+  lay_flat(model, chart);
   return chart;
 }
 
 /// Turned so that it fills a rectangle as well as it can, its longer side along x.
-void straighten(LightmapChart& chart) {
-  const Vector2d x = box_direction(chart.place), y(-x.y(), x.x());
-  Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (Vector2d& p : chart.place) {
-    p = Vector2d(p.dot(x), p.dot(y));
+void straighten(const BakedModel& model, LightmapChart& chart) {
+  const Vector2d x = box_direction(chart.place);
+  const Vector3d a = chart.x_axis, b = chart.y_axis;
+  chart.x_axis = x.x() * a + x.y() * b;
+  chart.y_axis = -x.y() * a + x.x() * b;
+  lay_flat(model, chart);
+  Vector2d low = chart.place.front(), high = low;
+  for (const Vector2d& p : chart.place) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
+  chart.origin += low.x() * chart.x_axis + low.y() * chart.y_axis;
   for (Vector2d& p : chart.place) p -= low;
   chart.size = high - low;
 }
@@ -113,7 +125,7 @@ void cut_and_add(const BakedModel& model, const ChartNeighbours& near, std::vect
     waiting.pop_back();
     const std::vector<CutLine> lines = narrow_gaps(joined_corners(chart, near), chart.place, gap);
     if (lines.empty()) {
-      straighten(chart);
+      straighten(model, chart);
       charts.push_back(std::move(chart));
       continue;
     }
@@ -189,6 +201,54 @@ int sphere_of(const PatchMesh& mesh, int element) {
   return grid ? static_cast<int>(grid - mesh.sphere_grids.data()) : -1;
 }
 
+/// Whether another surface lies on all of a chart.
+bool is_covered(const BakedModel& model, const ElementCaster& caster, const LightmapChart& chart) {
+  const PatchMesh& mesh = caster.mesh();
+  return std::ranges::all_of(chart.faces, [&](int f) {
+    const int e = model.element[f];
+    const bool is_back = mesh.is_back[mesh.patch[e]] != 0;
+    return caster.is_hidden(is_back ? mesh.twin[e] : e, is_back);
+  });
+}
+
+/// Lays what is covered into the gap that it leaves in the chart around it. Both are of one facet.
+void lay_into_hosts(const BakedModel& model, const PatchMesh& mesh,
+                    std::vector<LightmapChart>& charts) {
+  std::map<std::pair<int, bool>, int> lit;  // a chart of each side of each facet
+  std::vector<int> covered;
+  const ElementCaster caster(mesh);
+  const auto key = [&](const LightmapChart& chart) {
+    const int e = model.element[chart.faces.front()];
+    return std::pair(mesh.facet[e], mesh.is_back[mesh.patch[e]] != 0);
+  };
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    if (charts[c].sphere >= 0) continue;
+    if (!charts[c].is_dark) {
+      lit.try_emplace(key(charts[c]), static_cast<int>(c));
+    } else if (is_covered(model, caster, charts[c])) {
+      covered.push_back(static_cast<int>(c));
+    }
+  }
+  for (const int c : covered) {
+    const auto host = lit.find(key(charts[c]));
+    if (host == lit.end()) continue;
+    const LightmapChart& around = charts[host->second];
+    LightmapChart laid = charts[c];
+    laid.host = host->second;
+    laid.origin = around.origin;
+    laid.x_axis = around.x_axis;
+    laid.y_axis = around.y_axis;
+    laid.size = around.size;
+    lay_flat(model, laid);
+    // Not beyond the chart, where others lie.
+    const double hair = 1e-6 * around.size.norm();
+    const bool is_within = std::ranges::all_of(laid.place, [&](const Vector2d& p) {
+      return (p.array() >= -hair).all() && (p.array() <= around.size.array() + hair).all();
+    });
+    if (is_within) charts[c] = std::move(laid);
+  }
+}
+
 }  // namespace
 
 std::vector<LightmapChart> cut_charts(const BakedModel& model, const PatchMesh& mesh, double gap) {
@@ -209,7 +269,9 @@ std::vector<LightmapChart> cut_charts(const BakedModel& model, const PatchMesh& 
       }
     }
   }
-  for (LightmapChart& chart : charts) chart.is_dark = is_dark(model, chart);
+  bool any_dark = false;
+  for (LightmapChart& chart : charts) any_dark |= chart.is_dark = is_dark(model, chart);
+  if (any_dark) lay_into_hosts(model, mesh, charts);
   return charts;
 }
 

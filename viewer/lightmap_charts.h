@@ -18,8 +18,14 @@ struct LightmapChart {
   std::vector<int> vertices{};                ///< of the model; a sphere's seam has them twice
   std::vector<Eigen::Vector2d> place{};  ///< of each vertex, m, counter-clockwise from the lit side
   Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< m; places are from 0 to it
+  /// Of a flat one: p is at ((p - origin).x_axis, (p - origin).y_axis).
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d x_axis = Eigen::Vector3d::UnitX(), y_axis = Eigen::Vector3d::UnitY();
   int sphere = -1;       ///< index into PatchMesh::sphere_grids; -1: it is none
   bool is_dark = false;  ///< no light at any vertex
+  /// Of what something else stands on: the chart around it, into whose gap it is laid, so that
+  /// nothing dark shows at the foot. -1: none.
+  int host = -1;
 };
 
 /// Cuts a model into charts, in the order of its parts. Where two edges of a chart, or the sides of

@@ -57,8 +57,8 @@ class Packing {
     std::vector<int> number;  // of the rectangle that a chart lies in
     std::optional<int> dark;  // that of all that are dark: they look alike
     for (const LightmapChart& chart : charts_) {
-      if (chart.is_dark && dark) {
-        number.push_back(*dark);
+      if (chart.host >= 0 || (chart.is_dark && dark)) {
+        number.push_back(chart.host >= 0 ? -1 : *dark);
         continue;
       }
       number.push_back(static_cast<int>(sizes.size()));
@@ -72,12 +72,19 @@ class Packing {
     if (!packed) return std::nullopt;
     std::vector<ChartPlace> places;
     for (const int n : number) {
+      if (n < 0) {
+        places.emplace_back();
+        continue;
+      }
       const PackedPlace& at = (*packed)[n];
       places.push_back({.atlas = at.square,
                         .x = at.x + padding_,
                         .y = at.y + padding_,
                         .width = sizes[n].x() - 2 * padding_,
                         .height = sizes[n].y() - 2 * padding_});
+    }
+    for (std::size_t c = 0; c < charts_.size(); ++c) {
+      if (charts_[c].host >= 0) places[c] = places[static_cast<std::size_t>(charts_[c].host)];
     }
     return places;
   }

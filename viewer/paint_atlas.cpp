@@ -26,7 +26,9 @@ std::vector<Texel> texels_of(const LightmapLayout& layout, int atlas, const Bake
                              const PatchMesh& mesh) {
   std::vector<int> charts;
   for (std::size_t c = 0; c < layout.charts.size(); ++c) {
-    if (layout.place[c].atlas == atlas) charts.push_back(static_cast<int>(c));
+    // What is laid into another's gap is left to be filled.
+    const bool is_painted = layout.charts[c].host < 0 && layout.place[c].atlas == atlas;
+    if (is_painted) charts.push_back(static_cast<int>(c));
   }
   std::vector<std::vector<Texel>> of_chart(charts.size());
   parallel_for(static_cast<int>(charts.size()), 1, [&](int begin, int end) {

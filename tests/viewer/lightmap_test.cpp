@@ -225,6 +225,42 @@ TEST(Lightmap, NothingLeaksThroughAThinWall) {
   EXPECT_GT(beside_wall, 20);
 }
 
+/// A block on a lit floor: the floor under it has no light and is laid into the floor's own chart,
+/// whose texels there continue the light around, so that no filter at the foot finds darkness.
+TEST(Lightmap, NothingDarkShowsAtABlocksFoot) {
+  const Paint paint{.reflectance = 0.5f, .one_sided = true};
+  LitScene lit(SceneBuilder()
+                   .polygon(paint, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}})
+                   .box(paint, {1, 1, 0}, {2, 2, 1}, false)
+                   .build(),
+               0.5);
+  for (int e = 0; e < lit.mesh.element_count(); ++e) {
+    const PatchPoint at = element_center(lit.mesh, e);
+    const bool is_under =
+        at.position.z() == 0.0 && (at.position - Vector3d(1.5, 1.5, 0)).cwiseAbs().maxCoeff() < 0.5;
+    for (int c = 0; c < lit.mesh.corner_count(e) && !is_under; ++c) {
+      lit.solution.direct_irradiance.row(lit.mesh.corners[e][c]) = 2.0f;
+    }
+  }
+  const SolvedScene solved = solved_of(lit);
+  const BakedModel model = bake_model(solved, lit.scene);
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = 128});
+  const LightmapReader reader(layout, model, solved);
+  int under = 0;
+  for (int f = 0; f < model.face_count(); ++f) {
+    const LightmapChart& chart = layout.charts[reader.chart_of(f)];
+    const Vector3d normal = element_center(solved.mesh, model.element[f]).normal;
+    if (!chart.is_dark || normal.z() < 0.5) continue;
+    ++under;
+    EXPECT_GE(chart.host, 0);
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector2d uv = spread(i);
+      EXPECT_NEAR(reader.irradiance(f, corner_weights(model, f, uv.x(), uv.y()))[0], 2.0f, 1e-5f);
+    }
+  }
+  EXPECT_GE(under, 4);
+}
+
 /// On a ball, texels hold what is interpolated in angle there; the seam and the poles have no
 /// texel without light.
 TEST(Lightmap, ABallIsRolledOffByLongitudeAndLatitude) {
