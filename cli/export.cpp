@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "cli/arguments.h"
@@ -22,6 +23,16 @@ struct Arguments {
   std::vector<std::string> outputs;
   double exposure_ev = 0.0;
   std::optional<LuxRange> range;
+  bool lightmap = false;
+  std::string lightmap_pass = "interpolate";
+  LightmapOptions light{};
+};
+
+/// The solution with the scene and the model that are made of it.
+struct Exported {
+  const Scene& scene;
+  const SolvedScene& solved;
+  BakedModel model;
 };
 
 SolvedScene read_alone(const std::string& file, Console& console, Report& report) {
@@ -35,20 +46,44 @@ SolvedScene read_alone(const std::string& file, Console& console, Report& report
   return solved;
 }
 
-void require_all_writable(const std::vector<std::string>& files) {
-  for (const std::filesystem::path file : files) {
+void require_all_writable(const Arguments& arguments) {
+  for (const std::filesystem::path file : arguments.outputs) {
     require_writable(file);
     if (lower_extension(file) == ".obj") {
       require_writable(std::filesystem::path(file).replace_extension(".mtl"));
     }
+    // How many there will be is not known yet; there is a first.
+    if (arguments.lightmap && lower_extension(file) == ".glb") {
+      require_writable(lightmap_files(file, 1).front());
+    }
   }
 }
 
-void write_file(const std::filesystem::path& file, const BakedModel& model,
-                const Arguments& arguments, Report& report) {
+void write_lightmap(const std::filesystem::path& file, const Exported& exported,
+                    const Arguments& arguments, Console& console, Report& report) {
+  LightmapOptions options = arguments.light;
+  options.pass = arguments.lightmap_pass == "interpolate" ? Pass::interpolate
+                 : arguments.lightmap_pass == "gather"    ? Pass::gather
+                                                          : Pass::direct;
+  options.progress = console.progress();
+  const LightmapReport made =
+      write_lightmapped_gltf(file, exported.model, exported.solved, exported.scene, options);
+  for (const auto& written : made.files) report.add_file(written);
+  report.add("lightmap", {{"atlases", made.atlases},
+                          {"size", options.size},
+                          {"charts", made.charts},
+                          {"texels_per_metre", made.texels_per_metre},
+                          {"coverage", made.coverage}});
+}
+
+void write_file(const std::filesystem::path& file, const Exported& exported,
+                const Arguments& arguments, Console& console, Report& report) {
   const std::string kind = lower_extension(file);
+  const BakedModel& model = exported.model;
   const Stopwatch watch;
-  if (kind == ".glb") {
+  if (kind == ".glb" && arguments.lightmap) {
+    write_lightmap(file, exported, arguments, console, report);
+  } else if (kind == ".glb") {
     write_gltf(file, model);
   } else if (kind == ".ply") {
     write_ply(file, model);
@@ -64,25 +99,75 @@ void write_file(const std::filesystem::path& file, const BakedModel& model,
 
 int export_model(const Arguments& arguments, Console& console) {
   Report report(console.options());
-  require_all_writable(arguments.outputs);
+  require_all_writable(arguments);
   Scene scene;
   if (!arguments.scene.empty()) scene = read_scene_step(arguments.scene, console, report);
   const SolvedScene solved = arguments.scene.empty()
                                  ? read_alone(arguments.solution, console, report)
                                  : read_solution_step(arguments.solution, scene, console, report);
   const Stopwatch watch;
-  const BakedModel model = bake_model(solved, scene, arguments.exposure_ev);
+  const Exported exported{scene, solved, bake_model(solved, scene, arguments.exposure_ev)};
+  const BakedModel& model = exported.model;
   report.add("exported", {{"vertices", model.vertex_count()},
                           {"faces", model.face_count()},
                           {"parts", model.parts.size()}});
   report.add_phase("bake", watch.seconds());
   stop_if_interrupted();
   for (const std::string& file : arguments.outputs) {
-    write_file(file, model, arguments, report);
+    write_file(file, exported, arguments, console, report);
     stop_if_interrupted();
   }
   report.print();
   return exit_done;
+}
+
+void add_lightmap(CLI::App& command, Arguments& arguments) {
+  const std::string group = "Lightmaps";
+  LightmapOptions& light = arguments.light;
+  CLI::Option* lightmap =
+      command
+          .add_flag("--lightmap", arguments.lightmap,
+                    "the .glb has its light in textures instead of in its vertices, and its\n"
+                    "numbers beside it, FILE-lightmap-1.exr, ...")
+          ->group(group);
+  command
+      .add_option("--lightmap-size", light.size,
+                  "texels along an edge of a lightmap (default 2048)")
+      ->check(whole_number(least_lightmap_size, most_lightmap_size))
+      ->group(group)
+      ->needs(lightmap);
+  command
+      .add_option("--texels-per-metre", light.texels_per_metre,
+                  "how fine, in several lightmaps if need be (default: what fits into one)")
+      ->check(positive())
+      ->group(group)
+      ->needs(lightmap);
+  command
+      .add_option("--lightmap-padding", light.padding,
+                  "texels around a chart that continue it (default 4)")
+      ->check(whole_number(1, 64))
+      ->group(group)
+      ->needs(lightmap);
+  command
+      .add_option("--lightmap-pass", arguments.lightmap_pass,
+                  "light of a texel: interpolate (the solution), direct (shadows traced anew) or\n"
+                  "gather (all of it anew)")
+      ->check(one_of("pass", {"interpolate", "direct", "gather"}))
+      ->group(group)
+      ->needs(lightmap);
+}
+
+void check(const Arguments& arguments) {
+  if (!arguments.lightmap) return;
+  const bool has_glb = std::ranges::any_of(
+      arguments.outputs, [](const std::string& file) { return lower_extension(file) == ".glb"; });
+  if (!has_glb) {
+    throw CLI::ValidationError("--lightmap", "is of a .glb; ask for one with '-o FILE.glb'");
+  }
+  if (arguments.scene.empty() && arguments.lightmap_pass != "interpolate") {
+    throw CLI::ValidationError("--lightmap-pass",
+                               arguments.lightmap_pass + " traces rays and needs '--scene SCENE'");
+  }
 }
 
 }  // namespace
@@ -109,6 +194,8 @@ Action add_export(CLI::App& command) {
       ->type_name("SCENE");
   add_exposure(command, arguments->exposure_ev);
   add_lux_range(command, arguments->range);
+  add_lightmap(command, *arguments);
+  command.callback([arguments] { check(*arguments); });
   command.footer(
       "Example: lightwell export cornell.vtp --scene cornell/cornell.toml -o cornell.html");
   return [arguments](Console& console) { return export_model(*arguments, console); };

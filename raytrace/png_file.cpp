@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <csetjmp>
-#include <fstream>
+#include <ostream>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
 
+#include "raytrace/encode_png.h"
 #include "raytrace/image.h"
 #include "raytrace/picture_output.h"
 
@@ -14,16 +18,16 @@ namespace {
 // libpng reports through longjmp, which must not cross C++ objects: everything that owns memory is
 // made by the caller, and this frame holds plain data alone.
 struct PngJob {
-  std::ofstream* stream;
+  std::ostream* stream;
   int width, height;
   png_bytep* rows;
-  png_text* texts;
-  int text_count;
-  char message[200];
+  png_text* texts = nullptr;
+  int text_count = 0;
+  char message[200] = {};
 };
 
 void png_write_bytes(png_structp png, png_bytep data, png_size_t size) {
-  auto& stream = *static_cast<std::ofstream*>(png_get_io_ptr(png));
+  auto& stream = *static_cast<std::ostream*>(png_get_io_ptr(png));
   if (!stream.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size))) {
     png_error(png, "the disk may be full");
   }
@@ -65,6 +69,14 @@ bool run_png(PngJob& job) {
   return true;
 }
 
+std::vector<png_bytep> row_pointers(int width, int height, std::span<const std::uint8_t> rgb) {
+  std::vector<png_bytep> rows(static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    rows[y] = const_cast<png_bytep>(rgb.data()) + std::size_t{3} * width * y;
+  }
+  return rows;
+}
+
 bool is_ascii(const std::string& text) {
   return std::all_of(text.begin(), text.end(),
                      [](char c) { return static_cast<unsigned char>(c) < 128; });
@@ -83,6 +95,14 @@ png_text png_entry(const std::string& key, const std::string& value) {
 
 }  // namespace
 
+std::string encode_png(int width, int height, std::span<const std::uint8_t> rgb) {
+  std::ostringstream stream;
+  std::vector<png_bytep> rows = row_pointers(width, height, rgb);
+  PngJob job{.stream = &stream, .width = width, .height = height, .rows = rows.data()};
+  if (!run_png(job)) throw std::runtime_error(fmt::format("a PNG cannot be made: {}", job.message));
+  return std::move(stream).str();
+}
+
 void write_png(const std::filesystem::path& path, int width, int height,
                const std::vector<std::uint8_t>& rgb, const ImageMetadata& metadata) {
   const std::int64_t pixels = std::int64_t{width} * height;
@@ -91,10 +111,7 @@ void write_png(const std::filesystem::path& path, int width, int height,
     fail_write(path, fmt::format("{} x {} pixels with {} bytes is not a picture of 1 to {} pixels",
                                  width, height, rgb.size(), max_image_pixels));
   }
-  std::vector<png_bytep> rows(height);
-  for (int y = 0; y < height; ++y) {
-    rows[y] = const_cast<png_bytep>(rgb.data()) + std::size_t{3} * width * y;
-  }
+  std::vector<png_bytep> rows = row_pointers(width, height, rgb);
   std::vector<std::string> values;  // png_text only points at them
   for (const auto& [key, value] : metadata) values.push_back(to_text(value));
   std::vector<png_text> texts;

@@ -389,6 +389,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
       });
       phase.keep(tile, values);
     }
+    if (options.rows_done) options.rows_done(image, y, rows);
     report(options.progress, "render", static_cast<double>(y + rows) / camera.height);
   }
   if (render_report) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "mesh/element_caster.h"
@@ -51,6 +52,9 @@ struct RenderOptions {
   /// scene and no other. Null: nowhere.
   Journal* journal = nullptr;
   Progress progress{};
+  /// Called when rows first_row to first_row + rows - 1 of the picture are done, from the top down,
+  /// by the thread that renders: to show what there is so far.
+  std::function<void(const Image& image, int first_row, int rows)> rows_done{};
 };
 
 constexpr int most_gather_rays = 1 << 16;

@@ -74,6 +74,14 @@ BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>&
   return B / std::numbers::pi_v<float>;
 }
 
+Spectrum shown_reflectance(const PatchMesh& mesh, const std::vector<Material>& materials,
+                           int patch) {
+  Spectrum share = mesh.reflectance.row(patch).transpose();
+  const Material* material = find_material(mesh, materials, mesh.first_element[patch]);
+  if (!material || !material->is_specular()) return share;
+  return share + (material->dielectric ? material->dielectric->tint : material->specular);
+}
+
 int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance) {
   const auto& corners = mesh.corners[element];
   if (mesh.corner_count(element) < 4) return 0;

@@ -31,6 +31,10 @@ std::vector<ElementKind> element_kinds(const PatchMesh& mesh, const BandArray& E
 /// add what they would send out if they scattered the mirrored or the refracted light evenly.
 BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>& materials);
 
+/// Share of irradiance that shown_radiance sends out from a patch, per band.
+Spectrum shown_reflectance(const PatchMesh& mesh, const std::vector<Material>& materials,
+                           int patch);
+
 /// The corner of a quad from which the diagonal goes along which to split it: the one whose ends
 /// differ less, so that the crease follows the light. 0 or 1; 0 for a triangle.
 int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance);

@@ -141,8 +141,8 @@ std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
   return vertex.order();
 }
 
-void add_vertices(const SolvedScene& solved, const BandArray& radiance,
-                  const std::vector<int>& mesh_vertex, BakedModel& model) {
+void add_vertices(const SolvedScene& solved, const BandArray& radiance, BakedModel& model) {
+  const std::vector<int>& mesh_vertex = model.mesh_vertex;
   const Bands& bands = solved.solution.bands;
   const auto count = static_cast<Eigen::Index>(mesh_vertex.size());
   const BandArray E = solved.solution.irradiance();
@@ -195,9 +195,9 @@ BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double expo
   const BandArray radiance = shown_radiance(solved, scene.materials);
   BakedModel model;
   model.title = scene.title;
-  const std::vector<int> mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, model);
-  add_vertices(solved, radiance, mesh_vertex, model);
-  model.channels = bake_channels(solved, scene.materials, mesh_vertex);
+  model.mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, model);
+  add_vertices(solved, radiance, model);
+  model.channels = bake_channels(solved, scene.materials, model.mesh_vertex);
   const Eigen::Vector3d up_axis = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
   model.to_y_up = rotation_to_y_up(up_axis);
   add_cameras(solved, scene, kinds, radiance, up_axis, exposure_ev, model);

@@ -59,6 +59,7 @@ struct BakedModel {
   std::vector<BakedMaterial> materials{};
 
   // Per vertex.
+  std::vector<int> mesh_vertex{};           ///< of the solution's mesh
   std::vector<Eigen::Vector3d> position{};  ///< metres, the scene's axes
   RgbArray radiance{};                      ///< W/(m^2 sr) shown as light: see shown_radiance
   BandArray radiosity{};                    ///< B, W/m^2, vertices x bands

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "viewer/appearance.h"
 #include "viewer/baked_model.h"
+#include "viewer/lightmap.h"
 
 namespace lightwell {
 
@@ -16,6 +18,25 @@ namespace lightwell {
 /// (KHR_materials_unlit): radiance times the exposure of the first camera, clipped to [0,1].
 /// `extras` of the asset says what 1 stands for; the attribute _ILLUMINANCE holds lx.
 void write_gltf(const std::filesystem::path& path, const BakedModel& model);
+
+struct LightmapReport {
+  int atlases = 0, charts = 0;
+  double texels_per_metre = 0.0;
+  double coverage = 0.0;  ///< share of the texels that show a surface
+  std::vector<std::filesystem::path> files{};
+};
+
+/// The data files of a model's first `count` lightmaps: room-lightmap-1.exr, ... beside room.glb.
+std::vector<std::filesystem::path> lightmap_files(const std::filesystem::path& glb, int count);
+
+/// The same geometry with its light in textures: TEXCOORD_1 (and 0) of each vertex leads into a
+/// lightmap, whose PNG in the file is radiance times exposure, clipped, as sRGB. The numbers are
+/// written beside it as OpenEXR (see lightmap_files): irradiance in R, G and B, radiosity and
+/// illuminance as layers, in half floats unless something is brighter than they go. What is thrown
+/// by lay_out_lightmap comes before any file.
+LightmapReport write_lightmapped_gltf(const std::filesystem::path& path, const BakedModel& model,
+                                      const SolvedScene& solved, const Scene& scene,
+                                      const LightmapOptions& options = {});
 
 /// Stanford PLY, binary: triangles in metres and the scene's axes. Vertices have the first camera's
 /// tone-mapped sRGB bytes, `radiosity_<band>` and `irradiance_<band>` (W/m^2) and `illuminance`

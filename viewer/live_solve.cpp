@@ -54,7 +54,11 @@ struct LiveSolve::Impl {
         paths(of, caster, options.form_factors.max_specular_depth),
         progressive(of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
                     *options.progressive),
-        vertex_light(caster, direct_light) {}
+        vertex_light(caster, direct_light) {
+    shown.lacks_specular = std::ranges::any_of(of.surfaces, [&](const Surface& surface) {
+      return of.materials[surface.material].is_specular();
+    });
+  }
 
   // One shot, or one round that ends at `shots` at the latest.
   bool step(int shots) {
@@ -196,11 +200,13 @@ void LiveSolve::Impl::run() {
 std::string text_of(const LiveState& state) {
   const std::string meter = fmt::format("{} shots, {:.3g} % unshot, {:.1f} s", state.shots,
                                         100.0 * state.unshot_share, state.seconds);
+  const char* const lacks =
+      state.lacks_specular ? " (light by way of mirrors and glass comes with the solution)" : "";
   switch (state.phase) {
     case LivePhase::shooting:
-      return meter;
+      return meter + lacks;
     case LivePhase::paused:
-      return "paused: " + meter;
+      return "paused: " + meter + lacks;
     case LivePhase::gathering:
       return fmt::format("{}, {} {:.0f} %", meter, state.step.empty() ? "gather" : state.step,
                          100.0 * state.step_share);

@@ -32,7 +32,9 @@ struct LiveState {
   std::string step{};       ///< what is being gathered
   double step_share = 0.0;  ///< of that done, [0,1]
   bool converged = false;   ///< the tolerance was reached before the gathering
-  std::string failure{};    ///< why, if it failed
+  /// The scene has mirrors or glass, and what light they send on is seen once there is a solution.
+  bool lacks_specular = false;
+  std::string failure{};  ///< why, if it failed
 };
 
 /// The convergence meter: shots, unshot power in percent of what is emitted, seconds.

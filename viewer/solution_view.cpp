@@ -98,7 +98,7 @@ std::vector<std::uint8_t> encode(const std::vector<float>& sums, int width, int 
 }  // namespace
 
 SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options)
-    : solved_(solved),
+    : solved_(&solved),
       materials_(options.materials),
       keeps_range_(options.lux_range.has_value()),
       caster_(solved.mesh),
@@ -145,7 +145,7 @@ vtkRenderer* SolutionView::renderer() const {
 }
 
 double SolutionView::meter(const Camera& camera) const {
-  return metered_scale(caster_, kinds_, radiance_, solved_.solution.bands, camera);
+  return metered_scale(caster_, kinds_, radiance_, solved_->solution.bands, camera);
 }
 
 void SolutionView::set_look(const Look& look) {
@@ -184,7 +184,7 @@ std::vector<double> SolutionView::isolux_levels() const {
 void SolutionView::apply_isolux() {
   if (look_.isolux && isolux_is_stale_) {
     constexpr double lift = 1e-3;  // of the scene, so that no depth buffer mixes them with walls
-    isolux_.set(solved_.mesh, kinds_, lux_, radiance_, isolux_levels(), lift * bounds_.diagonal());
+    isolux_.set(solved_->mesh, kinds_, lux_, radiance_, isolux_levels(), lift * bounds_.diagonal());
     isolux_is_stale_ = false;
   }
   isolux_.show(look_.isolux);
@@ -192,18 +192,23 @@ void SolutionView::apply_isolux() {
 }
 
 void SolutionView::light_changed() {
-  irradiance_ = solved_.solution.irradiance();
-  radiance_ = shown_radiance(solved_, materials_);
-  lux_ = vertex_illuminance(solved_.solution);
+  irradiance_ = solved_->solution.irradiance();
+  radiance_ = shown_radiance(*solved_, materials_);
+  lux_ = vertex_illuminance(solved_->solution);
   isolux_is_stale_ = true;
   apply_colors();
   apply_isolux();
 }
 
-void SolutionView::light_arrived() {
-  kinds_ = element_kinds(solved_.mesh, solved_.solution.direct_irradiance, materials_);
+void SolutionView::follow(const SolvedScene& other) {
+  solved_ = &other;
   light_changed();
-  actor_.set_shapes(solved_.mesh, kinds_, radiance_);
+}
+
+void SolutionView::light_arrived() {
+  kinds_ = element_kinds(solved_->mesh, solved_->solution.direct_irradiance, materials_);
+  light_changed();
+  actor_.set_shapes(solved_->mesh, kinds_, radiance_);
   if (keeps_range_) return;
   lux_range_ = lux_range(lux_);
   set_range(legend_, lux_range_);
@@ -213,10 +218,10 @@ void SolutionView::light_arrived() {
 }
 
 void SolutionView::apply_colors() {
-  if (look_.interpolation_error) return actor_.set_colors(error_colors(solved_));
+  if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_));
   actor_.set_colors(look_.illuminance
                         ? false_colors(lux_, lux_range_)
-                        : display_colors(radiance_, solved_.solution.bands,
+                        : display_colors(radiance_, solved_->solution.bands,
                                          look_.metered_scale * std::exp2(look_.exposure_ev)));
 }
 

@@ -28,7 +28,7 @@ struct Look {
   bool isolux = false;               ///< lines of equal illuminance
 };
 
-/// A solution set up for drawing with VTK. Keeps a reference to the solution.
+/// A solution set up for drawing with VTK. Keeps a reference to the solution and its mesh.
 class SolutionView {
  public:
   SolutionView(const SolvedScene& solved, const ViewOptions& options);
@@ -38,6 +38,8 @@ class SolutionView {
   void set_look(const Look& look);
   /// Shows the light that the solution has now, in colours of the same scale.
   void light_changed();
+  /// From now on shows the light of another solution, of the same mesh, which must outlive it.
+  void follow(const SolvedScene& other);
   /// The same while light is arriving: its scale of false colours follows it, unless the options
   /// name one. What has no direct irradiance counts as unlit, for the rest is foretold.
   void light_arrived();
@@ -48,7 +50,7 @@ class SolutionView {
   const std::vector<ElementKind>& kinds() const { return kinds_; }
   /// At vertices, W/m^2, vertices x bands.
   const BandArray& irradiance() const { return irradiance_; }
-  const SolvedScene& solved() const { return solved_; }
+  const SolvedScene& solved() const { return *solved_; }
   /// Levels of the isolux lines, lx.
   std::vector<double> isolux_levels() const;
   const Camera& start_camera() const { return start_camera_; }
@@ -61,7 +63,7 @@ class SolutionView {
   void apply_colors();
   void apply_isolux();
 
-  const SolvedScene& solved_;
+  const SolvedScene* solved_;
   std::vector<Material> materials_;
   bool keeps_range_;
   ElementCaster caster_;

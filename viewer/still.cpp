@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -17,8 +18,6 @@
 
 namespace lightwell {
 namespace {
-
-constexpr double fade_seconds = 0.4;
 
 // What render() reads of a solution; channels may be many times as large.
 SolvedScene for_rendering(const SolvedScene& solved) {
@@ -56,8 +55,10 @@ struct Still::Job {
         progress = share;
         return !cancelled;
       };
+      options.rows_done = [this](const Image& so_far, int first, int rows) {
+        show(so_far, first, rows);
+      };
       image = render(scene, caster, direct_light, solved.solution, camera, options);
-      picture = display_colors(image.radiance, solved.solution.bands, scale);
     } catch (const Interrupted&) {
       // Nobody waits for it.
     } catch (const std::exception& error) {
@@ -66,11 +67,20 @@ struct Still::Job {
     done = true;
   }
 
+  void show(const Image& so_far, int first, int rows) {
+    const BandArray strip = so_far.radiance.middleRows(Eigen::Index{first} * so_far.width,
+                                                       Eigen::Index{rows} * so_far.width);
+    const auto colors = display_colors(strip, solved.solution.bands, scale);
+    const std::lock_guard lock(mutex);
+    fresh.insert(fresh.end(), colors.begin(), colors.end());
+  }
+
   SolvedScene solved;
   double scale;
   Image image{};
-  std::vector<std::uint8_t> picture{};
   std::string failure{};
+  std::mutex mutex{};
+  std::vector<std::uint8_t> fresh{};  ///< rows that nobody has taken yet; guarded by the mutex
   std::atomic<double> progress{0.0};
   std::atomic<bool> cancelled{false}, done{false};
   std::thread thread;  // last: it uses the others
@@ -96,6 +106,7 @@ void Still::begin(const Scene& scene, const SolvedScene& solved, const Camera& c
                   double scale) {
   discard();
   camera_ = camera;
+  picture_.assign(std::size_t{3} * camera.width * camera.height, 0);
   phase_ = StillPhase::rendering;
   job_ = std::make_unique<Job>(scene, solved, camera, scale);
 }
@@ -107,6 +118,7 @@ void Still::discard() {
     ending_.push_back(std::move(job_));
   }
   phase_ = StillPhase::none;
+  rows_ = 0;
   actor_->VisibilityOff();
 }
 
@@ -114,53 +126,45 @@ double Still::progress() const {
   return job_ ? job_->progress.load() : 0.0;
 }
 
-bool Still::arrived() {
-  if (phase_ != StillPhase::rendering || !job_->done) return false;
+bool Still::advance() {
+  if (phase_ != StillPhase::rendering) return false;
+  // Asked for first: what comes after the last rows is known to be all.
+  const bool is_done = job_->done;
+  std::vector<std::uint8_t> fresh;
+  {
+    const std::lock_guard lock(job_->mutex);
+    fresh.swap(job_->fresh);
+  }
+  const auto row = std::size_t{3} * static_cast<std::size_t>(camera_.width);
+  std::copy(fresh.begin(), fresh.end(),
+            picture_.begin() + static_cast<std::ptrdiff_t>(row) * rows_);
+  rows_ += static_cast<int>(fresh.size() / row);
+  if (!fresh.empty()) draw();
+  if (!is_done) return !fresh.empty();
   if (!job_->failure.empty()) {
     failure_ = job_->failure;
     discard();
     phase_ = StillPhase::failed;
-    return false;
+    return true;
   }
   image_ = std::move(job_->image);
-  picture_ = std::move(job_->picture);
   job_.reset();
-  return true;
-}
-
-void Still::show_over(std::vector<std::uint8_t> under) {
-  under_ = std::move(under);
   phase_ = StillPhase::shown;
-  shown_seconds_ = 0.0;
-  data_->SetDimensions(image_.width, image_.height, 1);
-  data_->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  // Without anything to fade from it is there at once.
-  if (under_.size() != picture_.size()) shown_seconds_ = fade_seconds;
-  draw(shown_seconds_ / fade_seconds);
-  actor_->VisibilityOn();
-}
-
-bool Still::fade(double seconds) {
-  if (phase_ != StillPhase::shown || shown_seconds_ >= fade_seconds) return false;
-  shown_seconds_ += seconds;
-  draw(std::min(shown_seconds_ / fade_seconds, 1.0));
   return true;
 }
 
-// VTK's rows begin at the bottom.
-void Still::draw(double share) {
+// VTK's rows begin at the bottom: those that are there lie at the window's top.
+void Still::draw() {
+  data_->SetDimensions(camera_.width, rows_, 1);
+  data_->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  const auto row = std::ptrdiff_t{3} * camera_.width;
   auto* out = static_cast<std::uint8_t*>(data_->GetScalarPointer());
-  const auto row = std::size_t{3} * static_cast<std::size_t>(image_.width);
-  const int weight = static_cast<int>(256.0 * share);
-  for (int y = 0; y < image_.height; ++y) {
-    const std::uint8_t* from = picture_.data() + row * static_cast<std::size_t>(y);
-    const std::size_t at = row * static_cast<std::size_t>(image_.height - 1 - y);
-    for (std::size_t i = 0; i < row; ++i) {
-      const int below = weight < 256 ? under_[at + i] : 0;
-      out[at + i] = static_cast<std::uint8_t>((weight * from[i] + (256 - weight) * below) / 256);
-    }
+  for (int y = 0; y < rows_; ++y) {
+    std::copy_n(picture_.begin() + row * (rows_ - 1 - y), row, out + row * y);
   }
   data_->Modified();
+  actor_->SetPosition(0.0, camera_.height - rows_);
+  actor_->VisibilityOn();
 }
 
 }  // namespace lightwell

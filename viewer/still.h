@@ -18,8 +18,8 @@ namespace lightwell {
 
 enum class StillPhase { none, rendering, shown, failed };
 
-/// The second pass's picture of a view, rendered beside the window in a thread of its own and faded
-/// in over it when it is there.
+/// The second pass's picture of a view, rendered beside the window in a thread of its own. It
+/// covers the window from the top down, strip by strip as they are done.
 class Still {
  public:
   Still();
@@ -35,29 +35,23 @@ class Still {
   void begin(const Scene& scene, const SolvedScene& solved, const Camera& camera, double scale);
   /// Stops, and shows nothing.
   void discard();
-  /// `seconds` went by. `under` is what the window shows, 8-bit RGB from the bottom up, for the
-  /// fade to begin with; asked for once. True if there is something new to draw.
-  template <class Under>
-  bool advance(double seconds, Under&& under) {
-    if (!arrived()) return fade(seconds);
-    show_over(under());
-    return true;
-  }
+  /// Takes over what has been rendered since. True if there is something new to draw.
+  bool advance();
 
   StillPhase phase() const { return phase_; }
   double progress() const;
   const std::string& failure() const { return failure_; }
-  /// What is shown.
+  /// Rows from the top that are shown.
+  int rows() const { return rows_; }
+  /// What is shown; once all of it is there.
   const Image& image() const { return image_; }
-  const Camera& camera() const { return camera_; }
+  /// The same as it is drawn, 8-bit sRGB, row 0 on top; black where nothing is shown yet.
   const std::vector<std::uint8_t>& picture() const { return picture_; }
+  const Camera& camera() const { return camera_; }
 
  private:
   struct Job;
-  bool arrived();
-  bool fade(double seconds);
-  void show_over(std::vector<std::uint8_t> under);
-  void draw(double share);
+  void draw();
 
   std::unique_ptr<Job> job_;
   std::vector<std::unique_ptr<Job>> ending_{};  ///< told to stop; nobody waits for them
@@ -65,8 +59,8 @@ class Still {
   std::string failure_;
   Image image_{};
   Camera camera_{};
-  std::vector<std::uint8_t> picture_{}, under_{};  ///< row 0 on top; at the bottom
-  double shown_seconds_ = 0.0;
+  std::vector<std::uint8_t> picture_{};
+  int rows_ = 0;
   vtkSmartPointer<vtkImageData> data_;
   vtkSmartPointer<vtkActor2D> actor_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "viewer/sight.h"
 
@@ -29,8 +30,10 @@ struct Obstacles {
   SightOptions options{.glass = true};
 };
 
-/// Moves a body through a scene by rays: 17 around at five heights, nine downwards. What is thinner
-/// than the gap between two rays (a tenth of a metre at the body's rim) may be brushed through.
+/// Moves a body through a scene by rays at five heights: 16 around, and a fan of parallel ones over
+/// its whole width on the way it goes, a twelfth of its radius apart, so that a post of 3 cm cannot
+/// slip between two. Upright rays find boards that jut out between those heights, which are then
+/// looked at as well. What is thinner may be brushed through.
 class WalkPhysics {
  public:
   WalkPhysics(const WalkBody& body, const Eigen::Vector3d& up_axis);
@@ -49,7 +52,18 @@ class WalkPhysics {
   const WalkBody& body() const { return body_; }
 
  private:
+  /// A place that the body may have to be pushed away from.
+  struct Contact {
+    double depth = 0.0;
+    Eigen::Vector3d out = Eigen::Vector3d::Zero();  ///< level, unit
+  };
   bool push_out(const Obstacles& obstacles, Eigen::Vector3d& eye, const Eigen::Vector3d& way) const;
+  std::vector<double> heights(const Obstacles& obstacles, const Eigen::Vector3d& eye,
+                              const Eigen::Vector3d& ahead) const;
+  Contact deepest_around(const Obstacles& obstacles, const Eigen::Vector3d& eye,
+                         const std::vector<double>& drops) const;
+  Contact deepest_ahead(const Obstacles& obstacles, const Eigen::Vector3d& eye,
+                        const std::vector<double>& drops, const Eigen::Vector3d& ahead) const;
   Eigen::Vector3d settle_a_moment(const Obstacles& obstacles, const Eigen::Vector3d& eye,
                                   double seconds);
 

@@ -51,13 +51,15 @@ void WalkWindow::light_up(int steps) {
 }
 
 void WalkWindow::relight_now() {
+  still_.discard();
   if (!own_) {
     own_ = std::make_unique<SolvedScene>(view_->solved());
-    replace_view(*own_);
+    relight(*own_, lights_.scales());
+    view_->follow(*own_);
+  } else {
+    relight(*own_, lights_.scales());
+    view_->light_changed();
   }
-  still_.discard();
-  relight(*own_, lights_.scales());
-  view_->light_changed();
   pointer_.light_changed(*view_, true);
   update_pointer();
   update_text();

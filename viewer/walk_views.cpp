@@ -1,7 +1,4 @@
 #include <fmt/format.h>
-#include <vtkNew.h>
-#include <vtkRenderWindow.h>
-#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <cmath>
@@ -145,21 +142,12 @@ void WalkWindow::switch_still() {
   changed_ = true;
 }
 
-void WalkWindow::advance_still(double seconds) {
-  const StillPhase before = still_.phase();
-  if (before == StillPhase::none) return;
-  changed_ |= still_.advance(seconds, [&] {
-    const auto [width, height] = size();
-    vtkNew<vtkUnsignedCharArray> pixels;
-    window_->GetPixelData(0, 0, width - 1, height - 1, 0, pixels);
-    const unsigned char* bytes = pixels->GetPointer(0);
-    return std::vector<std::uint8_t>(bytes, bytes + pixels->GetNumberOfValues());
-  });
-  if (before != StillPhase::rendering) return;
+void WalkWindow::advance_still() {
+  if (still_.phase() != StillPhase::rendering) return;
+  changed_ |= still_.advance();
   if (still_.phase() == StillPhase::shown) return say("ray-traced; P saves it as PNG and EXR");
   if (still_.phase() == StillPhase::failed) return say(still_.failure());
   update_text();
-  changed_ = true;
 }
 
 bool WalkWindow::save_still() {

@@ -155,7 +155,7 @@ void WalkWindow::tick(double seconds) {
   const auto [width, height] = size();
   if (walked || width != drawn_width_ || height != drawn_height_) change(current_look());
   watch();
-  advance_still(seconds);
+  advance_still();
   if (!message_.empty()) {
     message_seconds_ -= seconds;
     if (message_seconds_ <= 0.0) say("");

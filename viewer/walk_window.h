@@ -126,7 +126,7 @@ class WalkWindow {
 
   // The second pass.
   void switch_still();
-  void advance_still(double seconds);
+  void advance_still();
   bool save_still();
 
   // Light channels.

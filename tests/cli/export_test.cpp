@@ -76,6 +76,40 @@ TEST_F(ExportCommand, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(content_of(folder / "1.glb"), content_of(folder / "3.glb"));
 }
 
+TEST_F(ExportCommand, WritesLightmapsThatAreTheSameForAnyNumberOfThreads) {
+  for (const char* pass : {"interpolate", "direct"}) {
+    for (const char* threads : {"1", "3"}) {
+      const auto json = run_json({"export", "room.vtp", "--scene", "room.toml", "-o",
+                                  std::string(threads) + ".glb", "--lightmap", "--lightmap-size",
+                                  "128", "--lightmap-pass", pass, "--threads", threads});
+      EXPECT_EQ(json["files"], nlohmann::json::array({std::string(threads) + "-lightmap-1.exr",
+                                                      std::string(threads) + ".glb"}));
+      EXPECT_EQ(json["lightmap"]["size"], 128);
+      EXPECT_GT(json["lightmap"]["coverage"].get<double>(), 0.3);
+    }
+    EXPECT_EQ(content_of(folder / "1-lightmap-1.exr"), content_of(folder / "3-lightmap-1.exr"));
+    // The model names its data, which have other names here.
+    EXPECT_EQ(content_of(folder / "1.glb").size(), content_of(folder / "3.glb").size());
+  }
+}
+
+TEST_F(ExportCommand, RefusesLightmapsThatCannotBe) {
+  const auto refused = [&](const Words& more, int code, const std::string& sentence) {
+    expect_refused(Words{"export", "room.vtp", "-o", "a.glb"} + more, code, sentence);
+  };
+  refused({"--lightmap-size", "512"}, 2, "--lightmap");
+  refused({"--lightmap", "--lightmap-size", "8"}, 2, "16");
+  refused({"--lightmap", "--lightmap-size", "100000"}, 2, "8192");
+  refused({"--lightmap", "--texels-per-metre", "0"}, 2, "--texels-per-metre");
+  refused({"--lightmap", "--texels-per-metre", "nan"}, 2, "--texels-per-metre");
+  refused({"--lightmap", "--lightmap-pass", "direct"}, 2, "--scene SCENE");
+  refused({"--lightmap", "--lightmap-size", "16"}, 3, "take size");
+  refused({"--lightmap", "--texels-per-metre", "1e6"}, 3, "at most");
+  expect_refused({"export", "room.vtp", "-o", "a.ply", "--lightmap"}, 2, "-o FILE.glb");
+  std::filesystem::create_directory(folder / "a-lightmap-1.exr");
+  refused({"--lightmap"}, 1, "it is a folder");
+}
+
 TEST_F(ExportCommand, RefusesWhatItCannotWrite) {
   expect_refused({"export", "room.vtp", "-o", "a.fbx"}, 2, ".glb");
   expect_refused({"export", "room.vtp"}, 2, "-o");

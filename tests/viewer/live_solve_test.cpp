@@ -57,6 +57,20 @@ TEST(LiveSolve, LightArrivesShotByShot) {
   }
 }
 
+/// What has no shot to come by is said, until there is a solution, which has it.
+TEST(LiveSolve, SaysThatMirrorsSendTheirLightLater) {
+  const Scene scene = channel_room();  // it has a mirror
+  Scene without = scene;
+  for (Material& material : without.materials) material.specular.setZero();
+  const LiveSolve matt(without, quick(), {});
+  EXPECT_EQ(text_of(matt.state()).find("mirrors"), std::string::npos);
+  const LiveSolve polished(scene, quick(), {});
+  LiveState state = polished.state();
+  EXPECT_NE(text_of(state).find("mirrors and glass"), std::string::npos) << text_of(state);
+  state.phase = LivePhase::done;
+  EXPECT_EQ(text_of(state).find("mirrors"), std::string::npos) << text_of(state);
+}
+
 TEST(LiveSolve, IsTheSameForAnyNumberOfThreads) {
   const Scene scene = channel_room();
   const auto after = [&](int threads) {

@@ -45,7 +45,8 @@ class StillTest : public testing::Test {
   TemporaryFolder folder_{};
 };
 
-/// What is faded in is the second pass's picture to the last bit, in the window's exposure.
+/// What covers the window in the end is the second pass's picture to the last bit, in the window's
+/// exposure.
 TEST_F(StillTest, IsThePictureThatRenderMakes) {
   WalkWindow window(solved(), options());
   window.tick(0.01);
@@ -60,7 +61,6 @@ TEST_F(StillTest, IsThePictureThatRenderMakes) {
   EXPECT_TRUE((window.still().image().radiance == wanted.radiance).all());
   EXPECT_EQ(window.still().picture(),
             display_colors(wanted.radiance, solved().solution.bands, window.look().metered_scale));
-  for (int i = 0; i < 100; ++i) window.tick(0.01);
   window.press("p");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "lightwell-1.png")) << window.message();
   EXPECT_TRUE(std::filesystem::exists(folder_ / "lightwell-1.exr")) << window.message();
@@ -79,6 +79,50 @@ TEST_F(StillTest, IsThrownAwayWhenTheCameraMoves) {
   window.release("r");
   window.press("r");
   EXPECT_EQ(window.still().phase(), StillPhase::none) << "R again cancels";
+}
+
+/// Strips come from the top down, and are those of the whole picture.
+TEST_F(StillTest, ShowsWhatIsThereWhileItGoesOn) {
+  ViewOptions large = options();
+  large.width = 640;
+  large.height = 480;
+  WalkWindow window(solved(), large);
+  window.tick(0.01);
+  window.press("r");
+  window.release("r");
+  const Still& still = window.still();
+  for (int i = 0; i < 60000 && still.rows() == 0; ++i) {
+    window.tick(0.001);
+    std::this_thread::sleep_for(1ms);
+  }
+  ASSERT_EQ(still.phase(), StillPhase::rendering) << "a first strip, and not all at once";
+  const int rows = still.rows();
+  EXPECT_GT(rows, 0);
+  EXPECT_LT(rows, 480);
+  std::vector<std::uint8_t> first(still.picture().begin(),
+                                  still.picture().begin() + 3 * 640 * rows);
+  ASSERT_TRUE(tick_until(window, StillPhase::shown));
+  EXPECT_EQ(still.rows(), 480);
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), still.picture().begin()));
+  EXPECT_EQ(still.picture(), display_colors(still.image().radiance, solved().solution.bands,
+                                            window.look().metered_scale));
+}
+
+TEST_F(StillTest, ThrowsStripsAwayWhenTheCameraMoves) {
+  ViewOptions large = options();
+  large.width = 640;
+  large.height = 480;
+  WalkWindow window(solved(), large);
+  window.tick(0.01);
+  window.press("r");
+  window.release("r");
+  for (int i = 0; i < 60000 && window.still().rows() == 0; ++i) {
+    window.tick(0.001);
+    std::this_thread::sleep_for(1ms);
+  }
+  window.drag(5, 0);
+  EXPECT_EQ(window.still().phase(), StillPhase::none);
+  EXPECT_EQ(window.still().rows(), 0);
 }
 
 TEST_F(StillTest, NeedsTheScene) {

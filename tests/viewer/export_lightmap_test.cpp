@@ -1,0 +1,114 @@
+// glTF with its light in textures, and the pictures beside it, read back.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "glb_file.h"
+#include "lit_sides.h"
+#include "scene/io/read_scene.h"
+#include "viewer/export.h"
+
+namespace lightwell {
+namespace {
+
+using Json = nlohmann::json;
+
+class ExportLightmap : public testing::Test {
+ protected:
+  LightmapReport write(const SolvedScene& solved, const Scene& scene,
+                       const LightmapOptions& options) const {
+    return write_lightmapped_gltf(folder / "room.glb", bake_model(solved, scene), solved, scene,
+                                  options);
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(ExportLightmap, OurReaderFindsTheRoom) {
+  write(solved_box(), box_scene(), {.size = 64});
+  const Scene scene = read_scene(folder / "room.glb");
+  double area = 0.0;
+  for (const Surface& surface : scene.surfaces) area += surface_area(surface);
+  EXPECT_NEAR(area, 5 * 4.0, 1e-12);
+  EXPECT_EQ(scene.cameras.size(), 1u);
+}
+
+/// Half floats have 11 digits of two.
+TEST_F(ExportLightmap, TheDataAreTheAtlas) {
+  const SolvedScene solved = solved_box();
+  const Scene scene = box_scene();
+  const LightmapOptions options{.size = 64};
+  const LightmapReport made = write(solved, scene, options);
+  ASSERT_EQ(made.files, lightmap_files(folder / "room.glb", 1));
+  EXPECT_EQ(made.files[0].filename(), "room-lightmap-1.exr");
+  EXPECT_EQ(made.charts, 5);
+  const BakedModel model = bake_model(solved, scene);
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, options);
+  const LightmapAtlas atlas = paint_atlas(layout, 0, model, solved, scene, options);
+  EXPECT_EQ(made.coverage, static_cast<double>(atlas.covered) / (64 * 64));
+  const Image read = read_exr(made.files[0], ExrChannels::all);
+  EXPECT_TRUE(((read.radiance - atlas.irradiance).abs() <= 0x1p-11f * atlas.irradiance).all());
+  const std::vector<std::string> layers = {"illuminance.Y", "radiosity.B", "radiosity.G",
+                                           "radiosity.R"};
+  ASSERT_EQ(read.layers.names, layers);
+  for (Eigen::Index i = 0; i < atlas.irradiance.rows(); ++i) {
+    const double lux = luminous(rgb_bands(), atlas.irradiance.row(i).transpose());
+    EXPECT_NEAR(read.layers.values(i, 0), lux, 1e-5 * lux);
+    EXPECT_NEAR(read.layers.values(i, 3), atlas.radiosity(i, 0), 0x1p-11 * atlas.radiosity(i, 0));
+  }
+}
+
+/// Light that half floats cannot hold is kept whole.
+TEST_F(ExportLightmap, VeryBrightLightIsWrittenInFull) {
+  SolvedScene solved = solved_box();
+  solved.solution.direct_irradiance *= 1e5f;
+  const LightmapReport made = write(solved, box_scene(), {.size = 64});
+  EXPECT_GT(read_exr(made.files[0]).radiance.maxCoeff(), 2e5f);
+}
+
+/// Every corner lies in its chart, and texture coordinates span it; TEXCOORD_0 is there because
+/// glTF wants sets counted from 0.
+TEST_F(ExportLightmap, CoordinatesLeadIntoTheTexture) {
+  write(solved_box(), box_scene(), {.size = 64});
+  const Glb glb = parse_glb(content_of(folder / "room.glb"));
+  for (const Json& mesh : glb.json["meshes"]) {
+    const Json& primitive = mesh["primitives"][0];
+    const Json& attributes = primitive["attributes"];
+    EXPECT_EQ(attributes["TEXCOORD_0"], attributes["TEXCOORD_1"]);
+    EXPECT_EQ(attributes.count("COLOR_0"), 0u);  // it would darken the texture
+    const std::vector<float> uv = floats(glb, attributes["TEXCOORD_1"], 2);
+    ASSERT_EQ(uv.size(), 8u);
+    const Json& material = glb.json["materials"][primitive["material"].get<int>()];
+    const Json& texture = material["pbrMetallicRoughness"]["baseColorTexture"];
+    EXPECT_EQ(texture["texCoord"], 1);
+    EXPECT_EQ(texture["index"], 0);
+    // A wall's corners lie on whole texels.
+    for (const float x : uv) EXPECT_EQ(64 * x, std::round(64 * x));
+  }
+  const Json& view = glb.json["bufferViews"][glb.json["images"][0]["bufferView"].get<int>()];
+  EXPECT_EQ(glb.binary.substr(view["byteOffset"].get<std::size_t>(), 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(glb.json["asset"]["extras"]["lightmap"]["files"][0], "room-lightmap-1.exr");
+}
+
+TEST_F(ExportLightmap, KhronosValidatorHasNothingToSay) {
+  if (!has_gltf_validator()) GTEST_SKIP() << how_to_get_gltf_validator;
+  Scene scene = box_scene();
+  scene.materials[0].dielectric = Dielectric{.tint = Spectrum::Ones(3)};
+  write(solved_box(), scene, {.size = 64});
+  EXPECT_TRUE(is_valid_gltf(folder, folder / "room.glb"));
+  const LightmapReport several = write(solved_box(), scene, {.size = 64, .texels_per_metre = 25});
+  EXPECT_GT(several.atlases, 1);
+  EXPECT_TRUE(is_valid_gltf(folder, folder / "room.glb"));
+}
+
+TEST_F(ExportLightmap, AFileThatCannotBeWrittenIsNamedAndLeavesNothing) {
+  const BakedModel model = bake_model(solved_box(), box_scene());
+  const auto path = folder / "nowhere" / "room.glb";
+  EXPECT_TRUE(says(message_of<std::runtime_error>([&] {
+                     write_lightmapped_gltf(path, model, solved_box(), box_scene(), {.size = 64});
+                   }),
+                   (folder / "nowhere" / "room-lightmap-1.exr").string()));
+  EXPECT_EQ(folder.file_count(), 0);
+}
+
+}  // namespace
+}  // namespace lightwell
