@@ -1,0 +1,53 @@
+#include "scene/facet_textures.h"
+
+#include <algorithm>
+
+namespace lightwell {
+
+FacetTextures::FacetTextures(const Scene& scene) {
+  std::vector<int> pictures_of_material;
+  for (const Material& material : scene.materials) {
+    const bool varies = material.texture || material.mask;
+    pictures_of_material.push_back(varies ? static_cast<int>(pictures_.size()) : -1);
+    if (varies) pictures_.push_back({.texture = material.texture, .mask = material.mask});
+  }
+  if (pictures_.empty()) return;
+  bool any = false;
+  for (const Surface& surface : scene.surfaces) {
+    const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
+    const int pictures = pictures_of_material[static_cast<std::size_t>(surface.material)];
+    if (!mesh || pictures < 0) {
+      place_of_.insert(place_of_.end(), mesh ? mesh->facets.size() : 1, -1);
+      continue;
+    }
+    const int first = static_cast<int>(places_.size());
+    for (const UvMap& uv : mesh->uv_maps) places_.push_back({.pictures = pictures, .uv = uv});
+    for (const Facet& facet : mesh->facets) {
+      const bool has_uv = facet.uv_map >= 0;
+      place_of_.push_back(has_uv ? first + facet.uv_map : -1);
+      any = any || has_uv;
+      has_holes_ =
+          has_holes_ || (has_uv && pictures_[static_cast<std::size_t>(pictures)].mask.has_value());
+    }
+  }
+  if (!any) place_of_.clear();
+}
+
+Spectrum FacetTextures::reflectance(int facet, const Eigen::Vector3d& point) const {
+  const ReflectanceTexture& texture = *materials_of(facet).texture;
+  return texture.factor * texture.image.at(place(facet).uv.at(point));
+}
+
+Spectrum FacetTextures::reflectance(int facet, const Eigen::Vector3d& point,
+                                    const Eigen::Matrix<double, 3, 2>& footprint) const {
+  const ReflectanceTexture& texture = *materials_of(facet).texture;
+  const UvMap& uv = place(facet).uv;
+  return texture.factor * texture.image.over(uv.at(point), uv.gradient * footprint);
+}
+
+bool FacetTextures::is_hole(int facet, const Eigen::Vector3d& point) const {
+  const Mask& mask = *materials_of(facet).mask;
+  return !(mask.image.at(place(facet).uv.at(point))[0] >= mask.cutoff);
+}
+
+}  // namespace lightwell
