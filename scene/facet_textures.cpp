@@ -1,6 +1,6 @@
 #include "scene/facet_textures.h"
 
-#include <algorithm>
+#include <cmath>
 
 namespace lightwell {
 
@@ -43,6 +43,12 @@ Spectrum FacetTextures::reflectance(int facet, const Eigen::Vector3d& point,
   const ReflectanceTexture& texture = *materials_of(facet).texture;
   const UvMap& uv = place(facet).uv;
   return texture.factor * texture.image.over(uv.at(point), uv.gradient * footprint);
+}
+
+double FacetTextures::texels_along(int facet, const Eigen::Vector3d& vector) const {
+  const SurfaceTexture& image = materials_of(facet).texture->image;
+  const Eigen::Vector2d along = image.placement.leftCols<2>() * (place(facet).uv.gradient * vector);
+  return std::hypot(along.x() * image.picture->width(), along.y() * image.picture->height());
 }
 
 bool FacetTextures::is_hole(int facet, const Eigen::Vector3d& point) const {

@@ -27,6 +27,8 @@ class FacetTextures {
   /// Its mean about the point over the parallelogram with sides `footprint` (columns, metres).
   Spectrum reflectance(int facet, const Eigen::Vector3d& point,
                        const Eigen::Matrix<double, 3, 2>& footprint) const;
+  /// How many texels of a facet's texture lie along a vector in its plane (metres).
+  double texels_along(int facet, const Eigen::Vector3d& vector) const;
   /// Whether light goes through at a point of a facet that has holes.
   bool is_hole(int facet, const Eigen::Vector3d& point) const;
 
