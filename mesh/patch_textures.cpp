@@ -154,8 +154,11 @@ BandArray vertex_reflectance(const PatchMesh& mesh) {
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const auto at = static_cast<std::size_t>(v);
     if (patch[at] < 0) continue;
-    rho.row(v) =
-        differs[at] ? sum.row(v) / static_cast<float>(area[at]) : mesh.reflectance.row(patch[at]);
+    if (differs[at]) {
+      rho.row(v) = sum.row(v) / static_cast<float>(area[at]);
+    } else {
+      rho.row(v) = mesh.reflectance.row(patch[at]);
+    }
   }
   return rho;
 }

@@ -1,6 +1,9 @@
 #include "scene/facet_textures.h"
 
+#include <bit>
 #include <cmath>
+
+#include "scene/sampling.h"
 
 namespace lightwell {
 
@@ -31,6 +34,26 @@ FacetTextures::FacetTextures(const Scene& scene) {
     }
   }
   if (!any) place_of_.clear();
+  for (std::size_t f = 0; f < place_of_.size(); ++f) {
+    const int facet = static_cast<int>(f);
+    if (has_holes(facet)) add_to_hash(facet);
+  }
+}
+
+void FacetTextures::add_to_hash(int facet) {
+  const auto add = [&](std::uint64_t bits) { hash_of_holes_ = random_key(hash_of_holes_, bits); };
+  const auto add_numbers = [&](const auto& numbers) {
+    for (const double x : numbers.reshaped()) add(std::bit_cast<std::uint64_t>(x));
+  };
+  const Mask& mask = *materials_of(facet).mask;
+  add(static_cast<std::uint64_t>(facet));
+  add(mask.image.picture->hash());
+  add(std::bit_cast<std::uint32_t>(mask.cutoff));
+  for (const TextureWrap wrap : mask.image.wrap) add(static_cast<std::uint64_t>(wrap));
+  add(static_cast<std::uint64_t>(mask.image.is_smooth));
+  add_numbers(mask.image.placement);
+  add_numbers(place(facet).uv.gradient);
+  add_numbers(place(facet).uv.offset);
 }
 
 Spectrum FacetTextures::reflectance(int facet, const Eigen::Vector3d& point) const {

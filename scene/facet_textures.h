@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,8 @@ class FacetTextures {
   bool is_empty() const { return place_of_.empty(); }
   /// Whether some facet has holes.
   bool has_holes() const { return has_holes_; }
+  /// Of all that decides where the holes are; 0 without holes.
+  std::uint64_t hash_of_holes() const { return hash_of_holes_; }
   bool is_textured(int facet) const { return varying(facet) && materials_of(facet).texture; }
   bool has_holes(int facet) const { return varying(facet) && materials_of(facet).mask; }
 
@@ -41,6 +44,7 @@ class FacetTextures {
     int pictures = 0;
     UvMap uv{};
   };
+  void add_to_hash(int facet);
   bool varying(int facet) const { return !place_of_.empty() && place_of_[std::size_t(facet)] >= 0; }
   const Place& place(int facet) const {
     return places_[static_cast<std::size_t>(place_of_[static_cast<std::size_t>(facet)])];
@@ -53,6 +57,7 @@ class FacetTextures {
   std::vector<Place> places_{};  // one for each UvMap of a surface that has pictures
   std::vector<int> place_of_{};  // by facet; -1: nothing varies; empty: nowhere
   bool has_holes_ = false;
+  std::uint64_t hash_of_holes_ = 0;
 };
 
 }  // namespace lightwell
