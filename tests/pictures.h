@@ -39,7 +39,8 @@ inline void put_picture(Scene& scene, std::size_t surface, const SurfaceTexture&
   const Spectrum ones = Spectrum::Ones(scene.bands.count());
   material.name += " with a picture";
   material.texture = {.image = picture, .factor = ones};
-  material.reflectance = picture.picture->mean();
+  const Eigen::Array3f mean = picture.picture->mean();
+  for (int c = 0; c < 3; ++c) material.reflectance[c] = mean[c];
   scene.surfaces[surface].material = static_cast<int>(scene.materials.size());
   scene.materials.push_back(std::move(material));
   lay_uv(scene.surfaces[surface]);

@@ -168,9 +168,8 @@ TEST(PatchTextures, VerticesBetweenPatchesReflectTheMeanOfBoth) {
   const BandArray rho = vertex_reflectance(mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const double x = mesh.position(v).x();
-    if (x == 1.0) EXPECT_NEAR(rho(v, 0), 0.5, rounding);
-    if (x == 2.0) EXPECT_NEAR(rho(v, 0), 0.6, rounding);
-    if (x == 0.5) EXPECT_NEAR(rho(v, 0), 0.1, rounding);
+    const double wanted = x == 0.5 ? 0.1 : x == 1.0 ? 0.5 : x == 2.0 ? 0.6 : rho(v, 0);
+    EXPECT_NEAR(rho(v, 0), wanted, rounding) << x;
   }
 }
 
