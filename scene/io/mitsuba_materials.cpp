@@ -211,16 +211,15 @@ Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
   const Spectrum specular = colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
   remarks_.add("Plastics were read as diffuse, with what their gloss reflects in the mean",
                bsdf.label());
-  const double index = index_ratio(bsdf, polypropylene);
-  const bool saturating = bsdf.boolean_or("nonlinear", false);
-  Material material = opaque(coated_reflectance(rho, index, saturating, specular));
+  const Coat coat(index_ratio(bsdf, polypropylene), bsdf.boolean_or("nonlinear", false), specular);
+  Material material = opaque(coat(rho));
   if (!picture) return material;
   material.texture = picture->texture;
   SurfaceTexture& image = material.texture->image;
   image.picture = std::make_shared<const Texture>(
       image.picture->mapped([&](const Eigen::Array3f& texel) -> Eigen::Array3f {
         const Spectrum base = picture->texture.factor * texel;
-        return coated_reflectance(base, index, saturating, specular).min(1.0f);
+        return coat(base);
       }));
   material.texture->factor.setOnes();
   return material;
