@@ -136,10 +136,9 @@ TEST(Textures, HolesLetLightThroughAndEnergyBalances) {
   }
 }
 
-// A plate over a floor with every other of eight strips cut away: F between the floor and what is
-// seen through it is closed form for the strips. Exact view factor of the floor to a ceiling patch
-// is too long; instead light of a small lamp that falls through stripes: E on the floor below is
-// that of the lamp where the straight line goes through a hole, and none elsewhere.
+// A lamp so small and far that its shadows are sharp, over a plate of which two columns of four are
+// cut away: the floor has the lamp's light, L A / d^2, where the straight line goes through a hole,
+// and none elsewhere.
 TEST(Textures, ShadowsOfHolesAreTheHoles) {
   Scene scene;
   const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));

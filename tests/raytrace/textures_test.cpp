@@ -68,9 +68,7 @@ TEST_P(InEveryPass, APixelShowsTextureTimesIrradianceOverPi) {
 }
 INSTANTIATE_TEST_SUITE_P(Passes, InEveryPass, testing::Values(Pass::interpolate, Pass::direct));
 
-// In a room whose walls all emit M and reflect rho but for one with a picture, the light gathered
-// at that is that of the others: E = B to the light the picture takes, and every pixel of it shows
-// its texel times E / pi.
+// Black walls that all emit M send E = M to a square among them, which shows its texel times E / pi.
 TEST(Textures, AFinalGatherShowsTheTextureToo) {
   constexpr float E = 3.0f;
   Scene scene = SceneBuilder()
