@@ -68,7 +68,8 @@ TEST_P(InEveryPass, APixelShowsTextureTimesIrradianceOverPi) {
 }
 INSTANTIATE_TEST_SUITE_P(Passes, InEveryPass, testing::Values(Pass::interpolate, Pass::direct));
 
-// Black walls that all emit M send E = M to a square among them, which shows its texel times E / pi.
+// Black walls that all emit M send E = M to a square among them, which shows its texel times E /
+// pi.
 TEST(Textures, AFinalGatherShowsTheTextureToo) {
   constexpr float E = 3.0f;
   Scene scene = SceneBuilder()

@@ -198,7 +198,8 @@ TEST_F(Pictures, OfGltfFilesAreLaidAndWrappedAsTheySay) {
         R"(,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"images":[{"uri":"data:image/png;base64,)" +
             png + R"("}],"samplers":[{"wrapS":33071,"magFilter":9728}],"textures":[{"source":0,
             "sampler":0}],"materials":[{)" +
-            material + R"("pbrMetallicRoughness":{"metallicFactor":0.25,"roughnessFactor":0.2,"baseColorFactor":
+            material +
+            R"("pbrMetallicRoughness":{"metallicFactor":0.25,"roughnessFactor":0.2,"baseColorFactor":
             [0.8,0.8,0.8,1],"baseColorTexture":{"index":0)" +
             info + "}}}]",
         R"(,"material":0)");
