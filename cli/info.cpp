@@ -58,6 +58,11 @@ std::string kind_of(const Material& material, bool relative_units) {
   if ((material.reflectance > 0.0f).any()) {
     words.push_back(fmt::format("reflectance {:.3g}", mean(material.reflectance)));
   }
+  if (material.texture) {
+    const Texture& picture = *material.texture->image.picture;
+    words.push_back(fmt::format("texture {} x {}", picture.width(), picture.height()));
+  }
+  if (material.mask) words.emplace_back("mask");
   if ((material.specular > 0.0f).any()) {
     words.push_back(fmt::format("mirror {:.3g}", mean(material.specular)));
   }

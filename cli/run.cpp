@@ -9,6 +9,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "mesh/patch_textures.h"
 #include "raytrace/camera_ray.h"
 
 namespace lightwell {
@@ -31,6 +32,7 @@ SolvedScene solved_scene(const Scene& scene, const Arguments& arguments, const f
                          Console& console, Report& report) {
   const Provenance of = provenance(scene, arguments.solve);
   if (auto done = finished_solution(arguments.checkpoint, of, output, console, true)) {
+    attach_textures(scene, done->mesh);
     report.add_solution(*done, false);
     return std::move(*done);
   }

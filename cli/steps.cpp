@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/refinement.h"
+#include "mesh/patch_textures.h"
 #include "radiosity/solution_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
@@ -113,6 +114,7 @@ SolvedScene read_solution_step(const fs::path& file, const Scene& scene, Console
   const Stopwatch watch;
   SolvedScene solved = read_solution(file);
   check_matches(scene, solved.solution);
+  attach_textures(scene, solved.mesh);
   solved.solution.relative_units = scene.relative_units;  // old files do not say
   report.add_solution(solved, false);
   report.add_phase("read_solution", watch.seconds());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mesh/sphere_grid.h"
+#include "scene/facet_textures.h"
 
 namespace lightwell {
 namespace {
@@ -106,6 +107,12 @@ CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh, std::vector<int
     geometry.group.push_back(facet);
     elements.push_back(element);
   };
+  const bool any_holes = mesh.textures && mesh.textures->has_holes();
+  if (any_holes) {
+    geometry.is_hole = [textures = mesh.textures](int facet, const Vector3d& point) {
+      return textures->is_hole(facet, point);
+    };
+  }
   for (const int corner_count : {3, 4}) {
     for (int p = 0; p < mesh.patch_count(); ++p) {
       if (!is_front_polygon(mesh, p)) continue;
@@ -120,6 +127,7 @@ CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh, std::vector<int
           quad_shapes.push_back({shape.x(), shape.y()});
         }
         add(e, mesh.facet[e]);
+        if (any_holes) geometry.has_holes.push_back(mesh.textures->has_holes(mesh.facet[e]));
       }
     }
   }

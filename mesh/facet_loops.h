@@ -14,7 +14,8 @@ struct FacetLoops {
   std::vector<int> corner{};  ///< points, loop after loop; a facet's first loop is its boundary
   std::vector<int> loop_begin{0};  ///< loop l is [loop_begin[l], loop_begin[l + 1]) of corner
   std::vector<int> facet_begin{
-      0};  ///< facet f is [facet_begin[f], facet_begin[f + 1]) of the loops
+      0};                     ///< facet f is [facet_begin[f], facet_begin[f + 1]) of the loops
+  std::vector<int> uv_map{};  ///< by facet, see Facet::uv_map
 
   int count() const { return static_cast<int>(facet_begin.size()) - 1; }
   std::span<const int> loop(int l) const {
@@ -26,7 +27,10 @@ struct FacetLoops {
     loop_begin.push_back(static_cast<int>(corner.size()));
   }
   /// The loops added since the last facet are one.
-  void end_facet() { facet_begin.push_back(static_cast<int>(loop_begin.size()) - 1); }
+  void end_facet(int uv_of_facet = -1) {
+    facet_begin.push_back(static_cast<int>(loop_begin.size()) - 1);
+    uv_map.push_back(uv_of_facet);
+  }
   void turn_over(int facet);
 
   /// Calls visit(from, to) with the points of each edge of the facet, in its direction.

@@ -10,6 +10,7 @@
 #include "mesh/critical_lines.h"
 #include "mesh/facet_plane.h"
 #include "mesh/patch_builder.h"
+#include "mesh/patch_textures.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -258,6 +259,7 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
   std::vector<std::string> notes = std::move(facet_meshes.notes);
   facet_meshes = {};
   PatchMesh mesh = builder.finish();
+  lay_on_textures(scene, mesh);
   mesh.notes = std::move(notes);
   report(options.progress, "mesh", 1.0);
   return mesh;

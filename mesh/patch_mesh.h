@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "scene/scene.h"
 
 namespace lightwell {
+
+class FacetTextures;
 
 struct ElementMeshTraits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
@@ -48,7 +51,7 @@ struct PatchMesh {
   /// Vertices counter-clockwise seen from the side the element faces; [3] is -1 for a triangle. The
   /// same as the half-edge mesh's faces, flat for inner loops.
   std::vector<std::array<int, 4>> corners{};
-  Eigen::ArrayXd element_area{};  ///< m^2; exact on spheres
+  Eigen::ArrayXd element_area{};  ///< m^2, > 0; exact on spheres, less holes that textures cut
   std::vector<int> twin{};  ///< element on the other side of the same place; -1: behind it is black
 
   // Per vertex.
@@ -59,13 +62,15 @@ struct PatchMesh {
   // Per patch.
   std::vector<int> first_element{};  ///< patch_count + 1 entries
   Eigen::ArrayXd area{};             ///< A_i, m^2, > 0
-  BandArray reflectance{};           ///< rho_i, patches x bands
+  BandArray reflectance{};           ///< rho_i, patches x bands; of a texture the mean over it
   BandArray emission{};              ///< M_i, W/m^2, patches x bands
   std::vector<int> surface{};        ///< index into Scene::surfaces
   std::vector<int> material{};       ///< index into Scene::materials
   std::vector<char> is_back{};       ///< 1: the patch faces away from its facets' fronts
 
   std::vector<SphereGrid> sphere_grids{};
+  /// The scene's, if it has any: rays go through holes. Null: nothing varies over facets.
+  std::shared_ptr<const FacetTextures> textures{};
   std::vector<std::string> notes{};  ///< what meshing had to leave out: one sentence each
 
   int patch_count() const { return static_cast<int>(area.size()); }

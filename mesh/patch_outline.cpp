@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "mesh/sphere_grid.h"
+#include "scene/facet_textures.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -113,7 +114,8 @@ std::vector<std::vector<Vector3d>> boundary_loops(const PatchMesh& mesh,
 PatchOutline patch_outline(const PatchMesh& mesh, int patch) {
   PatchOutline outline;
   const int facet = mesh.facet_of(patch);
-  if (facet >= 0 && !sphere_grid_of(mesh, facet)) {
+  const bool has_holes = facet >= 0 && mesh.textures && mesh.textures->has_holes(facet);
+  if (facet >= 0 && !has_holes && !sphere_grid_of(mesh, facet)) {
     std::vector<int> elements(mesh.first_element[patch + 1] - mesh.first_element[patch]);
     std::iota(elements.begin(), elements.end(), mesh.first_element[patch]);
     outline = polygon_outline(boundary_loops(mesh, elements));

@@ -11,7 +11,8 @@ namespace lightwell {
 /// The polygon that a patch's elements tile.
 struct PatchOutline {
   /// Boundary and holes, counter-clockwise and clockwise seen from the side the patch faces,
-  /// without vertices inside straight edges. Empty for patches that are not flat.
+  /// without vertices inside straight edges. Empty for patches that are not flat or have holes
+  /// that a picture cuts.
   std::vector<std::vector<Eigen::Vector3d>> loops{};
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, towards the side the patch faces
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of the vertices

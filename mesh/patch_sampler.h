@@ -19,11 +19,13 @@ class PatchSampler {
   /// Uniform over the patch's area for (u, v) uniform in [0,1)^2 (u also picks the element, in
   /// proportion to area); on a sphere the point lies on the exact sphere. Linear in u and v where
   /// the patch is a parallelogram, so that what is stratified stays so.
+  /// Never in a hole of the surface: another place that (u, v) decides is taken instead.
   PatchPoint point(double u, double v) const {
-    return grid_ ? point_on_grid(u, v) : point_on_part(u, v);
+    return has_holes_ ? point_beside_holes(u, v) : any_point(u, v);
   }
   /// Its position alone, for who draws very many.
   Eigen::Vector3d position(double u, double v) const {
+    if (has_holes_) return point_beside_holes(u, v).position;
     return grid_ ? position_on_grid(u, v) : point_on_part(u, v).position;
   }
 
@@ -37,6 +39,10 @@ class PatchSampler {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
   void add_parts();
+  PatchPoint any_point(double u, double v) const {
+    return grid_ ? point_on_grid(u, v) : point_on_part(u, v);
+  }
+  PatchPoint point_beside_holes(double u, double v) const;
   PatchPoint point_on_part(double u, double v) const;
   Eigen::Vector3d position_on_grid(double u, double v) const {
     return corner_ + u * along_row_ + v * across_;
@@ -53,6 +59,7 @@ class PatchSampler {
   int patch_;
   const SphereGrid* sphere_;
   bool is_flat_;
+  bool has_holes_ = false;
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of a flat patch
   std::optional<ElementGrid> grid_;
   // Of the grid, a little inside.

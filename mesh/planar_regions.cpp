@@ -33,13 +33,13 @@ FacetLoops without(const FacetLoops& facets, const std::vector<char>& is_gone) {
     for (int l = facets.facet_begin[f]; l < facets.facet_begin[f + 1]; ++l) {
       left.add_loop(facets.loop(l));
     }
-    left.end_facet();
+    left.end_facet(facets.uv_map[f]);
   }
   return left;
 }
 
 // Corners that became one are one corner; loops that lose themselves so go.
-FacetLoops welded_loops(const PolygonMesh& mesh, const std::vector<int>& point) {
+FacetLoops welded_loops(const PolygonMesh& mesh, const std::vector<int>& point, bool with_uv) {
   FacetLoops facets;
   std::vector<int> loop;
   const auto add = [&](const std::vector<int>& corners, bool is_boundary) {
@@ -53,7 +53,7 @@ FacetLoops welded_loops(const PolygonMesh& mesh, const std::vector<int>& point) 
   for (const Facet& facet : mesh.facets) {
     add(facet.boundary, true);
     for (const auto& hole : facet.holes) add(hole, false);
-    facets.end_facet();
+    facets.end_facet(with_uv ? facet.uv_map : -1);
   }
   return facets;
 }
@@ -93,7 +93,7 @@ FacetLoops merged(const FacetLoops& facets, const PlaneRegions& regions, std::ve
       is_placed[r] = 1;
       for (const auto& loop : regions.outlines[r]) result.add_loop(loop);
     }
-    result.end_facet();
+    result.end_facet(facets.uv_map[f]);
     is_new.push_back(is_part ? 1 : 0);
   }
   return result;
@@ -104,6 +104,7 @@ PolygonMesh polygon_mesh(const FacetLoops& facets, const std::vector<Vector3d>& 
   std::vector<int> number(points.size(), -1);
   for (int f = 0; f < facets.count(); ++f) {
     Facet& facet = mesh.facets.emplace_back();
+    facet.uv_map = facets.uv_map[f];
     for (int l = facets.facet_begin[f]; l < facets.facet_begin[f + 1]; ++l) {
       std::vector<int>& loop =
           l == facets.facet_begin[f] ? facet.boundary : facet.holes.emplace_back();
@@ -137,7 +138,8 @@ std::optional<PolygonMesh> cleaned(const PolygonMesh& mesh, const std::vector<in
   }
   CleanUpReport found;
   found.welded_vertices = used - static_cast<int>(points.size());
-  FacetLoops facets = welded_loops(mesh, point);
+  const bool shows_picture = material.texture || material.mask;
+  FacetLoops facets = welded_loops(mesh, point, shows_picture);
 
   const std::vector<char> is_degenerate = find_degenerate(facets, points, diagonal);
   found.degenerate = std::count(is_degenerate.begin(), is_degenerate.end(), 1);
@@ -163,7 +165,9 @@ std::optional<PolygonMesh> cleaned(const PolygonMesh& mesh, const std::vector<in
   report = found;
   if (found.is_clean()) return {};
   straighten(facets, is_new, points, tolerance);
-  return polygon_mesh(facets, points);
+  PolygonMesh clean = polygon_mesh(facets, points);
+  if (shows_picture) clean.uv_maps = mesh.uv_maps;
+  return clean;
 }
 
 }  // namespace

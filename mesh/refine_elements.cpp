@@ -308,6 +308,7 @@ RefinedMesh RefinedElements::mesh() {
   for (SphereGrid& grid : out.sphere_grids) {
     for (int& e : grid.element) e = first[e];
   }
+  out.textures = base_->textures;
   out.notes = base_->notes;
   build_topology(out, positions);
   return refined;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "mesh/patch_sampler.h"
+#include "mesh/patch_textures.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
 #include "scene/hemisphere_sets.h"
@@ -266,12 +267,13 @@ GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& cast
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
                                const BandArray& irradiance) {
   const std::vector<int> patch = vertex_patches(mesh);
+  const BandArray rho = vertex_reflectance(mesh);
   const Eigen::Index bands = mesh.reflectance.cols();
   BandArray B(irradiance.rows(), irradiance.cols());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int p = patch[v], facet = mesh.facet[mesh.first_element[p]];
     for (Eigen::Index k = 0; k < B.cols(); k += bands) {
-      B.row(v).segment(k, bands) = mesh.reflectance.row(p) * irradiance.row(v).segment(k, bands);
+      B.row(v).segment(k, bands) = rho.row(v) * irradiance.row(v).segment(k, bands);
     }
     if (direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
     B.row(v).segment(direct_light.first_column(facet), bands) += mesh.emission.row(p);

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "mesh/patch_mesh.h"
+#include "scene/facet_textures.h"
 
 namespace lightwell {
 
@@ -36,6 +37,7 @@ void Fingerprint::add_geometry(const PatchMesh& mesh) {
     const Eigen::Vector3d at = mesh.position(v);
     add_bytes(std::as_bytes(std::span(at.data(), 3)));
   }
+  if (mesh.textures && mesh.textures->has_holes()) add(mesh.textures->hash_of_holes());
 }
 
 }  // namespace lightwell

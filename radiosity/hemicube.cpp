@@ -5,6 +5,7 @@
 
 #include "radiosity/hemicube_view.h"
 #include "radiosity/ray_cast_rows.h"
+#include "scene/facet_textures.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -138,7 +139,8 @@ void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
   // says nothing about the others.
   constexpr int rays_where_covered = 1024;
   const RowCaster row_caster(caster, paths, rays_where_covered);
-  const bool by_rays = options.back_end == HemicubeOptions::BackEnd::rays;
+  const bool any_holes = mesh.textures && mesh.textures->has_holes();
+  const bool by_rays = any_holes || options.back_end == HemicubeOptions::BackEnd::rays;
   const int patches = mesh.patch_count();
   // Slices keep progress and interruption on this thread, each a fraction of a second of work.
   const int cells_per_slice = by_rays ? 1 << 20 : 1 << 24;
@@ -159,7 +161,9 @@ void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
           take(i, row);
           continue;
         }
-        if (caster.hidden_elements(i) > 0) {
+        const bool has_holes =
+            any_holes && mesh.textures->has_holes(mesh.facet[mesh.first_element[i]]);
+        if (has_holes || caster.hidden_elements(i) > 0) {
           row = row_caster.cast(i, rays_where_covered, ray_scratch);
           row.trust = 1.0 / mesh.area[i];
         } else {

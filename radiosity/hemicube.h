@@ -27,7 +27,8 @@ struct HemicubeOptions {
 /// Form factors by the hemicube (Cohen & Greenberg 1985): each patch looks around from one place,
 /// its centroid, and a cell's delta form factor goes to the patch seen through the cell's centre.
 /// Where that is a mirror or clear glass, a ray carries it on (Sillion & Puech 1989). Patches that
-/// another surface lies on are sampled by rays from all over them instead. One row per
+/// another surface lies on, or that have holes, are sampled by rays from all over them instead;
+/// where anything has holes, cells are looked through by rays. One row per
 /// patch, closed but for rounding; those of patches that do not exchange light diffusely are empty.
 ///
 /// trust = 1 / A_i: what is seen from one place is the truer the smaller the patch is, so of the

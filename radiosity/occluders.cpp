@@ -7,6 +7,7 @@
 
 #include "mesh/patch_outline.h"
 #include "mesh/sphere_grid.h"
+#include "scene/facet_textures.h"
 
 namespace lightwell {
 namespace {
@@ -172,8 +173,12 @@ Occluders::Occluders(const PatchMesh& mesh) {
       elements.insert(elements.end(), sheets.elements(f).begin(), sheets.elements(f).end());
     }
     if (elements.empty()) continue;
+    const bool has_holes = mesh.textures && std::ranges::any_of(sheets.facets(s), [&](int f) {
+                             return mesh.textures->has_holes(f);
+                           });
     for (const ConvexPolygon& polygon : pieces_of(mesh, elements, sheets.plane(s).normal)) {
-      Occluder piece{.polygon = polygon, .plane = sheets.plane(s), .sheet = s};
+      Occluder piece{
+          .polygon = polygon, .plane = sheets.plane(s), .sheet = s, .has_holes = has_holes};
       for (const Vector3d& v : polygon.corners()) piece.box.extend(v);
       pieces.push_back(piece);
     }

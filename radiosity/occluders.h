@@ -13,7 +13,8 @@ struct Occluder {
   ConvexPolygon polygon{};  ///< counter-clockwise about the normal
   HalfSpace plane{};        ///< of unit normal
   Eigen::AlignedBox3d box{};
-  int sheet = 0;  ///< see Occluders::sheet_of_facet
+  int sheet = 0;           ///< see Occluders::sheet_of_facet
+  bool has_holes = false;  ///< of a sheet that a picture cuts holes into
 };
 
 /// All polygons of a mesh as occluders. Facets that lie in one plane, face one way and share edges

@@ -166,6 +166,8 @@ void Shafts::find(const ShaftEnd& a, const ShaftEnd& b, Between& between) const 
     });
   });
   std::sort(between.pieces.begin(), between.pieces.end());
+  between.may_be_sphere =
+      std::ranges::any_of(between.pieces, [&](int p) { return occluders_.pieces[p].has_holes; });
   const Eigen::AlignedBox3d box = a.box.merged(b.box);
   for (const Sphere& sphere : occluders_.spheres) {
     const bool is_outside =

@@ -19,8 +19,8 @@ struct ShaftEnd {
 
 /// What may stand between two ends.
 struct Between {
-  std::vector<int> pieces{};  ///< of Occluders::pieces
-  bool may_be_sphere = false;
+  std::vector<int> pieces{};   ///< of Occluders::pieces
+  bool may_be_sphere = false;  ///< or a polygon with holes: both are left to rays
 
   bool is_nothing() const { return pieces.empty() && !may_be_sphere; }
 };

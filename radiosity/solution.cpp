@@ -1,5 +1,7 @@
 #include "radiosity/solution.h"
 
+#include "mesh/patch_textures.h"
+
 namespace lightwell {
 
 EnergyBalance total(const BandEnergy& by_band) {
@@ -17,12 +19,13 @@ Eigen::ArrayXf error_bound(const RadiositySolution& solution) {
 
 BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution) {
   BandArray B = solution.irradiance();
+  const BandArray rho = vertex_reflectance(mesh);
   std::vector<int> patch(mesh.vertex_count(), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {
     for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
   }
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    B.row(v) = mesh.emission.row(patch[v]) + mesh.reflectance.row(patch[v]) * B.row(v);
+    B.row(v) = mesh.emission.row(patch[v]) + rho.row(v) * B.row(v);
   }
   return B;
 }

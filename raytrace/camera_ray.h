@@ -22,6 +22,8 @@ class CameraRays {
   /// one place only.
   Ray ray(double x, double y, double u, double v) const;
 
+  /// Width of a pixel in the middle of the picture, in metres one metre away.
+  double pixel_width() const { return step_down_.norm(); }
   bool has_lens() const { return lens_radius_ > 0.0; }
 
  private:

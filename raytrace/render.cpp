@@ -357,7 +357,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   const auto start = std::chrono::steady_clock::now();
   check(options);
   const CameraRays rays(camera);
-  const RayTree tree(scene, caster, direct_light, solution, options);
+  const RayTree tree(scene, caster, direct_light, solution, options, rays.pixel_width());
   Counters counters;
   const Eye eye(rays, tree, counters);
   Image image{.width = camera.width, .height = camera.height};

@@ -53,17 +53,21 @@ ShadowOptions shadows_for(ShadowOptions shadows, float weight, int fewest) {
 }  // namespace
 
 RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const RadiositySolution& solution, const RenderOptions& options)
+                 const RadiositySolution& solution, const RenderOptions& options,
+                 double pixel_width)
     : scene_(scene),
       caster_(caster),
       direct_light_(direct_light),
       solution_(solution),
       options_(options),
+      pixel_width_(pixel_width),
+      textures_(std::make_shared<const FacetTextures>(scene)),
       with_layers_(std::any_of(options.layers.begin(), options.layers.end(),
                                [](Layer layer) { return first_sampled_column(layer) >= 0; })),
       white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
       gloss_points_(gloss_point_count),
       lamps_(direct_light) {
+  if (textures_->is_empty()) textures_ = nullptr;
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
   }
@@ -164,6 +168,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
                 .place = place,
                 .is_sharp = parent.is_sharp,
                 .lobe_density = way.density,
+                .width = cone_width(parent, at),
                 .media = parent.media};
   if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
   if (branch.depth > deepest_path(options_.max_depth, !branch.is_sharp)) {
@@ -201,17 +206,38 @@ Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const SurfacePoint
   return normal.norm() > 0.0 ? normal.normalized() : at.normal;
 }
 
+// The texture's at the place, over what the pixel covers of the surface; else the patch's.
+Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
+                              const SurfacePoint& at) const {
+  const PatchMesh& mesh = caster_.mesh();
+  const int patch = mesh.patch[hit.element];
+  const bool is_black_back =
+      mesh.is_back[patch] != 0 && scene_.materials[facets_[hit.facet].material].one_sided;
+  if (!textures_ || !textures_->is_textured(hit.facet) || is_black_back) {
+    return mesh.reflectance.row(patch).transpose();
+  }
+  const double width = cone_width(branch, at);
+  const Eigen::Vector3d direction = branch.ray.direction.normalized();
+  constexpr double grazing = 1e-3;  // of a cosine: then a texture is a streak anyway
+  const double cosine = std::max(grazing, std::abs(direction.dot(at.normal)));
+  const Eigen::Vector3d across = at.normal.cross(direction);
+  const double sine = across.norm();
+  const Eigen::Vector3d side =
+      sine > grazing ? Eigen::Vector3d(across / sine) : at.normal.unitOrthogonal();
+  Eigen::Matrix<double, 3, 2> footprint;
+  footprint << width * side, width / cosine * side.cross(at.normal);
+  return textures_->reflectance(hit.facet, at.position, footprint);
+}
+
 // L = (M + rho E) / pi.
 void RayTree::shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at,
                     Walk& walk) const {
-  const PatchMesh& mesh = caster_.mesh();
-  const int patch = mesh.patch[hit.element];
   const Spectrum M = emission(branch, hit, at);
-  const Spectrum rho = mesh.reflectance.row(patch).transpose();
+  const Spectrum rho = reflectance(branch, hit, at);
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
   if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, walk);
   walk.sight.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
-  if (with_layers_) note_layers(branch, hit, M, E, walk);
+  if (with_layers_) note_layers(branch, hit, M, rho, E, walk);
 }
 
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& at,
@@ -241,10 +267,8 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& a
 }
 
 void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
-                          const Arriving& E, Walk& walk) const {
+                          const Spectrum& rho, const Arriving& E, Walk& walk) const {
   const Bands& bands = scene_.bands;
-  const Spectrum rho =
-      caster_.mesh().reflectance.row(caster_.mesh().patch[hit.element]).transpose();
   const auto three = [&](Layer layer) {
     return walk.sight.layers.segment<3>(first_sampled_column(layer));
   };

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "raytrace/lamp_samples.h"
 #include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
+#include "scene/facet_textures.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
@@ -38,10 +40,14 @@ struct Sight {
 /// The *fingerprint* is equal for two rays whose trees see the same smooth surfaces from the same
 /// sides in the same order; branches that weigh less than RenderOptions::contrast are left out, for
 /// they alone cannot change a pixel by more, and so is what is seen by way of rough surfaces.
+///
+/// Textures are filtered over what a ray's pixel covers: a cone (Amanatides 1984) as wide as
+/// `pixel_width` times the way it has gone, as if all surfaces on the way were flat.
 class RayTree {
  public:
   RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-          const RadiositySolution& solution, const RenderOptions& options);
+          const RadiositySolution& solution, const RenderOptions& options,
+          double pixel_width = 0.0);
 
   /// `key` decides the shadow samples; `effort`, (0, 1], scales their number, for looks that are
   /// averaged with others.
@@ -75,6 +81,7 @@ class RayTree {
     bool is_sharp = true;  ///< no rough surface on the way
     /// Of its direction, 1/sr, off a rough surface, which samples lamps beside; else 0.
     double lobe_density = 0.0;
+    double width = 0.0;  ///< m, of the cone where the ray begins
     Media media{};
   };
   /// Irradiance at a place, W/m^2, by the way light takes.
@@ -106,14 +113,20 @@ class RayTree {
   void shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
   Arriving arriving(const ElementHit& hit, const SurfacePoint& at, const Branch& branch,
                     const Walk& walk) const;
+  Spectrum reflectance(const Branch& branch, const ElementHit& hit, const SurfacePoint& at) const;
+  double cone_width(const Branch& branch, const SurfacePoint& at) const {
+    return branch.width + pixel_width_ * (at.position - branch.ray.origin).norm();
+  }
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
-                   const Arriving& E, Walk& walk) const;
+                   const Spectrum& rho, const Arriving& E, Walk& walk) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;
   const DirectLight& direct_light_;
   const RadiositySolution& solution_;
   const RenderOptions& options_;
+  double pixel_width_;                               ///< m, one metre away
+  std::shared_ptr<const FacetTextures> textures_{};  ///< null: nothing varies over facets
   bool with_layers_ = false;
   Eigen::Array3f white_rgb_;             ///< of what reflects everything, under equal-energy light
   std::optional<PixelGather> gather_{};  ///< for Pass::gather

@@ -85,10 +85,9 @@ void EmbreeScene::attach(RTCGeometry geometry, GeometryId id) {
 // Embree keeps a tree for every type of geometry, and a ray goes down each of them. So where
 // there are quads, triangles are quads that end in their last corner twice; u and v remain the
 // same.
-void EmbreeScene::add_polygons(const CastGeometry& source) {
-  const std::size_t count = source.triangles.size() + source.quads.size();
-  if (count == 0) return;
-  const bool as_quads = !source.quads.empty();
+RTCGeometry EmbreeScene::polygon_geometry(const CastGeometry& source,
+                                          std::span<const int> primitives) const {
+  const bool as_quads = quads > 0;
   const std::size_t corners = as_quads ? 4 : 3;
   const RTCGeometry geometry =
       rtcNewGeometry(device, as_quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -97,20 +96,53 @@ void EmbreeScene::add_polygons(const CastGeometry& source) {
                                                         source.vertices.size()));
   auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, as_quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
-      corners * sizeof(unsigned), count));
+      corners * sizeof(unsigned), primitives.size()));
   check();
   for (const Eigen::Vector3d& vertex : source.vertices) {
     for (int c = 0; c < 3; ++c) *v++ = static_cast<float>(vertex[c] - center[c]);
   }
-  for (const auto& triangle : source.triangles) {
+  for (const int p : primitives) {
     for (std::size_t c = 0; c < corners; ++c) {
-      *index++ = static_cast<unsigned>(triangle[std::min<std::size_t>(c, 2)]);
+      const int corner = p < triangles ? source.triangles[p][std::min<std::size_t>(c, 2)]
+                                       : source.quads[p - triangles][c];
+      *index++ = static_cast<unsigned>(corner);
     }
   }
-  for (const auto& quad : source.quads) {
-    for (const int corner : quad) *index++ = static_cast<unsigned>(corner);
+  return geometry;
+}
+
+void EmbreeScene::add_polygons(const CastGeometry& source) {
+  for (int p = 0; p < triangles + quads; ++p) {
+    const bool has_holes = !source.has_holes.empty() && source.has_holes[p] != 0;
+    (has_holes ? porous : solid).push_back(p);
   }
-  attach(geometry, polygons_id);
+  if (!solid.empty()) attach(polygon_geometry(source, solid), polygons_id);
+  if (porous.empty()) {
+    solid = {};
+    return;
+  }
+  is_hole = source.is_hole;
+  const RTCGeometry geometry = polygon_geometry(source, porous);
+  rtcSetGeometryUserData(geometry, this);
+  rtcSetGeometryIntersectFilterFunction(geometry, skip_holes);
+  rtcSetGeometryOccludedFilterFunction(geometry, skip_holes);
+  attach(geometry, porous_id);
+}
+
+void EmbreeScene::skip_holes(const RTCFilterFunctionNArguments* args) {
+  const auto& caster = *static_cast<const EmbreeScene*>(args->geometryUserPtr);
+  const unsigned n = args->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (args->valid[i] != -1) continue;
+    const Eigen::Vector3f from(RTCRayN_org_x(args->ray, n, i), RTCRayN_org_y(args->ray, n, i),
+                               RTCRayN_org_z(args->ray, n, i));
+    const Eigen::Vector3f along(RTCRayN_dir_x(args->ray, n, i), RTCRayN_dir_y(args->ray, n, i),
+                                RTCRayN_dir_z(args->ray, n, i));
+    const double t = RTCRayN_tfar(args->ray, n, i);
+    const Eigen::Vector3d point = caster.center + from.cast<double>() + t * along.cast<double>();
+    const int primitive = caster.porous[RTCHitN_primID(args->hit, n, i)];
+    if (caster.is_hole(caster.group[primitive], point)) args->valid[i] = 0;
+  }
 }
 
 void EmbreeScene::add_spheres(const CastGeometry& source) {
@@ -156,6 +188,10 @@ std::vector<int> EmbreeScene::groups_at(const Eigen::Vector3d& place, int on) co
 // Primitives are asked at their centre: whoever wants this exact cuts them where others end.
 void EmbreeScene::find_hidden(const CastGeometry& source) {
   hidden.assign(static_cast<std::size_t>(triangles + quads), 0);
+  // What has holes hides nothing whole.
+  std::vector<char> is_porous(
+      group.empty() ? 0 : *std::max_element(group.begin(), group.end()) + std::size_t{1}, 0);
+  for (const int p : porous) is_porous[group[p]] = 1;
   const auto look_at = [&](int p, std::span<const int> polygon) {
     const int g = group[p];
     if (!planes->has_overlaps(g)) return;
@@ -167,7 +203,7 @@ void EmbreeScene::find_hidden(const CastGeometry& source) {
             .cross(source.vertices[polygon[2]] - source.vertices[polygon[0]]);
     const int facing = front.dot(planes->normal(g)) > 0.0 ? 1 : -1;
     for (const int other : groups_at(mean, g)) {
-      if (other == g || !planes->are_parallel(g, other)) continue;
+      if (other == g || is_porous[other] || !planes->are_parallel(g, other)) continue;
       const int above = planes->order(other, g);
       if (above != 0) hidden[p] |= above == facing ? from_front : from_back;
     }

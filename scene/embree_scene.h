@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "scene/cast_spheres.h"
@@ -12,7 +14,7 @@ namespace lightwell {
 /// What RayCaster asks: Embree's tree over a CastGeometry, and what is known about its planes.
 struct EmbreeScene {
   // Embree's numbers of the two geometries.
-  enum GeometryId : unsigned { polygons_id, spheres_id };
+  enum GeometryId : unsigned { polygons_id, spheres_id, porous_id };
   enum Hidden : std::uint8_t { from_front = 1, from_back = 2 };
 
   explicit EmbreeScene(const CastGeometry& geometry);
@@ -30,9 +32,15 @@ struct EmbreeScene {
   bool is_any_hidden = false;        // saves rays a look at `hidden`
   SphereSet sphere_set;
   int triangles = 0, quads = 0;
+  // Polygons with holes are a geometry of their own, with a filter that the others do not pay for.
+  // Primitives of Embree's two geometries; empty: none has holes, and the numbers are the same.
+  std::vector<int> solid, porous;
+  std::function<bool(int group, const Eigen::Vector3d& point)> is_hole;
 
   int primitive(const RTCHit& hit) const {
-    return static_cast<int>(hit.primID) + (hit.geomID == spheres_id ? triangles + quads : 0);
+    if (hit.geomID == spheres_id) return static_cast<int>(hit.primID) + triangles + quads;
+    if (porous.empty()) return static_cast<int>(hit.primID);
+    return (hit.geomID == porous_id ? porous : solid)[hit.primID];
   }
 
   static void clear(RTCHit& hit) {
@@ -45,6 +53,8 @@ struct EmbreeScene {
   void check() const;
   void attach(RTCGeometry geometry, GeometryId id);
   void add_polygons(const CastGeometry& source);
+  RTCGeometry polygon_geometry(const CastGeometry& source, std::span<const int> primitives) const;
+  static void skip_holes(const RTCFilterFunctionNArguments* args);
   void add_spheres(const CastGeometry& source);
   void find_hidden(const CastGeometry& source);
   std::vector<int> groups_at(const Eigen::Vector3d& place, int on) const;

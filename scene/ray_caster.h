@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -23,6 +24,9 @@ struct CastGeometry {
   std::vector<std::array<int, 4>> quads{};  ///< planar, convex, in order around
   std::vector<Sphere> spheres{};
   std::vector<int> group{};  ///< one per primitive, >= 0
+  /// Whether rays go on through a point of a group that has holes. Called from many threads.
+  std::function<bool(int group, const Eigen::Vector3d& point)> is_hole{};
+  std::vector<char> has_holes{};  ///< per triangle, then quad: 1 asks is_hole; empty: none has
 };
 
 struct Ray {

@@ -86,6 +86,44 @@ void check_dielectric(const Scene& scene, const Material& m, const Dielectric& g
   }
 }
 
+void check_pictures(const Scene& scene, const Material& m) {
+  if (m.texture) {
+    if (scene.bands.count() != 3 || !scene.bands.wavelengths_nm.empty()) {
+      fail(scene, fmt::format("material '{}' has a texture, whose colours are r, g and b, but the "
+                              "scene has other bands; give it a reflectance alone",
+                              m.name));
+    }
+    if (!m.texture->image.picture) {
+      fail(scene, fmt::format("material '{}' has a texture without a picture", m.name));
+    }
+    check_share(scene, m, "texture factor", m.texture->factor);
+    constexpr float rounding = 1e-5f;
+    const Spectrum brightest = m.texture->factor * m.texture->image.picture->largest();
+    if (!((brightest + m.specular) <= 1.0f + rounding).all()) {
+      fail(scene, fmt::format("material '{}': where its texture is brightest, reflectance {} + "
+                              "specular {} exceed 1; lower one",
+                              m.name, brightest.maxCoeff(), m.specular.maxCoeff()));
+    }
+    if (m.dielectric) {
+      fail(scene,
+           fmt::format("material '{}' is a dielectric and has a texture; remove one: a clear "
+                       "surface has no diffuse reflectance",
+                       m.name));
+    }
+  }
+  if (!m.mask) return;
+  if (!m.mask->image.picture || !(m.mask->cutoff > 0.0f && m.mask->cutoff <= 1.0f)) {
+    fail(scene, fmt::format("material '{}': a mask needs a picture, and a cutoff above 0 and up to "
+                            "1",
+                            m.name));
+  }
+  if (m.is_emitter()) {
+    fail(scene, fmt::format("material '{}' emits light and has a mask; remove one: lamps have no "
+                            "holes",
+                            m.name));
+  }
+}
+
 void check_material(const Scene& scene, const Material& m) {
   check_share(scene, m, "reflectance", m.reflectance);
   check_share(scene, m, "specular reflectance", m.specular);
@@ -115,6 +153,7 @@ void check_material(const Scene& scene, const Material& m) {
     fail(scene,
          fmt::format("material '{}': emission must be one finite number >= 0 per band", m.name));
   }
+  check_pictures(scene, m);
 }
 
 void check_loop(const Scene& scene, const Surface& surface, const PolygonMesh& mesh, int facet,
@@ -159,6 +198,14 @@ void check_mesh(const Scene& scene, const Surface& surface, const PolygonMesh& m
                "surface '{}', polygon {}: its area is zero; remove it or correct its vertices",
                surface.name, f));
     }
+    if (facet.uv_map < -1 || facet.uv_map >= static_cast<int>(mesh.uv_maps.size())) {
+      fail(scene, fmt::format("surface '{}', polygon {}: its texture coordinates do not exist",
+                              surface.name, f));
+    }
+  }
+  for (const UvMap& uv : mesh.uv_maps) {
+    if (uv.gradient.allFinite() && uv.offset.allFinite()) continue;
+    fail(scene, fmt::format("surface '{}': its texture coordinates are not finite", surface.name));
   }
 }
 
@@ -206,6 +253,37 @@ void add_gloss(const Material& m, Hash& hash) {
     hash.add(static_cast<std::uint64_t>(glass.thin));
     hash.add(glass.absorption);
   }
+}
+
+void add_image(const SurfaceTexture& image, Hash& hash) {
+  hash.add(image.picture->hash());
+  for (const TextureWrap wrap : image.wrap) hash.add(static_cast<std::uint64_t>(wrap));
+  hash.add(static_cast<std::uint64_t>(image.is_smooth));
+  for (const double x : image.placement.reshaped()) hash.add(x);
+}
+
+void add_pictures(const Material& m, Hash& hash) {
+  constexpr std::uint64_t texture = 0x7e87u, mask = 0x3a5cu;
+  if (m.texture) {
+    hash.add(texture);
+    add_image(m.texture->image, hash);
+    hash.add(m.texture->factor);
+  }
+  if (m.mask) {
+    hash.add(mask);
+    add_image(m.mask->image, hash);
+    hash.add(static_cast<double>(m.mask->cutoff));
+  }
+}
+
+// Where nothing shows a picture, texture coordinates decide nothing.
+void add_uv(const PolygonMesh& mesh, const Material& material, Hash& hash) {
+  if (!material.texture && !material.mask) return;
+  for (const UvMap& uv : mesh.uv_maps) {
+    for (const double x : uv.gradient.reshaped()) hash.add(x);
+    for (const double x : uv.offset) hash.add(x);
+  }
+  for (const Facet& facet : mesh.facets) hash.add(static_cast<std::uint64_t>(facet.uv_map + 1));
 }
 
 }  // namespace
@@ -298,6 +376,7 @@ std::uint64_t scene_hash(const Scene& scene) {
       hash.add(m.dielectric->tint);
     }
     add_gloss(m, hash);
+    add_pictures(m, hash);
   }
   for (const Surface& surface : scene.surfaces) {
     hash.add(static_cast<std::uint64_t>(surface.material));
@@ -307,6 +386,7 @@ std::uint64_t scene_hash(const Scene& scene) {
         hash.add(facet.boundary);
         for (const auto& hole : facet.holes) hash.add(hole);
       }
+      add_uv(*mesh, scene.materials[static_cast<std::size_t>(surface.material)], hash);
     } else {
       const auto& sphere = std::get<Sphere>(surface.shape);
       hash.add(sphere.center);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/bands.h"
+#include "scene/texture.h"
 
 namespace lightwell {
 
@@ -31,10 +32,23 @@ inline constexpr float lowest_index = 0.1f, highest_index = 10.0f;
 /// 1/m; light is then gone within a micrometre.
 inline constexpr float highest_absorption = 1e6f;
 
+/// A picture of what a surface reflects: rho is `factor` times the picture's r, g and b.
+struct ReflectanceTexture {
+  SurfaceTexture image{};
+  Spectrum factor{};  ///< [0,1]
+};
+
+/// A picture of where a surface is: places where it is below `cutoff` are holes, through which
+/// light goes on. How much of the rest is covered makes no difference.
+struct Mask {
+  SurfaceTexture image{};  ///< its first channel counts
+  float cutoff = 0.5f;     ///< (0,1]
+};
+
 /// How a surface gives light back. Energy: reflectance + specular <= 1 in every band.
 struct Material {
   std::string name{};
-  Spectrum reflectance{};           ///< diffuse rho, [0,1]
+  Spectrum reflectance{};           ///< diffuse rho, [0,1]; with a texture, where a facet lacks UV
   Spectrum specular{};              ///< mirror reflectance, [0,1]
   float specular_roughness = 0.0f;  ///< GGX alpha of the mirror, [0,1]: spreads what it reflects,
                                     ///< and leaves the share as it is; 0 is a perfect mirror
@@ -42,6 +56,9 @@ struct Material {
   Spectrum emission{};            ///< exitance M = pi L of a Lambertian emitter, W/m^2, >= 0
   bool one_sided = false;         ///< nothing is reflected from behind; the back is black
   bool emits_both_sides = false;  ///< emission leaves the back as well as the front
+  /// Diffuse rho that varies over facets with UV. Scenes of RGB bands alone have such.
+  std::optional<ReflectanceTexture> texture{};
+  std::optional<Mask> mask{};  ///< holes in facets with UV; of materials that emit nothing
 
   /// Light continues through or off it, undiffused or spread by its roughness.
   bool is_specular() const { return dielectric.has_value() || (specular > 0.0f).any(); }
@@ -58,12 +75,15 @@ struct Material {
 struct Facet {
   std::vector<int> boundary{};
   std::vector<std::vector<int>> holes{};
+  int uv_map = -1;  ///< index into PolygonMesh::uv_maps; -1: it has no texture coordinates
 };
 
 /// Polygons over shared vertices (metres). Facets are planar: readers split what is not.
 struct PolygonMesh {
   std::vector<Eigen::Vector3d> vertices{};
   std::vector<Facet> facets{};
+  /// Shared by facets over which u and v go on alike, so that those can become one.
+  std::vector<UvMap> uv_maps{};
 };
 
 /// An exact sphere (metres); its front is the outside.

@@ -17,14 +17,22 @@ double diffuse_fresnel(double index) {
   return sum / steps;
 }
 
+Coat::Coat(double index, bool saturating, const Spectrum& specular)
+    : outside_(static_cast<float>(diffuse_fresnel(index))),
+      inside_(static_cast<float>(diffuse_fresnel(1.0 / index))),
+      saturating_(saturating),
+      specular_(specular) {}
+
+Spectrum Coat::operator()(const Spectrum& rho) const {
+  const Spectrum returned = saturating_ ? rho : Spectrum(Spectrum::Ones(rho.size()));
+  return (specular_ * outside_ +
+          (1.0f - outside_) * (1.0f - inside_) * rho / (1.0f - inside_ * returned))
+      .min(1.0f);
+}
+
 Spectrum coated_reflectance(const Spectrum& rho, double index, bool saturating,
                             const Spectrum& specular) {
-  const auto outside = static_cast<float>(diffuse_fresnel(index));
-  const auto inside = static_cast<float>(diffuse_fresnel(1.0 / index));
-  const Spectrum returned = saturating ? rho : Spectrum(Spectrum::Ones(rho.size()));
-  return (specular * outside +
-          (1.0f - outside) * (1.0f - inside) * rho / (1.0f - inside * returned))
-      .min(1.0f);
+  return Coat(index, saturating, specular)(rho);
 }
 
 Spectrum metal_reflectance(const Spectrum& eta, const Spectrum& k) {

@@ -27,6 +27,18 @@ double diffuse_fresnel(double index);
 Spectrum coated_reflectance(const Spectrum& rho, double index, bool saturating,
                             const Spectrum& specular);
 
+/// The same coat over many bases, without a new integral for each.
+class Coat {
+ public:
+  Coat(double index, bool saturating, const Spectrum& specular);
+  Spectrum operator()(const Spectrum& rho) const;
+
+ private:
+  float outside_, inside_;  // F_o, F_i
+  bool saturating_;
+  Spectrum specular_;
+};
+
 /// Reflectance at normal incidence of a metal of refractive index eta + i k (Born & Wolf, 14.2).
 Spectrum metal_reflectance(const Spectrum& eta, const Spectrum& k);
 

@@ -116,7 +116,7 @@ GltfFile::GltfFile(const std::filesystem::path& path)
     root_->fail(fmt::format("this is glTF of version '{}'; version 2.0 is read", version));
   }
   for (const char* list : {"accessors", "buffers", "bufferViews", "cameras", "images", "materials",
-                           "meshes", "nodes", "scenes", "textures"}) {
+                           "meshes", "nodes", "samplers", "scenes", "textures"}) {
     content_->lists.emplace(list, root_->objects(list));
   }
   read_buffers(chunks.binary);
@@ -209,7 +209,7 @@ GltfFile::Elements GltfFile::elements(std::size_t accessor, std::string_view typ
   if (!number) a.fail("has no bufferView, so it has no data");
   const std::string_view bytes = view(*number, a);
   const std::size_t offset = a.index_or("byteOffset", 0), count = a.index_or("count", 0);
-  const std::size_t size = component.size * (type == "VEC3" ? 3 : 1);
+  const std::size_t size = component.size * (type == "VEC3" ? 3 : type == "VEC2" ? 2 : 1);
   const std::size_t stride = at("bufferViews", *number, a).index_or("byteStride", size);
   const bool fits =
       count == 0 || (stride >= size && offset <= bytes.size() && size <= bytes.size() - offset &&
@@ -225,12 +225,13 @@ GltfFile::Elements GltfFile::elements(std::size_t accessor, std::string_view typ
           .normalized = a.boolean_or("normalized", false) && component.largest > 0.0};
 }
 
-std::vector<Eigen::Vector3d> GltfFile::vectors(std::size_t accessor,
-                                               const GltfObject& asking) const {
-  const Elements from = elements(accessor, "VEC3", asking);
-  std::vector<Eigen::Vector3d> result(from.count);
+template <int size>
+std::vector<Eigen::Matrix<double, size, 1>> GltfFile::tuples(std::size_t accessor,
+                                                             const GltfObject& asking) const {
+  const Elements from = elements(accessor, size == 3 ? "VEC3" : "VEC2", asking);
+  std::vector<Eigen::Matrix<double, size, 1>> result(from.count);
   for (std::size_t i = 0; i < from.count; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < size; ++c) {
       const double x = from.component.read(from.data + i * from.stride + c * from.component.size);
       result[i][static_cast<int>(c)] =
           from.normalized ? std::max(x / from.component.largest, -1.0) : x;
@@ -241,6 +242,15 @@ std::vector<Eigen::Vector3d> GltfFile::vectors(std::size_t accessor,
     }
   }
   return result;
+}
+
+std::vector<Eigen::Vector3d> GltfFile::vectors(std::size_t accessor,
+                                               const GltfObject& asking) const {
+  return tuples<3>(accessor, asking);
+}
+
+std::vector<Eigen::Vector2d> GltfFile::pairs(std::size_t accessor, const GltfObject& asking) const {
+  return tuples<2>(accessor, asking);
 }
 
 std::vector<int> GltfFile::indices(std::size_t accessor, std::size_t limit,
@@ -258,18 +268,31 @@ std::vector<int> GltfFile::indices(std::size_t accessor, std::size_t limit,
   return result;
 }
 
-std::optional<PictureMean> GltfFile::texture_mean(std::size_t texture, PictureCode code,
-                                                  const GltfObject& asking) const {
+template <class Read>
+auto GltfFile::read_texture(std::size_t texture, const GltfObject& asking, Read read) const
+    -> decltype(read(std::string_view(), std::string())) {
   const auto source = at("textures", texture, asking).index("source");
   if (!source) return std::nullopt;  // by an extension, in a format of its own
   const GltfObject& image = at("images", *source, asking);
   const std::string called = fmt::format("{}: {}", path_.string(), image.place());
-  if (const auto number = image.index("bufferView")) {
-    return picture_mean(view(*number, image), code, called);
-  }
+  if (const auto number = image.index("bufferView")) return read(view(*number, image), called);
   const std::string uri = image.string_or("uri", "");
   if (uri.empty()) image.fail("has neither a uri nor a bufferView");
-  return picture_mean(resource(image, uri), code, called);
+  return read(resource(image, uri), called);
+}
+
+std::optional<PictureMean> GltfFile::texture_mean(std::size_t texture, PictureCode code,
+                                                  const GltfObject& asking) const {
+  return read_texture(texture, asking, [&](std::string_view bytes, const std::string& called) {
+    return picture_mean(bytes, code, called);
+  });
+}
+
+std::optional<Picture> GltfFile::texture_picture(std::size_t texture, PictureCode code,
+                                                 const GltfObject& asking) const {
+  return read_texture(texture, asking, [&](std::string_view bytes, const std::string& called) {
+    return read_picture(bytes, code, called);
+  });
 }
 
 }  // namespace lightwell

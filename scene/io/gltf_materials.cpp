@@ -1,5 +1,7 @@
 #include "scene/io/gltf_materials.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -55,6 +57,51 @@ Spectrum passed_by_each_face(const std::optional<GltfObject>& volume, double thi
   return passed->pow(static_cast<float>(0.5 * thickness / distance));
 }
 
+// What a base colour is told in: a picture and a factor, and who names the picture how.
+struct BaseColor {
+  std::optional<GltfObject> owner{};
+  const char* factor = "baseColorFactor";
+  const char* texture = "baseColorTexture";
+
+  explicit BaseColor(const GltfObject& from)
+      : owner(from.extension("KHR_materials_pbrSpecularGlossiness")) {
+    if (owner) {
+      factor = "diffuseFactor";
+      texture = "diffuseTexture";
+    } else {
+      owner = from.object("pbrMetallicRoughness");
+    }
+  }
+  std::optional<GltfObject> info() const { return owner ? owner->object(texture) : std::nullopt; }
+};
+
+TextureWrap wrap_of(const GltfObject& sampler, const char* key) {
+  constexpr std::size_t repeat = 10497, clamp = 33071, mirror = 33648;
+  const std::size_t mode = sampler.index_or(key, repeat);
+  if (mode != repeat && mode != clamp && mode != mirror) {
+    sampler.fail(fmt::format("has the {} {}, which is none", key, mode));
+  }
+  return mode == clamp    ? TextureWrap::clamp
+         : mode == mirror ? TextureWrap::mirror
+                          : TextureWrap::repeat;
+}
+
+// KHR_texture_transform: scaled, turned, then moved. A turn is counter-clockwise as seen with v
+// pointing down.
+Eigen::Matrix<double, 2, 3> placement_of(const GltfObject& info) {
+  Eigen::Matrix<double, 2, 3> placement = Eigen::Matrix<double, 2, 3>::Identity();
+  const auto transform = info.extension("KHR_texture_transform");
+  if (!transform) return placement;
+  const auto offset = transform->numbers("offset", 2), scale = transform->numbers("scale", 2);
+  const double turn = transform->number_or("rotation", 0.0);
+  Eigen::Matrix2d linear;
+  linear << std::cos(turn), std::sin(turn), -std::sin(turn), std::cos(turn);
+  if (!scale.empty()) linear = linear * Eigen::Vector2d(scale[0], scale[1]).asDiagonal();
+  placement.leftCols<2>() = linear;
+  if (!offset.empty()) placement.col(2) = Eigen::Vector2d(offset[0], offset[1]);
+  return placement;
+}
+
 bool is_cut_by_alpha(const GltfObject& from) {
   const std::string mode = from.string_or("alphaMode", "OPAQUE");
   return mode == "MASK" || mode == "BLEND";
@@ -97,12 +144,75 @@ Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
     remarks_.add("Clear materials that shine were read as black ones that shine", material.name);
     material.dielectric.reset();
   }
+  if (material.mask && material.is_emitter()) {
+    remarks_.add("Lamps have no holes, so their transparency by alpha was left out", material.name);
+    material.mask.reset();
+  }
   if (from.has("normalTexture")) remarks_.add("Normal maps were left out", material.name);
-  if (is_cut_by_alpha(from)) {
+  return material;
+}
+
+std::string GltfMaterials::texture_coordinates(const GltfObject& primitive) const {
+  const auto index = primitive.index("material");
+  if (!index) return {};
+  const auto info = BaseColor(file_.at("materials", *index, primitive)).info();
+  if (!info) return {};
+  const auto transform = info->extension("KHR_texture_transform");
+  const std::size_t set = info->index_or("texCoord", 0);
+  return fmt::format("TEXCOORD_{}", transform ? transform->index_or("texCoord", set) : set);
+}
+
+std::optional<Picture> GltfMaterials::base_picture(const GltfObject& from) {
+  const auto info = BaseColor(from).info();
+  if (!info) return std::nullopt;
+  const auto texture = info->index("index");
+  if (!texture) info->fail("lacks the index of a texture");
+  auto known = base_pictures_.find(*texture);
+  if (known == base_pictures_.end()) {
+    auto picture = file_.texture_picture(*texture, PictureCode::srgb, *info);
+    known = base_pictures_.emplace(*texture, std::move(picture)).first;
+  }
+  return known->second;
+}
+
+SurfaceTexture GltfMaterials::laid_on(const GltfObject& info,
+                                      std::shared_ptr<const Texture> picture) const {
+  SurfaceTexture image{.picture = std::move(picture), .placement = placement_of(info)};
+  const GltfObject& texture = file_.at("textures", info.index_or("index", 0), info);
+  if (const auto number = texture.index("sampler")) {
+    const GltfObject& sampler = file_.at("samplers", *number, texture);
+    image.wrap = {wrap_of(sampler, "wrapS"), wrap_of(sampler, "wrapT")};
+    constexpr std::size_t nearest = 9728, linear = 9729;
+    image.is_smooth = sampler.index_or("magFilter", linear) != nearest;
+  }
+  return image;
+}
+
+// `material` is what a surface of the even colour `base` is.
+void GltfMaterials::lay_on_picture(const GltfObject& from, const Spectrum& base,
+                                   Material& material) {
+  const BaseColor color_from(from);
+  const auto picture = base_picture(from);
+  if (picture && (material.reflectance > 0.0f).any()) {
+    const Spectrum factor = color(color_from.owner, color_from.factor, 4).max(0.0f).min(1.0f);
+    const Spectrum diffuse = (base > 0.0f).select(material.reflectance / base, 0.0f);
+    material.texture = {.image = laid_on(*color_from.info(), picture->color),
+                        .factor = factor * diffuse.min(1.0f)};
+  } else if (picture) {
+    remarks_.add("Textures were read as their mean colour", material.name);
+  }
+  if (!is_cut_by_alpha(from)) return;
+  const auto factors =
+      color_from.owner ? color_from.owner->numbers(color_from.factor, 4) : std::vector<double>();
+  const double alpha = factors.empty() ? 1.0 : factors[3];
+  const double cutoff = from.number_or("alphaCutoff", 0.5) / alpha;
+  if (from.string_or("alphaMode", "OPAQUE") != "MASK" || !(cutoff <= 1.0)) {
     remarks_.add("Transparency by alpha was left out, so the whole surface is opaque",
                  material.name);
+  } else if (picture && picture->alpha && cutoff > 0.0) {
+    material.mask = Mask{.image = laid_on(*color_from.info(), picture->alpha),
+                         .cutoff = static_cast<float>(cutoff)};
   }
-  return material;
 }
 
 PictureMean GltfMaterials::texture_mean(const std::optional<GltfObject>& owner, const char* key,
@@ -130,12 +240,15 @@ PictureMean GltfMaterials::texture_mean(const std::optional<GltfObject>& owner, 
 }
 
 Spectrum GltfMaterials::base_color(const GltfObject& from) {
-  const auto old = from.extension("KHR_materials_pbrSpecularGlossiness");
-  const auto owner = old ? old : from.object("pbrMetallicRoughness");
-  Spectrum result = color(owner, old ? "diffuseFactor" : "baseColorFactor", 4);
-  const PictureMean mean =
-      texture_mean(owner, old ? "diffuseTexture" : "baseColorTexture", PictureCode::srgb, from);
-  result *= (is_cut_by_alpha(from) ? mean.covered_color : mean.color).cast<float>();
+  const BaseColor color_from(from);
+  Spectrum result = color(color_from.owner, color_from.factor, 4);
+  if (const auto picture = base_picture(from)) {
+    result *=
+        (is_cut_by_alpha(from) ? picture->mean.covered_color : picture->mean.color).cast<float>();
+  } else if (color_from.info()) {
+    remarks_.add("Textures of a format that is not read became a grey of 0.5", from.name());
+    result *= 0.5f;
+  }
   if (!((result >= 0.0f).all() && (result <= 1.0f).all())) {
     remarks_.add("Colours outside [0, 1] were cut off there", from.name());
     result = result.max(0.0f).min(1.0f);
@@ -145,6 +258,12 @@ Spectrum GltfMaterials::base_color(const GltfObject& from) {
 
 void GltfMaterials::set_surface(const GltfObject& from, bool is_closed, Material& material) {
   const Spectrum base = base_color(from);
+  set_shaded(from, base, is_closed, material);
+  lay_on_picture(from, base, material);
+}
+
+void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, bool is_closed,
+                               Material& material) {
   if (from.extension("KHR_materials_pbrSpecularGlossiness") ||
       from.extension("KHR_materials_unlit")) {
     remarks_.add("Unlit and specular-glossy materials were read as diffuse, of their base colour",

@@ -9,8 +9,9 @@
 namespace lightwell {
 
 /// Whether a mesh file's own materials matter; if not, everything is of one material, and neither
-/// its MTL file nor its lack of one is spoken of.
-enum class MeshMaterials { from_file, ignored };
+/// its MTL file nor its lack of one is spoken of. Facets keep their texture coordinates, v pointing
+/// down from a picture's top, for materials of the file that show a picture, and `with_uv`.
+enum class MeshMaterials { from_file, ignored, with_uv };
 
 /// What tells a polygon's front: the order of its corners, or the side that the vertex normals the
 /// file gives lie on, where it gives any.

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "scene/io/mitsuba_transform.h"
 #include "scene/io/spectrum_samples.h"
 #include "scene/io/text_file.h"
 
@@ -85,6 +86,12 @@ double planck(double nm, double kelvin) {
   return 1e-9 * 2.0 * h * c * c / std::pow(metres, 5.0) / std::expm1(h * c / (metres * k * kelvin));
 }
 
+// 0.5 and 0.6 say "gamma", 2 and 3 "raw".
+PictureCode code_of(const MitsubaNode& bitmap) {
+  const bool is_linear = bitmap.boolean_or("raw", false) || bitmap.number_or("gamma", 0.0) == 1.0;
+  return is_linear ? PictureCode::linear : PictureCode::srgb;
+}
+
 }  // namespace
 
 Spectrum MitsubaColors::share_or(const MitsubaNode& owner, std::string_view property,
@@ -111,6 +118,112 @@ std::optional<Spectrum> MitsubaColors::positive(const MitsubaNode& owner, std::s
     node->fail(fmt::format("is {}; it must be at least 0", values.minCoeff()));
   }
   return values;
+}
+
+// The texture that a property is, or that its scaling texture scales.
+const MitsubaNode* MitsubaColors::texture_node(const MitsubaNode& owner,
+                                               std::string_view property) const {
+  const MitsubaNode* given = owner.property(property);
+  if (!given) return nullptr;
+  const MitsubaNode* node = &tree_.resolved(*given);
+  for (int depth = 0; node->type == "scale" && depth < deepest; ++depth) {
+    const auto inner = tree_.children(*node, "texture");
+    if (inner.empty()) return nullptr;
+    node = inner.front();
+  }
+  const bool is_texture = node->tag == "texture" || node->tag == "spectrum";
+  return is_texture && (node->type == "bitmap" || node->type == "checkerboard") ? node : nullptr;
+}
+
+std::optional<MitsubaTexture> MitsubaColors::texture(const MitsubaNode& owner,
+                                                     std::string_view property, Pixels pixels) {
+  const MitsubaNode* node = texture_node(owner, property);
+  if (!node) return std::nullopt;
+  auto result = node->type == "bitmap" ? bitmap(*node, pixels) : checkerboard(*node, pixels);
+  if (!result) return std::nullopt;
+  const MitsubaNode* scale = &tree_.resolved(*owner.property(property));
+  Spectrum factor = Spectrum::Ones(3);
+  for (; scale != node; scale = tree_.children(*scale, "texture").front()) {
+    factor *= part_or(*scale, "scale", 1.0f, pixels, 0) * part_or(*scale, "value", 1.0f, pixels, 0);
+  }
+  if (!(factor >= 0.0f).all()) owner.fail(fmt::format("has a negative scale of '{}'", property));
+  if ((factor > 1.0f).any()) {
+    // Only texels that it brings above 1 are cut off.
+    const Texture& picture = *result->texture.image.picture;
+    if ((factor * picture.largest() > 1.0f).any()) {
+      remarks_.add(fmt::format("'{}' exceeds 1 and was cut off there in", property), owner.label());
+    }
+    result->texture.image.picture = std::make_shared<const Texture>(picture.mapped(
+        [&](const Eigen::Array3f& texel) -> Eigen::Array3f { return (factor * texel).min(1.0f); }));
+    result->texture.factor = Spectrum::Ones(3);
+    result->mean = (factor * result->mean).min(1.0f);
+  } else {
+    result->texture.factor = factor;
+    result->mean *= factor;
+  }
+  return result;
+}
+
+std::optional<Mask> MitsubaColors::mask(const MitsubaNode& owner, std::string_view property) {
+  const MitsubaNode* node = texture_node(owner, property);
+  if (!node || node->type != "bitmap") return std::nullopt;
+  const auto path = tree_.file_named(*node, node->string_or("filename", ""));
+  const auto picture = pictures_.picture(path, PictureCode::linear);
+  if (!picture) return std::nullopt;
+  return Mask{.image = laid_on(*node, picture->alpha ? picture->alpha : picture->color)};
+}
+
+SurfaceTexture MitsubaColors::laid_on(const MitsubaNode& node,
+                                      std::shared_ptr<const Texture> picture) {
+  SurfaceTexture image{.picture = std::move(picture)};
+  const auto wrap = [&](const char* property, const std::string& otherwise) {
+    return node.string_or(property, otherwise);
+  };
+  const std::string both = wrap("wrap_mode", "repeat");
+  for (const int axis : {0, 1}) {
+    const std::string mode = wrap(axis == 0 ? "wrap_mode_u" : "wrap_mode_v", both);
+    image.wrap[static_cast<std::size_t>(axis)] = mode == "mirror"  ? TextureWrap::mirror
+                                                 : mode == "clamp" ? TextureWrap::clamp
+                                                                   : TextureWrap::repeat;
+  }
+  image.is_smooth = node.string_or("filter_type", "bilinear") != "nearest";
+  if (const MitsubaNode* to_uv = node.property("to_uv")) {
+    const Eigen::Matrix4d m = read_mitsuba_transform(*to_uv).matrix();
+    image.placement << m(0, 0), m(0, 1), m(0, 3), m(1, 0), m(1, 1), m(1, 3);
+  }
+  const double scale = node.number_or("uvscale", 1.0);
+  Eigen::Matrix<double, 2, 3> scaled;
+  scaled << node.number_or("uscale", scale), 0.0, node.number_or("uoffset", 0.0), 0.0,
+      node.number_or("vscale", scale), node.number_or("voffset", 0.0);
+  const Eigen::Vector2d offset = image.placement.leftCols<2>() * scaled.col(2);
+  const Eigen::Matrix2d linear = image.placement.leftCols<2>() * scaled.leftCols<2>();
+  image.placement.leftCols<2>() = linear;
+  image.placement.col(2) += offset;
+  return image;
+}
+
+std::optional<MitsubaTexture> MitsubaColors::bitmap(const MitsubaNode& node, Pixels pixels) {
+  const auto path = tree_.file_named(node, node.string_or("filename", ""));
+  const auto picture = pictures_.picture(path, code_of(node));
+  if (!picture) return std::nullopt;
+  const auto& mean =
+      pixels == Pixels::by_opacity ? picture->mean.covered_color : picture->mean.color;
+  return MitsubaTexture{.texture = {.image = laid_on(node, picture->color), .factor = grey(1.0)},
+                        .mean = spectrum_of(mean)};
+}
+
+// Two colours in two by two squares.
+MitsubaTexture MitsubaColors::checkerboard(const MitsubaNode& node, Pixels pixels) {
+  const Spectrum colors[] = {part_or(node, "color0", 0.4f, pixels, 0),
+                             part_or(node, "color1", 0.2f, pixels, 0)};
+  std::vector<Texture::Code> texels;
+  for (const int square : {0, 1, 1, 0}) {
+    for (int c = 0; c < 3; ++c) texels.push_back(Texture::encode(colors[square][c]));
+  }
+  SurfaceTexture image = laid_on(node, std::make_shared<const Texture>(2, 2, 3, std::move(texels)));
+  image.is_smooth = false;
+  const Spectrum mean = 0.5f * (colors[0].min(1.0f) + colors[1].min(1.0f));
+  return {.texture = {.image = std::move(image), .factor = grey(1.0)}, .mean = mean};
 }
 
 double MitsubaColors::number_or(const MitsubaNode& owner, std::string_view property,
@@ -245,9 +358,7 @@ Spectrum MitsubaColors::read_texture(const MitsubaNode& node, Pixels pixels, int
 Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node, Pixels pixels) {
   const std::string name = node.string_or("filename", "");
   const auto path = tree_.file_named(node, name);
-  // 0.5 and 0.6 say "gamma", 2 and 3 "raw".
-  const bool is_linear = node.boolean_or("raw", false) || node.number_or("gamma", 0.0) == 1.0;
-  const auto mean = pictures_.mean(path, is_linear ? PictureCode::linear : PictureCode::srgb);
+  const auto mean = pictures_.mean(path, code_of(node));
   if (!mean) {
     remarks_.add("Pictures of a format that is not read became a grey of 0.5", name);
     return grey(0.5);

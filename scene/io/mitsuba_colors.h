@@ -10,11 +10,18 @@
 #include "scene/io/mitsuba_tree.h"
 #include "scene/io/picture_mean.h"
 #include "scene/io/remarks.h"
+#include "scene/scene.h"
 
 namespace lightwell {
 
 /// Which of a picture's pixels count: all, or each by its opacity, where a mask cuts the rest away.
 enum class Pixels { all, by_opacity };
+
+/// A reflectance that is a picture, and its mean.
+struct MitsubaTexture {
+  ReflectanceTexture texture{};
+  Spectrum mean{};
+};
 
 /// Spectra and textures of a Mitsuba scene as RGB bands (linear, Rec. 709). Wavelengths become r, g
 /// and b as in native files: means over 600-700, 500-600 and 400-500 nm. A texture becomes the mean
@@ -33,8 +40,18 @@ class MitsubaColors {
                                    Pixels pixels = Pixels::all);
   /// A property that is one number, such as a roughness; of a spectrum or texture the mean.
   double number_or(const MitsubaNode& owner, std::string_view property, double otherwise);
+  /// A property in [0,1] that is a bitmap or a checkerboard, scaled or not; else nothing.
+  std::optional<MitsubaTexture> texture(const MitsubaNode& owner, std::string_view property,
+                                        Pixels pixels);
+  /// Where a mask's bitmap leaves holes; nothing if it is no bitmap. A picture's alpha counts, or,
+  /// if it is opaque, its red.
+  std::optional<Mask> mask(const MitsubaNode& owner, std::string_view property);
 
  private:
+  const MitsubaNode* texture_node(const MitsubaNode& owner, std::string_view property) const;
+  std::optional<MitsubaTexture> bitmap(const MitsubaNode& node, Pixels pixels);
+  MitsubaTexture checkerboard(const MitsubaNode& node, Pixels pixels);
+  static SurfaceTexture laid_on(const MitsubaNode& node, std::shared_ptr<const Texture> picture);
   Spectrum read(const MitsubaNode& node, Pixels pixels, int depth);
   Spectrum read_new(const MitsubaNode& node, Pixels pixels, int depth);
   Spectrum read_rgb(const MitsubaNode& node) const;

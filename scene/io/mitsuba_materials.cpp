@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <numbers>
 
 #include "scene/io/glossy.h"
@@ -83,6 +84,10 @@ void MitsubaMaterials::add_emission(const MitsubaNode& emitter, const std::strin
     remarks_.add("Clear materials that shine were read as black ones that shine", name);
     material.dielectric.reset();
   }
+  if (material.mask && material.is_emitter()) {
+    remarks_.add("Lamps have no holes, so their masks were left out", name);
+    material.mask.reset();
+  }
 }
 
 Material MitsubaMaterials::read(const MitsubaNode& bsdf, Pixels pixels) {
@@ -125,6 +130,11 @@ Material MitsubaMaterials::read_new(const MitsubaNode& bsdf, Pixels pixels) {
 
 Material MitsubaMaterials::diffuse(const MitsubaNode& bsdf, std::string_view property,
                                    Pixels pixels) {
+  if (const auto picture = colors_.texture(bsdf, property, pixels)) {
+    Material material = opaque(picture->mean);
+    material.texture = picture->texture;
+    return material;
+  }
   return opaque(colors_.share_or(bsdf, property, 0.5f, pixels));
 }
 
@@ -195,16 +205,30 @@ Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf, Pixels pixels) {
 }
 
 Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
-  const Spectrum rho = colors_.share_or(bsdf, "diffuse_reflectance", 0.5f, pixels);
+  const auto picture = colors_.texture(bsdf, "diffuse_reflectance", pixels);
+  const Spectrum rho =
+      picture ? picture->mean : colors_.share_or(bsdf, "diffuse_reflectance", 0.5f, pixels);
   const Spectrum specular = colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
   remarks_.add("Plastics were read as diffuse, with what their gloss reflects in the mean",
                bsdf.label());
-  return opaque(coated_reflectance(rho, index_ratio(bsdf, polypropylene),
-                                   bsdf.boolean_or("nonlinear", false), specular));
+  const Coat coat(index_ratio(bsdf, polypropylene), bsdf.boolean_or("nonlinear", false), specular);
+  Material material = opaque(coat(rho));
+  if (!picture) return material;
+  material.texture = picture->texture;
+  SurfaceTexture& image = material.texture->image;
+  image.picture = std::make_shared<const Texture>(
+      image.picture->mapped([&](const Eigen::Array3f& texel) -> Eigen::Array3f {
+        const Spectrum base = picture->texture.factor * texel;
+        return coat(base);
+      }));
+  material.texture->factor.setOnes();
+  return material;
 }
 
 Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
-  const Spectrum color = colors_.share_or(bsdf, "base_color", 0.5f, pixels);
+  const auto picture = colors_.texture(bsdf, "base_color", pixels);
+  const Spectrum color =
+      picture ? picture->mean : colors_.share_or(bsdf, "base_color", 0.5f, pixels);
   const auto share = [&](const char* property, double otherwise) {
     return std::clamp(colors_.number_or(bsdf, property, otherwise), 0.0, 1.0);
   };
@@ -223,6 +247,10 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
                bsdf.label());
   Material material = opaque(zero());
   set_metallic(material, color, share("metallic", 0.0), alpha);
+  if (picture && (material.reflectance > 0.0f).any()) {
+    material.texture = picture->texture;
+    material.texture->factor *= (color > 0.0f).select(material.reflectance / color, 0.0f);
+  }
   return material;
 }
 
@@ -233,8 +261,13 @@ Material MitsubaMaterials::wrapped(const MitsubaNode& bsdf, Pixels pixels) {
     remarks_.add(fmt::format("BSDF '{}' was read as what it covers", bsdf.type), bsdf.label());
     return read(*inner.front(), pixels);
   }
-  remarks_.add("Masks were left out, so the whole surface is opaque", bsdf.label());
-  return read(*inner.front(), Pixels::by_opacity);
+  Material material = read(*inner.front(), Pixels::by_opacity);
+  material.mask = colors_.mask(bsdf, "opacity");
+  if (!material.mask) {
+    remarks_.add("Masks that are no bitmap were left out, so the whole surface is opaque",
+                 bsdf.label());
+  }
+  return material;
 }
 
 Material MitsubaMaterials::two_sided(const MitsubaNode& bsdf, Pixels pixels) {
@@ -263,6 +296,10 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
   }
   if (weights.size() != inner.size()) bsdf.fail("needs one weight for each BSDF it blends");
   remarks_.add("Blended BSDFs were read as the mean of their parts", bsdf.label());
+  if (std::ranges::any_of(inner,
+                          [&](const auto* b) { return read(*b, pixels).texture.has_value(); })) {
+    remarks_.add("Pictures in blended BSDFs were read as their mean colour", bsdf.label());
+  }
   Material sum = opaque(zero());
   sum.one_sided =
       std::ranges::all_of(inner, [&](const auto* b) { return read(*b, pixels).one_sided; });

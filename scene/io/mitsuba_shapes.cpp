@@ -32,9 +32,12 @@ PolygonMesh joined(Scene&& scene) {
   for (std::size_t s = 1; s < scene.surfaces.size(); ++s) {
     auto& next = std::get<PolygonMesh>(scene.surfaces[s].shape);
     const int offset = static_cast<int>(all.vertices.size());
+    const int uv_offset = static_cast<int>(all.uv_maps.size());
+    all.uv_maps.insert(all.uv_maps.end(), next.uv_maps.begin(), next.uv_maps.end());
     all.vertices.insert(all.vertices.end(), next.vertices.begin(), next.vertices.end());
     for (Facet& facet : next.facets) {
       for (int& v : facet.boundary) v += offset;
+      if (facet.uv_map >= 0) facet.uv_map += uv_offset;
       all.facets.push_back(std::move(facet));
     }
   }
@@ -72,7 +75,10 @@ void MitsubaShapes::add_placed(const MitsubaNode& shape, const Eigen::Affine3d& 
   const auto loops = [&](const std::vector<Loop>& local) {
     return placed_loops(local, to_world, flip, repairs_);
   };
-  if (shape.type == "rectangle") return add_surface(shape, name, loops(rectangle_loops()));
+  if (shape.type == "rectangle") {
+    const std::vector<UvLoop> uv = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    return add_surface(shape, name, placed_loops(rectangle_loops(), to_world, flip, repairs_, uv));
+  }
   if (shape.type == "cube") return add_surface(shape, name, loops(cube_loops()));
   if (shape.type == "disk") {
     remarks_.add("Disks were read as polygons of 32 corners and the same area", name);
@@ -147,19 +153,27 @@ PolygonMesh MitsubaShapes::mesh(const MitsubaNode& shape, const Eigen::Affine3d&
   const bool sides_differ =
       material.one_sided || material.dielectric.has_value() || material.is_emitter();
   const bool by_normals = sides_differ && !shape.boolean_or("face_normals", false);
+  const bool with_uv = material.texture || material.mask;
   const MeshFile& file =
-      mesh_file(shape, by_normals ? MeshFronts::from_normals : MeshFronts::from_winding);
+      mesh_file(shape, with_uv, by_normals ? MeshFronts::from_normals : MeshFronts::from_winding);
   repairs_.add(file.repairs);
-  return placed_mesh(file.mesh, to_world, shape.boolean_or("flip_normals", false), file.has_normals,
-                     repairs_);
+  PolygonMesh placed = placed_mesh(file.mesh, to_world, shape.boolean_or("flip_normals", false),
+                                   file.has_normals, repairs_);
+  // OBJ files count v from the bottom of a picture, unless the shape says otherwise.
+  if (shape.boolean_or("flip_tex_coords", shape.type == "obj")) return placed;
+  for (UvMap& map : placed.uv_maps) {
+    map.gradient.row(1) = -map.gradient.row(1);
+    map.offset[1] = 1.0 - map.offset[1];
+  }
+  return placed;
 }
 
-const MitsubaShapes::MeshFile& MitsubaShapes::mesh_file(const MitsubaNode& shape,
+const MitsubaShapes::MeshFile& MitsubaShapes::mesh_file(const MitsubaNode& shape, bool with_uv,
                                                         MeshFronts fronts) {
   const MitsubaNode* given = shape.property("filename");
   if (!given) shape.fail("lacks the property 'filename'");
   const auto path = tree_.file_named(*given, shape.string_or("filename", ""));
-  const auto known = files_.find({path, fronts});
+  const auto known = files_.find({path, with_uv, fronts});
   if (known != files_.end()) return known->second;
   const bool is_obj = shape.type == "obj";
   if (lower_extension(path) != (is_obj ? ".obj" : ".ply")) {
@@ -169,15 +183,16 @@ const MitsubaShapes::MeshFile& MitsubaShapes::mesh_file(const MitsubaNode& shape
   FilePolygons polygons;
   Scene scene;
   try {
-    scene = is_obj ? read_obj_file(path, 1.0, MeshMaterials::ignored, &polygons, fronts)
-                   : read_geometry_file(path, 1.0, MeshMaterials::ignored, &polygons, fronts);
+    const auto wanted = with_uv ? MeshMaterials::with_uv : MeshMaterials::ignored;
+    scene = is_obj ? read_obj_file(path, 1.0, wanted, &polygons, fronts)
+                   : read_geometry_file(path, 1.0, wanted, &polygons, fronts);
   } catch (const InputError& error) {
     given->fail(fmt::format("cannot be used: {}", error.what()));
   }
   MeshFile file{.mesh = joined(std::move(scene)),
                 .repairs = polygons.repairs,
                 .has_normals = polygons.has_normals};
-  return files_.emplace(std::pair(path, fronts), std::move(file)).first->second;
+  return files_.emplace(std::tuple(path, with_uv, fronts), std::move(file)).first->second;
 }
 
 // Surfaces are told apart by name: by id where there is one, else by file or plugin.

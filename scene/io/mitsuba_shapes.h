@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -46,7 +47,7 @@ class MitsubaShapes {
   PolygonMesh cylinder(const MitsubaNode& shape, const Eigen::Affine3d& to_world);
   PolygonMesh mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
                    const std::string& name);
-  const MeshFile& mesh_file(const MitsubaNode& shape, MeshFronts fronts);
+  const MeshFile& mesh_file(const MitsubaNode& shape, bool with_uv, MeshFronts fronts);
   std::string unique_name(const MitsubaNode& shape, const std::string& prefix);
 
   const MitsubaTree& tree_;
@@ -54,7 +55,7 @@ class MitsubaShapes {
   Remarks& remarks_;
   MitsubaMaterials materials_;
   Repairs repairs_;
-  std::map<std::pair<std::filesystem::path, MeshFronts>, MeshFile> files_;
+  std::map<std::tuple<std::filesystem::path, bool, MeshFronts>, MeshFile> files_;
   NumberedNames names_;
   std::int64_t facets_ = 0;
 };

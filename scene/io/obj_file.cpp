@@ -52,6 +52,8 @@ class ObjParser {
     const std::string_view key = next_word(text);
     if (key == "v") {
       content_.vertices.push_back(metres_per_unit_ * read_triple(text));
+    } else if (key == "vt") {
+      read_uv(text);
     } else if (key == "vn" && wants_normals_) {
       content_.normals.push_back(read_triple(text));
     } else if (key == "f") {
@@ -87,6 +89,14 @@ class ObjParser {
     return p;
   }
 
+  // What is no number leaves its facets without texture coordinates, and is no reason to do without
+  // the file.
+  void read_uv(std::string_view text) {
+    const auto u = parse_finite(next_word(text)), v = parse_finite(next_word(text));
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    content_.uv.emplace_back(u.value_or(none), u ? 1.0 - v.value_or(0.0) : none);
+  }
+
   void read_face(std::string_view text) {
     ObjFace face{.line = line_,
                  .group = current_group(),
@@ -110,6 +120,10 @@ class ObjParser {
       }
       content_.corners.push_back(static_cast<int>(vertex));
       if (wants_normals_) content_.corner_normals.push_back(normal_of(word));
+      if (!content_.uv.empty()) {
+        content_.corner_uv.resize(content_.corners.size() - 1, -1);
+        content_.corner_uv.push_back(uv_of(word));
+      }
     }
     face.count = content_.corners.size() - face.first;
     content_.faces.push_back(face);
@@ -119,13 +133,24 @@ class ObjParser {
   int normal_of(std::string_view corner) const {
     const std::size_t slash = corner.rfind('/');
     if (slash == corner.find('/')) return -1;
-    const std::string_view word = corner.substr(slash + 1);
+    return index_within(corner.substr(slash + 1), content_.normals.size());
+  }
+
+  // The middle number; -1 if there is none or it names no texture coordinates.
+  int uv_of(std::string_view corner) const {
+    const std::size_t slash = corner.find('/');
+    if (slash == std::string_view::npos) return -1;
+    return index_within(corner.substr(slash + 1), content_.uv.size());
+  }
+
+  // Counted from 1, or backwards from the latest.
+  static int index_within(std::string_view word, std::size_t size) {
     long index = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
-    const auto count = static_cast<long>(content_.normals.size());
-    const long normal = index < 0 ? count + index : index - 1;
-    const bool is_known = error == std::errc() && normal >= 0 && normal < count;
-    return is_known ? static_cast<int>(normal) : -1;
+    const auto count = static_cast<long>(size);
+    const long place = index < 0 ? count + index : index - 1;
+    const bool is_known = error == std::errc() && place >= 0 && place < count;
+    return is_known ? static_cast<int>(place) : -1;
   }
 
   // Only when all is read: a file may list its faces before its vertices.

@@ -22,6 +22,8 @@ struct ObjContent {
   std::vector<int> corners{};
   std::vector<Eigen::Vector3d> normals{};  ///< read if fronts are asked for from them
   std::vector<int> corner_normals{};       ///< by corner; -1: none
+  std::vector<Eigen::Vector2d> uv{};  ///< v points down from the picture's top, unlike in the file
+  std::vector<int> corner_uv{};       ///< by corner; -1: none; empty if the file has no uv
   std::vector<ObjFace> faces{};
   std::vector<std::string> groups{};
   std::vector<std::string> material_names{};

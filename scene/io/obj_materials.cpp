@@ -8,7 +8,9 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
+#include "scene/io/picture_mean.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -21,12 +23,15 @@ struct MtlBlock {
   std::optional<Spectrum> diffuse{}, mirror{}, filter{}, radiance{};
   std::optional<float> index{}, dissolve{}, transparency{};
   int illumination = -1;
-  bool has_texture = false;
+  std::string diffuse_map{}, dissolve_map{};  ///< options and file
+  bool has_other_map = false;
 };
 
 // Materials that share something worth a note.
 struct Remarks {
-  std::vector<std::string> highlights{}, textures{}, scaled{}, dissolved{}, dark_glass{};
+  std::vector<std::string> highlights{}, textures{}, scaled{}, dissolved{}, dark_glass{}, unread{},
+      glowing_holes{};
+  std::vector<std::string> missing{};  ///< sentences
 };
 
 Spectrum black_spectrum() {
@@ -67,8 +72,12 @@ class MtlParser {
     }
     if (key == "Tr") block.transparency = number(key, next_word(rest), 1.0f);
     if (key == "illum") block.illumination = static_cast<int>(number(key, next_word(rest), 10.0f));
-    if (key.starts_with("map_") || key == "bump" || key == "norm" || key == "disp") {
-      block.has_texture = true;
+    if (key == "map_Kd") {
+      block.diffuse_map = trimmed(rest);
+    } else if (key == "map_d") {
+      block.dissolve_map = trimmed(rest);
+    } else if (key.starts_with("map_") || key == "bump" || key == "norm" || key == "disp") {
+      block.has_other_map = true;
     }
   }
 
@@ -156,9 +165,99 @@ Material make_material(const TextFile& file, const MtlBlock& b, Remarks& remarks
   } else {
     make_opaque(file, b, material, remarks);
   }
-  if (b.has_texture) remarks.textures.push_back(b.name);
+  if (b.has_other_map) remarks.textures.push_back(b.name);
   return material;
 }
+
+// A map_ statement: options, then a file's name, which may have blanks.
+struct MapStatement {
+  std::string file{};
+  SurfaceTexture image{};
+};
+
+MapStatement read_map(std::string_view text) {
+  MapStatement map;
+  Eigen::Vector2d scale(1.0, 1.0), offset(0.0, 0.0);
+  const auto is_number = [](std::string_view word) { return parse_finite(word).has_value(); };
+  while (text.starts_with('-')) {
+    std::string_view rest = text;
+    const std::string_view option = next_word(rest);
+    std::vector<std::string_view> values;
+    // -mm has two numbers, -s, -o and -t up to three; all others one word.
+    const std::size_t most = option == "-mm"                                      ? 2
+                             : option == "-s" || option == "-o" || option == "-t" ? 3
+                                                                                  : 1;
+    while (values.size() < most) {
+      std::string_view after = rest;
+      const std::string_view word = next_word(after);
+      if (word.empty() || (most > 1 && !is_number(word))) break;
+      values.push_back(word);
+      rest = after;
+    }
+    if (values.empty()) break;
+    if (option == "-clamp" && values[0] == "on") map.image.wrap.fill(TextureWrap::clamp);
+    if (option == "-s" || option == "-o") {
+      Eigen::Vector2d& to = option == "-s" ? scale : offset;
+      for (std::size_t i = 0; i < std::min<std::size_t>(2, values.size()); ++i) {
+        to[static_cast<int>(i)] = *parse_finite(values[i]);
+      }
+    }
+    text = trimmed(rest);
+  }
+  map.file = text;
+  std::ranges::replace(map.file, '\\', '/');
+  // Of v that points up: v' = s v + o, and 1 - v' is what points down.
+  map.image.placement << scale.x(), 0.0, offset.x(), 0.0, scale.y(), 1.0 - scale.y() - offset.y();
+  return map;
+}
+
+// What map_Kd and map_d say of a material that is otherwise done.
+class MapReader {
+ public:
+  MapReader(const TextFile& file, Remarks& remarks) : file_(file), remarks_(remarks) {}
+
+  void add_maps(const MtlBlock& b, Material& material) {
+    if (!b.diffuse_map.empty()) {
+      MapStatement map = read_map(b.diffuse_map);
+      if (material.dielectric) {
+        remarks_.textures.push_back(b.name);
+      } else if (const auto picture = open(map.file, b)) {
+        if (!b.diffuse) material.reflectance = Spectrum::Ones(3) - material.specular;
+        map.image.picture = picture->color;
+        material.texture = {.image = map.image, .factor = material.reflectance};
+        material.reflectance *= picture->mean.color.cast<float>();
+      }
+    }
+    if (b.dissolve_map.empty()) return;
+    MapStatement map = read_map(b.dissolve_map);
+    if (material.is_emitter()) {
+      remarks_.glowing_holes.push_back(b.name);
+    } else if (const auto picture = open(map.file, b, PictureCode::linear)) {
+      map.image.picture = picture->alpha ? picture->alpha : picture->color;
+      material.mask = Mask{.image = map.image};
+    }
+  }
+
+ private:
+  std::optional<Picture> open(const std::string& name, const MtlBlock& b,
+                              PictureCode code = PictureCode::srgb) {
+    const auto path = file_.path().parent_path() / name;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+      remarks_.missing.push_back(
+          fmt::format("Picture '{}' of material '{}' is missing; the material goes without it.",
+                      path.string(), b.name));
+      return std::nullopt;
+    }
+    auto picture = pictures_.picture(path, code);
+    if (!picture) remarks_.unread.push_back(b.name);
+    return picture;
+  }
+
+  const TextFile& file_;
+  Remarks& remarks_;
+  PictureFiles pictures_;
+};
 
 void add_note(const TextFile& file, const std::vector<std::string>& materials, const char* what,
               std::vector<std::string>& notes) {
@@ -179,12 +278,17 @@ std::vector<Material> read_obj_materials(const std::filesystem::path& path,
   const TextFile file(path);
   Remarks remarks;
   std::vector<Material> materials;
+  MapReader maps(file, remarks);
   for (const MtlBlock& block : MtlParser(file).parse()) {
     materials.push_back(make_material(file, block, remarks));
+    maps.add_maps(block, materials.back());
   }
   add_note(file, remarks.highlights,
            "Ks describes a highlight, no mirror (illum 3), and was left out in", notes);
   add_note(file, remarks.textures, "textures were left out in", notes);
+  add_note(file, remarks.unread, "pictures that are neither PNG nor JPEG were left out in", notes);
+  add_note(file, remarks.glowing_holes, "lamps have no holes, so map_d was left out in", notes);
+  notes.insert(notes.end(), remarks.missing.begin(), remarks.missing.end());
   add_note(file, remarks.scaled, "Kd + Ks exceeded 1 and was scaled down in", notes);
   add_note(file, remarks.dissolved, "d < 1 or Tr > 0 was read as clear glass in", notes);
   add_note(file, remarks.dark_glass, "Ke was left out in clear materials", notes);

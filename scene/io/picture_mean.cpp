@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csetjmp>
 #include <cstdio>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -23,7 +24,7 @@ constexpr double most_pixels = 1e8;  // 10 000 x 10 000: more takes seconds and 
 
 // Eight bits for each of r, g, b and alpha, rows from the top.
 struct Pixels {
-  std::size_t count = 0;
+  std::size_t width = 0, height = 0, count = 0;
   std::vector<unsigned char> bytes{};
 };
 
@@ -50,7 +51,9 @@ Pixels decode_png(std::string_view bytes, const std::string& called) {
   check_size(image.width, image.height, called);
   image.format = PNG_FORMAT_RGBA;
   image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // as the 8-bit ones, where the file does not say
-  Pixels pixels{.count = std::size_t{image.width} * image.height};
+  Pixels pixels{.width = image.width,
+                .height = image.height,
+                .count = std::size_t{image.width} * image.height};
   pixels.bytes.resize(PNG_IMAGE_SIZE(image));
   if (!png_image_finish_read(&image, nullptr, pixels.bytes.data(), 0, nullptr)) {
     fail_damaged(called, image.message);
@@ -102,7 +105,9 @@ Pixels decode_jpeg(std::string_view bytes, const std::string& called) {
   jpeg_destroy_decompress(&decoder);
   if (!is_read) fail_damaged(called, error.message.data());
   check_size(width, height, called);
-  Pixels pixels{.count = rgb.size() / 3};
+  Pixels pixels{.width = static_cast<std::size_t>(width),
+                .height = static_cast<std::size_t>(height),
+                .count = rgb.size() / 3};
   pixels.bytes.reserve(4 * pixels.count);
   for (std::size_t p = 0; p < pixels.count; ++p) {
     pixels.bytes.insert(pixels.bytes.end(), {rgb[3 * p], rgb[3 * p + 1], rgb[3 * p + 2], 255});
@@ -110,12 +115,18 @@ Pixels decode_jpeg(std::string_view bytes, const std::string& called) {
   return pixels;
 }
 
-PictureMean mean_of(const Pixels& pixels, PictureCode code) {
+// What each of the 256 codes stands for.
+std::array<double, 256> linear_values(PictureCode code) {
   std::array<double, 256> linear{};
   for (std::size_t i = 0; i < linear.size(); ++i) {
     const double value = static_cast<double>(i) / 255.0;
     linear[i] = code == PictureCode::srgb ? linear_from_srgb(value) : value;
   }
+  return linear;
+}
+
+PictureMean mean_of(const Pixels& pixels, PictureCode code) {
+  const std::array<double, 256> linear = linear_values(code);
   PictureMean mean{.alpha = 0.0};
   for (std::size_t p = 0; p < pixels.count; ++p) {
     const unsigned char* at = &pixels.bytes[4 * p];
@@ -133,6 +144,41 @@ PictureMean mean_of(const Pixels& pixels, PictureCode code) {
   return mean;
 }
 
+std::shared_ptr<const Texture> texture_of(const Pixels& pixels, std::size_t first_channel,
+                                          std::size_t channels, PictureCode code) {
+  std::array<Texture::Code, 256> codes{};
+  const std::array<double, 256> linear = linear_values(code);
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    codes[i] = Texture::encode(static_cast<float>(linear[i]));
+  }
+  std::vector<Texture::Code> texels;
+  texels.reserve(channels * pixels.count);
+  for (std::size_t p = 0; p < pixels.count; ++p) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      texels.push_back(codes[pixels.bytes[4 * p + first_channel + c]]);
+    }
+  }
+  return std::make_shared<const Texture>(static_cast<int>(pixels.width),
+                                         static_cast<int>(pixels.height),
+                                         static_cast<int>(channels), std::move(texels));
+}
+
+Picture picture_of(const Pixels& pixels, PictureCode code) {
+  Picture picture{.color = texture_of(pixels, 0, 3, code), .mean = mean_of(pixels, code)};
+  if (picture.mean.alpha < 1.0) picture.alpha = texture_of(pixels, 3, 1, PictureCode::linear);
+  return picture;
+}
+
+std::optional<Pixels> decode(std::string_view bytes, const std::string& called) {
+  if (bytes.starts_with("\x89PNG")) return decode_png(bytes, called);
+  if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes, called);
+  return std::nullopt;
+}
+
+std::string name_of(const std::filesystem::path& path) {
+  return fmt::format("{}: the file", path.string());
+}
+
 }  // namespace
 
 double linear_from_srgb(double value) {
@@ -141,18 +187,33 @@ double linear_from_srgb(double value) {
 
 std::optional<PictureMean> picture_mean(std::string_view bytes, PictureCode code,
                                         const std::string& called) {
-  if (bytes.starts_with("\x89PNG")) return mean_of(decode_png(bytes, called), code);
-  if (bytes.starts_with("\xff\xd8")) return mean_of(decode_jpeg(bytes, called), code);
-  return std::nullopt;
+  const auto pixels = decode(bytes, called);
+  if (!pixels) return std::nullopt;
+  return mean_of(*pixels, code);
+}
+
+std::optional<Picture> read_picture(std::string_view bytes, PictureCode code,
+                                    const std::string& called) {
+  const auto pixels = decode(bytes, called);
+  if (!pixels) return std::nullopt;
+  return picture_of(*pixels, code);
 }
 
 std::optional<PictureMean> PictureFiles::mean(const std::filesystem::path& path, PictureCode code) {
   const auto known = known_.find({path, code});
   if (known != known_.end()) return known->second;
   const TextFile file(path);
-  const auto result = picture_mean(file.text(), code, fmt::format("{}: the file", path.string()));
+  const auto result = picture_mean(file.text(), code, name_of(path));
   known_.emplace(std::pair(path, code), result);
   return result;
+}
+
+std::optional<Picture> PictureFiles::picture(const std::filesystem::path& path, PictureCode code) {
+  const auto known = pictures_.find({path, code});
+  if (known != pictures_.end()) return known->second;
+  const TextFile file(path);
+  return pictures_.emplace(std::pair(path, code), read_picture(file.text(), code, name_of(path)))
+      .first->second;
 }
 
 }  // namespace lightwell

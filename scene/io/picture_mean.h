@@ -3,10 +3,13 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+
+#include "scene/texture.h"
 
 namespace lightwell {
 
@@ -21,19 +24,32 @@ struct PictureMean {
   double alpha = 1.0;
 };
 
+/// A picture's pixels as textures, and their mean.
+struct Picture {
+  std::shared_ptr<const Texture> color{};  ///< not null
+  std::shared_ptr<const Texture> alpha{};  ///< one channel; null: opaque throughout
+  PictureMean mean{};
+};
+
 /// Decodes a PNG or JPEG of at most 1e8 pixels; sRGB is made linear (IEC 61966-2-1). Empty for
 /// other formats (OpenEXR, Radiance HDR ...). Throws InputError "`called` ..." for a
 /// picture that is damaged or too large.
 std::optional<PictureMean> picture_mean(std::string_view bytes, PictureCode code,
                                         const std::string& called);
 
-/// Means of picture files, each decoded once.
+/// The same with all of its pixels.
+std::optional<Picture> read_picture(std::string_view bytes, PictureCode code,
+                                    const std::string& called);
+
+/// Picture files, each decoded once for its mean and once for its pixels.
 class PictureFiles {
  public:
   /// Throws InputError naming the file if it is missing or damaged.
   std::optional<PictureMean> mean(const std::filesystem::path& path, PictureCode code);
+  std::optional<Picture> picture(const std::filesystem::path& path, PictureCode code);
 
  private:
+  std::map<std::pair<std::filesystem::path, PictureCode>, std::optional<Picture>> pictures_;
   std::map<std::pair<std::filesystem::path, PictureCode>, std::optional<PictureMean>> known_;
 };
 

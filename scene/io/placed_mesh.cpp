@@ -139,13 +139,18 @@ bool keeps_angles(const Eigen::Affine3d& transform) {
 }
 
 PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& transform,
-                         bool flip, Repairs& repairs) {
+                         bool flip, Repairs& repairs, const std::vector<UvLoop>& uv) {
   const bool turned = (transform.linear().determinant() < 0.0) != flip;
   MeshBuilder mesh;
-  for (Loop loop : loops) {
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    Loop loop = loops[i];
+    UvLoop of_loop = uv.empty() ? UvLoop{} : uv[i];
     for (Eigen::Vector3d& p : loop) p = transform * p;
-    if (turned) std::reverse(loop.begin(), loop.end());
-    add_repaired(mesh, std::move(loop), repairs);
+    if (turned) {
+      std::reverse(loop.begin(), loop.end());
+      std::reverse(of_loop.begin(), of_loop.end());
+    }
+    add_repaired(mesh, std::move(loop), repairs, std::move(of_loop));
   }
   return mesh.mesh();
 }
@@ -165,8 +170,20 @@ PolygonMesh placed_mesh(PolygonMesh mesh, const Eigen::Affine3d& transform, bool
   if (!keeps_angles(transform)) {
     // What was as good as planar may be bent now.
     std::vector<Loop> loops;
-    for (const Facet& facet : mesh.facets) loops.push_back(loop_of(mesh, facet.boundary));
-    return placed_loops(loops, transform, flip != (!mirror_turns && is_mirrored), repairs);
+    std::vector<UvLoop> uv;
+    for (const Facet& facet : mesh.facets) {
+      loops.push_back(loop_of(mesh, facet.boundary));
+      UvLoop& of_loop = uv.emplace_back();
+      if (facet.uv_map < 0) continue;
+      const UvMap& map = mesh.uv_maps[static_cast<std::size_t>(facet.uv_map)];
+      for (const Eigen::Vector3d& p : loops.back()) of_loop.push_back(map.at(p));
+    }
+    return placed_loops(loops, transform, flip != (!mirror_turns && is_mirrored), repairs, uv);
+  }
+  const Eigen::Affine3d back = transform.inverse();
+  for (UvMap& map : mesh.uv_maps) {
+    map.offset += map.gradient * back.translation();
+    map.gradient = map.gradient * back.linear();
   }
   for (Eigen::Vector3d& p : mesh.vertices) p = transform * p;
   if (turned) turn_over(mesh);

@@ -36,8 +36,9 @@ void turn_over(PolygonMesh& mesh);
 
 /// The loops where `transform` puts them, turned over if `flip` says so. Normals keep their side of
 /// the surface even where the transformation mirrors. Polygons that it flattens are dropped.
+/// `uv`: of each loop, or empty.
 PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& transform,
-                         bool flip, Repairs& repairs);
+                         bool flip, Repairs& repairs, const std::vector<UvLoop>& uv = {});
 
 /// The same for a mesh of sound facets without holes; with `mirror_turns` false the order of the
 /// corners alone says where the front is, so that a mirrored mesh is turned inside out.

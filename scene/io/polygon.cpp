@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "scene/sampling.h"
 
@@ -241,8 +242,71 @@ std::vector<int> MeshBuilder::indices(const Loop& loop) {
   return result;
 }
 
-void MeshBuilder::add(const Polygon& polygon) {
-  Facet facet{.boundary = indices(polygon.boundary)};
+namespace {
+
+// What texture coordinates may be off by: a tenth of a texel of a thousand.
+double uv_tolerance(const UvLoop& uv) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& at : uv) box.extend(at);
+  return 1e-4 + 1e-3 * box.diagonal().norm();
+}
+
+bool agrees(const UvMap& map, const Loop& loop, const UvLoop& uv) {
+  const double tolerance = uv_tolerance(uv);
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    if (!((map.at(loop[i]) - uv[i]).norm() <= tolerance)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<UvMap> uv_map_over(const Loop& loop, const UvLoop& uv) {
+  if (uv.size() != loop.size()) return std::nullopt;
+  std::size_t one = 0, other = 0;
+  double farthest = 0.0;
+  for (std::size_t i = 1; i < loop.size(); ++i) {
+    const double distance = (loop[i] - loop[0]).squaredNorm();
+    if (distance > farthest) std::tie(farthest, one) = std::pair(distance, i);
+  }
+  const Eigen::Vector3d a = loop[one] - loop[0];
+  farthest = 0.0;
+  for (std::size_t i = 1; i < loop.size(); ++i) {
+    const double distance = a.cross(loop[i] - loop[0]).squaredNorm();
+    if (distance > farthest) std::tie(farthest, other) = std::pair(distance, i);
+  }
+  const Eigen::Vector3d b = loop[other] - loop[0], normal = a.cross(b);
+  const double area = normal.squaredNorm();
+  if (!(area > 0.0)) return std::nullopt;
+  // The rows that take a to (1, 0), b to (0, 1), and the normal to nothing.
+  Eigen::Matrix<double, 2, 3> to_sides;
+  to_sides << b.cross(normal).transpose() / area, normal.cross(a).transpose() / area;
+  Eigen::Matrix2d sides;
+  sides << uv[one] - uv[0], uv[other] - uv[0];
+  UvMap map{.gradient = sides * to_sides};
+  map.offset = uv[0] - map.gradient * loop[0];
+  if (!map.gradient.allFinite() || !map.offset.allFinite() || !agrees(map, loop, uv)) {
+    return std::nullopt;
+  }
+  return map;
+}
+
+// One of the last few where that fits: facets of one flat piece follow each other in files.
+int MeshBuilder::uv_map(const Loop& loop, const UvLoop& uv) {
+  if (uv.empty()) return -1;
+  constexpr int looked_at = 8;
+  const int count = static_cast<int>(mesh_.uv_maps.size());
+  for (int i = count - 1; i >= std::max(0, count - looked_at); --i) {
+    if (agrees(mesh_.uv_maps[static_cast<std::size_t>(i)], loop, uv)) return i;
+  }
+  const auto map = uv_map_over(loop, uv);
+  if (!map) return -1;
+  mesh_.uv_maps.push_back(*map);
+  return count;
+}
+
+void MeshBuilder::add(const Polygon& polygon, const UvLoop& uv) {
+  Facet facet{.boundary = indices(polygon.boundary), .uv_map = uv_map(polygon.boundary, uv)};
   const Eigen::Vector3d normal = newell(polygon.boundary);
   for (const Loop& hole : polygon.holes) {
     facet.holes.push_back(indices(hole));
@@ -265,16 +329,32 @@ std::vector<std::string> Repairs::notes() const {
   return result;
 }
 
-void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs) {
-  loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
-  while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+namespace {
+
+// Takes corners out that repeat the one before them.
+void join_repeated(Loop& loop, UvLoop& uv) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    if (kept > 0 && loop[i] == loop[kept - 1]) continue;
+    if (!uv.empty()) uv[kept] = uv[i];
+    loop[kept++] = loop[i];
+  }
+  while (kept > 1 && loop[0] == loop[kept - 1]) --kept;
+  loop.resize(kept);
+  if (!uv.empty()) uv.resize(kept);
+}
+
+}  // namespace
+
+void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv) {
+  join_repeated(loop, uv);
   if (loop.size() < 3 || is_thin(loop)) {
     ++(loop.size() > 3 && !fault({loop}).empty() ? repairs.crossing : repairs.thin);
     return;
   }
-  if (loop.size() == 3) return mesh.add({std::move(loop)});
-  const bool sound = fault({loop}).empty();
-  if (sound && deviation_from_plane({loop}) <= flatness) return mesh.add({std::move(loop)});
+  if (loop.size() == 3) return mesh.add({std::move(loop)}, uv);
+  const bool sound = fault({loop}).empty() && deviation_from_plane({loop}) <= flatness;
+  if (sound && (uv.empty() || uv_map_over(loop, uv))) return mesh.add({std::move(loop)}, uv);
   // Exporters join a hole to its polygon by a bridge that runs there and back; such a loop is no
   // simple polygon, yet ears can be clipped from it.
   const auto triangles = split_into_triangles(loop);
@@ -282,10 +362,11 @@ void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs) {
     ++repairs.crossing;
     return;
   }
-  ++repairs.split;
+  if (!sound) ++repairs.split;
   for (const auto& t : triangles) {
     const Loop corners = {loop[t[0]], loop[t[1]], loop[t[2]]};
-    if (!is_thin(corners)) mesh.add({corners});
+    const UvLoop of_corners = uv.empty() ? uv : UvLoop{uv[t[0]], uv[t[1]], uv[t[2]]};
+    if (!is_thin(corners)) mesh.add({corners}, of_corners);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace lightwell {
 inline constexpr double flatness = 1e-6;
 
 using Loop = std::vector<Eigen::Vector3d>;
+/// Texture coordinates at the corners of a loop, as many as it has; or none.
+using UvLoop = std::vector<Eigen::Vector2d>;
 
 /// A polygon as a file gives it, before it becomes a Facet.
 struct Polygon {
@@ -42,16 +45,23 @@ bool is_thin(const Loop& loop);
 /// The loop may touch itself (a hole joined by a bridge); empty if it crosses itself.
 std::vector<std::array<int, 3>> split_into_triangles(const Loop& loop);
 
+/// Texture coordinates over the plane of a loop that has an area: exact at three corners far from
+/// each other. Nothing if the others are off by more than 1e-4 and 1e-3 of the coordinates' extent,
+/// or if any is not finite.
+std::optional<UvMap> uv_map_over(const Loop& loop, const UvLoop& uv);
+
 /// Collects polygons into a PolygonMesh in which equal positions are one vertex.
 class MeshBuilder {
  public:
-  /// The polygon must be sound; holes are turned to the winding opposite to the boundary's.
-  void add(const Polygon& polygon);
+  /// The polygon must be sound; holes are turned to the winding opposite to the boundary's. `uv` is
+  /// the boundary's; without what uv_map_over() makes of it, the facet has none.
+  void add(const Polygon& polygon, const UvLoop& uv = {});
   bool empty() const { return mesh_.facets.empty(); }
   const PolygonMesh& mesh() const { return mesh_; }
 
  private:
   std::vector<int> indices(const Loop& loop);
+  int uv_map(const Loop& loop, const UvLoop& uv);
   PolygonMesh mesh_;
   std::map<std::array<double, 3>, int> index_of_;
 };
@@ -72,7 +82,8 @@ struct Repairs {
   std::vector<std::string> notes() const;
 };
 
-/// Adds a polygon of a mesh file, repaired where that is possible.
-void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs);
+/// Adds a polygon of a mesh file, repaired where that is possible. It is cut into triangles as well
+/// where its texture coordinates are not linear over it.
+void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv = {});
 
 }  // namespace lightwell

@@ -48,7 +48,7 @@ void check_ply_header(const std::filesystem::path& path) {
 }
 
 PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, double metres_per_unit,
-                      MeshFronts fronts, FilePolygons& polygons) {
+                      bool with_uv, MeshFronts fronts, FilePolygons& polygons) {
   const auto position = [&](unsigned v) {
     if (v >= mesh.mNumVertices) {
       fail(path,
@@ -67,19 +67,25 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     Loop loop;
+    UvLoop uv;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     for (unsigned i = 0; i < face.mNumIndices; ++i) {
       const unsigned v = face.mIndices[i];
       loop.push_back(position(v));
+      if (with_uv && mesh.HasTextureCoords(0)) {
+        const aiVector3D& at = mesh.mTextureCoords[0][v];
+        uv.emplace_back(at.x, 1.0 - at.y);
+      }
       if (!use_normals) continue;
       const aiVector3D& n = mesh.mNormals[v];
       normal += Eigen::Vector3d(n.x, n.y, n.z);
     }
     if (loop.size() >= 3 && area_vector(loop).dot(normal) < 0.0) {
       std::reverse(loop.begin(), loop.end());
+      std::reverse(uv.begin(), uv.end());
     }
     const std::size_t facets_before = builder.mesh().facets.size();
-    add_repaired(builder, std::move(loop), polygons.repairs);
+    add_repaired(builder, std::move(loop), polygons.repairs, std::move(uv));
     polygons.of_facet.insert(polygons.of_facet.end(), builder.mesh().facets.size() - facets_before,
                              polygons.count);
     ++polygons.count;
@@ -104,7 +110,8 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
   }
   FilePolygons found;
   for (unsigned m = 0; m < file->mNumMeshes; ++m) {
-    PolygonMesh mesh = read_mesh(path, *file->mMeshes[m], metres_per_unit, fronts, found);
+    PolygonMesh mesh = read_mesh(path, *file->mMeshes[m], metres_per_unit,
+                                 materials == MeshMaterials::with_uv, fronts, found);
     if (mesh.facets.empty()) continue;
     const std::string stem = path.stem().string();
     scene.surfaces.push_back(

@@ -94,6 +94,8 @@ class GltfReader {
       remarks_.add("Animations were left out; all stands where the file's nodes put it",
                    animation.name());
     }
+    drop_unused_uv(scene_);
+    remark_pictures_without_uv(scene_, remarks_);
     for (const std::string& note : remarks_.sentences()) scene_.notes.push_back(note);
     for (const std::string& note : repairs_.notes()) scene_.notes.push_back(note + ".");
     scene_.dropped_polygons = repairs_.dropped();
@@ -211,6 +213,7 @@ class GltfReader {
     if (mode == triangle_list && corners % 3 != 0) {
       primitive.fail(fmt::format("has {} corners, which is no multiple of three", corners));
     }
+    const std::vector<Eigen::Vector2d> uv = texture_coordinates(primitive, attributes, vertices);
     const std::size_t count = mode == triangle_list ? corners / 3 : corners < 3 ? 0 : corners - 2;
     triangles_ += static_cast<std::int64_t>(count);
     if (triangles_ > most_facets) {
@@ -220,13 +223,35 @@ class GltfReader {
     MeshBuilder mesh;
     for (std::size_t i = 0; i < count; ++i) {
       Loop loop;
+      UvLoop of_loop;
       for (const std::size_t corner : corners_of(mode, i)) {
-        loop.push_back(vertices[accessor ? static_cast<std::size_t>(indices[corner]) : corner]);
+        const std::size_t vertex = accessor ? static_cast<std::size_t>(indices[corner]) : corner;
+        loop.push_back(vertices[vertex]);
+        if (!uv.empty()) of_loop.push_back(uv[vertex]);
       }
-      if (is_mirrored) std::swap(loop[1], loop[2]);  // the front stays the front
-      add_repaired(mesh, std::move(loop), repairs_);
+      if (is_mirrored) {  // the front stays the front
+        std::swap(loop[1], loop[2]);
+        if (!uv.empty()) std::swap(of_loop[1], of_loop[2]);
+      }
+      add_repaired(mesh, std::move(loop), repairs_, std::move(of_loop));
     }
     return mesh.mesh();
+  }
+
+  // By vertex; empty if the material shows no picture, or the mesh does not say where.
+  std::vector<Eigen::Vector2d> texture_coordinates(
+      const GltfObject& primitive, const GltfObject& attributes,
+      const std::vector<Eigen::Vector3d>& vertices) const {
+    const std::string set = materials_.texture_coordinates(primitive);
+    if (set.empty()) return {};
+    const auto accessor = attributes.index(set.c_str());
+    if (!accessor) return {};
+    auto uv = file_.pairs(*accessor, attributes);
+    if (uv.size() != vertices.size()) {
+      attributes.fail(
+          fmt::format("has {} texture coordinates for {} vertices", uv.size(), vertices.size()));
+    }
+    return uv;
   }
 
   const GltfFile& file_;

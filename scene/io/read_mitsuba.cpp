@@ -48,6 +48,8 @@ Scene read_mitsuba(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: the scene has no shapes that can be read{}", path.string(),
                                  tree.root().children.empty() ? "; it is empty" : ""));
   }
+  drop_unused_uv(scene);
+  remark_pictures_without_uv(scene, remarks);
   for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);
   for (const std::string& note : shapes.repairs().notes()) scene.notes.push_back(note + ".");
   scene.dropped_polygons = shapes.repairs().dropped();

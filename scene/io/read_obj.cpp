@@ -11,6 +11,7 @@
 #include "scene/io/obj_materials.h"
 #include "scene/io/polygon.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -84,6 +85,18 @@ std::map<int, int> take_materials(const ObjContent& content, std::vector<Materia
   return taken;
 }
 
+// At the corners of a face; none unless all have some.
+UvLoop uv_of(const ObjContent& content, const ObjFace& face) {
+  UvLoop uv;
+  for (std::size_t i = face.first; i < face.first + face.count; ++i) {
+    const int at = i < content.corner_uv.size() ? content.corner_uv[i] : -1;
+    if (at < 0) return {};
+    uv.push_back(content.uv[static_cast<std::size_t>(at)]);
+    if (!uv.back().allFinite()) return {};
+  }
+  return uv;
+}
+
 // Whether the normals at the corners lie on the other side than the order of the corners says.
 bool turned_by_normals(const ObjContent& content, const ObjFace& face, const Loop& loop) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -94,8 +107,13 @@ bool turned_by_normals(const ObjContent& content, const ObjFace& face, const Loo
   return loop.size() >= 3 && area_vector(loop).dot(sum) < 0.0;
 }
 
-void build_surfaces(const ObjContent& content, const std::map<int, int>& materials, Scene& scene,
-                    FilePolygons& polygons) {
+void build_surfaces(const ObjContent& content, const std::map<int, int>& materials,
+                    MeshMaterials wanted, Scene& scene, FilePolygons& polygons) {
+  // Of a material that comes from elsewhere it is not known here whether it shows a picture.
+  const auto keeps_uv = [&](int material) {
+    const Material& m = scene.materials[static_cast<std::size_t>(material)];
+    return wanted == MeshMaterials::with_uv || m.texture || m.mask;
+  };
   std::map<std::pair<int, int>, std::size_t> surface_of;  // (group, material)
   std::vector<std::pair<int, int>> keys;
   std::vector<MeshBuilder> meshes;
@@ -115,9 +133,13 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
     for (std::size_t i = 0; i < face.count; ++i) {
       loop.push_back(content.vertices[static_cast<std::size_t>(content.corners[face.first + i])]);
     }
-    if (turned_by_normals(content, face, loop)) std::reverse(loop.begin(), loop.end());
+    UvLoop uv = keeps_uv(key.second) ? uv_of(content, face) : UvLoop{};
+    if (turned_by_normals(content, face, loop)) {
+      std::reverse(loop.begin(), loop.end());
+      std::reverse(uv.begin(), uv.end());
+    }
     MeshBuilder& mesh = meshes[entry->second];
-    add_repaired(mesh, std::move(loop), polygons.repairs);
+    add_repaired(mesh, std::move(loop), polygons.repairs, std::move(uv));
     polygons_of[entry->second].resize(mesh.mesh().facets.size(), polygons.count);
     ++polygons.count;
   }
@@ -154,7 +176,10 @@ Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, M
     scene.materials.push_back(default_material(scene.bands));
   }
   FilePolygons found;
-  build_surfaces(content, materials, scene, found);
+  build_surfaces(content, materials, wanted, scene, found);
+  Remarks remarks;
+  remark_pictures_without_uv(scene, remarks);
+  for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);
   scene.dropped_polygons = found.repairs.dropped();
   if (polygons) *polygons = std::move(found);
   if (scene.surfaces.empty()) {

@@ -7,6 +7,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
 #include "scene/io/toml_materials.h"
 #include "scene/io/toml_surfaces.h"
@@ -125,9 +126,10 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
 std::vector<TomlMaterial> read_materials(const TomlTable& document, const TomlBands& bands,
                                          Scene& scene) {
   std::vector<TomlMaterial> materials;
+  PictureFiles pictures;
   if (const auto tables = document.find("materials")) {
     for (const auto& [name, value] : tables->members("material")) {
-      materials.push_back(read_toml_material(value, name, bands));
+      materials.push_back(read_toml_material(value, name, bands, pictures));
       scene.materials.push_back(materials.back().material);
     }
   }
@@ -162,6 +164,10 @@ Scene read_toml(const std::filesystem::path& path) {
   }
   if (number == 0) surfaces->fail("is empty; add at least one [[surfaces]] table");
   spread_power(materials, scene);
+  drop_unused_uv(scene);
+  Remarks remarks;
+  remark_pictures_without_uv(scene, remarks);
+  for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);
 
   if (const auto cameras = document.find("cameras")) {
     if (!cameras->is_array()) cameras->fail("must be an array of tables; write [[cameras]]");

@@ -35,6 +35,33 @@ std::vector<std::string> Remarks::sentences() const {
   return result;
 }
 
+void remark_pictures_without_uv(const Scene& scene, Remarks& remarks) {
+  for (const Surface& surface : scene.surfaces) {
+    const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
+    if (!material.texture && !material.mask) continue;
+    const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
+    const auto has_uv = [](const Facet& facet) { return facet.uv_map >= 0; };
+    if (mesh && std::ranges::all_of(mesh->facets, has_uv)) continue;
+    if (material.texture) {
+      remarks.add("Pictures on surfaces without texture coordinates count by their mean colour",
+                  surface.name);
+    }
+    if (material.mask) {
+      remarks.add("Masks on surfaces without texture coordinates were left out", surface.name);
+    }
+  }
+}
+
+void drop_unused_uv(Scene& scene) {
+  for (Surface& surface : scene.surfaces) {
+    const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
+    auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
+    if (!mesh || material.texture || material.mask || mesh->uv_maps.empty()) continue;
+    mesh->uv_maps = {};
+    for (Facet& facet : mesh->facets) facet.uv_map = -1;
+  }
+}
+
 void note_if_dark(Scene& scene) {
   const bool shines =
       std::ranges::any_of(scene.materials, [](const Material& m) { return m.is_emitter(); });

@@ -27,6 +27,13 @@ class Remarks {
   std::vector<Remark> remarks_;
 };
 
+/// Says of which surfaces with a picture some facets have no texture coordinates: the picture
+/// counts there by its mean, and a mask not at all.
+void remark_pictures_without_uv(const Scene& scene, Remarks& remarks);
+
+/// Takes texture coordinates off surfaces whose material shows no picture.
+void drop_unused_uv(Scene& scene);
+
 /// Adds a note to a scene without an emitter.
 void note_if_dark(Scene& scene);
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "scene/errors.h"
+#include "scene/io/toml_pictures.h"
 
 namespace lightwell {
 namespace {
@@ -230,9 +231,10 @@ TomlBands read_toml_bands(const TomlValue& value) {
 }
 
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
-                                const TomlBands& bands) {
-  const TomlTable table = value.table({"reflectance", "specular", "roughness", "glass", "sides",
-                                       "radiance", "exitance", "power", "emits"});
+                                const TomlBands& bands, PictureFiles& pictures) {
+  const TomlTable table =
+      value.table({"reflectance", "specular", "roughness", "glass", "sides", "radiance", "exitance",
+                   "power", "emits", "texture", "mask"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
@@ -255,6 +257,7 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
     material.one_sided = sides->one_of({"one", "two"}) == "one";
   }
   read_glass(table, bands, material);
+  read_toml_pictures(table, bands, pictures, material);
   read_emission(table, bands, result);
   return result;
 }

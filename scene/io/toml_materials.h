@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/io/picture_mean.h"
 #include "scene/io/spectrum_samples.h"
 #include "scene/io/toml_value.h"
 #include "scene/scene.h"
@@ -25,7 +26,7 @@ struct TomlMaterial {
 };
 
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
-                                const TomlBands& bands);
+                                const TomlBands& bands, PictureFiles& pictures);
 
 /// Sets the emission of every material that was given as a power: M = power / area, both sides
 /// counted where both shine. `materials` are the first of the scene's. Notes those without surface.

@@ -29,6 +29,10 @@ struct Placement {
   Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
     return scale * (rotation * p) + offset;
   }
+  UvMap operator()(const UvMap& map) const {
+    const Eigen::Matrix<double, 2, 3> gradient = map.gradient * rotation.transpose() / scale;
+    return {.gradient = gradient, .offset = map.offset - gradient * offset};
+  }
 };
 
 // Exact for quarter turns, so that a wall turned by 90 degrees stays parallel to the axes.
@@ -102,6 +106,11 @@ class SurfaceReader {
     if (const auto flip = table_.find("flip"); flip && shape != "mesh") {
       flip->fail(fmt::format("belongs to 'mesh', but the shape is '{}'", shape));
     }
+    if (const auto uv = table_.find("uv"); uv && shape != "polygon" && shape != "polygons") {
+      uv->fail(fmt::format(
+          "belongs to 'polygon' and 'polygons', but the shape is '{}'; mesh files bring their own",
+          shape));
+    }
     if (shape == "mesh") return read_mesh(given);
     const int material = find_material(table_.require("material"));
     if (shape == "sphere") return add_surface(name_, material, read_sphere(given));
@@ -122,6 +131,11 @@ class SurfaceReader {
     }
     value.fail(fmt::format("is '{}', which is not among the materials of this file.{}", name,
                            did_you_mean(name, known)));
+  }
+
+  bool shows_picture(int material) const {
+    const Material& m = scene_.materials[static_cast<std::size_t>(material)];
+    return m.texture || m.mask;
   }
 
   void add_surface(const std::string& name, int material, std::variant<PolygonMesh, Sphere> shape) {
@@ -145,21 +159,51 @@ class SurfaceReader {
         polygon.holes.push_back(read_loop(hole, place_));
       }
     }
-    add_sound(value, polygon, mesh);
+    const auto uv = table_.find("uv");
+    add_sound(value, polygon, uv ? read_uv(*uv, polygon.boundary.size()) : UvLoop{}, mesh);
+  }
+
+  static UvLoop read_uv(const TomlValue& value, std::size_t corners) {
+    UvLoop uv;
+    for (const auto& corner : value.elements("corner")) {
+      const auto numbers = corner.elements("number");
+      if (numbers.size() != 2) corner.fail("must be two numbers [u, v]");
+      uv.emplace_back(numbers[0].number(), numbers[1].number());
+    }
+    if (uv.size() != corners) {
+      value.fail(fmt::format("has {} places for a polygon of {} vertices; give one each", uv.size(),
+                             corners));
+    }
+    return uv;
   }
 
   void add_polygons(const TomlValue& value, MeshBuilder& mesh) {
     const auto polygons = value.elements("polygon");
     if (polygons.empty()) value.fail("is empty; give at least one polygon");
-    for (const auto& polygon : polygons) {
-      add_sound(polygon, {.boundary = read_loop(polygon, place_)}, mesh);
+    const auto uv = table_.find("uv");
+    const auto places = uv ? uv->elements("polygon") : std::vector<TomlValue>{};
+    if (uv && places.size() != polygons.size()) {
+      uv->fail(fmt::format("is of {} polygons, but there are {}", places.size(), polygons.size()));
+    }
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+      const Polygon polygon{.boundary = read_loop(polygons[i], place_)};
+      const UvLoop of_loop = uv ? read_uv(places[i], polygon.boundary.size()) : UvLoop{};
+      add_sound(polygons[i], polygon, of_loop, mesh);
     }
   }
 
-  void add_sound(const TomlValue& value, const Polygon& polygon, MeshBuilder& mesh) {
+  void add_sound(const TomlValue& value, const Polygon& polygon, const UvLoop& uv,
+                 MeshBuilder& mesh) {
     if (const std::string what = fault(polygon); !what.empty()) value.fail(what);
     const double deviation = deviation_from_plane(polygon);
-    if (deviation <= flatness) return mesh.add(polygon);
+    const bool is_planar = deviation <= flatness;
+    const bool is_even = uv.empty() || uv_map_over(polygon.boundary, uv);
+    if (is_planar && is_even) return mesh.add(polygon, uv);
+    if (is_planar && !polygon.holes.empty()) {
+      value.fail(
+          "has holes and texture coordinates that are not linear over it; give a 'uv' that "
+          "is, or cut it into pieces");
+    }
     const double distance = deviation * size_of(polygon.boundary) / scene_.metres_per_unit;
     if (!polygon.holes.empty()) {
       value.fail(
@@ -168,15 +212,16 @@ class SurfaceReader {
                       distance, scene_.unit_name));
     }
     const auto triangles = split_into_triangles(polygon.boundary);
-    if (triangles.empty()) value.fail("is not planar and cannot be split into triangles");
+    if (triangles.empty()) value.fail("cannot be split into triangles");
     for (const auto& t : triangles) {
       const Polygon corners{
           .boundary = {polygon.boundary[t[0]], polygon.boundary[t[1]], polygon.boundary[t[2]]}};
       if (const std::string what = fault(corners); !what.empty()) {
         value.fail("is not planar, and when split into triangles it has one that " + what);
       }
-      mesh.add(corners);
+      mesh.add(corners, uv.empty() ? uv : UvLoop{uv[t[0]], uv[t[1]], uv[t[2]]});
     }
+    if (is_planar) return;
     scene_.notes.push_back(
         fmt::format("{} is not planar (a vertex is {:.3g} {} off its plane) and was split into {} "
                     "triangles.",
@@ -227,7 +272,9 @@ class SurfaceReader {
     const bool turned = flip && flip->boolean();
     Scene mesh;
     try {
-      const auto wanted = material ? MeshMaterials::ignored : MeshMaterials::from_file;
+      const auto wanted = !material                                 ? MeshMaterials::from_file
+                          : shows_picture(find_material(*material)) ? MeshMaterials::with_uv
+                                                                    : MeshMaterials::ignored;
       mesh = extension == ".obj" ? read_obj_file(path, 1.0, wanted)
                                  : read_geometry_file(path, 1.0, wanted);
     } catch (const InputError& error) {
@@ -240,6 +287,7 @@ class SurfaceReader {
     for (Surface& surface : mesh.surfaces) {
       auto& polygons = std::get<PolygonMesh>(surface.shape);
       for (auto& vertex : polygons.vertices) vertex = place_(vertex);
+      for (auto& map : polygons.uv_maps) map = place_(map);
       if (turned) turn_over(polygons);
       const auto& own = mesh.materials[static_cast<std::size_t>(surface.material)];
       add_surface(mesh.surfaces.size() == 1 ? name_ : fmt::format("{}/{}", name_, surface.name),
@@ -282,7 +330,7 @@ void read_toml_surface(const TomlValue& value, std::size_t number, Scene& scene)
   const TomlValue named = value.renamed(fmt::format("surface '{}'", name));
   const TomlTable table =
       named.table({"name", "material", "polygon", "holes", "polygons", "box", "sphere", "mesh",
-                   "flip", "scale", "rotate", "pivot", "translate"});
+                   "flip", "scale", "rotate", "pivot", "translate", "uv"});
   SurfaceReader(named, table, name, scene).read();
 }
 

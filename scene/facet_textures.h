@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// What varies over the facets of a scene: the pictures of their materials, where they have texture
+/// coordinates. Facets are numbered through the scene (see scene_facets). Keeps no reference to the
+/// scene.
+class FacetTextures {
+ public:
+  explicit FacetTextures(const Scene& scene);
+
+  /// Whether there is nothing that varies.
+  bool is_empty() const { return place_of_.empty(); }
+  /// Whether some facet has holes.
+  bool has_holes() const { return has_holes_; }
+  /// Of all that decides where the holes are; 0 without holes.
+  std::uint64_t hash_of_holes() const { return hash_of_holes_; }
+  bool is_textured(int facet) const { return varying(facet) && materials_of(facet).texture; }
+  bool has_holes(int facet) const { return varying(facet) && materials_of(facet).mask; }
+
+  /// Diffuse rho of a facet that is textured at a point (metres) of its plane, unfiltered.
+  Spectrum reflectance(int facet, const Eigen::Vector3d& point) const;
+  /// Its mean about the point over the parallelogram with sides `footprint` (columns, metres).
+  Spectrum reflectance(int facet, const Eigen::Vector3d& point,
+                       const Eigen::Matrix<double, 3, 2>& footprint) const;
+  /// How many texels of a facet's texture lie along a vector in its plane (metres).
+  double texels_along(int facet, const Eigen::Vector3d& vector) const;
+  /// Whether light goes through at a point of a facet that has holes.
+  bool is_hole(int facet, const Eigen::Vector3d& point) const;
+
+ private:
+  struct Pictures {
+    std::optional<ReflectanceTexture> texture{};
+    std::optional<Mask> mask{};
+  };
+  struct Place {
+    int pictures = 0;
+    UvMap uv{};
+  };
+  void add_to_hash(int facet);
+  bool varying(int facet) const { return !place_of_.empty() && place_of_[std::size_t(facet)] >= 0; }
+  const Place& place(int facet) const {
+    return places_[static_cast<std::size_t>(place_of_[static_cast<std::size_t>(facet)])];
+  }
+  const Pictures& materials_of(int facet) const {
+    return pictures_[static_cast<std::size_t>(place(facet).pictures)];
+  }
+
+  std::vector<Pictures> pictures_{};
+  std::vector<Place> places_{};  // one for each UvMap of a surface that has pictures
+  std::vector<int> place_of_{};  // by facet; -1: nothing varies; empty: nowhere
+  bool has_holes_ = false;
+  std::uint64_t hash_of_holes_ = 0;
+};
+
+}  // namespace lightwell
