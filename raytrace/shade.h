@@ -8,6 +8,7 @@
 #include "mesh/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
+#include "raytrace/caustic_map.h"
 #include "raytrace/lamp_samples.h"
 #include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
@@ -106,6 +107,7 @@ class RayTree {
   void shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
   Arriving arriving(const ElementHit& hit, const SurfacePoint& at, const Branch& branch,
                     const Walk& walk) const;
+  void add_caustics(const ElementHit& hit, const SurfacePoint& at, Spectrum& indirect) const;
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
                    const Arriving& E, Walk& walk) const;
 
@@ -115,8 +117,9 @@ class RayTree {
   const RadiositySolution& solution_;
   const RenderOptions& options_;
   bool with_layers_ = false;
-  Eigen::Array3f white_rgb_;             ///< of what reflects everything, under equal-energy light
-  std::optional<PixelGather> gather_{};  ///< for Pass::gather
+  Eigen::Array3f white_rgb_;              ///< of what reflects everything, under equal-energy light
+  std::optional<PixelGather> gather_{};   ///< for Pass::gather
+  std::optional<CausticMap> caustics_{};  ///< in place of the solution's
   static constexpr int gloss_point_count = 1024;
   SobolPoints gloss_points_;  ///< of looks of one key; later ones use a new scrambling
   LampSamples lamps_;

@@ -1,0 +1,304 @@
+#include "raytrace/caustic_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <span>
+
+#include "raytrace/disc_kernel.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int leaf_size = 12;
+constexpr int subtree_size = 4096;  // what one thread works on
+
+// Squared distance of a place from a box.
+float distance2(const Eigen::Array3f& p, const Eigen::Array3f& low, const Eigen::Array3f& high) {
+  return (low - p).max(p - high).max(0.0f).square().sum();
+}
+
+// What is left within the bounds of a disc's kernel. Edges are seen along its normal.
+float share_within(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius,
+                   std::span<const LightRegions::Edge> edges) {
+  Eigen::Vector3d a, b;
+  tangent_frame(normal, a, b);
+  double beyond = 0.0;
+  for (const LightRegions::Edge& edge : edges) {
+    const Eigen::Vector3d from = (edge.from - center) / radius, to = (edge.to - center) / radius;
+    beyond += kernel_beyond({from.dot(a), from.dot(b)}, {to.dot(a), to.dot(b)});
+  }
+  // In the sharpest corner that is worth the name some percent are left; less is rounding.
+  constexpr double least = 0.02;
+  return static_cast<float>(std::clamp(1.0 - beyond, least, 1.0));
+}
+
+}  // namespace
+
+// The k nearest discs of a tree.
+class CausticMap::Nearest {
+ public:
+  Nearest(const CausticMap& map, int k) : map_(map), k_(static_cast<std::size_t>(k)) {
+    heap_.reserve(k_);
+  }
+
+  /// Squared distance to the k-th.
+  float distance2_to_last(int root, const Eigen::Vector3f& from) {
+    heap_.clear();
+    visit(root, from);
+    return heap_.front();
+  }
+
+ private:
+  float reach() const {
+    return heap_.size() < k_ ? std::numeric_limits<float>::infinity() : heap_.front();
+  }
+
+  void visit(int n, const Eigen::Vector3f& from) {
+    const Node& node = map_.nodes_[static_cast<std::size_t>(n)];
+    if (node.second < 0) {
+      for (int i = node.begin; i < node.end; ++i) {
+        add((map_.discs_[static_cast<std::size_t>(i)].center - from).squaredNorm());
+      }
+      return;
+    }
+    std::array<int, 2> child = {n + 1, node.second};
+    std::array<float, 2> away{};
+    for (std::size_t c = 0; c < 2; ++c) {
+      const Node& other = map_.nodes_[static_cast<std::size_t>(child[c])];
+      away[c] = distance2(from.array(), other.low, other.high);
+    }
+    const std::size_t near = away[1] < away[0] ? 1 : 0;
+    for (const std::size_t c : {near, 1 - near}) {
+      if (away[c] < reach()) visit(child[c], from);
+    }
+  }
+
+  void add(float d2) {
+    if (!(d2 < reach())) return;
+    if (heap_.size() == k_) {
+      std::pop_heap(heap_.begin(), heap_.end());
+      heap_.pop_back();
+    }
+    heap_.push_back(d2);
+    std::push_heap(heap_.begin(), heap_.end());
+  }
+
+  const CausticMap& map_;
+  std::size_t k_;
+  std::vector<float> heap_;
+};
+
+int CausticMap::neighbours(std::size_t count) {
+  // Measured on the glass sphere's focus in the Cornell box.
+  constexpr double scale = 0.02;
+  constexpr int least = 16;
+  return std::max(least, static_cast<int>(scale * std::pow(static_cast<double>(count), 2.0 / 3.0)));
+}
+
+CausticMap::CausticMap(const PatchMesh& mesh, const CausticPhotons& photons)
+    : regions_(light_regions(mesh)), root_(static_cast<std::size_t>(regions_.count()), -1) {
+  const int count = static_cast<int>(photons.count());
+  if (count == 0) return;
+  for (const Eigen::Vector3d& p : photons.position) origin_ += p / count;
+  const auto region_of = [&](int photon) {
+    return regions_.of_element[static_cast<std::size_t>(photons.element[photon])];
+  };
+  std::vector<int> order(static_cast<std::size_t>(count));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return region_of(a) < region_of(b); });
+  for (const int i : order) {
+    const auto p = static_cast<std::size_t>(i);
+    discs_.push_back({.center = (photons.position[p] - origin_).cast<float>(),
+                      .normal = element_center(mesh, photons.element[p]).normal.cast<float>(),
+                      .row = i});
+  }
+  power_ = photons.power;
+  const int k = neighbours(photons.count());
+  for (int begin = 0; begin < count;) {
+    const int region = region_of(order[static_cast<std::size_t>(begin)]);
+    int end = begin;
+    while (end < count && region_of(order[static_cast<std::size_t>(end)]) == region) ++end;
+    const int root = root_[static_cast<std::size_t>(region)] = build(begin, end);
+    std::vector<int> subtrees;
+    for (int n = root; n < static_cast<int>(nodes_.size());) {
+      const Node& node = nodes_[static_cast<std::size_t>(n)];
+      if (node.end - node.begin > subtree_size) {
+        ++n;
+        continue;
+      }
+      subtrees.push_back(n);
+      // Skip what is below it: nodes are in depth-first order.
+      while (n < static_cast<int>(nodes_.size()) &&
+             nodes_[static_cast<std::size_t>(n)].begin < node.end) {
+        ++n;
+      }
+    }
+    set_radii(region, subtrees, k);
+    normalise(regions_, region, subtrees);
+    refit(root);
+    begin = end;
+  }
+}
+
+int CausticMap::build(int begin, int end) {
+  const auto number = static_cast<int>(nodes_.size());
+  Node node{
+      .low = discs_[static_cast<std::size_t>(begin)].center.array(), .begin = begin, .end = end};
+  node.high = node.low;
+  for (int i = begin; i < end; ++i) {
+    const Eigen::Array3f p = discs_[static_cast<std::size_t>(i)].center.array();
+    node.low = node.low.min(p);
+    node.high = node.high.max(p);
+  }
+  nodes_.push_back(node);
+  if (end - begin <= leaf_size) return number;
+  Eigen::Index axis = 0;
+  (node.high - node.low).maxCoeff(&axis);
+  const int middle = begin + (end - begin) / 2;
+  std::nth_element(discs_.begin() + begin, discs_.begin() + middle, discs_.begin() + end,
+                   [axis](const Disc& a, const Disc& b) {
+                     return std::pair(a.center[axis], a.row) < std::pair(b.center[axis], b.row);
+                   });
+  build(begin, middle);
+  const int second = build(middle, end);
+  nodes_[static_cast<std::size_t>(number)].second = second;
+  return number;
+}
+
+void CausticMap::collect_leaves(int n, std::vector<int>& leaves) const {
+  const Node& node = nodes_[static_cast<std::size_t>(n)];
+  if (node.second < 0) {
+    leaves.push_back(n);
+    return;
+  }
+  collect_leaves(n + 1, leaves);
+  collect_leaves(node.second, leaves);
+}
+
+// Discs of a leaf share a radius: they are few against what a disc reaches over.
+void CausticMap::set_radii(int region, const std::vector<int>& subtrees, int k) {
+  const int root = root_[static_cast<std::size_t>(region)];
+  const Node& all = nodes_[static_cast<std::size_t>(root)];
+  std::vector<int> leaves;
+  for (const int n : subtrees) collect_leaves(n, leaves);
+  // Of fewer photons each is spread over the whole region.
+  const bool are_few = all.end - all.begin <= k;
+  float size2 = (all.high - all.low).square().sum();
+  for (const auto& edge : regions_.bounds[static_cast<std::size_t>(region)]) {
+    const Eigen::Array3f from = (edge.from - origin_).cast<float>().array();
+    size2 = std::max(size2, 4.0f * (from - 0.5f * (all.low + all.high)).square().sum());
+  }
+  constexpr int grain = 16;
+  parallel_for(static_cast<int>(leaves.size()), grain, [&](int begin, int end) {
+    Nearest nearest(*this, k);
+    for (int l = begin; l < end; ++l) {
+      const Node& leaf = nodes_[static_cast<std::size_t>(leaves[static_cast<std::size_t>(l)])];
+      const Eigen::Vector3f middle = 0.5f * (leaf.low + leaf.high);
+      const float radius2 = are_few ? size2 : nearest.distance2_to_last(root, middle);
+      for (int i = leaf.begin; i < leaf.end; ++i) {
+        discs_[static_cast<std::size_t>(i)].radius2 = std::max(radius2, 1e-12f * size2);
+      }
+    }
+  });
+}
+
+void CausticMap::normalise(const LightRegions& regions, int region,
+                           const std::vector<int>& subtrees) {
+  const auto& bounds = regions.bounds[static_cast<std::size_t>(region)];
+  parallel_for(static_cast<int>(subtrees.size()), 1, [&](int first, int last) {
+    std::vector<LightRegions::Edge> near, nearer;
+    for (int s = first; s < last; ++s) {
+      std::vector<int> leaves;
+      const int subtree = subtrees[static_cast<std::size_t>(s)];
+      collect_leaves(subtree, leaves);
+      const auto edges_about = [&](const Node& node, std::span<const LightRegions::Edge> edges,
+                                   std::vector<LightRegions::Edge>& found) {
+        float radius2 = 0.0f;
+        for (int i = node.begin; i < node.end; ++i) {
+          radius2 = std::max(radius2, discs_[static_cast<std::size_t>(i)].radius2);
+        }
+        const Eigen::Array3d r = Eigen::Array3d::Constant(std::sqrt(radius2));
+        const Eigen::Array3d low = node.low.cast<double>() - r, high = node.high.cast<double>() + r;
+        found.clear();
+        for (const LightRegions::Edge& edge : edges) {
+          const Eigen::Array3d from = (edge.from - origin_).array(),
+                               to = (edge.to - origin_).array();
+          if ((from.min(to) <= high).all() && (from.max(to) >= low).all()) found.push_back(edge);
+        }
+      };
+      edges_about(nodes_[static_cast<std::size_t>(subtree)], bounds, near);
+      for (const int l : leaves) {
+        const Node& leaf = nodes_[static_cast<std::size_t>(l)];
+        edges_about(leaf, near, nearer);
+        for (int i = leaf.begin; i < leaf.end; ++i) {
+          const Disc& disc = discs_[static_cast<std::size_t>(i)];
+          const Eigen::Vector3d center = disc.center.cast<double>() + origin_;
+          const float within = share_within(center, disc.normal.cast<double>(),
+                                            std::sqrt(double{disc.radius2}), nearer);
+          power_.row(disc.row) *= 2.0f / (std::numbers::pi_v<float> * disc.radius2 * within);
+        }
+      }
+    }
+  });
+}
+
+// Boxes hold all of the discs from here on.
+void CausticMap::refit(int n) {
+  Node& node = nodes_[static_cast<std::size_t>(n)];
+  if (node.second < 0) {
+    for (int i = node.begin; i < node.end; ++i) {
+      const Disc& disc = discs_[static_cast<std::size_t>(i)];
+      const float r = std::sqrt(disc.radius2);
+      node.low = node.low.min(disc.center.array() - r);
+      node.high = node.high.max(disc.center.array() + r);
+    }
+    return;
+  }
+  refit(n + 1);
+  refit(node.second);
+  for (const int child : {n + 1, node.second}) {
+    node.low = node.low.min(nodes_[static_cast<std::size_t>(child)].low);
+    node.high = node.high.max(nodes_[static_cast<std::size_t>(child)].high);
+  }
+}
+
+Spectrum CausticMap::irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+                                int element) const {
+  Spectrum E = Spectrum::Zero(power_.cols());
+  const int root =
+      root_[static_cast<std::size_t>(regions_.of_element[static_cast<std::size_t>(element)])];
+  if (root < 0) return E;
+  const Eigen::Vector3f p = (place - origin_).cast<float>(), n = normal.cast<float>();
+  constexpr float most_bend = 0.5f;  // cosine: beyond, light that falls on one misses the other
+  std::array<int, 64> stack;
+  int depth = 0;
+  stack[depth++] = root;
+  while (depth > 0) {
+    const int number = stack[--depth];
+    const Node& node = nodes_[static_cast<std::size_t>(number)];
+    if ((p.array() < node.low).any() || (p.array() > node.high).any()) continue;
+    if (node.second >= 0) {
+      stack[depth++] = node.second;
+      stack[depth++] = number + 1;
+      continue;
+    }
+    for (int i = node.begin; i < node.end; ++i) {
+      const Disc& disc = discs_[static_cast<std::size_t>(i)];
+      const float d2 = (disc.center - p).squaredNorm();
+      if (!(d2 < disc.radius2) || !(n.dot(disc.normal) > most_bend)) continue;
+      const float K = 1.0f - d2 / disc.radius2;
+      const float* power = power_.data() + disc.row * power_.cols();
+      for (Eigen::Index k = 0; k < E.size(); ++k) E[k] += K * power[k];
+    }
+  }
+  return E;
+}
+
+}  // namespace lightwell

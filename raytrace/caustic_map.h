@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "radiosity/caustic_photons.h"
+#include "raytrace/light_regions.h"
+
+namespace lightwell {
+
+/// Irradiance by photons that lie on surfaces (Jensen 1996), as sharp as there are photons: each is
+/// spread over a disc of its own radius r by Epanechnikov's kernel, 2 / (pi r^2) (1 - (d / r)^2).
+/// The radius is the distance to its k-th neighbour, k growing as N^(2/3) of N photons: both the
+/// noise, k^(-1/2), and the area that is blurred, k / N, shrink, in the balance that makes their
+/// sum least (Silverman 1986).
+///
+/// No light is lost or leaks: a photon gives to places of its own region alone, see LightRegions,
+/// and what of its disc lies beyond the region's boundary is made up for within, so that the
+/// irradiance adds up to the power of the photons.
+class CausticMap {
+ public:
+  CausticMap(const PatchMesh& mesh, const CausticPhotons& photons);
+
+  /// W/m^2 at a place on an element; `normal` is the surface's own there, unit.
+  Spectrum irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+                      int element) const;
+
+  /// Of `count` photons, how many a disc reaches over.
+  static int neighbours(std::size_t count);
+
+ private:
+  struct Disc {
+    Eigen::Vector3f center, normal;
+    float radius2 = 0.0f;
+    int row = 0;  // of power_
+  };
+  // Of a tree over the discs of a region. Children of node i are i + 1 and `second`.
+  struct Node {
+    Eigen::Array3f low, high;
+    int begin = 0, end = 0;  // discs
+    int second = -1;         // -1: a leaf
+  };
+  class Nearest;
+
+  int build(int begin, int end);
+  void set_radii(int region, const std::vector<int>& subtrees, int k);
+  void normalise(const LightRegions& regions, int region, const std::vector<int>& subtrees);
+  void refit(int node);
+  void collect_leaves(int node, std::vector<int>& leaves) const;
+
+  LightRegions regions_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the discs' coordinates
+  std::vector<Disc> discs_;
+  BandArray power_;  // over pi r^2 / 2 and the share of the disc that is within
+  std::vector<Node> nodes_;
+  std::vector<int> root_;  // per region; -1: no photons
+};
+
+}  // namespace lightwell
