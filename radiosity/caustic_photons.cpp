@@ -183,6 +183,7 @@ class PhotonGun {
         emitter.exitance * static_cast<float>(emitter.area * aimed->share / beam.stands_for);
     const auto branch_key = random_key(key, branch_purpose, static_cast<std::uint64_t>(i));
     paths_.follow(ray, hit, branch_key, [&](const LightArrival& at) {
+      if (at.through_panes_only) return;
       deposits.push_back({at.position, at.hit.element, at.throughput * power});
     });
   }

@@ -10,7 +10,6 @@
 
 #include "raytrace/disc_kernel.h"
 #include "scene/parallel.h"
-#include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
@@ -21,21 +20,6 @@ constexpr int subtree_size = 4096;  // what one thread works on
 // Squared distance of a place from a box.
 float distance2(const Eigen::Array3f& p, const Eigen::Array3f& low, const Eigen::Array3f& high) {
   return (low - p).max(p - high).max(0.0f).square().sum();
-}
-
-// What is left within the bounds of a disc's kernel. Edges are seen along its normal.
-float share_within(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius,
-                   std::span<const LightRegions::Edge> edges) {
-  Eigen::Vector3d a, b;
-  tangent_frame(normal, a, b);
-  double beyond = 0.0;
-  for (const LightRegions::Edge& edge : edges) {
-    const Eigen::Vector3d from = (edge.from - center) / radius, to = (edge.to - center) / radius;
-    beyond += kernel_beyond({from.dot(a), from.dot(b)}, {to.dot(a), to.dot(b)});
-  }
-  // In the sharpest corner that is worth the name some percent are left; less is rounding.
-  constexpr double least = 0.02;
-  return static_cast<float>(std::clamp(1.0 - beyond, least, 1.0));
 }
 
 }  // namespace
@@ -96,7 +80,7 @@ class CausticMap::Nearest {
 
 int CausticMap::neighbours(std::size_t count) {
   // Measured on the glass sphere's focus in the Cornell box.
-  constexpr double scale = 0.02;
+  constexpr double scale = 0.04;
   constexpr int least = 16;
   return std::max(least, static_cast<int>(scale * std::pow(static_cast<double>(count), 2.0 / 3.0)));
 }
@@ -117,33 +101,27 @@ CausticMap::CausticMap(const PatchMesh& mesh, const CausticPhotons& photons)
     const auto p = static_cast<std::size_t>(i);
     discs_.push_back({.center = (photons.position[p] - origin_).cast<float>(),
                       .normal = element_center(mesh, photons.element[p]).normal.cast<float>(),
-                      .row = i});
+                      .photon = i});
   }
-  power_ = photons.power;
   const int k = neighbours(photons.count());
   for (int begin = 0; begin < count;) {
     const int region = region_of(order[static_cast<std::size_t>(begin)]);
     int end = begin;
     while (end < count && region_of(order[static_cast<std::size_t>(end)]) == region) ++end;
-    const int root = root_[static_cast<std::size_t>(region)] = build(begin, end);
-    std::vector<int> subtrees;
-    for (int n = root; n < static_cast<int>(nodes_.size());) {
-      const Node& node = nodes_[static_cast<std::size_t>(n)];
-      if (node.end - node.begin > subtree_size) {
-        ++n;
-        continue;
-      }
-      subtrees.push_back(n);
-      // Skip what is below it: nodes are in depth-first order.
-      while (n < static_cast<int>(nodes_.size()) &&
-             nodes_[static_cast<std::size_t>(n)].begin < node.end) {
-        ++n;
-      }
-    }
-    set_radii(region, subtrees, k);
-    normalise(regions_, region, subtrees);
-    refit(root);
+    root_[static_cast<std::size_t>(region)] = build(begin, end);
     begin = end;
+  }
+  // What is close in space is close in memory.
+  power_.resize(count, photons.power.cols());
+  for (int i = 0; i < count; ++i) {
+    power_.row(i) = photons.power.row(discs_[static_cast<std::size_t>(i)].photon);
+  }
+  for (int region = 0; region < regions_.count(); ++region) {
+    const int root = root_[static_cast<std::size_t>(region)];
+    if (root < 0) continue;
+    set_radii(region, k);
+    normalise(region);
+    refit(root);
   }
 }
 
@@ -164,7 +142,8 @@ int CausticMap::build(int begin, int end) {
   const int middle = begin + (end - begin) / 2;
   std::nth_element(discs_.begin() + begin, discs_.begin() + middle, discs_.begin() + end,
                    [axis](const Disc& a, const Disc& b) {
-                     return std::pair(a.center[axis], a.row) < std::pair(b.center[axis], b.row);
+                     return std::pair(a.center[axis], a.photon) <
+                            std::pair(b.center[axis], b.photon);
                    });
   build(begin, middle);
   const int second = build(middle, end);
@@ -172,22 +151,24 @@ int CausticMap::build(int begin, int end) {
   return number;
 }
 
-void CausticMap::collect_leaves(int n, std::vector<int>& leaves) const {
+// The largest nodes below `n` that hold no more than `most` discs, or are leaves.
+void CausticMap::collect(int n, int most, std::vector<int>& found) const {
   const Node& node = nodes_[static_cast<std::size_t>(n)];
-  if (node.second < 0) {
-    leaves.push_back(n);
+  if (node.second < 0 || node.end - node.begin <= most) {
+    found.push_back(n);
     return;
   }
-  collect_leaves(n + 1, leaves);
-  collect_leaves(node.second, leaves);
+  collect(n + 1, most, found);
+  collect(node.second, most, found);
 }
 
-// Discs of a leaf share a radius: they are few against what a disc reaches over.
-void CausticMap::set_radii(int region, const std::vector<int>& subtrees, int k) {
+void CausticMap::set_radii(int region, int k) {
   const int root = root_[static_cast<std::size_t>(region)];
   const Node& all = nodes_[static_cast<std::size_t>(root)];
-  std::vector<int> leaves;
-  for (const int n : subtrees) collect_leaves(n, leaves);
+  // A few neighbours share a radius, which changes little over a small part of a disc.
+  constexpr int part = 10;
+  std::vector<int> groups;
+  collect(root, k / part, groups);
   // Of fewer photons each is spread over the whole region.
   const bool are_few = all.end - all.begin <= k;
   float size2 = (all.high - all.low).square().sum();
@@ -196,54 +177,58 @@ void CausticMap::set_radii(int region, const std::vector<int>& subtrees, int k) 
     size2 = std::max(size2, 4.0f * (from - 0.5f * (all.low + all.high)).square().sum());
   }
   constexpr int grain = 16;
-  parallel_for(static_cast<int>(leaves.size()), grain, [&](int begin, int end) {
+  parallel_for(static_cast<int>(groups.size()), grain, [&](int begin, int end) {
     Nearest nearest(*this, k);
-    for (int l = begin; l < end; ++l) {
-      const Node& leaf = nodes_[static_cast<std::size_t>(leaves[static_cast<std::size_t>(l)])];
-      const Eigen::Vector3f middle = 0.5f * (leaf.low + leaf.high);
+    for (int g = begin; g < end; ++g) {
+      const Node& group = nodes_[static_cast<std::size_t>(groups[static_cast<std::size_t>(g)])];
+      const Eigen::Vector3f middle = 0.5f * (group.low + group.high);
       const float radius2 = are_few ? size2 : nearest.distance2_to_last(root, middle);
-      for (int i = leaf.begin; i < leaf.end; ++i) {
+      for (int i = group.begin; i < group.end; ++i) {
         discs_[static_cast<std::size_t>(i)].radius2 = std::max(radius2, 1e-12f * size2);
       }
     }
   });
 }
 
-void CausticMap::normalise(const LightRegions& regions, int region,
-                           const std::vector<int>& subtrees) {
-  const auto& bounds = regions.bounds[static_cast<std::size_t>(region)];
-  parallel_for(static_cast<int>(subtrees.size()), 1, [&](int first, int last) {
-    std::vector<LightRegions::Edge> near, nearer;
-    for (int s = first; s < last; ++s) {
-      std::vector<int> leaves;
+// Edges that the discs of a node may reach over.
+std::vector<LightRegions::Edge> CausticMap::edges_about(
+    const Node& node, std::span<const LightRegions::Edge> edges) const {
+  float radius2 = 0.0f;
+  for (int i = node.begin; i < node.end; ++i) {
+    radius2 = std::max(radius2, discs_[static_cast<std::size_t>(i)].radius2);
+  }
+  const double r = std::sqrt(double{radius2});
+  const Eigen::Array3d low = node.low.cast<double>() - r, high = node.high.cast<double>() + r;
+  std::vector<LightRegions::Edge> found;
+  for (const LightRegions::Edge& edge : edges) {
+    const Eigen::Array3d from = (edge.from - origin_).array(), to = (edge.to - origin_).array();
+    if ((from.min(to) <= high).all() && (from.max(to) >= low).all()) found.push_back(edge);
+  }
+  return found;
+}
+
+void CausticMap::normalise(int region) {
+  std::vector<int> subtrees;
+  collect(root_[static_cast<std::size_t>(region)], subtree_size, subtrees);
+  const auto normalise_leaf = [&](const Node& leaf, std::span<const LightRegions::Edge> edges) {
+    for (int i = leaf.begin; i < leaf.end; ++i) {
+      const Disc& disc = discs_[static_cast<std::size_t>(i)];
+      const auto within = static_cast<float>(kernel_within(disc.center.cast<double>() + origin_,
+                                                           disc.normal.cast<double>(),
+                                                           std::sqrt(double{disc.radius2}), edges));
+      power_.row(i) *= 2.0f / (std::numbers::pi_v<float> * disc.radius2 * within);
+    }
+  };
+  parallel_for(static_cast<int>(subtrees.size()), 1, [&](int begin, int end) {
+    for (int s = begin; s < end; ++s) {
       const int subtree = subtrees[static_cast<std::size_t>(s)];
-      collect_leaves(subtree, leaves);
-      const auto edges_about = [&](const Node& node, std::span<const LightRegions::Edge> edges,
-                                   std::vector<LightRegions::Edge>& found) {
-        float radius2 = 0.0f;
-        for (int i = node.begin; i < node.end; ++i) {
-          radius2 = std::max(radius2, discs_[static_cast<std::size_t>(i)].radius2);
-        }
-        const Eigen::Array3d r = Eigen::Array3d::Constant(std::sqrt(radius2));
-        const Eigen::Array3d low = node.low.cast<double>() - r, high = node.high.cast<double>() + r;
-        found.clear();
-        for (const LightRegions::Edge& edge : edges) {
-          const Eigen::Array3d from = (edge.from - origin_).array(),
-                               to = (edge.to - origin_).array();
-          if ((from.min(to) <= high).all() && (from.max(to) >= low).all()) found.push_back(edge);
-        }
-      };
-      edges_about(nodes_[static_cast<std::size_t>(subtree)], bounds, near);
+      const auto near = edges_about(nodes_[static_cast<std::size_t>(subtree)],
+                                    regions_.bounds[static_cast<std::size_t>(region)]);
+      std::vector<int> leaves;
+      collect(subtree, leaf_size, leaves);
       for (const int l : leaves) {
         const Node& leaf = nodes_[static_cast<std::size_t>(l)];
-        edges_about(leaf, near, nearer);
-        for (int i = leaf.begin; i < leaf.end; ++i) {
-          const Disc& disc = discs_[static_cast<std::size_t>(i)];
-          const Eigen::Vector3d center = disc.center.cast<double>() + origin_;
-          const float within = share_within(center, disc.normal.cast<double>(),
-                                            std::sqrt(double{disc.radius2}), nearer);
-          power_.row(disc.row) *= 2.0f / (std::numbers::pi_v<float> * disc.radius2 * within);
-        }
+        normalise_leaf(leaf, edges_about(leaf, near));
       }
     }
   });
@@ -294,7 +279,7 @@ Spectrum CausticMap::irradiance(const Eigen::Vector3d& place, const Eigen::Vecto
       const float d2 = (disc.center - p).squaredNorm();
       if (!(d2 < disc.radius2) || !(n.dot(disc.normal) > most_bend)) continue;
       const float K = 1.0f - d2 / disc.radius2;
-      const float* power = power_.data() + disc.row * power_.cols();
+      const float* power = power_.data() + i * power_.cols();
       for (Eigen::Index k = 0; k < E.size(); ++k) E[k] += K * power[k];
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "mesh/element_caster.h"
@@ -33,7 +34,7 @@ class CausticMap {
   struct Disc {
     Eigen::Vector3f center, normal;
     float radius2 = 0.0f;
-    int row = 0;  // of power_
+    int photon = 0;  // where it was in their list
   };
   // Of a tree over the discs of a region. Children of node i are i + 1 and `second`.
   struct Node {
@@ -44,15 +45,17 @@ class CausticMap {
   class Nearest;
 
   int build(int begin, int end);
-  void set_radii(int region, const std::vector<int>& subtrees, int k);
-  void normalise(const LightRegions& regions, int region, const std::vector<int>& subtrees);
-  void refit(int node);
-  void collect_leaves(int node, std::vector<int>& leaves) const;
+  void collect(int from, int most, std::vector<int>& found) const;
+  void set_radii(int region, int k);
+  void normalise(int region);
+  std::vector<LightRegions::Edge> edges_about(const Node& about,
+                                              std::span<const LightRegions::Edge> edges) const;
+  void refit(int n);
 
   LightRegions regions_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the discs' coordinates
   std::vector<Disc> discs_;
-  BandArray power_;  // over pi r^2 / 2 and the share of the disc that is within
+  BandArray power_;  // per disc, over pi r^2 / 2 and the share of the disc that is within
   std::vector<Node> nodes_;
   std::vector<int> root_;  // per region; -1: no photons
 };
