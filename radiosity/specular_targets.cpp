@@ -21,7 +21,14 @@ struct Box {
     high = high.cwiseMax(other.high);
   }
   Eigen::Vector3d center() const { return 0.5 * (low + high); }
+  /// Of the sphere around it, squared.
+  double radius2() const { return 0.25 * (high - low).squaredNorm(); }
 };
+
+Box joined(Box a, const Box& b) {
+  a.add(b);
+  return a;
+}
 
 Box box_of(const Surface& surface) {
   Box box;
@@ -58,6 +65,36 @@ void divide(std::span<std::pair<int, Box>> surfaces, int groups, int first,
   divide(surfaces.subspan(left), groups - groups / 2, first + groups / 2, group);
 }
 
+// Joins groups whose common sphere hides less of the view than theirs together, such as the faces
+// of a block: the best first.
+void join_neighbours(std::vector<Box>& boxes, std::vector<int>& group) {
+  for (;;) {
+    double best = 1.0;
+    std::pair<std::size_t, std::size_t> pair{0, 0};
+    for (std::size_t a = 0; a < boxes.size(); ++a) {
+      for (std::size_t b = a + 1; b < boxes.size(); ++b) {
+        const double apart = boxes[a].radius2() + boxes[b].radius2();
+        const double ratio = joined(boxes[a], boxes[b]).radius2() / apart;
+        if (ratio < best) {
+          best = ratio;
+          pair = {a, b};
+        }
+      }
+    }
+    const auto [a, b] = pair;
+    if (a == b) return;
+    boxes[a].add(boxes[b]);
+    boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(b));
+    for (int& g : group) {
+      if (g == static_cast<int>(b)) {
+        g = static_cast<int>(a);
+      } else if (g > static_cast<int>(b)) {
+        --g;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 SpecularTargets::SpecularTargets(const Scene& scene) {
@@ -76,6 +113,7 @@ SpecularTargets::SpecularTargets(const Scene& scene) {
     if (boxes.size() <= g) boxes.resize(g + 1);
     boxes[g].add(box);
   }
+  join_neighbours(boxes, group);
   for (const Box& box : boxes) {
     targets_.push_back({.center = box.center()});
   }

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "raytrace/disc_kernel.h"
 #include "scene/parallel.h"
@@ -111,18 +112,13 @@ CausticMap::CausticMap(const PatchMesh& mesh, const CausticPhotons& photons)
     root_[static_cast<std::size_t>(region)] = build(begin, end);
     begin = end;
   }
-  // What is close in space is close in memory.
-  power_.resize(count, photons.power.cols());
-  for (int i = 0; i < count; ++i) {
-    power_.row(i) = photons.power.row(discs_[static_cast<std::size_t>(i)].photon);
-  }
+  std::vector<Folded> folded(discs_.size());
   for (int region = 0; region < regions_.count(); ++region) {
-    const int root = root_[static_cast<std::size_t>(region)];
-    if (root < 0) continue;
+    if (root_[static_cast<std::size_t>(region)] < 0) continue;
     set_radii(region, k);
-    normalise(region);
-    refit(root);
+    fold_discs(region, folded);
   }
+  insert(folded, photons.power);
 }
 
 int CausticMap::build(int begin, int end) {
@@ -165,26 +161,43 @@ void CausticMap::collect(int n, int most, std::vector<int>& found) const {
 void CausticMap::set_radii(int region, int k) {
   const int root = root_[static_cast<std::size_t>(region)];
   const Node& all = nodes_[static_cast<std::size_t>(root)];
-  // A few neighbours share a radius, which changes little over a small part of a disc.
-  constexpr int part = 10;
-  std::vector<int> groups;
-  collect(root, k / part, groups);
+  const auto& bounds = regions_.bounds[static_cast<std::size_t>(region)];
   // Of fewer photons each is spread over the whole region.
   const bool are_few = all.end - all.begin <= k;
   float size2 = (all.high - all.low).square().sum();
-  for (const auto& edge : regions_.bounds[static_cast<std::size_t>(region)]) {
+  for (const LightRegions::Edge& edge : bounds) {
     const Eigen::Array3f from = (edge.from - origin_).cast<float>().array();
     size2 = std::max(size2, 4.0f * (from - 0.5f * (all.low + all.high)).square().sum());
   }
-  constexpr int grain = 16;
-  parallel_for(static_cast<int>(groups.size()), grain, [&](int begin, int end) {
+  const auto set = [&](const Node& group, float radius2) {
+    for (int i = group.begin; i < group.end; ++i) {
+      discs_[static_cast<std::size_t>(i)].radius2 = std::max(radius2, 1e-12f * size2);
+    }
+  };
+  if (are_few) return set(all, size2);
+  std::vector<int> subtrees;
+  collect(root, subtree_size, subtrees);
+  parallel_for(static_cast<int>(subtrees.size()), 1, [&](int begin, int end) {
     Nearest nearest(*this, k);
-    for (int g = begin; g < end; ++g) {
-      const Node& group = nodes_[static_cast<std::size_t>(groups[static_cast<std::size_t>(g)])];
-      const Eigen::Vector3f middle = 0.5f * (group.low + group.high);
-      const float radius2 = are_few ? size2 : nearest.distance2_to_last(root, middle);
-      for (int i = group.begin; i < group.end; ++i) {
-        discs_[static_cast<std::size_t>(i)].radius2 = std::max(radius2, 1e-12f * size2);
+    for (int s = begin; s < end; ++s) {
+      const int subtree = subtrees[static_cast<std::size_t>(s)];
+      // A few neighbours share a radius, which changes little over a small part of a disc.
+      constexpr int part = 10;
+      std::vector<int> groups;
+      collect(subtree, k / part, groups);
+      for (const int g : groups) {
+        const Node& group = nodes_[static_cast<std::size_t>(g)];
+        set(group, nearest.distance2_to_last(root, 0.5f * (group.low + group.high)));
+      }
+      // Where a part of a disc is beyond, it had to reach farther for its neighbours.
+      const auto near = edges_about(nodes_[static_cast<std::size_t>(subtree)], bounds);
+      for (const int g : groups) {
+        const Node& group = nodes_[static_cast<std::size_t>(g)];
+        const Disc& disc = discs_[static_cast<std::size_t>(group.begin)];
+        const Eigen::Vector3f middle = 0.5f * (group.low + group.high);
+        set(group, disc.radius2 * static_cast<float>(disc_within(
+                                      middle.cast<double>() + origin_, disc.normal.cast<double>(),
+                                      std::sqrt(double{disc.radius2}), edges_about(group, near))));
       }
     }
   });
@@ -207,16 +220,21 @@ std::vector<LightRegions::Edge> CausticMap::edges_about(
   return found;
 }
 
-void CausticMap::normalise(int region) {
+void CausticMap::fold_discs(int region, std::vector<Folded>& folded) const {
   std::vector<int> subtrees;
   collect(root_[static_cast<std::size_t>(region)], subtree_size, subtrees);
-  const auto normalise_leaf = [&](const Node& leaf, std::span<const LightRegions::Edge> edges) {
+  const auto fold_leaf = [&](const Node& leaf, std::span<const LightRegions::Edge> edges) {
     for (int i = leaf.begin; i < leaf.end; ++i) {
       const Disc& disc = discs_[static_cast<std::size_t>(i)];
-      const auto within = static_cast<float>(kernel_within(disc.center.cast<double>() + origin_,
-                                                           disc.normal.cast<double>(),
-                                                           std::sqrt(double{disc.radius2}), edges));
-      power_.row(i) *= 2.0f / (std::numbers::pi_v<float> * disc.radius2 * within);
+      const Eigen::Vector3d center = disc.center.cast<double>() + origin_,
+                            normal = disc.normal.cast<double>();
+      const FoldedDisc found = fold(center, normal, std::sqrt(double{disc.radius2}), edges);
+      Folded& result = folded[static_cast<std::size_t>(i)];
+      result.weight =
+          2.0f / (std::numbers::pi_v<float> * disc.radius2 * static_cast<float>(found.within));
+      for (const Eigen::Vector3d& mirrored : found.mirrored) {
+        result.mirrored.emplace_back((mirrored - origin_).cast<float>());
+      }
     }
   };
   parallel_for(static_cast<int>(subtrees.size()), 1, [&](int begin, int end) {
@@ -228,29 +246,55 @@ void CausticMap::normalise(int region) {
       collect(subtree, leaf_size, leaves);
       for (const int l : leaves) {
         const Node& leaf = nodes_[static_cast<std::size_t>(l)];
-        normalise_leaf(leaf, edges_about(leaf, near));
+        fold_leaf(leaf, edges_about(leaf, near));
       }
     }
   });
 }
 
-// Boxes hold all of the discs from here on.
-void CausticMap::refit(int n) {
-  Node& node = nodes_[static_cast<std::size_t>(n)];
-  if (node.second < 0) {
+// Puts the mirrored discs beside their own, and boxes around all.
+void CausticMap::insert(const std::vector<Folded>& folded, const BandArray& power) {
+  std::size_t count = discs_.size();
+  for (const Folded& disc : folded) count += disc.mirrored.size();
+  std::vector<Disc> all;
+  all.reserve(count);
+  power_.resize(static_cast<Eigen::Index>(count), power.cols());
+  const auto add = [&](const Disc& disc, float weight) {
+    // What is close in space is close in memory.
+    power_.row(static_cast<Eigen::Index>(all.size())) = weight * power.row(disc.photon);
+    all.push_back(disc);
+  };
+  for (Node& leaf : nodes_) {
+    if (leaf.second >= 0) continue;
+    const auto begin = static_cast<int>(all.size());
+    for (int i = leaf.begin; i < leaf.end; ++i) {
+      Disc disc = discs_[static_cast<std::size_t>(i)];
+      const Folded& more = folded[static_cast<std::size_t>(i)];
+      add(disc, more.weight);
+      for (const Eigen::Vector3f& center : more.mirrored) {
+        disc.center = center;
+        add(disc, more.weight);
+      }
+    }
+    leaf.begin = begin;
+    leaf.end = static_cast<int>(all.size());
+  }
+  discs_ = std::move(all);
+  for (auto n = static_cast<int>(nodes_.size()) - 1; n >= 0; --n) {
+    Node& node = nodes_[static_cast<std::size_t>(n)];
+    if (node.second >= 0) {
+      const Node& first = nodes_[static_cast<std::size_t>(n) + 1];
+      const Node& second = nodes_[static_cast<std::size_t>(node.second)];
+      node = {first.low.min(second.low), first.high.max(second.high), first.begin, second.end,
+              node.second};
+      continue;
+    }
     for (int i = node.begin; i < node.end; ++i) {
       const Disc& disc = discs_[static_cast<std::size_t>(i)];
       const float r = std::sqrt(disc.radius2);
       node.low = node.low.min(disc.center.array() - r);
       node.high = node.high.max(disc.center.array() + r);
     }
-    return;
-  }
-  refit(n + 1);
-  refit(node.second);
-  for (const int child : {n + 1, node.second}) {
-    node.low = node.low.min(nodes_[static_cast<std::size_t>(child)].low);
-    node.high = node.high.max(nodes_[static_cast<std::size_t>(child)].high);
   }
 }
 

@@ -17,8 +17,8 @@ namespace lightwell {
 /// sum least (Silverman 1986).
 ///
 /// No light is lost or leaks: a photon gives to places of its own region alone, see LightRegions,
-/// and what of its disc lies beyond the region's boundary is made up for within, so that the
-/// irradiance adds up to the power of the photons.
+/// and what of its disc lies beyond the region's boundary is folded back, so that the irradiance
+/// adds up to the power of the photons.
 class CausticMap {
  public:
   CausticMap(const PatchMesh& mesh, const CausticPhotons& photons);
@@ -47,15 +47,20 @@ class CausticMap {
   int build(int begin, int end);
   void collect(int from, int most, std::vector<int>& found) const;
   void set_radii(int region, int k);
-  void normalise(int region);
+  /// What the disc's power is multiplied by, and where it is once more.
+  struct Folded {
+    float weight = 0.0f;
+    std::vector<Eigen::Vector3f> mirrored{};
+  };
+  void fold_discs(int region, std::vector<Folded>& folded) const;
   std::vector<LightRegions::Edge> edges_about(const Node& about,
                                               std::span<const LightRegions::Edge> edges) const;
-  void refit(int n);
+  void insert(const std::vector<Folded>& folded, const BandArray& power);
 
   LightRegions regions_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the discs' coordinates
   std::vector<Disc> discs_;
-  BandArray power_;  // per disc, over pi r^2 / 2 and the share of the disc that is within
+  BandArray power_;  // per disc, over pi r^2 / 2 and the share of the kernel that is within
   std::vector<Node> nodes_;
   std::vector<int> root_;  // per region; -1: no photons
 };

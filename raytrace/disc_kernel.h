@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "raytrace/light_regions.h"
 
@@ -15,10 +16,23 @@ namespace lightwell {
 /// 1 minus their sum of the kernel within it (Green's theorem).
 double kernel_beyond(const Eigen::Vector2d& from, const Eigen::Vector2d& to);
 
-/// The share of a disc's kernel that lies within a boundary, of which all edges that the disc
-/// reaches over are given, seen along the disc's unit normal. At least 0.02: in the sharpest corner
-/// worth the name some percent are left, and less is rounding.
-double kernel_within(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius,
-                     std::span<const LightRegions::Edge> edges);
+/// The same of the disc's area, the whole of which counts as 1.
+double disc_beyond(const Eigen::Vector2d& from, const Eigen::Vector2d& to);
+
+/// A disc that reaches over a boundary: what lies beyond is folded back, as at a mirror (Schuster
+/// 1985), so that even light stays even up to a straight edge and into a right corner.
+struct FoldedDisc {
+  std::vector<Eigen::Vector3d> mirrored{};  ///< centres of the discs behind those mirrors
+  double within = 1.0;  ///< of the kernels of all, what lies within the boundary; 0.02 at least
+};
+
+/// All edges of the boundary that the disc reaches over are given, counter-clockwise about the
+/// inside seen against its unit normal; they are seen along that.
+FoldedDisc fold(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius,
+                std::span<const LightRegions::Edge> edges);
+
+/// The share of the disc's area that lies within; 0.02 at least.
+double disc_within(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius,
+                   std::span<const LightRegions::Edge> edges);
 
 }  // namespace lightwell

@@ -1,7 +1,10 @@
 #include "raytrace/light_regions.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <set>
+#include <tuple>
 #include <utility>
 
 namespace lightwell {
@@ -33,6 +36,21 @@ std::vector<DirectedEdge> directed_edges(const PatchMesh& mesh) {
     return std::tuple(a.low, a.high, a.element) < std::tuple(b.low, b.high, b.element);
   });
   return edges;
+}
+
+using Place = std::array<double, 3>;
+
+Place place_of(const Eigen::Vector3d& p) {
+  return {p.x(), p.y(), p.z()};
+}
+
+// Elements that meet without sharing vertices, at reflex corners, bound nothing there.
+void drop_seams(std::vector<LightRegions::Edge>& bounds) {
+  std::set<std::pair<Place, Place>> all;
+  for (const auto& edge : bounds) all.insert({place_of(edge.from), place_of(edge.to)});
+  std::erase_if(bounds, [&](const LightRegions::Edge& edge) {
+    return all.contains({place_of(edge.to), place_of(edge.from)});
+  });
 }
 
 }  // namespace
@@ -69,6 +87,7 @@ LightRegions light_regions(const PatchMesh& mesh) {
     }
     i = end;
   }
+  for (auto& bounds : regions.bounds) drop_seams(bounds);
   return regions;
 }
 

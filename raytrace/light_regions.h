@@ -10,8 +10,7 @@ namespace lightwell {
 /// Elements over which light is continuous: those that mesh vertices join. A wall that stands on a
 /// floor from side to side parts it in two; the edges of a block are those of its faces.
 struct LightRegions {
-  /// Of a region's boundary, counter-clockwise seen from the side that is lit. Where elements meet
-  /// without sharing vertices there may be two, in opposite directions.
+  /// Of a region's boundary, counter-clockwise seen from the side that is lit.
   struct Edge {
     Eigen::Vector3d from, to;
   };
