@@ -15,69 +15,9 @@
 namespace lightwell {
 namespace {
 
-constexpr int leaf_size = 12;
 constexpr int subtree_size = 4096;  // what one thread works on
 
-// Squared distance of a place from a box.
-float distance2(const Eigen::Array3f& p, const Eigen::Array3f& low, const Eigen::Array3f& high) {
-  return (low - p).max(p - high).max(0.0f).square().sum();
-}
-
 }  // namespace
-
-// The k nearest discs of a tree.
-class CausticMap::Nearest {
- public:
-  Nearest(const CausticMap& map, int k) : map_(map), k_(static_cast<std::size_t>(k)) {
-    heap_.reserve(k_);
-  }
-
-  /// Squared distance to the k-th.
-  float distance2_to_last(int root, const Eigen::Vector3f& from) {
-    heap_.clear();
-    visit(root, from);
-    return heap_.front();
-  }
-
- private:
-  float reach() const {
-    return heap_.size() < k_ ? std::numeric_limits<float>::infinity() : heap_.front();
-  }
-
-  void visit(int n, const Eigen::Vector3f& from) {
-    const Node& node = map_.nodes_[static_cast<std::size_t>(n)];
-    if (node.second < 0) {
-      for (int i = node.begin; i < node.end; ++i) {
-        add((map_.discs_[static_cast<std::size_t>(i)].center - from).squaredNorm());
-      }
-      return;
-    }
-    std::array<int, 2> child = {n + 1, node.second};
-    std::array<float, 2> away{};
-    for (std::size_t c = 0; c < 2; ++c) {
-      const Node& other = map_.nodes_[static_cast<std::size_t>(child[c])];
-      away[c] = distance2(from.array(), other.low, other.high);
-    }
-    const std::size_t near = away[1] < away[0] ? 1 : 0;
-    for (const std::size_t c : {near, 1 - near}) {
-      if (away[c] < reach()) visit(child[c], from);
-    }
-  }
-
-  void add(float d2) {
-    if (!(d2 < reach())) return;
-    if (heap_.size() == k_) {
-      std::pop_heap(heap_.begin(), heap_.end());
-      heap_.pop_back();
-    }
-    heap_.push_back(d2);
-    std::push_heap(heap_.begin(), heap_.end());
-  }
-
-  const CausticMap& map_;
-  std::size_t k_;
-  std::vector<float> heap_;
-};
 
 int CausticMap::neighbours(std::size_t count) {
   // Measured on the glass sphere's focus in the Cornell box.
@@ -100,19 +40,19 @@ CausticMap::CausticMap(const PatchMesh& mesh, const CausticPhotons& photons)
                    [&](int a, int b) { return region_of(a) < region_of(b); });
   for (const int i : order) {
     const auto p = static_cast<std::size_t>(i);
-    discs_.push_back({.center = (photons.position[p] - origin_).cast<float>(),
-                      .normal = element_center(mesh, photons.element[p]).normal.cast<float>(),
-                      .photon = i});
+    tree_.discs.push_back({.center = (photons.position[p] - origin_).cast<float>(),
+                           .normal = element_center(mesh, photons.element[p]).normal.cast<float>(),
+                           .photon = i});
   }
   const int k = neighbours(photons.count());
   for (int begin = 0; begin < count;) {
     const int region = region_of(order[static_cast<std::size_t>(begin)]);
     int end = begin;
     while (end < count && region_of(order[static_cast<std::size_t>(end)]) == region) ++end;
-    root_[static_cast<std::size_t>(region)] = build(begin, end);
+    root_[static_cast<std::size_t>(region)] = tree_.build(begin, end);
     begin = end;
   }
-  std::vector<Folded> folded(discs_.size());
+  std::vector<Folded> folded(tree_.discs.size());
   for (int region = 0; region < regions_.count(); ++region) {
     if (root_[static_cast<std::size_t>(region)] < 0) continue;
     set_radii(region, k);
@@ -121,46 +61,9 @@ CausticMap::CausticMap(const PatchMesh& mesh, const CausticPhotons& photons)
   insert(folded, photons.power);
 }
 
-int CausticMap::build(int begin, int end) {
-  const auto number = static_cast<int>(nodes_.size());
-  Node node{
-      .low = discs_[static_cast<std::size_t>(begin)].center.array(), .begin = begin, .end = end};
-  node.high = node.low;
-  for (int i = begin; i < end; ++i) {
-    const Eigen::Array3f p = discs_[static_cast<std::size_t>(i)].center.array();
-    node.low = node.low.min(p);
-    node.high = node.high.max(p);
-  }
-  nodes_.push_back(node);
-  if (end - begin <= leaf_size) return number;
-  Eigen::Index axis = 0;
-  (node.high - node.low).maxCoeff(&axis);
-  const int middle = begin + (end - begin) / 2;
-  std::nth_element(discs_.begin() + begin, discs_.begin() + middle, discs_.begin() + end,
-                   [axis](const Disc& a, const Disc& b) {
-                     return std::pair(a.center[axis], a.photon) <
-                            std::pair(b.center[axis], b.photon);
-                   });
-  build(begin, middle);
-  const int second = build(middle, end);
-  nodes_[static_cast<std::size_t>(number)].second = second;
-  return number;
-}
-
-// The largest nodes below `n` that hold no more than `most` discs, or are leaves.
-void CausticMap::collect(int n, int most, std::vector<int>& found) const {
-  const Node& node = nodes_[static_cast<std::size_t>(n)];
-  if (node.second < 0 || node.end - node.begin <= most) {
-    found.push_back(n);
-    return;
-  }
-  collect(n + 1, most, found);
-  collect(node.second, most, found);
-}
-
 void CausticMap::set_radii(int region, int k) {
   const int root = root_[static_cast<std::size_t>(region)];
-  const Node& all = nodes_[static_cast<std::size_t>(root)];
+  const DiscTree::Node& all = tree_.nodes[static_cast<std::size_t>(root)];
   const auto& bounds = regions_.bounds[static_cast<std::size_t>(region)];
   // Of fewer photons each is spread over the whole region.
   const bool are_few = all.end - all.begin <= k;
@@ -169,31 +72,31 @@ void CausticMap::set_radii(int region, int k) {
     const Eigen::Array3f from = (edge.from - origin_).cast<float>().array();
     size2 = std::max(size2, 4.0f * (from - 0.5f * (all.low + all.high)).square().sum());
   }
-  const auto set = [&](const Node& group, float radius2) {
+  const auto set = [&](const DiscTree::Node& group, float radius2) {
     for (int i = group.begin; i < group.end; ++i) {
-      discs_[static_cast<std::size_t>(i)].radius2 = std::max(radius2, 1e-12f * size2);
+      tree_.discs[static_cast<std::size_t>(i)].radius2 = std::max(radius2, 1e-12f * size2);
     }
   };
   if (are_few) return set(all, size2);
   std::vector<int> subtrees;
-  collect(root, subtree_size, subtrees);
+  tree_.collect(root, subtree_size, subtrees);
   parallel_for(static_cast<int>(subtrees.size()), 1, [&](int begin, int end) {
-    Nearest nearest(*this, k);
+    NearestDiscs nearest(tree_, k);
     for (int s = begin; s < end; ++s) {
       const int subtree = subtrees[static_cast<std::size_t>(s)];
       // A few neighbours share a radius, which changes little over a small part of a disc.
       constexpr int part = 10;
       std::vector<int> groups;
-      collect(subtree, k / part, groups);
+      tree_.collect(subtree, k / part, groups);
       for (const int g : groups) {
-        const Node& group = nodes_[static_cast<std::size_t>(g)];
+        const DiscTree::Node& group = tree_.nodes[static_cast<std::size_t>(g)];
         set(group, nearest.distance2_to_last(root, 0.5f * (group.low + group.high)));
       }
       // Where a part of a disc is beyond, it had to reach farther for its neighbours.
-      const auto near = edges_about(nodes_[static_cast<std::size_t>(subtree)], bounds);
+      const auto near = edges_about(tree_.nodes[static_cast<std::size_t>(subtree)], bounds);
       for (const int g : groups) {
-        const Node& group = nodes_[static_cast<std::size_t>(g)];
-        const Disc& disc = discs_[static_cast<std::size_t>(group.begin)];
+        const DiscTree::Node& group = tree_.nodes[static_cast<std::size_t>(g)];
+        const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(group.begin)];
         const Eigen::Vector3f middle = 0.5f * (group.low + group.high);
         set(group, disc.radius2 * static_cast<float>(disc_within(
                                       middle.cast<double>() + origin_, disc.normal.cast<double>(),
@@ -205,10 +108,10 @@ void CausticMap::set_radii(int region, int k) {
 
 // Edges that the discs of a node may reach over.
 std::vector<LightRegions::Edge> CausticMap::edges_about(
-    const Node& node, std::span<const LightRegions::Edge> edges) const {
+    const DiscTree::Node& node, std::span<const LightRegions::Edge> edges) const {
   float radius2 = 0.0f;
   for (int i = node.begin; i < node.end; ++i) {
-    radius2 = std::max(radius2, discs_[static_cast<std::size_t>(i)].radius2);
+    radius2 = std::max(radius2, tree_.discs[static_cast<std::size_t>(i)].radius2);
   }
   const double r = std::sqrt(double{radius2});
   const Eigen::Array3d low = node.low.cast<double>() - r, high = node.high.cast<double>() + r;
@@ -222,10 +125,11 @@ std::vector<LightRegions::Edge> CausticMap::edges_about(
 
 void CausticMap::fold_discs(int region, std::vector<Folded>& folded) const {
   std::vector<int> subtrees;
-  collect(root_[static_cast<std::size_t>(region)], subtree_size, subtrees);
-  const auto fold_leaf = [&](const Node& leaf, std::span<const LightRegions::Edge> edges) {
+  tree_.collect(root_[static_cast<std::size_t>(region)], subtree_size, subtrees);
+  const auto fold_leaf = [&](const DiscTree::Node& leaf,
+                             std::span<const LightRegions::Edge> edges) {
     for (int i = leaf.begin; i < leaf.end; ++i) {
-      const Disc& disc = discs_[static_cast<std::size_t>(i)];
+      const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(i)];
       const Eigen::Vector3d center = disc.center.cast<double>() + origin_,
                             normal = disc.normal.cast<double>();
       const FoldedDisc found = fold(center, normal, std::sqrt(double{disc.radius2}), edges);
@@ -240,12 +144,12 @@ void CausticMap::fold_discs(int region, std::vector<Folded>& folded) const {
   parallel_for(static_cast<int>(subtrees.size()), 1, [&](int begin, int end) {
     for (int s = begin; s < end; ++s) {
       const int subtree = subtrees[static_cast<std::size_t>(s)];
-      const auto near = edges_about(nodes_[static_cast<std::size_t>(subtree)],
+      const auto near = edges_about(tree_.nodes[static_cast<std::size_t>(subtree)],
                                     regions_.bounds[static_cast<std::size_t>(region)]);
       std::vector<int> leaves;
-      collect(subtree, leaf_size, leaves);
+      tree_.collect(subtree, DiscTree::leaf_size, leaves);
       for (const int l : leaves) {
-        const Node& leaf = nodes_[static_cast<std::size_t>(l)];
+        const DiscTree::Node& leaf = tree_.nodes[static_cast<std::size_t>(l)];
         fold_leaf(leaf, edges_about(leaf, near));
       }
     }
@@ -254,21 +158,21 @@ void CausticMap::fold_discs(int region, std::vector<Folded>& folded) const {
 
 // Puts the mirrored discs beside their own, and boxes around all.
 void CausticMap::insert(const std::vector<Folded>& folded, const BandArray& power) {
-  std::size_t count = discs_.size();
+  std::size_t count = tree_.discs.size();
   for (const Folded& disc : folded) count += disc.mirrored.size();
-  std::vector<Disc> all;
+  std::vector<DiscTree::Disc> all;
   all.reserve(count);
   power_.resize(static_cast<Eigen::Index>(count), power.cols());
-  const auto add = [&](const Disc& disc, float weight) {
+  const auto add = [&](const DiscTree::Disc& disc, float weight) {
     // What is close in space is close in memory.
     power_.row(static_cast<Eigen::Index>(all.size())) = weight * power.row(disc.photon);
     all.push_back(disc);
   };
-  for (Node& leaf : nodes_) {
+  for (DiscTree::Node& leaf : tree_.nodes) {
     if (leaf.second >= 0) continue;
     const auto begin = static_cast<int>(all.size());
     for (int i = leaf.begin; i < leaf.end; ++i) {
-      Disc disc = discs_[static_cast<std::size_t>(i)];
+      DiscTree::Disc disc = tree_.discs[static_cast<std::size_t>(i)];
       const Folded& more = folded[static_cast<std::size_t>(i)];
       add(disc, more.weight);
       for (const Eigen::Vector3f& center : more.mirrored) {
@@ -279,18 +183,18 @@ void CausticMap::insert(const std::vector<Folded>& folded, const BandArray& powe
     leaf.begin = begin;
     leaf.end = static_cast<int>(all.size());
   }
-  discs_ = std::move(all);
-  for (auto n = static_cast<int>(nodes_.size()) - 1; n >= 0; --n) {
-    Node& node = nodes_[static_cast<std::size_t>(n)];
+  tree_.discs = std::move(all);
+  for (auto n = static_cast<int>(tree_.nodes.size()) - 1; n >= 0; --n) {
+    DiscTree::Node& node = tree_.nodes[static_cast<std::size_t>(n)];
     if (node.second >= 0) {
-      const Node& first = nodes_[static_cast<std::size_t>(n) + 1];
-      const Node& second = nodes_[static_cast<std::size_t>(node.second)];
+      const DiscTree::Node& first = tree_.nodes[static_cast<std::size_t>(n) + 1];
+      const DiscTree::Node& second = tree_.nodes[static_cast<std::size_t>(node.second)];
       node = {first.low.min(second.low), first.high.max(second.high), first.begin, second.end,
               node.second};
       continue;
     }
     for (int i = node.begin; i < node.end; ++i) {
-      const Disc& disc = discs_[static_cast<std::size_t>(i)];
+      const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(i)];
       const float r = std::sqrt(disc.radius2);
       node.low = node.low.min(disc.center.array() - r);
       node.high = node.high.max(disc.center.array() + r);
@@ -311,7 +215,7 @@ Spectrum CausticMap::irradiance(const Eigen::Vector3d& place, const Eigen::Vecto
   stack[depth++] = root;
   while (depth > 0) {
     const int number = stack[--depth];
-    const Node& node = nodes_[static_cast<std::size_t>(number)];
+    const DiscTree::Node& node = tree_.nodes[static_cast<std::size_t>(number)];
     if ((p.array() < node.low).any() || (p.array() > node.high).any()) continue;
     if (node.second >= 0) {
       stack[depth++] = node.second;
@@ -319,7 +223,7 @@ Spectrum CausticMap::irradiance(const Eigen::Vector3d& place, const Eigen::Vecto
       continue;
     }
     for (int i = node.begin; i < node.end; ++i) {
-      const Disc& disc = discs_[static_cast<std::size_t>(i)];
+      const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(i)];
       const float d2 = (disc.center - p).squaredNorm();
       if (!(d2 < disc.radius2) || !(n.dot(disc.normal) > most_bend)) continue;
       const float K = 1.0f - d2 / disc.radius2;

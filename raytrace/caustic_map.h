@@ -6,6 +6,7 @@
 
 #include "mesh/element_caster.h"
 #include "radiosity/caustic_photons.h"
+#include "raytrace/disc_tree.h"
 #include "raytrace/light_regions.h"
 
 namespace lightwell {
@@ -31,21 +32,6 @@ class CausticMap {
   static int neighbours(std::size_t count);
 
  private:
-  struct Disc {
-    Eigen::Vector3f center, normal;
-    float radius2 = 0.0f;
-    int photon = 0;  // where it was in their list
-  };
-  // Of a tree over the discs of a region. Children of node i are i + 1 and `second`.
-  struct Node {
-    Eigen::Array3f low, high;
-    int begin = 0, end = 0;  // discs
-    int second = -1;         // -1: a leaf
-  };
-  class Nearest;
-
-  int build(int begin, int end);
-  void collect(int from, int most, std::vector<int>& found) const;
   void set_radii(int region, int k);
   /// What the disc's power is multiplied by, and where it is once more.
   struct Folded {
@@ -53,15 +39,14 @@ class CausticMap {
     std::vector<Eigen::Vector3f> mirrored{};
   };
   void fold_discs(int region, std::vector<Folded>& folded) const;
-  std::vector<LightRegions::Edge> edges_about(const Node& about,
+  std::vector<LightRegions::Edge> edges_about(const DiscTree::Node& about,
                                               std::span<const LightRegions::Edge> edges) const;
   void insert(const std::vector<Folded>& folded, const BandArray& power);
 
   LightRegions regions_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the discs' coordinates
-  std::vector<Disc> discs_;
-  BandArray power_;  // per disc, over pi r^2 / 2 and the share of the kernel that is within
-  std::vector<Node> nodes_;
+  DiscTree tree_;
+  BandArray power_;        // per disc, over pi r^2 / 2 and the share of the kernel that is within
   std::vector<int> root_;  // per region; -1: no photons
 };
 
