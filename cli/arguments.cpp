@@ -9,6 +9,7 @@
 
 #include "cli/memory_size.h"
 #include "cli/refinement.h"
+#include "radiosity/caustic_photons.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
@@ -348,6 +349,13 @@ void RenderArguments::add_to(CLI::App& command) {
       ->check(whole_number(1, most_gather_rays))
       ->group(group);
   command
+      .add_option("--photons", photons,
+                  "sent through mirrors and glass, where there are any, to find what they focus "
+                  "(default 524288); 0: as coarse as the mesh")
+      ->type_name("N")
+      ->check(whole_number(0, most_photons))
+      ->group(group);
+  command
       .add_option("--samples", samples,
                   "most samples per pixel (default: 256 where there is gloss or a lens; else "
                   "edges alone are sampled)")
@@ -379,6 +387,7 @@ RenderOptions RenderArguments::options() const {
                  : pass == "gather"    ? Pass::gather
                                        : Pass::direct;
   options.gather_rays = gather_samples;
+  options.photons = photons;
   options.sampling.most = samples;
   options.sampling.noise = static_cast<float>(noise);
   options.shadows.max_rays = shadow_rays;
@@ -389,6 +398,7 @@ RenderOptions RenderArguments::options() const {
 std::string RenderArguments::text() const {
   std::string text = fmt::format("--pass {} --shadow-rays {}", pass, shadow_rays);
   if (pass == "gather") text += fmt::format(" --gather-samples {}", gather_samples);
+  if (pass != "interpolate") text += fmt::format(" --photons {}", photons);
   if (samples > 0) text += fmt::format(" --samples {}", samples);
   return text + fmt::format(" --noise {:g}%", 100.0 * noise);
 }

@@ -118,9 +118,9 @@ struct EmitterShadow {
 std::vector<ShadowTally> cast_shadows(std::span<const EmitterShadow> shadows,
                                       const ElementCaster& caster, const SobolPoints& sobol,
                                       const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                      int facet) {
+                                      int facet, const ClearPanes* panes) {
   std::vector<ShadowTally> tallies(shadows.size());
-  ShadowBatch batch(caster, tallies);
+  ShadowBatch batch(caster, tallies, panes);
   const auto add = [&](std::size_t i, int begin, int end) {
     for (int s = begin; s < end; ++s) {
       const Eigen::Array4f u = sobol.point(s, shadows[i].key);
@@ -183,7 +183,8 @@ Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels)
     : bands_(scene.bands.count()),
       channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
-      samples_(most_shadow_rays) {
+      samples_(most_shadow_rays),
+      panes_(scene) {
   const std::vector<FacetRef> facets = scene_facets(scene);
   owned_.assign(facets.size(), Owned::nothing);
   first_column_.assign(facets.size(), 0);
@@ -269,7 +270,8 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
       .emitter = &emitter, .F = unoccluded_form_factor(emitter, point, normal, facet), .key = key};
   if (!(shadow.F > 0.0)) return 0.0;
   set_effort({&shadow, 1}, 1, options);
-  return shadow.F * cast_shadows({&shadow, 1}, caster, samples_, point, normal, facet)[0].share();
+  return shadow.F *
+         cast_shadows({&shadow, 1}, caster, samples_, point, normal, facet, nullptr)[0].share();
 }
 
 std::optional<bool> DirectLight::sees(const Emitter& emitter, const ElementCaster& caster,
@@ -279,7 +281,7 @@ std::optional<bool> DirectLight::sees(const Emitter& emitter, const ElementCaste
   if (!(sample.weight > 0.0)) return std::nullopt;
   std::uint8_t blocked = 0;
   caster.occluded({&sample.ray, 1}, {&blocked, 1});
-  return blocked == 0;
+  return blocked == 0 || (!panes_.empty() && (panes_.passed(caster, sample.ray) > 0.0f).any());
 }
 
 template <class Add>
@@ -299,19 +301,26 @@ void DirectLight::for_each_light(const ElementCaster& caster, const Eigen::Vecto
                        .key = random_key(key, static_cast<std::uint64_t>(e))});
   }
   set_effort(shadows, channel_count_, options);
-  const std::vector<ShadowTally> tallies =
-      cast_shadows(shadows, caster, samples_, point, normal, facet);
+  const std::vector<ShadowTally> tallies = cast_shadows(shadows, caster, samples_, point, normal,
+                                                        facet, panes_.empty() ? nullptr : &panes_);
   if (sight) *sight = {};
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const EmitterShadow& s = shadows[i];
-    const double share = tallies[i].share();
+    const ShadowTally& tally = tallies[i];
+    const double share = tally.share();
+    const bool is_dimmed = tally.dimmed > 0.0;
+    Spectrum through;
+    if (is_dimmed) through = static_cast<float>(s.F / tally.all) * tally.through;
     if (share > 0.0) add(*s.emitter, static_cast<float>(s.F * share));
+    if (is_dimmed) add(*s.emitter, through);
     if (!sight) continue;
-    sight->unshadowed += s.F * s.emitter->exitance.mean();
+    const bool is_behind_panes = is_dimmed && !tally.is_mixed();
+    sight->unshadowed +=
+        is_behind_panes ? (through * s.emitter->exitance).mean() : s.F * s.emitter->exitance.mean();
     constexpr int bits = 64;
     const std::uint64_t bit = s.index < bits ? std::uint64_t{1} << s.index : 0;
-    if (share == 1.0) sight->whole |= bit;
-    if (share == 0.0) sight->hidden |= bit;
+    if (share == 1.0 || is_behind_panes) sight->whole |= bit;
+    if (share == 0.0 && !is_dimmed) sight->hidden |= bit;
   }
 }
 
@@ -320,7 +329,7 @@ Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vecto
                                  const ShadowOptions& options, EmitterSight* sight) const {
   Spectrum E = Spectrum::Zero(bands_);
   for_each_light(caster, point, normal, facet, key, options, sight,
-                 [&](const Emitter& emitter, float F) { E += emitter.exitance * F; });
+                 [&](const Emitter& emitter, const auto& F) { E += emitter.exitance * F; });
   return E;
 }
 
@@ -328,10 +337,11 @@ void DirectLight::add_irradiance(const ElementCaster& caster, const Eigen::Vecto
                                  const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                                  const ShadowOptions& options, float* E,
                                  EmitterSight* sight) const {
-  for_each_light(
-      caster, point, normal, facet, key, options, sight, [&](const Emitter& emitter, float F) {
-        Eigen::Map<Eigen::ArrayXf>(E + first_column(emitter.facet), bands_) += emitter.exitance * F;
-      });
+  for_each_light(caster, point, normal, facet, key, options, sight,
+                 [&](const Emitter& emitter, const auto& F) {
+                   Eigen::Map<Eigen::ArrayXf>(E + first_column(emitter.facet), bands_) +=
+                       emitter.exitance * F;
+                 });
 }
 
 }  // namespace lightwell

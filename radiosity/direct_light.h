@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/element_caster.h"
+#include "radiosity/clear_panes.h"
 #include "radiosity/emitter_channels.h"
 #include "radiosity/polygon_form_factor.h"
 #include "scene/sampling.h"
@@ -39,7 +40,9 @@ struct ShadowOptions {
 
 /// What a point sees of the emitters, by the shadow rays of its irradiance.
 struct EmitterSight {
-  double unshadowed = 0.0;   ///< sum M F with nothing in the way, mean of the bands, W/m^2
+  /// sum M F with nothing in the way, mean of the bands, W/m^2; of emitters that are wholly behind
+  /// clear panes, what those pass.
+  double unshadowed = 0.0;
   std::uint64_t whole = 0;   ///< bit i: every ray reached emitter i, of the first 64
   std::uint64_t hidden = 0;  ///< bit i: none did
 };
@@ -49,6 +52,8 @@ struct EmitterSight {
 /// small and bright, and a hemisphere of rays would find them by chance. What emits beyond that is
 /// large and is found by any hemisphere of rays. What counts for that is the scene's exitance; the
 /// light is that of the mesh, whose emission relight() may have scaled since.
+///
+/// Irradiance includes what goes straight through ClearPanes; form factors take those for opaque.
 ///
 /// With `channels`, light of each is kept apart in columns of its own: channel c in those from
 /// c * bands on.
@@ -108,6 +113,7 @@ class DirectLight {
   std::vector<int> first_column_;
   int bands_ = 0, channel_count_ = 1;
   SobolPoints samples_;
+  ClearPanes panes_;
 };
 
 }  // namespace lightwell

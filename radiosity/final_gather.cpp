@@ -338,8 +338,9 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
         caster.closest_hits({&ray, 1}, {&hit, 1});
         if (hit.facet < 0 || !paths.is_specular(hit.facet)) continue;
         paths.follow(ray, hit, random_key(key, caustic_branches, static_cast<std::uint64_t>(r)),
-                     [&](const ElementHit& at, const Spectrum& throughput) {
-                       list.push_back({at.element, throughput * power_per_ray});
+                     [&](const LightArrival& at) {
+                       if (at.through_panes_only) return;  // DirectLight has that
+                       list.push_back({at.hit.element, at.throughput * power_per_ray});
                      });
       }
     });

@@ -74,8 +74,9 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 
 /// Irradiance at every vertex (vertices x bands, W/m^2) from emitters by way of mirrors and glass:
 /// `rays` rays in all from each emitter DirectLight owns leave their power on the elements where
-/// they end (after Heckbert 1990), and vertices take the mean of the elements around. Empty if the
-/// scene has no mirrors or glass.
+/// they end (after Heckbert 1990), and vertices take the mean of the elements around; but for what
+/// goes straight through ClearPanes, which is direct light. Empty if the scene has no mirrors or
+/// glass.
 BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, int rays, int max_specular_depth,
                              const Progress& progress = {}, Journal* journal = nullptr);

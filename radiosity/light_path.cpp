@@ -26,7 +26,8 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
 }
 
 bool LightPaths::continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key, Media& media,
-                             Spectrum& throughput, PathLosses& losses) const {
+                             Spectrum& throughput, bool& through_panes_only,
+                             PathLosses& losses) const {
   const Material& material = scene_.materials[material_[hit.facet]];
   // The back of a one-sided mirror is black; glass is clear from both sides.
   if (!material.dielectric && hit.element < 0) {
@@ -49,6 +50,7 @@ bool LightPaths::continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key,
                                .from_back = hit.from_back},
                               lot);
   media.go_on(material_[hit.facet], material, way, hit.from_back);
+  through_panes_only = through_panes_only && way.crosses && is_clear_pane(material);
   // What a partly diffuse surface does not mirror was taken up by its diffuse side, where the
   // caller counts it.
   if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - way.share);
@@ -66,9 +68,8 @@ void LightPaths::absorb(const Ray& ray, const ElementHit& hit, const Media& medi
   throughput *= passed;
 }
 
-PathLosses LightPaths::follow(
-    const Ray& first_ray, const ElementHit& first_hit, std::uint64_t key,
-    const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const {
+PathLosses LightPaths::follow(const Ray& first_ray, const ElementHit& first_hit, std::uint64_t key,
+                              const std::function<void(const LightArrival&)>& arrive) const {
   const int bands = scene_.bands.count();
   PathLosses losses{Spectrum::Zero(bands), Spectrum::Zero(bands), Spectrum::Zero(bands)};
   Spectrum throughput = Spectrum::Ones(bands);
@@ -76,7 +77,7 @@ PathLosses LightPaths::follow(
   ElementHit hit = first_hit;
   Media media;
   absorb(ray, hit, media, throughput, losses);
-  bool met_rough = false;
+  bool met_rough = false, through_panes_only = true;
   for (int depth = 0;; ++depth) {
     met_rough = met_rough || scene_.materials[material_[hit.facet]].gloss_roughness() > 0.0f;
     if (depth >= deepest_path(max_depth_, met_rough)) {
@@ -84,7 +85,7 @@ PathLosses LightPaths::follow(
       return losses;
     }
     if (!continue_at(ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), media,
-                     throughput, losses)) {
+                     throughput, through_panes_only, losses)) {
       return losses;
     }
     caster_.closest_hits({&ray, 1}, {&hit, 1});
@@ -94,9 +95,21 @@ PathLosses LightPaths::follow(
       losses.escaped += throughput;
       return losses;
     }
-    if (is_diffuse(hit.facet) && hit.element >= 0) arrive(hit, throughput);
+    if (is_diffuse(hit.facet) && hit.element >= 0) {
+      arrive({.hit = hit,
+              .throughput = throughput,
+              .position = ray.origin + hit.t * ray.direction,
+              .through_panes_only = through_panes_only});
+    }
     if (!is_specular(hit.facet)) return losses;
   }
+}
+
+PathLosses LightPaths::follow(
+    const Ray& ray, const ElementHit& hit, std::uint64_t key,
+    const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const {
+  const auto without_place = [&](const LightArrival& at) { arrive(at.hit, at.throughput); };
+  return follow(ray, hit, key, std::function<void(const LightArrival&)>(without_place));
 }
 
 }  // namespace lightwell

@@ -16,6 +16,14 @@ struct PathLosses {
   Spectrum cut{};       ///< still under way when the depth limit was reached
 };
 
+/// Where light arrives at something diffuse, behind mirrors and clear surfaces.
+struct LightArrival {
+  const ElementHit& hit;
+  const Spectrum& throughput;
+  Eigen::Vector3d position;  ///< m
+  bool through_panes_only;   ///< it went straight on, through smooth thin panes and nothing else
+};
+
 /// Follows rays through mirrors and clear glass until something diffuse takes them up (extended
 /// form factors, Sillion & Puech 1989). At glass one branch is followed, picked with Fresnel's
 /// probability, and at rough surfaces one direction of their lobe (see draw_way), so that a ray
@@ -31,15 +39,17 @@ class LightPaths {
   /// Whether the facet's sides take part in diffuse exchange (reflect or emit diffusely).
   bool is_diffuse(int facet) const { return diffuse_[facet] != 0; }
 
-  /// `arrive(hit, throughput)` is called for every diffuse arrival behind the specular facet that
+  /// `arrive` is called for every diffuse arrival behind the specular facet that
   /// `hit` of `ray` names (the facet's own diffuse share, if any, is the caller's). `key` picks
   /// branches.
+  PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
+                    const std::function<void(const LightArrival&)>& arrive) const;
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const;
 
  private:
   bool continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key, Media& media,
-                   Spectrum& throughput, PathLosses& losses) const;
+                   Spectrum& throughput, bool& through_panes_only, PathLosses& losses) const;
   void absorb(const Ray& ray, const ElementHit& hit, const Media& media, Spectrum& throughput,
               PathLosses& losses) const;
 

@@ -17,9 +17,24 @@ void ShadowBatch::flush() {
     ShadowTally& tally = tallies_[static_cast<std::size_t>(tally_of_[k])];
     tally.all += weights_[k];
     tally.squares += weights_[k] * weights_[k];
-    if (!blocked[k]) tally.seen += weights_[k];
+    if (!blocked[k]) {
+      tally.seen += weights_[k];
+    } else if (panes_) {
+      look_through_panes(rays_[k], weights_[k], tally);
+    }
   }
   count_ = 0;
+}
+
+void ShadowBatch::look_through_panes(const Ray& ray, double weight, ShadowTally& tally) const {
+  const Spectrum share = panes_->passed(caster_, ray);
+  if (!(share > 0.0f).any()) {
+    tally.blocked = true;
+    return;
+  }
+  tally.dimmed += weight;
+  if (tally.through.size() == 0) tally.through = Spectrum::Zero(share.size());
+  tally.through += static_cast<float>(weight) * share;
 }
 
 }  // namespace lightwell

@@ -40,6 +40,7 @@ void check(const RenderOptions& options) {
   within("max_subdivision", options.max_subdivision, 0, max_levels);
   within("max_depth", options.max_depth, 0, deepest_tree);
   within("gather_rays", options.gather_rays, 1, most_gather_rays);
+  within("photons", options.photons, 0, most_photons);
   within("glossy_rays", options.glossy_rays, 1, 256);
   within("sampling.most", options.sampling.most, 0, SampleOptions::limit);
   within("sampling.least", options.sampling.least, 1, SampleOptions::limit);
@@ -288,6 +289,7 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
   print.add(camera.blades);
   print.add(options.gather_rays);
   print.add(options.glossy_rays);
+  print.add(options.photons);
   print.add(options.sampling.most);
   print.add(options.sampling.least);
   print.add(options.sampling.noise);

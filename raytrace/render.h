@@ -39,7 +39,10 @@ struct RenderOptions {
   float min_contribution = 1e-3f;  ///< branches that weigh less are not followed
   ShadowOptions shadows{};
   int gather_rays = 256;  ///< over the hemisphere of a hit, for Pass::gather; 1 to most_gather_rays
-  int glossy_rays = 8;    ///< from the first rough surface; one from those behind it. 1 to 256
+  /// Sent from emitters by way of mirrors and glass, for caustics of Pass::direct and
+  /// Pass::gather: see CausticMap. 0: those of the solution, as sharp as its mesh.
+  int photons = 1 << 19;
+  int glossy_rays = 8;  ///< from the first rough surface; one from those behind it. 1 to 256
   SampleOptions sampling{};
   /// Whitted's adaptive supersampling: a pixel whose corners differ by more than `contrast`
   /// (relative) or show different surfaces is split in four, at most `max_subdivision` times, 0 to

@@ -71,6 +71,11 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
   }
+  if (options.pass != Pass::interpolate && options.photons > 0 &&
+      solution.caustic_irradiance.size() > 0) {
+    caustics_.emplace(caster.mesh(), shoot_photons(scene, caster, direct_light, options.photons,
+                                                   options.max_depth, options.progress));
+  }
   for (const Material& material : scene.materials) {
     const auto& glass = material.dielectric;
     absorbs_ = absorbs_ || (glass && (glass->absorption > 0.0f).any());
@@ -253,17 +258,31 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& a
   Arriving E;
   E.direct = direct_light_.irradiance(caster_, at.position, normal, hit.facet,
                                       random_key(walk.key, branch.place, shadow_purpose), shadows);
-  if (!gather_) {
+  if (gather_) {
+    E.indirect = gather_->indirect_irradiance(
+        {.position = at.position, .normal = at.normal, .smooth_normal = normal, .facet = hit.facet},
+        random_key(walk.key, branch.place, gather_purpose), share);
+  } else {
     E.indirect = interpolate(mesh, solution_.indirect_irradiance, hit);
-    return E;
   }
-  E.indirect = gather_->indirect_irradiance(
-      {.position = at.position, .normal = at.normal, .smooth_normal = normal, .facet = hit.facet},
-      random_key(walk.key, branch.place, gather_purpose), share);
-  if (solution_.caustic_irradiance.size() > 0) {
-    E.indirect += interpolate(mesh, solution_.caustic_irradiance, hit);
-  }
+  add_caustics(hit, at, E.indirect);
   return E;
+}
+
+// What is gathered has no caustics yet; the solution's indirect light has its own.
+void RayTree::add_caustics(const ElementHit& hit, const SurfacePoint& at,
+                           Spectrum& indirect) const {
+  if (solution_.caustic_irradiance.size() == 0) return;
+  if (!caustics_) {
+    if (gather_) indirect += interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
+    return;
+  }
+  if (!gather_) {
+    // What rounding leaves of nothing may lie below.
+    indirect -= interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
+    indirect = indirect.max(0.0f);
+  }
+  indirect += caustics_->irradiance(at.position, at.normal, hit.element);
 }
 
 void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,

@@ -9,6 +9,7 @@
 #include "mesh/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
+#include "raytrace/caustic_map.h"
 #include "raytrace/lamp_samples.h"
 #include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
@@ -117,6 +118,7 @@ class RayTree {
   double cone_width(const Branch& branch, const SurfacePoint& at) const {
     return branch.width + pixel_width_ * (at.position - branch.ray.origin).norm();
   }
+  void add_caustics(const ElementHit& hit, const SurfacePoint& at, Spectrum& indirect) const;
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
                    const Spectrum& rho, const Arriving& E, Walk& walk) const;
 
@@ -128,8 +130,9 @@ class RayTree {
   double pixel_width_;                               ///< m, one metre away
   std::shared_ptr<const FacetTextures> textures_{};  ///< null: nothing varies over facets
   bool with_layers_ = false;
-  Eigen::Array3f white_rgb_;             ///< of what reflects everything, under equal-energy light
-  std::optional<PixelGather> gather_{};  ///< for Pass::gather
+  Eigen::Array3f white_rgb_;              ///< of what reflects everything, under equal-energy light
+  std::optional<PixelGather> gather_{};   ///< for Pass::gather
+  std::optional<CausticMap> caustics_{};  ///< in place of the solution's
   static constexpr int gloss_point_count = 1024;
   SobolPoints gloss_points_;  ///< of looks of one key; later ones use a new scrambling
   LampSamples lamps_;

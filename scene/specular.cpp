@@ -99,6 +99,11 @@ Spectrum share_of(const Meeting& meeting, bool crosses) {
   return crosses ? glass->tint : Spectrum(Spectrum::Ones(meeting.material.specular.size()));
 }
 
+bool is_clear_pane(const Material& material) {
+  const auto& glass = material.dielectric;
+  return glass && glass->thin && !(glass->roughness > 0.0f);
+}
+
 OnwardWays smooth_ways(const Meeting& meeting) {
   const Material& material = meeting.material;
   const Eigen::Vector3d mirrored = reflect(meeting.direction, meeting.normal);

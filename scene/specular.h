@@ -36,6 +36,9 @@ OnwardWays smooth_ways(const Meeting& meeting);
 /// mirror's reflectance, all that is reflected and the tint of what crosses a dielectric.
 Spectrum share_of(const Meeting& meeting, bool crosses);
 
+/// Whether light that crosses goes straight on: a thin pane without roughness.
+bool is_clear_pane(const Material& material);
+
 /// What decides between ways; in [0,1). `key` draws more numbers where the first ones are refused.
 struct OnwardLot {
   double way = 0.0;         ///< reflected or refracted
