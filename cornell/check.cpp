@@ -159,7 +159,7 @@ void check_diffuse_picture(const Subject& subject, Verdict& verdict) {
   mask |= grown(silhouettes(sightlines, subject.scene.cameras.front()), 3);
   verdict.figure(fmt::format("picture: relative RMSE, 3 pixels off light and edges ({:.0f} % kept)",
                              100.0 * (1.0 - mask.share())),
-                 100.0 * relative_rmse(subject.picture, reference, reference, mask), 3.0);
+                 100.0 * relative_rmse(subject.picture, reference, reference, mask), 1.5);
   verdict.remark("picture: relative RMSE of everything but the light",
                  100.0 * relative_rmse(subject.picture, reference, reference, light));
 }

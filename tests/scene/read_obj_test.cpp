@@ -137,7 +137,10 @@ TEST(ReadObj, ClearMaterialsAreDielectrics) {
 TEST(ReadObj, KeIsRadiance) {
   const float pi = std::numbers::pi_v<float>;
   expect_rgb(material(room(), "lamp").emission, 5 * pi, 4 * pi, 3 * pi);
-  EXPECT_TRUE(is_noted(room(), "textures"));
+}
+
+TEST(ReadObj, APictureThatIsMissingIsNoted) {
+  EXPECT_TRUE(is_noted(room(), "lamp.png' of material 'lamp' is missing"));
 }
 
 TEST(ReadObj, OneNumberStandsForThree) {
