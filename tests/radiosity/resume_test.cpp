@@ -249,23 +249,25 @@ TEST(Resume, OtherOptionsTakeNothingFromAJournal) {
   expect_same_solve(found, solve_scene(scene, options));
 }
 
+// Leaves the journal of a whole solve.
+void keep_solve(const std::filesystem::path& file, const Scene& scene, SolveOptions options) {
+  Journal journal(file, {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
+  options.journal = &journal;
+  solve_scene(scene, options);
+}
+
 // Form factors do not depend on how much surfaces reflect and lamps emit.
 TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
   TemporaryFolder folder;
   Scene scene = room(true);
   SolveOptions options = quick();
-  {
-    Journal journal(folder / "C", {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
-    options.journal = &journal;
-    solve_scene(scene, options);
-  }
+  keep_solve(folder / "C", scene, options);
   for (Material& material : scene.materials) {
     material.reflectance *= 0.9f;
     material.emission *= 2.0f;
   }
   const auto journal = Journal::of_another_solve(folder / "C", "1");
   const std::int64_t size = journal->size();
-  options.journal = nullptr;
   options.form_factors.journal = journal.get();
   const SolvedScene reused = solve_scene(scene, options);
   EXPECT_GT(journal->recalled(), 0);
@@ -276,7 +278,6 @@ TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
   // Mirrors are in the form factors.
   for (Material& material : scene.materials) material.specular *= 0.9f;
   const auto other = Journal::of_another_solve(folder / "C", "1");
-  options.journal = nullptr;
   options.form_factors.journal = other.get();
   solve_scene(scene, options);
   EXPECT_EQ(other->recalled(), 0);
@@ -287,11 +288,7 @@ TEST(Resume, AnotherMirrorTakesNothing) {
   TemporaryFolder folder;
   Scene scene = room(true);
   SolveOptions options = quick();
-  {
-    Journal journal(folder / "C", {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
-    options.journal = &journal;
-    solve_scene(scene, options);
-  }
+  keep_solve(folder / "C", scene, options);
   for (Material& material : scene.materials) material.specular *= 0.5f;
   const auto journal = Journal::of_another_solve(folder / "C", "1");
   options.journal = journal.get();
@@ -309,11 +306,7 @@ TEST(Resume, FormFactorsOfLampsAreNotMistakenForThoseOfOthers) {
   TemporaryFolder folder;
   Scene scene = test::two_lamps();
   SolveOptions options = quick();
-  {
-    Journal journal(folder / "C", {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
-    options.journal = &journal;
-    solve_scene(scene, options);
-  }
+  keep_solve(folder / "C", scene, options);
   // The dimmest lamp becomes the brightest.
   Material* dimmest = nullptr;
   for (Material& material : scene.materials) {
@@ -322,7 +315,6 @@ TEST(Resume, FormFactorsOfLampsAreNotMistakenForThoseOfOthers) {
   }
   dimmest->emission *= 100.0f;
   const auto journal = Journal::of_another_solve(folder / "C", "1");
-  options.journal = nullptr;
   options.form_factors.journal = journal.get();
   const SolvedScene reused = solve_scene(scene, options);
   options.form_factors.journal = nullptr;

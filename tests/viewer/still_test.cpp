@@ -42,6 +42,23 @@ class StillTest : public testing::Test {
     }
     return window.still().phase() == phase;
   }
+  /// Enough pixels to come in more than one strip.
+  ViewOptions large_view() const {
+    ViewOptions large = options();
+    large.width = 640;
+    large.height = 480;
+    return large;
+  }
+  /// Asks for a picture and waits for its first strip.
+  static void start_still(WalkWindow& window) {
+    window.tick(0.01);
+    window.press("r");
+    window.release("r");
+    for (int i = 0; i < 60000 && window.still().rows() == 0; ++i) {
+      window.tick(0.001);
+      std::this_thread::sleep_for(1ms);
+    }
+  }
   TemporaryFolder folder_{};
 };
 
@@ -83,18 +100,9 @@ TEST_F(StillTest, IsThrownAwayWhenTheCameraMoves) {
 
 /// Strips come from the top down, and are those of the whole picture.
 TEST_F(StillTest, ShowsWhatIsThereWhileItGoesOn) {
-  ViewOptions large = options();
-  large.width = 640;
-  large.height = 480;
-  WalkWindow window(solved(), large);
-  window.tick(0.01);
-  window.press("r");
-  window.release("r");
+  WalkWindow window(solved(), large_view());
+  start_still(window);
   const Still& still = window.still();
-  for (int i = 0; i < 60000 && still.rows() == 0; ++i) {
-    window.tick(0.001);
-    std::this_thread::sleep_for(1ms);
-  }
   ASSERT_EQ(still.phase(), StillPhase::rendering) << "a first strip, and not all at once";
   const int rows = still.rows();
   EXPECT_GT(rows, 0);
@@ -109,17 +117,8 @@ TEST_F(StillTest, ShowsWhatIsThereWhileItGoesOn) {
 }
 
 TEST_F(StillTest, ThrowsStripsAwayWhenTheCameraMoves) {
-  ViewOptions large = options();
-  large.width = 640;
-  large.height = 480;
-  WalkWindow window(solved(), large);
-  window.tick(0.01);
-  window.press("r");
-  window.release("r");
-  for (int i = 0; i < 60000 && window.still().rows() == 0; ++i) {
-    window.tick(0.001);
-    std::this_thread::sleep_for(1ms);
-  }
+  WalkWindow window(solved(), large_view());
+  start_still(window);
   window.drag(5, 0);
   EXPECT_EQ(window.still().phase(), StillPhase::none);
   EXPECT_EQ(window.still().rows(), 0);
