@@ -8,8 +8,8 @@
 namespace lightwell {
 
 /// Radiance from all directions as a picture: W/(m^2 sr), longitude and latitude. Rows go from +y
-/// (the top) down to -y; the middle of the picture is -z, a quarter further to the right +x: the
-/// layout of Mitsuba, Blender and the light probes of Debevec (1998).
+/// (the top) down to -y; the middle of the picture is +z, a quarter further to the right -x, as one
+/// sees it from within. (Mitsuba's layout.)
 class EnvironmentMap {
  public:
   /// `radiance`: width * height rows from the top left corner on, a column per band. Throws

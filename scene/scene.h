@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/bands.h"
+#include "scene/sky.h"
 #include "scene/texture.h"
 
 namespace lightwell {
@@ -125,6 +126,7 @@ struct Scene {
   std::vector<Material> materials{};
   std::vector<Surface> surfaces{};
   std::vector<Camera> cameras{};
+  std::optional<Sky> sky{};
   std::vector<std::string>
       notes{};               ///< what the reader assumed, repaired or dropped: one sentence each
   int dropped_polygons = 0;  ///< of its files, without area or crossing themselves: left out

@@ -10,6 +10,7 @@
 #include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
 #include "scene/io/toml_materials.h"
+#include "scene/io/toml_sky.h"
 #include "scene/io/toml_surfaces.h"
 #include "scene/io/toml_value.h"
 
@@ -143,7 +144,7 @@ Scene read_toml(const std::filesystem::path& path) {
   const toml::table root = parse(file);
   const TomlValue all(file.path(), root, "");
   const TomlTable document =
-      all.table({"title", "unit", "bands", "materials", "surfaces", "cameras"});
+      all.table({"title", "unit", "bands", "materials", "surfaces", "sky", "cameras"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
@@ -155,6 +156,7 @@ Scene read_toml(const std::filesystem::path& path) {
   scene.bands = bands.bands;
   const auto materials = read_materials(document, bands, scene);
 
+  if (const auto sky = document.find("sky")) scene.sky = read_toml_sky(*sky, bands);
   const auto surfaces = document.find("surfaces");
   if (!surfaces) document.fail("the scene has no surfaces; add at least one [[surfaces]] table");
   if (!surfaces->is_array()) surfaces->fail("must be an array of tables; write [[surfaces]]");

@@ -123,14 +123,14 @@ TEST(Sky, DirectionsAreByCompass) {
 TEST(Sky, MapIsLaidOutByLongitudeAndLatitude) {
   constexpr int width = 64, height = 32;
   BandArray pixels = BandArray::Zero(width * height, 3);
-  pixels.row(16 * width + 32).setConstant(5.0f);  // a little right of the middle: -z
-  pixels.row(16 * width + 48).setConstant(7.0f);  // +x
+  pixels.row(16 * width + 32).setConstant(5.0f);  // a little right of the middle: +z
+  pixels.row(16 * width + 48).setConstant(7.0f);  // -x
   pixels.topRows(width).setConstant(9.0f);        // up
   const EnvironmentMap map(width, height, pixels);
   const double half = pi / width, down = -0.5 * pi / height;
   const auto at = [&](double longitude) {
-    return Eigen::Vector3d(std::cos(down) * std::sin(longitude), std::sin(down),
-                           -std::cos(down) * std::cos(longitude));
+    return Eigen::Vector3d(-std::cos(down) * std::sin(longitude), std::sin(down),
+                           std::cos(down) * std::cos(longitude));
   };
   EXPECT_NEAR(map.at(at(half))[0], 5.0f, 1e-4f);
   EXPECT_NEAR(map.at(at(0.5 * pi + half))[0], 7.0f, 1e-4f);
