@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "mesh/patch_sampler.h"
 #include "scene/parallel.h"
@@ -18,6 +20,23 @@ constexpr int most_sites = 4096, points_per_site = 4, learn_rays = 2;
 
 // A cube is no larger than this share of the scene's diagonal; more cubes cost more learning.
 constexpr double cube_share = 1.0 / 32.0;
+
+// Where a place of a square grid of 2^k places each way comes on Hilbert's curve (1891).
+int on_hilbert_curve(int size, int x, int y) {
+  int distance = 0;
+  for (int s = size / 2; s > 0; s /= 2) {
+    const int right = (x & s) != 0, up = (y & s) != 0;
+    distance += s * s * ((3 * right) ^ up);
+    if (up == 0) {
+      if (right == 1) {
+        x = size - 1 - x;
+        y = size - 1 - y;
+      }
+      std::swap(x, y);
+    }
+  }
+  return distance;
+}
 
 }  // namespace
 
@@ -39,6 +58,12 @@ Eigen::Vector3d SkyLight::direction_at(int cell, double u, double v) const {
 
 void SkyLight::tabulate(const Sky& sky) {
   axes_ << sky.north, sky.north.cross(sky.up), sky.up;
+  // Equal steps along the curve are spread evenly over the dome, as those along rings are not.
+  std::iota(order_.begin(), order_.end(), 0);
+  std::sort(order_.begin(), order_.end(), [](int a, int b) {
+    return on_hilbert_curve(around, a % around, a / around) <
+           on_hilbert_curve(around, b % around, b / around);
+  });
   constexpr int in_cell = fine * fine;
   radiance_.resize(static_cast<std::size_t>(cells) * in_cell);
   row_cdf_.resize(static_cast<std::size_t>(cells) * fine);
@@ -276,10 +301,12 @@ void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<
   std::vector<Sample> samples;
   ray.reserve(static_cast<std::size_t>(rays));
   samples.reserve(static_cast<std::size_t>(rays));
-  const double all = shares.back().cdf, offset = random_uniform(random_key(key, ray_purpose));
+  const double all = shares.back().cdf;
   std::size_t s = 0;
   for (int i = 0; i < rays; ++i) {
-    const double wanted = (i + offset) / rays * all;
+    const double within =
+        random_uniform(random_key(key, ray_purpose, static_cast<std::uint64_t>(i)));
+    const double wanted = (i + within) / rays * all;
     while (s + 1 < shares.size() && !(shares[s].cdf > wanted)) ++s;
     const Share& share = shares[s];
     const Eigen::Array4f u = sobol_.point(i, key);
@@ -333,7 +360,7 @@ Spectrum SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d
   double open = 0.0, elsewhere = 0.0;
   Eigen::ArrayXd E_open = Eigen::ArrayXd::Zero(bands_);
   constexpr double beside = 0.3;  // what rays are given for cells beside open ones, of their light
-  for (int c = 0; c < cells; ++c) {
+  for (const int c : order_) {
     const double E = irradiance_of(c, n);
     if (!(E > 0.0)) continue;
     const Found found = (*site)[static_cast<std::size_t>(c)];

@@ -99,6 +99,7 @@ class SkyLight {
   ClearPanes panes_;
   Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // columns: north, east, up
   std::array<Cell, cells> cell_{};
+  std::array<int, cells> order_{};   // in which steps go over them
   std::vector<float> radiance_{};    // of the fine grid, cell after cell, mean of the bands
   std::vector<float> row_cdf_{};     // of the rows of each cell's fine grid
   std::vector<float> column_cdf_{};  // within each of its rows
