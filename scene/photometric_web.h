@@ -15,10 +15,8 @@ struct DrawnDirection {
 /// from the nadir, C the azimuth of the half-plane. In the luminaire's own frame gamma = 0 is -z,
 /// C = 0 is +x and C = 90 is +y: counter-clockwise seen from above.
 ///
-/// Between the angles it was measured at, values follow a cubic in gamma that rises and falls only
-/// where they do (Fritsch & Carlson 1980), and are linear in C. Straight lines would give narrow
-/// beams, whose curves are hollow on both sides, up to 5 % too much flux. Below the first gamma and
-/// beyond the last there is no light.
+/// Between the angles it was measured at, values are linear in gamma and in C, as lighting programs
+/// have it. Below the first gamma and beyond the last there is no light.
 class PhotometricWeb {
  public:
   PhotometricWeb() = default;
@@ -47,11 +45,10 @@ class PhotometricWeb {
  private:
   double along(Eigen::Index plane, Eigen::Index interval, double t) const;
   double at_angles(double gamma, double plane) const;
-  void find_slopes();
   void tabulate();
 
   std::vector<double> planes_{}, gammas_{};
-  Eigen::ArrayXXd values_{}, slopes_{};  // the latter per degree
+  Eigen::ArrayXXd values_{};
   double integral_ = 0.0;
   // For draw(): the light in cells of even gamma and C, and running sums of it.
   static constexpr int bands_of_gamma = 360, sectors = 72;
