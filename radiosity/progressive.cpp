@@ -73,7 +73,8 @@ ShotRows stored_shots(const FormFactors& form_factors) {
 }
 
 ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& mesh, ShotRows rows,
-                                           const ProgressiveOptions& options)
+                                           const ProgressiveOptions& options,
+                                           const FreeLight& free_light)
     : scene_(scene),
       mesh_(mesh),
       rows_(std::move(rows)),
@@ -88,9 +89,28 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
     reflected += mesh.area[i] * mesh.reflectance.row(i).transpose().cast<double>();
     energy_.emitted += power(mesh, mesh.emission, i);
   }
+  if (!free_light.empty()) take_in(free_light);
   // A room that loses nothing would add up without end.
   constexpr double most_reflected = 0.99;
   reflections_ = (1.0 / (1.0 - (reflected / mesh.area.sum()).min(most_reflected))).cast<float>();
+}
+
+void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
+  const BandArray reflected = mesh_.reflectance * free_light.irradiance;
+  radiosity_ += reflected;
+  unshot_ += reflected;
+  for (int i = 0; i < mesh_.patch_count(); ++i) {
+    const Spectrum kept =
+        1.0f - mesh_.reflectance.row(i).transpose() - scene_.materials[mesh_.material[i]].specular;
+    const Eigen::ArrayXd arriving =
+        mesh_.area[i] * free_light.irradiance.row(i).transpose().cast<double>();
+    energy_.absorbed += (arriving * kept.cast<double>()).sum();
+  }
+  energy_.from_lamps = free_light.emitted.sum();
+  energy_.missed = free_light.missed.sum();
+  energy_.emitted += energy_.from_lamps;
+  energy_.absorbed += free_light.absorbed.sum();
+  energy_.escaped += free_light.escaped.sum();
 }
 
 double ProgressiveRadiosity::unshot_share() const {

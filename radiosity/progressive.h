@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "radiosity/estimated_row.h"
+#include "radiosity/free_light.h"
 #include "radiosity/light_path.h"
 #include "radiosity/solution.h"
 #include "scene/progress.h"
@@ -67,9 +68,10 @@ class ProgressiveRadiosity {
     Spectrum radiosity{};  ///< what it sent out, W/m^2
   };
 
+  /// What patches reflect of `free_light`, of one channel, is there to be shot from the start.
   /// Throws std::invalid_argument if a patch has no area.
   ProgressiveRadiosity(const Scene& scene, const PatchMesh& mesh, ShotRows rows,
-                       const ProgressiveOptions& options = {});
+                       const ProgressiveOptions& options = {}, const FreeLight& free_light = {});
 
   /// One round, of at most `most` shooters (1: the single brightest). False, having done nothing,
   /// once the tolerance or the fuse is reached.
@@ -97,6 +99,7 @@ class ProgressiveRadiosity {
   auto state() { return std::tie(radiosity_, unshot_, energy_, shots_); }
 
  private:
+  void take_in(const FreeLight& free_light);
   std::vector<int> choose(int most) const;
   int rays_of(int patch) const;
   void receive(const Shot& shot, const EstimatedRow& row);

@@ -185,6 +185,10 @@ SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double s
   return sky;
 }
 
+bool has_dome(const Sky& sky) {
+  return (sky.scale > 0.0f).any() || (sky.kind != SkyKind::map && (sky.ground > 0.0f).any());
+}
+
 Spectrum sky_radiance(const Sky& sky, const Eigen::Vector3d& direction) {
   if (sky.kind == SkyKind::map) return sky.scale * sky.map->at(sky.to_map * direction);
   if (direction.dot(sky.up) < 0.0) return sky.ground;

@@ -69,6 +69,9 @@ struct Sky {
   std::optional<Sun> sun{};
 };
 
+/// Whether anything but the sun gives light.
+bool has_dome(const Sky& sky);
+
 /// Radiance from a unit direction without the sun, W/(m^2 sr) per band.
 Spectrum sky_radiance(const Sky& sky, const Eigen::Vector3d& direction);
 

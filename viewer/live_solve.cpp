@@ -32,12 +32,10 @@ SolveOptions for_a_window(SolveOptions options, const Scene& scene) {
   options.mesh.progress = options.progress;
   options.journal = nullptr;
   options.channels = {};
-  for (const Surface& surface : scene.surfaces) {
-    if (scene.materials[surface.material].is_emitter()) return options;
-  }
+  if (gives_light(scene)) return options;
   throw InputError(fmt::format(
       "{}: nothing emits light, so there is nothing to watch arriving; give a material a "
-      "'radiance', 'exitance' or 'power' (in OBJ files: Ke) and use it on a surface",
+      "'radiance', 'exitance' or 'power' (in OBJ files: Ke) and use it on a surface, or add a lamp",
       scene.file.empty() ? "the scene" : scene.file.string()));
 }
 
@@ -52,8 +50,10 @@ struct LiveSolve::Impl {
         caster(mesh),
         direct_light(of, mesh),
         paths(of, caster, options.form_factors.max_specular_depth),
-        progressive(of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
-                    *options.progressive),
+        progressive(
+            of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
+            *options.progressive,
+            cast_free_light(caster, paths, direct_light, options.free_rays, options.progress)),
         vertex_light(caster, direct_light) {
     shown.lacks_specular = std::ranges::any_of(of.surfaces, [&](const Surface& surface) {
       return of.materials[surface.material].is_specular();
