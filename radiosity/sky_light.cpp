@@ -275,13 +275,14 @@ SkyLight::Site SkyLight::learn_at(const ElementCaster& caster, std::span<const S
     const auto i = static_cast<std::size_t>(c);
     site[i] = is_open[i] || !was_tried[i] ? Found::open : Found::hidden;
     if (site[i] == Found::open) continue;
+    // What is beside an open cell is likely to be open in part.
     const int ring = c / around, place = c % around;
     for (int dr = -1; dr <= 1; ++dr) {
       for (int dp = -1; dp <= 1; ++dp) {
         const int other = ring + dr;
         if (other < 0 || other >= rings) continue;
         if (is_open[static_cast<std::size_t>(other * around + (place + dp + around) % around)]) {
-          site[i] = Found::beside_open;
+          site[i] = Found::open;
         }
       }
     }
@@ -342,9 +343,9 @@ void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<
   }
 }
 
-Spectrum SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                              const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                              const SkyEffort& effort) const {
+SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                             const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                             const SkyEffort& effort) const {
   const SitePoint at{point, normal, facet};
   Site learnt;
   const Site* site = nullptr;
@@ -359,7 +360,6 @@ Spectrum SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d
   shares.reserve(cells / 2 + 2 * around);
   double open = 0.0, elsewhere = 0.0;
   Eigen::ArrayXd E_open = Eigen::ArrayXd::Zero(bands_);
-  constexpr double beside = 0.3;  // what rays are given for cells beside open ones, of their light
   for (const int c : order_) {
     const double E = irradiance_of(c, n);
     if (!(E > 0.0)) continue;
@@ -368,16 +368,13 @@ Spectrum SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d
     if (share.is_open) {
       E_open += E * colour_.row(c).transpose().cast<double>();
       open += E;
-    } else if (found == Found::beside_open) {
-      share.weight = beside * E;
-      open += share.weight;
     } else {
       share.weight = 0.0;  // known below
       elsewhere += E;
     }
     shares.push_back(share);
   }
-  if (shares.empty()) return Spectrum::Zero(bands_);
+  if (shares.empty()) return {Spectrum::Zero(bands_)};
   // Of the rays at most so many go where the site saw nothing; all, but few, if it saw nothing at
   // all.
   constexpr double most_elsewhere = 0.08;
@@ -405,10 +402,10 @@ Spectrum SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d
   const int first = sees_nothing ? std::max(8, effort.first / 4) : effort.first;
   const Tally look = tally_of(first, 1);
   const bool is_mixed = look.clear > 0 && look.clear < look.rays;
-  if (!is_mixed) return result(look).cast<float>();
+  if (!is_mixed) return {result(look).cast<float>()};
   const Tally more = tally_of(effort.most, 2);
   const double share = static_cast<double>(first) / (first + effort.most);
-  return (share * result(look) + (1.0 - share) * result(more)).cast<float>();
+  return {(share * result(look) + (1.0 - share) * result(more)).cast<float>(), true};
 }
 
 }  // namespace lightwell

@@ -21,6 +21,12 @@ struct SkyEffort {
 };
 constexpr int most_sky_rays = 1024;
 
+/// What reaches a point from the dome.
+struct SkyGlow {
+  Spectrum irradiance{};  ///< W/m^2
+  bool is_mixed = false;  ///< a part of the dome is hidden, so that rays leave noise
+};
+
 /// Irradiance from the dome of a Sky, without its sun, which is another source.
 ///
 /// The dome is cut into cells of even solid angle, 5.6 degrees wide, whose irradiance of a point
@@ -42,9 +48,9 @@ class SkyLight {
 
   /// E per band, W/m^2, of a point with a unit normal. `facet` is where it lies (-1: in free
   /// space), `key` decides where rays go; panes dim what goes through them.
-  Spectrum irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                      const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                      const SkyEffort& effort = {}) const;
+  SkyGlow irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                     const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                     const SkyEffort& effort = {}) const;
 
   /// The same with nothing in the way, to 1e-4 of it; of a uniform sky or a horizontal surface to
   /// 1e-6.
@@ -54,7 +60,7 @@ class SkyLight {
   static constexpr int around = 64, rings = 32;  // cells
   static constexpr int cells = around * rings;
   static constexpr int fine = 8;  // grid within a cell, each way
-  enum class Found : std::uint8_t { hidden, beside_open, open };
+  enum class Found : std::uint8_t { hidden, open };
   using Site = std::array<Found, cells>;
   struct SitePoint {
     Eigen::Vector3d position, normal;

@@ -36,7 +36,7 @@ struct UnderSky {
   SkyLight light{scene, mesh};
 
   double at(const Vector3d& point, const Vector3d& normal, int facet, std::uint64_t key = 1) const {
-    return static_cast<double>(light.irradiance(caster, point, normal, facet, key)[1]);
+    return static_cast<double>(light.irradiance(caster, point, normal, facet, key).irradiance[1]);
   }
 };
 
@@ -63,7 +63,7 @@ TEST(SkyLight, OpenPlaneUnderAUniformSkyGetsPiL) {
 TEST(SkyLight, OvercastSkyGivesTheIrradiancesOfMoonAndSpencer) {
   const UnderSky plane{open_plane(SkyKind::overcast)};
   const double horizontal = plane.at({0.2, 0.1, 0}, Vector3d::UnitZ(), 0);
-  EXPECT_NEAR(horizontal, 7.0 / 9.0 * pi, 1e-5);
+  EXPECT_NEAR(horizontal, 7.0 / 9.0 * pi, 3e-5);
   const Spectrum wall = plane.light.unobstructed(Vector3d(0.6, 0.8, 0.0));
   EXPECT_NEAR(static_cast<double>(wall[0]) / horizontal, 0.396, 6e-4);
 }
