@@ -230,6 +230,10 @@ TomlBands read_toml_bands(const TomlValue& value) {
   return result;
 }
 
+Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands) {
+  return spectral(value, bands, Quantity::emission);
+}
+
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures) {
   const TomlTable table =
