@@ -12,6 +12,7 @@
 #include "mesh/planar_regions.h"
 #include "radiosity/solution_file.h"
 #include "raytrace/image.h"
+#include "scene/io/luminaire_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
 
@@ -47,6 +48,29 @@ Json emitters_json(const Scene& scene) {
     emitters.push_back(std::move(emitter));
   }
   return emitters;
+}
+
+Json lamps_json(const Scene& scene) {
+  Json lamps = Json::array();
+  for (const Lamp& lamp : scene.lamps) {
+    const Spectrum flux = lamp_flux(lamp);
+    const Eigen::Vector3d at = lamp.position / scene.metres_per_unit;
+    const char* const kind = std::holds_alternative<SharedWeb>(lamp.shape)  ? "measured"
+                             : std::holds_alternative<SpotCone>(lamp.shape) ? "spot"
+                                                                            : "point";
+    Json json = {{"name", lamp.name}, {"is", kind}, {"position", {at.x(), at.y(), at.z()}}};
+    if (!lamp.opening.is_point()) {
+      json["opening"] = {lamp.opening.along_c0, lamp.opening.along_c90};
+    }
+    if (scene.relative_units) {
+      json["power"] = flux.cast<double>().sum();
+    } else {
+      json["watts"] = flux.cast<double>().sum();
+      json["lumens"] = luminous(scene.bands, flux);
+    }
+    lamps.push_back(std::move(json));
+  }
+  return lamps;
 }
 
 std::string kind_of(const Material& material, bool relative_units) {
@@ -109,23 +133,67 @@ Json scene_json(const Scene& scene) {
                        {"height", camera.height},
                        {"fov", camera.fov_degrees}});
   }
-  return {{"kind", "scene"},
-          {"title", scene.title},
-          {"unit", scene.unit_name},
-          {"metres_per_unit", scene.metres_per_unit},
-          {"light", light_name(scene.relative_units)},
-          {"bounds", {corner_json(bounds.low, scene), corner_json(bounds.high, scene)}},
-          {"bands", scene.bands.names},
-          {"surfaces", scene.surfaces.size()},
-          {"facets", scene_facets(scene).size()},
-          {"spheres", spheres},
-          {"quality", quality_json(scene)},
-          {"cleaned", clean_up_json(clean_up)},
-          {"materials", std::move(materials)},
-          {"emitters", emitters_json(scene)},
-          {"cameras", std::move(cameras)},
-          {"notes", scene.notes},
-          {"scene_hash", fmt::format("{:016x}", scene_hash(clean))}};
+  Json facts = {{"kind", "scene"},
+                {"title", scene.title},
+                {"unit", scene.unit_name},
+                {"metres_per_unit", scene.metres_per_unit},
+                {"light", light_name(scene.relative_units)},
+                {"bounds", {corner_json(bounds.low, scene), corner_json(bounds.high, scene)}},
+                {"bands", scene.bands.names},
+                {"surfaces", scene.surfaces.size()},
+                {"facets", scene_facets(scene).size()},
+                {"spheres", spheres},
+                {"quality", quality_json(scene)},
+                {"cleaned", clean_up_json(clean_up)},
+                {"materials", std::move(materials)},
+                {"emitters", emitters_json(scene)},
+                {"cameras", std::move(cameras)},
+                {"notes", scene.notes},
+                {"scene_hash", fmt::format("{:016x}", scene_hash(clean))}};
+  if (!scene.lamps.empty()) facts["lamps"] = lamps_json(scene);
+  return facts;
+}
+
+Json luminaire_json(const LuminaireFile& luminaire) {
+  constexpr double half = 0.5, tenth = 0.1;
+  const PhotometricWeb& web = *luminaire.web;
+  const auto angles = [&](double share) {
+    return Json{{"C0", beam_angle(web, 0.0, share)}, {"C90", beam_angle(web, 90.0, share)}};
+  };
+  Json facts = {{"kind", "luminaire"},
+                {"format", luminaire.format},
+                {"name", luminaire.name},
+                {"maker", luminaire.maker},
+                {"planes", web.planes().size()},
+                {"gammas", web.gammas().size()},
+                {"symmetry", luminaire.symmetry},
+                {"beam_angle", angles(half)},
+                {"field_angle", angles(tenth)}};
+  const LampOpening& opening = luminaire.opening;
+  if (!opening.is_point()) {
+    facts["opening"] = {{"along_c0", opening.along_c0},
+                        {"along_c90", opening.along_c90},
+                        {"is", opening.is_round ? "round" : "rectangle"}};
+  }
+  if (luminaire.is_radiometric) {
+    facts["watts_radiated"] = luminaire.flux();
+    facts["peak_watts_per_sr"] = web.peak();
+  } else {
+    facts["lumens"] = luminaire.flux();
+    facts["peak_candela"] = web.peak();
+    if (luminaire.watts > 0.0) facts["lumens_per_watt"] = luminaire.flux() / luminaire.watts;
+    if (luminaire.lamp_lumens > 0.0) {
+      facts["lamp_lumens"] = luminaire.lamp_lumens;
+      facts["light_output_ratio"] = luminaire.flux() / luminaire.lamp_lumens;
+    }
+  }
+  if (luminaire.watts > 0.0) facts["input_watts"] = luminaire.watts;
+  std::vector<std::string> notes = luminaire.notes;
+  if (luminaire.is_radiometric) {
+    notes.emplace_back("Its intensities are radiant, in W/sr, and not candela: none of it is lux.");
+  }
+  facts["notes"] = notes;
+  return facts;
 }
 
 Json solution_json(const SolvedScene& solved) {
@@ -162,6 +230,7 @@ Json describe(const std::string& file) {
   const std::string extension = lower_extension(file);
   if (extension == ".vtp") return solution_json(read_solution(file));
   if (extension == ".exr") return picture_json(read_exr(file));
+  if (is_luminaire_file(file)) return luminaire_json(read_luminaire(file));
   return scene_json(read_scene(file));
 }
 
@@ -204,8 +273,7 @@ Action add_info(CLI::App& command) {
   const auto file = std::make_shared<std::string>();
   command.description(
       "What is in a scene (.toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3), a "
-      "solution (.vtp) or "
-      "a picture (.exr).");
+      "solution (.vtp), a picture (.exr) or a luminaire (.ies, .ldt).");
   command.add_option("file", *file, "the file")->required()->type_name("FILE");
   command.footer("Example: lightwell info cornell/cornell.toml");
   return [file](Console& console) {

@@ -213,10 +213,15 @@ Json clean_up_json(const CleanUpReport& report) {
 }
 
 Json energy_json(const EnergyBalance& energy) {
-  return {{"emitted", energy.emitted},
-          {"absorbed", energy.absorbed},
-          {"escaped", energy.escaped},
-          {"unshot", energy.unshot}};
+  Json json = {{"emitted", energy.emitted},
+               {"absorbed", energy.absorbed},
+               {"escaped", energy.escaped},
+               {"unshot", energy.unshot}};
+  if (energy.from_lamps > 0.0) {
+    json["from_lamps"] = energy.from_lamps;
+    json["missed"] = energy.missed;
+  }
+  return json;
 }
 
 }  // namespace lightwell

@@ -67,6 +67,33 @@ LuminaireFile read_luminaire(const std::filesystem::path& path, int lamp_set) {
                   path.string(), extension));
 }
 
+void place_luminaire(const LuminaireFile& luminaire, const Bands& bands, const Spectrum& colour,
+                     Lamp& lamp) {
+  if (!(luminaire.flux() > 0.0)) {
+    throw InputError(fmt::format("{}: all of its intensities are 0, so it gives no light",
+                                 luminaire.file.string()));
+  }
+  lamp.shape = luminaire.web;
+  lamp.opening = luminaire.opening;
+  lamp.intensity = luminaire.is_radiometric
+                       ? constant_spectrum(bands, 1.0f)
+                       : Spectrum(colour / static_cast<float>(luminous(bands, colour)));
+}
+
+std::vector<std::string> luminaire_notes(const LuminaireFile& luminaire) {
+  std::vector<std::string> notes;
+  const std::string file = luminaire.file.filename().string();
+  if (luminaire.is_radiometric) {
+    notes.push_back(fmt::format(
+        "{}: Its intensities are radiant, in W/sr, and not candela: figures of light are relative, "
+        "1 for 1 W/m2, and none is lux.",
+        file));
+  }
+  for (const std::string& note : luminaire.notes)
+    notes.push_back(fmt::format("{}: {}", file, note));
+  return notes;
+}
+
 PlaneTable sorted_planes(const std::vector<std::pair<double, Eigen::Index>>& planes,
                          const Eigen::ArrayXXd& rows) {
   constexpr double turn = 360.0, rounding = 1e-6;

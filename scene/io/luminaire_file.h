@@ -34,6 +34,15 @@ struct LuminaireFile {
 /// naming file, line, what is wrong and what would be right.
 LuminaireFile read_luminaire(const std::filesystem::path& path, int lamp_set = 1);
 
+/// Gives `lamp` the distribution and opening of a luminaire, and an intensity of that colour: of
+/// whatever brightness, light keeps its candela. What is measured in W/sr has as much in every
+/// band. Throws InputError if the luminaire gives no light.
+void place_luminaire(const LuminaireFile& luminaire, const Bands& bands, const Spectrum& colour,
+                     Lamp& lamp);
+
+/// Its notes for a scene: sentences that begin with the name of the file.
+std::vector<std::string> luminaire_notes(const LuminaireFile& luminaire);
+
 /// Whether the extension is one that read_luminaire knows.
 bool is_luminaire_file(const std::filesystem::path& path);
 

@@ -8,6 +8,7 @@
 
 #include "scene/io/gltf_camera.h"
 #include "scene/io/gltf_file.h"
+#include "scene/io/gltf_light.h"
 #include "scene/io/gltf_materials.h"
 #include "scene/io/numbered_names.h"
 #include "scene/io/placed_mesh.h"
@@ -84,11 +85,14 @@ class GltfReader {
 
   void read() {
     check_extensions();
+    if (const auto punctual = file_.root().extension("KHR_lights_punctual")) {
+      lights_ = punctual->objects("lights");
+    }
     for (const std::size_t root : roots()) visit(root);
-    if (const auto lights = file_.root().extension("KHR_lights_punctual")) {
-      for (const GltfObject& light : lights->objects("lights")) {
-        remarks_.add("Lights without a surface (KHR_lights_punctual) are not used", light.name());
-      }
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+      if (placed_lights_.contains(i)) continue;
+      remarks_.add("Lights that no node places (KHR_lights_punctual) are not used",
+                   lights_[i].name());
     }
     for (const GltfObject& animation : file_.root().objects("animations")) {
       remarks_.add("Animations were left out; all stands where the file's nodes put it",
@@ -155,12 +159,24 @@ class GltfReader {
       if (const auto camera = node.index("camera")) {
         add_gltf_camera(file_.at("cameras", *camera, node), node, to_world, scene_, remarks_);
       }
+      add_light(node, to_world);
       // Backwards, because the last one in is the first one out.
       const auto children = node.indices("children");
       for (auto child = children.rbegin(); child != children.rend(); ++child) {
         open.push_back({.node = *child, .parent = to_world});
       }
     }
+  }
+
+  void add_light(const GltfObject& node, const Eigen::Affine3d& to_world) {
+    const auto punctual = node.extension("KHR_lights_punctual");
+    if (!punctual) return;
+    const auto light = punctual->index("light");
+    if (!light || *light >= lights_.size()) {
+      node.fail(fmt::format("names a light that is none of the file's {}", lights_.size()));
+    }
+    placed_lights_.insert(*light);
+    add_gltf_light(lights_[*light], node, to_world, scene_, remarks_);
   }
 
   void add_mesh(const GltfObject& node, const Eigen::Affine3d& to_world) {
@@ -259,6 +275,8 @@ class GltfReader {
   Remarks remarks_;
   GltfMaterials materials_;
   Repairs repairs_;
+  std::vector<GltfObject> lights_{};
+  std::set<std::size_t> placed_lights_{};
   std::set<std::size_t> seen_;
   NumberedNames names_;
   std::int64_t triangles_ = 0;

@@ -9,6 +9,7 @@
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
+#include "scene/io/toml_lamps.h"
 #include "scene/io/toml_materials.h"
 #include "scene/io/toml_sky.h"
 #include "scene/io/toml_surfaces.h"
@@ -144,7 +145,7 @@ Scene read_toml(const std::filesystem::path& path) {
   const toml::table root = parse(file);
   const TomlValue all(file.path(), root, "");
   const TomlTable document =
-      all.table({"title", "unit", "bands", "materials", "surfaces", "sky", "cameras"});
+      all.table({"title", "unit", "bands", "materials", "surfaces", "lamps", "sky", "cameras"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
@@ -171,6 +172,11 @@ Scene read_toml(const std::filesystem::path& path) {
   remark_pictures_without_uv(scene, remarks);
   for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);
 
+  if (const auto lamps = document.find("lamps")) {
+    if (!lamps->is_array()) lamps->fail("must be an array of tables; write [[lamps]]");
+    number = 0;
+    for (const auto& lamp : lamps->elements("lamp")) read_toml_lamp(lamp, ++number, bands, scene);
+  }
   if (const auto cameras = document.find("cameras")) {
     if (!cameras->is_array()) cameras->fail("must be an array of tables; write [[cameras]]");
     number = 0;

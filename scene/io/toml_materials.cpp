@@ -191,10 +191,6 @@ Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands) {
   return spectral(value, bands, Quantity::share);
 }
 
-Spectrum read_toml_light(const TomlValue& value, const TomlBands& bands) {
-  return spectral(value, bands, Quantity::emission);
-}
-
 TomlBands read_toml_bands(const TomlValue& value) {
   const TomlTable table = value.table({"kind", "lumens_per_watt", "from", "to", "count", "step"});
   const bool spectral_kind =
@@ -236,6 +232,10 @@ TomlBands read_toml_bands(const TomlValue& value) {
   const double width = (high - low) / count;
   for (int k = 0; k < count; ++k) result.edges.push_back({low + k * width, low + (k + 1) * width});
   return result;
+}
+
+Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands) {
+  return spectral(value, bands, Quantity::emission);
 }
 
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,

@@ -39,7 +39,7 @@ Spectrum photometric(double luminous_value, const Spectrum& colour, const TomlVa
 
 Spectrum colour_of(const TomlTable& table, const TomlBands& bands) {
   const auto given = table.find("color");
-  return given ? read_toml_light(*given, bands) : constant_spectrum(bands.bands, 1.0f);
+  return given ? read_toml_emission(*given, bands) : constant_spectrum(bands.bands, 1.0f);
 }
 
 // Which of some keys is given; fails unless it is at most one.
@@ -125,7 +125,7 @@ SunTable read_sun(const TomlValue& value, const Sky& sky, const TomlBands& bands
   }
   const TomlValue amount = table.require(how);
   if (how == "irradiance") {
-    result.sun.irradiance = read_toml_light(amount, bands);
+    result.sun.irradiance = read_toml_emission(amount, bands);
   } else {
     const double given = amount.number_at_least(0.0);
     if (how == "direct_normal") result.direct_normal = given;
@@ -222,7 +222,7 @@ void read_scale(const TomlTable& table, const TomlBands& bands, Sky& sky) {
   if (how == "radiance") {
     // Of the zenith, whatever phi and f are there.
     const float factor = zenith.maxCoeff() / sky.scale.maxCoeff();
-    sky.scale = read_toml_light(amount, bands) / factor;
+    sky.scale = read_toml_emission(amount, bands) / factor;
   } else {
     const double unit = luminous(bands.bands, zenith);
     if (!(unit > 0.0)) amount.fail("cannot be reached: the sky has no visible light");
@@ -293,7 +293,7 @@ Sky read_toml_sky(const TomlValue& value, const TomlBands& bands) {
   }
   const std::string ground = one_of_present(table, {"ground_reflectance", "ground_radiance"});
   if (ground == "ground_radiance") {
-    sky.ground = read_toml_light(table.require(ground), bands);
+    sky.ground = read_toml_emission(table.require(ground), bands);
   } else {
     constexpr float of_land = 0.2f;
     const Spectrum rho = ground.empty() ? constant_spectrum(bands.bands, of_land)
