@@ -22,14 +22,13 @@ SpotCone read_cone(const GltfObject& light) {
 
 // Directional light comes along -z of its node, and its intensity is illuminance across it.
 void add_sun(const Eigen::Vector3d& towards, const Spectrum& irradiance, const GltfObject& node,
-             Scene& scene, Remarks& remarks) {
+             const std::string& name, Scene& scene, Remarks& remarks) {
   if (!(towards.stableNorm() > 0.0)) node.fail("leaves its light no direction");
   if (!scene.sky) {
     scene.sky = Sky{.name = "dark",
                     .scale = constant_spectrum(scene.bands, 0.0f),
                     .ground = constant_spectrum(scene.bands, 0.0f)};
   }
-  const std::string name = node.has("name") ? node.name() : "directional light";
   if (scene.sky->sun) {
     remarks.add("A scene has one sun here; further directional lights were left out", name);
     return;
@@ -60,7 +59,7 @@ void add_gltf_light(const GltfObject& light, const GltfObject& node,
     light.fail("has an intensity or a color that is below 0, or too large");
   }
   if (type == "directional") {
-    return add_sun(to_world.linear() * Eigen::Vector3d::UnitZ(), lamp.intensity, node, scene,
+    return add_sun(to_world.linear() * Eigen::Vector3d::UnitZ(), lamp.intensity, node, name, scene,
                    remarks);
   }
   if (type == "spot") {
