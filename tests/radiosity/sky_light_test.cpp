@@ -154,8 +154,8 @@ TEST(SkyLight, WindowGivesItsClosedFormWithLittleNoise) {
     EXPECT_NEAR(found.mean, expected, 0.02 * expected) << x;
     EXPECT_LT(found.deviation, 0.08 * expected) << x;
   }
-  const double expected = pi * window_form_factor({-3, 0.3, 1}, Vector3d::UnitX());
-  const Spread found = spread(room, {-3, 0.3, 1}, Vector3d::UnitX(), wall);
+  const double expected = pi * window_form_factor({-3, 0.3, 0.5}, Vector3d::UnitX());
+  const Spread found = spread(room, {-3, 0.3, 0.5}, Vector3d::UnitX(), wall);
   EXPECT_NEAR(found.mean, expected, 0.02 * expected);
   EXPECT_LT(found.deviation, 0.08 * expected);
   // A desk, where there is no surface.
