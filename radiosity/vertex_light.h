@@ -17,11 +17,12 @@ namespace lightwell {
 /// references to caster and direct_light.
 class VertexLight {
  public:
-  VertexLight(const ElementCaster& caster, const DirectLight& direct_light);
+  /// `columns` of light, as the shots have: bands, once for each channel.
+  VertexLight(const ElementCaster& caster, const DirectLight& direct_light, int columns);
 
   void receive(std::span<const ProgressiveRadiosity::Shot> shots);
 
-  /// vertices x bands, W/m^2.
+  /// vertices x columns, W/m^2.
   const BandArray& irradiance() const { return irradiance_; }
 
  private:

@@ -11,6 +11,8 @@
 #include <thread>
 #include <utility>
 
+#include "radiosity/relight.h"
+#include "radiosity/solve_channels.h"
 #include "radiosity/vertex_light.h"
 #include "scene/errors.h"
 
@@ -31,7 +33,6 @@ SolveOptions for_a_window(SolveOptions options, const Scene& scene) {
   if (!options.progressive) options.progressive.emplace();
   options.mesh.progress = options.progress;
   options.journal = nullptr;
-  options.channels = {};
   for (const Surface& surface : scene.surfaces) {
     if (scene.materials[surface.material].is_emitter()) return options;
   }
@@ -53,8 +54,8 @@ struct LiveSolve::Impl {
         direct_light(of, mesh),
         paths(of, caster, options.form_factors.max_specular_depth),
         progressive(of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
-                    *options.progressive),
-        vertex_light(caster, direct_light) {
+                    *options.progressive, options.channels),
+        vertex_light(caster, direct_light, static_cast<int>(progressive.unshot().cols())) {
     shown.lacks_specular = std::ranges::any_of(of.surfaces, [&](const Surface& surface) {
       return of.materials[surface.material].is_specular();
     });
@@ -78,12 +79,7 @@ struct LiveSolve::Impl {
     SolvedScene patches;
     patches.mesh = mesh;
     RadiositySolution& s = patches.solution;
-    s.solver = "progressive";
-    s.patch_radiosity = progressive.radiosity();
-    s.energy = progressive.energy();
-    const double largest = progressive.radiosity().abs().maxCoeff();
-    s.residual = largest > 0.0 ? progressive.unshot().abs().maxCoeff() / largest : 0.0;
-    s.outcome = progressive.has_converged() ? Outcome::converged : Outcome::max_sweeps_reached;
+    s = progressive.solution();
     s.history.push_back({.residual = s.residual, .seconds = shooting_seconds});
     s.seconds.push_back({"solve", shooting_seconds});
     SolveOptions gathering = options;
@@ -197,6 +193,20 @@ void LiveSolve::Impl::run() {
   }
 }
 
+void show_light(const LiveLight& light, bool with_ambient, SolvedScene& shown) {
+  RadiositySolution& s = shown.solution;
+  BandArray ambient = BandArray::Zero(light.irradiance.rows(), light.irradiance.cols());
+  if (with_ambient) ambient.rowwise() += light.ambient.max(0.0f).transpose();
+  if (s.channels.empty()) {
+    s.direct_irradiance = light.irradiance;
+    s.indirect_irradiance = ambient;
+    return;
+  }
+  split_columns(light.irradiance, &LightChannel::direct_irradiance, s.channels);
+  split_columns(ambient, &LightChannel::indirect_irradiance, s.channels);
+  relight(shown, scales_in_force(s));
+}
+
 std::string text_of(const LiveState& state) {
   const std::string meter = fmt::format("{} shots, {:.3g} % unshot, {:.1f} s", state.shots,
                                         100.0 * state.unshot_share, state.seconds);
@@ -242,6 +252,17 @@ SolvedScene LiveSolve::dark() const {
   s.patch_radiosity = dark.mesh.emission;
   s.direct_irradiance = BandArray::Zero(dark.mesh.vertex_count(), s.bands.count());
   s.indirect_irradiance = s.direct_irradiance;
+  if (impl_->options.channels.empty()) return dark;
+  name_channels(impl_->scene, dark.mesh, impl_->options.channels, s);
+  const BandArray M = emission_columns(dark.mesh, impl_->options.channels);
+  split_columns(M, &LightChannel::patch_radiosity, s.channels);
+  for (LightChannel& channel : s.channels) {
+    channel.energy = BandEnergy::Zero(4, s.bands.count());
+    channel.energy.row(0) =
+        (channel.patch_radiosity.cast<double>().colwise() * dark.mesh.area).colwise().sum();
+    channel.direct_irradiance = s.direct_irradiance;
+    channel.indirect_irradiance = s.direct_irradiance;
+  }
   return dark;
 }
 
