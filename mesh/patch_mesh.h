@@ -68,6 +68,10 @@ struct PatchMesh {
   std::vector<int> material{};       ///< index into Scene::materials
   std::vector<char> is_back{};       ///< 1: the patch faces away from its facets' fronts
 
+  /// Factors of what free sources (see free_source_count) give, as relight() leaves them: sources x
+  /// bands. Empty: all 1.
+  BandArray source_scale{};
+
   std::vector<SphereGrid> sphere_grids{};
   /// The scene's, if it has any: rays go through holes. Null: nothing varies over facets.
   std::shared_ptr<const FacetTextures> textures{};

@@ -21,10 +21,13 @@ namespace {
 
 constexpr std::uint64_t photon_purpose = 0xf0704, branch_purpose = 0xf0705, share_purpose = 0xf0706;
 
-// One side of an emitter.
+// One side of an emitter, or a source that is no surface.
 struct Source {
   const Emitter* emitter = nullptr;
   bool is_back = false;
+  const FreeSource* free = nullptr;
+
+  const Spectrum& light() const { return free ? free->light : emitter->exitance; }
 };
 
 struct SourcePoint {
@@ -110,6 +113,21 @@ double estimated_power(const Source& source, const SpecularTarget& target) {
   return share * source.emitter->exitance.sum() * source.emitter->area;
 }
 
+// The same of a source that is no surface, by rays towards the target.
+double estimated_power(const FreeSource& source, const SpecularTarget& target) {
+  constexpr int places = 64;
+  const SobolPoints sobol(places);
+  double sum = 0.0;
+  for (int i = 0; i < places; ++i) {
+    const auto sent = source_ray_towards(source, target.center, target.radius, sobol.point(i, 0));
+    sum += sent ? sent->weight : 0.0;
+  }
+  // A beam may be narrower than the places are close.
+  constexpr double least = 0.001;
+  const double share = std::max(sum / places, least * total_weight(source));
+  return share * source.light.sum();
+}
+
 // The photons of one source that are aimed at one target.
 struct Beam {
   Source source{};
@@ -126,10 +144,18 @@ std::vector<Beam> make_beams(const DirectLight& direct_light, const SpecularTarg
     for (const bool is_back : {false, true}) {
       if (is_back && (emitter.is_sphere || !emitter.emits_both_sides)) continue;
       for (int t = 0; t < targets.count(); ++t) {
-        Beam beam{.source = {&emitter, is_back}, .target = t};
+        Beam beam{.source = {.emitter = &emitter, .is_back = is_back}, .target = t};
         beam.power = estimated_power(beam.source, targets.target(t));
         if (beam.power > 0.0) beams.push_back(beam);
       }
+    }
+  }
+  for (const FreeSource& source : direct_light.free_sources()) {
+    if (!source.is_on()) continue;
+    for (int t = 0; t < targets.count(); ++t) {
+      Beam beam{.source = {.free = &source}, .target = t};
+      beam.power = estimated_power(source, targets.target(t));
+      if (beam.power > 0.0) beams.push_back(beam);
     }
   }
   return beams;
@@ -168,19 +194,13 @@ class PhotonGun {
 
   void shoot(const Beam& beam, int number, int i, std::vector<Deposit>& deposits) const {
     const std::uint64_t key = random_key(static_cast<std::uint64_t>(number), photon_purpose);
-    const Eigen::Array4f u = sobol_.point(i, key);
-    const SourcePoint from = source_point(beam.source, u[0], u[1]);
-    const auto aimed =
-        aimed_ray(aim_at(targets_.target(beam.target), from.position), from.normal, u[2], u[3]);
-    if (!aimed) return;
-    const Emitter& emitter = *beam.source.emitter;
-    const Ray ray{
-        .origin = from.position, .direction = aimed->direction, .origin_group = emitter.facet};
+    const auto sent = aimed(beam, sobol_.point(i, key));
+    if (!sent) return;
+    const Ray& ray = sent->ray;
     ElementHit hit;
     caster_.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.facet < 0 || targets_.of_facet(hit.facet) != beam.target) return;
-    const Spectrum power =
-        emitter.exitance * static_cast<float>(emitter.area * aimed->share / beam.stands_for);
+    const Spectrum power = beam.source.light() * static_cast<float>(sent->weight / beam.stands_for);
     const auto branch_key = random_key(key, branch_purpose, static_cast<std::uint64_t>(i));
     paths_.follow(ray, hit, branch_key, [&](const LightArrival& at) {
       if (at.through_panes_only) return;
@@ -189,6 +209,21 @@ class PhotonGun {
   }
 
  private:
+  std::optional<SourceRay> aimed(const Beam& beam, const Eigen::Array4f& u) const {
+    const SpecularTarget& target = targets_.target(beam.target);
+    if (beam.source.free) {
+      return source_ray_towards(*beam.source.free, target.center, target.radius, u);
+    }
+    const SourcePoint from = source_point(beam.source, u[0], u[1]);
+    const auto aimed = aimed_ray(aim_at(target, from.position), from.normal, u[2], u[3]);
+    if (!aimed) return std::nullopt;
+    const Emitter& emitter = *beam.source.emitter;
+    return SourceRay{.ray = {.origin = from.position,
+                             .direction = aimed->direction,
+                             .origin_group = emitter.facet},
+                     .weight = emitter.area * aimed->share};
+  }
+
   const ElementCaster& caster_;
   const LightPaths& paths_;
   const SpecularTargets& targets_;

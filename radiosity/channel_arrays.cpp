@@ -65,7 +65,7 @@ void add_channels(vtkPolyData* poly, const RadiositySolution& s) {
   std::vector<std::string> names, surfaces;
   std::vector<int> owner;
   std::vector<float> scale;
-  std::vector<double> energy;
+  std::vector<double> energy, free_energy;
   vtkFieldData* const field = poly->GetFieldData();
   vtkFieldData* const points = poly->GetPointData();
   for (std::size_t c = 0; c < s.channels.size(); ++c) {
@@ -75,6 +75,8 @@ void add_channels(vtkPolyData* poly, const RadiositySolution& s) {
     owner.resize(surfaces.size(), static_cast<int>(c));
     scale.insert(scale.end(), channel.scale.begin(), channel.scale.end());
     energy.insert(energy.end(), channel.energy.data(), channel.energy.data() + 4 * K);
+    free_energy.insert(free_energy.end(), channel.free_energy.data(),
+                       channel.free_energy.data() + channel.free_energy.size());
     add_columns(field, array_name(c, "patch_radiosity"), channel.patch_radiosity);
     add_columns(points, array_name(c, "direct_irradiance"), channel.direct_irradiance);
     add_columns(points, array_name(c, "indirect_irradiance"), channel.indirect_irradiance);
@@ -88,6 +90,10 @@ void add_channels(vtkPolyData* poly, const RadiositySolution& s) {
   add_values(field, "patch_channel", s.patch_channel.data(),
              static_cast<std::ptrdiff_t>(s.patch_channel.size()));
   add_columns(field, "patch_full_emission", s.full_emission);
+  add_values(field, "lamp_channel", s.source_channel.data(),
+             static_cast<std::ptrdiff_t>(s.source_channel.size()));
+  add_values(field, "channel_energy_from_lamps_missed", free_energy.data(),
+             static_cast<std::ptrdiff_t>(free_energy.size() / 2), 2);
 }
 
 void read_channels(const SolutionArrays& in, const PatchMesh& mesh, RadiositySolution& s) {
@@ -97,6 +103,14 @@ void read_channels(const SolutionArrays& in, const PatchMesh& mesh, RadiositySol
   const int K = s.bands.count(), count = static_cast<int>(s.channels.size());
   const BandArray scale = finite_bands(in, in.field(), "channel_scale", count, K);
   in.require((scale >= 0.0f).all(), "its array 'channel_scale' holds a negative number");
+  s.source_channel = in.optional<int>(in.field(), "lamp_channel", 1).to_vector();
+  for (const int channel : s.source_channel) {
+    in.require(0 <= channel && channel < count, "a lamp of it is in no channel");
+  }
+  const auto free_energy = in.optional<double>(in.field(), "channel_energy_from_lamps_missed", 2);
+  in.require(
+      free_energy.rows == 0 || free_energy.rows == count * K,
+      "its array 'channel_energy_from_lamps_missed' has not one row for each channel and band");
   const auto energy = in.required<double>(
       in.field(), "channel_energy_emitted_absorbed_escaped_unshot", count * K, 4);
   for (int c = 0; c < count; ++c) {
@@ -107,6 +121,11 @@ void read_channels(const SolutionArrays& in, const PatchMesh& mesh, RadiositySol
     channel.scale = scale.row(c).transpose();
     channel.energy = Eigen::Map<const BandEnergy>(energy.data + std::ptrdiff_t{4} * K * c, 4, K);
     in.require(channel.energy.allFinite(), "its channels' energy is no number");
+    if (free_energy.rows > 0) {
+      channel.free_energy =
+          Eigen::Map<const FreeEnergy>(free_energy.data + std::ptrdiff_t{2} * K * c, 2, K);
+      in.require(channel.free_energy.allFinite(), "its lamps' energy is no number");
+    }
     channel.patch_radiosity = read(in.field(), "patch_radiosity", mesh.patch_count());
     channel.direct_irradiance = read(in.points(), "direct_irradiance", mesh.vertex_count());
     channel.indirect_irradiance = read(in.points(), "indirect_irradiance", mesh.vertex_count());

@@ -104,18 +104,21 @@ ShadowSample shadow_sample(const Emitter& emitter, const Eigen::Vector3d& point,
   return sample;
 }
 
-// An emitter in a point's sky: F with nothing in the way, and the effort to find how much is.
-struct EmitterShadow {
-  const Emitter* emitter = nullptr;
+// A light in a point's sky: F with nothing in the way, and the effort to find how much is.
+struct LightShadow {
+  const Emitter* emitter = nullptr;    // or
+  const FreeSource* source = nullptr;  // whose kernel F then is
   int index = 0;
   double F = 0.0;
   int channel = 0;
   std::uint64_t key = 0;
   int least = 0, most = 0;  // rays
+
+  const Spectrum& light() const { return emitter ? emitter->exitance : source->light; }
 };
 
 // The rays of all emitters go together.
-std::vector<ShadowTally> cast_shadows(std::span<const EmitterShadow> shadows,
+std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
                                       const ElementCaster& caster, const SobolPoints& sobol,
                                       const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                       int facet, const ClearPanes* panes) {
@@ -124,8 +127,10 @@ std::vector<ShadowTally> cast_shadows(std::span<const EmitterShadow> shadows,
   const auto add = [&](std::size_t i, int begin, int end) {
     for (int s = begin; s < end; ++s) {
       const Eigen::Array4f u = sobol.point(s, shadows[i].key);
+      const LightShadow& shadow = shadows[i];
       batch.add(static_cast<int>(i),
-                shadow_sample(*shadows[i].emitter, point, normal, facet, u[0], u[1]));
+                shadow.emitter ? shadow_sample(*shadow.emitter, point, normal, facet, u[0], u[1])
+                               : shadow_sample(*shadow.source, point, normal, facet, u[0], u[1]));
     }
   };
   for (std::size_t i = 0; i < shadows.size(); ++i) add(i, 0, shadows[i].least);
@@ -137,18 +142,22 @@ std::vector<ShadowTally> cast_shadows(std::span<const EmitterShadow> shadows,
   return tallies;
 }
 
-// Stratified rays to a shadow's edge are off by n^(-3/4): the error of the sum over emitters that
+// Stratified rays to a shadow's edge are off by n^(-3/4): the error of the sum over lights that
 // would give shares w of the light is least where each has as w^(4/5). Channels have light of their
 // own, since the others may be dimmed. A first look of fewer than 8 would often miss what hides a
 // part.
-void set_effort(std::span<EmitterShadow> shadows, int channels, const ShadowOptions& options) {
-  const auto light = [](const EmitterShadow& s) { return s.F * s.emitter->exitance.mean(); };
+void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOptions& options) {
+  const auto light = [](const LightShadow& s) { return s.F * s.light().mean(); };
   std::vector<double> most_light(channels, 0.0);
-  for (const EmitterShadow& s : shadows) most_light[s.channel] += light(s);
+  for (const LightShadow& s : shadows) most_light[s.channel] += light(s);
   const int most = std::clamp(options.max_rays, 1, most_shadow_rays);
   const int least = std::clamp(options.min_rays, 1, most);
   constexpr int first_look = 8;
-  for (EmitterShadow& s : shadows) {
+  for (LightShadow& s : shadows) {
+    if (s.source && has_sharp_shadows(*s.source)) {
+      s.least = s.most = 1;
+      continue;
+    }
     const double all = most_light[s.channel];
     const double effort = all > 0.0 ? std::pow(light(s) / all, 0.8) : 1.0;
     s.most = std::clamp(static_cast<int>(std::ceil(effort * most)), 1, most);
@@ -181,7 +190,8 @@ Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
 }
 
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels)
-    : bands_(scene.bands.count()),
+    : free_sources_(lightwell::free_sources(scene, mesh.source_scale, channels.of_source)),
+      bands_(scene.bands.count()),
       channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
       samples_(most_shadow_rays),
       panes_(scene) {
@@ -266,7 +276,7 @@ double DirectLight::unoccluded_form_factor(const Emitter& emitter, const Eigen::
 double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& caster,
                                 const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                 int facet, std::uint64_t key, const ShadowOptions& options) const {
-  EmitterShadow shadow{
+  LightShadow shadow{
       .emitter = &emitter, .F = unoccluded_form_factor(emitter, point, normal, facet), .key = key};
   if (!(shadow.F > 0.0)) return 0.0;
   set_effort({&shadow, 1}, 1, options);
@@ -274,49 +284,62 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
          cast_shadows({&shadow, 1}, caster, samples_, point, normal, facet, nullptr)[0].share();
 }
 
-std::optional<bool> DirectLight::sees(const Emitter& emitter, const ElementCaster& caster,
+std::optional<bool> DirectLight::sees(int light, const ElementCaster& caster,
                                       const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                       int facet, double u, double v) const {
-  const ShadowSample sample = shadow_sample(emitter, point, normal, facet, u, v);
+  const auto emitter_count = static_cast<int>(emitters_.size());
+  const ShadowSample sample =
+      light < emitter_count
+          ? shadow_sample(emitters_[light], point, normal, facet, u, v)
+          : shadow_sample(free_sources_[light - emitter_count], point, normal, facet, u, v);
   if (!(sample.weight > 0.0)) return std::nullopt;
+  return (passed(caster, sample.ray) > 0.0f).any();
+}
+
+Spectrum DirectLight::passed(const ElementCaster& caster, const Ray& ray) const {
   std::uint8_t blocked = 0;
-  caster.occluded({&sample.ray, 1}, {&blocked, 1});
-  return blocked == 0 || (!panes_.empty() && (panes_.passed(caster, sample.ray) > 0.0f).any());
+  caster.occluded({&ray, 1}, {&blocked, 1});
+  if (blocked == 0) return Spectrum::Ones(bands_);
+  return panes_.empty() ? Spectrum(Spectrum::Zero(bands_)) : panes_.passed(caster, ray);
 }
 
 template <class Add>
-void DirectLight::for_each_light(const ElementCaster& caster, const Eigen::Vector3d& point,
-                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                                 const ShadowOptions& options, EmitterSight* sight,
-                                 Add&& add) const {
-  std::vector<EmitterShadow> shadows;
-  for (int e = 0; e < static_cast<int>(emitters_.size()); ++e) {
-    if (!(emitters_[e].exitance > 0.0f).any()) continue;  // switched off
-    const double F = unoccluded_form_factor(emitters_[e], point, normal, facet);
-    if (!(F > 0.0)) continue;
-    shadows.push_back({.emitter = &emitters_[e],
-                       .index = e,
-                       .F = F,
-                       .channel = first_column(emitters_[e].facet) / bands_,
-                       .key = random_key(key, static_cast<std::uint64_t>(e))});
+void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
+                                 const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                 int facet, std::uint64_t key, const ShadowOptions& options,
+                                 EmitterSight* sight, Add&& add) const {
+  const auto emitter_count = static_cast<int>(emitters_.size());
+  std::vector<LightShadow> shadows;
+  for (int i = first_light; i < light_count(); ++i) {
+    LightShadow shadow{.index = i, .key = random_key(key, static_cast<std::uint64_t>(i))};
+    if (i < emitter_count) {
+      shadow.emitter = &emitters_[i];
+      shadow.channel = first_column(shadow.emitter->facet) / bands_;
+    } else {
+      shadow.source = &free_sources_[i - emitter_count];
+      shadow.channel = shadow.source->channel;
+    }
+    if (!(shadow.light() > 0.0f).any()) continue;  // switched off
+    shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, point, normal, facet)
+                              : unoccluded_kernel(*shadow.source, point, normal);
+    if (shadow.F > 0.0) shadows.push_back(shadow);
   }
   set_effort(shadows, channel_count_, options);
   const std::vector<ShadowTally> tallies = cast_shadows(shadows, caster, samples_, point, normal,
                                                         facet, panes_.empty() ? nullptr : &panes_);
   if (sight) *sight = {};
   for (std::size_t i = 0; i < shadows.size(); ++i) {
-    const EmitterShadow& s = shadows[i];
+    const LightShadow& s = shadows[i];
     const ShadowTally& tally = tallies[i];
     const double share = tally.share();
     const bool is_dimmed = tally.dimmed > 0.0;
     Spectrum through;
     if (is_dimmed) through = static_cast<float>(s.F / tally.all) * tally.through;
-    if (share > 0.0) add(*s.emitter, static_cast<float>(s.F * share));
-    if (is_dimmed) add(*s.emitter, through);
+    if (share > 0.0) add(s.channel, s.light(), static_cast<float>(s.F * share));
+    if (is_dimmed) add(s.channel, s.light(), through);
     if (!sight) continue;
     const bool is_behind_panes = is_dimmed && !tally.is_mixed();
-    sight->unshadowed +=
-        is_behind_panes ? (through * s.emitter->exitance).mean() : s.F * s.emitter->exitance.mean();
+    sight->unshadowed += is_behind_panes ? (through * s.light()).mean() : s.F * s.light().mean();
     constexpr int bits = 64;
     const std::uint64_t bit = s.index < bits ? std::uint64_t{1} << s.index : 0;
     if (share == 1.0 || is_behind_panes) sight->whole |= bit;
@@ -328,8 +351,8 @@ Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vecto
                                  const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                                  const ShadowOptions& options, EmitterSight* sight) const {
   Spectrum E = Spectrum::Zero(bands_);
-  for_each_light(caster, point, normal, facet, key, options, sight,
-                 [&](const Emitter& emitter, const auto& F) { E += emitter.exitance * F; });
+  for_each_light(0, caster, point, normal, facet, key, options, sight,
+                 [&](int, const Spectrum& light, const auto& F) { E += light * F; });
   return E;
 }
 
@@ -337,11 +360,23 @@ void DirectLight::add_irradiance(const ElementCaster& caster, const Eigen::Vecto
                                  const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                                  const ShadowOptions& options, float* E,
                                  EmitterSight* sight) const {
-  for_each_light(caster, point, normal, facet, key, options, sight,
-                 [&](const Emitter& emitter, const auto& F) {
-                   Eigen::Map<Eigen::ArrayXf>(E + first_column(emitter.facet), bands_) +=
-                       emitter.exitance * F;
+  for_each_light(0, caster, point, normal, facet, key, options, sight,
+                 [&](int channel, const Spectrum& light, const auto& F) {
+                   Eigen::Map<Eigen::ArrayXf>(E + channel * bands_, bands_) += light * F;
                  });
+}
+
+Spectrum DirectLight::irradiance_of_free_sources(const ElementCaster& caster,
+                                                 const Eigen::Vector3d& point,
+                                                 const Eigen::Vector3d& normal, int facet,
+                                                 std::uint64_t key,
+                                                 const ShadowOptions& options) const {
+  Spectrum E = Spectrum::Zero(column_count());
+  for_each_light(static_cast<int>(emitters_.size()), caster, point, normal, facet, key, options,
+                 nullptr, [&](int channel, const Spectrum& light, const auto& F) {
+                   E.segment(channel * bands_, bands_) += light * F;
+                 });
+  return E;
 }
 
 }  // namespace lightwell

@@ -9,6 +9,7 @@
 #include "mesh/element_caster.h"
 #include "radiosity/clear_panes.h"
 #include "radiosity/emitter_channels.h"
+#include "radiosity/free_source.h"
 #include "radiosity/polygon_form_factor.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
@@ -38,12 +39,12 @@ struct ShadowOptions {
   int max_rays = 64;  ///< 1 to most_shadow_rays
 };
 
-/// What a point sees of the emitters, by the shadow rays of its irradiance.
+/// What a point sees of the lights, by the shadow rays of its irradiance.
 struct EmitterSight {
   /// sum M F with nothing in the way, mean of the bands, W/m^2; of emitters that are wholly behind
   /// clear panes, what those pass.
   double unshadowed = 0.0;
-  std::uint64_t whole = 0;   ///< bit i: every ray reached emitter i, of the first 64
+  std::uint64_t whole = 0;   ///< bit i: every ray reached light i, of the first 64
   std::uint64_t hidden = 0;  ///< bit i: none did
 };
 
@@ -52,6 +53,9 @@ struct EmitterSight {
 /// small and bright, and a hemisphere of rays would find them by chance. What emits beyond that is
 /// large and is found by any hemisphere of rays. What counts for that is the scene's exitance; the
 /// light is that of the mesh, whose emission relight() may have scaled since.
+///
+/// Free sources, lamps that are no surface, are here as well: nothing else sees them. *Lights* are
+/// the emitters and after them the free sources.
 ///
 /// Irradiance includes what goes straight through ClearPanes; form factors take those for opaque.
 ///
@@ -62,6 +66,8 @@ class DirectLight {
   DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels = {});
 
   const std::vector<Emitter>& emitters() const { return emitters_; }
+  const std::vector<FreeSource>& free_sources() const { return free_sources_; }
+  int light_count() const { return static_cast<int>(emitters_.size() + free_sources_.size()); }
   /// Whether emission of that side of a facet is accounted for here (and must not be counted again
   /// by other rays). Of a sphere that is its outside: its inside sees itself all around.
   bool owns(int facet, bool is_back) const {
@@ -85,13 +91,16 @@ class DirectLight {
   double unoccluded_form_factor(const Emitter& emitter, const Eigen::Vector3d& point,
                                 const Eigen::Vector3d& normal, int facet) const;
 
-  /// Whether a point sees the place (u, v), in [0,1)^2, of an emitter; empty if no light would come
+  /// Whether a point sees the place (u, v), in [0,1)^2, of a light; empty if no light would come
   /// from there.
-  std::optional<bool> sees(const Emitter& emitter, const ElementCaster& caster,
-                           const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
-                           double u, double v) const;
+  std::optional<bool> sees(int light, const ElementCaster& caster, const Eigen::Vector3d& point,
+                           const Eigen::Vector3d& normal, int facet, double u, double v) const;
 
-  /// Irradiance E = sum M F at a point, W/m^2 per band, from all emitters and channels.
+  /// Share of light that a straight way to `ray.t_max` lets through, in each band: 1, 0, or what
+  /// clear panes pass.
+  Spectrum passed(const ElementCaster& caster, const Ray& ray) const;
+
+  /// Irradiance E = sum M F at a point, W/m^2 per band, from all lights and channels.
   Spectrum irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
                       const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                       const ShadowOptions& options = {}, EmitterSight* sight = nullptr) const;
@@ -101,13 +110,19 @@ class DirectLight {
                       const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                       const ShadowOptions& options, float* E, EmitterSight* sight = nullptr) const;
 
+  /// The same from free sources alone, each channel's in its columns.
+  Spectrum irradiance_of_free_sources(const ElementCaster& caster, const Eigen::Vector3d& point,
+                                      const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                                      const ShadowOptions& options = {}) const;
+
  private:
   template <class Add>
-  void for_each_light(const ElementCaster& caster, const Eigen::Vector3d& point,
+  void for_each_light(int first_light, const ElementCaster& caster, const Eigen::Vector3d& point,
                       const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                       const ShadowOptions& options, EmitterSight* sight, Add&& add) const;
 
   std::vector<Emitter> emitters_;
+  std::vector<FreeSource> free_sources_;
   enum class Owned : char { nothing, front, whole };
   std::vector<Owned> owned_;
   std::vector<int> first_column_;

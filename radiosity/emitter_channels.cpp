@@ -16,23 +16,37 @@ namespace {
   throw InputError(scene.file.empty() ? what : fmt::format("{}: {}", scene.file.string(), what));
 }
 
-bool emits(const Scene& scene, const Surface& surface) {
-  return scene.materials[surface.material].is_emitter();
-}
+// What can belong to a channel: a surface, or after all of those a free source.
+struct Light {
+  std::string name{};
+  std::string material{};  // empty: a free source
+  bool shines = false;
+};
 
-bool matches(const std::string& glob, const Scene& scene, const Surface& surface) {
-  const std::string& material = scene.materials[surface.material].name;
-  return fnmatch(glob.c_str(), surface.name.c_str(), 0) == 0 ||
-         fnmatch(glob.c_str(), material.c_str(), 0) == 0;
-}
-
-int channel_of(EmitterChannels& channels, const std::string& name) {
-  const auto at = std::find(channels.names.begin(), channels.names.end(), name);
-  if (at == channels.names.end()) {
-    channels.names.push_back(name);
-    return static_cast<int>(channels.names.size()) - 1;
+std::vector<Light> lights_of(const Scene& scene) {
+  std::vector<Light> lights;
+  for (const Surface& surface : scene.surfaces) {
+    const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
+    lights.push_back({surface.name, material.name, material.is_emitter()});
   }
-  return static_cast<int>(at - channels.names.begin());
+  for (int i = 0; i < free_source_count(scene); ++i) {
+    lights.push_back({.name = free_source_name(scene, i), .shines = true});
+  }
+  return lights;
+}
+
+bool matches(const std::string& glob, const Light& light) {
+  return fnmatch(glob.c_str(), light.name.c_str(), 0) == 0 ||
+         (!light.material.empty() && fnmatch(glob.c_str(), light.material.c_str(), 0) == 0);
+}
+
+int channel_of(std::vector<std::string>& names, const std::string& name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) {
+    names.push_back(name);
+    return static_cast<int>(names.size()) - 1;
+  }
+  return static_cast<int>(at - names.begin());
 }
 
 void require_few(const Scene& scene, const EmitterChannels& channels) {
@@ -45,13 +59,14 @@ void require_few(const Scene& scene, const EmitterChannels& channels) {
 [[noreturn]] void fail_without_match(const Scene& scene, const ChannelPattern& pattern) {
   std::vector<std::string> names;  // of emitters, with those of their materials
   std::string dark;
-  for (const Surface& surface : scene.surfaces) {
-    if (emits(scene, surface)) {
-      for (const std::string& name : {surface.name, scene.materials[surface.material].name}) {
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  for (const Light& light : lights_of(scene)) {
+    if (light.shines) {
+      for (const std::string& name : {light.name, light.material}) {
+        if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) continue;
+        names.push_back(name);
       }
-    } else if (dark.empty() && matches(pattern.glob, scene, surface)) {
-      dark = surface.name;
+    } else if (dark.empty() && matches(pattern.glob, light)) {
+      dark = light.name;
     }
   }
   if (!dark.empty()) {
@@ -69,47 +84,56 @@ void require_few(const Scene& scene, const EmitterChannels& channels) {
                           is_long ? " and more" : "", help));
 }
 
-}  // namespace
-
-EmitterChannels channels_by_pattern(const Scene& scene, std::span<const ChannelPattern> patterns) {
-  EmitterChannels channels{.of_surface = std::vector<int>(scene.surfaces.size(), -1)};
-  std::vector<const ChannelPattern*> claimed(scene.surfaces.size(), nullptr);
-  for (const ChannelPattern& pattern : patterns) {
-    const int channel = channel_of(channels, pattern.channel);
-    bool any = false;
-    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-      const Surface& surface = scene.surfaces[s];
-      if (!emits(scene, surface) || !matches(pattern.glob, scene, surface)) continue;
-      any = true;
-      int& taken = channels.of_surface[s];
-      if (taken >= 0 && taken != channel) {
-        fail(scene, fmt::format("emitter '{}' would be in two channels: '{}' puts it into '{}' and "
-                                "'{}' into '{}'; change one of the patterns",
-                                surface.name, claimed[s]->glob, claimed[s]->channel, pattern.glob,
-                                pattern.channel));
-      }
-      taken = channel;
-      claimed[s] = &pattern;
-    }
-    if (!any) fail_without_match(scene, pattern);
-  }
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-    if (channels.of_surface[s] < 0 && emits(scene, scene.surfaces[s])) {
-      channels.of_surface[s] = channel_of(channels, rest_channel);
-    }
-  }
+// Surfaces first, as lights_of() has them.
+EmitterChannels as_channels(const Scene& scene, std::vector<std::string> names,
+                            const std::vector<int>& of_light) {
+  const auto surfaces = static_cast<std::ptrdiff_t>(scene.surfaces.size());
+  EmitterChannels channels{.names = std::move(names),
+                           .of_surface = {of_light.begin(), of_light.begin() + surfaces},
+                           .of_source = {of_light.begin() + surfaces, of_light.end()}};
   require_few(scene, channels);
   return channels;
 }
 
-EmitterChannels channels_per_luminaire(const Scene& scene) {
-  EmitterChannels channels{.of_surface = std::vector<int>(scene.surfaces.size(), -1)};
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-    if (!emits(scene, scene.surfaces[s])) continue;
-    channels.of_surface[s] = channel_of(channels, scene.surfaces[s].name);
+}  // namespace
+
+EmitterChannels channels_by_pattern(const Scene& scene, std::span<const ChannelPattern> patterns) {
+  const std::vector<Light> lights = lights_of(scene);
+  std::vector<std::string> names;
+  std::vector<int> of_light(lights.size(), -1);
+  std::vector<const ChannelPattern*> claimed(lights.size(), nullptr);
+  for (const ChannelPattern& pattern : patterns) {
+    const int channel = channel_of(names, pattern.channel);
+    bool any = false;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      if (!lights[i].shines || !matches(pattern.glob, lights[i])) continue;
+      any = true;
+      int& taken = of_light[i];
+      if (taken >= 0 && taken != channel) {
+        fail(scene, fmt::format("emitter '{}' would be in two channels: '{}' puts it into '{}' and "
+                                "'{}' into '{}'; change one of the patterns",
+                                lights[i].name, claimed[i]->glob, claimed[i]->channel, pattern.glob,
+                                pattern.channel));
+      }
+      taken = channel;
+      claimed[i] = &pattern;
+    }
+    if (!any) fail_without_match(scene, pattern);
   }
-  require_few(scene, channels);
-  return channels;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (of_light[i] < 0 && lights[i].shines) of_light[i] = channel_of(names, rest_channel);
+  }
+  return as_channels(scene, std::move(names), of_light);
+}
+
+EmitterChannels channels_per_luminaire(const Scene& scene) {
+  const std::vector<Light> lights = lights_of(scene);
+  std::vector<std::string> names;
+  std::vector<int> of_light(lights.size(), -1);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (lights[i].shines) of_light[i] = channel_of(names, lights[i].name);
+  }
+  return as_channels(scene, std::move(names), of_light);
 }
 
 }  // namespace lightwell

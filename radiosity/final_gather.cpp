@@ -23,6 +23,7 @@ constexpr std::uint64_t gather_branches = 11;
 constexpr std::uint64_t gather_shadows = 12;
 constexpr std::uint64_t caustic_rays = 13;
 constexpr std::uint64_t caustic_branches = 14;
+constexpr std::uint64_t caustic_rays_of_lamps = 0xf4ee3;
 constexpr int batch = 128;
 
 int ray_count(const GatherPoint& at, const GatherOptions& options) {
@@ -286,16 +287,10 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
                              const Progress& progress, Journal* journal) {
   const PatchMesh& mesh = caster.mesh();
   const LightPaths paths(scene, caster, max_specular_depth);
-  if (!paths.has_specular() || direct_light.emitters().empty()) return {};
+  if (!paths.has_specular() || direct_light.light_count() == 0) return {};
   const int bands = scene.bands.count();
   BandArray power = BandArray::Zero(mesh.element_count(), direct_light.column_count());
 
-  // Every lit patch sends rays in proportion to its area. Pieces deposit into lists that are added
-  // in order, so that the sum does not depend on threads.
-  struct Deposit {
-    int element;
-    Spectrum power;
-  };
   std::vector<int> emitter_of_facet;
   for (int e = 0; e < static_cast<int>(direct_light.emitters().size()); ++e) {
     const int facet = direct_light.emitters()[e].facet;
@@ -308,52 +303,84 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
     print.add(rays);
     print.add(max_specular_depth);
   });
-  const SobolPoints sobol(rays);
-  int first = 0;
-  phase.recall_state(first, power);
-  for (int p = first; p < mesh.patch_count(); ++p) {
-    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
-    if (!direct_light.owns(facet, mesh.is_back[p] != 0) || !(mesh.emission.row(p) > 0.0f).any())
-      continue;
-    const double share = mesh.area[p] / direct_light.emitters()[emitter_of_facet[facet]].area;
-    const int count = std::clamp(static_cast<int>(std::lround(rays * share)), 1, rays);
-    const Spectrum power_per_ray =
-        mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
-    const std::uint64_t key = random_key(static_cast<std::uint64_t>(p), caustic_rays);
+  // Pieces deposit into lists that are added in order, so that the sum does not depend on threads.
+  struct Deposit {
+    int element;
+    Spectrum power;
+  };
+  // Sends rays first(r) with watts per ray, r in [0, count), which deposit in columns from
+  // `column`.
+  const auto send = [&](int count, std::uint64_t key, int column, auto&& first) {
     constexpr int piece = 2048;
-    const PatchSampler sampler(mesh, p);
     std::vector<std::vector<Deposit>> deposits((count + piece - 1) / piece);
     parallel_for(count, piece, [&](int begin, int end) {
       auto& list = deposits[begin / piece];
       for (int r = begin; r < end; ++r) {
-        const Eigen::Array4f u = sobol.point(r, key);
-        const PatchPoint from = sampler.point(u[0], u[1]);
-        Eigen::Vector3d a, b;
-        tangent_frame(from.normal, a, b);
-        const Eigen::Vector3d d = cosine_direction(u[2], u[3]);
-        const Ray ray{.origin = from.position,
-                      .direction = d.x() * a + d.y() * b + d.z() * from.normal,
-                      .origin_group = facet};
+        const auto [ray, watts] = first(r);
         ElementHit hit;
         caster.closest_hits({&ray, 1}, {&hit, 1});
         if (hit.facet < 0 || !paths.is_specular(hit.facet)) continue;
         paths.follow(ray, hit, random_key(key, caustic_branches, static_cast<std::uint64_t>(r)),
                      [&](const LightArrival& at) {
                        if (at.through_panes_only) return;  // DirectLight has that
-                       list.push_back({at.hit.element, at.throughput * power_per_ray});
+                       list.push_back({at.hit.element, at.throughput * watts});
                      });
       }
     });
     for (const auto& list : deposits) {
       for (const Deposit& deposit : list) {
-        power.row(deposit.element).segment(direct_light.first_column(facet), bands) +=
-            deposit.power.transpose();
+        power.row(deposit.element).segment(column, bands) += deposit.power.transpose();
       }
     }
-    report(progress, "caustics", static_cast<double>(p) / mesh.patch_count());
-    if (phase.is_state_due()) phase.keep_state(p + 1, power);
+  };
+
+  // Every lit patch sends rays in proportion to its area.
+  const SobolPoints sobol(rays);
+  const auto send_patch = [&](int p) {
+    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
+    if (!direct_light.owns(facet, mesh.is_back[p] != 0) || !(mesh.emission.row(p) > 0.0f).any())
+      return;
+    const double share = mesh.area[p] / direct_light.emitters()[emitter_of_facet[facet]].area;
+    const int count = std::clamp(static_cast<int>(std::lround(rays * share)), 1, rays);
+    const Spectrum power_per_ray =
+        mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
+    const std::uint64_t key = random_key(static_cast<std::uint64_t>(p), caustic_rays);
+    const PatchSampler sampler(mesh, p);
+    send(count, key, direct_light.first_column(facet), [&](int r) {
+      const Eigen::Array4f u = sobol.point(r, key);
+      const PatchPoint from = sampler.point(u[0], u[1]);
+      Eigen::Vector3d a, b;
+      tangent_frame(from.normal, a, b);
+      const Eigen::Vector3d d = cosine_direction(u[2], u[3]);
+      const Ray ray{.origin = from.position,
+                    .direction = d.x() * a + d.y() * b + d.z() * from.normal,
+                    .origin_group = facet};
+      return std::pair(ray, power_per_ray);
+    });
+  };
+  const auto send_source = [&](const FreeSource& source) {
+    if (!source.is_on()) return;
+    const std::uint64_t key =
+        random_key(static_cast<std::uint64_t>(source.number), caustic_rays_of_lamps);
+    send(rays, key, source.channel * bands, [&](int r) {
+      const SourceRay sent = source_ray(source, sobol.point(r, key));
+      return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / rays)));
+    });
+  };
+  const auto& sources = direct_light.free_sources();
+  const int patches = mesh.patch_count(), count = patches + static_cast<int>(sources.size());
+  int first = 0;
+  phase.recall_state(first, power);
+  for (int i = first; i < count; ++i) {
+    if (i < patches) {
+      send_patch(i);
+    } else {
+      send_source(sources[static_cast<std::size_t>(i - patches)]);
+    }
+    report(progress, "caustics", static_cast<double>(i) / count);
+    if (phase.is_state_due()) phase.keep_state(i + 1, power);
   }
-  phase.keep_state(mesh.patch_count(), power);
+  phase.keep_state(count, power);
 
   BandArray vertex_power = BandArray::Zero(mesh.vertex_count(), power.cols());
   Eigen::ArrayXf vertex_area = Eigen::ArrayXf::Zero(mesh.vertex_count());

@@ -73,7 +73,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
                                const BandArray& irradiance);
 
 /// Irradiance at every vertex (vertices x bands, W/m^2) from emitters by way of mirrors and glass:
-/// `rays` rays in all from each emitter DirectLight owns leave their power on the elements where
+/// `rays` rays in all from each light of DirectLight leave their power on the elements where
 /// they end (after Heckbert 1990), and vertices take the mean of the elements around; but for what
 /// goes straight through ClearPanes, which is direct light. Empty if the scene has no mirrors or
 /// glass.

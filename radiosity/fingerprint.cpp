@@ -21,6 +21,7 @@ void Fingerprint::add(const PatchMesh& mesh) {
   add_geometry(mesh);
   add(mesh.reflectance);
   add(mesh.emission);
+  if (mesh.source_scale.size() > 0) add(mesh.source_scale);
 }
 
 void Fingerprint::add_geometry(const PatchMesh& mesh) {

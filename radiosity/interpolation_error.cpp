@@ -319,8 +319,9 @@ double InterpolationError::probed_error(int cell, int side) {
   const Eigen::Vector3d normal = element_center(elements_.base(), element).normal;
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(2 * cell + side), probe_key);
   double error = 0.0;
-  const std::size_t emitters = std::min<std::size_t>(direct_light_.emitters().size(), 64);
-  for (std::size_t e = 0; e < emitters; ++e) {
+  const std::size_t lights =
+      std::min<std::size_t>(static_cast<std::size_t>(direct_light_.light_count()), 64);
+  for (std::size_t e = 0; e < lights; ++e) {
     const bool all_see = (whole >> e & 1U) != 0;
     if (!all_see && (hidden >> e & 1U) == 0) continue;
     for (int k = 0; k < probe_count; ++k) {
@@ -339,7 +340,7 @@ double InterpolationError::probed_error(int cell, int side) {
         interpolated += static_cast<float>(weights[i]) * direct_.row(v).transpose();
       }
       const auto sees =
-          direct_light_.sees(direct_light_.emitters()[e], caster_, at, normal, facet, u[2], u[3]);
+          direct_light_.sees(static_cast<int>(e), caster_, at, normal, facet, u[2], u[3]);
       if (!sees || *sees == all_see) continue;
       const Spectrum E = direct_light_.irradiance(caster_, at, normal, facet,
                                                   random_key(key, e, static_cast<std::uint64_t>(k)),

@@ -77,7 +77,8 @@ ShotRows stored_shots(const FormFactors& form_factors) {
 
 ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& mesh, ShotRows rows,
                                            const ProgressiveOptions& options,
-                                           const EmitterChannels& channels)
+                                           const EmitterChannels& channels,
+                                           const FreeLight& free_light)
     : scene_(scene),
       mesh_(mesh),
       rows_(std::move(rows)),
@@ -94,10 +95,29 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
     reflected += mesh.area[i] * mesh.reflectance.row(i).transpose().cast<double>();
     energy_.row(emitted_row) += mesh.area[i] * radiosity_.row(i).cast<double>();
   }
+  if (!free_light.empty()) take_in(free_light);
   emitted_ = energy_.row(emitted_row).sum();
   // A room that loses nothing would add up without end.
   constexpr double most_reflected = 0.99;
   reflections_ = (1.0 / (1.0 - (reflected / mesh.area.sum()).min(most_reflected))).cast<float>();
+}
+
+void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
+  const Eigen::Index bands = mesh_.emission.cols();
+  for (int i = 0; i < mesh_.patch_count(); ++i) {
+    const Spectrum& specular = scene_.materials[mesh_.material[i]].specular;
+    for (Eigen::Index k = 0; k < unshot_.cols(); ++k) {
+      const float E = free_light.irradiance(i, k), rho = mesh_.reflectance(i, k % bands);
+      radiosity_(i, k) += rho * E;
+      unshot_(i, k) += rho * E;
+      energy_(absorbed_row, k) +=
+          mesh_.area[i] * static_cast<double>(E * (1.0f - rho - specular[k % bands]));
+    }
+  }
+  free_energy_ = free_energy(free_light);
+  energy_.row(emitted_row) += free_light.emitted.transpose();
+  energy_.row(absorbed_row) += free_light.absorbed.transpose();
+  energy_.row(escaped_row) += free_light.escaped.transpose();
 }
 
 double ProgressiveRadiosity::unshot_share() const {
@@ -130,7 +150,7 @@ BandEnergy ProgressiveRadiosity::energy_by_column() const {
 }
 
 EnergyBalance ProgressiveRadiosity::energy() const {
-  return total(energy_by_column());
+  return total(energy_by_column(), free_energy_);
 }
 
 RadiositySolution ProgressiveRadiosity::solution() const {
@@ -139,7 +159,7 @@ RadiositySolution ProgressiveRadiosity::solution() const {
   const auto bands = static_cast<int>(mesh_.emission.cols());
   solution.patch_radiosity = channel_sum(radiosity_, bands);
   const BandEnergy energy = energy_by_column();
-  solution.energy = total(energy);
+  solution.energy = total(energy, free_energy_);
   const double largest = solution.patch_radiosity.abs().maxCoeff();
   const double left = channel_sum(unshot_.abs(), bands).maxCoeff();
   solution.residual = largest > 0.0 ? left / largest : 0.0;
@@ -148,7 +168,10 @@ RadiositySolution ProgressiveRadiosity::solution() const {
   name_channels(scene_, mesh_, channels_, solution);
   split_columns(radiosity_, &LightChannel::patch_radiosity, solution.channels);
   for (std::size_t c = 0; c < solution.channels.size(); ++c) {
-    solution.channels[c].energy = energy.middleCols(static_cast<Eigen::Index>(c) * bands, bands);
+    const Eigen::Index first = static_cast<Eigen::Index>(c) * bands;
+    solution.channels[c].energy = energy.middleCols(first, bands);
+    if (free_energy_.size() == 0) continue;
+    solution.channels[c].free_energy = free_energy_.middleCols(first, bands);
   }
   return solution;
 }

@@ -8,6 +8,7 @@
 
 #include "radiosity/emitter_channels.h"
 #include "radiosity/estimated_row.h"
+#include "radiosity/free_light.h"
 #include "radiosity/light_path.h"
 #include "radiosity/solution.h"
 #include "scene/progress.h"
@@ -71,10 +72,11 @@ class ProgressiveRadiosity {
     Spectrum radiosity{};  ///< what it sent out in each column, W/m^2
   };
 
-  /// Throws std::invalid_argument if a patch has no area.
+  /// What patches reflect of `free_light`, which has as many columns, is there to be shot from the
+  /// start. Throws std::invalid_argument if a patch has no area.
   ProgressiveRadiosity(const Scene& scene, const PatchMesh& mesh, ShotRows rows,
-                       const ProgressiveOptions& options = {},
-                       const EmitterChannels& channels = {});
+                       const ProgressiveOptions& options = {}, const EmitterChannels& channels = {},
+                       const FreeLight& free_light = {});
 
   /// One round, of at most `most` shooters (1: the single brightest). False, having done nothing,
   /// once the tolerance or the fuse is reached.
@@ -105,6 +107,7 @@ class ProgressiveRadiosity {
   auto state() { return std::tie(radiosity_, unshot_, energy_, shots_); }
 
  private:
+  void take_in(const FreeLight& free_light);
   BandEnergy energy_by_column() const;
   std::vector<int> choose(int most) const;
   int rays_of(int patch) const;
@@ -119,6 +122,7 @@ class ProgressiveRadiosity {
   Spectrum reflections_{};  // 1 / (1 - mean reflectance), per band
   double emitted_ = 0.0;    // W, all columns together
   BandEnergy energy_{};     // of each column, without what is unshot
+  FreeEnergy free_energy_{};
   std::vector<Shot> last_shots_{};
   int shots_ = 0;
 };

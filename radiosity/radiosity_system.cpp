@@ -27,11 +27,13 @@ LaneArray dot(const Weights& w, const LightVector& a, const LightVector& b) {
 }  // namespace
 
 RadiositySystem::RadiositySystem(const PatchMesh& mesh, const FormFactors& form_factors,
-                                 std::function<void()> pause)
+                                 std::function<void()> pause, const BandArray& arriving)
     : RowGather(form_factors, static_cast<int>(mesh.emission.cols()), std::move(pause)),
       area(mesh.area),
       M(with_lanes(mesh.emission)),
-      rho(with_lanes(mesh.reflectance)) {}
+      rho(with_lanes(mesh.reflectance)) {
+  if (arriving.size() > 0) M += rho * with_lanes(arriving);
+}
 
 LightVector RadiositySystem::residual(const LightVector& B) const {
   LightVector r;

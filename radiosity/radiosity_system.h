@@ -5,12 +5,14 @@
 
 namespace lightwell {
 
-/// B = M + rho F B of a mesh with all its bands side by side.
+/// B = M + rho F B of a mesh with all its bands side by side; where light E0 arrives from
+/// elsewhere, M stands for M + rho E0.
 class RadiositySystem : public RowGather {
  public:
-  /// Keeps references to both; `pause` as in RowGather.
+  /// Keeps references to mesh and form_factors; `pause` as in RowGather. `arriving` is E0, patches
+  /// x bands, or empty.
   RadiositySystem(const PatchMesh& mesh, const FormFactors& form_factors,
-                  std::function<void()> pause = {});
+                  std::function<void()> pause = {}, const BandArray& arriving = {});
 
   int patch_count() const { return static_cast<int>(area.size()); }
 

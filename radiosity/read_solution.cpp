@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "radiosity/channel_arrays.h"
+#include "radiosity/relight.h"
 #include "radiosity/solution_arrays.h"
 #include "radiosity/solution_file.h"
 #include "radiosity/solution_seal.h"
@@ -194,6 +195,11 @@ void read_record(const SolutionArrays& in, RadiositySolution& s) {
   const double* energy =
       in.required<double>(in.field(), "energy_emitted_absorbed_escaped_unshot", 1, 4).data;
   s.energy = {energy[0], energy[1], energy[2], energy[3]};
+  const auto of_lamps = in.optional<double>(in.field(), "energy_from_lamps_missed", 2);
+  if (of_lamps.rows > 0) {  // only where lamps are
+    s.energy.from_lamps = of_lamps.data[0];
+    s.energy.missed = of_lamps.data[1];
+  }
 
   s.provenance = {in.text("version"), in.text("scene_file"), 0, in.text("options")};
   const auto refinement = in.strings("refinement");
@@ -222,6 +228,7 @@ SolvedScene read_solution(const std::filesystem::path& path) {
   read_light(in, solved.mesh, solved.solution);
   read_record(in, solved.solution);
   read_channels(in, solved.mesh, solved.solution);
+  if (!solved.solution.channels.empty()) scale_sources(solved);
   return solved;
 }
 

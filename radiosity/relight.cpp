@@ -157,12 +157,15 @@ void relight(SolvedScene& solved, std::span<const Spectrum> scales) {
   check(s, scales);
   if (s.channels.empty()) return;
   BandEnergy energy = BandEnergy::Zero(4, s.bands.count());
+  FreeEnergy free = FreeEnergy::Zero(2, s.bands.count());
   for (std::size_t c = 0; c < s.channels.size(); ++c) {
     LightChannel& channel = s.channels[c];
     channel.scale = scales[c];
     energy += channel.energy.rowwise() * channel.scale.transpose().cast<double>();
+    if (channel.free_energy.size() == 0) continue;
+    free += channel.free_energy.rowwise() * channel.scale.transpose().cast<double>();
   }
-  s.energy = total(energy);
+  s.energy = total(energy, free);
   add_up(s.channels, &LightChannel::patch_radiosity, s.patch_radiosity);
   add_up(s.channels, &LightChannel::direct_irradiance, s.direct_irradiance);
   add_up(s.channels, &LightChannel::indirect_irradiance, s.indirect_irradiance);
@@ -173,6 +176,17 @@ void relight(SolvedScene& solved, std::span<const Spectrum> scales) {
   for (Eigen::Index i = 0; i < M.rows(); ++i) {
     const int c = s.patch_channel[static_cast<std::size_t>(i)];
     if (c >= 0) M.row(i) *= s.channels[static_cast<std::size_t>(c)].scale.transpose();
+  }
+  scale_sources(solved);
+}
+
+void scale_sources(SolvedScene& solved) {
+  const RadiositySolution& s = solved.solution;
+  BandArray& scale = solved.mesh.source_scale;
+  scale.resize(static_cast<Eigen::Index>(s.source_channel.size()), s.bands.count());
+  for (Eigen::Index i = 0; i < scale.rows(); ++i) {
+    const int c = s.source_channel[static_cast<std::size_t>(i)];
+    scale.row(i) = s.channels[static_cast<std::size_t>(c)].scale.transpose();
   }
 }
 

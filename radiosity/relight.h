@@ -38,6 +38,10 @@ int find_channel(const RadiositySolution& solution, std::string_view name);
 /// >= 0 for every channel and band.
 void relight(SolvedScene& solved, std::span<const Spectrum> scales);
 
+/// Only the part of relight() that tells DirectLight how bright free sources are: what makes a mesh
+/// read from a file whole again.
+void scale_sources(SolvedScene& solved);
+
 /// The scales in force.
 std::vector<Spectrum> scales_in_force(const RadiositySolution& solution);
 

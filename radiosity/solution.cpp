@@ -4,11 +4,13 @@
 
 namespace lightwell {
 
-EnergyBalance total(const BandEnergy& by_band) {
+EnergyBalance total(const BandEnergy& by_band, const FreeEnergy& free) {
   return {.emitted = by_band.row(0).sum(),
           .absorbed = by_band.row(1).sum(),
           .escaped = by_band.row(2).sum(),
-          .unshot = by_band.row(3).sum()};
+          .unshot = by_band.row(3).sum(),
+          .from_lamps = free.size() > 0 ? free.row(0).sum() : 0.0,
+          .missed = free.size() > 0 ? free.row(1).sum() : 0.0};
 }
 
 Eigen::ArrayXf error_bound(const RadiositySolution& solution) {

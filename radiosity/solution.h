@@ -25,10 +25,13 @@ struct EnergyBalance {
   double absorbed = 0.0;  ///< by diffuse surfaces and, on the way, by mirrors and glass
   double escaped = 0.0;   ///< out of an open scene, or onto black backs
   double unshot = 0.0;    ///< what the solver left undistributed
+
+  double from_lamps = 0.0;  ///< of `emitted`: by lamps and the sky, which are no surfaces
+  double missed = 0.0;      ///< of `escaped`: theirs that met nothing at all
 };
 
 /// All bands added.
-EnergyBalance total(const BandEnergy& by_band);
+EnergyBalance total(const BandEnergy& by_band, const FreeEnergy& free = {});
 
 struct PhaseSeconds {
   std::string phase{};
@@ -54,9 +57,9 @@ struct RadiositySolution {
   BandArray patch_radiosity{};  ///< B_i, W/m^2, patches x bands
 
   // Per mesh vertex, W/m^2, vertices x bands, reconstructed by a final gather.
-  BandArray direct_irradiance{};    ///< straight from DirectLight's emitters
+  BandArray direct_irradiance{};    ///< straight from DirectLight's lights
   BandArray indirect_irradiance{};  ///< everything else, caustics included
-  /// The part of indirect_irradiance that DirectLight's emitters send by way of mirrors and glass.
+  /// The part of indirect_irradiance that DirectLight's lights send by way of mirrors and glass.
   BandArray caustic_irradiance{};
 
   /// Per element: estimated RMS error of interpolated irradiance over it, with what the noise of
@@ -70,8 +73,9 @@ struct RadiositySolution {
   /// The light above by who emits it (see relight.h); empty: it was not kept apart.
   std::vector<LightChannel> channels{};
   // Only with channels.
-  std::vector<int> patch_channel{};  ///< whose light a patch emits; -1: none
-  BandArray full_emission{};         ///< M_i with every scale at 1, W/m^2, patches x bands
+  std::vector<int> patch_channel{};   ///< whose light a patch emits; -1: none
+  std::vector<int> source_channel{};  ///< of each free source (see free_source_count)
+  BandArray full_emission{};          ///< M_i with every scale at 1, W/m^2, patches x bands
 
   std::string solver{};  ///< the method that found it, or the methods; empty if read from a file
   std::vector<StepRecord> history{};

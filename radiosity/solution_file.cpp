@@ -174,12 +174,14 @@ void add_record(vtkFieldData* data, const RadiositySolution& s) {
     seconds.push_back(phase.seconds);
   }
   const double energy[] = {s.energy.emitted, s.energy.absorbed, s.energy.escaped, s.energy.unshot};
+  const double of_lamps[] = {s.energy.from_lamps, s.energy.missed};
   const int outcome = static_cast<int>(s.outcome);
   add_values(data, "history_residual_seconds", history.data(),
              static_cast<std::ptrdiff_t>(s.history.size()), 2);
   add_strings(data, "phase_names", phases);
   add_values(data, "phase_seconds", seconds.data(), static_cast<std::ptrdiff_t>(seconds.size()));
   add_values(data, "energy_emitted_absorbed_escaped_unshot", energy, 1, 4);
+  if (s.energy.from_lamps > 0.0) add_values(data, "energy_from_lamps_missed", of_lamps, 1, 2);
   add_values(data, "outcome", &outcome, 1);
   add_values(data, "residual", &s.residual, 1);
   add_values(data, "error_estimate", &s.error_estimate, 1);

@@ -38,12 +38,10 @@ class Stopwatch {
 };
 
 void require_light(const Scene& scene) {
-  for (const Surface& surface : scene.surfaces) {
-    if (scene.materials[surface.material].is_emitter()) return;
-  }
+  if (gives_light(scene)) return;
   throw InputError(fmt::format(
       "{}: nothing emits light, so there is nothing to solve; give a material a 'radiance', "
-      "'exitance' or 'power' (in OBJ files: Ke) and use it on a surface",
+      "'exitance' or 'power' (in OBJ files: Ke) and use it on a surface, or add a lamp",
       scene.file.empty() ? "the scene" : scene.file.string()));
 }
 
@@ -56,14 +54,17 @@ void require_no_start(const SolveOptions& options) {
 
 // Of patches; `seconds` of the result say what took how long.
 RadiositySolution shoot(const Scene& scene, const ElementCaster& caster,
-                        const SolveOptions& options) {
+                        const DirectLight& direct_light, const SolveOptions& options) {
   Stopwatch watch;
   const LightPaths paths(scene, caster, options.form_factors.max_specular_depth);
+  const FreeLight free_light =
+      cast_free_light(caster, paths, direct_light, options.free_rays, options.progress);
   ProgressiveRadiosity progressive(scene, caster.mesh(),
                                    cast_shots(caster, paths, options.progressive->most_rays),
-                                   *options.progressive, options.channels);
+                                   *options.progressive, options.channels, free_light);
   JournalPhase phase(options.journal, "shots", [&](Fingerprint& print) {
     print.add(caster.mesh());
+    print.add(free_light.irradiance);
     print.add(options.form_factors.max_specular_depth);
     const ProgressiveOptions& shooting = *options.progressive;
     print.add(shooting.tolerance);
@@ -79,8 +80,8 @@ RadiositySolution shoot(const Scene& scene, const ElementCaster& caster,
 }
 
 RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caster,
-                                  const DirectLight& direct_light, const SolveOptions& options,
-                                  SolveReport* report) {
+                                  const DirectLight& direct_light, const DirectLight& kept_apart,
+                                  const SolveOptions& options, SolveReport* report) {
   const PatchMesh& mesh = caster.mesh();
   Stopwatch watch;
   FormFactorOptions form_factor_options = options.form_factors;
@@ -89,6 +90,11 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
   const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
                                                  report ? &report->form_factors : nullptr);
   const double form_factor_seconds = watch.lap();
+  const int bands = scene.bands.count();
+  const FreeLight by_channel =
+      cast_free_light(caster, LightPaths(scene, caster, options.form_factors.max_specular_depth),
+                      kept_apart, options.free_rays, options.progress);
+  const FreeLight free_light = all_channels(by_channel, bands);
 
   SolverOptions solver_options = options.solver;
   solver_options.progress = options.progress;
@@ -97,14 +103,16 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
     return fmt::format("surface '{}'", scene.surfaces[mesh.surface[i]].name);
   };
   if (options.start) solver_options.start = start_radiosity(mesh, *options.start);
+  solver_options.arriving = free_light.irradiance;
   RadiositySolution solution =
       solve_radiosity(options.solver_method, mesh, *form_factors, solver_options);
   if (!options.channels.empty()) {
     solver_options.start = start_by_channel(options.start, options.channels);
-    solve_channels(scene, mesh, *form_factors, options.channels, options.solver_method,
+    solve_channels(scene, mesh, *form_factors, by_channel, options.channels, options.solver_method,
                    solver_options, solution);
   }
-  solution.energy = energy_balance(scene, mesh, *form_factors, solution.patch_radiosity);
+  solution.energy =
+      energy_balance(scene, mesh, *form_factors, solution.patch_radiosity, free_light);
   solution.seconds = {{"form_factors", form_factor_seconds}, {"solve", watch.lap()}};
   return solution;
 }
@@ -229,8 +237,9 @@ bool starts_coarse(const SolveOptions& options) {
 }
 
 EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
-                             const FormFactors& form_factors, const BandArray& B) {
-  return total(band_energy(scene, mesh, form_factors, B));
+                             const FormFactors& form_factors, const BandArray& B,
+                             const FreeLight& free_light) {
+  return total(band_energy(scene, mesh, form_factors, B, free_light), free_energy(free_light));
 }
 
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveReport* report) {
@@ -251,20 +260,20 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   require_room(solved.mesh, options.refine);
   std::optional<ElementCaster> caster(std::in_place, solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
+  const auto by_channel = light_by_channel(scene, solved.mesh, options.channels);
+  const DirectLight& kept_apart = by_channel ? *by_channel : direct_light;
   seconds.push_back({"mesh", watch.lap()});
 
-  solved.solution = options.progressive
-                        ? shoot(scene, *caster, options)
-                        : solve_equations(scene, *caster, direct_light, options, report);
+  solved.solution = options.progressive ? shoot(scene, *caster, kept_apart, options)
+                                        : solve_equations(scene, *caster, direct_light, kept_apart,
+                                                          options, report);
   RadiositySolution& solution = solved.solution;
   for (const PhaseSeconds& phase : solution.seconds) seconds.push_back(phase);
   watch.lap();
   describe(scene, solution);
 
-  const auto by_channel = light_by_channel(scene, solved.mesh, options.channels);
   caster.reset();
-  illuminate_elements(scene, direct_light, by_channel ? *by_channel : direct_light, options, solved,
-                      seconds, report);
+  illuminate_elements(scene, direct_light, kept_apart, options, solved, seconds, report);
   solution.seconds = std::move(seconds);
   return solved;
 }

@@ -6,6 +6,7 @@
 #include "radiosity/emitter_channels.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/free_light.h"
 #include "radiosity/progressive.h"
 #include "radiosity/refine_solution.h"
 #include "radiosity/solution.h"
@@ -31,6 +32,7 @@ struct SolveOptions {
   /// solution says so.
   std::optional<Accuracy> accuracy{};
   int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
+  int free_rays = 1 << 20;     ///< from all lamps together to the patches, see cast_free_light
   /// Whose light is kept apart, so that relight() can dim it; not with `progressive`.
   EmitterChannels channels{};
   /// A solution to start from, of the same patches: other reflectances or emission. Must outlive
@@ -79,9 +81,10 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
 SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches,
                                const SolveOptions& options = {}, SolveReport* report = nullptr);
 
-/// Where the light of patch radiosities B went; `residual` = M + rho F B - B. Mirrors' share is
-/// taken from the scene's materials.
+/// Where the light of patch radiosities B and of free sources went; `residual` =
+/// M + rho (E0 + F B) - B. Mirrors' share is taken from the scene's materials.
 EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
-                             const FormFactors& form_factors, const BandArray& B);
+                             const FormFactors& form_factors, const BandArray& B,
+                             const FreeLight& free_light = {});
 
 }  // namespace lightwell

@@ -41,6 +41,10 @@ std::vector<std::string> surfaces_of(const Scene& scene, const EmitterChannels& 
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
     if (channels.of_surface[s] == channel) names.push_back(scene.surfaces[s].name);
   }
+  for (std::size_t i = 0; i < channels.of_source.size(); ++i) {
+    if (channels.of_source[i] != channel) continue;
+    names.push_back(free_source_name(scene, static_cast<int>(i)));
+  }
   return names;
 }
 
@@ -66,6 +70,7 @@ Spectrum for_each_channel(const Spectrum& of_bands, Eigen::Index columns) {
 void name_channels(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
                    RadiositySolution& solution) {
   solution.patch_channel = channels_of_patches(mesh, channels);
+  solution.source_channel = channels.of_source;
   solution.full_emission = mesh.emission;
   for (int c = 0; c < static_cast<int>(channels.names.size()); ++c) {
     solution.channels.push_back({.name = channels.names[static_cast<std::size_t>(c)],
@@ -75,8 +80,9 @@ void name_channels(const Scene& scene, const PatchMesh& mesh, const EmitterChann
 }
 
 void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors& form_factors,
-                    const EmitterChannels& channels, SolverMethod method,
-                    const SolverOptions& options, RadiositySolution& solution) {
+                    const FreeLight& free_light, const EmitterChannels& channels,
+                    SolverMethod method, const SolverOptions& options,
+                    RadiositySolution& solution) {
   const auto count = static_cast<int>(channels.names.size());
   const Eigen::Index bands = mesh.emission.cols();
   name_channels(scene, mesh, channels, solution);
@@ -88,6 +94,8 @@ void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors
   PatchMesh lit = patches_of(mesh);
   for (int c = 0; c < count; ++c) {
     lit.emission = emission_of(mesh, solution.patch_channel, c);
+    const FreeLight arriving = of_channel(free_light, c, static_cast<int>(bands));
+    part.arriving = arriving.irradiance;
     part.start.resize(0, 0);
     if (options.start.size() > 0) part.start = options.start.middleCols(c * bands, bands);
     RadiositySolution solved = solve_radiosity(method, lit, form_factors, part);
@@ -95,14 +103,17 @@ void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors
     if (solved.outcome != Outcome::converged) solution.outcome = solved.outcome;
     LightChannel& channel = solution.channels[static_cast<std::size_t>(c)];
     channel.patch_radiosity = std::move(solved.patch_radiosity);
-    channel.energy = band_energy(scene, lit, form_factors, channel.patch_radiosity);
+    channel.energy = band_energy(scene, lit, form_factors, channel.patch_radiosity, arriving);
+    channel.free_energy = free_energy(arriving);
   }
-  solution.residual = residual / static_cast<double>(solution.patch_radiosity.maxCoeff());
+  const auto largest = static_cast<double>(solution.patch_radiosity.maxCoeff());
+  solution.residual = largest > 0.0 ? residual / largest : 0.0;
 }
 
 BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFactors& form_factors,
-                       const BandArray& B) {
-  const BandArray E = gather(form_factors, B);
+                       const BandArray& B, const FreeLight& free_light) {
+  BandArray E = gather(form_factors, B);
+  if (!free_light.empty()) E += free_light.irradiance;
   BandEnergy energy = BandEnergy::Zero(4, B.cols());
   for (int i = 0; i < mesh.patch_count(); ++i) {
     const double A = mesh.area[i];
@@ -118,6 +129,19 @@ BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFact
     add(2, form_factors.escaped(i) * B_i);
     add(3, M_i + rho * E_i - B_i);
   }
+  if (!free_light.empty()) {
+    energy.row(0) += free_light.emitted.transpose();
+    energy.row(1) += free_light.absorbed.transpose();
+    energy.row(2) += free_light.escaped.transpose();
+  }
+  return energy;
+}
+
+FreeEnergy free_energy(const FreeLight& free_light) {
+  if (free_light.empty()) return {};
+  FreeEnergy energy(2, free_light.emitted.size());
+  energy.row(0) = free_light.emitted.transpose();
+  energy.row(1) = free_light.missed.transpose();
   return energy;
 }
 

@@ -74,6 +74,9 @@ struct SolverOptions {
   int gmres_restart = 20;   ///< vectors that gmres keeps, each of 8 bytes per patch and band
   /// B to start from, patches x bands: a result to go on with, or of other reflectances. Empty: M.
   BandArray start{};
+  /// E0_i, W/m^2, patches x bands: light that arrives from elsewhere than other patches, such as
+  /// from lamps (see FreeLight). What is solved is then B = M + rho (E0 + F B). Empty: none.
+  BandArray arriving{};
   /// Sees every sweep, from the thread that called the solver.
   std::function<void(const SolverSweep&)> observer{};
   Progress progress{};

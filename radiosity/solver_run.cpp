@@ -14,7 +14,7 @@ namespace {
 // Rows add up to 1 within float rounding, so less absorption than this cannot be told from none.
 constexpr double least_absorption = 1e-6;
 
-void check(const PatchMesh& mesh, const SolverOptions& options) {
+const PatchMesh& checked(const PatchMesh& mesh, const SolverOptions& options) {
   for (int i = 0; i < mesh.patch_count(); ++i) {
     if (!(mesh.area[i] > 0.0)) {
       throw std::invalid_argument(fmt::format("patch {} has area {}", i, mesh.area[i]));
@@ -30,23 +30,32 @@ void check(const PatchMesh& mesh, const SolverOptions& options) {
         fmt::format("relaxation {} is not in [0, 2), or gmres_restart {} is below 1",
                     options.relaxation, options.gmres_restart));
   }
+  const BandArray& E0 = options.arriving;
+  if (E0.size() > 0 && (E0.rows() != mesh.emission.rows() || E0.cols() != mesh.emission.cols() ||
+                        !E0.allFinite() || !(E0 >= 0.0f).all())) {
+    throw std::invalid_argument(
+        fmt::format("the irradiance that arrives must be {} x {} finite numbers >= 0",
+                    mesh.emission.rows(), mesh.emission.cols()));
+  }
   const BandArray& B = options.start;
-  if (B.size() == 0) return;
+  if (B.size() == 0) return mesh;
   if (B.rows() != mesh.emission.rows() || B.cols() != mesh.emission.cols() || !B.allFinite()) {
     throw std::invalid_argument(
         fmt::format("the radiosities to start from must be {} x {} finite numbers",
                     mesh.emission.rows(), mesh.emission.cols()));
   }
+  return mesh;
 }
 
 }  // namespace
 
 SolverRun::SolverRun(const PatchMesh& mesh, const FormFactors& form_factors,
                      const SolverOptions& solver_options)
-    : system(mesh, form_factors, [this] { report(options.progress, "solve", share_); }),
+    : system(
+          checked(mesh, solver_options), form_factors,
+          [this] { report(options.progress, "solve", share_); }, solver_options.arriving),
       options(solver_options),
       groups(form_factors) {
-  check(mesh, options);
   find_ends();
 }
 

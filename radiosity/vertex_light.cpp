@@ -1,19 +1,32 @@
 #include "radiosity/vertex_light.h"
 
+#include "scene/parallel.h"
+
 namespace lightwell {
 
-VertexLight::VertexLight(const ElementCaster& caster, const DirectLight& direct_light, int columns)
+VertexLight::VertexLight(const ElementCaster& caster, const DirectLight& direct_light)
     : mesh_(caster.mesh()),
       direct_light_(direct_light),
       form_factors_(caster),
       points_(static_cast<std::size_t>(mesh_.vertex_count())),
       F_(points_.size()),
-      irradiance_(BandArray::Zero(mesh_.vertex_count(), columns)) {
+      irradiance_(BandArray::Zero(mesh_.vertex_count(), direct_light.column_count())) {
   for (int e = 0; e < mesh_.element_count(); ++e) {
     for (int c = 0; c < mesh_.corner_count(e); ++c) {
       points_[static_cast<std::size_t>(mesh_.corners[e][c])] = receiving_corner(mesh_, e, c);
     }
   }
+  if (direct_light.free_sources().empty()) return;
+  constexpr int grain = 64;
+  parallel_for(mesh_.vertex_count(), grain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      const ReceivingPoint& at = points_[static_cast<std::size_t>(v)];
+      irradiance_.row(v) = direct_light
+                               .irradiance_of_free_sources(caster, at.position, at.normal, at.facet,
+                                                           static_cast<std::uint64_t>(v))
+                               .transpose();
+    }
+  });
 }
 
 void VertexLight::receive(std::span<const ProgressiveRadiosity::Shot> shots) {

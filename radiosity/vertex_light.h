@@ -13,12 +13,12 @@ namespace lightwell {
 /// receive: Cohen, Greenberg, Immel & Brock 1986; at vertices: Wallace, Elmquist & Haines 1989), so
 /// that a picture can be shown after every round. Form factors are closed forms, visibility exact
 /// where little stands between and else by shadow rays: many for the emitters that DirectLight
-/// owns, one for all others. Light by way of mirrors and glass is left to the patches. Keeps
-/// references to caster and direct_light.
+/// owns, one for all others. Free sources are there from the start. Light by way of mirrors and
+/// glass is left to the patches. Keeps references to caster and direct_light.
 class VertexLight {
  public:
-  /// `columns` of light, as the shots have: bands, once for each channel.
-  VertexLight(const ElementCaster& caster, const DirectLight& direct_light, int columns);
+  /// The shots have the columns of `direct_light`.
+  VertexLight(const ElementCaster& caster, const DirectLight& direct_light);
 
   void receive(std::span<const ProgressiveRadiosity::Shot> shots);
 

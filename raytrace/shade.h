@@ -105,6 +105,9 @@ class RayTree {
                const SurfacePoint& at, Walk& walk) const;
   void add_lamp(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
                 const SurfacePoint& at, const Eigen::Array4d& lot, float share, Walk& walk) const;
+  void add_free_source(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+                       const SurfacePoint& at, const Eigen::Array4d& lot, float share,
+                       Walk& walk) const;
   Spectrum emission(const Branch& branch, const ElementHit& hit, const SurfacePoint& at) const;
   const RoughLobe& lobe(int material, bool from_back) const;
   void grow(const Branch& parent, std::uint64_t place, const Onward& way, const ElementHit& hit,

@@ -35,6 +35,7 @@ void RayTree::scatter(const Branch& branch, const Meeting& meeting, const Elemen
     const Eigen::Array4d lamp_lot =
         gloss_points_.point(index, random_key(key, lamp_purpose)).cast<double>();
     add_lamp(branch, meeting, hit, at, lamp_lot, 1.0f / static_cast<float>(count), walk);
+    add_free_source(branch, meeting, hit, at, lamp_lot, 1.0f / static_cast<float>(count), walk);
     // Places of many looks are alike, so that theirs are spread over what lies behind as well.
     const auto place =
         random_key(branch.place, gloss_purpose, static_cast<std::uint64_t>(i), way.crosses);
@@ -76,6 +77,53 @@ void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const Eleme
     Media media = branch.media;
     media.go_on(material, meeting.material, way, hit.from_back);
     seen *= media.passed(scene_, facets_[lamp->emitter->facet].material, false, lamp->distance);
+  }
+  walk.sight.radiance += seen;
+  if (with_layers_) {
+    walk.sight.layers.segment<3>(first_sampled_column(Layer::specular)) +=
+        linear_rgb(scene_.bands, seen);
+  }
+}
+
+// Light of a source that is no surface, off a rough one: no direction of the lobe meets it, so this
+// counts for all. One is drawn by what it would send here.
+void RayTree::add_free_source(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+                              const SurfacePoint& at, const Eigen::Array4d& lot, float share,
+                              Walk& walk) const {
+  const std::vector<FreeSource>& sources = direct_light_.free_sources();
+  if (sources.empty() || branch.depth >= deepest_path(options_.max_depth, true)) return;
+  std::vector<double> sum;
+  sum.reserve(sources.size());
+  for (const FreeSource& source : sources) {
+    const double sent = glimpse(source, at.position, lot[1], lot[2]).irradiance *
+                        static_cast<double>(source.light.sum());
+    sum.push_back(sent + (sum.empty() ? 0.0 : sum.back()));
+  }
+  if (!(sum.back() > 0.0)) return;
+  const auto drawn =
+      std::upper_bound(sum.begin(), sum.end() - 1, lot[0] * sum.back()) - sum.begin();
+  const auto i = static_cast<std::size_t>(drawn);
+  const double chance = (sum[i] - (i > 0 ? sum[i - 1] : 0.0)) / sum.back();
+  if (!(chance > 0.0)) return;
+  const SourceGlimpse seen_source = glimpse(sources[i], at.position, lot[1], lot[2]);
+  const int material = facets_[hit.facet].material;
+  const double density = lobe(material, hit.from_back).density(meeting, seen_source.direction);
+  if (!(density > 0.0)) return;
+  const Onward way{.direction = seen_source.direction,
+                   .crosses = seen_source.direction.dot(meeting.normal) < 0.0};
+  const Ray ray{.origin = at.position,
+                .direction = seen_source.direction,
+                .t_max = seen_source.distance,
+                .origin_group = hit.facet};
+  // What a lobe averages is radiance; a point's is E as a peak of solid angle 0.
+  Spectrum seen = branch.weight * share_of(meeting, way.crosses) * sources[i].light *
+                  direct_light_.passed(caster_, ray) *
+                  (share * static_cast<float>(density * seen_source.irradiance / chance));
+  if (!(seen > 0.0f).any()) return;
+  if (absorbs_) {
+    Media media = branch.media;
+    media.go_on(material, meeting.material, way, hit.from_back);
+    seen *= media.passed(scene_, -1, false, seen_source.distance);
   }
   walk.sight.radiance += seen;
   if (with_layers_) {

@@ -209,6 +209,41 @@ void check_mesh(const Scene& scene, const Surface& surface, const PolygonMesh& m
   }
 }
 
+void check_lamp(const Scene& scene, const Lamp& lamp) {
+  const auto refuse = [&](const std::string& what) {
+    fail(scene, fmt::format("lamp '{}': {}", lamp.name, what));
+  };
+  if (const std::string what = place_fault(lamp.position); !what.empty()) refuse(what);
+  constexpr double rounding = 1e-6;
+  const Eigen::Matrix3d& axes = lamp.axes;
+  if (!((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm() < rounding) ||
+      !(axes.determinant() > 0.0)) {
+    refuse("its axes are no rotation; give three unit vectors at right angles, right-handed");
+  }
+  if (lamp.intensity.size() != scene.bands.count() || !(lamp.intensity >= 0.0f).all() ||
+      !lamp.intensity.isFinite().all()) {
+    refuse("its intensity must be one finite number >= 0 per band");
+  }
+  const LampOpening& opening = lamp.opening;
+  for (const double size : {opening.along_c0, opening.along_c90}) {
+    if (!(size >= 0.0 && std::isfinite(size))) {
+      refuse(fmt::format("its opening is {:g} m by {:g} m; neither may be below 0",
+                         opening.along_c0, opening.along_c90));
+    }
+  }
+  if (const auto* cone = std::get_if<SpotCone>(&lamp.shape)) {
+    if (!(cone->inner >= 0.0 && cone->inner <= cone->outer && cone->outer > 0.0 &&
+          cone->outer <= std::numbers::pi)) {
+      refuse(
+          fmt::format("its cone is {:g} inside and {:g} outside; 0 <= inside <= outside <= pi, "
+                      "with outside above 0",
+                      cone->inner, cone->outer));
+    }
+  }
+  const auto* web = std::get_if<SharedWeb>(&lamp.shape);
+  if (web && (!*web || (*web)->values().size() == 0)) refuse("its distribution is empty");
+}
+
 // FNV-1a over the bits of what it is fed.
 class Hash {
  public:
@@ -286,7 +321,51 @@ void add_uv(const PolygonMesh& mesh, const Material& material, Hash& hash) {
   for (const Facet& facet : mesh.facets) hash.add(static_cast<std::uint64_t>(facet.uv_map + 1));
 }
 
+// Only where there are any, like add_gloss.
+void add_lamps(const Scene& scene, Hash& hash) {
+  constexpr std::uint64_t lamp_word = 0x1a3b5u;
+  for (const Lamp& lamp : scene.lamps) {
+    hash.add(lamp_word);
+    hash.add(lamp.position);
+    for (const double x : lamp.axes.reshaped()) hash.add(x);
+    hash.add(lamp.intensity);
+    hash.add(static_cast<std::uint64_t>(lamp.shape.index()));
+    if (const auto* cone = std::get_if<SpotCone>(&lamp.shape)) {
+      hash.add(cone->inner);
+      hash.add(cone->outer);
+      hash.add(static_cast<std::uint64_t>(cone->edge));
+    } else if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) {
+      hash.add(static_cast<std::uint64_t>((*web)->planes().size()));
+      for (const double x : (*web)->planes()) hash.add(x);
+      for (const double x : (*web)->gammas()) hash.add(x);
+      for (const double x : (*web)->values().reshaped()) hash.add(x);
+    }
+    hash.add(lamp.opening.along_c0);
+    hash.add(lamp.opening.along_c90);
+    hash.add(static_cast<std::uint64_t>(lamp.opening.is_round));
+  }
+}
+
 }  // namespace
+
+int free_source_count(const Scene& scene) {
+  return static_cast<int>(scene.lamps.size()) + (scene.sky ? 1 : 0);
+}
+
+std::string free_source_name(const Scene& scene, int number) {
+  const auto n = static_cast<std::size_t>(number);
+  return n < scene.lamps.size() ? scene.lamps[n].name : "sky";
+}
+
+bool gives_light(const Scene& scene) {
+  for (const Surface& surface : scene.surfaces) {
+    if (scene.materials[static_cast<std::size_t>(surface.material)].is_emitter()) return true;
+  }
+  for (const Lamp& lamp : scene.lamps) {
+    if ((lamp.intensity > 0.0f).any() && relative_flux(lamp) > 0.0) return true;
+  }
+  return scene.sky.has_value();
+}
 
 std::vector<FacetRef> scene_facets(const Scene& scene) {
   std::vector<FacetRef> facets;
@@ -339,6 +418,7 @@ void validate(const Scene& scene) {
     fail(scene, fmt::format("the scene has {} bands; give between 1 and {}", bands, max_bands));
   }
   for (const Material& material : scene.materials) check_material(scene, material);
+  for (const Lamp& lamp : scene.lamps) check_lamp(scene, lamp);
   for (const Surface& surface : scene.surfaces) {
     if (surface.material < 0 || surface.material >= static_cast<int>(scene.materials.size())) {
       fail(scene, fmt::format("surface '{}' names a material that does not exist", surface.name));
@@ -393,6 +473,7 @@ std::uint64_t scene_hash(const Scene& scene) {
       hash.add(sphere.radius);
     }
   }
+  add_lamps(scene, hash);
   return hash.value();
 }
 

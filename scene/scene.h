@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "scene/bands.h"
+#include "scene/lamp.h"
+#include "scene/sky.h"
 #include "scene/texture.h"
 
 namespace lightwell {
@@ -125,6 +127,8 @@ struct Scene {
   std::vector<Material> materials{};
   std::vector<Surface> surfaces{};
   std::vector<Camera> cameras{};
+  std::vector<Lamp> lamps{};
+  std::optional<Sky> sky{};
   std::vector<std::string>
       notes{};               ///< what the reader assumed, repaired or dropped: one sentence each
   int dropped_polygons = 0;  ///< of its files, without area or crossing themselves: left out
@@ -151,6 +155,14 @@ double facet_area(const PolygonMesh& mesh, const Facet& facet);
 /// m^2 of a surface's polygons or exact sphere, one side.
 double surface_area(const Surface& surface);
 
+/// Free sources are those that are no surface: the lamps in order, then the sky if there is one.
+int free_source_count(const Scene& scene);
+/// What messages and channels call it; a sky is "sky".
+std::string free_source_name(const Scene& scene, int number);
+
+/// Whether anything gives light: a surface, a lamp or the sky.
+bool gives_light(const Scene& scene);
+
 /// Axis-aligned bounds of all surfaces; throws std::invalid_argument for a scene without surfaces.
 struct Bounds {
   Eigen::Vector3d low, high;
@@ -159,12 +171,13 @@ struct Bounds {
 Bounds scene_bounds(const Scene& scene);
 
 /// Checks what every later stage relies on: finite coordinates, indices in range, facets with area,
-/// spheres with radius, bands of equal count, reflectances in [0,1] that do not create energy.
+/// spheres with radius, bands of equal count, reflectances in [0,1] that do not create energy,
+/// lamps whose axes are a rotation and whose intensity is a finite number >= 0.
 /// Throws InputError naming surface, material, value and remedy.
 void validate(const Scene& scene);
 
-/// 64-bit hash of everything that decides the light: geometry, materials and bands, not cameras,
-/// names or notes. Written into solutions so that a mismatch is refused.
+/// 64-bit hash of everything that decides the light: geometry, materials, lamps, sky and bands, not
+/// cameras, names or notes. Written into solutions so that a mismatch is refused.
 std::uint64_t scene_hash(const Scene& scene);
 
 }  // namespace lightwell

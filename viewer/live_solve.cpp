@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "radiosity/relight.h"
-#include "radiosity/solve_channels.h"
 #include "radiosity/vertex_light.h"
 #include "scene/errors.h"
 
@@ -33,12 +32,10 @@ SolveOptions for_a_window(SolveOptions options, const Scene& scene) {
   if (!options.progressive) options.progressive.emplace();
   options.mesh.progress = options.progress;
   options.journal = nullptr;
-  for (const Surface& surface : scene.surfaces) {
-    if (scene.materials[surface.material].is_emitter()) return options;
-  }
+  if (gives_light(scene)) return options;
   throw InputError(fmt::format(
       "{}: nothing emits light, so there is nothing to watch arriving; give a material a "
-      "'radiance', 'exitance' or 'power' (in OBJ files: Ke) and use it on a surface",
+      "'radiance', 'exitance' or 'power' (in OBJ files: Ke) and use it on a surface, or add a lamp",
       scene.file.empty() ? "the scene" : scene.file.string()));
 }
 
@@ -51,11 +48,14 @@ struct LiveSolve::Impl {
         provenance(from),
         mesh(build_patches(of, options.mesh)),
         caster(mesh),
-        direct_light(of, mesh),
+        direct_light(of, mesh, options.channels),
         paths(of, caster, options.form_factors.max_specular_depth),
-        progressive(of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
-                    *options.progressive, options.channels),
-        vertex_light(caster, direct_light, static_cast<int>(progressive.unshot().cols())) {
+        progressive(
+            of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
+            *options.progressive, options.channels,
+            cast_free_light(caster, paths, direct_light, options.free_rays, options.progress)),
+        begun(progressive.solution()),
+        vertex_light(caster, direct_light) {
     shown.lacks_specular = std::ranges::any_of(of.surfaces, [&](const Surface& surface) {
       return of.materials[surface.material].is_specular();
     });
@@ -103,6 +103,7 @@ struct LiveSolve::Impl {
   DirectLight direct_light;
   LightPaths paths;
   ProgressiveRadiosity progressive;
+  RadiositySolution begun;  ///< before the first shot
   VertexLight vertex_light;
   double shooting_seconds = 0.0;
 
@@ -249,17 +250,14 @@ SolvedScene LiveSolve::dark() const {
   s.unit_name = impl_->scene.unit_name;
   s.relative_units = impl_->scene.relative_units;
   s.provenance = impl_->provenance;
-  s.patch_radiosity = dark.mesh.emission;
+  s.patch_radiosity = impl_->begun.patch_radiosity;
   s.direct_irradiance = BandArray::Zero(dark.mesh.vertex_count(), s.bands.count());
   s.indirect_irradiance = s.direct_irradiance;
-  if (impl_->options.channels.empty()) return dark;
-  name_channels(impl_->scene, dark.mesh, impl_->options.channels, s);
-  const BandArray M = emission_columns(dark.mesh, impl_->options.channels);
-  split_columns(M, &LightChannel::patch_radiosity, s.channels);
+  s.channels = impl_->begun.channels;
+  s.patch_channel = impl_->begun.patch_channel;
+  s.source_channel = impl_->begun.source_channel;
+  s.full_emission = impl_->begun.full_emission;
   for (LightChannel& channel : s.channels) {
-    channel.energy = BandEnergy::Zero(4, s.bands.count());
-    channel.energy.row(0) =
-        (channel.patch_radiosity.cast<double>().colwise() * dark.mesh.area).colwise().sum();
     channel.direct_irradiance = s.direct_irradiance;
     channel.indirect_irradiance = s.direct_irradiance;
   }

@@ -163,7 +163,7 @@ TEST(VertexLight, SeesShadowsAfterTheFirstRoundAndAllLightInTheEnd) {
   const Solved room(lamp_room(0.6f, false));
   const auto F = room.form_factors();
   ProgressiveRadiosity progressive(room.scene, room.mesh, stored_shots(*F));
-  VertexLight light(room.caster, room.direct_light, 3);
+  VertexLight light(room.caster, room.direct_light);
   const GatherOptions many_rays{.rays = 4096};
   const std::vector<GatherPoint> points = vertex_gather_points(room.mesh);
   // The lamp has few patches: all have shot after a round.
