@@ -1,6 +1,8 @@
 #include "viewer/drawn_pictures.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "mesh/patch_textures.h"
 #include "raytrace/display.h"

@@ -17,7 +17,7 @@ struct PicturedBox {
                      .facets = {{.boundary = {0, 1, 2, 3}}}};
     s.surfaces[2].shape = std::move(wall);
     put_picture(s, 2, picture_of(2, 1, {bright_half, dark_half}));
-    solved.mesh.facet = {-1, -1, 0, -1, -1};
+    solved.mesh.facet = {1, 2, 0, 3, 4};
     solved.mesh.material[2] = s.surfaces[2].material;
     solved.mesh.reflectance.row(2).setConstant(0.5f * (bright_half + dark_half));
   }
