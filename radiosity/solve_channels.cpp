@@ -54,8 +54,8 @@ BandArray emission_columns(const PatchMesh& mesh, const EmitterChannels& channel
   if (channels.empty()) return mesh.emission;
   const Eigen::Index bands = mesh.emission.cols();
   const std::vector<int> channel = channels_of_patches(mesh, channels);
-  BandArray M = BandArray::Zero(mesh.patch_count(),
-                                static_cast<Eigen::Index>(channels.names.size()) * bands);
+  BandArray M =
+      BandArray::Zero(mesh.patch_count(), static_cast<Eigen::Index>(channels.names.size()) * bands);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const int c = channel[static_cast<std::size_t>(p)];
     if (c >= 0) M.row(p).segment(c * bands, bands) = mesh.emission.row(p);
