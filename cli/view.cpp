@@ -77,6 +77,7 @@ bool has_few_luminaires(const Scene& scene) {
   for (const Surface& surface : scene.surfaces) {
     if (scene.materials[surface.material].is_emitter()) names.insert(surface.name);
   }
+  for (int i = 0; i < free_source_count(scene); ++i) names.insert(free_source_name(scene, i));
   return names.size() <= few;
 }
 

@@ -111,9 +111,11 @@ class DirectLight {
                       const ShadowOptions& options, float* E, EmitterSight* sight = nullptr) const;
 
   /// The same from free sources alone, each channel's in its columns.
-  Spectrum irradiance_of_free_sources(const ElementCaster& caster, const Eigen::Vector3d& point,
-                                      const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                                      const ShadowOptions& options = {}) const;
+  Eigen::ArrayXf irradiance_of_free_sources(const ElementCaster& caster,
+                                            const Eigen::Vector3d& point,
+                                            const Eigen::Vector3d& normal, int facet,
+                                            std::uint64_t key,
+                                            const ShadowOptions& options = {}) const;
 
  private:
   template <class Add>

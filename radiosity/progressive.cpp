@@ -133,7 +133,7 @@ double ProgressiveRadiosity::done() const {
   return std::clamp(std::log(unshot) / std::log(options_.tolerance), 0.0, 1.0);
 }
 
-Spectrum ProgressiveRadiosity::ambient() const {
+Eigen::ArrayXf ProgressiveRadiosity::ambient() const {
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(unshot_.cols());
   for (int i = 0; i < mesh_.patch_count(); ++i) {
     sum += mesh_.area[i] * unshot_.row(i).transpose().cast<double>();
@@ -179,14 +179,15 @@ RadiositySolution ProgressiveRadiosity::solution() const {
 bool ProgressiveRadiosity::step(int most) {
   if (shots_ >= options_.max_shots || has_converged()) return false;
   const std::vector<int> chosen = choose(std::max(most, 1));
-  const auto foreseen =
-      options_.overshooting == Overshooting::ambient ? ambient() : Spectrum::Zero(unshot_.cols());
+  const auto foreseen = options_.overshooting == Overshooting::ambient
+                            ? ambient()
+                            : Eigen::ArrayXf::Zero(unshot_.cols());
   std::vector<RowRequest> requests;
   last_shots_.clear();
   for (const int i : chosen) {
     requests.push_back({i, rays_of(i)});
     const Spectrum rho = mesh_.reflectance.row(i).transpose();
-    const Spectrum more = for_each_channel(rho, unshot_.cols()) * foreseen.max(0.0f);
+    const Eigen::ArrayXf more = for_each_channel(rho, unshot_.cols()) * foreseen.max(0.0f);
     last_shots_.push_back({i, unshot_.row(i).transpose() + more});
   }
   std::vector<EstimatedRow> rows(requests.size());

@@ -69,7 +69,7 @@ class ProgressiveRadiosity {
  public:
   struct Shot {
     int patch = 0;
-    Spectrum radiosity{};  ///< what it sent out in each column, W/m^2
+    Eigen::ArrayXf radiosity{};  ///< what it sent out in each column, W/m^2
   };
 
   /// What patches reflect of `free_light`, which has as many columns, is there to be shot from the
@@ -97,7 +97,7 @@ class ProgressiveRadiosity {
   /// Radiosity that all surfaces would add for every unit of reflectance if the unshot light were
   /// spread evenly at once: rho_i times this belongs to what a picture shows meanwhile (Cohen et
   /// al. 1988, section 5).
-  Spectrum ambient() const;
+  Eigen::ArrayXf ambient() const;
   /// Where the light went so far.
   EnergyBalance energy() const;
   /// What a solution holds of the patches as they are now: patch_radiosity, channels, solver

@@ -63,7 +63,7 @@ BandArray emission_columns(const PatchMesh& mesh, const EmitterChannels& channel
   return M;
 }
 
-Spectrum for_each_channel(const Spectrum& of_bands, Eigen::Index columns) {
+Eigen::ArrayXf for_each_channel(const Spectrum& of_bands, Eigen::Index columns) {
   return of_bands.replicate(columns / of_bands.size(), 1);
 }
 

@@ -11,7 +11,7 @@ namespace lightwell {
 BandArray emission_columns(const PatchMesh& mesh, const EmitterChannels& channels);
 
 /// What bands have, once more for every channel: `columns` long.
-Spectrum for_each_channel(const Spectrum& of_bands, Eigen::Index columns);
+Eigen::ArrayXf for_each_channel(const Spectrum& of_bands, Eigen::Index columns);
 
 /// Fills `channels` of `solution` with names, surfaces and scales of 1, and `patch_channel`,
 /// `source_channel` and `full_emission`.

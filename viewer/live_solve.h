@@ -14,7 +14,7 @@ struct LiveLight {
   /// channel after channel.
   BandArray irradiance{};
   /// What the unshot light would add everywhere, W/m^2 (Cohen et al. 1988), by the same columns.
-  Spectrum ambient{};
+  Eigen::ArrayXf ambient{};
   int shots = 0;
   double unshot_share = 0.0;  ///< unshot power over emitted power, all bands together
 };
