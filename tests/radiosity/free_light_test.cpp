@@ -63,12 +63,11 @@ double direct(const Scene& scene, const Eigen::Vector3d& point, const Eigen::Vec
 TEST(FreeSources, PointGivesIntensityTimesCosineOverSquaredDistance) {
   Scene scene = box(0.5f);
   scene.lamps = {point_lamp(scene)};
-  for (const Eigen::Vector3d& p : {Eigen::Vector3d(2.0, 2.5, 0.0), Eigen::Vector3d(3.7, 4.1, 0.0),
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(2.0, 2.5, 0.1), Eigen::Vector3d(3.7, 4.1, 0.1),
                                    Eigen::Vector3d(2.3, 1.9, 1.4)}) {
     const Eigen::Vector3d to = scene.lamps[0].position - p;
     const double E = 10.0 * to.z() / std::pow(to.norm(), 3);
-    EXPECT_NEAR(direct(scene, p + Eigen::Vector3d(0, 0, 1e-9), Eigen::Vector3d::UnitZ()) / E, 1.0,
-                1e-6);
+    EXPECT_NEAR(direct(scene, p, Eigen::Vector3d::UnitZ()) / E, 1.0, 1e-6);
   }
 }
 
