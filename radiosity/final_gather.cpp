@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 #include "mesh/patch_sampler.h"
@@ -25,6 +26,7 @@ constexpr std::uint64_t caustic_rays = 13;
 constexpr std::uint64_t caustic_branches = 14;
 constexpr std::uint64_t caustic_rays_of_lamps = 0xf4ee3;
 constexpr int batch = 128;
+constexpr float pi = std::numbers::pi_v<float>;
 
 int ray_count(const GatherPoint& at, const GatherOptions& options) {
   return at.rays > 0 ? at.rays : std::max(1, options.rays);
@@ -32,14 +34,19 @@ int ray_count(const GatherPoint& at, const GatherOptions& options) {
 
 class HemisphereGather {
  public:
-  HemisphereGather(const Scene& scene, const ElementCaster& caster, const BandArray& radiosity,
-                   const GatherOptions& options, std::span<const GatherPoint> points)
+  HemisphereGather(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                   const BandArray& radiosity, const GatherOptions& options,
+                   std::span<const GatherPoint> points)
       : mesh_(caster.mesh()),
         caster_(caster),
         radiosity_(radiosity),
         paths_(scene, caster, options.max_specular_depth),
         options_(options),
         bands_(scene.bands.count()) {
+    if (const FreeSource* dome = direct_light.dome()) {
+      dome_ = dome->light;
+      if (direct_light.column_count() == radiosity.cols()) dome_column_ = dome->channel * bands_;
+    }
     for (const GatherPoint& at : points) {
       const int rays = ray_count(at, options);
       if (!sets_.contains(rays)) sets_.emplace(rays, HemisphereSets(rays));
@@ -84,10 +91,12 @@ class HemisphereGather {
     if (hit.facet < 0) return;
     if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, sum);
     if (!paths_.is_specular(hit.facet)) return;
-    paths_.follow(ray, hit, random_key(key, gather_branches, index),
-                  [&](const ElementHit& end, const Spectrum& throughput) {
-                    add_throughput(end, throughput, sum);
-                  });
+    const PathLosses losses = paths_.follow(ray, hit, random_key(key, gather_branches, index),
+                                            [&](const ElementHit& end, const Spectrum& throughput) {
+                                              add_throughput(end, throughput, sum);
+                                            });
+    if (losses.sky.size() == 0 || dome_.size() == 0) return;
+    sum.segment(dome_column_, bands_) += (pi * dome_ * losses.sky).cast<double>();
   }
 
   // Bands go by the columns of one channel after the other.
@@ -133,6 +142,8 @@ class HemisphereGather {
   LightPaths paths_;
   const GatherOptions& options_;
   Eigen::Index bands_;
+  Spectrum dome_{};  // factor of the sky's light; empty if there is none
+  Eigen::Index dome_column_ = 0;
   std::map<int, HemisphereSets> sets_;  // by the rays of each
 };
 
@@ -197,7 +208,7 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
                                      std::span<const GatherPoint> points,
                                      const GatherOptions& options) {
   const int count = static_cast<int>(points.size());
-  const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
+  const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
   GatheredIrradiance result{.direct = BandArray::Zero(count, direct_light.column_count()),
                             .indirect = BandArray::Zero(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf::Zero(count)};
@@ -245,14 +256,16 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
 }
 
 GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
-                                   const BandArray& radiosity, std::span<const GatherPoint> points,
+                                   const DirectLight& direct_light, const BandArray& radiosity,
+                                   std::span<const GatherPoint> points,
                                    const GatherOptions& options) {
-  const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
+  const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
   const auto count = static_cast<Eigen::Index>(points.size());
   GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf(count)};
   const JournalPhase phase(options.journal, "indirect", [&](Fingerprint& print) {
     add_inputs(print, caster.mesh(), points, options);
+    print.add(direct_light.column_count());
     print.add(radiosity);
   });
   const auto values = [&](int begin, int size) {
@@ -359,7 +372,7 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
     });
   };
   const auto send_source = [&](const FreeSource& source) {
-    if (!source.is_on()) return;
+    if (!source.is_on() || source.is_dome()) return;
     const std::uint64_t key =
         random_key(static_cast<std::uint64_t>(source.number), caustic_rays_of_lamps);
     send(rays, key, source.channel * bands, [&](int r) {

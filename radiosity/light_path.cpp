@@ -71,7 +71,7 @@ void LightPaths::absorb(const Ray& ray, const ElementHit& hit, const Media& medi
 PathLosses LightPaths::follow(const Ray& first_ray, const ElementHit& first_hit, std::uint64_t key,
                               const std::function<void(const LightArrival&)>& arrive) const {
   const int bands = scene_.bands.count();
-  PathLosses losses{Spectrum::Zero(bands), Spectrum::Zero(bands), Spectrum::Zero(bands)};
+  PathLosses losses{Spectrum::Zero(bands), Spectrum::Zero(bands), Spectrum::Zero(bands), {}};
   Spectrum throughput = Spectrum::Ones(bands);
   Ray ray = first_ray;
   ElementHit hit = first_hit;
@@ -93,6 +93,9 @@ PathLosses LightPaths::follow(const Ray& first_ray, const ElementHit& first_hit,
     const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));
     if (leaves) {
       losses.escaped += throughput;
+      if (hit.facet < 0 && scene_.sky && !through_panes_only) {
+        losses.sky = throughput * sky_radiance(*scene_.sky, ray.direction.normalized());
+      }
       return losses;
     }
     if (is_diffuse(hit.facet) && hit.element >= 0) {

@@ -14,6 +14,10 @@ struct PathLosses {
   Spectrum escaped{};   ///< left the scene or met a black back
   Spectrum absorbed{};  ///< taken up by mirrors and by glass that is tinted or absorbs
   Spectrum cut{};       ///< still under way when the depth limit was reached
+  /// Radiance of the sky's dome where it left the scene, times what of that would come back this
+  /// way, W/(m^2 sr); empty if it did not leave, by clear panes alone (that is direct light), or
+  /// there is no sky.
+  Spectrum sky{};
 };
 
 /// Where light arrives at something diffuse, behind mirrors and clear surfaces.

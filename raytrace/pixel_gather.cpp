@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <span>
 
 #include "radiosity/final_gather.h"
@@ -28,6 +29,7 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
     : caster_(caster),
       paths_(scene, caster, max_specular_depth),
       radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance())) {
+  if (const FreeSource* dome = direct_light.dome()) dome_ = dome->light;
   constexpr int fewest = 8;
   for (int rays = most_rays; rays >= std::min(fewest, most_rays) && rays > 0; rays /= 2) {
     sets_.emplace_back(rays);
@@ -68,9 +70,13 @@ Spectrum PixelGather::arriving(const Ray& ray, const ElementHit& hit, std::uint6
   Spectrum B = Spectrum::Zero(radiosity_.cols());
   if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) B = interpolate(mesh, radiosity_, hit);
   if (!paths_.is_specular(hit.facet)) return B;
-  paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
-    B += throughput * interpolate(mesh, radiosity_, end);
-  });
+  const PathLosses losses =
+      paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+        B += throughput * interpolate(mesh, radiosity_, end);
+      });
+  if (losses.sky.size() > 0 && dome_.size() > 0) {
+    B += std::numbers::pi_v<float> * dome_ * losses.sky;
+  }
   return B;
 }
 

@@ -22,7 +22,8 @@ struct GatherPlace {
 /// Final gather (Reichert 1992) at places of a picture: indirect irradiance, E = (1/N) sum B over
 /// cosine-distributed rays of a scrambled Sobol sequence that read the solution's radiosity
 /// where they end, going on through mirrors and clear glass. Light that emitters of DirectLight
-/// send by way of those is not in it: see RadiositySolution::caustic_irradiance.
+/// send by way of those is not in it: see RadiositySolution::caustic_irradiance. That of the sky's
+/// dome is.
 class PixelGather {
  public:
   /// `most_rays` per place, at least 1; a power of two stratifies best.
@@ -38,6 +39,7 @@ class PixelGather {
   const ElementCaster& caster_;
   LightPaths paths_;
   BandArray radiosity_{};               // vertices x bands, W/m^2
+  Spectrum dome_{};                     // factor of the sky's light; empty if there is none
   std::vector<HemisphereSets> sets_{};  // each of half as many rays as the one before
 };
 

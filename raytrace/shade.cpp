@@ -136,7 +136,7 @@ void RayTree::follow(Branch branch, Walk& walk) const {
     sight.fingerprint = random_key(sight.fingerprint, branch.place,
                                    static_cast<std::uint64_t>(seen), hit.from_back);
   }
-  if (hit.facet < 0) return;  // the world outside is black
+  if (hit.facet < 0) return look_outside(branch, walk);
   const SurfacePoint at = surface_point(branch.ray, hit);
   if (absorbs_) {
     branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
@@ -148,6 +148,29 @@ void RayTree::follow(Branch branch, Walk& walk) const {
   }
   if (walk.shades && hit.element >= 0) shade(branch, hit, at, walk);
   split(branch, hit, at, walk);
+}
+
+// The sky; and the sun, but off rough surfaces, which draw directions towards it: see
+// add_free_source.
+void RayTree::look_outside(const Branch& branch, Walk& walk) const {
+  if (!walk.shades || !scene_.sky) return;
+  const Eigen::Vector3d direction = branch.ray.direction.normalized();
+  Spectrum L = Spectrum::Zero(scene_.bands.count());
+  for (const FreeSource& source : direct_light_.free_sources()) {
+    if (source.is_dome()) {
+      L += source.light * sky_radiance(*scene_.sky, direction);
+    } else if (const auto* light = std::get_if<SunLight>(&source.shape)) {
+      const Sun& sun = light->sun;
+      if (branch.lobe_density > 0.0 || direction.dot(sun.direction) < sun.cosine_of_edge())
+        continue;
+      L += source.light / static_cast<float>(sun.solid_angle());
+    }
+  }
+  const Spectrum seen = branch.weight * L;
+  walk.sight.radiance += seen;
+  if (!with_layers_) return;
+  const Layer layer = branch.place == 1 ? Layer::emission : Layer::specular;
+  walk.sight.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, seen);
 }
 
 void RayTree::split(const Branch& branch, const ElementHit& hit, const SurfacePoint& at,

@@ -100,6 +100,7 @@ class RayTree {
   };
 
   void follow(Branch branch, Walk& walk) const;
+  void look_outside(const Branch& branch, Walk& walk) const;
   void split(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
   void scatter(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
                const SurfacePoint& at, Walk& walk) const;

@@ -349,12 +349,15 @@ void add_lamps(const Scene& scene, Hash& hash) {
 }  // namespace
 
 int free_source_count(const Scene& scene) {
-  return static_cast<int>(scene.lamps.size()) + (scene.sky ? 1 : 0);
+  const int of_sky = scene.sky ? (has_dome(*scene.sky) ? 1 : 0) + (scene.sky->sun ? 1 : 0) : 0;
+  return static_cast<int>(scene.lamps.size()) + of_sky;
 }
 
 std::string free_source_name(const Scene& scene, int number) {
   const auto n = static_cast<std::size_t>(number);
-  return n < scene.lamps.size() ? scene.lamps[n].name : "sky";
+  if (n < scene.lamps.size()) return scene.lamps[n].name;
+  const bool is_dome = n == scene.lamps.size() && scene.sky && has_dome(*scene.sky);
+  return is_dome ? "sky" : "sun";
 }
 
 bool gives_light(const Scene& scene) {
@@ -364,7 +367,8 @@ bool gives_light(const Scene& scene) {
   for (const Lamp& lamp : scene.lamps) {
     if ((lamp.intensity > 0.0f).any() && relative_flux(lamp) > 0.0) return true;
   }
-  return scene.sky.has_value();
+  return scene.sky &&
+         (has_dome(*scene.sky) || (scene.sky->sun && (scene.sky->sun->irradiance > 0.0f).any()));
 }
 
 std::vector<FacetRef> scene_facets(const Scene& scene) {
@@ -419,6 +423,13 @@ void validate(const Scene& scene) {
   }
   for (const Material& material : scene.materials) check_material(scene, material);
   for (const Lamp& lamp : scene.lamps) check_lamp(scene, lamp);
+  if (scene.sky) {
+    try {
+      validate(*scene.sky, scene.bands);
+    } catch (const std::invalid_argument& error) {
+      fail(scene, error.what());
+    }
+  }
   for (const Surface& surface : scene.surfaces) {
     if (surface.material < 0 || surface.material >= static_cast<int>(scene.materials.size())) {
       fail(scene, fmt::format("surface '{}' names a material that does not exist", surface.name));
@@ -474,6 +485,7 @@ std::uint64_t scene_hash(const Scene& scene) {
     }
   }
   add_lamps(scene, hash);
+  if (scene.sky) hash.add(sky_hash(*scene.sky));
   return hash.value();
 }
 

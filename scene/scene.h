@@ -128,7 +128,7 @@ struct Scene {
   std::vector<Surface> surfaces{};
   std::vector<Camera> cameras{};
   std::vector<Lamp> lamps{};
-  std::optional<Sky> sky{};
+  std::optional<Sky> sky{};  ///< what is seen where rays leave the scene; empty: black
   std::vector<std::string>
       notes{};               ///< what the reader assumed, repaired or dropped: one sentence each
   int dropped_polygons = 0;  ///< of its files, without area or crossing themselves: left out
@@ -155,9 +155,10 @@ double facet_area(const PolygonMesh& mesh, const Facet& facet);
 /// m^2 of a surface's polygons or exact sphere, one side.
 double surface_area(const Surface& surface);
 
-/// Free sources are those that are no surface: the lamps in order, then the sky if there is one.
+/// Free sources are those that are no surface: the lamps in order, then the dome of the sky and the
+/// sun, each if there is one.
 int free_source_count(const Scene& scene);
-/// What messages and channels call it; a sky is "sky".
+/// What messages and channels call it; the last ones are "sky" and "sun".
 std::string free_source_name(const Scene& scene, int number);
 
 /// Whether anything gives light: a surface, a lamp or the sky.
@@ -172,7 +173,7 @@ Bounds scene_bounds(const Scene& scene);
 
 /// Checks what every later stage relies on: finite coordinates, indices in range, facets with area,
 /// spheres with radius, bands of equal count, reflectances in [0,1] that do not create energy,
-/// lamps whose axes are a rotation and whose intensity is a finite number >= 0.
+/// lamps whose axes are a rotation and whose intensity is a finite number >= 0, a sound sky.
 /// Throws InputError naming surface, material, value and remedy.
 void validate(const Scene& scene);
 

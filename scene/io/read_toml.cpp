@@ -11,6 +11,7 @@
 #include "scene/io/text_file.h"
 #include "scene/io/toml_lamps.h"
 #include "scene/io/toml_materials.h"
+#include "scene/io/toml_sky.h"
 #include "scene/io/toml_surfaces.h"
 #include "scene/io/toml_value.h"
 
@@ -144,7 +145,7 @@ Scene read_toml(const std::filesystem::path& path) {
   const toml::table root = parse(file);
   const TomlValue all(file.path(), root, "");
   const TomlTable document =
-      all.table({"title", "unit", "bands", "materials", "surfaces", "lamps", "cameras"});
+      all.table({"title", "unit", "bands", "materials", "surfaces", "lamps", "sky", "cameras"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
@@ -156,6 +157,7 @@ Scene read_toml(const std::filesystem::path& path) {
   scene.bands = bands.bands;
   const auto materials = read_materials(document, bands, scene);
 
+  if (const auto sky = document.find("sky")) scene.sky = read_toml_sky(*sky, bands);
   const auto surfaces = document.find("surfaces");
   if (!surfaces) document.fail("the scene has no surfaces; add at least one [[surfaces]] table");
   if (!surfaces->is_array()) surfaces->fail("must be an array of tables; write [[surfaces]]");
