@@ -316,8 +316,10 @@ NormalLoop bent_normals(const Loop& loop, const NormalLoop& normals) {
   return is_flat ? NormalLoop{} : unit;
 }
 
-bool agrees(const NormalMap& map, const Loop& loop, const NormalLoop& unit) {
-  constexpr double tolerance = 2e-3;
+constexpr double linear = 2e-3;  // how far unit normals may be off what is linear over a polygon,
+constexpr double alike = 3e-4;   // and off another facet's, with files of four decimals in mind
+
+bool agrees(const NormalMap& map, const Loop& loop, const NormalLoop& unit, double tolerance) {
   for (std::size_t i = 0; i < loop.size(); ++i) {
     if (!((map.at(loop[i]) - unit[i]).norm() <= tolerance)) return false;
   }
@@ -328,7 +330,7 @@ std::optional<NormalMap> map_of_unit_normals(const Loop& loop, const NormalLoop&
   const auto found = linear_over<3>(loop, unit);
   if (!found) return std::nullopt;
   const NormalMap map{.gradient = found->gradient, .offset = found->offset};
-  return agrees(map, loop, unit) ? std::optional(map) : std::nullopt;
+  return agrees(map, loop, unit, linear) ? std::optional(map) : std::nullopt;
 }
 
 }  // namespace
@@ -371,7 +373,7 @@ int MeshBuilder::normal_map(const Loop& loop, const NormalLoop& normals) {
   if (unit.empty()) return -1;
   const int count = static_cast<int>(mesh_.normal_maps.size());
   for (int i = count - 1; i >= std::max(0, count - looked_at); --i) {
-    if (agrees(mesh_.normal_maps[static_cast<std::size_t>(i)], loop, unit)) return i;
+    if (agrees(mesh_.normal_maps[static_cast<std::size_t>(i)], loop, unit, alike)) return i;
   }
   const auto map = map_of_unit_normals(loop, unit);
   if (!map) return -1;
