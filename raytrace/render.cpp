@@ -262,6 +262,7 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
 std::optional<Exposure> exposure_of(const Scene& scene, const PatchMesh& mesh,
                                     const Camera& camera) {
   const auto moves = [](const auto& thing) { return thing.motion >= 0; };
+  if (!camera.is_open_for_a_while()) return std::nullopt;
   if (!moves(camera) && std::ranges::none_of(scene.surfaces, moves)) return std::nullopt;
   const double instant = scene.motions.front().rest_time, middle = camera.shutter_middle();
   constexpr double rounding = 1e-9;
@@ -272,7 +273,6 @@ std::optional<Exposure> exposure_of(const Scene& scene, const PatchMesh& mesh,
                     "shutter there, or place the scene at rest at another time and solve it again",
                     camera.name, middle, instant));
   }
-  if (!camera.is_open_for_a_while()) return std::nullopt;
   Exposure exposure{.caster = ElementCaster(mesh, scene),
                     .open = camera.shutter_open,
                     .close = camera.shutter_close};
