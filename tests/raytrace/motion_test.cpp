@@ -18,16 +18,16 @@ using Eigen::Vector3d;
 constexpr double pi = std::numbers::pi;
 constexpr auto pi_f = std::numbers::pi_v<float>;
 
-// Camera straight above the plane z = 0, 64 pixels over [-2, 2] of it; the picture's x is the
+// Camera straight above the plane z = 0, its width over [-2, 2] of it; the picture's x is the
 // world's.
-Camera overhead() {
+Camera overhead(int width, int height) {
   return {.name = "above",
           .position = {0, 0, 100},
           .direction = -Vector3d::UnitZ(),
           .up = Vector3d::UnitY(),
           .fov_degrees = 2.0 * std::atan(0.02) * 180.0 / pi,
-          .width = 64,
-          .height = 64,
+          .width = width,
+          .height = height,
           .shutter_open = 0.0,
           .shutter_close = 1.0};
 }
@@ -72,12 +72,12 @@ double expected_coverage(double x, double distance, double pixel) {
 
 TEST(Motion, CoverageOfASquareIsTheTrapezoidOfItsWay) {
   for (const double distance : {0.4, 1.0, 1.8}) {
-    const Image image = picture_of(moving_square(distance), overhead());
+    const Image image = picture_of(moving_square(distance), overhead(64, 8));
     for (int x = 0; x < 64; ++x) {
       const double place = 4.0 * (x + 0.5) / 64.0 - 2.0;
-      for (const int y : {28, 32, 36}) {
+      for (const int y : {2, 4, 6}) {
         EXPECT_NEAR(image.radiance(y * 64 + x, 0), expected_coverage(place, distance, 4.0 / 64),
-                    4e-3)
+                    6e-3)
             << distance << " " << place;
       }
     }
@@ -85,12 +85,12 @@ TEST(Motion, CoverageOfASquareIsTheTrapezoidOfItsWay) {
 }
 
 TEST(Motion, EnergyOfThePictureIsKept) {
-  Camera still = overhead();
+  Camera still = overhead(32, 32);
   still.shutter_open = still.shutter_close = 0.5;
   const double at_rest = picture_of(moving_square(1.5, 90.0), still).radiance.sum();
-  const double moving = picture_of(moving_square(1.5, 90.0), overhead()).radiance.sum();
+  const double moving = picture_of(moving_square(1.5, 90.0), overhead(32, 32)).radiance.sum();
   EXPECT_NEAR(moving / at_rest, 1.0, 2e-3);
-  EXPECT_NEAR(at_rest / (3 * 16 * 16), 1.0, 2e-3) << "a sixteenth of the picture, in three bands";
+  EXPECT_NEAR(at_rest / (3 * 8 * 8), 1.0, 2e-3) << "a sixteenth of the picture, in three bands";
 }
 
 // A whole turn passes all directions evenly: at radius r a bar of half width w covers
@@ -104,12 +104,12 @@ TEST(Motion, BladeThatTurnsIsSeenForItsShareOfTheTurn) {
   scene.motions = {{.keys = {{.time = 0.0}, {.time = 1.0, .degrees = 360.0}}}};
   scene.surfaces[0].motion = 0;
   place_at_rest(scene, 0.5);
-  const Image image = picture_of(scene, overhead());
-  for (int y = 0; y < 64; ++y) {
-    for (int x = 0; x < 64; ++x) {
-      const double r = std::hypot(4.0 * (x + 0.5) / 64 - 2.0, 4.0 * (y + 0.5) / 64 - 2.0);
-      if (r < 0.4 || r > 1.45) continue;
-      EXPECT_NEAR(image.radiance(y * 64 + x, 0), 2.0 * std::asin(w / r) / pi, 8e-3) << r;
+  const Image image = picture_of(scene, overhead(32, 32));
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const double r = std::hypot(4.0 * (x + 0.5) / 32 - 2.0, 4.0 * (y + 0.5) / 32 - 2.0);
+      if (r < 0.7 || r > 1.35) continue;
+      EXPECT_NEAR(image.radiance(y * 32 + x, 0), 2.0 * std::asin(w / r) / pi, 8e-3) << r;
     }
   }
 }
@@ -135,14 +135,14 @@ Scene shadowed_floor() {
 }
 
 TEST(Motion, PictureIsTheMeanOfItsInstants) {
-  Camera camera = camera_towards({0, -3, 5}, {0, 0, 0}, 40, 24);
+  Camera camera = camera_towards({0, -3, 5}, {0, 0, 0}, 40, 16);
   camera.shutter_close = 1.0;
   const RenderOptions options{.photons = 0,
-                              .sampling = {.most = 2048, .least = 2048, .noise = 0.0f}};
+                              .sampling = {.most = 1024, .least = 1024, .noise = 0.0f}};
   Scene scene = shadowed_floor();
   place_at_rest(scene, 0.5);
   const Image moving = LitScene(scene).render(camera, options);
-  constexpr int instants = 64;
+  constexpr int instants = 32;
   BandArray mean = BandArray::Zero(moving.radiance.rows(), moving.radiance.cols());
   for (int i = 0; i < instants; ++i) {
     Scene still = shadowed_floor();
@@ -151,7 +151,7 @@ TEST(Motion, PictureIsTheMeanOfItsInstants) {
     camera.shutter_open = camera.shutter_close = time;
     mean +=
         LitScene(still)
-            .render(camera, {.photons = 0, .sampling = {.most = 64, .least = 64, .noise = 0.0f}})
+            .render(camera, {.photons = 0, .sampling = {.most = 32, .least = 32, .noise = 0.0f}})
             .radiance /
         static_cast<float>(instants);
   }
@@ -180,7 +180,7 @@ TEST(Motion, GatheredPictureIsTheMeanOfItsInstantsToo) {
     lit.set_indirect([](const Vector3d& p) {
       return p.head<2>().cwiseAbs().maxCoeff() < 1.9 && p.z() > 0.1 && p.z() < 2.9 ? pi_f : 0.0f;
     });
-    Camera camera = camera_towards({0, -1.9, 2.5}, {0, 0, 0.2}, 60, 12);
+    Camera camera = camera_towards({0, -1.9, 2.5}, {0, 0, 0.2}, 60, 8);
     camera.shutter_open = open;
     camera.shutter_close = close;
     return lit
@@ -195,15 +195,16 @@ TEST(Motion, GatheredPictureIsTheMeanOfItsInstantsToo) {
   constexpr int instants = 32;
   for (int i = 0; i < instants; ++i) {
     const double time = (i + 0.5) / instants;
-    mean += render(time, time, 16) / static_cast<float>(instants);
+    mean += render(time, time, 64) / static_cast<float>(instants);
   }
   EXPECT_NEAR(moving.mean() / mean.mean(), 1.0, 5e-3);
-  EXPECT_LT(std::sqrt((moving - mean).square().mean()) / mean.mean(), 0.03);
+  // All instants draw the same 1024 directions in a pixel, whose noise is 5 % of it.
+  EXPECT_LT(std::sqrt((moving - mean).square().mean()) / mean.mean(), 0.1);
 }
 
 TEST(Motion, CameraThatMovesSeesWhatStandsStillMoveBackwards) {
   Scene scene = moving_square(1.0);
-  Camera camera = overhead();
+  Camera camera = overhead(32, 8);
   const Image expected = picture_of(scene, camera);
   scene.motions[0].keys[0].translation *= -1.0;
   scene.motions[0].keys[1].translation *= -1.0;
@@ -227,7 +228,7 @@ TEST(Motion, WithTheShutterClosedNothingMovesAndNoBitChanges) {
 TEST(Motion, ShuttersThatCannotBeAreRefused) {
   const Scene scene = moving_square(1.0);
   const auto refused = [&](double open, double close, const std::string& words) {
-    Camera camera = overhead();
+    Camera camera = overhead(32, 8);
     camera.shutter_open = open;
     camera.shutter_close = close;
     try {

@@ -56,13 +56,15 @@ void add_ball(Scene& scene, Ball ball, int material) {
 
 // A ball before a lamp to its side, so that the shadow's edge runs down the middle of the picture.
 Image side_lit_ball(Ball ball) {
-  Scene scene = SceneBuilder().square({.exitance = 100.0f}, {6, 0, 1}, {-6, 0, -1}, 0.2).build();
+  Scene scene = SceneBuilder().square({.exitance = 100.0f}, {6, -2, 1}, {-6, 2, -1}, 0.2).build();
   scene.materials.push_back(scene.materials[0]);
   scene.materials.back().reflectance = constant_spectrum(scene.bands, 0.5f);
   scene.materials.back().emission.setZero();
   add_ball(scene, ball, 1);
   const LitScene lit(scene);
-  return lit.render(camera_towards({0, -8, 0}, {0, 0, 0}, 18, 96));
+  Camera camera = camera_towards({0, -8, 0}, {0, 0, 0}, 18, 96);
+  camera.up = Vector3d::UnitZ();
+  return lit.render(camera);
 }
 
 // The picture inside the ball's outline, whose radius is 0.8 of what it looks like.
@@ -81,7 +83,8 @@ void for_each_inside(const Image& image, Visit&& visit) {
 TEST(SmoothNormals, BallLooksLikeTheSphereAndHasNoDarkFacetsAtTheShadow) {
   const Image exact = side_lit_ball(Ball::exact), smooth = side_lit_ball(Ball::smooth),
               faceted = side_lit_ball(Ball::faceted);
-  double brightest = 0.0, smooth_error = 0.0, faceted_error = 0.0, worst = 0.0, all = 0.0;
+  double brightest = 0.0, smooth_error = 0.0, faceted_error = 0.0, worst = 0.0,
+         worst_in_shade = 0.0, all = 0.0;
   for_each_inside(exact, [&](Eigen::Index i) {
     brightest = std::max(brightest, double{exact.radiance(i, 0)});
   });
@@ -93,6 +96,7 @@ TEST(SmoothNormals, BallLooksLikeTheSphereAndHasNoDarkFacetsAtTheShadow) {
     faceted_error += std::pow(faceted.radiance(i, 0) - L, 2);
     all += L;
     worst = std::max(worst, std::abs(off));
+    if (L < 0.05 * brightest) worst_in_shade = std::max(worst_in_shade, std::abs(off));
     ++count;
   });
   smooth_error = std::sqrt(smooth_error / count) / (all / count);
@@ -101,10 +105,11 @@ TEST(SmoothNormals, BallLooksLikeTheSphereAndHasNoDarkFacetsAtTheShadow) {
   RecordProperty("faceted", std::to_string(faceted_error));
   RecordProperty("worst", std::to_string(worst / brightest));
   EXPECT_GT(all, 0.0);
-  EXPECT_LT(smooth_error, 0.02);
+  EXPECT_LT(smooth_error, 0.04);  // a facet lies up to 0.04 below the sphere, and is seen beside it
   EXPECT_LT(smooth_error, 0.2 * faceted_error);
   // Neither black nor bright anywhere, the shadow's edge included.
-  EXPECT_LT(worst, 0.03 * brightest);
+  EXPECT_LT(worst, 0.05 * brightest);
+  EXPECT_LT(worst_in_shade, 0.01 * brightest);
 }
 
 // Walls with light that varies over them, in a ball.
@@ -144,7 +149,7 @@ TEST(SmoothNormals, MirrorBallShowsTheRoomAsTheSphereDoes) {
   const double faceted = relative_rms(mirrored_room(Ball::faceted, mirror), exact, 0.6);
   RecordProperty("smooth", std::to_string(smooth));
   RecordProperty("faceted", std::to_string(faceted));
-  EXPECT_LT(smooth, 0.02);
+  EXPECT_LT(smooth, 0.03);
   EXPECT_LT(smooth, 0.2 * faceted);
 }
 
@@ -155,31 +160,35 @@ TEST(SmoothNormals, GlassBallBendsLightAsTheSphereDoes) {
   const double faceted = relative_rms(mirrored_room(Ball::faceted, glass), exact, 0.5);
   RecordProperty("smooth", std::to_string(smooth));
   RecordProperty("faceted", std::to_string(faceted));
-  EXPECT_LT(smooth, 0.5 * faceted);
+  EXPECT_LT(smooth, 0.01);
+  EXPECT_LT(smooth, 0.2 * faceted);
 }
 
-// In a room of radiance 1 throughout, whatever loses no light is as bright as the room.
+// What a ball looks like in a room of radiance 1 throughout: as bright as the room, if it loses no
+// light.
+Eigen::ArrayXf ball_in_furnace(Ball ball, const Paint& paint) {
+  Scene scene = SceneBuilder().box({.exitance = pi_f}, {-6, -6, -6}, {6, 6, 6}, true).build();
+  scene.materials.push_back(SceneBuilder().sphere(paint, {0, 0, 0}, 1.0).build().materials[0]);
+  add_ball(scene, ball, 1);
+  const RenderOptions options{.pass = Pass::gather, .gather_rays = 64, .photons = 0};
+  return LitScene(scene)
+      .render(camera_towards({0, -4, 0}, {0, 0, 0}, 34, 24), options)
+      .radiance.col(0);
+}
+
 TEST(SmoothNormals, FurnaceIsKept) {
-  for (const Paint& paint :
-       {Paint{.reflectance = 1.0f}, Paint{.specular = 1.0f},
-        Paint{.specular = 1.0f, .roughness = 0.3f}, Paint{.index_of_refraction = 1.5f}}) {
-    Scene scene = SceneBuilder().box({.exitance = pi_f}, {-6, -6, -6}, {6, 6, 6}, true).build();
-    scene.materials.push_back(SceneBuilder().sphere(paint, {0, 0, 0}, 1.0).build().materials[0]);
-    add_ball(scene, Ball::smooth, 1);
-    const LitScene lit(scene);
-    RenderReport report;
-    const Image image = lit.render(camera_towards({0, -4, 0}, {0, 0, 0}, 34, 24),
-                                   {.pass = Pass::gather,
-                                    .max_depth = 30,
-                                    .min_contribution = 1e-5f,
-                                    .gather_rays = 64,
-                                    .photons = 0},
-                                   &report);
-    const Eigen::ArrayXf L = image.radiance.col(0);
-    EXPECT_NEAR(L.mean(), 1.0f, 1e-3f);
-    EXPECT_GT(L.minCoeff(), 0.99f);
-    EXPECT_LT(L.maxCoeff(), 1.001f);
+  for (const Paint& paint : {Paint{.reflectance = 1.0f}, Paint{.specular = 1.0f},
+                             Paint{.specular = 1.0f, .roughness = 0.3f},
+                             Paint{.index_of_refraction = 1.5f, .roughness = 0.3f}}) {
+    const Eigen::ArrayXf L = ball_in_furnace(Ball::smooth, paint);
+    EXPECT_NEAR(L.minCoeff(), 1.0f, 1e-3f);
+    EXPECT_NEAR(L.maxCoeff(), 1.0f, 1e-3f);
   }
+  // Facets catch light that grazes smooth glass beyond the critical angle, flat ones more.
+  const Paint glass{.index_of_refraction = 1.5f};
+  const float smooth = ball_in_furnace(Ball::smooth, glass).mean();
+  EXPECT_NEAR(smooth, 1.0f, 5e-3f);
+  EXPECT_GT(smooth, ball_in_furnace(Ball::faceted, glass).mean());
 }
 
 TEST(SmoothNormals, SolvedIrradianceOfABallInAFurnaceIsEven) {
