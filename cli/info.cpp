@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 
@@ -48,6 +51,28 @@ Json emitters_json(const Scene& scene) {
     emitters.push_back(std::move(emitter));
   }
   return emitters;
+}
+
+// What open ground gets, and where the sun stands.
+Json sky_json(const Scene& scene) {
+  const Sky& sky = *scene.sky;
+  const auto amount = [&](const Spectrum& E) {
+    return scene.relative_units ? E.cast<double>().mean() : luminous(scene.bands, E);
+  };
+  const char* const unit = scene.relative_units ? "irradiance" : "lux";
+  Json json = {{"is", sky.name}};
+  if (has_dome(sky)) {
+    json[fmt::format("{}_on_open_ground", unit)] = amount(diffuse_horizontal_irradiance(sky));
+  }
+  if (sky.sun) {
+    const Eigen::Vector3d to_sun = sky.sun->direction, east = sky.north.cross(sky.up);
+    constexpr double degrees = 180.0 / std::numbers::pi;
+    const double azimuth = std::atan2(to_sun.dot(east), to_sun.dot(sky.north)) * degrees;
+    json["sun_altitude"] = std::asin(std::clamp(to_sun.dot(sky.up), -1.0, 1.0)) * degrees;
+    json["sun_azimuth"] = azimuth < 0.0 ? azimuth + 360.0 : azimuth;
+    json[fmt::format("sun_{}_across_its_rays", unit)] = amount(sky.sun->irradiance);
+  }
+  return json;
 }
 
 Json lamps_json(const Scene& scene) {
@@ -151,6 +176,7 @@ Json scene_json(const Scene& scene) {
                 {"notes", scene.notes},
                 {"scene_hash", fmt::format("{:016x}", scene_hash(clean))}};
   if (!scene.lamps.empty()) facts["lamps"] = lamps_json(scene);
+  if (scene.sky) facts["sky"] = sky_json(scene);
   return facts;
 }
 

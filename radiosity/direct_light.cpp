@@ -195,6 +195,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
       channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
       samples_(most_shadow_rays),
       panes_(scene) {
+  if (dome()) sky_ = std::make_shared<const SkyLight>(scene, mesh);
   const std::vector<FacetRef> facets = scene_facets(scene);
   owned_.assign(facets.size(), Owned::nothing);
   first_column_.assign(facets.size(), 0);
@@ -303,6 +304,12 @@ Spectrum DirectLight::passed(const ElementCaster& caster, const Ray& ray) const 
   return panes_.empty() ? Spectrum(Spectrum::Zero(bands_)) : panes_.passed(caster, ray);
 }
 
+const FreeSource* DirectLight::dome() const {
+  const auto found = std::find_if(free_sources_.begin(), free_sources_.end(),
+                                  [](const FreeSource& source) { return source.is_dome(); });
+  return found == free_sources_.end() ? nullptr : &*found;
+}
+
 template <class Add>
 void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
                                  const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
@@ -310,6 +317,7 @@ void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
                                  EmitterSight* sight, Add&& add) const {
   const auto emitter_count = static_cast<int>(emitters_.size());
   std::vector<LightShadow> shadows;
+  std::optional<LightShadow> dome;
   for (int i = first_light; i < light_count(); ++i) {
     LightShadow shadow{.index = i, .key = random_key(key, static_cast<std::uint64_t>(i))};
     if (i < emitter_count) {
@@ -320,6 +328,10 @@ void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
       shadow.channel = shadow.source->channel;
     }
     if (!(shadow.light() > 0.0f).any()) continue;  // switched off
+    if (shadow.source && shadow.source->is_dome()) {
+      dome = shadow;
+      continue;
+    }
     shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, point, normal, facet)
                               : unoccluded_kernel(*shadow.source, point, normal);
     if (shadow.F > 0.0) shadows.push_back(shadow);
@@ -328,6 +340,19 @@ void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
   const std::vector<ShadowTally> tallies = cast_shadows(shadows, caster, samples_, point, normal,
                                                         facet, panes_.empty() ? nullptr : &panes_);
   if (sight) *sight = {};
+  if (dome) {
+    const SkyEffort effort{.first = std::clamp(options.min_rays, 8, most_sky_rays),
+                           .most = std::clamp(options.max_rays, 8, most_sky_rays)};
+    const SkyGlow glow = sky_->irradiance(caster, point, normal, facet, dome->key, effort);
+    add(dome->channel, dome->light(), glow.irradiance);
+    // Its penumbra is all that rays see: as if three times as much stood behind it, their noise is
+    // about that of a lamp's.
+    constexpr double as_of_a_lamp = 3.0;
+    if (sight) {
+      sight->unshadowed +=
+          (dome->light() * glow.irradiance).mean() * (glow.is_mixed ? as_of_a_lamp : 1.0);
+    }
+  }
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const LightShadow& s = shadows[i];
     const ShadowTally& tally = tallies[i];
@@ -364,6 +389,20 @@ void DirectLight::add_irradiance(const ElementCaster& caster, const Eigen::Vecto
                  [&](int channel, const Spectrum& light, const auto& F) {
                    Eigen::Map<Eigen::ArrayXf>(E + channel * bands_, bands_) += light * F;
                  });
+}
+
+void DirectLight::add_distant_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                                         const Eigen::Vector3d& normal, int facet,
+                                         std::uint64_t key, const ShadowOptions& options,
+                                         float* E) const {
+  const auto first = std::find_if(free_sources_.begin(), free_sources_.end(),
+                                  [](const FreeSource& source) { return source.is_distant(); });
+  for_each_light(
+      static_cast<int>(emitters_.size()) + static_cast<int>(first - free_sources_.begin()), caster,
+      point, normal, facet, key, options, nullptr,
+      [&](int channel, const Spectrum& light, const auto& F) {
+        Eigen::Map<Eigen::ArrayXf>(E + channel * bands_, bands_) += light * F;
+      });
 }
 
 Eigen::ArrayXf DirectLight::irradiance_of_free_sources(const ElementCaster& caster,

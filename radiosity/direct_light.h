@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "radiosity/emitter_channels.h"
 #include "radiosity/free_source.h"
 #include "radiosity/polygon_form_factor.h"
+#include "radiosity/sky_light.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 
@@ -67,6 +69,8 @@ class DirectLight {
 
   const std::vector<Emitter>& emitters() const { return emitters_; }
   const std::vector<FreeSource>& free_sources() const { return free_sources_; }
+  /// The dome of the sky; null if there is none.
+  const FreeSource* dome() const;
   int light_count() const { return static_cast<int>(emitters_.size() + free_sources_.size()); }
   /// Whether emission of that side of a facet is accounted for here (and must not be counted again
   /// by other rays). Of a sphere that is its outside: its inside sees itself all around.
@@ -110,6 +114,11 @@ class DirectLight {
                       const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                       const ShadowOptions& options, float* E, EmitterSight* sight = nullptr) const;
 
+  /// The same from the sky and the sun alone.
+  void add_distant_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                              const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                              const ShadowOptions& options, float* E) const;
+
   /// The same from free sources alone, each channel's in its columns.
   Eigen::ArrayXf irradiance_of_free_sources(const ElementCaster& caster,
                                             const Eigen::Vector3d& point,
@@ -125,6 +134,7 @@ class DirectLight {
 
   std::vector<Emitter> emitters_;
   std::vector<FreeSource> free_sources_;
+  std::shared_ptr<const SkyLight> sky_{};  // null: there is no dome
   enum class Owned : char { nothing, front, whole };
   std::vector<Owned> owned_;
   std::vector<int> first_column_;

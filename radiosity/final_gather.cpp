@@ -5,10 +5,12 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 #include "mesh/patch_sampler.h"
 #include "mesh/patch_textures.h"
+#include "mesh/sphere_grid.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
 #include "scene/hemisphere_sets.h"
@@ -25,6 +27,7 @@ constexpr std::uint64_t caustic_rays = 13;
 constexpr std::uint64_t caustic_branches = 14;
 constexpr std::uint64_t caustic_rays_of_lamps = 0xf4ee3;
 constexpr int batch = 128;
+constexpr float pi = std::numbers::pi_v<float>;
 
 int ray_count(const GatherPoint& at, const GatherOptions& options) {
   return at.rays > 0 ? at.rays : std::max(1, options.rays);
@@ -32,14 +35,19 @@ int ray_count(const GatherPoint& at, const GatherOptions& options) {
 
 class HemisphereGather {
  public:
-  HemisphereGather(const Scene& scene, const ElementCaster& caster, const BandArray& radiosity,
-                   const GatherOptions& options, std::span<const GatherPoint> points)
+  HemisphereGather(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                   const BandArray& radiosity, const GatherOptions& options,
+                   std::span<const GatherPoint> points)
       : mesh_(caster.mesh()),
         caster_(caster),
         radiosity_(radiosity),
         paths_(scene, caster, options.max_specular_depth),
         options_(options),
         bands_(scene.bands.count()) {
+    if (const FreeSource* dome = direct_light.dome()) {
+      dome_ = dome->light;
+      if (direct_light.column_count() == radiosity.cols()) dome_column_ = dome->channel * bands_;
+    }
     for (const GatherPoint& at : points) {
       const int rays = ray_count(at, options);
       if (!sets_.contains(rays)) sets_.emplace(rays, HemisphereSets(rays));
@@ -84,10 +92,12 @@ class HemisphereGather {
     if (hit.facet < 0) return;
     if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, sum);
     if (!paths_.is_specular(hit.facet)) return;
-    paths_.follow(ray, hit, random_key(key, gather_branches, index),
-                  [&](const ElementHit& end, const Spectrum& throughput) {
-                    add_throughput(end, throughput, sum);
-                  });
+    const PathLosses losses = paths_.follow(ray, hit, random_key(key, gather_branches, index),
+                                            [&](const ElementHit& end, const Spectrum& throughput) {
+                                              add_throughput(end, throughput, sum);
+                                            });
+    if (losses.sky.size() == 0 || dome_.size() == 0) return;
+    sum.segment(dome_column_, bands_) += (pi * dome_ * losses.sky).cast<double>();
   }
 
   // Bands go by the columns of one channel after the other.
@@ -133,6 +143,8 @@ class HemisphereGather {
   LightPaths paths_;
   const GatherOptions& options_;
   Eigen::Index bands_;
+  Spectrum dome_{};  // factor of the sky's light; empty if there is none
+  Eigen::Index dome_column_ = 0;
   std::map<int, HemisphereSets> sets_;  // by the rays of each
 };
 
@@ -197,7 +209,7 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
                                      std::span<const GatherPoint> points,
                                      const GatherOptions& options) {
   const int count = static_cast<int>(points.size());
-  const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
+  const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
   GatheredIrradiance result{.direct = BandArray::Zero(count, direct_light.column_count()),
                             .indirect = BandArray::Zero(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf::Zero(count)};
@@ -245,14 +257,16 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
 }
 
 GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
-                                   const BandArray& radiosity, std::span<const GatherPoint> points,
+                                   const DirectLight& direct_light, const BandArray& radiosity,
+                                   std::span<const GatherPoint> points,
                                    const GatherOptions& options) {
-  const HemisphereGather hemisphere(scene, caster, radiosity, options, points);
+  const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
   const auto count = static_cast<Eigen::Index>(points.size());
   GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf(count)};
   const JournalPhase phase(options.journal, "indirect", [&](Fingerprint& print) {
     add_inputs(print, caster.mesh(), points, options);
+    print.add(direct_light.column_count());
     print.add(radiosity);
   });
   const auto values = [&](int begin, int size) {
@@ -359,7 +373,7 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
     });
   };
   const auto send_source = [&](const FreeSource& source) {
-    if (!source.is_on()) return;
+    if (!source.is_on() || source.is_dome()) return;
     const std::uint64_t key =
         random_key(static_cast<std::uint64_t>(source.number), caustic_rays_of_lamps);
     send(rays, key, source.channel * bands, [&](int r) {
@@ -426,6 +440,14 @@ std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
   constexpr double inset = 0.02;
   std::vector<GatherPoint> points(mesh.vertex_count());
   std::vector<char> done(mesh.vertex_count(), 0);
+  // Where facets meet smoothly, light is measured about the normal of them all, from a point so far
+  // above them that none is in the way of what arrives from above its horizon. Lamps stay flat: a
+  // point before one would receive its light.
+  constexpr double flat = 1.0 - 4e-6;  // cosine of 0.16 degrees
+  const auto is_rounded = [&](int e, int v, const Eigen::Vector3d& normal) {
+    return !(mesh.vertex_normal[v].dot(normal) >= flat) &&
+           !(mesh.emission.row(mesh.patch[e]) > 0.0f).any() && !sphere_grid_of(mesh, mesh.facet[e]);
+  };
   for (int e = 0; e < mesh.element_count(); ++e) {
     const PatchPoint center = element_center(mesh, e);
     for (int c = 0; c < mesh.corner_count(e); ++c) {
@@ -433,6 +455,12 @@ std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
       if (done[v]) continue;
       done[v] = 1;
       const Eigen::Vector3d p = mesh.position(v);
+      if (is_rounded(e, v, center.normal)) {
+        const Eigen::Vector3d inwards = inset * (center.position - p);
+        points[v] = {.position = p + inwards + inwards.norm() * mesh.vertex_normal[v],
+                     .normal = mesh.vertex_normal[v]};
+        continue;
+      }
       points[v] = {.position = p + inset * (center.position - p),
                    .normal = center.normal,
                    .facet = mesh.facet[e]};

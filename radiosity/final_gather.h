@@ -50,7 +50,8 @@ struct GatheredIrradiance {
 /// Irradiance at points of a solved scene: direct light by closed form times visibility, the rest
 /// by cosine-distributed rays that read the radiosity where they end, going on through mirrors and
 /// clear glass. Light that DirectLight's emitters send by way of mirrors and glass is left out,
-/// since rays from the receiver find it by chance only: see caustic_irradiance. `radiosity` is
+/// since rays from the receiver find it by chance only: see caustic_irradiance. That of the sky's
+/// dome they find well. `radiosity` is
 /// vertices x bands, as gatherable_radiosity makes it.
 GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& caster,
                                      const DirectLight& direct_light, const BandArray& radiosity,
@@ -64,7 +65,8 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
 
 /// Only the indirect light; `direct` is left empty.
 GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
-                                   const BandArray& radiosity, std::span<const GatherPoint> points,
+                                   const DirectLight& direct_light, const BandArray& radiosity,
+                                   std::span<const GatherPoint> points,
                                    const GatherOptions& options);
 
 /// rho E, plus the emission of patches that `direct_light` does not own: what gather_irradiance
@@ -88,7 +90,8 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
 void share_rays(const PatchMesh& mesh, int rays, std::span<GatherPoint> points);
 
 /// For every vertex, a point a hair inside one of its elements, so that it lies on no edge, and
-/// that element's facet and normal.
+/// that element's facet and normal; where facets that meet smoothly share it, a hair above them
+/// too, with the normal of them all, on no facet.
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
 
 }  // namespace lightwell

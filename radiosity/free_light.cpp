@@ -4,16 +4,18 @@
 
 #include <algorithm>
 #include <bit>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
+#include "mesh/patch_sampler.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t ray_purpose = 0xf4ee1, branch_purpose = 0xf4ee2;
+constexpr std::uint64_t ray_purpose = 0xf4ee1, branch_purpose = 0xf4ee2, patch_purpose = 0xf4ee3;
 constexpr int fewest_rays = 1 << 12, most_rays = 1 << 24;
 
 // What some rays of one source did, as weights.
@@ -64,7 +66,7 @@ Piece cast_piece(const FreeSource& source, const ElementCaster& caster, const Li
         piece.met_black += w;
         continue;
       }
-      if (hit.element >= 0 && paths.is_diffuse(hit.facet)) {
+      if (hit.element >= 0 && paths.is_diffuse(hit.facet) && !source.is_distant()) {
         piece.straight.push_back({mesh.patch[hit.element], w});
       }
       if (!is_specular) continue;
@@ -138,6 +140,59 @@ class Collector {
     if (sums.sent > 0.0) add(source, sums);
   }
 
+  // What comes from afar, at points all over each patch, and what counts as having entered: all
+  // that is not mirrored on, to be found again where it arrives.
+  void receive(const Scene& scene, const DirectLight& direct_light, const Progress& progress) {
+    const PatchMesh& mesh = caster_.mesh();
+    const FreeSource* dome = direct_light.dome();
+    const bool has_specular = paths_.has_specular() && dome && dome->is_on();
+    constexpr int slice = 256, points = 16, rays = 128;
+    const SobolPoints at_points(points), at_rays(rays);
+    BandArray E = BandArray::Zero(mesh.patch_count(), power_.rows());
+    for (int first = 0; first < mesh.patch_count(); first += slice) {
+      report(progress, "daylight", static_cast<double>(first) / mesh.patch_count());
+      const int count = std::min(slice, mesh.patch_count() - first);
+      parallel_for(count, 4, [&](int begin, int end) {
+        for (int i = first + begin; i < first + end; ++i) {
+          const int facet = mesh.facet[mesh.first_element[i]];
+          if (!paths_.is_diffuse(facet)) continue;
+          const PatchSampler sampler(mesh, i);
+          const auto key = random_key(static_cast<std::uint64_t>(i), patch_purpose);
+          for (int p = 0; p < points; ++p) {
+            const Eigen::Array4f u = at_points.point(p, key);
+            const PatchPoint at = sampler.point(u[0], u[1]);
+            direct_light.add_distant_irradiance(caster_, at.position, at.normal,
+                                                mesh.facet[at.element],
+                                                random_key(key, static_cast<std::uint64_t>(p)),
+                                                {.min_rays = 16, .max_rays = 64}, E.row(i).data());
+          }
+          E.row(i) /= static_cast<float>(points);
+          if (!has_specular) continue;
+          const Spectrum seen = sky_by_specular(sampler, at_rays, random_key(key, ray_purpose));
+          E.row(i).segment(dome->channel * bands_, bands_) += (dome->light * seen).transpose();
+        }
+      });
+    }
+    for (int i = 0; i < mesh.patch_count(); ++i) {
+      power_.col(i) += mesh.area[i] * E.row(i).transpose().cast<double>();
+    }
+    // Rays of the sun that came by way of mirrors are in power_ by now; lamps' as well.
+    for (Eigen::Index i = 0; i < power_.cols(); ++i) {
+      const Spectrum kept =
+          1.0f -
+          scene.materials[static_cast<std::size_t>(mesh.material[static_cast<std::size_t>(i)])]
+              .specular;
+      for (Eigen::Index k = 0; k < power_.rows(); k += bands_) {
+        light_.emitted.segment(k, bands_) +=
+            kept.cast<double>() *
+            (power_.col(i).segment(k, bands_) - of_lamps_.col(i).segment(k, bands_));
+      }
+    }
+  }
+
+  // From here on power is that of distant sources.
+  void end_lamps() { of_lamps_ = power_; }
+
   FreeLight result() {
     const PatchMesh& mesh = caster_.mesh();
     light_.irradiance.resize(mesh.patch_count(), power_.rows());
@@ -153,19 +208,45 @@ class Collector {
     const Eigen::Index column = source.channel * bands_;
     const Eigen::ArrayXd watts = total_weight(source) / sums.sent * source.light.cast<double>();
     const auto of = [&](Eigen::ArrayXd& sum) { return sum.segment(column, bands_); };
+    for (Eigen::Index i = 0; i < power_.cols(); ++i) {
+      power_.col(i).segment(column, bands_) += watts * (sums.straight[i] + sums.by_specular.col(i));
+    }
+    if (source.is_distant()) return;  // see receive()
     of(light_.emitted) += watts * sums.sent;
     of(light_.missed) += watts * sums.missed;
     of(light_.escaped) += watts * (sums.missed + sums.met_black + sums.escaped);
     of(light_.absorbed) += watts * sums.absorbed;
-    for (Eigen::Index i = 0; i < power_.cols(); ++i) {
-      power_.col(i).segment(column, bands_) += watts * (sums.straight[i] + sums.by_specular.col(i));
+  }
+
+  // Irradiance by the dome, by way of mirrors and glass.
+  Spectrum sky_by_specular(const PatchSampler& sampler, const SobolPoints& sobol,
+                           std::uint64_t key) const {
+    Spectrum sum = Spectrum::Zero(bands_);
+    for (int r = 0; r < sobol.count(); ++r) {
+      const Eigen::Array4f u = sobol.point(r, key);
+      const PatchPoint at = sampler.point(u[0], u[1]);
+      Eigen::Vector3d a, b;
+      tangent_frame(at.normal, a, b);
+      const Eigen::Vector3d d = cosine_direction(u[2], u[3]);
+      const Ray ray{.origin = at.position,
+                    .direction = d.x() * a + d.y() * b + d.z() * at.normal,
+                    .origin_group = caster_.mesh().facet[at.element]};
+      ElementHit hit;
+      caster_.closest_hits({&ray, 1}, {&hit, 1});
+      if (hit.facet < 0 || !paths_.is_specular(hit.facet)) continue;
+      const PathLosses losses =
+          paths_.follow(ray, hit, random_key(key, branch_purpose, static_cast<std::uint64_t>(r)),
+                        [](const LightArrival&) {});
+      if (losses.sky.size() > 0) sum += losses.sky;
     }
+    return std::numbers::pi_v<float> / static_cast<float>(sobol.count()) * sum;
   }
 
   const ElementCaster& caster_;
   const LightPaths& paths_;
   Eigen::Index bands_;
   Eigen::ArrayXXd power_;  // columns x patches, W
+  Eigen::ArrayXXd of_lamps_;
   FreeLight light_{};
 };
 
@@ -195,7 +276,7 @@ FreeLight of_channel(const FreeLight& light, int channel, int bands) {
           .missed = light.missed.segment(first, bands)};
 }
 
-FreeLight cast_free_light(const ElementCaster& caster, const LightPaths& paths,
+FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const LightPaths& paths,
                           const DirectLight& direct_light, int rays, const Progress& progress) {
   if (rays < 1 || rays > most_rays) {
     throw std::invalid_argument(
@@ -207,11 +288,11 @@ FreeLight cast_free_light(const ElementCaster& caster, const LightPaths& paths,
     return total_weight(source) * static_cast<double>(source.light.sum());
   };
   double all = 0.0;
-  for (const FreeSource& source : sources) all += power(source);
+  for (const FreeSource& source : sources) all += source.is_distant() ? 0.0 : power(source);
   Collector collector(caster, paths, direct_light);
   double done = 0.0;
   for (const FreeSource& source : sources) {
-    if (!source.is_on()) continue;
+    if (!source.is_on() || source.is_distant()) continue;
     report(progress, "lamps", done / all);
     const double due = rays * (power(source) / all);
     const auto count = static_cast<unsigned>(std::clamp<double>(due, fewest_rays, most_rays));
@@ -219,6 +300,13 @@ FreeLight cast_free_light(const ElementCaster& caster, const LightPaths& paths,
     done += power(source);
   }
   report(progress, "lamps", 1.0);
+  if (!sources.back().is_distant()) return collector.result();
+  collector.end_lamps();
+  const FreeSource& last = sources.back();
+  if (paths.has_specular() && last.is_on() && !last.is_dome()) {
+    collector.cast(last, static_cast<int>(std::bit_ceil(static_cast<unsigned>(rays))));
+  }
+  collector.receive(scene, direct_light, progress);
   return collector.result();
 }
 

@@ -32,7 +32,7 @@ FreeLight of_channel(const FreeLight& light, int channel, int bands);
 /// by their flux, at least 4096 each. Directions follow intensity by scrambled Sobol points, and
 /// what the rays of a source carry adds up to its flux exactly: emitted = arrived + absorbed +
 /// escaped. The same bits for any number of threads. Throws Interrupted when progress says stop.
-FreeLight cast_free_light(const ElementCaster& caster, const LightPaths& paths,
+FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const LightPaths& paths,
                           const DirectLight& direct_light, int rays = 1 << 20,
                           const Progress& progress = {});
 

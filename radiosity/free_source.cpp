@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -112,6 +113,32 @@ SourceRay ray_from(const LampLight& light, const Eigen::Vector3d& place,
       .weight = drawn.weight};
 }
 
+// Evenly over the disc of the sun, by two numbers in [0,1).
+Eigen::Vector3d towards_sun(const Sun& sun, double u, double v) {
+  const double half = 0.25 * sun.angle_degrees * std::numbers::pi / 180.0;
+  const double height = 2.0 * std::pow(std::sin(half), 2);  // 1 - cos, without cancellation
+  const double cosine = 1.0 - u * height, phi = 2.0 * std::numbers::pi * v;
+  const double sine = std::sqrt(std::max(0.0, u * height * (2.0 - u * height)));
+  Eigen::Vector3d a, b;
+  tangent_frame(sun.direction, a, b);
+  return sine * (std::cos(phi) * a + std::sin(phi) * b) + cosine * sun.direction;
+}
+
+// Through a disc about a place, from before the scene.
+SourceRay sun_ray(const SunLight& light, const Eigen::Vector3d& place, double radius,
+                  const Eigen::Array4f& u) {
+  const Eigen::Vector3d direction = -towards_sun(light.sun, u[0], u[1]);
+  Eigen::Vector3d a, b;
+  tangent_frame(direction, a, b);
+  const double r = radius * std::sqrt(static_cast<double>(u[2]));
+  const double phi = 2.0 * std::numbers::pi * static_cast<double>(u[3]);
+  const double before = (place - light.center).norm() + light.radius;
+  return {
+      .ray = {.origin = place + r * (std::cos(phi) * a + std::sin(phi) * b) - before * direction,
+              .direction = direction},
+      .weight = std::numbers::pi * radius * radius};
+}
+
 }  // namespace
 
 std::vector<FreeSource> free_sources(const Scene& scene, const BandArray& scale,
@@ -134,20 +161,48 @@ std::vector<FreeSource> free_sources(const Scene& scene, const BandArray& scale,
     if (scale.size() > 0) source.light *= scale.row(number).transpose();
     sources.push_back(std::move(source));
   }
+  const auto add = [&](const Spectrum& light, auto shape) {
+    const auto number = static_cast<int>(sources.size());
+    FreeSource source{.number = number, .light = light, .shape = std::move(shape)};
+    if (!channel_of.empty()) {
+      source.channel = std::max(0, channel_of[static_cast<std::size_t>(number)]);
+    }
+    if (scale.size() > 0) source.light *= scale.row(number).transpose();
+    sources.push_back(std::move(source));
+  };
+  if (!scene.sky) return sources;
+  if (has_dome(*scene.sky)) add(constant_spectrum(scene.bands, 1.0f), DomeLight{});
+  if (scene.sky->sun) {
+    const Bounds bounds = scene_bounds(scene);
+    add(scene.sky->sun->irradiance, SunLight{.sun = *scene.sky->sun,
+                                             .center = 0.5 * (bounds.low + bounds.high),
+                                             .radius = 0.5 * bounds.diagonal()});
+  }
   return sources;
 }
 
 bool has_sharp_shadows(const FreeSource& source) {
+  if (source.is_distant()) return false;
   return std::get<LampLight>(source.shape).lamp.opening.is_point();
 }
 
 double unoccluded_kernel(const FreeSource& source, const Eigen::Vector3d& point,
                          const Eigen::Vector3d& normal) {
+  if (const auto* sun = std::get_if<SunLight>(&source.shape)) {
+    return std::max(0.0, sun->sun.direction.dot(normal));
+  }
+  if (source.is_dome()) return 0.0;
   return kernel(std::get<LampLight>(source.shape), point, normal);
 }
 
 ShadowSample shadow_sample(const FreeSource& source, const Eigen::Vector3d& point,
                            const Eigen::Vector3d& normal, int facet, double u, double v) {
+  if (const auto* sun = std::get_if<SunLight>(&source.shape)) {
+    const Eigen::Vector3d direction = towards_sun(sun->sun, u, v);
+    return {.ray = {.origin = point, .direction = direction, .origin_group = facet},
+            .weight = std::max(0.0, direction.dot(normal))};
+  }
+  if (source.is_dome()) return {};
   const auto& light = std::get<LampLight>(source.shape);
   const Eigen::Vector3d place = opening_point(light.lamp, u, v);
   const Eigen::Vector3d to = place - point;
@@ -161,6 +216,10 @@ ShadowSample shadow_sample(const FreeSource& source, const Eigen::Vector3d& poin
 }
 
 SourceRay source_ray(const FreeSource& source, const Eigen::Array4f& u) {
+  if (const auto* sun = std::get_if<SunLight>(&source.shape)) {
+    return sun_ray(*sun, sun->center, sun->radius, u);
+  }
+  if (source.is_dome()) return {};
   const auto& light = std::get<LampLight>(source.shape);
   return ray_from(light, opening_point(light.lamp, u[2], u[3]),
                   draw_direction(light.lamp, u[0], u[1]));
@@ -168,6 +227,10 @@ SourceRay source_ray(const FreeSource& source, const Eigen::Array4f& u) {
 
 std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eigen::Vector3d& center,
                                             double radius, const Eigen::Array4f& u) {
+  if (const auto* sun = std::get_if<SunLight>(&source.shape)) {
+    return sun_ray(*sun, center, radius, u);
+  }
+  if (source.is_dome()) return std::nullopt;
   const auto& light = std::get<LampLight>(source.shape);
   const Eigen::Vector3d place = opening_point(light.lamp, u[2], u[3]);
   const Eigen::Vector3d to = center - place;
@@ -196,10 +259,20 @@ std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eige
 }
 
 double total_weight(const FreeSource& source) {
+  if (const auto* sun = std::get_if<SunLight>(&source.shape)) {
+    return std::numbers::pi * sun->radius * sun->radius;
+  }
+  if (source.is_dome()) return 0.0;
   return relative_flux(std::get<LampLight>(source.shape).lamp);
 }
 
 SourceGlimpse glimpse(const FreeSource& source, const Eigen::Vector3d& from, double u, double v) {
+  if (const auto* sun = std::get_if<SunLight>(&source.shape)) {
+    return {.direction = towards_sun(sun->sun, u, v),
+            .distance = std::numeric_limits<double>::infinity(),
+            .irradiance = 1.0};
+  }
+  if (source.is_dome()) return {};
   const auto& light = std::get<LampLight>(source.shape);
   const Eigen::Vector3d to = opening_point(light.lamp, u, v) - from;
   const double distance = to.norm();

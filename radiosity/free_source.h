@@ -18,6 +18,18 @@ struct LampLight {
   double clearance = 0.0;
 };
 
+/// The sun as rays see it; `light` is its irradiance across the rays.
+struct SunLight {
+  Sun sun{};
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of a ball about the scene
+  double radius = 1.0;
+};
+
+/// The dome of the sky. Its light comes from all around, so that SkyLight finds it for a point, and
+/// rays that leave the scene find it by way of mirrors and glass; `light` are factors of it, and of
+/// what is declared below only is_distant() speaks of it: the others give nothing.
+struct DomeLight {};
+
 /// Light of a source that is no surface, as the solve and both passes take it: a kernel says what
 /// reaches a point, rays say where it goes. To add a kind of source, add an alternative of `shape`
 /// and its cases in free_source.cpp.
@@ -25,9 +37,12 @@ struct FreeSource {
   int number = 0;    ///< as free_source_count numbers them
   int channel = 0;   ///< whose light this is
   Spectrum light{};  ///< in force, what kernels and weights are multiplied with; of a lamp W/sr
-  std::variant<LampLight> shape{};
+  std::variant<LampLight, SunLight, DomeLight> shape{};
 
   bool is_on() const { return (light > 0.0f).any(); }
+  bool is_dome() const { return std::holds_alternative<DomeLight>(shape); }
+  /// Beyond the scene: what misses it never belonged to it.
+  bool is_distant() const { return !std::holds_alternative<LampLight>(shape); }
 };
 
 /// The scene's free sources in order, with the factors `scale` (see PatchMesh::source_scale) in

@@ -140,7 +140,7 @@ BandArray InterpolationError::indirect_at(const std::vector<int>& vertices, std:
   GatherOptions options = options_;
   options.rays = std::max(1, options_.rays / share_of_rays);
   options.replica = options_.replica + draft_replica + replica;
-  return gather_indirect(scene_, caster_, radiosity, points, options).indirect;
+  return gather_indirect(scene_, caster_, direct_light_, radiosity, points, options).indirect;
 }
 
 void InterpolationError::sharpen_radiosity(const BandArray& caustic) {

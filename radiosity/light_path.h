@@ -14,6 +14,10 @@ struct PathLosses {
   Spectrum escaped{};   ///< left the scene or met a black back
   Spectrum absorbed{};  ///< taken up by mirrors and by glass that is tinted or absorbs
   Spectrum cut{};       ///< still under way when the depth limit was reached
+  /// Radiance of the sky's dome where it left the scene, times what of that would come back this
+  /// way, W/(m^2 sr); empty if it did not leave, by clear panes alone (that is direct light), or
+  /// there is no sky.
+  Spectrum sky{};
 };
 
 /// Where light arrives at something diffuse, behind mirrors and clear surfaces.
@@ -46,10 +50,15 @@ class LightPaths {
                     const std::function<void(const LightArrival&)>& arrive) const;
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const;
+  /// The same by another caster of the same scene, such as ElementCaster::at() gives.
+  PathLosses follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                    std::uint64_t key,
+                    const std::function<void(const LightArrival&)>& arrive) const;
 
  private:
-  bool continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key, Media& media,
-                   Spectrum& throughput, bool& through_panes_only, PathLosses& losses) const;
+  bool continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit, std::uint64_t key,
+                   Media& media, Spectrum& throughput, bool& through_panes_only,
+                   PathLosses& losses) const;
   void absorb(const Ray& ray, const ElementHit& hit, const Media& media, Spectrum& throughput,
               PathLosses& losses) const;
 

@@ -232,7 +232,8 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   Eigen::ArrayXf variance;
   if (draft.refined) {
     solution.direct_irradiance = std::move(draft.direct);
-    GatheredIrradiance gathered = gather_indirect(scene, caster, radiosity, points, gather);
+    GatheredIrradiance gathered =
+        gather_indirect(scene, caster, direct_light, radiosity, points, gather);
     solution.indirect_irradiance = std::move(gathered.indirect);
     variance = std::move(gathered.variance);
   } else {

@@ -58,7 +58,7 @@ RadiositySolution shoot(const Scene& scene, const ElementCaster& caster,
   Stopwatch watch;
   const LightPaths paths(scene, caster, options.form_factors.max_specular_depth);
   const FreeLight free_light =
-      cast_free_light(caster, paths, direct_light, options.free_rays, options.progress);
+      cast_free_light(scene, caster, paths, direct_light, options.free_rays, options.progress);
   ProgressiveRadiosity progressive(scene, caster.mesh(),
                                    cast_shots(caster, paths, options.progressive->most_rays),
                                    *options.progressive, options.channels, free_light);
@@ -91,9 +91,9 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
                                                  report ? &report->form_factors : nullptr);
   const double form_factor_seconds = watch.lap();
   const int bands = scene.bands.count();
-  const FreeLight by_channel =
-      cast_free_light(caster, LightPaths(scene, caster, options.form_factors.max_specular_depth),
-                      kept_apart, options.free_rays, options.progress);
+  const FreeLight by_channel = cast_free_light(
+      scene, caster, LightPaths(scene, caster, options.form_factors.max_specular_depth), kept_apart,
+      options.free_rays, options.progress);
   const FreeLight free_light = all_channels(by_channel, bands);
 
   SolverOptions solver_options = options.solver;

@@ -202,6 +202,14 @@ void check_mesh(const Scene& scene, const Surface& surface, const PolygonMesh& m
       fail(scene, fmt::format("surface '{}', polygon {}: its texture coordinates do not exist",
                               surface.name, f));
     }
+    if (facet.normal_map < -1 || facet.normal_map >= static_cast<int>(mesh.normal_maps.size())) {
+      fail(scene,
+           fmt::format("surface '{}', polygon {}: its normals do not exist", surface.name, f));
+    }
+  }
+  for (const NormalMap& map : mesh.normal_maps) {
+    if (map.gradient.allFinite() && map.offset.allFinite()) continue;
+    fail(scene, fmt::format("surface '{}': its normals are not finite", surface.name));
   }
   for (const UvMap& uv : mesh.uv_maps) {
     if (uv.gradient.allFinite() && uv.offset.allFinite()) continue;
@@ -242,6 +250,39 @@ void check_lamp(const Scene& scene, const Lamp& lamp) {
   }
   const auto* web = std::get_if<SharedWeb>(&lamp.shape);
   if (web && (!*web || (*web)->values().size() == 0)) refuse("its distribution is empty");
+}
+
+void check_motion(const Scene& scene, const std::string& what, int motion) {
+  if (motion >= -1 && motion < static_cast<int>(scene.motions.size())) return;
+  fail(scene, fmt::format("{}: its motion does not exist", what));
+}
+
+void check_motions(const Scene& scene) {
+  for (const RigidMotion& motion : scene.motions) {
+    if (const std::string what = fault(motion); !what.empty()) {
+      fail(scene, fmt::format("motion '{}' {}", motion.name, what));
+    }
+    if (motion.rest_time != scene.motions.front().rest_time) {
+      fail(scene,
+           fmt::format("motion '{}' rests at another time than '{}'; light is solved for one "
+                       "instant",
+                       motion.name, scene.motions.front().name));
+    }
+  }
+  for (const Surface& surface : scene.surfaces) {
+    check_motion(scene, fmt::format("surface '{}'", surface.name), surface.motion);
+    if (surface.motion < 0) continue;
+    const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
+    if (material.is_emitter()) {
+      fail(scene,
+           fmt::format("surface '{}' moves and its material '{}' emits light; light of lamps "
+                       "that move is not modelled: let the lamp stand still",
+                       surface.name, material.name));
+    }
+  }
+  for (const Camera& camera : scene.cameras) {
+    check_motion(scene, fmt::format("camera '{}'", camera.name), camera.motion);
+  }
 }
 
 // FNV-1a over the bits of what it is fed.
@@ -346,15 +387,32 @@ void add_lamps(const Scene& scene, Hash& hash) {
   }
 }
 
+// Across which edges light is smooth; only where there are any, as above.
+void add_normals(const PolygonMesh& mesh, Hash& hash) {
+  if (mesh.normal_maps.empty()) return;
+  constexpr std::uint64_t normals = 0x5a007bu;
+  hash.add(normals);
+  for (const NormalMap& map : mesh.normal_maps) {
+    for (const double x : map.gradient.reshaped()) hash.add(x);
+    hash.add(map.offset);
+  }
+  for (const Facet& facet : mesh.facets) {
+    hash.add(static_cast<std::uint64_t>(facet.normal_map + 1));
+  }
+}
+
 }  // namespace
 
 int free_source_count(const Scene& scene) {
-  return static_cast<int>(scene.lamps.size()) + (scene.sky ? 1 : 0);
+  const int of_sky = scene.sky ? (has_dome(*scene.sky) ? 1 : 0) + (scene.sky->sun ? 1 : 0) : 0;
+  return static_cast<int>(scene.lamps.size()) + of_sky;
 }
 
 std::string free_source_name(const Scene& scene, int number) {
   const auto n = static_cast<std::size_t>(number);
-  return n < scene.lamps.size() ? scene.lamps[n].name : "sky";
+  if (n < scene.lamps.size()) return scene.lamps[n].name;
+  const bool is_dome = n == scene.lamps.size() && scene.sky && has_dome(*scene.sky);
+  return is_dome ? "sky" : "sun";
 }
 
 bool gives_light(const Scene& scene) {
@@ -364,7 +422,8 @@ bool gives_light(const Scene& scene) {
   for (const Lamp& lamp : scene.lamps) {
     if ((lamp.intensity > 0.0f).any() && relative_flux(lamp) > 0.0) return true;
   }
-  return scene.sky.has_value();
+  return scene.sky &&
+         (has_dome(*scene.sky) || (scene.sky->sun && (scene.sky->sun->irradiance > 0.0f).any()));
 }
 
 std::vector<FacetRef> scene_facets(const Scene& scene) {
@@ -419,6 +478,13 @@ void validate(const Scene& scene) {
   }
   for (const Material& material : scene.materials) check_material(scene, material);
   for (const Lamp& lamp : scene.lamps) check_lamp(scene, lamp);
+  if (scene.sky) {
+    try {
+      validate(*scene.sky, scene.bands);
+    } catch (const std::invalid_argument& error) {
+      fail(scene, error.what());
+    }
+  }
   for (const Surface& surface : scene.surfaces) {
     if (surface.material < 0 || surface.material >= static_cast<int>(scene.materials.size())) {
       fail(scene, fmt::format("surface '{}' names a material that does not exist", surface.name));
@@ -439,6 +505,7 @@ void validate(const Scene& scene) {
       }
     }
   }
+  check_motions(scene);
 }
 
 std::uint64_t scene_hash(const Scene& scene) {
@@ -467,6 +534,7 @@ std::uint64_t scene_hash(const Scene& scene) {
         for (const auto& hole : facet.holes) hash.add(hole);
       }
       add_uv(*mesh, scene.materials[static_cast<std::size_t>(surface.material)], hash);
+      add_normals(*mesh, hash);
     } else {
       const auto& sphere = std::get<Sphere>(surface.shape);
       hash.add(sphere.center);
@@ -474,6 +542,7 @@ std::uint64_t scene_hash(const Scene& scene) {
     }
   }
   add_lamps(scene, hash);
+  if (scene.sky) hash.add(sky_hash(*scene.sky));
   return hash.value();
 }
 

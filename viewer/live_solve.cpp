@@ -53,7 +53,7 @@ struct LiveSolve::Impl {
         progressive(
             of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
             *options.progressive, options.channels,
-            cast_free_light(caster, paths, direct_light, options.free_rays, options.progress)),
+            cast_free_light(of, caster, paths, direct_light, options.free_rays, options.progress)),
         begun(progressive.solution()),
         vertex_light(caster, direct_light) {
     shown.lacks_specular = std::ranges::any_of(of.surfaces, [&](const Surface& surface) {

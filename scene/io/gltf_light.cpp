@@ -20,13 +20,30 @@ SpotCone read_cone(const GltfObject& light) {
   return cone;
 }
 
+// Directional light comes along -z of its node, and its intensity is illuminance across it.
+void add_sun(const Eigen::Vector3d& towards, const Spectrum& irradiance, const GltfObject& node,
+             const std::string& name, Scene& scene, Remarks& remarks) {
+  if (!(towards.stableNorm() > 0.0)) node.fail("leaves its light no direction");
+  if (!scene.sky) {
+    scene.sky = Sky{.name = "dark",
+                    .scale = constant_spectrum(scene.bands, 0.0f),
+                    .ground = constant_spectrum(scene.bands, 0.0f)};
+  }
+  if (scene.sky->sun) {
+    remarks.add("A scene has one sun here; further directional lights were left out", name);
+    return;
+  }
+  remarks.add("Directional lights became a sun, a disc 0.53 degrees across", name);
+  scene.sky->sun = Sun{.direction = towards.stableNormalized(), .irradiance = irradiance};
+}
+
 }  // namespace
 
 void add_gltf_light(const GltfObject& light, const GltfObject& node,
                     const Eigen::Affine3d& to_world, Scene& scene, Remarks& remarks) {
   const std::string type = light.string_or("type", "");
   const std::string name = node.has("name") ? node.name() : light.name();
-  if (type != "point" && type != "spot") {
+  if (type != "point" && type != "spot" && type != "directional") {
     remarks.add(fmt::format("Lights of the type '{}' (KHR_lights_punctual) are not used", type),
                 name);
     return;
@@ -40,6 +57,10 @@ void add_gltf_light(const GltfObject& light, const GltfObject& node,
   }
   if (!(lamp.intensity >= 0.0f).all() || !lamp.intensity.isFinite().all()) {
     light.fail("has an intensity or a color that is below 0, or too large");
+  }
+  if (type == "directional") {
+    return add_sun(to_world.linear() * Eigen::Vector3d::UnitZ(), lamp.intensity, node, name, scene,
+                   remarks);
   }
   if (type == "spot") {
     lamp.shape = read_cone(light);

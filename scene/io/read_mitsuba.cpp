@@ -8,6 +8,7 @@
 #include "scene/io/mitsuba_camera.h"
 #include "scene/io/mitsuba_lamp.h"
 #include "scene/io/mitsuba_shapes.h"
+#include "scene/io/mitsuba_sky.h"
 #include "scene/io/mitsuba_tree.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
@@ -24,6 +25,7 @@ void read_element(const MitsubaNode& node, const MitsubaTree& tree, MitsubaShape
   if (tag == "shape") return shapes.add(node);
   if (tag == "sensor" || tag == "camera") return add_mitsuba_camera(node, tree, scene, remarks);
   if (tag == "emitter" || tag == "luminaire") {
+    if (add_mitsuba_sky(node, tree, scene, remarks)) return;
     MitsubaColors colors(tree, remarks);
     if (add_mitsuba_lamp(node, colors, scene)) return;
     remarks.add(fmt::format("Emitters of the plugin '{}' give no light here", node.type),

@@ -63,11 +63,7 @@ void drop_unused_uv(Scene& scene) {
 }
 
 void note_if_dark(Scene& scene) {
-  const bool shines =
-      std::ranges::any_of(scene.materials, [](const Material& m) { return m.is_emitter(); });
-  if (!shines && !gives_light(scene)) {
-    scene.notes.emplace_back("No surface shines, so the scene is dark.");
-  }
+  if (!gives_light(scene)) scene.notes.emplace_back("No surface shines, so the scene is dark.");
 }
 
 }  // namespace lightwell

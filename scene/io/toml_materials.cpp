@@ -187,6 +187,10 @@ void read_emission(const TomlTable& table, const TomlBands& bands, TomlMaterial&
 
 }  // namespace
 
+Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands) {
+  return spectral(value, bands, Quantity::share);
+}
+
 TomlBands read_toml_bands(const TomlValue& value) {
   const TomlTable table = value.table({"kind", "lumens_per_watt", "from", "to", "count", "step"});
   const bool spectral_kind =

@@ -21,6 +21,8 @@ TomlBands read_toml_bands(const TomlValue& value);
 
 /// A quantity that is emitted, >= 0: a number, a number for each band, or a spectrum.
 Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands);
+/// A share, in [0,1], in the same ways.
+Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands);
 
 /// A [materials.NAME] table. Its `power` becomes an exitance once the area is known.
 struct TomlMaterial {

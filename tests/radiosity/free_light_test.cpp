@@ -182,7 +182,7 @@ TEST(FreeLight, RaysAgreeWithTheClosedForm) {
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
   const ElementCaster caster(mesh);
   const DirectLight light(scene, mesh);
-  const FreeLight cast = cast_free_light(caster, LightPaths(scene, caster, 8), light);
+  const FreeLight cast = cast_free_light(scene, caster, LightPaths(scene, caster, 8), light);
   double squares = 0.0, sum = 0.0;
   for (int p = 0; p < mesh.patch_count(); ++p) {
     double mean = 0.0, all = 0.0;
@@ -210,7 +210,7 @@ TEST(FreeLight, SameBitsOnAnyNumberOfThreads) {
   std::vector<BandArray> found;
   for (const int threads : {1, 2, 5}) {
     const ThreadLimit limit(threads);
-    found.push_back(cast_free_light(caster, paths, light).irradiance);
+    found.push_back(cast_free_light(scene, caster, paths, light).irradiance);
   }
   EXPECT_TRUE((found[0] == found[1]).all());
   EXPECT_TRUE((found[0] == found[2]).all());

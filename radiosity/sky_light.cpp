@@ -1,0 +1,411 @@
+#include "radiosity/sky_light.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "mesh/patch_sampler.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr std::uint64_t learn_purpose = 0x51e7, ray_purpose = 0x51e8, point_purpose = 0x51e9;
+constexpr int most_sites = 4096, points_per_site = 4, learn_rays = 2;
+
+// A cube is no larger than this share of the scene's diagonal; more cubes cost more learning.
+constexpr double cube_share = 1.0 / 32.0;
+
+// Where a place of a square grid of 2^k places each way comes on Hilbert's curve (1891).
+int on_hilbert_curve(int size, int x, int y) {
+  int distance = 0;
+  for (int s = size / 2; s > 0; s /= 2) {
+    const int right = (x & s) != 0, up = (y & s) != 0;
+    distance += s * s * ((3 * right) ^ up);
+    if (up == 0) {
+      if (right == 1) {
+        x = size - 1 - x;
+        y = size - 1 - y;
+      }
+      std::swap(x, y);
+    }
+  }
+  return distance;
+}
+
+}  // namespace
+
+SkyLight::SkyLight(const Scene& scene, const PatchMesh& mesh)
+    : bands_(scene.bands.count()), panes_(scene), sobol_(most_sky_rays) {
+  tabulate(*scene.sky);
+  cube_ = cube_share * std::max(scene_bounds(scene).diagonal(), 1e-9);
+  learn(ElementCaster(mesh));
+}
+
+// The cells lie in rings of even height about the zenith, so that all have the same solid angle and
+// the horizon is between two.
+Eigen::Vector3d SkyLight::direction_at(int cell, double u, double v) const {
+  const double z = -1.0 + 2.0 * (cell / around + v) / rings;
+  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+  const double phi = 2.0 * pi * (cell % around + u) / around;
+  return axes_ * Eigen::Vector3d(r * std::cos(phi), r * std::sin(phi), z);
+}
+
+void SkyLight::tabulate(const Sky& sky) {
+  axes_ << sky.north, sky.north.cross(sky.up), sky.up;
+  // Equal steps along the curve are spread evenly over the dome, as those along rings are not.
+  std::iota(order_.begin(), order_.end(), 0);
+  std::sort(order_.begin(), order_.end(), [](int a, int b) {
+    return on_hilbert_curve(around, a % around, a / around) <
+           on_hilbert_curve(around, b % around, b / around);
+  });
+  constexpr int in_cell = fine * fine;
+  radiance_.resize(static_cast<std::size_t>(cells) * in_cell);
+  row_cdf_.resize(static_cast<std::size_t>(cells) * fine);
+  column_cdf_.resize(radiance_.size());
+  colour_ = BandArray::Ones(cells, bands_);
+  const int across = sky.kind == SkyKind::map ? 4 : 1;  // looks per place of the grid, each way
+  constexpr double fine_angle = 4.0 * pi / (static_cast<double>(cells) * in_cell);
+  parallel_for(cells, 16, [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      Cell& cell = cell_[static_cast<std::size_t>(c)];
+      Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(bands_);
+      Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+      const std::size_t first = static_cast<std::size_t>(c) * in_cell;
+      for (int i = 0; i < in_cell; ++i) {
+        const int row = i / fine, column = i % fine;
+        Eigen::ArrayXd L = Eigen::ArrayXd::Zero(bands_);
+        for (int k = 0; k < across * across; ++k) {
+          const double u = (column + (k % across + 0.5) / across) / fine;
+          const double v = (row + (k / across + 0.5) / across) / fine;
+          L += sky_radiance(sky, direction_at(c, u, v)).cast<double>() / (across * across);
+        }
+        radiance_[first + static_cast<std::size_t>(i)] = static_cast<float>(L.mean());
+        vector +=
+            L.mean() * fine_angle * direction_at(c, (column + 0.5) / fine, (row + 0.5) / fine);
+        sum += L * fine_angle;
+      }
+      cell.middle = direction_at(c, 0.5, 0.5).cast<float>();
+      cell.vector = vector.cast<float>();
+      cell.power = sum.mean();
+      if (cell.power > 0.0) colour_.row(c) = (sum / sum.mean()).cast<float>().transpose();
+      double rows = 0.0;
+      for (int row = 0; row < fine; ++row) {
+        double columns = 0.0;
+        for (int column = 0; column < fine; ++column) {
+          const std::size_t at = first + static_cast<std::size_t>(row * fine + column);
+          columns += static_cast<double>(radiance_[at]);
+          column_cdf_[at] = static_cast<float>(columns);
+        }
+        rows += columns;
+        row_cdf_[static_cast<std::size_t>(c * fine + row)] = static_cast<float>(rows);
+      }
+    }
+  });
+}
+
+SkyLight::Draw SkyLight::draw(int cell, double u, double v) const {
+  const auto pick = [](std::span<const float> cdf, double& x) {
+    const double wanted = x * static_cast<double>(cdf.back());
+    const auto at = std::upper_bound(cdf.begin(), cdf.end() - 1, static_cast<float>(wanted));
+    const double low = at == cdf.begin() ? 0.0 : static_cast<double>(*(at - 1));
+    const double step = static_cast<double>(*at) - low;
+    x = step > 0.0 ? std::clamp((wanted - low) / step, 0.0, 1.0) : 0.5;
+    return static_cast<int>(at - cdf.begin());
+  };
+  const auto c = static_cast<std::size_t>(cell);
+  const int row = pick(std::span(row_cdf_).subspan(c * fine, fine), v);
+  const std::size_t first = c * fine * fine;
+  const int column =
+      pick(std::span(column_cdf_).subspan(first + static_cast<std::size_t>(row * fine), fine), u);
+  const double L =
+      static_cast<double>(radiance_[first + static_cast<std::size_t>(row * fine + column)]);
+  return {.direction = direction_at(cell, (column + u) / fine, (row + v) / fine),
+          .density = L / cell_[c].power};
+}
+
+// int L cos over the part of a cell above the horizon, mean of the bands.
+double SkyLight::irradiance_of(int c, const Eigen::Vector3f& normal) const {
+  const Cell& cell = cell_[static_cast<std::size_t>(c)];
+  if (!(cell.power > 0.0)) return 0.0;
+  // Cells are at most this wide across: half a diagonal is below it but at the poles, whose rings
+  // reach 20 degrees down.
+  constexpr float sine_of_reach = 0.087f, sine_at_pole = 0.36f;
+  const bool is_at_pole = c < around || c >= cells - around;
+  const float reach = is_at_pole ? sine_at_pole : 1.5f * sine_of_reach;
+  const float height = cell.middle.dot(normal);
+  if (height < -reach) return 0.0;
+  const auto E = static_cast<double>(cell.vector.dot(normal));
+  if (height > reach) return E;
+  const Eigen::Vector3d n = normal.cast<double>();
+  bool is_cut = false;
+  for (const double u : {0.0, 1.0}) {
+    for (const double v : {0.0, 1.0}) is_cut = is_cut || direction_at(c, u, v).dot(n) < -1e-7;
+  }
+  if (!is_cut) return E;
+  constexpr double fine_angle = 4.0 * pi / (static_cast<double>(cells) * fine * fine);
+  const std::size_t first = static_cast<std::size_t>(c) * fine * fine;
+  double sum = 0.0;
+  for (int i = 0; i < fine * fine; ++i) {
+    const double cosine = direction_at(c, (i % fine + 0.5) / fine, (i / fine + 0.5) / fine).dot(n);
+    sum +=
+        std::max(0.0, cosine) * static_cast<double>(radiance_[first + static_cast<std::size_t>(i)]);
+  }
+  return sum * fine_angle;
+}
+
+Spectrum SkyLight::unobstructed(const Eigen::Vector3d& normal) const {
+  const Eigen::Vector3f n = normal.cast<float>();
+  Eigen::ArrayXd E = Eigen::ArrayXd::Zero(bands_);
+  for (int c = 0; c < cells; ++c) {
+    E += irradiance_of(c, n) * colour_.row(c).transpose().cast<double>();
+  }
+  return E.cast<float>();
+}
+
+std::uint64_t SkyLight::site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
+                                 double cube) const {
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  const auto at = [&](int i) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(position[i] / cube)));
+  };
+  return random_key(at(0), at(1), at(2), static_cast<std::uint64_t>(2 * axis + (normal[axis] > 0)));
+}
+
+// Sites are where surfaces are: cubes through which an element passes, known by points of it about
+// half a cube apart.
+void SkyLight::learn(const ElementCaster& caster) {
+  const PatchMesh& mesh = caster.mesh();
+  std::map<std::uint64_t, std::vector<SitePoint>> points;  // in an order of their own
+  std::map<int, const Sphere*> spheres;
+  for (const SphereGrid& grid : mesh.sphere_grids) spheres[grid.facet] = &grid.sphere;
+  for (;; cube_ *= 1.5) {
+    points.clear();
+    bool is_too_many = false;
+    for (int e = 0; e < mesh.element_count() && !is_too_many; ++e) {
+      const PatchPoint middle = element_center(mesh, e);
+      const auto of_facet = spheres.find(mesh.facet[static_cast<std::size_t>(e)]);
+      const Sphere* sphere = of_facet == spheres.end() ? nullptr : of_facet->second;
+      const int patch = mesh.patch[static_cast<std::size_t>(e)];
+      const bool is_back = mesh.is_back[static_cast<std::size_t>(patch)] != 0;
+      const auto& corners = mesh.corners[static_cast<std::size_t>(e)];
+      double longest = 0.0;
+      const int n = mesh.corner_count(e);
+      for (int k = 0; k < n; ++k) {
+        longest = std::max(longest, (mesh.position(corners[static_cast<std::size_t>(k)]) -
+                                     mesh.position(corners[static_cast<std::size_t>((k + 1) % n)]))
+                                        .norm());
+      }
+      const int steps = std::clamp(static_cast<int>(std::ceil(2.0 * longest / cube_)), 1, 128);
+      // A grid over the fan of the element's triangles about its first corner.
+      for (int k = 2; k < n; ++k) {
+        const Eigen::Vector3d a = mesh.position(corners[0]);
+        const Eigen::Vector3d b = mesh.position(corners[static_cast<std::size_t>(k - 1)]) - a;
+        const Eigen::Vector3d c = mesh.position(corners[static_cast<std::size_t>(k)]) - a;
+        for (int i = 0; i < steps; ++i) {
+          for (int j = 0; i + j < steps; ++j) {
+            Eigen::Vector3d p = a + (i + 1.0 / 3.0) / steps * b + (j + 1.0 / 3.0) / steps * c;
+            Eigen::Vector3d normal = middle.normal;
+            if (sphere) {  // chords lie within it
+              normal = (p - sphere->center).normalized();
+              p = sphere->center + sphere->radius * normal;
+              if (is_back) normal = -normal;
+            }
+            auto& list = points[site_key(p, normal, cube_)];
+            if (list.size() < points_per_site) {
+              list.push_back({p, normal, mesh.facet[static_cast<std::size_t>(e)]});
+            }
+          }
+        }
+        if (points.size() > most_sites) is_too_many = true;
+      }
+    }
+    if (!is_too_many) break;
+  }
+  sites_.resize(points.size());
+  std::vector<const std::vector<SitePoint>*> lists;
+  std::vector<std::uint64_t> keys;
+  for (const auto& [key, list] : points) {
+    site_of_[key] = static_cast<int>(lists.size());
+    lists.push_back(&list);
+    keys.push_back(key);
+  }
+  parallel_for(static_cast<int>(lists.size()), 4, [&](int begin, int end) {
+    for (int s = begin; s < end; ++s) {
+      const auto i = static_cast<std::size_t>(s);
+      sites_[i] = learn_at(caster, *lists[i], random_key(keys[i], learn_purpose));
+    }
+  });
+}
+
+SkyLight::Site SkyLight::learn_at(const ElementCaster& caster, std::span<const SitePoint> points,
+                                  std::uint64_t key) const {
+  std::vector<Ray> rays;
+  std::vector<int> of;
+  std::array<bool, cells> was_tried{}, is_open{};
+  for (int c = 0; c < cells; ++c) {
+    if (!(cell_[static_cast<std::size_t>(c)].power > 0.0)) continue;
+    for (int r = 0; r < learn_rays; ++r) {
+      const auto number = static_cast<std::size_t>(c * learn_rays + r);
+      const SitePoint& from = points[number % points.size()];
+      const std::uint64_t ray_key = random_key(key, number);
+      const Eigen::Vector3d direction =
+          direction_at(c, random_uniform(ray_key), random_uniform(random_key(ray_key, 1)));
+      if (!(direction.dot(from.normal) > 0.0)) continue;
+      rays.push_back({.origin = from.position, .direction = direction, .origin_group = from.facet});
+      of.push_back(c);
+    }
+  }
+  std::vector<std::uint8_t> blocked(rays.size());
+  caster.occluded(rays, blocked);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto c = static_cast<std::size_t>(of[i]);
+    was_tried[c] = true;
+    is_open[c] = is_open[c] || blocked[i] == 0 ||
+                 (!panes_.empty() && (panes_.passed(caster, rays[i]) > 0.0f).any());
+  }
+  Site site;
+  for (int c = 0; c < cells; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    site[i] = is_open[i] || !was_tried[i] ? Found::open : Found::hidden;
+    if (site[i] == Found::open) continue;
+    // What is beside an open cell is likely to be open in part.
+    const int ring = c / around, place = c % around;
+    for (int dr = -1; dr <= 1; ++dr) {
+      for (int dp = -1; dp <= 1; ++dp) {
+        const int other = ring + dr;
+        if (other < 0 || other >= rings) continue;
+        if (is_open[static_cast<std::size_t>(other * around + (place + dp + around) % around)]) {
+          site[i] = Found::open;
+        }
+      }
+    }
+  }
+  return site;
+}
+
+// One ray in each of `rays` equal steps through the running sum of the shares.
+void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<const Share> shares,
+                    int rays, std::uint64_t key, Tally& tally) const {
+  struct Sample {
+    double weight = 0.0;
+    int cell = 0;
+    bool is_open = false;
+  };
+  std::vector<Ray> ray;
+  std::vector<Sample> samples;
+  ray.reserve(static_cast<std::size_t>(rays));
+  samples.reserve(static_cast<std::size_t>(rays));
+  const double all = shares.back().cdf;
+  std::size_t s = 0;
+  for (int i = 0; i < rays; ++i) {
+    const double within =
+        random_uniform(random_key(key, ray_purpose, static_cast<std::uint64_t>(i)));
+    const double wanted = (i + within) / rays * all;
+    while (s + 1 < shares.size() && !(shares[s].cdf > wanted)) ++s;
+    const Share& share = shares[s];
+    const Eigen::Array4f u = sobol_.point(i, key);
+    const Draw drawn = draw(share.cell, static_cast<double>(u[0]), static_cast<double>(u[1]));
+    const double cosine = drawn.direction.dot(at.normal);
+    if (!(cosine > 0.0) || !(drawn.density > 0.0)) continue;
+    // L cos over its density, which is that within the cell times weight / all.
+    const double power = cell_[static_cast<std::size_t>(share.cell)].power;
+    samples.push_back({.weight = cosine * power * all / (share.weight * rays),
+                       .cell = share.cell,
+                       .is_open = share.is_open});
+    ray.push_back({.origin = at.position, .direction = drawn.direction, .origin_group = at.facet});
+  }
+  std::vector<std::uint8_t> blocked(ray.size());
+  caster.occluded(ray, blocked);
+  for (std::size_t i = 0; i < ray.size(); ++i) {
+    const Sample& sample = samples[i];
+    const Eigen::ArrayXd weight =
+        sample.weight * colour_.row(sample.cell).transpose().cast<double>();
+    if (sample.is_open) tally.all_open += weight;
+    ++tally.rays;
+    if (blocked[i] == 0) {
+      (sample.is_open ? tally.seen_open : tally.seen_elsewhere) += weight;
+      ++tally.clear;
+      continue;
+    }
+    ++tally.blocked;
+    if (panes_.empty()) continue;
+    const Spectrum passed = panes_.passed(caster, ray[i]);
+    if (!(passed > 0.0f).any()) continue;
+    (sample.is_open ? tally.seen_open : tally.seen_elsewhere) += weight * passed.cast<double>();
+    ++tally.clear;
+  }
+}
+
+SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                             const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                             const SkyEffort& effort) const {
+  const SitePoint at{point, normal, facet};
+  Site learnt;
+  const Site* site = nullptr;
+  if (const auto found = site_of_.find(site_key(point, normal, cube_)); found != site_of_.end()) {
+    site = &sites_[static_cast<std::size_t>(found->second)];
+  } else {
+    learnt = learn_at(caster, {&at, 1}, random_key(key, point_purpose));
+    site = &learnt;
+  }
+  const Eigen::Vector3f n = normal.cast<float>();
+  std::vector<Share> shares;
+  shares.reserve(cells / 2 + 2 * around);
+  double open = 0.0, elsewhere = 0.0;
+  Eigen::ArrayXd E_open = Eigen::ArrayXd::Zero(bands_);
+  for (const int c : order_) {
+    const double E = irradiance_of(c, n);
+    if (!(E > 0.0)) continue;
+    const Found found = (*site)[static_cast<std::size_t>(c)];
+    Share share{.cell = c, .E = E, .weight = E, .is_open = found == Found::open};
+    if (share.is_open) {
+      E_open += E * colour_.row(c).transpose().cast<double>();
+      open += E;
+    } else {
+      share.weight = 0.0;  // known below
+      elsewhere += E;
+    }
+    shares.push_back(share);
+  }
+  if (shares.empty()) return {Spectrum::Zero(bands_)};
+  // Of the rays at most so many go where the site saw nothing; all, but few, if it saw nothing at
+  // all.
+  constexpr double most_elsewhere = 0.08;
+  const bool sees_nothing = !(open > 0.0);
+  const double thinning =
+      sees_nothing ? 1.0 : std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300));
+  double sum = 0.0;
+  for (Share& share : shares) {
+    if (!(share.weight > 0.0)) share.weight = thinning * share.E;
+    share.cdf = sum += share.weight;
+  }
+
+  const auto tally_of = [&](int rays, std::uint64_t purpose) {
+    Tally tally{.seen_open = Eigen::ArrayXd::Zero(bands_),
+                .all_open = Eigen::ArrayXd::Zero(bands_),
+                .seen_elsewhere = Eigen::ArrayXd::Zero(bands_)};
+    cast(caster, at, shares, std::clamp(rays, 1, most_sky_rays), random_key(key, purpose), tally);
+    return tally;
+  };
+  const auto result = [&](const Tally& tally) -> Eigen::ArrayXd {
+    const Eigen::ArrayXd share =
+        (tally.all_open > 0.0).select(tally.seen_open / tally.all_open.max(1e-300), 0.0);
+    return E_open * share + tally.seen_elsewhere;
+  };
+  const int first = sees_nothing ? std::max(8, effort.first / 4) : effort.first;
+  const Tally look = tally_of(first, 1);
+  const bool is_mixed = look.clear > 0 && look.clear < look.rays;
+  if (!is_mixed) return {result(look).cast<float>()};
+  const Tally more = tally_of(effort.most, 2);
+  const double share = static_cast<double>(first) / (first + effort.most);
+  return {(share * result(look) + (1.0 - share) * result(more)).cast<float>(), true};
+}
+
+}  // namespace lightwell

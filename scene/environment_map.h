@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "scene/bands.h"
+
+namespace lightwell {
+
+/// Radiance from all directions as a picture: W/(m^2 sr), longitude and latitude. Rows go from +y
+/// (the top) down to -y; the middle of the picture is +z, a quarter further to the right -x, as one
+/// sees it from within. (Mitsuba's layout.)
+class EnvironmentMap {
+ public:
+  /// `radiance`: width * height rows from the top left corner on, a column per band. Throws
+  /// std::invalid_argument if the sizes differ or anything in it is below 0 or not finite.
+  EnvironmentMap(int width, int height, BandArray radiance);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// In a unit direction, bilinear between the middles of pixels.
+  Spectrum at(const Eigen::Vector3d& direction) const;
+  /// Of size and pixels: equal for equal pictures.
+  std::uint64_t hash() const { return hash_; }
+
+ private:
+  auto pixel(int x, int y) const { return radiance_.row(std::int64_t{y} * width_ + x); }
+
+  int width_ = 0, height_ = 0;
+  BandArray radiance_;
+  std::uint64_t hash_ = 0;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,200 @@
+#include "radiosity/sky_light.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "radiosity/polygon_form_factor.h"
+#include "scene/optics.h"
+#include "scene/parallel.h"
+#include "tests/radiosity/test_scenes.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double pi = std::numbers::pi;
+
+// z is up. Radiance 1 at the zenith, and a dark ground.
+Sky sky_of(SkyKind kind = SkyKind::gradation) {
+  const Bands bands = rgb_bands();
+  return {.up = Vector3d::UnitZ(),
+          .north = Vector3d::UnitY(),
+          .kind = kind,
+          .bright = Vector3d::UnitZ(),
+          .scale = constant_spectrum(bands, 1.0f),
+          .ground = constant_spectrum(bands, 0.0f)};
+}
+
+struct UnderSky {
+  Scene scene;
+  PatchMesh mesh = build_patches(scene, {.max_patch_size = 1.0});
+  ElementCaster caster{mesh};
+  SkyLight light{scene, mesh};
+
+  double at(const Vector3d& point, const Vector3d& normal, int facet, std::uint64_t key = 1) const {
+    return static_cast<double>(light.irradiance(caster, point, normal, facet, key).irradiance[1]);
+  }
+};
+
+void add_floor(Scene& scene, double half) {
+  test::add_polygon(scene, "floor", test::add_material(scene, test::diffuse(scene.bands, 0.5f)),
+                    {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}});
+}
+
+Scene open_plane(SkyKind kind = SkyKind::gradation) {
+  Scene scene{.sky = sky_of(kind)};
+  add_floor(scene, 2.0);
+  return scene;
+}
+
+TEST(SkyLight, OpenPlaneUnderAUniformSkyGetsPiL) {
+  const UnderSky plane{open_plane()};
+  for (const double x : {0.0, 0.7, 1.9}) {
+    EXPECT_NEAR(plane.at({x, 0.3, 0}, Vector3d::UnitZ(), 0), pi, 1e-6 * pi);
+  }
+  // Where no surface is near, nothing has been learnt.
+  EXPECT_NEAR(plane.at({30.0, 0.0, 20.0}, Vector3d::UnitZ(), -1), pi, 1e-6 * pi);
+}
+
+TEST(SkyLight, OvercastSkyGivesTheIrradiancesOfMoonAndSpencer) {
+  const UnderSky plane{open_plane(SkyKind::overcast)};
+  const double horizontal = plane.at({0.2, 0.1, 0}, Vector3d::UnitZ(), 0);
+  EXPECT_NEAR(horizontal, 7.0 / 9.0 * pi, 3e-5);
+  const Spectrum wall = plane.light.unobstructed(Vector3d(0.6, 0.8, 0.0));
+  EXPECT_NEAR(static_cast<double>(wall[0]) / horizontal, 0.396, 6e-4);
+}
+
+TEST(SkyLight, TiltedSurfacesSeeTheirShareOfAUniformSky) {
+  const UnderSky plane{open_plane()};
+  for (const double tilt : {10.0, 45.0, 77.0, 120.0, 160.0}) {
+    const double t = tilt * pi / 180.0;
+    const Spectrum E = plane.light.unobstructed(
+        Vector3d(std::sin(t) * std::cos(0.3), std::sin(t) * std::sin(0.3), std::cos(t)));
+    EXPECT_NEAR(static_cast<double>(E[2]), pi * 0.5 * (1.0 + std::cos(t)), 1e-3) << tilt;
+  }
+}
+
+// Of an endless street the share of the sky seen from the middle of its floor is the cosine of the
+// angle at which the eaves stand (Oke 1987).
+TEST(SkyLight, StreetCanyonShowsTheCosineOfItsEaves) {
+  for (const double height : {0.5, 1.0, 2.0}) {
+    Scene scene{.sky = sky_of()};
+    const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+    add_floor(scene, 1.0);
+    constexpr double far = 300.0;
+    test::add_polygon(scene, "left", wall,
+                      {{-1, -far, 0}, {-1, far, 0}, {-1, far, height}, {-1, -far, height}});
+    test::add_polygon(scene, "right", wall,
+                      {{1, far, 0}, {1, -far, 0}, {1, -far, height}, {1, far, height}});
+    const UnderSky street{scene};
+    const double expected = pi * std::cos(std::atan(height));
+    double mean = 0.0;
+    for (std::uint64_t key = 0; key < 8; ++key) {
+      mean += street.at({0, 0.1, 0}, Vector3d::UnitZ(), 0, key) / 8.0;
+    }
+    EXPECT_NEAR(mean, expected, 0.01 * expected) << height;
+  }
+}
+
+// A room whose wall x = 3 has a window: what a point gets of a uniform sky is the closed form of
+// the window's outline.
+Scene room_with_window(bool has_pane = false) {
+  Scene scene{.sky = sky_of()};
+  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+  test::add_box(scene, {-3, -2, 0}, {3, 2, 3}, {wall, wall, wall, wall, wall, wall}, true);
+  auto& mesh = std::get<PolygonMesh>(scene.surfaces[1].shape);  // x1
+  const int first = static_cast<int>(mesh.vertices.size());
+  for (const Vector3d& p : {Vector3d(3, -0.6, 0.9), Vector3d(3, 0.6, 0.9), Vector3d(3, 0.6, 2.1),
+                            Vector3d(3, -0.6, 2.1)}) {
+    mesh.vertices.push_back(p);
+  }
+  mesh.facets[0].holes = {{first, first + 1, first + 2, first + 3}};
+  if (has_pane) {
+    Material glass = test::clear_glass(scene.bands);
+    glass.dielectric->thin = true;
+    glass.dielectric->tint.setConstant(0.9f);
+    test::add_polygon(scene, "pane", test::add_material(scene, glass),
+                      {{3, -0.6, 0.9}, {3, -0.6, 2.1}, {3, 0.6, 2.1}, {3, 0.6, 0.9}});
+  }
+  return scene;
+}
+
+double window_form_factor(const Vector3d& point, const Vector3d& normal) {
+  return std::abs(point_to_polygon(point, normal,
+                                   {{Vector3d(3, -0.6, 0.9), Vector3d(3, -0.6, 2.1),
+                                     Vector3d(3, 0.6, 2.1), Vector3d(3, 0.6, 0.9)}}));
+}
+
+struct Spread {
+  double mean = 0.0, deviation = 0.0;
+};
+Spread spread(const UnderSky& room, const Vector3d& point, const Vector3d& normal, int facet) {
+  constexpr int count = 64;
+  double sum = 0.0, squares = 0.0;
+  for (std::uint64_t key = 0; key < count; ++key) {
+    const double E = room.at(point, normal, facet, key);
+    sum += E;
+    squares += E * E;
+  }
+  const double mean = sum / count;
+  return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean))};
+}
+
+TEST(SkyLight, WindowGivesItsClosedFormWithLittleNoise) {
+  const UnderSky room{room_with_window()};
+  constexpr int floor = 4, wall = 0;
+  for (const double x : {2.0, 1.0, -0.5, -2.5}) {
+    const double expected = pi * window_form_factor({x, 0.3, 0}, Vector3d::UnitZ());
+    const Spread found = spread(room, {x, 0.3, 0}, Vector3d::UnitZ(), floor);
+    EXPECT_NEAR(found.mean, expected, 0.02 * expected) << x;
+    EXPECT_LT(found.deviation, 0.08 * expected) << x;
+  }
+  const double expected = pi * window_form_factor({-3, 0.3, 1}, Vector3d::UnitX());
+  const Spread found = spread(room, {-3, 0.3, 1}, Vector3d::UnitX(), wall);
+  EXPECT_NEAR(found.mean, expected, 0.02 * expected);
+  EXPECT_LT(found.deviation, 0.08 * expected);
+  // A desk, where there is no surface.
+  const double on_desk = pi * window_form_factor({0, 0, 0.8}, Vector3d::UnitZ());
+  EXPECT_NEAR(spread(room, {0, 0, 0.8}, Vector3d::UnitZ(), -1).mean, on_desk, 0.02 * on_desk);
+}
+
+TEST(SkyLight, PanePassesWhatItsOpticsSay) {
+  const UnderSky bare{room_with_window()}, glazed{room_with_window(true)};
+  const Vector3d point(-2.9, 0.0, 1.5);  // the window is nearly straight ahead: within 12 degrees
+  const double without = spread(bare, point, Vector3d::UnitX(), -1).mean;
+  const double with = spread(glazed, point, Vector3d::UnitX(), -1).mean;
+  const double expected = (1.0 - pane_reflectance(1.0, 1.5)) * 0.9;
+  EXPECT_NEAR(with / without, expected, 0.02);
+}
+
+TEST(SkyLight, IsTheSameForAnyNumberOfThreads) {
+  const auto found = [](int threads) {
+    const ThreadLimit limit(threads);
+    const UnderSky room{room_with_window()};
+    return room.at({1.0, 0.2, 0}, Vector3d::UnitZ(), 4, 77);
+  };
+  EXPECT_EQ(found(1), found(3));
+}
+
+// A map with one bright place is as good as a sun there: sharp, and found wherever it is.
+TEST(SkyLight, BrightPlaceOfAMapIsFound) {
+  constexpr int width = 256, height = 128;
+  BandArray pixels = BandArray::Constant(width * height, 3, 0.1f);
+  for (int y = 30; y < 33; ++y) pixels.row(y * width + 140).setConstant(5000.0f);
+  Sky sky = sky_of(SkyKind::map);
+  sky.map = std::make_shared<EnvironmentMap>(width, height, pixels);
+  sky.to_map << Vector3d::UnitX().transpose(), Vector3d::UnitZ().transpose(),
+      -Vector3d::UnitY().transpose();
+  Scene scene = open_plane();
+  scene.sky = sky;
+  const UnderSky plane{scene};
+  const double expected = static_cast<double>(diffuse_horizontal_irradiance(sky)[0]);
+  EXPECT_NEAR(plane.at({0, 0, 0}, Vector3d::UnitZ(), 0), expected, 0.01 * expected);
+}
+
+}  // namespace
+}  // namespace lightwell
