@@ -147,9 +147,8 @@ Scene read_toml(const std::filesystem::path& path) {
   const TextFile file(path);
   const toml::table root = parse(file);
   const TomlValue all(file.path(), root, "");
-  const TomlTable document =
-      all.table({"title", "unit", "bands", "materials", "motions", "surfaces", "lamps", "sky",
-                 "cameras"});
+  const TomlTable document = all.table(
+      {"title", "unit", "bands", "materials", "motions", "surfaces", "lamps", "sky", "cameras"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
