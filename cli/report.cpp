@@ -141,6 +141,11 @@ std::string Report::for_people() const {
                      "unshot",
                      emitted, facts_["light"] == light_name(true) ? "(no known unit)" : "W",
                      percent("absorbed"), percent("escaped"), percent("unshot")));
+    if (energy.contains("from_lamps")) {
+      line("lamps",
+           fmt::format("{:.4g} % of the emitted power; {:.4f} % left without meeting anything",
+                       percent("from_lamps"), percent("missed")));
+    }
     if (facts_.contains("channels")) line("channels", channel_text(facts_["channels"]));
     const std::string by =
         facts_.contains("solver") ? " of " + facts_["solver"].get<std::string>() : "";

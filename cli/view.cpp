@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "cli/arguments.h"
@@ -28,6 +29,7 @@ struct Arguments {
   std::optional<std::pair<int, int>> size;
   double exposure_ev = 0.0;
   ChannelSettings channels;
+  ChannelArguments kept_apart;
   MeshArguments mesh;
   std::vector<int> shots;
   bool no_ambient = false;
@@ -67,15 +69,34 @@ ViewOptions view_options(const Arguments& arguments, const Scene& scene) {
   return options;
 }
 
+// Each luminaire kept apart can be dimmed while its light arrives, and costs columns of light at
+// every vertex.
+bool has_few_luminaires(const Scene& scene) {
+  constexpr std::size_t few = 8;
+  std::set<std::string> names;
+  for (const Surface& surface : scene.surfaces) {
+    if (scene.materials[surface.material].is_emitter()) names.insert(surface.name);
+  }
+  for (int i = 0; i < free_source_count(scene); ++i) names.insert(free_source_name(scene, i));
+  return names.size() <= few;
+}
+
+bool is_by_default(const ChannelArguments& channels) {
+  return !channels.is_off && !channels.per_luminaire && channels.patterns.empty();
+}
+
 // Without a solution: the light arrives while one looks.
 int view_live(const Arguments& arguments, const Scene& scene, const ViewOptions& options,
               Console& console, Report& report) {
-  if (options.interpolation_error || !arguments.channels.empty()) {
-    throw InputError(fmt::format(
-        "{} needs a solution; give one: lightwell view {} SOLUTION.vtp",
-        options.interpolation_error ? "'--false-colour error'" : "'--channel'", arguments.scene));
+  if (options.interpolation_error) {
+    throw InputError(
+        fmt::format("'--false-colour error' needs a solution; give one: lightwell view {} "
+                    "SOLUTION.vtp",
+                    arguments.scene));
   }
   SolveArguments solving;
+  solving.channels = arguments.kept_apart;
+  if (is_by_default(solving.channels)) solving.channels.per_luminaire = has_few_luminaires(scene);
   solving.mesh = arguments.mesh;
   solving.solver = "progressive";
   LiveViewOptions live;
@@ -86,6 +107,11 @@ int view_live(const Arguments& arguments, const Scene& scene, const ViewOptions&
                      .scene_hash = scene_hash(scene),
                      .options = solving.text(scene)};
   live.solve.progress = console.progress();
+  if (!arguments.channels.empty()) {
+    live.scales = [&](const RadiositySolution& dark) {
+      return channel_scales(dark, arguments.channels, arguments.scene);
+    };
+  }
   if (arguments.offscreen.empty()) {
     show_live_window(scene, live, options);
     return exit_done;
@@ -251,6 +277,11 @@ Action add_view(CLI::App& command) {
       .add_flag("--no-ambient", arguments->no_ambient,
                 "with --shots: only the light that was shot, not what is foretold of the rest")
       ->group(live);
+  arguments->kept_apart.add_to(command, live);
+  command.get_option("--channels")
+      ->description(
+          "the light that keys dim: per-luminaire (default where those are few), NAME=PATTERN of "
+          "emitters, which may be repeated, or off");
   arguments->mesh.add_to(command, live);
   command.footer("Example: lightwell view cornell/cornell.toml cornell.vtp");
   return [arguments](Console& console) { return view(*arguments, console); };

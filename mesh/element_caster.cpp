@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "mesh/sphere_grid.h"
 #include "scene/facet_textures.h"
@@ -67,19 +68,220 @@ Array4f turned(const Array4f& w, bool is_triangle) {
   return is_triangle ? Array4f(w[0], w[2], w[1], 0.0f) : Array4f(w[0], w[3], w[2], w[1]);
 }
 
+// v2 - v0 = alpha (v1 - v0) + beta (v3 - v0); both 1 in a parallelogram.
+struct QuadShape {
+  float alpha = 1.0f, beta = 1.0f;
+};
+
+// What a ray caster's primitives are, in its order: triangles, quads, spheres.
+struct Primitives {
+  std::vector<int> element{};  // on the front; of a sphere, the index of its grid
+  std::vector<QuadShape> quad_shape{};
+};
+
+// Of the facets of one part; `group_of` numbers those, and is -1 for others.
+template <class GroupOf>
+CastGeometry cast_geometry(const PatchMesh& mesh, const GroupOf& group_of, Primitives& primitives) {
+  CastGeometry geometry;
+  std::vector<int> number(mesh.vertex_count(), -1);
+  const auto vertex = [&](int v) {
+    if (number[v] < 0) {
+      number[v] = static_cast<int>(geometry.vertices.size());
+      geometry.vertices.push_back(mesh.position(v));
+    }
+    return number[v];
+  };
+  const auto add = [&](int element, int facet) {
+    geometry.group.push_back(group_of(facet));
+    primitives.element.push_back(element);
+  };
+  const bool any_holes = mesh.textures && mesh.textures->has_holes();
+  for (const int corner_count : {3, 4}) {
+    for (int p = 0; p < mesh.patch_count(); ++p) {
+      if (!is_front_polygon(mesh, p)) continue;
+      for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+        if (mesh.corner_count(e) != corner_count || group_of(mesh.facet[e]) < 0) continue;
+        const auto& c = mesh.corners[e];
+        if (corner_count == 3) {
+          geometry.triangles.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2])});
+        } else {
+          geometry.quads.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])});
+          const Eigen::Vector2f shape = shape_of_quad(mesh, c).cast<float>();
+          primitives.quad_shape.push_back({shape.x(), shape.y()});
+        }
+        add(e, mesh.facet[e]);
+        if (any_holes) geometry.has_holes.push_back(mesh.textures->has_holes(mesh.facet[e]));
+      }
+    }
+  }
+  for (std::size_t g = 0; g < mesh.sphere_grids.size(); ++g) {
+    if (group_of(mesh.sphere_grids[g].facet) < 0) continue;
+    geometry.spheres.push_back(mesh.sphere_grids[g].sphere);
+    add(static_cast<int>(g), mesh.sphere_grids[g].facet);
+  }
+  return geometry;
+}
+
 }  // namespace
+
+struct ElementCaster::Part {
+  const PatchMesh& mesh;
+  std::vector<int> facets{};  // by group; empty: groups are the scene's facets
+  Primitives primitives{};
+  std::optional<RayCaster> caster{};  // none where there is nothing
+  int triangles = 0, polygons = 0;    // the first of the primitives
+
+  template <class GroupOf>
+  Part(const PatchMesh& of, std::vector<int> facets_of_groups, const GroupOf& group_of)
+      : mesh(of), facets(std::move(facets_of_groups)) {
+    CastGeometry geometry = cast_geometry(mesh, group_of, primitives);
+    if (mesh.textures && mesh.textures->has_holes()) {
+      geometry.is_hole = [textures = mesh.textures, own = facets](int group,
+                                                                  const Vector3d& point) {
+        return textures->is_hole(own.empty() ? group : own[group], point);
+      };
+    }
+    if (geometry.group.empty()) return;
+    caster.emplace(geometry);
+    triangles = caster->triangle_count();
+    polygons = triangles + caster->quad_count();
+  }
+
+  template <bool with_weights>
+  ElementHit element_hit(const Ray& ray, const Hit& hit) const {
+    if (hit.primitive < 0) return {};
+    ElementHit result{.facet = facets.empty() ? hit.group : facets[hit.group],
+                      .element = primitives.element[hit.primitive],
+                      .from_back = hit.from_back,
+                      .t = hit.t};
+    const bool is_polygon = hit.primitive < polygons;
+    bool is_triangle = hit.primitive < triangles;
+    if (!with_weights && is_polygon) {
+      // Nothing more to find out.
+    } else if (is_triangle) {
+      result.weights = {1.0f - hit.u - hit.v, hit.u, hit.v, 0.0f};
+    } else if (is_polygon) {
+      const QuadShape& shape =
+          primitives.quad_shape[static_cast<std::size_t>(hit.primitive - triangles)];
+      result.weights = quad_weights(shape.alpha, shape.beta, hit.u, hit.v);
+    } else {
+      const SphereGrid& grid = mesh.sphere_grids[result.element];
+      const SpherePlace place =
+          sphere_place(grid, ray.origin + hit.t * ray.direction - grid.sphere.center);
+      result.element = grid.element[place.ring * grid.sectors + place.sector];
+      result.weights = sphere_weights(grid, place);
+      is_triangle = place.ring == 0 || place.ring == grid.rings - 1;
+    }
+    if (!hit.from_back) return result;
+    result.element = mesh.twin[result.element];
+    if (!with_weights) return result;
+    result.weights =
+        result.element < 0 ? Array4f(Array4f::Zero()) : turned(result.weights, is_triangle);
+    return result;
+  }
+
+  template <bool with_weights>
+  void cast(std::span<const Ray> rays, std::span<ElementHit> hits) const {
+    constexpr std::size_t batch = 64;  // fits the stack and the first-level cache
+    if (!caster) {
+      std::ranges::fill(hits, ElementHit{});
+      return;
+    }
+    if (rays.size() == 1) {  // as ray trees ask: a whole buffer would cost a third of the ray
+      Hit hit;
+      caster->closest_hits(rays, {&hit, 1});
+      hits[0] = element_hit<with_weights>(rays[0], hit);
+      return;
+    }
+    std::array<Hit, batch> buffer;
+    for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
+      const std::size_t count = std::min(batch, rays.size() - begin);
+      caster->closest_hits(rays.subspan(begin, count), std::span(buffer).first(count));
+      for (std::size_t i = 0; i < count; ++i) {
+        hits[begin + i] = element_hit<with_weights>(rays[begin + i], buffer[i]);
+      }
+    }
+  }
+};
+
+struct ElementCaster::Bodies {
+  struct Place {
+    int body = -1;  // -1: the facet stands still
+    int group = -1;
+  };
+  std::vector<RigidMotion> motions{};
+  std::vector<Part> parts{};
+  std::vector<Place> places{};  // by facet
+};
 
 ElementCaster::ElementCaster(const PatchMesh& mesh)
     : mesh_(mesh),
-      caster_(cast_geometry(mesh, elements_, quad_shapes_)),
-      triangles_(caster_.triangle_count()),
-      polygons_(triangles_ + caster_.quad_count()),
-      hidden_(static_cast<std::size_t>(mesh.element_count()), 0) {
-  for (int primitive = 0; primitive < polygons_; ++primitive) {
-    hidden_[elements_[primitive]] =
-        static_cast<std::uint8_t>((caster_.is_hidden(primitive, false) ? 1 : 0) |
-                                  (caster_.is_hidden(primitive, true) ? 2 : 0));
+      still_(
+          std::make_shared<const Part>(mesh, std::vector<int>(), [](int facet) { return facet; })) {
+  find_hidden();
+}
+
+ElementCaster::ElementCaster(const PatchMesh& mesh, const Scene& scene) : mesh_(mesh) {
+  auto bodies = std::make_shared<Bodies>();
+  std::vector<int> body_of(scene.motions.size(), -1);
+  std::vector<std::vector<int>> facets;  // by body
+  const std::vector<FacetRef> refs = scene_facets(scene);
+  for (std::size_t f = 0; f < refs.size(); ++f) {
+    const int motion = scene.surfaces[static_cast<std::size_t>(refs[f].surface)].motion;
+    Bodies::Place& place = bodies->places.emplace_back();
+    if (motion < 0) continue;
+    int& body = body_of[static_cast<std::size_t>(motion)];
+    if (body < 0) {
+      body = static_cast<int>(facets.size());
+      facets.emplace_back();
+      bodies->motions.push_back(scene.motions[static_cast<std::size_t>(motion)]);
+    }
+    std::vector<int>& own = facets[static_cast<std::size_t>(body)];
+    place = {.body = body, .group = static_cast<int>(own.size())};
+    own.push_back(static_cast<int>(f));
   }
+  const auto& places = bodies->places;
+  still_ = std::make_shared<const Part>(mesh, std::vector<int>(), [&](int facet) {
+    return places[static_cast<std::size_t>(facet)].body < 0 ? facet : -1;
+  });
+  for (std::size_t b = 0; b < facets.size(); ++b) {
+    bodies->parts.emplace_back(mesh, std::move(facets[b]), [&](int facet) {
+      const Bodies::Place& place = places[static_cast<std::size_t>(facet)];
+      return place.body == static_cast<int>(b) ? place.group : -1;
+    });
+  }
+  poses_.resize(bodies->parts.size());
+  if (!bodies->parts.empty()) bodies_ = std::move(bodies);
+  find_hidden();
+}
+
+ElementCaster ElementCaster::at(double time) const {
+  ElementCaster result = *this;
+  for (std::size_t b = 0; b < poses_.size(); ++b) {
+    result.poses_[b].forth = bodies_->motions[b].at(time);
+    result.poses_[b].back = result.poses_[b].forth.inverse();
+  }
+  return result;
+}
+
+const Eigen::Isometry3d* ElementCaster::pose_of(int facet) const {
+  if (!bodies_) return nullptr;
+  const int body = bodies_->places[static_cast<std::size_t>(facet)].body;
+  return body < 0 ? nullptr : &poses_[static_cast<std::size_t>(body)].forth;
+}
+
+void ElementCaster::find_hidden() {
+  std::vector<std::uint8_t> hidden(static_cast<std::size_t>(mesh_.element_count()), 0);
+  for (int primitive = 0; primitive < still_->polygons; ++primitive) {
+    hidden[still_->primitives.element[primitive]] =
+        static_cast<std::uint8_t>((still_->caster->is_hidden(primitive, false) ? 1 : 0) |
+                                  (still_->caster->is_hidden(primitive, true) ? 2 : 0));
+  }
+  hidden_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(hidden));
+}
+
+bool ElementCaster::meets_first(int facet, int other, const Vector3d& direction) const {
+  return still_->caster->meets_first(facet, other, direction);
 }
 
 int ElementCaster::hidden_elements(int patch) const {
@@ -91,95 +293,74 @@ int ElementCaster::hidden_elements(int patch) const {
   return count;
 }
 
-// Primitives in RayCaster's order: triangles, quads, spheres.
-CastGeometry ElementCaster::cast_geometry(const PatchMesh& mesh, std::vector<int>& elements,
-                                          std::vector<QuadShape>& quad_shapes) {
-  CastGeometry geometry;
-  std::vector<int> number(mesh.vertex_count(), -1);
-  const auto vertex = [&](int v) {
-    if (number[v] < 0) {
-      number[v] = static_cast<int>(geometry.vertices.size());
-      geometry.vertices.push_back(mesh.position(v));
-    }
-    return number[v];
-  };
-  const auto add = [&](int element, int facet) {
-    geometry.group.push_back(facet);
-    elements.push_back(element);
-  };
-  const bool any_holes = mesh.textures && mesh.textures->has_holes();
-  if (any_holes) {
-    geometry.is_hole = [textures = mesh.textures](int facet, const Vector3d& point) {
-      return textures->is_hole(facet, point);
-    };
-  }
-  for (const int corner_count : {3, 4}) {
-    for (int p = 0; p < mesh.patch_count(); ++p) {
-      if (!is_front_polygon(mesh, p)) continue;
-      for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
-        if (mesh.corner_count(e) != corner_count) continue;
-        const auto& c = mesh.corners[e];
-        if (corner_count == 3) {
-          geometry.triangles.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2])});
-        } else {
-          geometry.quads.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])});
-          const Eigen::Vector2f shape = shape_of_quad(mesh, c).cast<float>();
-          quad_shapes.push_back({shape.x(), shape.y()});
-        }
-        add(e, mesh.facet[e]);
-        if (any_holes) geometry.has_holes.push_back(mesh.textures->has_holes(mesh.facet[e]));
-      }
+// As a body's caster is asked it, or, for body -1, that of what stands still: from where the body
+// rests, and without groups that are others'.
+Ray ElementCaster::ray_for(int body, const Ray& ray) const {
+  Ray result = ray;
+  for (int* group : {&result.origin_group, &result.target_group}) {
+    if (*group < 0) continue;
+    const Bodies::Place& place = bodies_->places[static_cast<std::size_t>(*group)];
+    if (place.body != body) {
+      *group = -1;
+    } else if (body >= 0) {
+      *group = place.group;
     }
   }
-  for (std::size_t g = 0; g < mesh.sphere_grids.size(); ++g) {
-    geometry.spheres.push_back(mesh.sphere_grids[g].sphere);
-    add(static_cast<int>(g), mesh.sphere_grids[g].facet);
-  }
-  return geometry;
+  if (body < 0) return result;
+  const Eigen::Isometry3d& back = poses_[static_cast<std::size_t>(body)].back;
+  result.origin = back * ray.origin;
+  result.direction = back.linear() * ray.direction;
+  return result;
 }
 
 template <bool with_weights>
-ElementHit ElementCaster::element_hit(const Ray& ray, const Hit& hit) const {
-  if (hit.primitive < 0) return {};
-  ElementHit result{.facet = hit.group,
-                    .element = elements_[hit.primitive],
-                    .from_back = hit.from_back,
-                    .t = hit.t};
-  const bool is_polygon = hit.primitive < polygons_;
-  bool is_triangle = hit.primitive < triangles_;
-  if (!with_weights && is_polygon) {
-    // Nothing more to find out.
-  } else if (is_triangle) {
-    result.weights = {1.0f - hit.u - hit.v, hit.u, hit.v, 0.0f};
-  } else if (is_polygon) {
-    const QuadShape& shape = quad_shapes_[static_cast<std::size_t>(hit.primitive - triangles_)];
-    result.weights = quad_weights(shape.alpha, shape.beta, hit.u, hit.v);
-  } else {
-    const SphereGrid& grid = mesh_.sphere_grids[result.element];
-    const SpherePlace place =
-        sphere_place(grid, ray.origin + hit.t * ray.direction - grid.sphere.center);
-    result.element = grid.element[place.ring * grid.sectors + place.sector];
-    result.weights = sphere_weights(grid, place);
-    is_triangle = place.ring == 0 || place.ring == grid.rings - 1;
+void ElementCaster::cast_at_bodies(std::span<const Ray> rays, std::span<ElementHit> hits) const {
+  constexpr std::size_t batch = 64;
+  std::array<Ray, batch> own;
+  std::array<ElementHit, batch> met;
+  for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
+    const std::size_t count = std::min(batch, rays.size() - begin);
+    for (int body = -1; body < static_cast<int>(poses_.size()); ++body) {
+      for (std::size_t i = 0; i < count; ++i) {
+        own[i] = ray_for(body, rays[begin + i]);
+        if (body >= 0 && hits[begin + i].facet >= 0) own[i].t_max = hits[begin + i].t;
+      }
+      const Part& part = body < 0 ? *still_ : bodies_->parts[static_cast<std::size_t>(body)];
+      part.cast<with_weights>({own.data(), count}, {met.data(), count});
+      for (std::size_t i = 0; i < count; ++i) {
+        if (body < 0 || met[i].facet >= 0) hits[begin + i] = met[i];
+      }
+    }
   }
-  if (!hit.from_back) return result;
-  result.element = mesh_.twin[result.element];
-  if (!with_weights) return result;
-  result.weights =
-      result.element < 0 ? Array4f(Array4f::Zero()) : turned(result.weights, is_triangle);
-  return result;
 }
 
 template <bool with_weights>
 void ElementCaster::cast(std::span<const Ray> rays, std::span<ElementHit> hits) const {
   assert(rays.size() == hits.size());
-  constexpr std::size_t batch = 64;  // fits the stack and the first-level cache
-  std::array<Hit, batch> buffer;
+  if (bodies_) return cast_at_bodies<with_weights>(rays, hits);
+  still_->cast<with_weights>(rays, hits);
+}
+
+void ElementCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
+  if (!bodies_) return still_->caster->occluded(rays, blocked);
+  constexpr std::size_t batch = 64;
+  std::array<Ray, batch> own;
+  std::array<std::uint8_t, batch> is_blocked;
+  std::array<std::size_t, batch> number;
   for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
-    const std::size_t count = std::min(batch, rays.size() - begin);
-    caster_.closest_hits(rays.subspan(begin, count), std::span(buffer).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      hits[begin + i] = element_hit<with_weights>(rays[begin + i], buffer[i]);
+    const std::size_t size = std::min(batch, rays.size() - begin);
+    std::fill_n(blocked.begin() + static_cast<std::ptrdiff_t>(begin), size, std::uint8_t{0});
+    for (int body = -1; body < static_cast<int>(poses_.size()); ++body) {
+      const Part& part = body < 0 ? *still_ : bodies_->parts[static_cast<std::size_t>(body)];
+      if (!part.caster) continue;
+      std::size_t count = 0;  // that nothing is in the way of yet
+      for (std::size_t i = begin; i < begin + size; ++i) {
+        if (blocked[i] != 0) continue;
+        own[count] = ray_for(body, rays[i]);
+        number[count++] = i;
+      }
+      part.caster->occluded({own.data(), count}, {is_blocked.data(), count});
+      for (std::size_t k = 0; k < count; ++k) blocked[number[k]] = is_blocked[k];
     }
   }
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,49 +24,57 @@ struct ElementHit {
 
 /// Casts rays at the elements of a PatchMesh, so that a ray names its element and place at once;
 /// spheres are the exact ones. Ray::origin_group and target_group are scene-wide facet numbers
-/// here. Keeps a reference to the mesh.
+/// here. Keeps a reference to the mesh. A copy is cheap, and shares what is large.
+///
+/// What moves is not moved: a ray is taken to where the body rests instead, and cast there at a
+/// tree of the body's own, which is exact for turns too. Elements and places on them are thereby
+/// those of the mesh, whenever they are met. A ray costs as many queries more as there are motions;
+/// where nothing moves, none.
 class ElementCaster {
  public:
   explicit ElementCaster(const PatchMesh& mesh);
+  /// Of a scene whose mesh that is, with surfaces that move: all of one motion are one body. They
+  /// rest until at() says when.
+  ElementCaster(const PatchMesh& mesh, const Scene& scene);
+
+  /// The same at a time, s.
+  ElementCaster at(double time) const;
+  /// From where a facet that moves rests to where it is; null: it stands still.
+  const Eigen::Isometry3d* pose_of(int facet) const;
 
   void closest_hits(std::span<const Ray> rays, std::span<ElementHit> hits) const;
   /// The same without weights, for who only counts elements: a tenth quicker.
   void closest_elements(std::span<const Ray> rays, std::span<ElementHit> hits) const;
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
-    caster_.occluded(rays, blocked);
-  }
-  /// As RayCaster::meets_first, of scene-wide facets.
-  bool meets_first(int facet, int other, const Eigen::Vector3d& direction) const {
-    return caster_.meets_first(facet, other, direction);
-  }
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
+  /// As RayCaster::meets_first, of scene-wide facets that stand still.
+  bool meets_first(int facet, int other, const Eigen::Vector3d& direction) const;
   /// Whether another surface that lies on an element of a facet's front hides it from the front, or
   /// from behind.
   bool is_hidden(int front_element, bool from_back) const {
-    return (hidden_[static_cast<std::size_t>(front_element)] & (from_back ? 2 : 1)) != 0;
+    return ((*hidden_)[static_cast<std::size_t>(front_element)] & (from_back ? 2 : 1)) != 0;
   }
   /// How many of a patch's elements another surface that lies on them hides.
   int hidden_elements(int patch) const;
   const PatchMesh& mesh() const { return mesh_; }
 
  private:
-  /// v2 - v0 = alpha (v1 - v0) + beta (v3 - v0); both 1 in a parallelogram.
-  struct QuadShape {
-    float alpha = 1.0f, beta = 1.0f;
+  struct Part;    // what stands still, or a body
+  struct Bodies;  // all that moves
+  struct Pose {
+    Eigen::Isometry3d forth = Eigen::Isometry3d::Identity(), back = Eigen::Isometry3d::Identity();
   };
-  static CastGeometry cast_geometry(const PatchMesh& mesh, std::vector<int>& elements,
-                                    std::vector<QuadShape>& quad_shapes);
   template <bool with_weights>
   void cast(std::span<const Ray> rays, std::span<ElementHit> hits) const;
   template <bool with_weights>
-  ElementHit element_hit(const Ray& ray, const Hit& hit) const;
+  void cast_at_bodies(std::span<const Ray> rays, std::span<ElementHit> hits) const;
+  Ray ray_for(int body, const Ray& ray) const;
+  void find_hidden();
 
   const PatchMesh& mesh_;
-  /// Of RayCaster's primitives, on their front; of a sphere, the index of its grid.
-  std::vector<int> elements_;
-  std::vector<QuadShape> quad_shapes_;
-  RayCaster caster_;
-  int triangles_ = 0, polygons_ = 0;  // the first of the primitives
-  std::vector<std::uint8_t> hidden_;  // per element, a bit per side
+  std::shared_ptr<const Part> still_;
+  std::shared_ptr<const Bodies> bodies_{};                     // null: nothing moves
+  std::vector<Pose> poses_{};                                  // of each body
+  std::shared_ptr<const std::vector<std::uint8_t>> hidden_{};  // per element, a bit per side
 };
 
 /// Value at a hit from values at vertices (vertices x bands).

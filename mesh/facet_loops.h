@@ -9,13 +9,21 @@
 
 namespace lightwell {
 
+/// What goes on over a facet's plane and must not change across it.
+struct FacetMaps {
+  int uv = -1;      ///< see Facet::uv_map
+  int normal = -1;  ///< see Facet::normal_map
+
+  bool operator==(const FacetMaps& other) const = default;
+};
+
 /// The polygons of one surface over welded points, in flat arrays: a surface may have millions.
 struct FacetLoops {
   std::vector<int> corner{};  ///< points, loop after loop; a facet's first loop is its boundary
   std::vector<int> loop_begin{0};  ///< loop l is [loop_begin[l], loop_begin[l + 1]) of corner
   std::vector<int> facet_begin{
-      0};                     ///< facet f is [facet_begin[f], facet_begin[f + 1]) of the loops
-  std::vector<int> uv_map{};  ///< by facet, see Facet::uv_map
+      0};                         ///< facet f is [facet_begin[f], facet_begin[f + 1]) of the loops
+  std::vector<FacetMaps> maps{};  ///< by facet
 
   int count() const { return static_cast<int>(facet_begin.size()) - 1; }
   std::span<const int> loop(int l) const {
@@ -27,9 +35,9 @@ struct FacetLoops {
     loop_begin.push_back(static_cast<int>(corner.size()));
   }
   /// The loops added since the last facet are one.
-  void end_facet(int uv_of_facet = -1) {
+  void end_facet(const FacetMaps& maps_of_facet = {}) {
     facet_begin.push_back(static_cast<int>(loop_begin.size()) - 1);
-    uv_map.push_back(uv_of_facet);
+    maps.push_back(maps_of_facet);
   }
   void turn_over(int facet);
 

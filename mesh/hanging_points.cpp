@@ -73,7 +73,7 @@ class HangingPoints {
         }
         result.add_loop(loop);
       }
-      result.end_facet(facets_.uv_map[f]);
+      result.end_facet(facets_.maps[f]);
     }
     return result;
   }

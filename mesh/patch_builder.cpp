@@ -106,13 +106,24 @@ void for_each_joint(const Sides& sides, const Pieces& pieces, Visit&& visit) {
 
 }  // namespace
 
-// Radiosity is continuous across a joint if the surface is smooth there.
+// Of the smooth surface that the piece stands for, at one of its vertices.
+Vector3d PatchBuilder::normal_at(int piece, int vertex) const {
+  const Piece& p = pieces_[piece];
+  return normals_.at(p.facet, p.mesh.position[vertex - p.first_vertex], p.normal);
+}
+
+// Radiosity is continuous across a joint if the surface is smooth there: by its facets, or by the
+// normals it gives itself.
 void PatchBuilder::share_smooth_edges(const std::vector<Side>& sides) {
   constexpr double rounding = 1e-12;  // coplanar facets share even at a limit of 0 degrees
   const double least_cosine = std::cos(smooth_angle_degrees_ * std::numbers::pi / 180.0) - rounding;
   for_each_joint(sides, pieces_, [&](const Side& a, const Side& b) {
-    if (!(pieces_[a.piece].normal.dot(pieces_[b.piece].normal) >= least_cosine)) return;
-    for (const auto& [one, other] : {std::pair(a.v_low, b.v_low), {a.v_high, b.v_high}}) {
+    const std::array<std::pair<int, int>, 2> ends = {{{a.v_low, b.v_low}, {a.v_high, b.v_high}}};
+    const bool is_smooth = std::ranges::all_of(ends, [&](const auto& end) {
+      return normal_at(a.piece, end.first).dot(normal_at(b.piece, end.second)) >= least_cosine;
+    });
+    if (!is_smooth) return;
+    for (const auto& [one, other] : ends) {
       const int r = root(one), s = root(other);
       parent_[std::max(r, s)] = std::min(r, s);
     }

@@ -4,6 +4,7 @@
 #include "mesh/group_facets.h"
 #include "mesh/patch_mesh.h"
 #include "mesh/sphere_grid.h"
+#include "scene/facet_normals.h"
 
 namespace lightwell {
 
@@ -13,7 +14,10 @@ namespace lightwell {
 class PatchBuilder {
  public:
   PatchBuilder(const Scene& scene, double smooth_angle_degrees, const FacetGroupOptions& groups)
-      : scene_(scene), smooth_angle_degrees_(smooth_angle_degrees), groups_(groups) {}
+      : scene_(scene),
+        normals_(scene),
+        smooth_angle_degrees_(smooth_angle_degrees),
+        groups_(groups) {}
 
   void add_facet(int facet, int surface, const Eigen::Vector3d& normal, FacetMesh mesh);
   void add_sphere(int facet, int surface, const Sphere& sphere, SphereElements elements);
@@ -41,6 +45,7 @@ class PatchBuilder {
   };
   std::vector<Side> border_sides() const;
   void share_smooth_edges(const std::vector<Side>& sides);
+  Eigen::Vector3d normal_at(int piece, int vertex) const;
   int root(int vertex);
   FacetPatch facet_patch(const Part& part) const;
   /// What becomes one patch, by the first piece that has a part of it.
@@ -51,6 +56,7 @@ class PatchBuilder {
   bool has_back(const Material& material) const;
 
   const Scene& scene_;
+  FacetNormals normals_;
   double smooth_angle_degrees_;
   FacetGroupOptions groups_;
   std::vector<Piece> pieces_;

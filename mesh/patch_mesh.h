@@ -39,9 +39,9 @@ struct SphereGrid {
 /// One array per quantity. Conforming: no vertex lies inside another element's edge, but for lines
 /// along which something much finer than an element crosses a facet's inside. Vertices are
 /// shared only where radiosity is continuous: within one side of one facet, or across facets of one
-/// surface whose normals differ by less than MeshOptions::smooth_angle_degrees; never across
-/// contact lines (D0; across D1 and D2 lines they are), and not at reflex corners, where each
-/// element has a vertex of its own.
+/// surface whose normals, those at vertices where the surface has them (see FacetNormals), differ
+/// by less than MeshOptions::smooth_angle_degrees; never across contact lines (D0; across D1 and D2
+/// lines they are), and not at reflex corners, where each element has a vertex of its own.
 struct PatchMesh {
   HalfedgeMesh elements{};
 
@@ -118,7 +118,7 @@ struct MeshOptions {
   /// Elements that may add, as a share of those there would be without: what is left out is said in
   /// PatchMesh::notes.
   double discontinuity_growth = 1.0;
-  double smooth_angle_degrees = 5.0;  ///< facets of one surface meeting at less share vertices
+  double smooth_angle_degrees = 5.0;  ///< facets of one surface that meet at less share vertices
   /// Facets of one surface smaller than a patch share one as long as their normals stay within this
   /// of its mean. 0: no patch reaches over several facets.
   double curve_angle_degrees = 20.0;

@@ -33,7 +33,7 @@ FacetLoops without(const FacetLoops& facets, const std::vector<char>& is_gone) {
     for (int l = facets.facet_begin[f]; l < facets.facet_begin[f + 1]; ++l) {
       left.add_loop(facets.loop(l));
     }
-    left.end_facet(facets.uv_map[f]);
+    left.end_facet(facets.maps[f]);
   }
   return left;
 }
@@ -53,7 +53,7 @@ FacetLoops welded_loops(const PolygonMesh& mesh, const std::vector<int>& point, 
   for (const Facet& facet : mesh.facets) {
     add(facet.boundary, true);
     for (const auto& hole : facet.holes) add(hole, false);
-    facets.end_facet(with_uv ? facet.uv_map : -1);
+    facets.end_facet({.uv = with_uv ? facet.uv_map : -1, .normal = facet.normal_map});
   }
   return facets;
 }
@@ -93,7 +93,7 @@ FacetLoops merged(const FacetLoops& facets, const PlaneRegions& regions, std::ve
       is_placed[r] = 1;
       for (const auto& loop : regions.outlines[r]) result.add_loop(loop);
     }
-    result.end_facet(facets.uv_map[f]);
+    result.end_facet(facets.maps[f]);
     is_new.push_back(is_part ? 1 : 0);
   }
   return result;
@@ -104,7 +104,8 @@ PolygonMesh polygon_mesh(const FacetLoops& facets, const std::vector<Vector3d>& 
   std::vector<int> number(points.size(), -1);
   for (int f = 0; f < facets.count(); ++f) {
     Facet& facet = mesh.facets.emplace_back();
-    facet.uv_map = facets.uv_map[f];
+    facet.uv_map = facets.maps[f].uv;
+    facet.normal_map = facets.maps[f].normal;
     for (int l = facets.facet_begin[f]; l < facets.facet_begin[f + 1]; ++l) {
       std::vector<int>& loop =
           l == facets.facet_begin[f] ? facet.boundary : facet.holes.emplace_back();
@@ -167,6 +168,7 @@ std::optional<PolygonMesh> cleaned(const PolygonMesh& mesh, const std::vector<in
   straighten(facets, is_new, points, tolerance);
   PolygonMesh clean = polygon_mesh(facets, points);
   if (shows_picture) clean.uv_maps = mesh.uv_maps;
+  clean.normal_maps = mesh.normal_maps;
   return clean;
 }
 

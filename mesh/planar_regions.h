@@ -40,8 +40,9 @@ std::string sentence(const CleanUpReport& report);
 /// 5. facets that are connected over edges of exactly two facets are turned to face alike, as the
 ///    larger part of their area does. One-sided (Moebius) pieces and ties are left;
 /// 6. facets in one plane, to 1e-7 of the diagonal, that are connected over whole edges become one
-///    polygon, with holes; where a picture lies on them, those on which it goes on alike. Where
-///    anything is uncertain (edges of overlapping facets, boundaries that would cross) all stay;
+///    polygon, with holes: those on which a picture, where one lies on them, and normals that a
+///    file gives at vertices go on alike. Where anything is uncertain (edges of overlapping facets,
+///    boundaries that would cross) all stay;
 /// 7. vertices inside straight edges of those polygons go, to 1e-7 of the diagonal, where no facet
 ///    left as it was has them.
 ///

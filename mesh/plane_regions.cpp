@@ -180,7 +180,7 @@ class Regions {
       found = other.facet;
     }
     if (found < 0 || region_[found] >= 0 || runs_along(found, region)) return -1;
-    if (facets_.uv_map[found] != facets_.uv_map[uses_[use].facet]) return -1;
+    if (facets_.maps[found] != facets_.maps[uses_[use].facet]) return -1;
     return found;
   }
 

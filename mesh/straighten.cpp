@@ -123,7 +123,7 @@ FacetLoops with_kept(const FacetLoops& facets, const std::vector<char>& may_chan
       // A needle as thin as what counts as straight stays.
       result.add_loop(left.size() >= 3 ? std::span<const int>(left) : facets.loop(l));
     }
-    result.end_facet(facets.uv_map[f]);
+    result.end_facet(facets.maps[f]);
   }
   return result;
 }

@@ -38,7 +38,12 @@ Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const
     const Pane& pane = panes_[static_cast<std::size_t>(number)];
     const Eigen::Vector3d place = ray.origin + hit.t * ray.direction;
     Eigen::Vector3d normal = pane.normal;
-    if (normal.isZero()) normal = (place - pane.center).normalized();
+    const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
+    if (normal.isZero()) {
+      normal = (place - (pose ? *pose * pane.center : pane.center)).normalized();
+    } else if (pose) {
+      normal = pose->linear() * normal;
+    }
     if (normal.dot(direction) > 0.0) normal = -normal;
     const OnwardWays ways = smooth_ways({.material = pane.material,
                                          .direction = direction,

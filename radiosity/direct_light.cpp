@@ -405,14 +405,16 @@ void DirectLight::add_distant_irradiance(const ElementCaster& caster, const Eige
       });
 }
 
-Spectrum DirectLight::irradiance_of_free_sources(const ElementCaster& caster,
-                                                 const Eigen::Vector3d& point,
-                                                 const Eigen::Vector3d& normal, int facet,
-                                                 std::uint64_t key,
-                                                 const ShadowOptions& options) const {
-  Spectrum E = Spectrum::Zero(bands_);
+Eigen::ArrayXf DirectLight::irradiance_of_free_sources(const ElementCaster& caster,
+                                                       const Eigen::Vector3d& point,
+                                                       const Eigen::Vector3d& normal, int facet,
+                                                       std::uint64_t key,
+                                                       const ShadowOptions& options) const {
+  Eigen::ArrayXf E = Eigen::ArrayXf::Zero(column_count());
   for_each_light(static_cast<int>(emitters_.size()), caster, point, normal, facet, key, options,
-                 nullptr, [&](int, const Spectrum& light, const auto& F) { E += light * F; });
+                 nullptr, [&](int channel, const Spectrum& light, const auto& F) {
+                   E.segment(channel * bands_, bands_) += light * F;
+                 });
   return E;
 }
 

@@ -119,10 +119,12 @@ class DirectLight {
                               const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                               const ShadowOptions& options, float* E) const;
 
-  /// The same from free sources alone.
-  Spectrum irradiance_of_free_sources(const ElementCaster& caster, const Eigen::Vector3d& point,
-                                      const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                                      const ShadowOptions& options = {}) const;
+  /// The same from free sources alone, each channel's in its columns.
+  Eigen::ArrayXf irradiance_of_free_sources(const ElementCaster& caster,
+                                            const Eigen::Vector3d& point,
+                                            const Eigen::Vector3d& normal, int facet,
+                                            std::uint64_t key,
+                                            const ShadowOptions& options = {}) const;
 
  private:
   template <class Add>

@@ -10,6 +10,7 @@
 
 #include "mesh/patch_sampler.h"
 #include "mesh/patch_textures.h"
+#include "mesh/sphere_grid.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
 #include "scene/hemisphere_sets.h"
@@ -439,6 +440,14 @@ std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
   constexpr double inset = 0.02;
   std::vector<GatherPoint> points(mesh.vertex_count());
   std::vector<char> done(mesh.vertex_count(), 0);
+  // Where facets meet smoothly, light is measured about the normal of them all, from a point so far
+  // above them that none is in the way of what arrives from above its horizon. Lamps stay flat: a
+  // point before one would receive its light.
+  constexpr double flat = 1.0 - 4e-6;  // cosine of 0.16 degrees
+  const auto is_rounded = [&](int e, int v, const Eigen::Vector3d& normal) {
+    return !(mesh.vertex_normal[v].dot(normal) >= flat) &&
+           !(mesh.emission.row(mesh.patch[e]) > 0.0f).any() && !sphere_grid_of(mesh, mesh.facet[e]);
+  };
   for (int e = 0; e < mesh.element_count(); ++e) {
     const PatchPoint center = element_center(mesh, e);
     for (int c = 0; c < mesh.corner_count(e); ++c) {
@@ -446,6 +455,12 @@ std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
       if (done[v]) continue;
       done[v] = 1;
       const Eigen::Vector3d p = mesh.position(v);
+      if (is_rounded(e, v, center.normal)) {
+        const Eigen::Vector3d inwards = inset * (center.position - p);
+        points[v] = {.position = p + inwards + inwards.norm() * mesh.vertex_normal[v],
+                     .normal = mesh.vertex_normal[v]};
+        continue;
+      }
       points[v] = {.position = p + inset * (center.position - p),
                    .normal = center.normal,
                    .facet = mesh.facet[e]};

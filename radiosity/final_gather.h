@@ -90,7 +90,8 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
 void share_rays(const PatchMesh& mesh, int rays, std::span<GatherPoint> points);
 
 /// For every vertex, a point a hair inside one of its elements, so that it lies on no edge, and
-/// that element's facet and normal.
+/// that element's facet and normal; where facets that meet smoothly share it, a hair above them
+/// too, with the normal of them all, on no facet.
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
 
 }  // namespace lightwell

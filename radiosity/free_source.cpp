@@ -42,7 +42,7 @@ double mean_kernel(const Lamp& lamp, const Part& part, int depth, const Eigen::V
   const double longest = 2.0 * std::max(part.a.norm(), part.b.norm());
   const double distance = (part.middle - point).norm() - part.a.norm() - part.b.norm();
   constexpr double small = 0.5;
-  constexpr int deepest = 6;
+  constexpr int deepest = 12;  // parts are a 64th of the opening then
   if (longest > small * std::max(distance, 0.0) && depth < deepest) {
     const bool splits_a = part.a.norm() >= part.b.norm();
     const Eigen::Vector3d half = 0.5 * (splits_a ? part.a : part.b);
@@ -51,7 +51,7 @@ double mean_kernel(const Lamp& lamp, const Part& part, int depth, const Eigen::V
       Part piece = part;
       piece.middle += side * half;
       (splits_a ? piece.a : piece.b) = half;
-      sum += 0.5 * mean_kernel(lamp, piece, depth + (splits_a ? 0 : 1), point, normal);
+      sum += 0.5 * mean_kernel(lamp, piece, depth + 1, point, normal);
     }
     return sum;
   }

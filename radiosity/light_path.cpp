@@ -25,9 +25,9 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
   }
 }
 
-bool LightPaths::continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key, Media& media,
-                             Spectrum& throughput, bool& through_panes_only,
-                             PathLosses& losses) const {
+bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit,
+                             std::uint64_t key, Media& media, Spectrum& throughput,
+                             bool& through_panes_only, PathLosses& losses) const {
   const Material& material = scene_.materials[material_[hit.facet]];
   // The back of a one-sided mirror is black; glass is clear from both sides.
   if (!material.dielectric && hit.element < 0) {
@@ -36,7 +36,13 @@ bool LightPaths::continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key,
   }
   const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
   const Sphere* sphere = sphere_[hit.facet];
-  Eigen::Vector3d normal = sphere ? (point - sphere->center).normalized() : normal_[hit.facet];
+  const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
+  Eigen::Vector3d normal = normal_[hit.facet];
+  if (sphere) {
+    normal = (point - (pose ? *pose * sphere->center : sphere->center)).normalized();
+  } else if (pose) {
+    normal = pose->linear() * normal;
+  }
   if (hit.from_back) normal = -normal;
   OnwardLot lot{.way = random_uniform(key), .key = key};
   if (material.gloss_roughness() > 0.0f) {
@@ -68,7 +74,13 @@ void LightPaths::absorb(const Ray& ray, const ElementHit& hit, const Media& medi
   throughput *= passed;
 }
 
-PathLosses LightPaths::follow(const Ray& first_ray, const ElementHit& first_hit, std::uint64_t key,
+PathLosses LightPaths::follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
+                              const std::function<void(const LightArrival&)>& arrive) const {
+  return follow(caster_, ray, hit, key, arrive);
+}
+
+PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
+                              const ElementHit& first_hit, std::uint64_t key,
                               const std::function<void(const LightArrival&)>& arrive) const {
   const int bands = scene_.bands.count();
   PathLosses losses{Spectrum::Zero(bands), Spectrum::Zero(bands), Spectrum::Zero(bands), {}};
@@ -84,11 +96,11 @@ PathLosses LightPaths::follow(const Ray& first_ray, const ElementHit& first_hit,
       losses.cut += throughput;
       return losses;
     }
-    if (!continue_at(ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), media,
+    if (!continue_at(caster, ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), media,
                      throughput, through_panes_only, losses)) {
       return losses;
     }
-    caster_.closest_hits({&ray, 1}, {&hit, 1});
+    caster.closest_hits({&ray, 1}, {&hit, 1});
     absorb(ray, hit, media, throughput, losses);
     const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));
     if (leaves) {

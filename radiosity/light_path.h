@@ -50,10 +50,15 @@ class LightPaths {
                     const std::function<void(const LightArrival&)>& arrive) const;
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const;
+  /// The same by another caster of the same scene, such as ElementCaster::at() gives.
+  PathLosses follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                    std::uint64_t key,
+                    const std::function<void(const LightArrival&)>& arrive) const;
 
  private:
-  bool continue_at(Ray& ray, const ElementHit& hit, std::uint64_t key, Media& media,
-                   Spectrum& throughput, bool& through_panes_only, PathLosses& losses) const;
+  bool continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit, std::uint64_t key,
+                   Media& media, Spectrum& throughput, bool& through_panes_only,
+                   PathLosses& losses) const;
   void absorb(const Ray& ray, const ElementHit& hit, const Media& media, Spectrum& throughput,
               PathLosses& losses) const;
 

@@ -14,12 +14,15 @@
 
 #include "radiosity/journal_phase.h"
 #include "radiosity/ray_cast_rows.h"
+#include "radiosity/solve_channels.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
 namespace {
 
 constexpr int fewest_rays = 16, least_round = 16;
+
+enum Energy { emitted_row, absorbed_row, escaped_row, unshot_row };  // rows of BandEnergy
 
 // Of all bands, without regard to sign.
 double power(const PatchMesh& mesh, const BandArray& radiosity, int patch) {
@@ -74,50 +77,54 @@ ShotRows stored_shots(const FormFactors& form_factors) {
 
 ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& mesh, ShotRows rows,
                                            const ProgressiveOptions& options,
+                                           const EmitterChannels& channels,
                                            const FreeLight& free_light)
     : scene_(scene),
       mesh_(mesh),
       rows_(std::move(rows)),
       options_(options),
-      radiosity_(mesh.emission),
-      unshot_(mesh.emission) {
+      channels_(channels),
+      radiosity_(emission_columns(mesh, channels)),
+      unshot_(radiosity_),
+      energy_(BandEnergy::Zero(4, radiosity_.cols())) {
   Eigen::ArrayXd reflected = Eigen::ArrayXd::Zero(mesh.reflectance.cols());
   for (int i = 0; i < mesh.patch_count(); ++i) {
     if (!(mesh.area[i] > 0.0)) {
       throw std::invalid_argument(fmt::format("patch {} has area {}", i, mesh.area[i]));
     }
     reflected += mesh.area[i] * mesh.reflectance.row(i).transpose().cast<double>();
-    energy_.emitted += power(mesh, mesh.emission, i);
+    energy_.row(emitted_row) += mesh.area[i] * radiosity_.row(i).cast<double>();
   }
   if (!free_light.empty()) take_in(free_light);
+  emitted_ = energy_.row(emitted_row).sum();
   // A room that loses nothing would add up without end.
   constexpr double most_reflected = 0.99;
   reflections_ = (1.0 / (1.0 - (reflected / mesh.area.sum()).min(most_reflected))).cast<float>();
 }
 
 void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
-  const BandArray reflected = mesh_.reflectance * free_light.irradiance;
-  radiosity_ += reflected;
-  unshot_ += reflected;
+  const Eigen::Index bands = mesh_.emission.cols();
   for (int i = 0; i < mesh_.patch_count(); ++i) {
-    const Spectrum kept =
-        1.0f - mesh_.reflectance.row(i).transpose() - scene_.materials[mesh_.material[i]].specular;
-    const Eigen::ArrayXd arriving =
-        mesh_.area[i] * free_light.irradiance.row(i).transpose().cast<double>();
-    energy_.absorbed += (arriving * kept.cast<double>()).sum();
+    const Spectrum& specular = scene_.materials[mesh_.material[i]].specular;
+    for (Eigen::Index k = 0; k < unshot_.cols(); ++k) {
+      const float E = free_light.irradiance(i, k), rho = mesh_.reflectance(i, k % bands);
+      radiosity_(i, k) += rho * E;
+      unshot_(i, k) += rho * E;
+      energy_(absorbed_row, k) +=
+          mesh_.area[i] * static_cast<double>(E * (1.0f - rho - specular[k % bands]));
+    }
   }
-  energy_.from_lamps = free_light.emitted.sum();
-  energy_.missed = free_light.missed.sum();
-  energy_.emitted += energy_.from_lamps;
-  energy_.absorbed += free_light.absorbed.sum();
-  energy_.escaped += free_light.escaped.sum();
+  free_energy_ = free_energy(free_light);
+  energy_.row(emitted_row) += free_light.emitted.transpose();
+  energy_.row(absorbed_row) += free_light.absorbed.transpose();
+  energy_.row(escaped_row) += free_light.escaped.transpose();
 }
 
 double ProgressiveRadiosity::unshot_share() const {
-  if (!(energy_.emitted > 0.0)) return 0.0;
+  if (!(emitted_ > 0.0)) return 0.0;
   double sum = 0.0;
   for (int i = 0; i < mesh_.patch_count(); ++i) sum += power(mesh_, unshot_, i);
-  return sum / energy_.emitted;
+  return sum / emitted_;
 }
 
 double ProgressiveRadiosity::done() const {
@@ -126,32 +133,61 @@ double ProgressiveRadiosity::done() const {
   return std::clamp(std::log(unshot) / std::log(options_.tolerance), 0.0, 1.0);
 }
 
-Spectrum ProgressiveRadiosity::ambient() const {
+Eigen::ArrayXf ProgressiveRadiosity::ambient() const {
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(unshot_.cols());
   for (int i = 0; i < mesh_.patch_count(); ++i) {
     sum += mesh_.area[i] * unshot_.row(i).transpose().cast<double>();
   }
-  return reflections_ * (sum / mesh_.area.sum()).cast<float>();
+  return for_each_channel(reflections_, unshot_.cols()) * (sum / mesh_.area.sum()).cast<float>();
+}
+
+BandEnergy ProgressiveRadiosity::energy_by_column() const {
+  BandEnergy energy = energy_;
+  for (int i = 0; i < mesh_.patch_count(); ++i) {
+    energy.row(unshot_row) += mesh_.area[i] * unshot_.row(i).cast<double>();
+  }
+  return energy;
 }
 
 EnergyBalance ProgressiveRadiosity::energy() const {
-  EnergyBalance energy = energy_;
-  for (int i = 0; i < mesh_.patch_count(); ++i) {
-    energy.unshot += mesh_.area[i] * unshot_.row(i).cast<double>().sum();
+  return total(energy_by_column(), free_energy_);
+}
+
+RadiositySolution ProgressiveRadiosity::solution() const {
+  RadiositySolution solution;
+  solution.solver = "progressive";
+  const auto bands = static_cast<int>(mesh_.emission.cols());
+  solution.patch_radiosity = channel_sum(radiosity_, bands);
+  const BandEnergy energy = energy_by_column();
+  solution.energy = total(energy, free_energy_);
+  const double largest = solution.patch_radiosity.abs().maxCoeff();
+  const double left = channel_sum(unshot_.abs(), bands).maxCoeff();
+  solution.residual = largest > 0.0 ? left / largest : 0.0;
+  solution.outcome = has_converged() ? Outcome::converged : Outcome::max_sweeps_reached;
+  if (channels_.empty()) return solution;
+  name_channels(scene_, mesh_, channels_, solution);
+  split_columns(radiosity_, &LightChannel::patch_radiosity, solution.channels);
+  for (std::size_t c = 0; c < solution.channels.size(); ++c) {
+    const Eigen::Index first = static_cast<Eigen::Index>(c) * bands;
+    solution.channels[c].energy = energy.middleCols(first, bands);
+    if (free_energy_.size() == 0) continue;
+    solution.channels[c].free_energy = free_energy_.middleCols(first, bands);
   }
-  return energy;
+  return solution;
 }
 
 bool ProgressiveRadiosity::step(int most) {
   if (shots_ >= options_.max_shots || has_converged()) return false;
   const std::vector<int> chosen = choose(std::max(most, 1));
-  const auto foreseen =
-      options_.overshooting == Overshooting::ambient ? ambient() : Spectrum::Zero(unshot_.cols());
+  const auto foreseen = options_.overshooting == Overshooting::ambient
+                            ? ambient()
+                            : Eigen::ArrayXf::Zero(unshot_.cols());
   std::vector<RowRequest> requests;
   last_shots_.clear();
   for (const int i : chosen) {
     requests.push_back({i, rays_of(i)});
-    const Spectrum more = mesh_.reflectance.row(i).transpose() * foreseen.max(0.0f);
+    const Spectrum rho = mesh_.reflectance.row(i).transpose();
+    const Eigen::ArrayXf more = for_each_channel(rho, unshot_.cols()) * foreseen.max(0.0f);
     last_shots_.push_back({i, unshot_.row(i).transpose() + more});
   }
   std::vector<EstimatedRow> rows(requests.size());
@@ -184,7 +220,7 @@ std::vector<int> ProgressiveRadiosity::choose(int most) const {
 }
 
 int ProgressiveRadiosity::rays_of(int patch) const {
-  const double wanted = options_.rays * power(mesh_, unshot_, patch) / energy_.emitted;
+  const double wanted = options_.rays * power(mesh_, unshot_, patch) / emitted_;
   const int most = std::max(options_.most_rays, fewest_rays);
   const auto rays = static_cast<unsigned>(std::clamp<double>(wanted, fewest_rays, most));
   return static_cast<int>(std::bit_floor(rays));
@@ -192,39 +228,48 @@ int ProgressiveRadiosity::rays_of(int patch) const {
 
 void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
   const Eigen::ArrayXd watts = mesh_.area[shot.patch] * shot.radiosity.cast<double>();
-  const auto arrive = [&](int j, const Eigen::ArrayXd& arriving) {
-    const Spectrum E = (arriving / mesh_.area[j]).cast<float>();
-    const Spectrum rho = mesh_.reflectance.row(j).transpose();
-    radiosity_.row(j) += (rho * E).transpose();
-    unshot_.row(j) += (rho * E).transpose();
-    const Spectrum kept = 1.0f - rho - scene_.materials[mesh_.material[j]].specular;
-    energy_.absorbed += (arriving * kept.cast<double>()).sum();
+  const Eigen::Index columns = unshot_.cols(), bands = mesh_.emission.cols();
+  // share_of(k): of what leaves the shooter in band k.
+  const auto arrive = [&](int j, auto&& share_of) {
+    const Spectrum& specular = scene_.materials[mesh_.material[j]].specular;
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      const Eigen::Index band = k % bands;
+      const double arriving = watts[k] * static_cast<double>(share_of(band));
+      const float rho = mesh_.reflectance(j, band);
+      const float sent_on = rho * static_cast<float>(arriving / mesh_.area[j]);
+      radiosity_(j, k) += sent_on;
+      unshot_(j, k) += sent_on;
+      energy_(absorbed_row, k) += arriving * static_cast<double>(1.0f - rho - specular[band]);
+    }
   };
-  for (const auto& [j, share] : row.shares) arrive(j, watts * static_cast<double>(share));
-  for (std::size_t s = 0; s < row.specular_patch.size(); ++s) {
-    const auto share = row.specular_share.row(static_cast<Eigen::Index>(s));
-    arrive(row.specular_patch[s], watts * share.transpose().cast<double>());
+  for (const auto& [j, share] : row.shares) {
+    arrive(j, [&, s = share](Eigen::Index) { return s; });
   }
-  energy_.escaped += (watts * (row.specular_escaped.cast<double>() + row.escaped)).sum();
-  energy_.absorbed += (watts * (row.absorbed + row.cut).cast<double>()).sum();
+  for (std::size_t s = 0; s < row.specular_patch.size(); ++s) {
+    const auto at = static_cast<Eigen::Index>(s);
+    arrive(row.specular_patch[s], [&](Eigen::Index band) { return row.specular_share(at, band); });
+  }
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    const Eigen::Index band = k % bands;
+    energy_(escaped_row, k) +=
+        watts[k] * (static_cast<double>(row.specular_escaped[band]) + row.escaped);
+    energy_(absorbed_row, k) += watts[k] * static_cast<double>(row.absorbed[band] + row.cut[band]);
+  }
 }
 
 RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive, const Progress& progress,
                                    JournalPhase* phase) {
   const auto start = std::chrono::steady_clock::now();
-  RadiositySolution solution;
-  solution.solver = "progressive";
+  double residual = 0.0;
+  std::vector<StepRecord> history;
   JournalPhase none;
   JournalPhase& kept = phase ? *phase : none;
-  kept.recall_state(progressive.state(), solution.residual, solution.history);
-  const auto keep = [&] {
-    kept.keep_state(progressive.state(), solution.residual, solution.history);
-  };
+  kept.recall_state(progressive.state(), residual, history);
+  const auto keep = [&] { kept.keep_state(progressive.state(), residual, history); };
   while (progressive.step()) {
-    const double largest = progressive.radiosity().abs().maxCoeff();
-    solution.residual = progressive.unshot().abs().maxCoeff() / largest;
-    solution.history.push_back(
-        {.residual = solution.residual,
+    residual = progressive.unshot().abs().maxCoeff() / progressive.radiosity().abs().maxCoeff();
+    history.push_back(
+        {.residual = residual,
          .seconds =
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
     try {
@@ -237,9 +282,8 @@ RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive, const Prog
   }
   if (kept.has_state()) keep();
   report(progress, "solve", 1.0);
-  solution.patch_radiosity = progressive.radiosity();
-  solution.energy = progressive.energy();
-  solution.outcome = progressive.has_converged() ? Outcome::converged : Outcome::max_sweeps_reached;
+  RadiositySolution solution = progressive.solution();
+  solution.history = std::move(history);
   return solution;
 }
 

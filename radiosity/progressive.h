@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "radiosity/emitter_channels.h"
 #include "radiosity/estimated_row.h"
 #include "radiosity/free_light.h"
 #include "radiosity/light_path.h"
@@ -61,17 +62,21 @@ struct ProgressiveOptions {
 /// Shooters go in rounds of 16, and of 1/128 of the patches where those are many, so that their
 /// rows can be found side by side; what they do to each other counts from the next round on. The
 /// result is the same for any number of threads. Keeps references to scene and mesh.
+///
+/// With `channels`, light of each is kept apart in columns of its own, as by DirectLight; all of
+/// them are shot at once by the same rays. Light has channels * bands columns below.
 class ProgressiveRadiosity {
  public:
   struct Shot {
     int patch = 0;
-    Spectrum radiosity{};  ///< what it sent out, W/m^2
+    Eigen::ArrayXf radiosity{};  ///< what it sent out in each column, W/m^2
   };
 
-  /// What patches reflect of `free_light`, of one channel, is there to be shot from the start.
-  /// Throws std::invalid_argument if a patch has no area.
+  /// What patches reflect of `free_light`, which has as many columns, is there to be shot from the
+  /// start. Throws std::invalid_argument if a patch has no area.
   ProgressiveRadiosity(const Scene& scene, const PatchMesh& mesh, ShotRows rows,
-                       const ProgressiveOptions& options = {}, const FreeLight& free_light = {});
+                       const ProgressiveOptions& options = {}, const EmitterChannels& channels = {},
+                       const FreeLight& free_light = {});
 
   /// One round, of at most `most` shooters (1: the single brightest). False, having done nothing,
   /// once the tolerance or the fuse is reached.
@@ -80,7 +85,7 @@ class ProgressiveRadiosity {
   /// Who shot in the last round: what an observer passes on to vertices, or shows.
   const std::vector<Shot>& last_shots() const { return last_shots_; }
   int shots() const { return shots_; }
-  /// B_i so far, without the ambient term, patches x bands, W/m^2.
+  /// B_i so far, without the ambient term, patches x columns, W/m^2.
   const BandArray& radiosity() const { return radiosity_; }
   /// The part of it that has not been shot yet; negative where too much was.
   const BandArray& unshot() const { return unshot_; }
@@ -92,14 +97,18 @@ class ProgressiveRadiosity {
   /// Radiosity that all surfaces would add for every unit of reflectance if the unshot light were
   /// spread evenly at once: rho_i times this belongs to what a picture shows meanwhile (Cohen et
   /// al. 1988, section 5).
-  Spectrum ambient() const;
+  Eigen::ArrayXf ambient() const;
   /// Where the light went so far.
   EnergyBalance energy() const;
+  /// What a solution holds of the patches as they are now: patch_radiosity, channels, solver
+  /// ("progressive"), residual (max |unshot| over max B), outcome and energy.
+  RadiositySolution solution() const;
   /// All that changes from step to step: what is kept of it, to go on from there.
   auto state() { return std::tie(radiosity_, unshot_, energy_, shots_); }
 
  private:
   void take_in(const FreeLight& free_light);
+  BandEnergy energy_by_column() const;
   std::vector<int> choose(int most) const;
   int rays_of(int patch) const;
   void receive(const Shot& shot, const EstimatedRow& row);
@@ -108,17 +117,20 @@ class ProgressiveRadiosity {
   const PatchMesh& mesh_;
   ShotRows rows_;
   ProgressiveOptions options_;
+  EmitterChannels channels_;
   BandArray radiosity_, unshot_;
-  Spectrum reflections_{};  // 1 / (1 - mean reflectance)
-  EnergyBalance energy_{};
+  Spectrum reflections_{};  // 1 / (1 - mean reflectance), per band
+  double emitted_ = 0.0;    // W, all columns together
+  BandEnergy energy_{};     // of each column, without what is unshot
+  FreeEnergy free_energy_{};
   std::vector<Shot> last_shots_{};
   int shots_ = 0;
 };
 
-/// Shoots until step() has no more to do. Fills patch_radiosity, solver ("progressive"), history (a
-/// record a round), residual, outcome and energy of the result; residual is max |unshot| over max
-/// B, which max |M + rho F B - B| over max B is never above. Throws Interrupted when progress says
-/// stop. Goes on from the state that `phase` holds, and keeps there where it has got to.
+/// Shoots until step() has no more to do. The result is solution() with its history, a record a
+/// round; without channels max |M + rho F B - B| over max B is never above its residual. Throws
+/// Interrupted when progress says stop. Goes on from the state that `phase` holds, and keeps there
+/// where it has got to.
 RadiositySolution shoot_to_the_end(ProgressiveRadiosity& progressive, const Progress& progress = {},
                                    JournalPhase* phase = nullptr);
 

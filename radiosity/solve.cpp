@@ -45,12 +45,11 @@ void require_light(const Scene& scene) {
       scene.file.empty() ? "the scene" : scene.file.string()));
 }
 
-void require_equations(const SolveOptions& options) {
-  if (!options.progressive || (options.channels.empty() && !options.start)) return;
+void require_no_start(const SolveOptions& options) {
+  if (!options.progressive || !options.start) return;
   throw InputError(
-      fmt::format("the solver 'progressive' {}; use another, such as the default",
-                  options.start ? "starts from the emitters and cannot go on from another solution"
-                                : "shoots all light together and cannot keep channels apart"));
+      "the solver 'progressive' starts from the emitters and cannot go on from another solution; "
+      "use another, such as the default");
 }
 
 // Of patches; `seconds` of the result say what took how long.
@@ -62,7 +61,7 @@ RadiositySolution shoot(const Scene& scene, const ElementCaster& caster,
       cast_free_light(scene, caster, paths, direct_light, options.free_rays, options.progress);
   ProgressiveRadiosity progressive(scene, caster.mesh(),
                                    cast_shots(caster, paths, options.progressive->most_rays),
-                                   *options.progressive, free_light);
+                                   *options.progressive, options.channels, free_light);
   JournalPhase phase(options.journal, "shots", [&](Fingerprint& print) {
     print.add(caster.mesh());
     print.add(free_light.irradiance);
@@ -73,6 +72,7 @@ RadiositySolution shoot(const Scene& scene, const ElementCaster& caster,
     print.add(shooting.rays);
     print.add(shooting.most_rays);
     print.add(shooting.overshooting);
+    print.add(options.channels.of_surface);
   });
   RadiositySolution solution = shoot_to_the_end(progressive, options.progress, &phase);
   solution.seconds.push_back({"solve", watch.lap()});
@@ -199,6 +199,13 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   report->gather_rays = effort.gather_rays;
 }
 
+// Direct light by channel, where light is kept apart.
+std::optional<DirectLight> light_by_channel(const Scene& scene, const PatchMesh& mesh,
+                                            const EmitterChannels& channels) {
+  if (channels.empty()) return std::nullopt;
+  return std::make_optional<DirectLight>(scene, mesh, channels);
+}
+
 // What of a solution does not depend on the light.
 void describe(const Scene& scene, RadiositySolution& solution) {
   solution.bands = scene.bands;
@@ -217,7 +224,9 @@ SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const So
   describe(scene, solved.solution);
   std::vector<PhaseSeconds> seconds = std::move(solved.solution.seconds);
   const DirectLight direct_light(scene, solved.mesh);
-  illuminate_elements(scene, direct_light, direct_light, options, solved, seconds, report);
+  const auto by_channel = light_by_channel(scene, solved.mesh, options.channels);
+  illuminate_elements(scene, direct_light, by_channel ? *by_channel : direct_light, options, solved,
+                      seconds, report);
   solved.solution.seconds = std::move(seconds);
   return solved;
 }
@@ -235,7 +244,7 @@ EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
 
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveReport* report) {
   require_light(scene);
-  require_equations(options);
+  require_no_start(options);
   require_unit(scene, options);
   const std::uint64_t hash = scene_hash(scene);
   if (options.journal && options.journal->of().scene_hash != hash) {
@@ -251,12 +260,11 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   require_room(solved.mesh, options.refine);
   std::optional<ElementCaster> caster(std::in_place, solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
-  std::optional<DirectLight> by_channel;
-  if (!options.channels.empty()) by_channel.emplace(scene, solved.mesh, options.channels);
+  const auto by_channel = light_by_channel(scene, solved.mesh, options.channels);
   const DirectLight& kept_apart = by_channel ? *by_channel : direct_light;
   seconds.push_back({"mesh", watch.lap()});
 
-  solved.solution = options.progressive ? shoot(scene, *caster, direct_light, options)
+  solved.solution = options.progressive ? shoot(scene, *caster, kept_apart, options)
                                         : solve_equations(scene, *caster, direct_light, kept_apart,
                                                           options, report);
   RadiositySolution& solution = solved.solution;

@@ -25,6 +25,16 @@ BandArray emission_of(const PatchMesh& mesh, const std::vector<int>& patch_chann
   return M;
 }
 
+// Of each patch; -1: it does not emit.
+std::vector<int> channels_of_patches(const PatchMesh& mesh, const EmitterChannels& channels) {
+  std::vector<int> channel;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const bool emits = (mesh.emission.row(p) > 0.0f).any();
+    channel.push_back(emits ? channels.of_surface[mesh.surface[p]] : -1);
+  }
+  return channel;
+}
+
 std::vector<std::string> surfaces_of(const Scene& scene, const EmitterChannels& channels,
                                      int channel) {
   std::vector<std::string> names;
@@ -40,19 +50,42 @@ std::vector<std::string> surfaces_of(const Scene& scene, const EmitterChannels& 
 
 }  // namespace
 
+BandArray emission_columns(const PatchMesh& mesh, const EmitterChannels& channels) {
+  if (channels.empty()) return mesh.emission;
+  const Eigen::Index bands = mesh.emission.cols();
+  const std::vector<int> channel = channels_of_patches(mesh, channels);
+  BandArray M =
+      BandArray::Zero(mesh.patch_count(), static_cast<Eigen::Index>(channels.names.size()) * bands);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const int c = channel[static_cast<std::size_t>(p)];
+    if (c >= 0) M.row(p).segment(c * bands, bands) = mesh.emission.row(p);
+  }
+  return M;
+}
+
+Eigen::ArrayXf for_each_channel(const Spectrum& of_bands, Eigen::Index columns) {
+  return of_bands.replicate(columns / of_bands.size(), 1);
+}
+
+void name_channels(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
+                   RadiositySolution& solution) {
+  solution.patch_channel = channels_of_patches(mesh, channels);
+  solution.source_channel = channels.of_source;
+  solution.full_emission = mesh.emission;
+  for (int c = 0; c < static_cast<int>(channels.names.size()); ++c) {
+    solution.channels.push_back({.name = channels.names[static_cast<std::size_t>(c)],
+                                 .surfaces = surfaces_of(scene, channels, c),
+                                 .scale = Spectrum::Ones(mesh.emission.cols())});
+  }
+}
+
 void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors& form_factors,
                     const FreeLight& free_light, const EmitterChannels& channels,
                     SolverMethod method, const SolverOptions& options,
                     RadiositySolution& solution) {
   const auto count = static_cast<int>(channels.names.size());
   const Eigen::Index bands = mesh.emission.cols();
-  for (int p = 0; p < mesh.patch_count(); ++p) {
-    const bool emits = (mesh.emission.row(p) > 0.0f).any();
-    solution.patch_channel.push_back(emits ? channels.of_surface[mesh.surface[p]] : -1);
-  }
-  solution.source_channel = channels.of_source;
-  solution.full_emission = mesh.emission;
-
+  name_channels(scene, mesh, channels, solution);
   SolverOptions part = options;
   part.tolerance =
       std::max(options.tolerance / count, std::min(options.tolerance, least_tolerance));
@@ -68,12 +101,8 @@ void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors
     RadiositySolution solved = solve_radiosity(method, lit, form_factors, part);
     residual += solved.residual * static_cast<double>(solved.patch_radiosity.maxCoeff());
     if (solved.outcome != Outcome::converged) solution.outcome = solved.outcome;
-    solution.channels.push_back({.name = channels.names[c],
-                                 .surfaces = surfaces_of(scene, channels, c),
-                                 .scale = Spectrum::Ones(bands),
-                                 .patch_radiosity = std::move(solved.patch_radiosity),
-                                 .energy = {}});
-    LightChannel& channel = solution.channels.back();
+    LightChannel& channel = solution.channels[static_cast<std::size_t>(c)];
+    channel.patch_radiosity = std::move(solved.patch_radiosity);
     channel.energy = band_energy(scene, lit, form_factors, channel.patch_radiosity, arriving);
     channel.free_energy = free_energy(arriving);
   }

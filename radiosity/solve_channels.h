@@ -6,6 +6,18 @@
 
 namespace lightwell {
 
+/// Emitted exitance M, W/m^2, patches x (channels * bands), each patch's in the columns of its
+/// channel; patches x bands without channels.
+BandArray emission_columns(const PatchMesh& mesh, const EmitterChannels& channels);
+
+/// What bands have, once more for every channel: `columns` long.
+Eigen::ArrayXf for_each_channel(const Spectrum& of_bands, Eigen::Index columns);
+
+/// Fills `channels` of `solution` with names, surfaces and scales of 1, and `patch_channel`,
+/// `source_channel` and `full_emission`.
+void name_channels(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
+                   RadiositySolution& solution);
+
 /// Solves B = M + rho (E0 + F B) once for each channel's share of M and E0 on the same form
 /// factors, and fills `channels` (all scales 1; irradiances are left to reconstruct),
 /// `patch_channel`, `source_channel` and `full_emission` of `solution`, which holds the solution

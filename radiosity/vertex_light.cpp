@@ -10,7 +10,7 @@ VertexLight::VertexLight(const ElementCaster& caster, const DirectLight& direct_
       form_factors_(caster),
       points_(static_cast<std::size_t>(mesh_.vertex_count())),
       F_(points_.size()),
-      irradiance_(BandArray::Zero(mesh_.vertex_count(), mesh_.emission.cols())) {
+      irradiance_(BandArray::Zero(mesh_.vertex_count(), direct_light.column_count())) {
   for (int e = 0; e < mesh_.element_count(); ++e) {
     for (int c = 0; c < mesh_.corner_count(e); ++c) {
       points_[static_cast<std::size_t>(mesh_.corners[e][c])] = receiving_corner(mesh_, e, c);

@@ -17,11 +17,12 @@ namespace lightwell {
 /// glass is left to the patches. Keeps references to caster and direct_light.
 class VertexLight {
  public:
+  /// The shots have the columns of `direct_light`.
   VertexLight(const ElementCaster& caster, const DirectLight& direct_light);
 
   void receive(std::span<const ProgressiveRadiosity::Shot> shots);
 
-  /// vertices x bands, W/m^2.
+  /// vertices x columns, W/m^2.
   const BandArray& irradiance() const { return irradiance_; }
 
  private:

@@ -45,6 +45,13 @@ void check(const Camera& camera) {
     fail(fmt::format("an aperture of {} blades; give 3 to {}, or 0 for a round one", camera.blades,
                      max_blades));
   }
+  if (!std::isfinite(camera.shutter_open) || !std::isfinite(camera.shutter_close) ||
+      !(camera.shutter_open <= camera.shutter_close)) {
+    fail(
+        fmt::format("its shutter opens at {:g} s and closes at {:g} s; both must be finite, and it "
+                    "must not close before it opens",
+                    camera.shutter_open, camera.shutter_close));
+  }
 }
 
 }  // namespace

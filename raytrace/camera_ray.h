@@ -12,7 +12,8 @@ namespace lightwell {
 class CameraRays {
  public:
   /// Throws InputError unless the size is positive, 0 < fov < 180, direction and up are unit
-  /// vectors at right angles (within 1e-6), and the lens is none or one that can be.
+  /// vectors at right angles (within 1e-6), the lens is none or one that can be, and the shutter
+  /// closes no sooner than it opens.
   explicit CameraRays(const Camera& camera);
 
   /// Through the point (x, y) of the picture: pixels from the left and from the top, so (0, 0) is

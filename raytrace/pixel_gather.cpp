@@ -26,8 +26,7 @@ Eigen::Vector3d above(const Eigen::Vector3d& direction, const Eigen::Vector3d& n
 PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
                          const DirectLight& direct_light, const RadiositySolution& solution,
                          int most_rays, int max_specular_depth)
-    : caster_(caster),
-      paths_(scene, caster, max_specular_depth),
+    : paths_(scene, caster, max_specular_depth),
       radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance())) {
   if (const FreeSource* dome = direct_light.dome()) dome_ = dome->light;
   constexpr int fewest = 8;
@@ -36,8 +35,8 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
   }
 }
 
-Spectrum PixelGather::indirect_irradiance(const GatherPlace& at, std::uint64_t key,
-                                          float share) const {
+Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const GatherPlace& at,
+                                          std::uint64_t key, float share) const {
   std::size_t level = 0;
   for (; share <= 0.5f && level + 1 < sets_.size(); share *= 2.0f) ++level;
   const HemisphereSets::Draw draw = sets_[level].draw(random_key(key, direction_purpose));
@@ -54,26 +53,26 @@ Spectrum PixelGather::indirect_irradiance(const GatherPlace& at, std::uint64_t k
                  .direction = above(frame * Eigen::Vector3d(p.x, p.y, p.z), at.normal),
                  .origin_group = at.facet};
     }
-    caster_.closest_hits({rays.data(), n}, {hits.data(), n});
+    caster.closest_hits({rays.data(), n}, {hits.data(), n});
     for (std::size_t r = 0; r < n; ++r) {
       if (hits[r].facet < 0) continue;
       const std::uint64_t ray_key = random_key(key, branch_purpose, begin + r);
-      sum += arriving(rays[r], hits[r], ray_key).cast<double>();
+      sum += arriving(caster, rays[r], hits[r], ray_key).cast<double>();
     }
   }
   return (sum / static_cast<double>(points.size())).cast<float>();
 }
 
 // B of what the ray ends on.
-Spectrum PixelGather::arriving(const Ray& ray, const ElementHit& hit, std::uint64_t key) const {
-  const PatchMesh& mesh = caster_.mesh();
+Spectrum PixelGather::arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                               std::uint64_t key) const {
+  const PatchMesh& mesh = caster.mesh();
   Spectrum B = Spectrum::Zero(radiosity_.cols());
   if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) B = interpolate(mesh, radiosity_, hit);
   if (!paths_.is_specular(hit.facet)) return B;
-  const PathLosses losses =
-      paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
-        B += throughput * interpolate(mesh, radiosity_, end);
-      });
+  const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
+    B += end.throughput * interpolate(mesh, radiosity_, end.hit);
+  });
   if (losses.sky.size() > 0 && dome_.size() > 0) {
     B += std::numbers::pi_v<float> * dome_ * losses.sky;
   }

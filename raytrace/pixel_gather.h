@@ -30,13 +30,15 @@ class PixelGather {
   PixelGather(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
               const RadiositySolution& solution, int most_rays, int max_specular_depth);
 
-  /// By about `share`, (0, 1], of the rays: the nearest power of two less, at least 8.
-  Spectrum indirect_irradiance(const GatherPlace& at, std::uint64_t key, float share) const;
+  /// By about `share`, (0, 1], of the rays: the nearest power of two less, at least 8. `caster` is
+  /// the one given, or what ElementCaster::at() makes of it.
+  Spectrum indirect_irradiance(const ElementCaster& caster, const GatherPlace& at,
+                               std::uint64_t key, float share) const;
 
  private:
-  Spectrum arriving(const Ray& ray, const ElementHit& hit, std::uint64_t key) const;
+  Spectrum arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                    std::uint64_t key) const;
 
-  const ElementCaster& caster_;
   LightPaths paths_;
   BandArray radiosity_{};               // vertices x bands, W/m^2
   Spectrum dome_{};                     // factor of the sky's light; empty if there is none

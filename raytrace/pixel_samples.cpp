@@ -42,8 +42,12 @@ double FilterPlaces::offset(double u) const {
 }
 
 PixelSamples::PixelSamples(const CameraRays& rays, const RayTree& tree,
-                           const SampleOptions& options)
-    : rays_(rays), tree_(tree), options_(options), points_(options.most) {}
+                           const SampleOptions& options, std::optional<Exposure> exposure)
+    : rays_(rays),
+      tree_(tree),
+      options_(options),
+      exposure_(std::move(exposure)),
+      points_(options.most) {}
 
 PixelTally PixelSamples::first_looks(int x, int y) const {
   PixelTally tally;
@@ -61,6 +65,15 @@ void PixelSamples::look_on(int x, int y, bool is_beside_noise, PixelTally& tally
   }
 }
 
+Sight PixelSamples::look_at_time(Ray ray, double time, std::uint64_t key, int number) const {
+  if (exposure_->camera) {
+    const Eigen::Isometry3d moved = exposure_->camera->at(time);
+    ray.origin = moved * ray.origin;
+    ray.direction = moved.linear() * ray.direction;
+  }
+  return tree_.look_one_of_many(ray, key, number, exposure_->caster.at(time));
+}
+
 void PixelSamples::look(int x, int y, int until, PixelTally& tally) const {
   const auto column = static_cast<std::uint64_t>(x), row = static_cast<std::uint64_t>(y);
   const std::uint64_t place_key = random_key(column, row, place_purpose);
@@ -69,7 +82,11 @@ void PixelSamples::look(int x, int y, int until, PixelTally& tally) const {
     const Eigen::Array4d u = points_.point(tally.count, place_key).cast<double>();
     const Ray ray =
         rays_.ray(x + 0.5 + filter_.offset(u[0]), y + 0.5 + filter_.offset(u[1]), u[2], u[3]);
-    Sight sight = tree_.look_one_of_many(ray, look_key, tally.count);
+    const double part = exposure_ ? SobolPoints::fifth(tally.count, place_key) : 0.0;
+    Sight sight =
+        exposure_ ? look_at_time(ray, exposure_->open + part * (exposure_->close - exposure_->open),
+                                 look_key, tally.count)
+                  : tree_.look_one_of_many(ray, look_key, tally.count);
     const auto light = static_cast<double>(sight.radiance.mean());
     tally.light += light;
     tally.square += light * light;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "raytrace/camera_ray.h"
 #include "raytrace/shade.h"
@@ -33,12 +34,21 @@ struct PixelTally {
   bool is_good(float noise) const;
 };
 
+/// While a shutter is open; a picture is the mean over that time.
+struct Exposure {
+  ElementCaster caster;                 ///< knows what moves
+  double open = 0.0, close = 0.0;       ///< s
+  std::optional<RigidMotion> camera{};  ///< of the camera itself
+};
+
 /// A pixel by many looks, each through a place of its own of picture and lens: for what no
-/// subdivision of the pixel's square resolves, gloss and depth of field (Cook, Porter & Carpenter
-/// 1984). Samples are points of one scrambled Sobol sequence per pixel, and neighbours share none.
+/// subdivision of the pixel's square resolves, gloss, depth of field and motion (Cook, Porter &
+/// Carpenter 1984). Samples are points of one scrambled Sobol sequence per pixel, in picture, lens
+/// and time, and neighbours share none.
 class PixelSamples {
  public:
-  PixelSamples(const CameraRays& rays, const RayTree& tree, const SampleOptions& options);
+  PixelSamples(const CameraRays& rays, const RayTree& tree, const SampleOptions& options,
+               std::optional<Exposure> exposure = {});
 
   /// SampleOptions::least looks.
   PixelTally first_looks(int x, int y) const;
@@ -51,10 +61,12 @@ class PixelSamples {
 
  private:
   void look(int x, int y, int until, PixelTally& tally) const;
+  Sight look_at_time(Ray ray, double time, std::uint64_t key, int number) const;
 
   const CameraRays& rays_;
   const RayTree& tree_;
   SampleOptions options_;
+  std::optional<Exposure> exposure_;  // none: nothing moves
   SobolPoints points_;
   FilterPlaces filter_;
 };

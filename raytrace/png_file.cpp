@@ -20,6 +20,7 @@ namespace {
 struct PngJob {
   std::ostream* stream;
   int width, height;
+  int channels;  ///< 3, or 4 with alpha
   png_bytep* rows;
   png_text* texts = nullptr;
   int text_count = 0;
@@ -58,8 +59,8 @@ bool run_png(PngJob& job) {
   }
   png_set_write_fn(png, job.stream, png_write_bytes, png_flush_bytes);
   png_set_IHDR(png, info, static_cast<png_uint_32>(job.width), static_cast<png_uint_32>(job.height),
-               8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+               8, job.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   if (job.text_count > 0) png_set_text(png, info, job.texts, job.text_count);
   png_write_info(png, info);
@@ -69,11 +70,10 @@ bool run_png(PngJob& job) {
   return true;
 }
 
-std::vector<png_bytep> row_pointers(int width, int height, std::span<const std::uint8_t> rgb) {
+std::vector<png_bytep> row_pointers(int height, std::span<const std::uint8_t> pixels) {
   std::vector<png_bytep> rows(static_cast<std::size_t>(height));
-  for (int y = 0; y < height; ++y) {
-    rows[y] = const_cast<png_bytep>(rgb.data()) + std::size_t{3} * width * y;
-  }
+  const std::size_t row = pixels.size() / rows.size();
+  for (int y = 0; y < height; ++y) rows[y] = const_cast<png_bytep>(pixels.data()) + row * y;
   return rows;
 }
 
@@ -95,10 +95,15 @@ png_text png_entry(const std::string& key, const std::string& value) {
 
 }  // namespace
 
-std::string encode_png(int width, int height, std::span<const std::uint8_t> rgb) {
+std::string encode_png(int width, int height, std::span<const std::uint8_t> pixels) {
   std::ostringstream stream;
-  std::vector<png_bytep> rows = row_pointers(width, height, rgb);
-  PngJob job{.stream = &stream, .width = width, .height = height, .rows = rows.data()};
+  std::vector<png_bytep> rows = row_pointers(height, pixels);
+  const std::size_t count = static_cast<std::size_t>(width) * height;
+  PngJob job{.stream = &stream,
+             .width = width,
+             .height = height,
+             .channels = static_cast<int>(pixels.size() / count),
+             .rows = rows.data()};
   if (!run_png(job)) throw std::runtime_error(fmt::format("a PNG cannot be made: {}", job.message));
   return std::move(stream).str();
 }
@@ -111,7 +116,7 @@ void write_png(const std::filesystem::path& path, int width, int height,
     fail_write(path, fmt::format("{} x {} pixels with {} bytes is not a picture of 1 to {} pixels",
                                  width, height, rgb.size(), max_image_pixels));
   }
-  std::vector<png_bytep> rows = row_pointers(width, height, rgb);
+  std::vector<png_bytep> rows = row_pointers(height, rgb);
   std::vector<std::string> values;  // png_text only points at them
   for (const auto& [key, value] : metadata) values.push_back(to_text(value));
   std::vector<png_text> texts;
@@ -127,6 +132,7 @@ void write_png(const std::filesystem::path& path, int width, int height,
   PngJob job{.stream = &output.stream(),
              .width = width,
              .height = height,
+             .channels = 3,
              .rows = rows.data(),
              .texts = texts.data(),
              .text_count = static_cast<int>(texts.size())};

@@ -18,6 +18,8 @@
 #include "raytrace/pixel_samples.h"
 #include "raytrace/sampled_rows.h"
 #include "raytrace/shade.h"
+#include "scene/errors.h"
+#include "scene/facet_normals.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -256,14 +258,57 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
   });
 }
 
-// Rough surfaces and lenses show nothing sharp that subdivision could find the edges of.
-SampleOptions sampling_for(const Scene& scene, const CameraRays& rays,
+// What happens while the shutter is open, if anything does.
+std::optional<Exposure> exposure_of(const Scene& scene, const PatchMesh& mesh,
+                                    const Camera& camera) {
+  const auto moves = [](const auto& thing) { return thing.motion >= 0; };
+  if (!camera.is_open_for_a_while()) return std::nullopt;
+  if (!moves(camera) && std::ranges::none_of(scene.surfaces, moves)) return std::nullopt;
+  const double instant = scene.motions.front().rest_time, middle = camera.shutter_middle();
+  constexpr double rounding = 1e-9;
+  if (!(std::abs(middle - instant) <= rounding * std::max(1.0, std::abs(instant)))) {
+    throw InputError(
+        fmt::format("camera '{}': the middle of its shutter is {:g} s, but light is solved for "
+                    "{:g} s; move the "
+                    "shutter there, or place the scene at rest at another time and solve it again",
+                    camera.name, middle, instant));
+  }
+  Exposure exposure{.caster = ElementCaster(mesh, scene),
+                    .open = camera.shutter_open,
+                    .close = camera.shutter_close};
+  if (moves(camera)) exposure.camera = scene.motions[static_cast<std::size_t>(camera.motion)];
+  return exposure;
+}
+
+// Rough surfaces, lenses and motion show nothing sharp that subdivision could find the edges of.
+SampleOptions sampling_for(const Scene& scene, const CameraRays& rays, bool is_exposure,
                            const RenderOptions& options) {
   SampleOptions sampling = options.sampling;
   const auto is_rough = [](const Material& m) { return m.gloss_roughness() > 0.0f; };
-  const bool needed = rays.has_lens() || std::ranges::any_of(scene.materials, is_rough);
+  const bool needed =
+      is_exposure || rays.has_lens() || std::ranges::any_of(scene.materials, is_rough);
   if (sampling.most == 0 && needed) sampling.most = SampleOptions::most_by_default;
   return sampling;
+}
+
+void add_motion(Fingerprint& print, const RigidMotion& motion) {
+  print.add(motion.pivot);
+  print.add(motion.axis);
+  print.add(motion.rest_time);
+  for (const MotionKey& key : motion.keys) {
+    print.add(key.time);
+    print.add(key.degrees);
+    print.add(key.translation);
+  }
+}
+
+// Of what moves while the shutter is open.
+void add_exposure(Fingerprint& print, const Scene& scene, const Exposure& exposure) {
+  print.add(exposure.open);
+  print.add(exposure.close);
+  for (const Surface& surface : scene.surfaces) print.add(surface.motion);
+  for (const RigidMotion& motion : scene.motions) add_motion(print, motion);
+  if (exposure.camera) add_motion(print, *exposure.camera);
 }
 
 // All that decides a picture, but what the journal is of.
@@ -366,13 +411,16 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   image.radiance.resize(std::int64_t{camera.width} * camera.height, scene.bands.count());
   LayerFilm layers(options.layers, image);
 
+  std::optional<Exposure> exposure = exposure_of(scene, caster.mesh(), camera);
   const JournalPhase phase(options.journal, "picture", [&](Fingerprint& print) {
     add_inputs(print, caster, solution, camera, options);
+    if (exposure) add_exposure(print, scene, *exposure);
+    if (const FacetNormals normals(scene); !normals.is_empty()) print.add(normals.hash());
     for (const std::string& name : image.layers.names) print.add(name);
   });
-  const SampleOptions sampling = sampling_for(scene, rays, options);
+  const SampleOptions sampling = sampling_for(scene, rays, exposure.has_value(), options);
   std::optional<PixelSamples> samples;
-  if (sampling.most > 0) samples.emplace(rays, tree, sampling);
+  if (sampling.most > 0) samples.emplace(rays, tree, sampling, std::move(exposure));
   TileRenderer tiles(eye, samples ? &*samples : nullptr, options, counters, image, layers);
   report(options.progress, "render", 0.0);
   int tile = 0, recalled = 0;

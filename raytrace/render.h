@@ -21,9 +21,10 @@ enum class Pass {
   gather,       ///< direct light as above, indirect light by a final gather at every hit
 };
 
-/// Many looks per pixel instead of subdivision: for pictures with gloss or a lens.
+/// Many looks per pixel instead of subdivision: for pictures with gloss, a lens or
+/// motion.
 struct SampleOptions {
-  int most = 0;  ///< 0: most_by_default where a lens or rough surfaces ask for it, else none
+  int most = 0;  ///< 0: most_by_default where a lens, motion or rough surfaces ask for it
   int least = 16;
   /// A pixel is done when its standard error is below this share of it. A half of it takes four
   /// times as many samples.
@@ -73,8 +74,10 @@ struct RenderReport {
 };
 
 /// Second pass: Whitted's recursive ray tracing (1980) over the radiosity solution. A pixel is the
-/// mean radiance over its square or, with a lens or gloss, what PixelSamples finds. The same bits
-/// for any number of threads.
+/// mean radiance over its square or, with a lens, gloss or motion, what PixelSamples finds. The
+/// same bits for any number of threads. Throws InputError where Camera's shutter has its middle at
+/// another time than RigidMotion::rest_time: light is solved for one instant, and carried along by
+/// what moves; shadows and what is gathered are sampled in time.
 Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
              const RadiositySolution& solution, const Camera& camera,
              const RenderOptions& options = {}, RenderReport* report = nullptr);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "scene/optics.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -62,12 +63,15 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       options_(options),
       pixel_width_(pixel_width),
       textures_(std::make_shared<const FacetTextures>(scene)),
+      normals_(scene),
       with_layers_(std::any_of(options.layers.begin(), options.layers.end(),
                                [](Layer layer) { return first_sampled_column(layer) >= 0; })),
       white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
       gloss_points_(gloss_point_count),
       lamps_(direct_light) {
   if (textures_->is_empty()) textures_ = nullptr;
+  constexpr double rounding = 1e-6;  // of the diagonal
+  if (!normals_.is_empty()) least_lift_ = rounding * scene_bounds(scene).diagonal();
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
   }
@@ -104,17 +108,22 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
 
 Sight RayTree::look(const Ray& ray, std::uint64_t key, float effort) const {
   const int bands = scene_.bands.count();
-  Walk walk{
-      .sight = {.radiance = Spectrum::Zero(bands)}, .key = key, .effort = effort, .gloss_key = key};
+  Walk walk{.sight = {.radiance = Spectrum::Zero(bands)},
+            .key = key,
+            .effort = effort,
+            .caster = &caster_,
+            .gloss_key = key};
   follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
   return walk.sight;
 }
 
-Sight RayTree::look_one_of_many(const Ray& ray, std::uint64_t key, int number) const {
+Sight RayTree::look_one_of_many(const Ray& ray, std::uint64_t key, int number,
+                                const ElementCaster& caster) const {
   const int bands = scene_.bands.count();
   Walk walk{.sight = {.radiance = Spectrum::Zero(bands)},
             .key = random_key(key, static_cast<std::uint64_t>(number)),
             .effort = share_of_many,
+            .caster = &caster,
             .number = number,
             .gloss_key = key};
   follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
@@ -122,14 +131,14 @@ Sight RayTree::look_one_of_many(const Ray& ray, std::uint64_t key, int number) c
 }
 
 std::uint64_t RayTree::fingerprint(const Ray& ray) const {
-  Walk walk{.shades = false};
+  Walk walk{.caster = &caster_, .shades = false};
   follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, walk);
   return walk.sight.fingerprint;
 }
 
 void RayTree::follow(Branch branch, Walk& walk) const {
   ElementHit hit;
-  caster_.closest_hits({&branch.ray, 1}, {&hit, 1});
+  walk.caster->closest_hits({&branch.ray, 1}, {&hit, 1});
   Sight& sight = walk.sight;
   if (branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
@@ -137,7 +146,7 @@ void RayTree::follow(Branch branch, Walk& walk) const {
                                    static_cast<std::uint64_t>(seen), hit.from_back);
   }
   if (hit.facet < 0) return look_outside(branch, walk);
-  const SurfacePoint at = surface_point(branch.ray, hit);
+  const SurfacePoint at = surface_point(branch.ray, hit, *walk.caster);
   if (absorbs_) {
     branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
                                          (at.position - branch.ray.origin).norm());
@@ -178,10 +187,14 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const SurfacePo
   const Material& material = scene_.materials[facets_[hit.facet].material];
   // The back of a one-sided mirror is black.
   if (!material.is_specular() || (!material.dielectric && hit.element < 0)) return;
-  const Meeting meeting{.material = material,
-                        .direction = branch.ray.direction,
-                        .normal = at.normal,
-                        .from_back = hit.from_back};
+  Meeting meeting{.material = material,
+                  .direction = branch.ray.direction,
+                  .normal = at.normal,
+                  .from_back = hit.from_back};
+  if (normals_.is_given(hit.facet)) {
+    const Eigen::Vector3d smooth = at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
+    meeting.normal = visible_normal(branch.ray.direction, at.normal, smooth);
+  }
   if (material.gloss_roughness() > 0.0f) return scatter(branch, meeting, hit, at, walk);
   const OnwardWays ways = smooth_ways(meeting);
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(ways.count); ++i) {
@@ -207,31 +220,58 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
   branch.media.go_on(material, scene_.materials[material], way, hit.from_back);
   branch.ray = {
       .origin = at.position, .direction = way.direction.normalized(), .origin_group = hit.facet};
+  // A smooth normal may send it to the wrong side of the facet, where it would be lost.
+  const double height = branch.ray.direction.dot(at.normal);
+  if (normals_.is_given(hit.facet) && (way.crosses ? height > 0.0 : height < 0.0)) {
+    branch.ray.direction -= 2.0 * height * at.normal;
+  }
   follow(branch, walk);
 }
 
-RayTree::SurfacePoint RayTree::surface_point(const Ray& ray, const ElementHit& hit) const {
+RayTree::SurfacePoint RayTree::surface_point(const Ray& ray, const ElementHit& hit,
+                                             const ElementCaster& caster) const {
   const FacetShape& facet = facets_[hit.facet];
-  SurfacePoint at{.position = ray.origin + hit.t * ray.direction, .normal = facet.normal};
+  SurfacePoint at{.position = ray.origin + hit.t * ray.direction,
+                  .rest_normal = facet.normal,
+                  .pose = caster.pose_of(hit.facet)};
+  at.rest = at.pose ? Eigen::Vector3d(at.pose->inverse() * at.position) : at.position;
   if (facet.is_sphere) {
-    at.normal = (at.position - facet.point).normalized();
+    at.rest_normal = (at.rest - facet.point).normalized();
   } else {
     // The caster's distances are float; the plane is known in double.
-    at.position -= facet.normal.dot(at.position - facet.point) * facet.normal;
+    at.rest -= facet.normal.dot(at.rest - facet.point) * facet.normal;
   }
-  if (at.normal.dot(ray.direction) > 0.0) at.normal = -at.normal;
+  if (at.rest_normal.dot(at.turned_back(ray.direction)) > 0.0) at.rest_normal = -at.rest_normal;
+  at.position = at.pose ? Eigen::Vector3d(*at.pose * at.rest) : at.rest;
+  at.normal = at.turned(at.rest_normal);
   return at;
 }
 
-// The vertices' normals round off a tessellated surface, and are the facet's own on a flat one.
+// What the file says; else the mesh's normals at vertices round off a tessellated surface, and are
+// the facet's own on a flat one.
 Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const SurfacePoint& at) const {
   if (facets_[hit.facet].is_sphere) return at.normal;
+  if (normals_.is_given(hit.facet)) {
+    return at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
+  }
   const PatchMesh& mesh = caster_.mesh();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (int c = 0; c < mesh.corner_count(hit.element); ++c) {
     normal += hit.weights[c] * mesh.vertex_normal[mesh.corners[hit.element][c]];
   }
-  return normal.norm() > 0.0 ? normal.normalized() : at.normal;
+  return normal.norm() > 0.0 ? at.turned(normal.normalized()) : at.normal;
+}
+
+RayTree::ShadowOrigin RayTree::shadow_origin(const ElementHit& hit, const SurfacePoint& at) const {
+  const PatchMesh& mesh = caster_.mesh();
+  // A lamp would see itself from before it.
+  const bool shines = (mesh.emission.row(mesh.patch[hit.element]) > 0.0f).any();
+  if (!normals_.is_given(hit.facet) || shines) return {at.position, hit.facet};
+  if (normals_.at(hit.facet, at.rest, at.rest_normal) == at.rest_normal) {
+    return {at.position, hit.facet};
+  }
+  const double height = normals_.height(hit.facet, at.rest, at.rest_normal);
+  return {at.position + std::max(height, least_lift_) * at.normal, -1};
 }
 
 // The texture's at the place, over what the pixel covers of the surface; else the patch's.
@@ -245,16 +285,17 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
     return mesh.reflectance.row(patch).transpose();
   }
   const double width = cone_width(branch, at);
-  const Eigen::Vector3d direction = branch.ray.direction.normalized();
+  const Eigen::Vector3d direction = at.turned_back(branch.ray.direction.normalized());
+  const Eigen::Vector3d& normal = at.rest_normal;
   constexpr double grazing = 1e-3;  // of a cosine: then a texture is a streak anyway
-  const double cosine = std::max(grazing, std::abs(direction.dot(at.normal)));
-  const Eigen::Vector3d across = at.normal.cross(direction);
+  const double cosine = std::max(grazing, std::abs(direction.dot(normal)));
+  const Eigen::Vector3d across = normal.cross(direction);
   const double sine = across.norm();
   const Eigen::Vector3d side =
-      sine > grazing ? Eigen::Vector3d(across / sine) : at.normal.unitOrthogonal();
+      sine > grazing ? Eigen::Vector3d(across / sine) : normal.unitOrthogonal();
   Eigen::Matrix<double, 3, 2> footprint;
-  footprint << width * side, width / cosine * side.cross(at.normal);
-  return textures_->reflectance(hit.facet, at.position, footprint);
+  footprint << width * side, width / cosine * side.cross(normal);
+  return textures_->reflectance(hit.facet, at.rest, footprint);
 }
 
 // L = (M + rho E) / pi.
@@ -279,10 +320,12 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& a
   const float share = walk.effort * branch.weight.maxCoeff();
   const ShadowOptions shadows = shadows_for(options_.shadows, share, walk.number ? 4 : 8);
   Arriving E;
-  E.direct = direct_light_.irradiance(caster_, at.position, normal, hit.facet,
+  const ShadowOrigin from = shadow_origin(hit, at);
+  E.direct = direct_light_.irradiance(*walk.caster, from.position, normal, from.facet,
                                       random_key(walk.key, branch.place, shadow_purpose), shadows);
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
+        *walk.caster,
         {.position = at.position, .normal = at.normal, .smooth_normal = normal, .facet = hit.facet},
         random_key(walk.key, branch.place, gather_purpose), share);
   } else {
@@ -305,7 +348,7 @@ void RayTree::add_caustics(const ElementHit& hit, const SurfacePoint& at,
     indirect -= interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
     indirect = indirect.max(0.0f);
   }
-  indirect += caustics_->irradiance(at.position, at.normal, hit.element);
+  indirect += caustics_->irradiance(at.rest, at.rest_normal, hit.element);
 }
 
 void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,

@@ -13,6 +13,7 @@
 #include "raytrace/lamp_samples.h"
 #include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
+#include "scene/facet_normals.h"
 #include "scene/facet_textures.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
@@ -42,6 +43,13 @@ struct Sight {
 /// sides in the same order; branches that weigh less than RenderOptions::contrast are left out, for
 /// they alone cannot change a pixel by more, and so is what is seen by way of rough surfaces.
 ///
+/// Where a surface gives normals at vertices, mirrors, glass and what is diffuse take those for it
+/// (Phong 1975), while the facets decide which side is seen and what hides what. Nothing goes on
+/// below the facet that it was to leave (see visible_normal), and shadow rays leave from the smooth
+/// surface that the facet stands for, so that the facets around do not shade it (Hanika 2021,
+/// "Hacking the Shadow Terminator"): they are real rays from a place before the facet, and no light
+/// comes through it.
+///
 /// Textures are filtered over what a ray's pixel covers: a cone (Amanatides 1984) as wide as
 /// `pixel_width` times the way it has gone, as if all surfaces on the way were flat.
 class RayTree {
@@ -55,7 +63,12 @@ class RayTree {
   Sight look(const Ray& ray, std::uint64_t key, float effort = 1.0f) const;
   /// One of many looks that are averaged with others of the same key, numbered from 0: with few
   /// shadow and gather rays and one direction per rough surface, well spread over all of them.
-  Sight look_one_of_many(const Ray& ray, std::uint64_t key, int number) const;
+  Sight look_one_of_many(const Ray& ray, std::uint64_t key, int number) const {
+    return look_one_of_many(ray, key, number, caster_);
+  }
+  /// The same by what ElementCaster::at() makes of a caster of the scene that knows what moves.
+  Sight look_one_of_many(const Ray& ray, std::uint64_t key, int number,
+                         const ElementCaster& caster) const;
   /// The fingerprint alone, without shadow rays.
   std::uint64_t fingerprint(const Ray& ray) const;
 
@@ -71,6 +84,13 @@ class RayTree {
   /// A place that was met; the normal is unit and on the side the ray came from.
   struct SurfacePoint {
     Eigen::Vector3d position, normal;
+    Eigen::Vector3d rest, rest_normal;        ///< the same where what moves rests
+    const Eigen::Isometry3d* pose = nullptr;  ///< from there; null: it stands still
+
+    Eigen::Vector3d turned(const Eigen::Vector3d& v) const { return pose ? pose->linear() * v : v; }
+    Eigen::Vector3d turned_back(const Eigen::Vector3d& v) const {
+      return pose ? Eigen::Vector3d(pose->linear().transpose() * v) : v;
+    }
   };
   /// A ray of the tree.
   struct Branch {
@@ -94,6 +114,7 @@ class RayTree {
     Sight sight{};
     std::uint64_t key = 0;
     float effort = 1.0f;
+    const ElementCaster* caster = nullptr;
     bool shades = true;
     std::optional<int> number{};  ///< of many looks of one key
     std::uint64_t gloss_key = 0;  ///< the same in all of them
@@ -113,7 +134,14 @@ class RayTree {
   const RoughLobe& lobe(int material, bool from_back) const;
   void grow(const Branch& parent, std::uint64_t place, const Onward& way, const ElementHit& hit,
             const SurfacePoint& at, Walk& walk) const;
-  SurfacePoint surface_point(const Ray& ray, const ElementHit& hit) const;
+  SurfacePoint surface_point(const Ray& ray, const ElementHit& hit,
+                             const ElementCaster& caster) const;
+  /// Where shadow rays leave from, and the facet they leave; -1: none.
+  struct ShadowOrigin {
+    Eigen::Vector3d position;
+    int facet = -1;
+  };
+  ShadowOrigin shadow_origin(const ElementHit& hit, const SurfacePoint& at) const;
   Eigen::Vector3d smooth_normal(const ElementHit& hit, const SurfacePoint& at) const;
   void shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
   Arriving arriving(const ElementHit& hit, const SurfacePoint& at, const Branch& branch,
@@ -133,6 +161,8 @@ class RayTree {
   const RenderOptions& options_;
   double pixel_width_;                               ///< m, one metre away
   std::shared_ptr<const FacetTextures> textures_{};  ///< null: nothing varies over facets
+  FacetNormals normals_;
+  double least_lift_ = 0.0;  ///< m, off a facet: more than rounding may move a ray's origin
   bool with_layers_ = false;
   Eigen::Array3f white_rgb_;              ///< of what reflects everything, under equal-energy light
   std::optional<PixelGather> gather_{};   ///< for Pass::gather

@@ -57,6 +57,8 @@ void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const Eleme
   if (branch.depth >= deepest_path(options_.max_depth, true)) return;
   const auto lamp = lamps_.draw(at.position, hit.facet, lot[0], lot[1], lot[2]);
   if (!lamp) return;
+  // Light stays on the side of the facet that a smooth normal says it is on.
+  if ((lamp->direction.dot(meeting.normal) < 0.0) != (lamp->direction.dot(at.normal) < 0.0)) return;
   const int material = facets_[hit.facet].material;
   const double density = lobe(material, hit.from_back).density(meeting, lamp->direction);
   const Onward way{.direction = lamp->direction,
@@ -71,7 +73,7 @@ void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const Eleme
                 .origin_group = hit.facet,
                 .target_group = lamp->emitter->facet};
   std::uint8_t blocked = 0;
-  caster_.occluded({&ray, 1}, {&blocked, 1});
+  walk.caster->occluded({&ray, 1}, {&blocked, 1});
   if (blocked != 0) return;
   if (absorbs_) {
     Media media = branch.media;
@@ -117,7 +119,7 @@ void RayTree::add_free_source(const Branch& branch, const Meeting& meeting, cons
                 .origin_group = hit.facet};
   // What a lobe averages is radiance; a point's is E as a peak of solid angle 0.
   Spectrum seen = branch.weight * share_of(meeting, way.crosses) * sources[i].light *
-                  direct_light_.passed(caster_, ray) *
+                  direct_light_.passed(*walk.caster, ray) *
                   (share * static_cast<float>(density * seen_source.irradiance / chance));
   if (!(seen > 0.0f).any()) return;
   if (absorbs_) {

@@ -1,5 +1,6 @@
 #include "scene/optics.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lightwell {
@@ -28,6 +29,17 @@ double pane_reflectance(double cos_incident, double index) {
 
 Eigen::Vector3d reflect(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal) {
   return direction - 2.0 * direction.dot(normal) * normal;
+}
+
+Eigen::Vector3d visible_normal(const Eigen::Vector3d& direction, const Eigen::Vector3d& flat,
+                               const Eigen::Vector3d& smooth) {
+  const Eigen::Vector3d mirrored = reflect(direction, smooth);
+  const double height = mirrored.dot(flat);
+  // Light that grazes the surface is mirrored at no more than its own angle.
+  const double least = std::min(0.01, -0.9 * direction.dot(flat));
+  if (height >= least) return smooth;
+  const Eigen::Vector3d raised = (mirrored + (least - height) * flat).normalized();
+  return (raised - direction).normalized();
 }
 
 std::optional<Eigen::Vector3d> refract(const Eigen::Vector3d& direction,

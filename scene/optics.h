@@ -24,6 +24,13 @@ double pane_reflectance(double cos_incident, double index);
 /// Mirror direction of `direction` (unit, towards the surface) about the unit normal.
 Eigen::Vector3d reflect(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal);
 
+/// The normal nearest `smooth` about which light from `direction` is mirrored above the surface,
+/// whose own unit normal `flat` is on the side that the light comes from: `smooth` itself where
+/// that does, else the one that mirrors it just above the horizon, in the same plane (Keller et al.
+/// 2017, "The Iray light transport simulation and rendering system", appendix A.3).
+Eigen::Vector3d visible_normal(const Eigen::Vector3d& direction, const Eigen::Vector3d& flat,
+                               const Eigen::Vector3d& smooth);
+
 /// Snell's refraction of `direction` (unit, towards the surface; the unit normal points to the side
 /// it comes from); empty under total internal reflection.
 std::optional<Eigen::Vector3d> refract(const Eigen::Vector3d& direction,

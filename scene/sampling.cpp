@@ -38,7 +38,7 @@ std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
 
 using DirectionNumbers = std::array<std::uint32_t, 32>;
 
-// Joe & Kuo 2008, "new-joe-kuo-6": degree s, polynomial a, initial m of dimensions 2 to 4.
+// Joe & Kuo 2008, "new-joe-kuo-6": degree s, polynomial a, initial m of dimensions 2 to 5.
 DirectionNumbers direction_numbers(int s, std::uint32_t a, std::array<std::uint32_t, 3> m) {
   DirectionNumbers v{};
   for (int j = 0; j < 32; ++j) {
@@ -82,6 +82,19 @@ Eigen::Array4f SobolPoints::point(int i, std::uint64_t key) const {
   Eigen::Array4f result;
   points(i, key, {&result, 1});
   return result;
+}
+
+double SobolPoints::fifth(int i, std::uint64_t key) {
+  static const DirectionNumbers v = direction_numbers(3, 2, {1, 1, 1});
+  const auto index = static_cast<std::uint32_t>(i);
+  std::uint32_t x = 0;
+  for (std::uint32_t gray = index ^ (index >> 1); gray != 0; gray &= gray - 1) {
+    x ^= v[static_cast<std::size_t>(std::countr_zero(gray))];
+  }
+  constexpr std::uint64_t dimension = 4;
+  const std::uint32_t scrambled =
+      owen_scramble(x, static_cast<std::uint32_t>(mix(key + dimension)));
+  return static_cast<double>(scrambled) * 0x1p-32;
 }
 
 void SobolPoints::points(int first, std::uint64_t key, std::span<Eigen::Array4f> result) const {

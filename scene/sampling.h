@@ -25,6 +25,8 @@ class SobolPoints {
   int count() const { return static_cast<int>(points_.size()); }
   /// Point i in [0,1)^4; any two dimensions are well stratified together.
   Eigen::Array4f point(int i, std::uint64_t key) const;
+  /// The fifth dimension of point i, in [0,1), for what has four already.
+  static double fifth(int i, std::uint64_t key);
   /// Points first, first + 1, ... one after another; quicker than one at a time.
   void points(int first, std::uint64_t key, std::span<Eigen::Array4f> result) const;
 

@@ -202,6 +202,14 @@ void check_mesh(const Scene& scene, const Surface& surface, const PolygonMesh& m
       fail(scene, fmt::format("surface '{}', polygon {}: its texture coordinates do not exist",
                               surface.name, f));
     }
+    if (facet.normal_map < -1 || facet.normal_map >= static_cast<int>(mesh.normal_maps.size())) {
+      fail(scene,
+           fmt::format("surface '{}', polygon {}: its normals do not exist", surface.name, f));
+    }
+  }
+  for (const NormalMap& map : mesh.normal_maps) {
+    if (map.gradient.allFinite() && map.offset.allFinite()) continue;
+    fail(scene, fmt::format("surface '{}': its normals are not finite", surface.name));
   }
   for (const UvMap& uv : mesh.uv_maps) {
     if (uv.gradient.allFinite() && uv.offset.allFinite()) continue;
@@ -242,6 +250,39 @@ void check_lamp(const Scene& scene, const Lamp& lamp) {
   }
   const auto* web = std::get_if<SharedWeb>(&lamp.shape);
   if (web && (!*web || (*web)->values().size() == 0)) refuse("its distribution is empty");
+}
+
+void check_motion(const Scene& scene, const std::string& what, int motion) {
+  if (motion >= -1 && motion < static_cast<int>(scene.motions.size())) return;
+  fail(scene, fmt::format("{}: its motion does not exist", what));
+}
+
+void check_motions(const Scene& scene) {
+  for (const RigidMotion& motion : scene.motions) {
+    if (const std::string what = fault(motion); !what.empty()) {
+      fail(scene, fmt::format("motion '{}' {}", motion.name, what));
+    }
+    if (motion.rest_time != scene.motions.front().rest_time) {
+      fail(scene,
+           fmt::format("motion '{}' rests at another time than '{}'; light is solved for one "
+                       "instant",
+                       motion.name, scene.motions.front().name));
+    }
+  }
+  for (const Surface& surface : scene.surfaces) {
+    check_motion(scene, fmt::format("surface '{}'", surface.name), surface.motion);
+    if (surface.motion < 0) continue;
+    const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
+    if (material.is_emitter()) {
+      fail(scene,
+           fmt::format("surface '{}' moves and its material '{}' emits light; light of lamps "
+                       "that move is not modelled: let the lamp stand still",
+                       surface.name, material.name));
+    }
+  }
+  for (const Camera& camera : scene.cameras) {
+    check_motion(scene, fmt::format("camera '{}'", camera.name), camera.motion);
+  }
 }
 
 // FNV-1a over the bits of what it is fed.
@@ -343,6 +384,20 @@ void add_lamps(const Scene& scene, Hash& hash) {
     hash.add(lamp.opening.along_c0);
     hash.add(lamp.opening.along_c90);
     hash.add(static_cast<std::uint64_t>(lamp.opening.is_round));
+  }
+}
+
+// Across which edges light is smooth; only where there are any, as above.
+void add_normals(const PolygonMesh& mesh, Hash& hash) {
+  if (mesh.normal_maps.empty()) return;
+  constexpr std::uint64_t normals = 0x5a007bu;
+  hash.add(normals);
+  for (const NormalMap& map : mesh.normal_maps) {
+    for (const double x : map.gradient.reshaped()) hash.add(x);
+    hash.add(map.offset);
+  }
+  for (const Facet& facet : mesh.facets) {
+    hash.add(static_cast<std::uint64_t>(facet.normal_map + 1));
   }
 }
 
@@ -450,6 +505,7 @@ void validate(const Scene& scene) {
       }
     }
   }
+  check_motions(scene);
 }
 
 std::uint64_t scene_hash(const Scene& scene) {
@@ -478,6 +534,7 @@ std::uint64_t scene_hash(const Scene& scene) {
         for (const auto& hole : facet.holes) hash.add(hole);
       }
       add_uv(*mesh, scene.materials[static_cast<std::size_t>(surface.material)], hash);
+      add_normals(*mesh, hash);
     } else {
       const auto& sphere = std::get<Sphere>(surface.shape);
       hash.add(sphere.center);

@@ -10,6 +10,8 @@
 
 #include "scene/bands.h"
 #include "scene/lamp.h"
+#include "scene/motion.h"
+#include "scene/normal_map.h"
 #include "scene/sky.h"
 #include "scene/texture.h"
 
@@ -77,7 +79,8 @@ struct Material {
 struct Facet {
   std::vector<int> boundary{};
   std::vector<std::vector<int>> holes{};
-  int uv_map = -1;  ///< index into PolygonMesh::uv_maps; -1: it has no texture coordinates
+  int uv_map = -1;      ///< index into PolygonMesh::uv_maps; -1: it has no texture coordinates
+  int normal_map = -1;  ///< index into PolygonMesh::normal_maps; -1: its normals are its plane's
 };
 
 /// Polygons over shared vertices (metres). Facets are planar: readers split what is not.
@@ -86,6 +89,8 @@ struct PolygonMesh {
   std::vector<Facet> facets{};
   /// Shared by facets over which u and v go on alike, so that those can become one.
   std::vector<UvMap> uv_maps{};
+  /// Shared by facets over which normals go on alike. Empty: the file gives none, or is flat.
+  std::vector<NormalMap> normal_maps{};
 };
 
 /// An exact sphere (metres); its front is the outside.
@@ -99,6 +104,7 @@ struct Surface {
   std::string name{};
   int material = 0;  ///< index into Scene::materials
   std::variant<PolygonMesh, Sphere> shape{};
+  int motion = -1;  ///< index into Scene::motions; -1: it stands still
 };
 
 /// Pinhole camera, or one with a thin lens. The picture's x axis is direction x up, so with
@@ -113,6 +119,12 @@ struct Camera {
   double lens_radius = 0.0;     ///< m; 0 is a pinhole, in whose picture all is sharp
   double focus_distance = 1.0;  ///< m along `direction` to the plane that is sharp, > 0
   int blades = 0;               ///< of the aperture, 3 to max_blades; 0: it is round
+  /// s; a picture is the mean of what is seen while the shutter is open. Equal: at an instant.
+  double shutter_open = 0.0, shutter_close = 0.0;
+  int motion = -1;  ///< index into Scene::motions; -1: it stands still
+
+  bool is_open_for_a_while() const { return shutter_close > shutter_open; }
+  double shutter_middle() const { return 0.5 * (shutter_open + shutter_close); }
 };
 
 inline constexpr int max_blades = 64;
@@ -129,6 +141,9 @@ struct Scene {
   std::vector<Camera> cameras{};
   std::vector<Lamp> lamps{};
   std::optional<Sky> sky{};  ///< what is seen where rays leave the scene; empty: black
+  /// Of surfaces and cameras. Coordinates are those at RigidMotion::rest_time, the instant that
+  /// light is solved for, which all share.
+  std::vector<RigidMotion> motions{};
   std::vector<std::string>
       notes{};               ///< what the reader assumed, repaired or dropped: one sentence each
   int dropped_polygons = 0;  ///< of its files, without area or crossing themselves: left out

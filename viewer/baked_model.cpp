@@ -17,6 +17,8 @@ namespace lightwell {
 namespace {
 
 constexpr int start_width = 1024, start_height = 768;
+/// Texels along a picture in files that people send each other.
+constexpr int longest_picture = 1024;
 
 /// Of two sides on each other, the one to leave out: unlit, and the back if neither is lit.
 bool is_left_out(const PatchMesh& mesh, const std::vector<ElementKind>& kinds, int element) {
@@ -47,23 +49,37 @@ void check_input(const SolvedScene& solved, const Scene& scene) {
   }
 }
 
-/// Elements to keep, by surface and side.
-std::map<std::pair<int, bool>, std::vector<int>> sides_of(const PatchMesh& mesh,
-                                                          const std::vector<ElementKind>& kinds) {
-  std::map<std::pair<int, bool>, std::vector<int>> sides;
+struct Side {
+  int surface = 0;
+  bool is_back = false;
+  int picture = -1;
+
+  auto operator<=>(const Side&) const = default;
+};
+
+/// Elements to keep; where they show a picture, in the order of its maps.
+std::map<Side, std::vector<int>> sides_of(const PatchMesh& mesh,
+                                          const std::vector<ElementKind>& kinds,
+                                          const DrawnPictures& drawn) {
+  std::map<Side, std::vector<int>> sides;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
-    if (!is_left_out(mesh, kinds, e)) sides[{mesh.surface[p], mesh.is_back[p] != 0}].push_back(e);
+    if (is_left_out(mesh, kinds, e)) continue;
+    sides[{mesh.surface[p], mesh.is_back[p] != 0, drawn.of(mesh.facet[e])}].push_back(e);
+  }
+  for (auto& [side, elements] : sides) {
+    if (side.picture < 0) continue;
+    std::ranges::stable_sort(elements, {}, [&](int e) { return drawn.map_of(mesh.facet[e]); });
   }
   return sides;
 }
 
-/// Numbers the mesh's vertices anew, in the order in which faces ask for them; each part has its
-/// own.
+/// Numbers the mesh's vertices anew, in the order in which faces ask for them; each group, a part
+/// or what of it lies on one map of its picture, has its own.
 class VertexNumbers {
  public:
   explicit VertexNumbers(int count) : number_(static_cast<std::size_t>(count), -1) {}
-  void begin_part() { first_ = count(); }
+  void begin_group() { first_ = count(); }
   int operator()(int vertex) {
     int& number = number_[static_cast<std::size_t>(vertex)];
     if (number < first_) {
@@ -72,7 +88,6 @@ class VertexNumbers {
     }
     return number;
   }
-  int first() const { return first_; }
   int count() const { return static_cast<int>(order_.size()); }
   const std::vector<int>& order() const { return order_; }
 
@@ -119,22 +134,29 @@ void add_face(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
 /// Fills parts, materials and faces; returns the mesh vertex of each vertex.
 std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
                            const std::vector<ElementKind>& kinds, const BandArray& radiance,
-                           BakedModel& model) {
+                           const DrawnPictures& drawn, BakedModel& model) {
   VertexNumbers vertex(mesh.vertex_count());
   MaterialNumbers material(scene, model.materials);
-  for (const auto& [side, elements] : sides_of(mesh, kinds)) {
-    const auto [surface, is_back] = side;
-    const auto s = static_cast<std::size_t>(surface);
+  for (const auto& [side, elements] : sides_of(mesh, kinds, drawn)) {
+    const auto s = static_cast<std::size_t>(side.surface);
     const std::string name = s < scene.surfaces.size() ? scene.surfaces[s].name : std::string();
-    vertex.begin_part();
-    const int first_face = model.face_count();
-    for (const int e : elements) add_face(mesh, kinds, radiance, e, vertex, model);
-    model.parts.push_back({.name = name_or_number(name, "surface", surface),
-                           .surface = surface,
+    const int first_face = model.face_count(), first_vertex = vertex.count();
+    int map = -1;
+    vertex.begin_group();
+    for (const int e : elements) {
+      const int facet = mesh.facet[e];
+      if (side.picture >= 0 && drawn.map_of(facet) != std::exchange(map, drawn.map_of(facet))) {
+        vertex.begin_group();
+      }
+      add_face(mesh, kinds, radiance, e, vertex, model);
+    }
+    model.parts.push_back({.name = name_or_number(name, "surface", side.surface),
+                           .surface = side.surface,
                            .material = material(mesh.material[mesh.patch[elements.front()]]),
-                           .is_back = is_back,
-                           .first_vertex = vertex.first(),
-                           .vertex_count = vertex.count() - vertex.first(),
+                           .picture = side.picture,
+                           .is_back = side.is_back,
+                           .first_vertex = first_vertex,
+                           .vertex_count = vertex.count() - first_vertex,
                            .first_face = first_face,
                            .face_count = model.face_count() - first_face});
   }
@@ -161,6 +183,25 @@ void add_vertices(const SolvedScene& solved, const BandArray& radiance, BakedMod
     model.radiosity.row(i) = B.row(v);
     const auto lux = static_cast<float>(luminous(bands, E.row(v).transpose()));
     model.illuminance.push_back(finite_or_black(lux));
+  }
+}
+
+void add_pictures(const PatchMesh& mesh, const DrawnPictures& drawn, BakedModel& model) {
+  model.pictures = drawn.all();
+  if (model.pictures.empty()) return;
+  const auto gain = picture_gains(mesh, drawn);
+  model.place.resize(model.mesh_vertex.size(), Eigen::Vector2f::Zero());
+  model.picture_gain = RgbArray::Ones(static_cast<Eigen::Index>(model.mesh_vertex.size()), 3);
+  for (const BakedPart& part : model.parts) {
+    if (part.picture < 0) continue;
+    for (int f = part.first_face; f < part.first_face + part.face_count; ++f) {
+      const int facet = mesh.facet[model.element[static_cast<std::size_t>(f)]];
+      for (int c = 0; c < model.corner_count(f); ++c) {
+        const auto v = static_cast<std::size_t>(model.faces[static_cast<std::size_t>(f)][c]);
+        model.place[v] = drawn.place(facet, model.position[v]);
+        model.picture_gain.row(static_cast<Eigen::Index>(v)) = gain.row(model.mesh_vertex[v]);
+      }
+    }
   }
 }
 
@@ -195,8 +236,10 @@ BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double expo
   const BandArray radiance = shown_radiance(solved, scene.materials);
   BakedModel model;
   model.title = scene.title;
-  model.mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, model);
+  const DrawnPictures drawn(scene, longest_picture);
+  model.mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, drawn, model);
   add_vertices(solved, radiance, model);
+  add_pictures(solved.mesh, drawn, model);
   model.channels = bake_channels(solved, scene.materials, model.mesh_vertex);
   const Eigen::Vector3d up_axis = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
   model.to_y_up = rotation_to_y_up(up_axis);

@@ -8,17 +8,20 @@
 
 #include "radiosity/solve.h"
 #include "scene/scene.h"
+#include "viewer/drawn_pictures.h"
 
 namespace lightwell {
 
 /// One row of linear Rec. 709 RGB per vertex.
 using RgbArray = Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// One side of one surface. Its vertices and faces follow one another, and no other part uses them.
+/// One side of one surface, or of it what shows a picture, or what shows none. Its vertices and
+/// faces follow one another, and no other part uses them.
 struct BakedPart {
   std::string name{};  ///< the surface's; "surface 3" where no scene tells it
   int surface = 0;     ///< index into Scene::surfaces
   int material = 0;    ///< index into BakedModel::materials
+  int picture = -1;    ///< index into BakedModel::pictures; -1: none
   bool is_back = false;
   int first_vertex = 0, vertex_count = 0;
   int first_face = 0, face_count = 0;
@@ -52,11 +55,13 @@ struct BakedChannel {
 /// A solution ready to be written in another program's format: triangles and quads with a colour at
 /// every vertex. Vertices are those of the mesh, so they are shared only where light is continuous.
 /// Of two sides that lie on each other one without light is left out, so that nothing flickers and
-/// a closed room can be looked into; light of a channel that is off counts as light.
+/// a closed room can be looked into; light of a channel that is off counts as light. Where pictures
+/// meet that do not go on alike, vertices are not shared.
 struct BakedModel {
   std::string title{};
   std::vector<BakedPart> parts{};
   std::vector<BakedMaterial> materials{};
+  std::vector<DrawnPicture> pictures{};
 
   // Per vertex.
   std::vector<int> mesh_vertex{};           ///< of the solution's mesh
@@ -65,6 +70,9 @@ struct BakedModel {
   BandArray radiosity{};                    ///< B, W/m^2, vertices x bands
   BandArray irradiance{};                   ///< E, W/m^2, vertices x bands
   std::vector<float> illuminance{};         ///< lx
+  // Empty in a model without pictures. Light and reflectances above are means over a patch.
+  std::vector<Eigen::Vector2f> place{};  ///< in the part's picture (see DrawnPictures::place)
+  RgbArray picture_gain{};               ///< times `radiance` is what a white texel shows
 
   std::vector<BakedChannel> channels{};  ///< the light above by who emits it; empty: as one
 

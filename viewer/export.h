@@ -16,7 +16,8 @@ namespace lightwell {
 /// glTF 2.0, binary (.glb): metres, y upwards. A node and a mesh for each surface, a primitive for
 /// each lit side of it, cameras as nodes. Colours are COLOR_0, linear and unlit
 /// (KHR_materials_unlit): radiance times the exposure of the first camera, clipped to [0,1].
-/// `extras` of the asset says what 1 stands for; the attribute _ILLUMINANCE holds lx.
+/// `extras` of the asset says what 1 stands for; the attribute _ILLUMINANCE holds lx. Surfaces with
+/// pictures have them as base colours (PNG in the file), under COLOR_0 that makes up for them.
 void write_gltf(const std::filesystem::path& path, const BakedModel& model);
 
 struct LightmapReport {

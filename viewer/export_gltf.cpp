@@ -3,6 +3,7 @@
 #include <numeric>
 #include <utility>
 
+#include "raytrace/encode_png.h"
 #include "viewer/export.h"
 #include "viewer/gltf_parts.h"
 
@@ -19,11 +20,15 @@ class VertexColorBuffer {
     for (int v = 0; v < model.vertex_count(); ++v) append_position(bytes, model, v);
     positions_ = buffer_.end_view("positions", gltf_vertex_data, 12);
     for (Eigen::Index v = 0; v < model.radiance.rows(); ++v) {
-      for (const float L : model.radiance.row(v)) {
-        append_bytes(bytes, std::clamp(L * scale, 0.0f, 1.0f));
-      }
+      Eigen::Array3f L = model.radiance.row(v).transpose();
+      if (!model.pictures.empty()) L *= model.picture_gain.row(v).transpose();
+      for (const float l : L) append_bytes(bytes, std::clamp(l * scale, 0.0f, 1.0f));
     }
     colors_ = buffer_.end_view("colors", gltf_vertex_data, 12);
+    for (const Eigen::Vector2f& place : model.place) {
+      for (const float x : place) append_bytes(bytes, x);
+    }
+    if (!model.place.empty()) places_ = buffer_.end_view("places", gltf_vertex_data, 8);
     for (const float lux : model.illuminance) append_bytes(bytes, lux);
     illuminance_ = buffer_.end_view("illuminance", gltf_vertex_data, 4);
     for (const BakedPart& part : model.parts) {
@@ -38,7 +43,7 @@ class VertexColorBuffer {
     indices_ = buffer_.end_view("indices", gltf_index_data, 0);
   }
 
-  const GltfBuffer& buffer() const { return buffer_; }
+  GltfBuffer& buffer() { return buffer_; }
 
   GltfJson primitive(std::size_t part_number) {
     const BakedPart& part = model_.parts[part_number];
@@ -50,19 +55,24 @@ class VertexColorBuffer {
     attributes["COLOR_0"] = buffer_.add_accessor(colors_, gltf_float, "VEC3", 12, first, count);
     attributes["_ILLUMINANCE"] =
         buffer_.add_accessor(illuminance_, gltf_float, "SCALAR", 4, first, count);
+    int material = part.material;
+    if (part.picture >= 0) {
+      attributes["TEXCOORD_0"] = buffer_.add_accessor(places_, gltf_float, "VEC2", 8, first, count);
+      material = static_cast<int>(model_.materials.size()) + part.picture;
+    }
     const std::size_t begin = first_index_[part_number], end = first_index_[part_number + 1];
     const int indices =
         buffer_.add_accessor(indices_, gltf_unsigned_int, "SCALAR", 4, begin, end - begin);
     return {{"attributes", std::move(attributes)},
             {"indices", indices},
-            {"material", part.material},
+            {"material", material},
             {"extras", {{"side", part.is_back ? "back" : "front"}}}};
   }
 
  private:
   const BakedModel& model_;
   GltfBuffer buffer_;
-  int positions_ = 0, colors_ = 0, illuminance_ = 0, indices_ = 0;
+  int positions_ = 0, colors_ = 0, places_ = 0, illuminance_ = 0, indices_ = 0;
   std::vector<std::size_t> first_index_;
 };
 
@@ -79,6 +89,39 @@ GltfJson meshes_of(const BakedModel& model, VertexColorBuffer& buffer) {
   return meshes;
 }
 
+/// WebGL's numbers for how pictures go on and are filtered.
+GltfJson sampler_of(const DrawnPicture& picture) {
+  constexpr int nearest = 9728, linear = 9729, nearest_mipmap_linear = 9986, linear_mipmap = 9987;
+  const auto wrap = [](TextureWrap how) {
+    constexpr int repeat = 10497, mirror = 33648, clamp = 33071;
+    return how == TextureWrap::clamp ? clamp : how == TextureWrap::mirror ? mirror : repeat;
+  };
+  return {{"wrapS", wrap(picture.wrap[0])},
+          {"wrapT", wrap(picture.wrap[1])},
+          {"magFilter", picture.is_smooth ? linear : nearest},
+          {"minFilter", picture.is_smooth ? linear_mipmap : nearest_mipmap_linear}};
+}
+
+/// Of each picture an image, a texture and a material: a material has one picture at most.
+void add_pictures(const BakedModel& model, GltfBuffer& buffer, GltfJson& root) {
+  for (std::size_t p = 0; p < model.pictures.size(); ++p) {
+    const DrawnPicture& picture = model.pictures[p];
+    buffer.bytes() += encode_png(picture.width, picture.height, picture.rgba);
+    root["images"].push_back(
+        {{"bufferView", buffer.end_view("picture", 0, 0)}, {"mimeType", "image/png"}});
+    root["samplers"].push_back(sampler_of(picture));
+    root["textures"].push_back({{"source", p}, {"sampler", p}});
+    const auto part = std::ranges::find(model.parts, static_cast<int>(p), &BakedPart::picture);
+    const BakedMaterial of_part = part == model.parts.end()
+                                      ? BakedMaterial{}
+                                      : model.materials[static_cast<std::size_t>(part->material)];
+    GltfJson material = unlit_material(of_part);
+    material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", p}};
+    if (picture.has_holes) material["alphaMode"] = "MASK";
+    root["materials"].push_back(std::move(material));
+  }
+}
+
 }  // namespace
 
 void write_gltf(const std::filesystem::path& path, const BakedModel& model) {
@@ -90,6 +133,7 @@ void write_gltf(const std::filesystem::path& path, const BakedModel& model) {
   for (const BakedMaterial& material : model.materials) {
     root["materials"].push_back(unlit_material(material));
   }
+  add_pictures(model, buffer.buffer(), root);
   write_glb(path, std::move(root), buffer.buffer());
 }
 

@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "radiosity/relight.h"
 #include "radiosity/vertex_light.h"
 #include "scene/errors.h"
 
@@ -31,7 +32,6 @@ SolveOptions for_a_window(SolveOptions options, const Scene& scene) {
   if (!options.progressive) options.progressive.emplace();
   options.mesh.progress = options.progress;
   options.journal = nullptr;
-  options.channels = {};
   if (gives_light(scene)) return options;
   throw InputError(fmt::format(
       "{}: nothing emits light, so there is nothing to watch arriving; give a material a "
@@ -48,12 +48,13 @@ struct LiveSolve::Impl {
         provenance(from),
         mesh(build_patches(of, options.mesh)),
         caster(mesh),
-        direct_light(of, mesh),
+        direct_light(of, mesh, options.channels),
         paths(of, caster, options.form_factors.max_specular_depth),
         progressive(
             of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
-            *options.progressive,
+            *options.progressive, options.channels,
             cast_free_light(of, caster, paths, direct_light, options.free_rays, options.progress)),
+        begun(progressive.solution()),
         vertex_light(caster, direct_light) {
     shown.lacks_specular = std::ranges::any_of(of.surfaces, [&](const Surface& surface) {
       return of.materials[surface.material].is_specular();
@@ -78,12 +79,7 @@ struct LiveSolve::Impl {
     SolvedScene patches;
     patches.mesh = mesh;
     RadiositySolution& s = patches.solution;
-    s.solver = "progressive";
-    s.patch_radiosity = progressive.radiosity();
-    s.energy = progressive.energy();
-    const double largest = progressive.radiosity().abs().maxCoeff();
-    s.residual = largest > 0.0 ? progressive.unshot().abs().maxCoeff() / largest : 0.0;
-    s.outcome = progressive.has_converged() ? Outcome::converged : Outcome::max_sweeps_reached;
+    s = progressive.solution();
     s.history.push_back({.residual = s.residual, .seconds = shooting_seconds});
     s.seconds.push_back({"solve", shooting_seconds});
     SolveOptions gathering = options;
@@ -107,6 +103,7 @@ struct LiveSolve::Impl {
   DirectLight direct_light;
   LightPaths paths;
   ProgressiveRadiosity progressive;
+  RadiositySolution begun;  ///< before the first shot
   VertexLight vertex_light;
   double shooting_seconds = 0.0;
 
@@ -197,6 +194,20 @@ void LiveSolve::Impl::run() {
   }
 }
 
+void show_light(const LiveLight& light, bool with_ambient, SolvedScene& shown) {
+  RadiositySolution& s = shown.solution;
+  BandArray ambient = BandArray::Zero(light.irradiance.rows(), light.irradiance.cols());
+  if (with_ambient) ambient.rowwise() += light.ambient.max(0.0f).transpose();
+  if (s.channels.empty()) {
+    s.direct_irradiance = light.irradiance;
+    s.indirect_irradiance = ambient;
+    return;
+  }
+  split_columns(light.irradiance, &LightChannel::direct_irradiance, s.channels);
+  split_columns(ambient, &LightChannel::indirect_irradiance, s.channels);
+  relight(shown, scales_in_force(s));
+}
+
 std::string text_of(const LiveState& state) {
   const std::string meter = fmt::format("{} shots, {:.3g} % unshot, {:.1f} s", state.shots,
                                         100.0 * state.unshot_share, state.seconds);
@@ -239,9 +250,17 @@ SolvedScene LiveSolve::dark() const {
   s.unit_name = impl_->scene.unit_name;
   s.relative_units = impl_->scene.relative_units;
   s.provenance = impl_->provenance;
-  s.patch_radiosity = dark.mesh.emission;
+  s.patch_radiosity = impl_->begun.patch_radiosity;
   s.direct_irradiance = BandArray::Zero(dark.mesh.vertex_count(), s.bands.count());
   s.indirect_irradiance = s.direct_irradiance;
+  s.channels = impl_->begun.channels;
+  s.patch_channel = impl_->begun.patch_channel;
+  s.source_channel = impl_->begun.source_channel;
+  s.full_emission = impl_->begun.full_emission;
+  for (LightChannel& channel : s.channels) {
+    channel.direct_irradiance = s.direct_irradiance;
+    channel.indirect_irradiance = s.direct_irradiance;
+  }
   return dark;
 }
 

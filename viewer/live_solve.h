@@ -10,8 +10,11 @@ namespace lightwell {
 
 /// Light on a mesh while it is being solved for.
 struct LiveLight {
-  BandArray irradiance{};  ///< at vertices, W/m^2, vertices x bands: what was shot so far
-  Spectrum ambient{};  ///< what the unshot light would add everywhere, W/m^2 (Cohen et al. 1988)
+  /// At vertices, W/m^2: what was shot so far. A column for each band, or for each band of each
+  /// channel after channel.
+  BandArray irradiance{};
+  /// What the unshot light would add everywhere, W/m^2 (Cohen et al. 1988), by the same columns.
+  Eigen::ArrayXf ambient{};
   int shots = 0;
   double unshot_share = 0.0;  ///< unshot power over emitted power, all bands together
 };
@@ -37,24 +40,30 @@ struct LiveState {
   std::string failure{};  ///< why, if it failed
 };
 
+/// Puts light into `shown`, which is of the mesh on which it arrives: in direct_irradiance what was
+/// shot, in indirect_irradiance the ambient term or nothing. Where light is kept apart, by the
+/// channels' scales in force.
+void show_light(const LiveLight& light, bool with_ambient, SolvedScene& shown);
+
 /// The convergence meter: shots, unshot power in percent of what is emitted, seconds.
 std::string text_of(const LiveState& state);
 
 /// Progressive refinement that can be watched: patches shoot, vertices receive after every shot,
 /// and at the end a solution is gathered as solve_scene does. In the caller's thread with shoot()
 /// and finish(), or in one of its own after start(); all members may then be called from the
-/// thread that made it. Keeps a reference to the scene.
+/// thread that made it. With `options.channels` the light of each is kept apart from the first shot
+/// on. Keeps a reference to the scene.
 class LiveSolve {
  public:
-  /// Cuts the scene into patches. `options.journal` and `channels` are not used; `progress` is not
-  /// by the thread that start() begins. Throws InputError where nothing emits light.
+  /// Cuts the scene into patches. `options.journal` is not used; `progress` is not by the thread
+  /// that start() begins. Throws InputError where nothing emits light.
   LiveSolve(const Scene& scene, const SolveOptions& options, const Provenance& provenance);
   /// Ends the thread after the shot it is at, or within a second of gathering.
   ~LiveSolve();
   LiveSolve(const LiveSolve&) = delete;
   LiveSolve& operator=(const LiveSolve&) = delete;
 
-  /// The mesh with no light but the emitters' own.
+  /// The mesh with no light but the emitters' own, with channels where there are any.
   SolvedScene dark() const;
 
   /// Shoots until `shots` patches have shot in all, or the tolerance is reached: one by one up to a

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "raytrace/encode_png.h"
 #include "viewer/write_whole.h"
 
 namespace lightwell {
@@ -101,11 +102,37 @@ Json append_bases(const BakedModel& model, std::string& bytes) {
   return bases;
 }
 
+// Where pictures lie, what of the light their texels are of, and they themselves.
+void append_pictures(const BakedModel& model, PageData& page) {
+  if (model.pictures.empty()) return;
+  page.about["places"] = {{"offset", page.bytes.size()}};
+  for (const Eigen::Vector2f& place : model.place) {
+    for (const float x : place) append_bytes(page.bytes, x);
+  }
+  page.about["picture_gain"] = append_halves(numbers(model.picture_gain), page.bytes);
+  Json pictures = Json::array();
+  for (const DrawnPicture& picture : model.pictures) {
+    const std::string png = encode_png(picture.width, picture.height, picture.rgba);
+    const auto wrap = [](TextureWrap how) {
+      return how == TextureWrap::clamp ? "clamp" : how == TextureWrap::mirror ? "mirror" : "repeat";
+    };
+    pictures.push_back({{"offset", page.bytes.size()},
+                        {"length", png.size()},
+                        {"wrap", {wrap(picture.wrap[0]), wrap(picture.wrap[1])}},
+                        {"is_smooth", picture.is_smooth},
+                        {"has_holes", picture.has_holes}});
+    page.bytes += png;
+    page.bytes.resize((page.bytes.size() + 3) / 4 * 4);
+  }
+  page.about["pictures"] = std::move(pictures);
+}
+
 Json parts(const BakedModel& model) {
   Json result = Json::array();
   for (const BakedPart& part : model.parts) {
     result.push_back({{"name", part.name},
                       {"material", part.material},
+                      {"picture", part.picture},
                       {"is_back", part.is_back},
                       {"first_face", part.first_face},
                       {"face_count", part.face_count}});
@@ -175,6 +202,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range) {
   append_positions(model, box, page);
   append_faces(model, page);
   page.about["bases"] = append_bases(model, page.bytes);
+  append_pictures(model, page);
   page.about["parts"] = parts(model);
   page.about["materials"] = materials(model);
   page.about["cameras"] = cameras(model, box.low);

@@ -2,6 +2,8 @@
 
 #include <vtkActor.h>
 #include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -9,6 +11,8 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
+#include <vtkShaderProperty.h>
+#include <vtkTexture.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
@@ -16,12 +20,15 @@
 namespace lightwell {
 namespace {
 
+/// Those that show a picture are left to others, where they are lit.
 vtkSmartPointer<vtkCellArray> polygons_of_kind(const PatchMesh& mesh,
                                                const std::vector<ElementKind>& kinds,
+                                               const std::vector<char>& has_picture,
                                                const BandArray& radiance, ElementKind kind) {
   auto polygons = vtkSmartPointer<vtkCellArray>::New();
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (kinds[e] != kind) continue;
+    if (kind == ElementKind::lit && !has_picture.empty() && has_picture[e]) continue;
     const int corner_count = mesh.corner_count(e);
     // VTK splits a quad along the diagonal from its first corner.
     const int first = first_corner(mesh, e, radiance);
@@ -49,10 +56,36 @@ vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, bool is_glass) {
   return actor;
 }
 
+vtkSmartPointer<vtkTexture> make_texture(const DrawnPicture& picture) {
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(picture.width, picture.height, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 4);
+  std::copy(picture.rgba.begin(), picture.rgba.end(),
+            static_cast<unsigned char*>(image->GetScalarPointer()));
+  auto texture = vtkSmartPointer<vtkTexture>::New();
+  texture->SetInputData(image);
+  texture->SetColorModeToDirectScalars();
+  texture->SetInterpolate(picture.is_smooth);
+  texture->SetMipmap(picture.is_smooth);
+  // VTK has one way for both directions.
+  switch (picture.wrap[0]) {
+    case TextureWrap::repeat:
+      texture->SetWrap(vtkTexture::Repeat);
+      break;
+    case TextureWrap::mirror:
+      texture->SetWrap(vtkTexture::MirroredRepeat);
+      break;
+    case TextureWrap::clamp:
+      texture->SetWrap(vtkTexture::ClampToEdge);
+      break;
+  }
+  return texture;
+}
+
 }  // namespace
 
 SolutionActor::SolutionActor(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
-                             const BandArray& radiance)
+                             const BandArray& radiance, const DrawnPictures& drawn)
     : colors_(vtkSmartPointer<vtkUnsignedCharArray>::New()) {
   colors_->SetNumberOfComponents(3);
   colors_->SetNumberOfTuples(mesh.vertex_count());
@@ -68,31 +101,98 @@ SolutionActor::SolutionActor(const PatchMesh& mesh, const std::vector<ElementKin
     data->GetPointData()->SetScalars(colors_);
     parts_.push_back({kind, data, make_actor(data, kind == ElementKind::glass)});
   }
+  if (!drawn.all().empty()) add_pictures(mesh, drawn);
   set_shapes(mesh, kinds, radiance);
 }
 
 SolutionActor::~SolutionActor() = default;
 
+void SolutionActor::add_pictures(const PatchMesh& mesh, const DrawnPictures& drawn) {
+  has_picture_.assign(static_cast<std::size_t>(mesh.element_count()), 0);
+  for (std::size_t p = 0; p < drawn.all().size(); ++p) {
+    PicturedPart pictured{.part = {}, .texture = make_texture(drawn.all()[p]), .colors = {}};
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    vtkNew<vtkFloatArray> places;
+    places->SetNumberOfComponents(2);
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const int facet = mesh.facet[e];
+      if (drawn.of(facet) != static_cast<int>(p)) continue;
+      has_picture_[e] = 1;
+      pictured.element.push_back(e);
+      for (int c = 0; c < mesh.corner_count(e); ++c) {
+        const int v = mesh.corners[e][c];
+        pictured.mesh_vertex.push_back(v);
+        points->InsertNextPoint(mesh.position(v).data());
+        places->InsertNextTuple(drawn.place(facet, mesh.position(v)).data());
+      }
+    }
+    pictured.colors = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    pictured.colors->SetNumberOfComponents(3);
+    pictured.colors->SetNumberOfTuples(points->GetNumberOfPoints());
+    pictured.colors->FillValue(0);
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->GetPointData()->SetScalars(pictured.colors);
+    data->GetPointData()->SetTCoords(places);
+    pictured.part = {ElementKind::lit, data, make_actor(data, false)};
+    if (drawn.all()[p].has_holes) {
+      pictured.part.actor->ForceOpaqueOn();
+      pictured.part.actor->GetShaderProperty()->AddFragmentShaderReplacement(
+          "//VTK::TCoord::Impl", true,
+          "//VTK::TCoord::Impl\n  if (gl_FragData[0].a < 0.5) discard;\n", false);
+    }
+    pictured_.push_back(std::move(pictured));
+  }
+}
+
 void SolutionActor::set_shapes(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
                                const BandArray& radiance) {
   for (const Part& part : parts_) {
-    const auto polygons = polygons_of_kind(mesh, kinds, radiance, part.kind);
-    part.data->SetPolys(polygons);
+    part.data->SetPolys(polygons_of_kind(mesh, kinds, has_picture_, radiance, part.kind));
+  }
+  for (const PicturedPart& pictured : pictured_) {
+    auto polygons = vtkSmartPointer<vtkCellArray>::New();
+    int point = 0;
+    for (const int e : pictured.element) {
+      const int count = mesh.corner_count(e), first = first_corner(mesh, e, radiance);
+      if (kinds[e] == ElementKind::lit) {
+        polygons->InsertNextCell(count);
+        for (int c = 0; c < count; ++c) polygons->InsertCellPoint(point + (first + c) % count);
+      }
+      point += count;
+    }
+    pictured.part.data->SetPolys(polygons);
   }
 }
 
 void SolutionActor::add_to(vtkRenderer* renderer) const {
   for (const Part& part : parts_) renderer->AddActor(part.actor);
+  for (const PicturedPart& pictured : pictured_) renderer->AddActor(pictured.part.actor);
 }
 
-void SolutionActor::set_colors(const std::vector<std::uint8_t>& rgb) {
-  std::copy(rgb.begin(), rgb.end(), colors_->GetPointer(0));
+void SolutionActor::set_colors(const std::vector<std::uint8_t>& plain,
+                               const std::vector<std::uint8_t>& white) {
+  std::copy(plain.begin(), plain.end(), colors_->GetPointer(0));
   colors_->Modified();
   for (const Part& part : parts_) part.data->Modified();
+  const std::vector<std::uint8_t>& of_pictures = white.empty() ? plain : white;
+  for (const PicturedPart& pictured : pictured_) {
+    unsigned char* out = pictured.colors->GetPointer(0);
+    for (const int v : pictured.mesh_vertex) {
+      out = std::copy_n(of_pictures.begin() + std::ptrdiff_t{3} * v, 3, out);
+    }
+    pictured.colors->Modified();
+    pictured.part.data->Modified();
+    pictured.part.actor->SetTexture(white.empty() ? nullptr : pictured.texture.Get());
+  }
 }
 
 void SolutionActor::show_mesh(bool shown) {
   for (const Part& part : parts_) part.actor->GetProperty()->SetEdgeVisibility(shown);
+  for (const PicturedPart& pictured : pictured_) {
+    pictured.part.actor->GetProperty()->SetEdgeVisibility(shown);
+  }
 }
 
 void SolutionActor::show_unlit(bool shown) {

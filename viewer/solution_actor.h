@@ -7,10 +7,12 @@
 
 #include "mesh/patch_mesh.h"
 #include "viewer/appearance.h"
+#include "viewer/drawn_pictures.h"
 
 class vtkActor;
 class vtkPolyData;
 class vtkRenderer;
+class vtkTexture;
 class vtkUnsignedCharArray;
 
 namespace lightwell {
@@ -22,9 +24,9 @@ namespace lightwell {
 class SolutionActor {
  public:
   /// `radiance` (vertices x bands) decides how quads are split: along the diagonal whose ends
-  /// differ less, so that the crease follows the light.
+  /// differ less, so that the crease follows the light. Lit elements show their pictures.
   SolutionActor(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
-                const BandArray& radiance);
+                const BandArray& radiance, const DrawnPictures& drawn);
   ~SolutionActor();
 
   /// Of the same mesh: what its elements are, and how quads are split, with other light.
@@ -32,8 +34,9 @@ class SolutionActor {
                   const BandArray& radiance);
 
   void add_to(vtkRenderer* renderer) const;
-  /// 8-bit sRGB, 3 bytes a vertex.
-  void set_colors(const std::vector<std::uint8_t>& rgb);
+  /// 8-bit sRGB, 3 bytes a vertex: of elements without a picture, and of a white texel on the
+  /// others. Without the latter no pictures are shown.
+  void set_colors(const std::vector<std::uint8_t>& plain, const std::vector<std::uint8_t>& white);
   /// Draws the elements' outlines.
   void show_mesh(bool shown);
   /// Whether surfaces without any light are drawn (black) or looked through.
@@ -45,8 +48,20 @@ class SolutionActor {
     vtkSmartPointer<vtkPolyData> data;
     vtkSmartPointer<vtkActor> actor;
   };
+  /// Elements that show one picture, if they are lit. Each corner is a point of its own, with its
+  /// place in the picture.
+  struct PicturedPart {
+    Part part;
+    vtkSmartPointer<vtkTexture> texture;
+    vtkSmartPointer<vtkUnsignedCharArray> colors;
+    std::vector<int> element{}, mesh_vertex{};  ///< of each point the vertex
+  };
+  void add_pictures(const PatchMesh& mesh, const DrawnPictures& drawn);
+
   std::vector<Part> parts_;
   vtkSmartPointer<vtkUnsignedCharArray> colors_;
+  std::vector<PicturedPart> pictured_;
+  std::vector<char> has_picture_;  ///< by element; empty: none has
 };
 
 }  // namespace lightwell

@@ -23,6 +23,13 @@
 namespace lightwell {
 namespace {
 
+/// Texels along a picture; what a window shows has hardly more pixels.
+constexpr int longest_picture = 2048;
+
+DrawnPictures pictures_of(const ViewOptions& options) {
+  return DrawnPictures(options.scene ? *options.scene : Scene{}, longest_picture);
+}
+
 /// Drawing sixteen times instead of sixteen times as large: text and lines keep their size, and no
 /// driver's largest picture or memory is the limit.
 constexpr int samples_along_pixel = 4;
@@ -105,11 +112,12 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       kinds_(element_kinds(solved, options.materials)),
       irradiance_(solved.solution.irradiance()),
       radiance_(shown_radiance(solved, options.materials)),
+      drawn_(pictures_of(options)),
       lux_(vertex_illuminance(solved.solution)),
       lux_range_(options.lux_range.value_or(lux_range(lux_))),
       bounds_(mesh_bounds(solved.mesh)),
       up_axis_(guess_up_axis(options.cameras, bounds_)),
-      actor_(solved.mesh, kinds_, radiance_),
+      actor_(solved.mesh, kinds_, radiance_, drawn_),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
       legend_(make_legend(lux_range_, options.relative_units ? "relative" : "lx")),
       isolux_levels_(options.isolux) {
@@ -120,6 +128,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   } else {
     start_camera_ = find_start(caster_, kinds_, radiance_, up_axis_, options.width, options.height);
   }
+  if (!drawn_.all().empty()) picture_gain_ = picture_gains(solved.mesh, drawn_);
   actor_.add_to(renderer_);
   isolux_.add_to(renderer_);
   renderer_->AddViewProp(legend_);
@@ -218,11 +227,13 @@ void SolutionView::light_arrived() {
 }
 
 void SolutionView::apply_colors() {
-  if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_));
-  actor_.set_colors(look_.illuminance
-                        ? false_colors(lux_, lux_range_)
-                        : display_colors(radiance_, solved_->solution.bands,
-                                         look_.metered_scale * std::exp2(look_.exposure_ev)));
+  if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_), {});
+  if (look_.illuminance) return actor_.set_colors(false_colors(lux_, lux_range_), {});
+  const Bands& bands = solved_->solution.bands;
+  const double scale = look_.metered_scale * std::exp2(look_.exposure_ev);
+  std::vector<std::uint8_t> white;
+  if (picture_gain_.size() > 0) white = display_colors(radiance_ * picture_gain_, bands, scale);
+  actor_.set_colors(display_colors(radiance_, bands, scale), white);
 }
 
 void SolutionView::apply_camera() {

@@ -70,6 +70,8 @@ class SolutionView {
   std::vector<ElementKind> kinds_;
   BandArray irradiance_;
   BandArray radiance_;
+  DrawnPictures drawn_;
+  BandArray picture_gain_;  ///< see picture_gains; empty without pictures
   std::vector<float> lux_;
   LuxRange lux_range_;
   Bounds bounds_;

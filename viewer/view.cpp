@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "radiosity/relight.h"
 #include "raytrace/image.h"
 #include "scene/errors.h"
 #include "viewer/camera_path.h"
@@ -78,10 +79,20 @@ std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const V
   return files;
 }
 
+namespace {
+
+SolvedScene without_light(const LiveSolve& solve, const LiveViewOptions& live) {
+  SolvedScene dark = solve.dark();
+  if (live.scales) relight(dark, live.scales(dark.solution));
+  return dark;
+}
+
+}  // namespace
+
 void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& options) {
   const DisplayConnection display;
   LiveSolve solve(scene, live.solve, live.provenance);
-  WalkWindow window(solve, options);
+  WalkWindow window(solve, without_light(solve, live), options);
   solve.start();
   window.run();
 }
@@ -94,16 +105,14 @@ int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::sp
   require_size(strip);
   const DisplayConnection display;
   LiveSolve solve(scene, live.solve, live.provenance);
+  const SolvedScene dark = without_light(solve, live);
   std::vector<SolvedScene> stages;
   int shot = 0;
   for (const int wanted : shots) {
     solve.shoot(wanted);
     const LiveLight light = solve.light();
     shot = light.shots;
-    RadiositySolution& shown = stages.emplace_back(solve.dark()).solution;
-    shown.direct_irradiance = light.irradiance;
-    if (!live.ambient) continue;
-    shown.indirect_irradiance.rowwise() += light.ambient.max(0.0f).transpose();
+    show_light(light, live.ambient, stages.emplace_back(dark));
   }
   const double exposure = SolutionView(stages.back(), options).look().metered_scale;
   std::vector<std::uint8_t> picture(std::size_t{3} * strip.width * strip.height);

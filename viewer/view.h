@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -68,12 +69,15 @@ struct LiveViewOptions {
   SolveOptions solve{};     ///< mesh, progressive refinement, refining and gathering
   Provenance provenance{};  ///< of the solution that comes of it
   bool ambient = true;      ///< off screen: with the ambient term of unshot light
+  /// Scales that the channels begin with, for a solution that has channels but no light yet; empty:
+  /// as the scene has them. What it throws is passed on.
+  std::function<std::vector<Spectrum>(const RadiositySolution&)> scales{};
 };
 
 /// Opens the window at once and shows light arriving, shot by shot, while a thread solves
 /// (progressive refinement, see live_solve.h); then the solution. Keys pause, shoot once, show the
-/// ambient term, and stop and save. Throws as show_window does, and InputError where nothing emits
-/// light.
+/// ambient term, and stop and save; light of channels is dimmed while it arrives. Throws as
+/// show_window does, and InputError where nothing emits light.
 void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& options);
 
 /// What the window shows after so many shots (or once the tolerance is reached, at less), as

@@ -103,12 +103,7 @@ void WalkWindow::watch() {
 
 void WalkWindow::show_arriving_light() {
   still_.discard();
-  RadiositySolution& shown = own_->solution;
-  shown.direct_irradiance = arrived_.irradiance;
-  shown.indirect_irradiance.setZero();
-  if (ambient_) {
-    shown.indirect_irradiance.rowwise() += arrived_.ambient.max(0.0f).transpose();
-  }
+  show_light(arrived_, ambient_, *own_);
   view_->light_arrived();
   pointer_.light_changed(*view_, true);
   update_pointer();
@@ -117,6 +112,8 @@ void WalkWindow::show_arriving_light() {
 
 void WalkWindow::show_solution(SolvedScene solved) {
   auto solution = std::make_unique<SolvedScene>(std::move(solved));
+  if (lights_.has_channels())
+    relight(*solution, lights_.scales());  // as they were dimmed meanwhile
   replace_view(*solution);
   own_ = std::move(solution);
   pointer_.light_changed(*view_, false);

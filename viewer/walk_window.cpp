@@ -27,9 +27,9 @@ constexpr double drag_degrees = 120.0;    ///< a drag across the whole window
 constexpr double wheel_share = 0.03;      ///< of the scene's diagonal per click
 
 /// What there is to see before the first shot: the emitters, and the ambient term.
-std::unique_ptr<SolvedScene> begin(const LiveSolve& live) {
-  auto begun = std::make_unique<SolvedScene>(live.dark());
-  begun->solution.indirect_irradiance.rowwise() += live.light().ambient.max(0.0f).transpose();
+std::unique_ptr<SolvedScene> begin(const LiveSolve& live, SolvedScene dark) {
+  auto begun = std::make_unique<SolvedScene>(std::move(dark));
+  show_light(live.light(), true, *begun);
   return begun;
 }
 
@@ -44,8 +44,8 @@ double walking_speed(double scene_diagonal) {
 WalkWindow::WalkWindow(const SolvedScene& solved, const ViewOptions& options)
     : WalkWindow(&solved, nullptr, nullptr, options) {}
 
-WalkWindow::WalkWindow(LiveSolve& live, const ViewOptions& options)
-    : WalkWindow(nullptr, begin(live), &live, options) {
+WalkWindow::WalkWindow(LiveSolve& live, SolvedScene dark, const ViewOptions& options)
+    : WalkWindow(nullptr, begin(live, std::move(dark)), &live, options) {
   arrived_ = live.light();
   show_arriving_light();
 }

@@ -37,9 +37,9 @@ std::string walk_help();
 class WalkWindow {
  public:
   WalkWindow(const SolvedScene& solved, const ViewOptions& options);
-  /// Shows light as it arrives, and the solution once it is there. Keeps a reference; the solving
-  /// is started by the caller.
-  WalkWindow(LiveSolve& live, const ViewOptions& options);
+  /// Shows light as it arrives, and the solution once it is there. Begins with live.dark(), or that
+  /// with its channels dimmed. Keeps a reference; the solving is started by the caller.
+  WalkWindow(LiveSolve& live, SolvedScene dark, const ViewOptions& options);
   ~WalkWindow();
   WalkWindow(const WalkWindow&) = delete;
   WalkWindow& operator=(const WalkWindow&) = delete;

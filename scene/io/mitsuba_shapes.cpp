@@ -34,10 +34,13 @@ PolygonMesh joined(Scene&& scene) {
     const int offset = static_cast<int>(all.vertices.size());
     const int uv_offset = static_cast<int>(all.uv_maps.size());
     all.uv_maps.insert(all.uv_maps.end(), next.uv_maps.begin(), next.uv_maps.end());
+    const int normal_offset = static_cast<int>(all.normal_maps.size());
+    all.normal_maps.insert(all.normal_maps.end(), next.normal_maps.begin(), next.normal_maps.end());
     all.vertices.insert(all.vertices.end(), next.vertices.begin(), next.vertices.end());
     for (Facet& facet : next.facets) {
       for (int& v : facet.boundary) v += offset;
       if (facet.uv_map >= 0) facet.uv_map += uv_offset;
+      if (facet.normal_map >= 0) facet.normal_map += normal_offset;
       all.facets.push_back(std::move(facet));
     }
   }
@@ -129,7 +132,8 @@ std::variant<PolygonMesh, Sphere> MitsubaShapes::sphere(const MitsubaNode& shape
   }
   remarks_.add("Spheres that are turned inside out or no longer round became polygons", name);
   const Eigen::Affine3d place = to_world * Eigen::Translation3d(center) * Eigen::Scaling(radius);
-  return placed_loops(sphere_loops(), place, flip, repairs_);
+  // Of a sphere about the origin a corner's place is its normal.
+  return placed_loops(sphere_loops(), place, flip, repairs_, {}, sphere_loops());
 }
 
 PolygonMesh MitsubaShapes::cylinder(const MitsubaNode& shape, const Eigen::Affine3d& to_world) {
@@ -140,8 +144,12 @@ PolygonMesh MitsubaShapes::cylinder(const MitsubaNode& shape, const Eigen::Affin
   const Eigen::Affine3d place = Eigen::Translation3d(p0) *
                                 Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis) *
                                 Eigen::Scaling(radius, radius, axis.stableNorm());
+  std::vector<NormalLoop> normals = cylinder_loops();
+  for (NormalLoop& loop : normals) {
+    for (Eigen::Vector3d& n : loop) n.z() = 0.0;
+  }
   return placed_loops(cylinder_loops(), to_world * place, shape.boolean_or("flip_normals", false),
-                      repairs_);
+                      repairs_, {}, normals);
 }
 
 PolygonMesh MitsubaShapes::mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
@@ -159,6 +167,7 @@ PolygonMesh MitsubaShapes::mesh(const MitsubaNode& shape, const Eigen::Affine3d&
   repairs_.add(file.repairs);
   PolygonMesh placed = placed_mesh(file.mesh, to_world, shape.boolean_or("flip_normals", false),
                                    file.has_normals, repairs_);
+  if (shape.boolean_or("face_normals", false)) drop_normals(placed);
   // OBJ files count v from the bottom of a picture, unless the shape says otherwise.
   if (shape.boolean_or("flip_tex_coords", shape.type == "obj")) return placed;
   for (UvMap& map : placed.uv_maps) {

@@ -18,10 +18,8 @@ int index_of(std::vector<std::string>& names, const std::string& name) {
 
 class ObjParser {
  public:
-  ObjParser(const TextFile& file, double metres_per_unit, MeshFronts fronts)
-      : file_(file),
-        metres_per_unit_(metres_per_unit),
-        wants_normals_(fronts == MeshFronts::from_normals) {}
+  ObjParser(const TextFile& file, double metres_per_unit)
+      : file_(file), metres_per_unit_(metres_per_unit) {}
 
   ObjContent parse() {
     std::string continued;
@@ -54,8 +52,8 @@ class ObjParser {
       content_.vertices.push_back(metres_per_unit_ * read_triple(text));
     } else if (key == "vt") {
       read_uv(text);
-    } else if (key == "vn" && wants_normals_) {
-      content_.normals.push_back(read_triple(text));
+    } else if (key == "vn") {
+      read_normal(text);
     } else if (key == "f") {
       read_face(text);
     } else if (key == "o") {
@@ -97,6 +95,14 @@ class ObjParser {
     content_.uv.emplace_back(u.value_or(none), u ? 1.0 - v.value_or(0.0) : none);
   }
 
+  // The same of normals.
+  void read_normal(std::string_view text) {
+    const auto x = parse_finite(next_word(text)), y = parse_finite(next_word(text)),
+               z = parse_finite(next_word(text));
+    const bool is_whole = x && y && z;
+    content_.normals.push_back(is_whole ? Eigen::Vector3d(*x, *y, *z) : Eigen::Vector3d::Zero());
+  }
+
   void read_face(std::string_view text) {
     ObjFace face{.line = line_,
                  .group = current_group(),
@@ -119,7 +125,10 @@ class ObjParser {
                                index, content_.vertices.size()));
       }
       content_.corners.push_back(static_cast<int>(vertex));
-      if (wants_normals_) content_.corner_normals.push_back(normal_of(word));
+      if (!content_.normals.empty()) {
+        content_.corner_normals.resize(content_.corners.size() - 1, -1);
+        content_.corner_normals.push_back(normal_of(word));
+      }
       if (!content_.uv.empty()) {
         content_.corner_uv.resize(content_.corners.size() - 1, -1);
         content_.corner_uv.push_back(uv_of(word));
@@ -182,7 +191,6 @@ class ObjParser {
 
   const TextFile& file_;
   double metres_per_unit_;
-  bool wants_normals_;
   int line_ = 0;
   std::string object_, group_;
   bool in_group_ = false;
@@ -192,8 +200,8 @@ class ObjParser {
 
 }  // namespace
 
-ObjContent read_obj_content(const TextFile& file, double metres_per_unit, MeshFronts fronts) {
-  return ObjParser(file, metres_per_unit, fronts).parse();
+ObjContent read_obj_content(const TextFile& file, double metres_per_unit) {
+  return ObjParser(file, metres_per_unit).parse();
 }
 
 }  // namespace lightwell

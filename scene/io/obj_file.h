@@ -20,8 +20,8 @@ struct ObjFace {
 struct ObjContent {
   std::vector<Eigen::Vector3d> vertices{};
   std::vector<int> corners{};
-  std::vector<Eigen::Vector3d> normals{};  ///< read if fronts are asked for from them
-  std::vector<int> corner_normals{};       ///< by corner; -1: none
+  std::vector<Eigen::Vector3d> normals{};  ///< of any length; zero where the file has no numbers
+  std::vector<int> corner_normals{};  ///< by corner; -1: none; empty if the file has no normals
   std::vector<Eigen::Vector2d> uv{};  ///< v points down from the picture's top, unlike in the file
   std::vector<int> corner_uv{};       ///< by corner; -1: none; empty if the file has no uv
   std::vector<ObjFace> faces{};
@@ -33,6 +33,6 @@ struct ObjContent {
 
 /// Reads an OBJ file's lines; vertices are scaled by `metres_per_unit`. Throws InputError naming
 /// file, line and value.
-ObjContent read_obj_content(const TextFile& file, double metres_per_unit, MeshFronts fronts);
+ObjContent read_obj_content(const TextFile& file, double metres_per_unit);
 
 }  // namespace lightwell

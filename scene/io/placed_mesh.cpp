@@ -139,20 +139,37 @@ bool keeps_angles(const Eigen::Affine3d& transform) {
 }
 
 PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& transform,
-                         bool flip, Repairs& repairs, const std::vector<UvLoop>& uv) {
+                         bool flip, Repairs& repairs, const std::vector<UvLoop>& uv,
+                         const std::vector<NormalLoop>& normals) {
+  const Eigen::Matrix3d turn = normal_transform(transform);
   const bool turned = (transform.linear().determinant() < 0.0) != flip;
   MeshBuilder mesh;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     Loop loop = loops[i];
     UvLoop of_loop = uv.empty() ? UvLoop{} : uv[i];
+    NormalLoop normals_there = normals.empty() ? NormalLoop{} : normals[i];
     for (Eigen::Vector3d& p : loop) p = transform * p;
+    for (Eigen::Vector3d& n : normals_there) n = turn * n;
     if (turned) {
       std::reverse(loop.begin(), loop.end());
       std::reverse(of_loop.begin(), of_loop.end());
+      std::reverse(normals_there.begin(), normals_there.end());
     }
-    add_repaired(mesh, std::move(loop), repairs, std::move(of_loop));
+    add_repaired(mesh, std::move(loop), repairs, std::move(of_loop), std::move(normals_there));
   }
   return mesh.mesh();
+}
+
+Eigen::Matrix3d normal_transform(const Eigen::Affine3d& transform) {
+  const auto& m = transform.linear();
+  Eigen::Matrix3d cofactors;
+  for (int c = 0; c < 3; ++c) cofactors.col(c) = m.col((c + 1) % 3).cross(m.col((c + 2) % 3));
+  return cofactors;
+}
+
+void drop_normals(PolygonMesh& mesh) {
+  mesh.normal_maps = {};
+  for (Facet& facet : mesh.facets) facet.normal_map = -1;
 }
 
 void turn_over(PolygonMesh& mesh) {
@@ -171,19 +188,32 @@ PolygonMesh placed_mesh(PolygonMesh mesh, const Eigen::Affine3d& transform, bool
     // What was as good as planar may be bent now.
     std::vector<Loop> loops;
     std::vector<UvLoop> uv;
+    std::vector<NormalLoop> normals;
     for (const Facet& facet : mesh.facets) {
       loops.push_back(loop_of(mesh, facet.boundary));
+      NormalLoop& normals_there = normals.emplace_back();
+      if (facet.normal_map >= 0) {
+        const NormalMap& map = mesh.normal_maps[static_cast<std::size_t>(facet.normal_map)];
+        for (const Eigen::Vector3d& p : loops.back()) normals_there.push_back(map.at(p));
+      }
       UvLoop& of_loop = uv.emplace_back();
       if (facet.uv_map < 0) continue;
       const UvMap& map = mesh.uv_maps[static_cast<std::size_t>(facet.uv_map)];
       for (const Eigen::Vector3d& p : loops.back()) of_loop.push_back(map.at(p));
     }
-    return placed_loops(loops, transform, flip != (!mirror_turns && is_mirrored), repairs, uv);
+    return placed_loops(loops, transform, flip != (!mirror_turns && is_mirrored), repairs, uv,
+                        normals);
   }
   const Eigen::Affine3d back = transform.inverse();
   for (UvMap& map : mesh.uv_maps) {
     map.offset += map.gradient * back.translation();
     map.gradient = map.gradient * back.linear();
+  }
+  const Eigen::Matrix3d turn =
+      transform.linear() / std::cbrt(std::abs(transform.linear().determinant()));
+  for (NormalMap& map : mesh.normal_maps) {
+    map.offset = turn * (map.offset + map.gradient * back.translation());
+    map.gradient = turn * map.gradient * back.linear();
   }
   for (Eigen::Vector3d& p : mesh.vertices) p = transform * p;
   if (turned) turn_over(mesh);

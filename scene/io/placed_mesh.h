@@ -31,14 +31,22 @@ std::vector<Loop> sphere_loops();
 /// Whether a transformation keeps angles: it turns, moves, mirrors and scales evenly, to 1e-6.
 bool keeps_angles(const Eigen::Affine3d& transform);
 
+/// What a transformation does to normals, but for their length and side: its cofactors, which are
+/// finite even where it flattens.
+Eigen::Matrix3d normal_transform(const Eigen::Affine3d& transform);
+
+/// Takes the normals away that a file gives at vertices.
+void drop_normals(PolygonMesh& mesh);
+
 /// Turns every facet's front to the other side.
 void turn_over(PolygonMesh& mesh);
 
 /// The loops where `transform` puts them, turned over if `flip` says so. Normals keep their side of
 /// the surface even where the transformation mirrors. Polygons that it flattens are dropped.
-/// `uv`: of each loop, or empty.
+/// `uv` and `normals`, as they are before: of each loop, or empty.
 PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& transform,
-                         bool flip, Repairs& repairs, const std::vector<UvLoop>& uv = {});
+                         bool flip, Repairs& repairs, const std::vector<UvLoop>& uv = {},
+                         const std::vector<NormalLoop>& normals = {});
 
 /// The same for a mesh of sound facets without holes; with `mirror_turns` false the order of the
 /// corners alone says where the front is, so that a mirrored mesh is turned inside out.

@@ -259,10 +259,18 @@ bool agrees(const UvMap& map, const Loop& loop, const UvLoop& uv) {
   return true;
 }
 
-}  // namespace
+// Values at the corners as a linear map over the loop's plane, exact at three corners far from each
+// other: gradient and offset. The loop may have no area.
+template <int size>
+struct LinearMap {
+  Eigen::Matrix<double, size, 3> gradient;
+  Eigen::Matrix<double, size, 1> offset;
+};
 
-std::optional<UvMap> uv_map_over(const Loop& loop, const UvLoop& uv) {
-  if (uv.size() != loop.size()) return std::nullopt;
+template <int size>
+std::optional<LinearMap<size>> linear_over(
+    const Loop& loop, const std::vector<Eigen::Matrix<double, size, 1>>& values) {
+  if (values.size() != loop.size()) return std::nullopt;
   std::size_t one = 0, other = 0;
   double farthest = 0.0;
   for (std::size_t i = 1; i < loop.size(); ++i) {
@@ -281,20 +289,75 @@ std::optional<UvMap> uv_map_over(const Loop& loop, const UvLoop& uv) {
   // The rows that take a to (1, 0), b to (0, 1), and the normal to nothing.
   Eigen::Matrix<double, 2, 3> to_sides;
   to_sides << b.cross(normal).transpose() / area, normal.cross(a).transpose() / area;
-  Eigen::Matrix2d sides;
-  sides << uv[one] - uv[0], uv[other] - uv[0];
-  UvMap map{.gradient = sides * to_sides};
-  map.offset = uv[0] - map.gradient * loop[0];
-  if (!map.gradient.allFinite() || !map.offset.allFinite() || !agrees(map, loop, uv)) {
-    return std::nullopt;
-  }
+  Eigen::Matrix<double, size, 2> sides;
+  sides << values[one] - values[0], values[other] - values[0];
+  LinearMap<size> map{.gradient = sides * to_sides, .offset = {}};
+  map.offset = values[0] - map.gradient * loop[0];
+  if (!map.gradient.allFinite() || !map.offset.allFinite()) return std::nullopt;
   return map;
 }
 
-// One of the last few where that fits: facets of one flat piece follow each other in files.
+// Unit normals on the front of the loop; none if there are none, or they are the plane's.
+NormalLoop bent_normals(const Loop& loop, const NormalLoop& normals) {
+  if (normals.size() != loop.size()) return {};
+  const Eigen::Vector3d flat = newell(loop).normalized();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& n : normals) sum += n.stableNormalized();
+  const double side = sum.dot(flat) < 0.0 ? -1.0 : 1.0;
+  constexpr double straight = 1.0 - 6e-6, grazing = 0.1;  // cosines of 0.2 and 84 degrees
+  bool is_flat = true;
+  NormalLoop unit;
+  for (const Eigen::Vector3d& n : normals) {
+    unit.push_back(side * n.stableNormalized());
+    const double cosine = unit.back().dot(flat);
+    if (!(cosine > grazing)) return {};
+    is_flat = is_flat && cosine > straight;
+  }
+  return is_flat ? NormalLoop{} : unit;
+}
+
+constexpr double linear = 2e-3;  // how far unit normals may be off what is linear over a polygon,
+constexpr double alike = 3e-4;   // and off another facet's, with files of four decimals in mind
+
+bool agrees(const NormalMap& map, const Loop& loop, const NormalLoop& unit, double tolerance) {
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    if (!((map.at(loop[i]) - unit[i]).norm() <= tolerance)) return false;
+  }
+  return true;
+}
+
+std::optional<NormalMap> map_of_unit_normals(const Loop& loop, const NormalLoop& unit) {
+  const auto found = linear_over<3>(loop, unit);
+  if (!found) return std::nullopt;
+  const NormalMap map{.gradient = found->gradient, .offset = found->offset};
+  return agrees(map, loop, unit, linear) ? std::optional(map) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<UvMap> uv_map_over(const Loop& loop, const UvLoop& uv) {
+  const auto found = linear_over<2>(loop, uv);
+  if (!found) return std::nullopt;
+  const UvMap map{.gradient = found->gradient, .offset = found->offset};
+  return agrees(map, loop, uv) ? std::optional(map) : std::nullopt;
+}
+
+std::optional<NormalMap> normal_map_over(const Loop& loop, const NormalLoop& normals) {
+  const NormalLoop unit = bent_normals(loop, normals);
+  return unit.empty() ? std::nullopt : map_of_unit_normals(loop, unit);
+}
+
+bool is_even(const Loop& loop, const NormalLoop& normals) {
+  const NormalLoop unit = bent_normals(loop, normals);
+  return unit.empty() || map_of_unit_normals(loop, unit);
+}
+
+// A facet shares one of the last few maps where that fits: facets of one flat piece follow each
+// other in files.
+constexpr int looked_at = 8;
+
 int MeshBuilder::uv_map(const Loop& loop, const UvLoop& uv) {
   if (uv.empty()) return -1;
-  constexpr int looked_at = 8;
   const int count = static_cast<int>(mesh_.uv_maps.size());
   for (int i = count - 1; i >= std::max(0, count - looked_at); --i) {
     if (agrees(mesh_.uv_maps[static_cast<std::size_t>(i)], loop, uv)) return i;
@@ -305,8 +368,23 @@ int MeshBuilder::uv_map(const Loop& loop, const UvLoop& uv) {
   return count;
 }
 
-void MeshBuilder::add(const Polygon& polygon, const UvLoop& uv) {
-  Facet facet{.boundary = indices(polygon.boundary), .uv_map = uv_map(polygon.boundary, uv)};
+int MeshBuilder::normal_map(const Loop& loop, const NormalLoop& normals) {
+  const NormalLoop unit = bent_normals(loop, normals);
+  if (unit.empty()) return -1;
+  const int count = static_cast<int>(mesh_.normal_maps.size());
+  for (int i = count - 1; i >= std::max(0, count - looked_at); --i) {
+    if (agrees(mesh_.normal_maps[static_cast<std::size_t>(i)], loop, unit, alike)) return i;
+  }
+  const auto map = map_of_unit_normals(loop, unit);
+  if (!map) return -1;
+  mesh_.normal_maps.push_back(*map);
+  return count;
+}
+
+void MeshBuilder::add(const Polygon& polygon, const UvLoop& uv, const NormalLoop& normals) {
+  Facet facet{.boundary = indices(polygon.boundary),
+              .uv_map = uv_map(polygon.boundary, uv),
+              .normal_map = normal_map(polygon.boundary, normals)};
   const Eigen::Vector3d normal = newell(polygon.boundary);
   for (const Loop& hole : polygon.holes) {
     facet.holes.push_back(indices(hole));
@@ -332,29 +410,33 @@ std::vector<std::string> Repairs::notes() const {
 namespace {
 
 // Takes corners out that repeat the one before them.
-void join_repeated(Loop& loop, UvLoop& uv) {
+void join_repeated(Loop& loop, UvLoop& uv, NormalLoop& normals) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     if (kept > 0 && loop[i] == loop[kept - 1]) continue;
     if (!uv.empty()) uv[kept] = uv[i];
+    if (!normals.empty()) normals[kept] = normals[i];
     loop[kept++] = loop[i];
   }
   while (kept > 1 && loop[0] == loop[kept - 1]) --kept;
   loop.resize(kept);
   if (!uv.empty()) uv.resize(kept);
+  if (!normals.empty()) normals.resize(kept);
 }
 
 }  // namespace
 
-void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv) {
-  join_repeated(loop, uv);
+void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv, NormalLoop normals) {
+  join_repeated(loop, uv, normals);
   if (loop.size() < 3 || is_thin(loop)) {
     ++(loop.size() > 3 && !fault({loop}).empty() ? repairs.crossing : repairs.thin);
     return;
   }
-  if (loop.size() == 3) return mesh.add({std::move(loop)}, uv);
+  if (loop.size() == 3) return mesh.add({std::move(loop)}, uv, normals);
   const bool sound = fault({loop}).empty() && deviation_from_plane({loop}) <= flatness;
-  if (sound && (uv.empty() || uv_map_over(loop, uv))) return mesh.add({std::move(loop)}, uv);
+  if (sound && (uv.empty() || uv_map_over(loop, uv)) && is_even(loop, normals)) {
+    return mesh.add({std::move(loop)}, uv, normals);
+  }
   // Exporters join a hole to its polygon by a bridge that runs there and back; such a loop is no
   // simple polygon, yet ears can be clipped from it.
   const auto triangles = split_into_triangles(loop);
@@ -366,7 +448,9 @@ void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv) {
   for (const auto& t : triangles) {
     const Loop corners = {loop[t[0]], loop[t[1]], loop[t[2]]};
     const UvLoop of_corners = uv.empty() ? uv : UvLoop{uv[t[0]], uv[t[1]], uv[t[2]]};
-    if (!is_thin(corners)) mesh.add({corners}, of_corners);
+    const NormalLoop normals_there =
+        normals.empty() ? normals : NormalLoop{normals[t[0]], normals[t[1]], normals[t[2]]};
+    if (!is_thin(corners)) mesh.add({corners}, of_corners, normals_there);
   }
 }
 

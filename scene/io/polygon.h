@@ -18,6 +18,8 @@ inline constexpr double flatness = 1e-6;
 using Loop = std::vector<Eigen::Vector3d>;
 /// Texture coordinates at the corners of a loop, as many as it has; or none.
 using UvLoop = std::vector<Eigen::Vector2d>;
+/// Normals at the corners of a loop, of any length and side, as many as it has; or none.
+using NormalLoop = std::vector<Eigen::Vector3d>;
 
 /// A polygon as a file gives it, before it becomes a Facet.
 struct Polygon {
@@ -50,18 +52,28 @@ std::vector<std::array<int, 3>> split_into_triangles(const Loop& loop);
 /// or if any is not finite.
 std::optional<UvMap> uv_map_over(const Loop& loop, const UvLoop& uv);
 
+/// Normals over the plane of a loop that has an area, on its front: where they lie less than 0.2
+/// degrees from the plane's throughout, or are none (not finite, without length, within 6 degrees
+/// of the plane), nothing; nor if they leave a linear map by more than 0.002.
+std::optional<NormalMap> normal_map_over(const Loop& loop, const NormalLoop& normals);
+
+/// Whether a loop's normals say nothing that one NormalMap, or none, does not say as well.
+bool is_even(const Loop& loop, const NormalLoop& normals);
+
 /// Collects polygons into a PolygonMesh in which equal positions are one vertex.
 class MeshBuilder {
  public:
-  /// The polygon must be sound; holes are turned to the winding opposite to the boundary's. `uv` is
-  /// the boundary's; without what uv_map_over() makes of it, the facet has none.
-  void add(const Polygon& polygon, const UvLoop& uv = {});
+  /// The polygon must be sound; holes are turned to the winding opposite to the boundary's. `uv`
+  /// and `normals` are the boundary's; without what uv_map_over() and normal_map_over() make of
+  /// them, the facet has none.
+  void add(const Polygon& polygon, const UvLoop& uv = {}, const NormalLoop& normals = {});
   bool empty() const { return mesh_.facets.empty(); }
   const PolygonMesh& mesh() const { return mesh_; }
 
  private:
   std::vector<int> indices(const Loop& loop);
   int uv_map(const Loop& loop, const UvLoop& uv);
+  int normal_map(const Loop& loop, const NormalLoop& normals);
   PolygonMesh mesh_;
   std::map<std::array<double, 3>, int> index_of_;
 };
@@ -83,7 +95,8 @@ struct Repairs {
 };
 
 /// Adds a polygon of a mesh file, repaired where that is possible. It is cut into triangles as well
-/// where its texture coordinates are not linear over it.
-void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv = {});
+/// where its texture coordinates or normals are not linear over it.
+void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv = {},
+                  NormalLoop normals = {});
 
 }  // namespace lightwell

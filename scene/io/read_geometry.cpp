@@ -68,6 +68,7 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
     const aiFace& face = mesh.mFaces[f];
     Loop loop;
     UvLoop uv;
+    NormalLoop normals;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     for (unsigned i = 0; i < face.mNumIndices; ++i) {
       const unsigned v = face.mIndices[i];
@@ -76,16 +77,18 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
         const aiVector3D& at = mesh.mTextureCoords[0][v];
         uv.emplace_back(at.x, 1.0 - at.y);
       }
-      if (!use_normals) continue;
+      if (!mesh.HasNormals()) continue;
       const aiVector3D& n = mesh.mNormals[v];
-      normal += Eigen::Vector3d(n.x, n.y, n.z);
+      normals.emplace_back(n.x, n.y, n.z);
+      if (use_normals) normal += normals.back();
     }
     if (loop.size() >= 3 && area_vector(loop).dot(normal) < 0.0) {
       std::reverse(loop.begin(), loop.end());
       std::reverse(uv.begin(), uv.end());
+      std::reverse(normals.begin(), normals.end());
     }
     const std::size_t facets_before = builder.mesh().facets.size();
-    add_repaired(builder, std::move(loop), polygons.repairs, std::move(uv));
+    add_repaired(builder, std::move(loop), polygons.repairs, std::move(uv), std::move(normals));
     polygons.of_facet.insert(polygons.of_facet.end(), builder.mesh().facets.size() - facets_before,
                              polygons.count);
     ++polygons.count;
@@ -105,7 +108,7 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
   Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
   scene.materials.push_back(default_material(scene.bands));
   if (materials == MeshMaterials::from_file) {
-    scene.notes.push_back(
+    scene.notes.emplace_back(
         "The file has no materials; every surface gets a diffuse reflectance of 0.5.");
   }
   FilePolygons found;

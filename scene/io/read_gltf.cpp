@@ -230,6 +230,7 @@ class GltfReader {
       primitive.fail(fmt::format("has {} corners, which is no multiple of three", corners));
     }
     const std::vector<Eigen::Vector2d> uv = texture_coordinates(primitive, attributes, vertices);
+    const NormalLoop normals = vertex_normals(attributes, to_world, vertices.size());
     const std::size_t count = mode == triangle_list ? corners / 3 : corners < 3 ? 0 : corners - 2;
     triangles_ += static_cast<std::int64_t>(count);
     if (triangles_ > most_facets) {
@@ -240,18 +241,35 @@ class GltfReader {
     for (std::size_t i = 0; i < count; ++i) {
       Loop loop;
       UvLoop of_loop;
+      NormalLoop normals_there;
       for (const std::size_t corner : corners_of(mode, i)) {
         const std::size_t vertex = accessor ? static_cast<std::size_t>(indices[corner]) : corner;
         loop.push_back(vertices[vertex]);
         if (!uv.empty()) of_loop.push_back(uv[vertex]);
+        if (!normals.empty()) normals_there.push_back(normals[vertex]);
       }
       if (is_mirrored) {  // the front stays the front
         std::swap(loop[1], loop[2]);
         if (!uv.empty()) std::swap(of_loop[1], of_loop[2]);
+        if (!normals.empty()) std::swap(normals_there[1], normals_there[2]);
       }
-      add_repaired(mesh, std::move(loop), repairs_, std::move(of_loop));
+      add_repaired(mesh, std::move(loop), repairs_, std::move(of_loop), std::move(normals_there));
     }
     return mesh.mesh();
+  }
+
+  // By vertex, in the world; empty if the mesh has none.
+  NormalLoop vertex_normals(const GltfObject& attributes, const Eigen::Affine3d& to_world,
+                            std::size_t vertex_count) const {
+    const auto accessor = attributes.index("NORMAL");
+    if (!accessor) return {};
+    NormalLoop normals = file_.vectors(*accessor, attributes);
+    if (normals.size() != vertex_count) {
+      attributes.fail(fmt::format("has {} normals for {} vertices", normals.size(), vertex_count));
+    }
+    const Eigen::Matrix3d turn = normal_transform(to_world);
+    for (Eigen::Vector3d& n : normals) n = turn * n;
+    return normals;
   }
 
   // By vertex; empty if the material shows no picture, or the mesh does not say where.

@@ -97,18 +97,29 @@ UvLoop uv_of(const ObjContent& content, const ObjFace& face) {
   return uv;
 }
 
+// Of a face's corners; none if one has none.
+NormalLoop normals_of(const ObjContent& content, const ObjFace& face) {
+  NormalLoop normals;
+  for (std::size_t i = face.first; i < face.first + face.count; ++i) {
+    const int normal = i < content.corner_normals.size() ? content.corner_normals[i] : -1;
+    if (normal < 0) return {};
+    normals.push_back(content.normals[static_cast<std::size_t>(normal)]);
+  }
+  return normals;
+}
+
 // Whether the normals at the corners lie on the other side than the order of the corners says.
 bool turned_by_normals(const ObjContent& content, const ObjFace& face, const Loop& loop) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = face.first; i < face.first + face.count; ++i) {
-    const int normal = content.corner_normals.empty() ? -1 : content.corner_normals[i];
+    const int normal = i < content.corner_normals.size() ? content.corner_normals[i] : -1;
     if (normal >= 0) sum += content.normals[static_cast<std::size_t>(normal)];
   }
   return loop.size() >= 3 && area_vector(loop).dot(sum) < 0.0;
 }
 
 void build_surfaces(const ObjContent& content, const std::map<int, int>& materials,
-                    MeshMaterials wanted, Scene& scene, FilePolygons& polygons) {
+                    MeshMaterials wanted, MeshFronts fronts, Scene& scene, FilePolygons& polygons) {
   // Of a material that comes from elsewhere it is not known here whether it shows a picture.
   const auto keeps_uv = [&](int material) {
     const Material& m = scene.materials[static_cast<std::size_t>(material)];
@@ -119,7 +130,8 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
   std::vector<MeshBuilder> meshes;
   std::vector<std::vector<int>> polygons_of;  // by mesh, then facet
   std::map<int, std::set<int>> materials_of_group;
-  polygons.has_normals = !content.normals.empty();
+  const bool by_normals = fronts == MeshFronts::from_normals;
+  polygons.has_normals = by_normals && !content.normals.empty();
   for (const ObjFace& face : content.faces) {
     const std::pair key(face.group, materials.at(face.material));
     const auto [entry, is_new] = surface_of.emplace(key, meshes.size());
@@ -134,12 +146,14 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
       loop.push_back(content.vertices[static_cast<std::size_t>(content.corners[face.first + i])]);
     }
     UvLoop uv = keeps_uv(key.second) ? uv_of(content, face) : UvLoop{};
-    if (turned_by_normals(content, face, loop)) {
+    NormalLoop normals = normals_of(content, face);
+    if (by_normals && turned_by_normals(content, face, loop)) {
       std::reverse(loop.begin(), loop.end());
       std::reverse(uv.begin(), uv.end());
+      std::reverse(normals.begin(), normals.end());
     }
     MeshBuilder& mesh = meshes[entry->second];
-    add_repaired(mesh, std::move(loop), polygons.repairs, std::move(uv));
+    add_repaired(mesh, std::move(loop), polygons.repairs, std::move(uv), std::move(normals));
     polygons_of[entry->second].resize(mesh.mesh().facets.size(), polygons.count);
     ++polygons.count;
   }
@@ -162,7 +176,7 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
 Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, MeshMaterials wanted,
                     FilePolygons* polygons, MeshFronts fronts) {
   const TextFile file(path);
-  ObjContent content = read_obj_content(file, metres_per_unit, fronts);
+  ObjContent content = read_obj_content(file, metres_per_unit);
   Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
   if (content.free_form > 0) {
     scene.notes.push_back(fmt::format(
@@ -176,7 +190,7 @@ Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, M
     scene.materials.push_back(default_material(scene.bands));
   }
   FilePolygons found;
-  build_surfaces(content, materials, wanted, scene, found);
+  build_surfaces(content, materials, wanted, fronts, scene, found);
   Remarks remarks;
   remark_pictures_without_uv(scene, remarks);
   for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);

@@ -11,6 +11,7 @@
 #include "scene/io/text_file.h"
 #include "scene/io/toml_lamps.h"
 #include "scene/io/toml_materials.h"
+#include "scene/io/toml_motions.h"
 #include "scene/io/toml_sky.h"
 #include "scene/io/toml_surfaces.h"
 #include "scene/io/toml_value.h"
@@ -90,7 +91,7 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
   const TomlTable table =
       value.renamed(fmt::format("camera '{}'", camera.name))
           .table({"name", "position", "direction", "look_at", "up", "fov", "size",
-                  "aperture_radius", "f_number", "focus_distance", "blades"});
+                  "aperture_radius", "f_number", "focus_distance", "blades", "shutter", "motion"});
   const auto same = [&](const Camera& other) { return other.name == camera.name; };
   if (std::any_of(scene.cameras.begin(), scene.cameras.end(), same)) {
     table.fail("has a name that an earlier camera has; give it another");
@@ -122,6 +123,8 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
     camera.height = static_cast<int>(pixels[1].integer_within(1, most));
   }
   read_lens(table, scene.metres_per_unit, camera);
+  if (const auto shutter = table.find("shutter")) read_toml_shutter(*shutter, camera);
+  if (const auto motion = table.find("motion")) camera.motion = find_toml_motion(*motion, scene);
   return camera;
 }
 
@@ -144,8 +147,8 @@ Scene read_toml(const std::filesystem::path& path) {
   const TextFile file(path);
   const toml::table root = parse(file);
   const TomlValue all(file.path(), root, "");
-  const TomlTable document =
-      all.table({"title", "unit", "bands", "materials", "surfaces", "lamps", "sky", "cameras"});
+  const TomlTable document = all.table(
+      {"title", "unit", "bands", "materials", "motions", "surfaces", "lamps", "sky", "cameras"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
@@ -156,6 +159,9 @@ Scene read_toml(const std::filesystem::path& path) {
   const TomlBands bands = bands_table ? read_toml_bands(*bands_table) : TomlBands{};
   scene.bands = bands.bands;
   const auto materials = read_materials(document, bands, scene);
+  if (const auto motions = document.find("motions")) {
+    scene.motions = read_toml_motions(*motions, scene.metres_per_unit);
+  }
 
   if (const auto sky = document.find("sky")) scene.sky = read_toml_sky(*sky, bands);
   const auto surfaces = document.find("surfaces");
@@ -177,13 +183,16 @@ Scene read_toml(const std::filesystem::path& path) {
     number = 0;
     for (const auto& lamp : lamps->elements("lamp")) read_toml_lamp(lamp, ++number, bands, scene);
   }
+  std::vector<char> have_shutter;
   if (const auto cameras = document.find("cameras")) {
     if (!cameras->is_array()) cameras->fail("must be an array of tables; write [[cameras]]");
     number = 0;
     for (const auto& camera : cameras->elements("camera")) {
       scene.cameras.push_back(read_camera(camera, ++number, scene));
+      have_shutter.push_back(camera.member("shutter") ? 1 : 0);
     }
   }
+  settle_toml_motions(document, have_shutter, scene);
   validate(scene);
   return scene;
 }

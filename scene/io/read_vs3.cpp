@@ -154,7 +154,7 @@ class Vs3Builder {
     MeshBuilder mesh;
     for (const Loop& loop : pieces_[i]) add_repaired(mesh, loop, repairs_);
     if (mesh.empty()) {
-      numbered_.scene.notes.push_back(
+      numbered_.scene.notes.emplace_back(
           fmt::format("Surface {} '{}' has nothing left of its area.", i + 1, record.name));
       return;
     }
@@ -168,11 +168,11 @@ class Vs3Builder {
     auto& notes = numbered_.scene.notes;
     for (const std::string& note : repairs_.notes()) notes.push_back(note + ".");
     if (content_.emit) {
-      notes.push_back(
+      notes.emplace_back(
           "The control word emit=1 is passed over: factors are geometric, without emittances.");
     }
     if (content_.has_transformation) {
-      notes.push_back("X records (coordinate transformations) are passed over, as View3D does.");
+      notes.emplace_back("X records (coordinate transformations) are passed over, as View3D does.");
     }
   }
 

@@ -13,6 +13,7 @@
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
 #include "scene/io/text_file.h"
+#include "scene/io/toml_motions.h"
 
 namespace lightwell {
 namespace {
@@ -32,6 +33,10 @@ struct Placement {
   UvMap operator()(const UvMap& map) const {
     const Eigen::Matrix<double, 2, 3> gradient = map.gradient * rotation.transpose() / scale;
     return {.gradient = gradient, .offset = map.offset - gradient * offset};
+  }
+  NormalMap operator()(const NormalMap& map) const {
+    const Eigen::Matrix3d gradient = rotation * map.gradient * rotation.transpose() / scale;
+    return {.gradient = gradient, .offset = rotation * map.offset - gradient * offset};
   }
 };
 
@@ -88,7 +93,9 @@ class SurfaceReader {
         table_(table),
         name_(std::move(name)),
         scene_(scene),
-        place_(read_placement(table, scene.metres_per_unit)) {}
+        place_(read_placement(table, scene.metres_per_unit)) {
+    if (const auto motion = table.find("motion")) motion_ = find_toml_motion(*motion, scene);
+  }
 
   void read() {
     const auto shapes = table_.present(shape_keys);
@@ -105,6 +112,9 @@ class SurfaceReader {
     }
     if (const auto flip = table_.find("flip"); flip && shape != "mesh") {
       flip->fail(fmt::format("belongs to 'mesh', but the shape is '{}'", shape));
+    }
+    if (const auto smooth = table_.find("smooth"); smooth && shape != "mesh") {
+      smooth->fail(fmt::format("belongs to 'mesh', but the shape is '{}'", shape));
     }
     if (const auto uv = table_.find("uv"); uv && shape != "polygon" && shape != "polygons") {
       uv->fail(fmt::format(
@@ -143,7 +153,8 @@ class SurfaceReader {
     if (std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), same)) {
       value_.fail("has a name that an earlier surface has; give it another");
     }
-    scene_.surfaces.push_back({.name = name, .material = material, .shape = std::move(shape)});
+    scene_.surfaces.push_back(
+        {.name = name, .material = material, .shape = std::move(shape), .motion = motion_});
   }
 
   Sphere read_sphere(const TomlValue& value) const {
@@ -270,6 +281,8 @@ class SurfaceReader {
     }
     const auto flip = table_.find("flip");
     const bool turned = flip && flip->boolean();
+    const auto smooth = table_.find("smooth");
+    const bool is_smooth = !smooth || smooth->boolean();
     Scene mesh;
     try {
       const auto wanted = !material                                 ? MeshMaterials::from_file
@@ -288,6 +301,8 @@ class SurfaceReader {
       auto& polygons = std::get<PolygonMesh>(surface.shape);
       for (auto& vertex : polygons.vertices) vertex = place_(vertex);
       for (auto& map : polygons.uv_maps) map = place_(map);
+      for (auto& map : polygons.normal_maps) map = place_(map);
+      if (!is_smooth) drop_normals(polygons);
       if (turned) turn_over(polygons);
       const auto& own = mesh.materials[static_cast<std::size_t>(surface.material)];
       add_surface(mesh.surfaces.size() == 1 ? name_ : fmt::format("{}/{}", name_, surface.name),
@@ -320,6 +335,7 @@ class SurfaceReader {
   std::string name_;
   Scene& scene_;
   Placement place_;
+  int motion_ = -1;
 };
 
 }  // namespace
@@ -330,7 +346,7 @@ void read_toml_surface(const TomlValue& value, std::size_t number, Scene& scene)
   const TomlValue named = value.renamed(fmt::format("surface '{}'", name));
   const TomlTable table =
       named.table({"name", "material", "polygon", "holes", "polygons", "box", "sphere", "mesh",
-                   "flip", "scale", "rotate", "pivot", "translate", "uv"});
+                   "flip", "smooth", "scale", "rotate", "pivot", "translate", "uv", "motion"});
   SurfaceReader(named, table, name, scene).read();
 }
 

@@ -92,6 +92,22 @@ TEST_F(RelightCommand, InfoListsChannelsWithTheirFluxAndScale) {
   EXPECT_EQ(before["scene_hash"], after["scene_hash"]);
 }
 
+/// Progressive refinement shoots the light of all channels at once.
+TEST_F(RelightCommand, ProgressiveLightIsKeptApartToo) {
+  const Ended ended = run(Words{"solve", "office.toml", "-o", "P.vtp", "--solver", "progressive",
+                                "--channels", "per-luminaire"} +
+                          quick());
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("desk lamp 27.6 W"), std::string::npos) << ended.out;
+  ASSERT_EQ(relight({"desk lamp=off"}, "P.vtp", "panel.vtp").code, 0);
+  ASSERT_EQ(relight({"panel=off"}, "P.vtp", "desk.vtp").code, 0);
+  const auto all = probed("P.vtp"), panel = probed("panel.vtp"), desk = probed("desk.vtp");
+  // See LightAddsUpAtEveryPoint.
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_NEAR(panel[i] + desk[i], all[i], 5e-7 * all[i]);
+  }
+}
+
 TEST_F(RelightCommand, LightAddsUpAtEveryPoint) {
   solve();
   ASSERT_EQ(relight({"desk=off"}, "S.vtp", "ceiling.vtp").code, 0);
@@ -212,9 +228,7 @@ TEST_F(RelightCommand, MistakesAreExplained) {
        "'desk' is not off, per-luminaire or NAME=PATTERN"},
       {"NoSuchChoice", solve_it + Words{"--channels", "per-lamp"}, 2, "per-luminaire"},
       {"BothWays", solve_it + Words{"--channels", "per-luminaire", "--channels", "desk=desk*"}, 2,
-       "only one kind"},
-      {"Progressive", solve_it + Words{"--channels", "per-luminaire", "--solver", "progressive"}, 3,
-       "cannot keep channels apart"}};
+       "only one kind"}};
   for (const Mistake& mistake : mistakes) {
     const Ended ended = run(mistake.arguments);
     EXPECT_EQ(ended.code, mistake.code) << mistake << ": " << ended.err;

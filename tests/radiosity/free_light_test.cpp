@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "radiosity/caustic_photons.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/relight.h"
 #include "radiosity/solve.h"
@@ -62,12 +63,11 @@ double direct(const Scene& scene, const Eigen::Vector3d& point, const Eigen::Vec
 TEST(FreeSources, PointGivesIntensityTimesCosineOverSquaredDistance) {
   Scene scene = box(0.5f);
   scene.lamps = {point_lamp(scene)};
-  for (const Eigen::Vector3d& p : {Eigen::Vector3d(2.0, 2.5, 0.0), Eigen::Vector3d(3.7, 4.1, 0.0),
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(2.0, 2.5, 0.1), Eigen::Vector3d(3.7, 4.1, 0.1),
                                    Eigen::Vector3d(2.3, 1.9, 1.4)}) {
     const Eigen::Vector3d to = scene.lamps[0].position - p;
     const double E = 10.0 * to.z() / std::pow(to.norm(), 3);
-    EXPECT_NEAR(direct(scene, p + Eigen::Vector3d(0, 0, 1e-9), Eigen::Vector3d::UnitZ()) / E, 1.0,
-                1e-6);
+    EXPECT_NEAR(direct(scene, p, Eigen::Vector3d::UnitZ()) / E, 1.0, 1e-6);
   }
 }
 
@@ -243,6 +243,53 @@ TEST(FreeLight, ChannelsOfLampsAddUpAndRelight) {
   const DirectLight dimmed(scene, apart.mesh);
   EXPECT_FALSE(dimmed.free_sources()[0].is_on());
   EXPECT_TRUE(dimmed.free_sources()[1].is_on());
+}
+
+// What a mirror throws on is what it takes in but for what it absorbs; at a place, that of the
+// lamp's mirror image.
+TEST(FreeLight, MirrorThrowsTheLampsLightOn) {
+  Scene scene;
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  Material material = test::diffuse(scene.bands, 0.0f);
+  material.specular = constant_spectrum(scene.bands, 0.8f);
+  const int mirror = test::add_material(scene, material);
+  test::add_box(scene, {0, 0, 0}, {4, 5, 3}, {mirror, grey, grey, grey, grey, grey}, true);
+  scene.lamps = {point_lamp(scene)};
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
+  const ElementCaster caster(mesh);
+  const DirectLight light(scene, mesh);
+  const FreeLight cast = cast_free_light(caster, LightPaths(scene, caster, 8), light);
+  const double thrown = cast.absorbed[0] / 0.2 * 0.8;
+  const CausticPhotons photons = shoot_photons(scene, caster, light, 1 << 18, 8);
+  EXPECT_NEAR(photons.power.col(0).sum() / thrown, 1.0, 0.01);
+
+  const BandArray caustic = caustic_irradiance(scene, caster, light, 1 << 19, 8);
+  const std::vector<GatherPoint> points = vertex_gather_points(mesh);
+  const Eigen::Vector3d image(-2.0, 2.5, 2.2);
+  double found = 0.0, exact = 0.0;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const Eigen::Vector3d to = image - points[v].position;
+    const double height = to.dot(points[v].normal);
+    const double E = height > 0.0 ? 0.8 * 10.0 * height / std::pow(to.norm(), 3) : 0.0;
+    found += caustic(static_cast<Eigen::Index>(v), 0);
+    exact += E;
+  }
+  EXPECT_NEAR(found / exact, 1.0, 0.05);  // edges of walls take the mean of one side
+}
+
+// By way of a pane of glass light goes straight on, dimmed.
+TEST(FreeSources, PanesPassLightStraightOn) {
+  Scene scene = box(0.5f);
+  scene.lamps = {point_lamp(scene)};
+  const Eigen::Vector3d below(2.0, 2.5, 1e-6);
+  const double open = direct(scene, below, Eigen::Vector3d::UnitZ());
+  Material pane = test::clear_glass(scene.bands);
+  pane.dielectric->thin = true;
+  const int glass = test::add_material(scene, pane);
+  test::add_polygon(scene, "pane", glass, {{1, 1.5, 1}, {3, 1.5, 1}, {3, 3.5, 1}, {1, 3.5, 1}});
+  const double through = direct(scene, below, Eigen::Vector3d::UnitZ());
+  const double R1 = 0.04, R = R1 + (1 - R1) * (1 - R1) * R1 / (1 - R1 * R1);  // both faces
+  EXPECT_NEAR(through / open, (1.0 - R) * 0.9, 0.01);
 }
 
 TEST(FreeLight, RoomOfLampsAloneThatReflectsNothingIsSolved) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "radiosity/solve.h"
+#include "radiosity/solve_channels.h"
 #include "radiosity/solve_radiosity.h"
 #include "radiosity/vertex_light.h"
 #include "scene/parallel.h"
@@ -182,6 +183,42 @@ TEST(VertexLight, SeesShadowsAfterTheFirstRoundAndAllLightInTheEnd) {
       gather_irradiance(room.scene, room.caster, room.direct_light, B, points, many_rays);
   // One ray a shooter, and shooters of one value each: 300 patches are few.
   EXPECT_LT(relative(light.irradiance(), all.direct + all.indirect), 0.03);
+}
+
+/// The same shots bring the light of every channel, and that is what each would be alone.
+TEST(Progressive, KeepsChannelsApart) {
+  Scene scene = lamp_room(0.6f, true);
+  const int second = add_material(scene, diffuse(scene.bands, 0.0f, 4.0f));
+  add_box(scene, {1.5, 1.1, 0.9}, {1.7, 1.3, 1.0}, {second, second, second, second, second, second},
+          false);
+  const EmitterChannels channels = channels_per_luminaire(scene);
+  const auto count = static_cast<Eigen::Index>(channels.names.size());
+  ASSERT_EQ(count, 7) << "one face of the first lamp, six of the second";
+  const Solved room(scene);
+  const auto F = room.form_factors();
+  constexpr ProgressiveOptions options{.tolerance = 1e-6};
+  ProgressiveRadiosity together(room.scene, room.mesh, stored_shots(*F), options);
+  ProgressiveRadiosity apart(room.scene, room.mesh, stored_shots(*F), options, channels);
+  run(together);
+  run(apart);
+  const RadiositySolution solution = apart.solution();
+  // Both end with 1e-6 of the power unshot; the rest is float rounding of many small additions.
+  EXPECT_LT(rms(room.mesh, solution.patch_radiosity, together.radiosity()), 1e-5);
+  RadiositySolution wanted;
+  wanted.patch_radiosity = solution.patch_radiosity;
+  solve_channels(room.scene, room.mesh, *F, channels, SolverMethod::automatic, {.tolerance = 1e-7},
+                 wanted);
+  EXPECT_EQ(solution.patch_channel, wanted.patch_channel);
+  double emitted = 0.0;
+  for (std::size_t c = 0; c < solution.channels.size(); ++c) {
+    const LightChannel &found = solution.channels[c], &exact = wanted.channels[c];
+    EXPECT_EQ(found.name, exact.name);
+    EXPECT_EQ(found.surfaces, exact.surfaces);
+    // Extended form factors are not reciprocal: see ToTheEndIsWhatGaussSeidelFinds.
+    EXPECT_LT(rms(room.mesh, found.patch_radiosity, exact.patch_radiosity), 5e-3) << found.name;
+    emitted += found.energy.row(0).sum();
+  }
+  EXPECT_NEAR(emitted, together.energy().emitted, 1e-6 * emitted);
 }
 
 TEST(Progressive, IsTheSameForAnyNumberOfThreads) {

@@ -30,13 +30,13 @@ TEST(PixelGather, ReadsTheSolutionWhereItsRaysEnd) {
   const double F = 4.0 / std::numbers::pi * s * std::atan(s);
   // Of the 1024 strata about 4 sqrt(1024) lie across the square's edge, each right within a
   // variance of 1/4; four standard deviations.
-  EXPECT_NEAR(gather.indirect_irradiance(at, 3, 1.0f)[0], 3.0 * F,
+  EXPECT_NEAR(gather.indirect_irradiance(lit.caster, at, 3, 1.0f)[0], 3.0 * F,
               4 * 3.0 * std::sqrt(4 * 32 * 0.25) / 1024);
   // A sixteenth of the rays have the same mean: 64 times 64, of a standard deviation of at most
   // 1/2.
   double sum = 0.0;
   for (std::uint64_t key = 0; key < 64; ++key) {
-    sum += static_cast<double>(gather.indirect_irradiance(at, key, 1.0f / 16.0f)[0]);
+    sum += static_cast<double>(gather.indirect_irradiance(lit.caster, at, key, 1.0f / 16.0f)[0]);
   }
   EXPECT_NEAR(sum / 64, 3.0 * F, 4 * 3.0 * 0.5 / 64);
 }
@@ -60,8 +60,8 @@ TEST(PixelGather, AMirrorDoublesWhatIsBesideIt) {
   const PixelGather without(open.scene, open.caster, open.direct_light, open.solution, 1 << 14, 4);
   // The image lies wholly within the mirror, seen from the point: rays to x = 1.1 to 2.1, z = 2
   // cross x = 0.8 at heights of 0.76 to 1.45 and |y| < 0.37. Edges as above, of two pictures.
-  EXPECT_NEAR(gather.indirect_irradiance(at, 3, 1.0f)[0],
-              without.indirect_irradiance(at, 3, 1.0f)[0],
+  EXPECT_NEAR(gather.indirect_irradiance(lit.caster, at, 3, 1.0f)[0],
+              without.indirect_irradiance(open.caster, at, 3, 1.0f)[0],
               4 * std::sqrt(2 * 4 * 128 * 0.25) / 16384);
 }
 

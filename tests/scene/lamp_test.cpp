@@ -10,6 +10,7 @@
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
 #include "scene/scene.h"
+#include "tests/scene/told_errors.h"
 #include "tests/temporary_folder.h"
 
 namespace lightwell {
@@ -126,15 +127,7 @@ box = { min = [0, 0, 0], max = [400, 300, 250], inward = true }
 )" + lamps));
   }
   void expect_error(const std::string& lamps, const std::vector<std::string>& parts) {
-    try {
-      read(lamps);
-      FAIL() << "no error that says " << parts.front();
-    } catch (const InputError& error) {
-      for (const std::string& part : parts) {
-        EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
-            << error.what() << " lacks " << part;
-      }
-    }
+    test::expect_told([&] { read(lamps); }, parts);
   }
   TemporaryFolder folder_{};
 };

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "scene/errors.h"
+#include "tests/scene/told_errors.h"
 #include "tests/temporary_folder.h"
 
 namespace lightwell {
@@ -149,15 +150,7 @@ class WrittenFiles : public testing::Test {
   }
   void expect_error(const std::string& text, const std::vector<std::string>& parts,
                     const std::string& name = "it.ies") {
-    try {
-      read(text, name);
-      FAIL() << "no error that says " << parts.front();
-    } catch (const InputError& error) {
-      for (const std::string& part : parts) {
-        EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
-            << error.what() << " lacks " << part;
-      }
-    }
+    test::expect_told([&] { read(text, name); }, parts);
   }
   TemporaryFolder folder_{};
 };

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <algorithm>
 #include <array>
 
 #include <cstdlib>
@@ -14,6 +15,7 @@
 
 #include "glb_file.h"
 #include "lit_sides.h"
+#include "pictured_wall.h"
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 
@@ -127,6 +129,37 @@ TEST_F(Export, AnyNameIsWrittenAsValidText) {
   EXPECT_NEAR(area_of(read_scene(folder / "box.ply")), box_area, 1e-12);
 }
 
+/// A viewer multiplies COLOR_0 with the picture, so at bright texels it shows what they reflect.
+TEST_F(Export, PicturesAreBaseColours) {
+  const PicturedBox box;
+  const BakedModel model = bake_model(box.solved, box.scene);
+  write_gltf(folder / "box.glb", model);
+  const Glb glb = parse_glb(content_of(folder / "box.glb"));
+  ASSERT_EQ(glb.json["images"].size(), 1u);
+  EXPECT_EQ(glb.json["samplers"][0]["magFilter"], 9728) << "flat squares";
+  int pictured = 0;
+  for (const auto& mesh : glb.json["meshes"]) {
+    const auto& primitive = mesh["primitives"][0];
+    const auto& material = glb.json["materials"][primitive["material"].get<int>()];
+    const auto& attributes = primitive["attributes"];
+    EXPECT_EQ(attributes.contains("TEXCOORD_0"),
+              material["pbrMetallicRoughness"].contains("baseColorTexture"));
+    if (!attributes.contains("TEXCOORD_0")) continue;
+    ++pictured;
+    EXPECT_EQ(material["name"], "wall paint with a picture");
+    const auto scale = glb.json["asset"]["extras"]["exposure"].get<float>();
+    // What lies on the bright half has rho, and E is that of a white wall.
+    const float wanted = scale * bright_half * white[0] / std::numbers::pi_v<float>;
+    for (const float c : floats(glb, attributes["COLOR_0"], 3)) {
+      EXPECT_NEAR(c, std::min(wanted, 1.0f), 1e-4f);
+    }
+    const auto places = floats(glb, attributes["TEXCOORD_0"], 2);
+    EXPECT_EQ(*std::ranges::max_element(places), 1.0f);
+    EXPECT_EQ(*std::ranges::min_element(places), 0.0f);
+  }
+  EXPECT_EQ(pictured, 1);
+}
+
 TEST_F(Export, KhronosValidatorHasNothingToSay) {
   if (!has_node())
     GTEST_SKIP() << "no node here to run the validator; on Debian: apt install nodejs";
@@ -136,6 +169,10 @@ TEST_F(Export, KhronosValidatorHasNothingToSay) {
   write_gltf(folder / "square.glb", bake_model(square_of_two_sides(white, red), {}));
   EXPECT_TRUE(is_valid_gltf(folder, folder / "box.glb"));
   EXPECT_TRUE(is_valid_gltf(folder, folder / "square.glb"));
+  PicturedBox pictured;
+  pictured.scene.materials.back().mask = Mask{.image = picture_of(2, 1, {1.0f, 0.0f})};
+  write_gltf(folder / "pictured.glb", bake_model(pictured.solved, pictured.scene));
+  EXPECT_TRUE(is_valid_gltf(folder, folder / "pictured.glb"));
 }
 
 TEST_F(Export, OurReaderFindsTheRoomInThePly) {

@@ -120,6 +120,47 @@ TEST(LiveSolve, WhatIsEndedEarlySaysSo) {
   EXPECT_NEAR(solved.solution.energy.unshot / solved.solution.energy.emitted, unshot, 1e-6);
 }
 
+/// Channels are columns of the same shots: what arrives is the same light, and a dimmed lamp's is
+/// less by just its share, before there is a solution and after.
+TEST(LiveSolve, DimsALampWhileItsLightArrives) {
+  const Scene scene = channel_room();
+  SolveOptions options = quick();
+  LiveSolve together(scene, options, {});
+  options.channels = channels_per_luminaire(scene);
+  LiveSolve apart(scene, options, {});
+  together.shoot(60);
+  apart.shoot(60);
+  SolvedScene whole = together.dark();
+  show_light(together.light(), true, whole);
+  SolvedScene shown = apart.dark();
+  EXPECT_EQ(shown.solution.channels.size(), 2u);
+  show_light(apart.light(), true, shown);
+  const BandArray E = whole.solution.irradiance();
+  const float rounding = 1e-4f * E.maxCoeff();  // of sums in another order
+  EXPECT_LT((shown.solution.irradiance() - E).abs().maxCoeff(), rounding);
+
+  const auto dimmed = [&](const LiveLight& light, const char* desk, const char* panel) {
+    SolvedScene scene_of = relit(apart.dark(), {desk, panel});
+    show_light(light, true, scene_of);
+    return scene_of;
+  };
+  const SolvedScene desk = dimmed(apart.light(), "on", "off");
+  const SolvedScene panel = dimmed(apart.light(), "off", "0.5");
+  EXPECT_LT((desk.solution.irradiance() + 2.0f * panel.solution.irradiance() - E).abs().maxCoeff(),
+            rounding);
+  EXPECT_GT(desk.solution.irradiance().maxCoeff(), 0.0f);
+  for (int i = 0; i < panel.mesh.patch_count(); ++i) {
+    const float scale = panel.solution.patch_channel[i] == 1 ? 0.5f : 0.0f;
+    EXPECT_EQ(panel.mesh.emission(i, 0), scale * panel.solution.full_emission(i, 0));
+  }
+
+  const SolvedScene solved = apart.finish();
+  ASSERT_EQ(solved.solution.channels.size(), 2u);
+  const BandArray sum =
+      solved.solution.channels[0].direct_irradiance + solved.solution.channels[1].direct_irradiance;
+  EXPECT_LT((sum - solved.solution.direct_irradiance).abs().maxCoeff(), rounding);
+}
+
 TEST(LiveSolve, RefusesASceneWithoutLight) {
   Scene scene = test::two_lamps();
   for (Material& material : scene.materials) material.emission.setZero();
@@ -181,7 +222,7 @@ TEST(LiveWindow, ShowsPausesAndSaves) {
   options.width = options.height = 120;
   options.solution_file = folder.path() / "live.vtp";
   LiveSolve live(scene, quick(), {});
-  WalkWindow window(live, options);
+  WalkWindow window(live, live.dark(), options);
   const auto tap = [&](const char* key) {
     window.press(key);
     window.release(key);
@@ -214,6 +255,38 @@ TEST(LiveWindow, ShowsPausesAndSaves) {
   const SolvedScene saved = read_solution(options.solution_file);
   EXPECT_NO_THROW(check_matches(scene, saved.solution));
   EXPECT_TRUE((saved.solution.irradiance() == window.solved().solution.irradiance()).all());
+}
+
+/// Keys dim a lamp while light arrives, and the solution that follows is as dimmed.
+TEST(LiveWindow, KeepsALampDimmedInTheSolution) {
+  const Scene scene = channel_room();
+  ViewOptions options;
+  options.cameras = scene.cameras;
+  options.width = options.height = 120;
+  SolveOptions solving = quick();
+  solving.channels = channels_per_luminaire(scene);
+  LiveSolve live(scene, solving, {});
+  WalkWindow window(live, live.dark(), options);
+  const auto tap = [&](const char* key) {
+    window.press(key);
+    window.release(key);
+  };
+  const float before = window.solved().solution.irradiance().mean();
+  tap("bracketright");
+  tap("backslash");
+  EXPECT_NE(window.status().find("[desk off]"), std::string::npos) << window.status();
+  const float after = window.solved().solution.irradiance().mean();
+  EXPECT_LT(after, before);
+  live.start();
+  tap("Return");
+  EXPECT_TRUE(comes_true([&] {
+    window.tick(0.01);
+    return live.state().phase == LivePhase::done && !window.solved().solution.seconds.empty();
+  }));
+  const RadiositySolution& solved = window.solved().solution;
+  ASSERT_EQ(solved.channels.size(), 2u);
+  EXPECT_EQ(solved.channels[0].scale.maxCoeff(), 0.0f);
+  EXPECT_TRUE((solved.direct_irradiance == solved.channels[1].direct_irradiance).all());
 }
 
 }  // namespace

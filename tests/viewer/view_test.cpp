@@ -11,6 +11,7 @@
 #include <numbers>
 #include <thread>
 
+#include "pictured_wall.h"
 #include "raytrace/display.h"
 #include "raytrace/image.h"
 #include "solved_box.h"
@@ -75,6 +76,33 @@ TEST(Snapshot, ShowsEveryWallWhereTheCameraSeesIt) {
   expect_pixel(picture.at(100, 5), expected(box, options, blue), "ceiling");
   expect_pixel(picture.at(100, 145), expected(box, options, grey), "floor");
   expect_pixel(picture.at(2, 75), {0, 0, 0}, "beside the box there is nothing");
+}
+
+/// Halves of the wall at the end in the light of a white one: left is the picture's left. sRGB is
+/// no pure power, so that the product of two encoded values is off by up to 2 %.
+TEST(Snapshot, ShowsPicturesInTheirLight) {
+  PicturedBox box;
+  ViewOptions options = options_for(box_camera());
+  options.materials = box.scene.materials;
+  options.scene = &box.scene;
+  const auto near_to = [&](const Pixel& seen, const Eigen::Array3f& E, const char* what) {
+    const Pixel wanted = expected(box.solved, options, E);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], wanted[c], 2 + 0.02 * 255) << what;
+  };
+  const Picture picture = draw(box.solved, options);
+  near_to(picture.at(80, 75), bright_half * white, "world +x, where the picture begins");
+  near_to(picture.at(120, 75), dark_half * white, "its other half");
+  near_to(picture.at(20, 75), green, "other walls have none");
+
+  options.illuminance = true;
+  const Picture lux = draw(box.solved, options);
+  EXPECT_EQ(lux.at(80, 75), lux.at(120, 75)) << "both halves receive the same";
+
+  options.illuminance = false;
+  box.scene.materials.back().mask = Mask{.image = picture_of(2, 1, {1.0f, 0.0f})};
+  const Picture with_hole = draw(box.solved, options);
+  near_to(with_hole.at(80, 75), bright_half * white, "what is left of the wall");
+  expect_pixel(with_hole.at(120, 75), {0, 0, 0}, "through the hole there is nothing");
 }
 
 TEST(Snapshot, BacksAreNotDrawn) {

@@ -8,6 +8,7 @@
 #include "in_browser.h"
 #include "lit_sides.h"
 #include "mesh/element_caster.h"
+#include "pictured_wall.h"
 #include "raytrace/probe.h"
 #include "viewer/appearance.h"
 
@@ -166,6 +167,49 @@ TEST_F(InBrowser, WithoutWebGlThePageSaysWhatToDo) {
   const std::string mark = "<div id=\"message\">";
   ASSERT_NE(dom.find(mark), std::string::npos) << content_of(folder / "said").substr(0, 2000);
   EXPECT_TRUE(says(dom.substr(dom.find(mark), 200), "This browser shows no WebGL 2"));
+}
+
+/// Halves of a wall show what they reflect, to one step of rounding more than plain walls.
+TEST_F(InBrowser, ThePageShowsPictures) {
+  constexpr const char* look = R"(<pre id="result"></pre><script>
+(async () => {
+  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+  const found = {};
+  for (let i = 0; i < 200 && !window.lightwell; ++i) await wait(50);
+  const page = window.lightwell, gl = page.picture.renderer.getContext();
+  for (let i = 0; i < 200 && !page.picture.with_pictures[0].uniforms.is_there.value; ++i) await wait(50);
+  const pixel = (x, y) => {
+    page.picture.draw();
+    const bytes = new Uint8Array(4);
+    gl.readPixels(x * gl.drawingBufferWidth, (1 - y) * gl.drawingBufferHeight, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return [...bytes].slice(0, 3);
+  };
+  found.halves = [pixel(0.45, 0.5), pixel(0.55, 0.5)];
+  found.errors = errors;
+  return found;
+})().catch((error) => ({failed: String(error.stack)}))
+    .then((found) => { element('result').textContent = encodeURIComponent(JSON.stringify(found)); });
+</script></body>)";
+  PicturedBox box;
+  const BakedModel whole = bake_model(box.solved, box.scene);
+  const Json found = run(whole, look);
+  ASSERT_FALSE(found.is_null());
+  ASSERT_FALSE(found.contains("failed")) << found["failed"];
+  EXPECT_EQ(found["errors"], Json::array());
+  for (int half = 0; half < 2; ++half) {
+    const float rho = half == 0 ? bright_half : dark_half;
+    const BandArray L = rho * white.transpose() / std::numbers::pi_v<float>;
+    const auto wanted = display_colors(L, rgb_bands(), whole.cameras[0].scale);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(found["halves"][half][c].get<int>(), wanted[c], 3) << half << ' ' << c;
+    }
+  }
+  box.scene.materials.back().mask = Mask{.image = picture_of(2, 1, {1.0f, 0.0f})};
+  const Json with_hole = run(bake_model(box.solved, box.scene), look);
+  ASSERT_FALSE(with_hole.is_null());
+  EXPECT_EQ(with_hole["errors"], Json::array());
+  EXPECT_GT(with_hole["halves"][0][1].get<int>(), 100);
+  EXPECT_LT(with_hole["halves"][1][1].get<int>(), 60) << "the page's own ground";
 }
 
 }  // namespace

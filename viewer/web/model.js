@@ -47,6 +47,10 @@ class Model {
       radiance: this.unpack_halves(basis.radiance, 3 * n, halves),
       illuminance: this.unpack_halves(basis.illuminance, (basis.illuminance.components ?? 1) * n, halves),
     }));
+    if (about.pictures) {
+      this.places = new Float32Array(bytes.buffer, about.places.offset, 2 * n);
+      this.picture_gain = this.unpack_halves(about.picture_gain, 3 * n, halves);
+    }
     this.radiance = new Float32Array(3 * n);
     this.illuminance = new Float32Array(n);
     this.mix();
@@ -71,6 +75,19 @@ class Model {
     return values;
   }
 
+  /** A picture's texels, four bytes each with alpha; rows from the top. */
+  async decode_picture({offset, length}) {
+    const image = new Image();
+    image.src = URL.createObjectURL(new Blob([this.bytes.subarray(offset, offset + length)], {type: 'image/png'}));
+    await image.decode();
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext('2d');
+    context.drawImage(image, 0, 0);
+    URL.revokeObjectURL(image.src);
+    return context.getImageData(0, 0, image.width, image.height);
+  }
+
   /** Adds the bases up with their weights. */
   mix() {
     const L = this.radiance.fill(0), E = this.illuminance.fill(0);
@@ -90,17 +107,18 @@ class Model {
 
   /**
    * Triangles of all faces, quads split from their first corner, in five groups: faces without and with a black other
-   * side, both again of faces without light, and glass.
+   * side, both again of faces without light, and glass; then the first two of what shows each picture.
    */
   split_faces() {
-    const {parts, materials, face_count} = this.about;
+    const {parts, materials, face_count, pictures = []} = this.about;
     this.part_of_face = new Uint32Array(face_count);
-    const group_of_face = new Uint8Array(face_count), sizes = [0, 0, 0, 0, 0];
+    const group_of_face = new Uint32Array(face_count), sizes = new Array(5 + 2 * pictures.length).fill(0);
     parts.forEach((part, p) => {
       const is_glass = materials[part.material].kind === 'glass';
       for (let f = part.first_face; f < part.first_face + part.face_count; ++f) {
         this.part_of_face[f] = p;
-        group_of_face[f] = is_glass ? 4 : this.black_behind[f] + (this.is_lit(f) ? 0 : 2);
+        const first = !this.is_lit(f) ? 2 : part.picture >= 0 ? 5 + 2 * part.picture : 0;
+        group_of_face[f] = is_glass ? 4 : first + this.black_behind[f];
         sizes[group_of_face[f]] += this.corner_count(f) - 2;
       }
     });

@@ -8,6 +8,7 @@ class Page {
     this.model = model;
     this.canvas = element('view');
     this.picture = new Picture(model, this.canvas);
+    this.picture.picture_came = () => { this.due = true; };
     this.camera = this.picture.camera;
     const geometry = new Library.BufferGeometry();
     geometry.setAttribute('position', this.picture.geometry.attributes.position);

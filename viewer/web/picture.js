@@ -5,9 +5,19 @@ in vec3 radiance;
 in float illuminance;
 out vec3 L;
 out float E;
+#ifdef WITH_PICTURE
+in vec2 place;
+in vec3 picture_gain;
+out vec2 at;
+out vec3 gain;
+#endif
 void main() {
   L = radiance;
   E = illuminance;
+#ifdef WITH_PICTURE
+  at = place;
+  gain = picture_gain;
+#endif
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
 
@@ -22,6 +32,12 @@ uniform float scale;       // exposure
 uniform float opacity;
 uniform vec2 range;        // of the false colours; even from 0, else logarithmic
 uniform sampler2D palette;
+#ifdef WITH_PICTURE
+in vec2 at;
+in vec3 gain;
+uniform sampler2D picture;
+uniform bool is_there;     // it has been decoded
+#endif
 
 vec3 shoulder(vec3 x) {
   return mix(0.5 + 0.5 * (1.0 - exp(-(x - 0.5) / 0.5)), x, lessThanEqual(x, vec3(0.5)));
@@ -31,6 +47,13 @@ vec3 srgb_encode(vec3 x) {
   return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
 }
 void main() {
+  vec3 shown = L;
+#ifdef WITH_PICTURE
+  // Holes have no colour: what blending took of theirs is made up for.
+  vec4 texel = texture(picture, at);
+  if (is_there && texel.a < 0.5) discard;
+  if (is_there) shown *= gain * texel.rgb / texel.a;
+#endif
   if (!gl_FrontFacing) {
     pixel = vec4(0.0, 0.0, 0.0, 1.0);
   } else if (shows == 2) {
@@ -41,7 +64,7 @@ void main() {
     // Texel centres are the ends of the scale.
     pixel = vec4(texture(palette, vec2((clamp(place, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb, opacity);
   } else {
-    pixel = vec4(srgb_encode(shoulder(scale * L)), opacity);
+    pixel = vec4(srgb_encode(shoulder(scale * shown)), opacity);
   }
 }`;
 
@@ -97,6 +120,9 @@ function palette_texture(hex) {
   return texture;
 }
 
+/** WebGL's and three.js' numbers for how a picture goes on and is filtered. */
+const wraps = {repeat: 1000, clamp: 1001, mirror: 1002}, nearest = 1003, mipmap = 1008;
+
 class Picture {
   constructor(model, canvas) {
     this.model = model;
@@ -105,6 +131,7 @@ class Picture {
     this.scene = new Library.Scene();
     this.camera = new Library.PerspectiveCamera();
     this.looks_through = false;
+    this.picture_came = () => {};  // for the owner to set: there is something to draw
     const colors = model.about.false_colors;
     this.uniforms = {
       shows: {value: 0},
@@ -117,9 +144,15 @@ class Picture {
     this.geometry.setAttribute('radiance', new Library.BufferAttribute(model.radiance, 3));
     this.geometry.setAttribute('illuminance', new Library.BufferAttribute(model.illuminance, 1));
     this.geometry.setIndex(new Library.BufferAttribute(model.triangles, 1));
+    if (model.places) {
+      this.geometry.setAttribute('place', new Library.BufferAttribute(model.places, 2));
+      this.geometry.setAttribute('picture_gain', new Library.BufferAttribute(model.picture_gain, 3));
+    }
     model.groups.forEach(({first, count}, g) => this.geometry.addGroup(3 * first, 3 * count, g));
     this.materials = [1, 1, 1, 1, glass_opacity].map((opacity) => this.make_material(opacity));
     [, this.backed, this.dark, this.dark_backed, this.glass] = this.materials;  // the groups of Model.split_faces
+    this.with_pictures = (model.about.pictures ?? []).flatMap((picture) => this.make_pictured_materials(picture));
+    this.materials.push(...this.with_pictures);
     // Where a lit wall stands on a floor that is black under it, the edge is the wall's: several samples a pixel would
     // else let black through. In pixels of the black face's slope; dots were seen at 1, none from 2 on.
     for (const material of [this.dark, this.dark_backed]) {
@@ -131,11 +164,29 @@ class Picture {
     this.look_through(false);
   }
 
-  make_material(opacity) {
+  /** Of faces without and with a black other side. Texels come when they are decoded. */
+  make_pictured_materials(about) {
+    const of_picture = {picture: {value: null}, is_there: {value: false}};
+    this.model.decode_picture(about).then(({data, width, height}) => {
+      const texture = new Library.DataTexture(new Uint8Array(data.buffer), width, height);
+      [texture.wrapS, texture.wrapT] = about.wrap.map((how) => wraps[how]);
+      texture.magFilter = about.is_smooth ? Library.LinearFilter : nearest;
+      texture.minFilter = mipmap;
+      texture.generateMipmaps = true;
+      texture.colorSpace = 'srgb';  // read as linear
+      texture.needsUpdate = true;
+      of_picture.picture.value = texture;
+      of_picture.is_there.value = true;
+      this.picture_came();
+    });
+    return [0, 1].map(() => this.make_material(1, {uniforms: of_picture, defines: {WITH_PICTURE: 1}}));
+  }
+
+  make_material(opacity, {uniforms = {}, defines = {}} = {}) {
     const is_glass = opacity < 1;
     return new Library.ShaderMaterial({
       glslVersion: Library.GLSL3, vertexShader: vertex_program, fragmentShader: fragment_program,
-      uniforms: {...this.uniforms, opacity: {value: opacity}},
+      uniforms: {...this.uniforms, ...uniforms, opacity: {value: opacity}}, defines,
       transparent: is_glass, depthWrite: !is_glass,
     });
   }
@@ -143,7 +194,8 @@ class Picture {
   /** Whether the dark backs of surfaces are left out. */
   look_through(looks_through) {
     this.looks_through = looks_through;
-    for (const material of [this.backed, this.dark_backed]) {
+    const pictured = this.with_pictures.filter((_, m) => m % 2 === 1);
+    for (const material of [this.backed, this.dark_backed, ...pictured]) {
       material.side = looks_through ? Library.FrontSide : Library.DoubleSide;
       material.needsUpdate = true;
     }

@@ -1,0 +1,82 @@
+#include "scene/facet_normals.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+// The least that a normal may rise from its facet, as a cosine: files may hold anything.
+constexpr double least_cosine = 1e-3;
+
+}  // namespace
+
+FacetNormals::FacetNormals(const Scene& scene) {
+  const auto has_normals = [](const Surface& surface) {
+    const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
+    return mesh && !mesh->normal_maps.empty();
+  };
+  if (std::ranges::none_of(scene.surfaces, has_normals)) return;
+  const auto add = [&](double x) { hash_ = random_key(hash_, std::bit_cast<std::uint64_t>(x)); };
+  for (const Surface& surface : scene.surfaces) {
+    const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
+    if (!has_normals(surface)) {
+      places_.insert(places_.end(), mesh ? mesh->facets.size() : 1, Place{});
+      continue;
+    }
+    const int first_map = static_cast<int>(maps_.size());
+    maps_.insert(maps_.end(), mesh->normal_maps.begin(), mesh->normal_maps.end());
+    for (const NormalMap& map : mesh->normal_maps) {
+      for (const double x : map.gradient.reshaped()) add(x);
+      for (const double x : map.offset) add(x);
+    }
+    for (const Facet& facet : mesh->facets) {
+      Place place{.is_given = true, .first_corner = static_cast<int>(corners_.size())};
+      if (facet.normal_map >= 0) {
+        place.map = first_map + facet.normal_map;
+        if (facet.holes.empty()) {
+          for (const int v : facet.boundary) {
+            corners_.push_back(mesh->vertices[static_cast<std::size_t>(v)]);
+          }
+        }
+      }
+      place.corners = static_cast<int>(corners_.size()) - place.first_corner;
+      add(place.map);
+      places_.push_back(place);
+    }
+  }
+}
+
+Eigen::Vector3d FacetNormals::at(int facet, const Eigen::Vector3d& point,
+                                 const Eigen::Vector3d& normal) const {
+  if (places_.empty() || place(facet).map < 0) return normal;
+  Eigen::Vector3d smooth = maps_[static_cast<std::size_t>(place(facet).map)].at(point);
+  const double length = smooth.norm();
+  if (!(length > 0.0)) return normal;
+  smooth /= length;
+  const double cosine = smooth.dot(normal);
+  if (cosine < 0.0) smooth = -smooth;
+  return std::abs(cosine) >= least_cosine ? smooth : normal;
+}
+
+double FacetNormals::height(int facet, const Eigen::Vector3d& point,
+                            const Eigen::Vector3d& normal) const {
+  if (places_.empty() || place(facet).corners == 0) return 0.0;
+  const Place& here = place(facet);
+  const Eigen::Vector3d n = at(facet, point, normal);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = here.first_corner; i < here.first_corner + here.corners; ++i) {
+    const Eigen::Vector3d& corner = corners_[static_cast<std::size_t>(i)];
+    // The slope of a height is the normal's part along the plane over that along its normal.
+    const Eigen::Vector3d m = at(facet, corner, normal);
+    const Eigen::Vector3d slopes = n / n.dot(normal) + m / m.dot(normal);
+    least = std::min(least, 0.5 * (corner - point).dot(slopes));
+  }
+  return std::max(0.0, least);
+}
+
+}  // namespace lightwell
