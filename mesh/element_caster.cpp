@@ -183,11 +183,17 @@ struct ElementCaster::Part {
   template <bool with_weights>
   void cast(std::span<const Ray> rays, std::span<ElementHit> hits) const {
     constexpr std::size_t batch = 64;  // fits the stack and the first-level cache
-    std::array<Hit, batch> buffer;
     if (!caster) {
       std::ranges::fill(hits, ElementHit{});
       return;
     }
+    if (rays.size() == 1) {  // as ray trees ask: a whole buffer would cost a third of the ray
+      Hit hit;
+      caster->closest_hits(rays, {&hit, 1});
+      hits[0] = element_hit<with_weights>(rays[0], hit);
+      return;
+    }
+    std::array<Hit, batch> buffer;
     for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
       const std::size_t count = std::min(batch, rays.size() - begin);
       caster->closest_hits(rays.subspan(begin, count), std::span(buffer).first(count));

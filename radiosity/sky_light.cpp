@@ -334,7 +334,6 @@ void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<
       ++tally.clear;
       continue;
     }
-    ++tally.blocked;
     if (panes_.empty()) continue;
     const Spectrum passed = panes_.passed(caster, ray[i]);
     if (!(passed > 0.0f).any()) continue;
@@ -401,8 +400,8 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
   };
   const int first = sees_nothing ? std::max(8, effort.first / 4) : effort.first;
   const Tally look = tally_of(first, 1);
-  const bool is_mixed = look.clear > 0 && look.clear < look.rays;
-  if (!is_mixed) return {result(look).cast<float>()};
+  // A small opening is often missed by the first rays: that they see nothing settles nothing.
+  if (sees_nothing || look.clear == look.rays) return {result(look).cast<float>()};
   const Tally more = tally_of(effort.most, 2);
   const double share = static_cast<double>(first) / (first + effort.most);
   return {(share * result(look) + (1.0 - share) * result(more)).cast<float>(), true};

@@ -14,7 +14,7 @@
 
 namespace lightwell {
 
-/// Rays from a point to the sky: `first` always; where they disagree, `most` besides.
+/// Rays from a point to the sky: `first` always; unless all of them get out, `most` besides.
 struct SkyEffort {
   int first = 32;
   int most = 128;  ///< 1 to most_sky_rays
@@ -86,7 +86,7 @@ class SkyLight {
   };
   struct Tally {
     Eigen::ArrayXd seen_open, all_open, seen_elsewhere;  // per band
-    int rays = 0, blocked = 0, clear = 0;
+    int rays = 0, clear = 0;
   };
 
   void tabulate(const Sky& sky);

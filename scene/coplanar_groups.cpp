@@ -16,7 +16,8 @@ struct CoplanarGroups::Plane {
   Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // the first
   double distance = 0.0;                             // from the middle of the geometry, >= 0
   Eigen::AlignedBox3d box{};
-  std::vector<int> vertices{};                 // of the geometry
+  std::vector<int> vertices{};                 // of the geometry, polygon after polygon
+  std::vector<int> ends{};                     // of the polygons among those
   std::vector<Eigen::Vector2d> convex_hull{};  // counter-clockwise, once asked for
   int seen_along = -1;                         // the axis along which that is flattened
 };
@@ -114,6 +115,7 @@ std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry&
     for (const int v : polygon) plane.box.extend(geometry.vertices[v]);
     all.extend(plane.box);
     plane.vertices.insert(plane.vertices.end(), polygon.begin(), polygon.end());
+    plane.ends.push_back(static_cast<int>(plane.vertices.size()));
     if (!plane.normal.isZero()) return;
     const Eigen::Vector3d& corner = geometry.vertices[polygon[0]];
     const Eigen::Vector3d n =
@@ -266,13 +268,44 @@ void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
       flatten(geometry, along, a);
       flatten(geometry, along, b);
       if (is_apart(a.convex_hull, b.convex_hull, tolerance) ||
-          is_apart(b.convex_hull, a.convex_hull, tolerance)) {
+          is_apart(b.convex_hull, a.convex_hull, tolerance) ||
+          !share_area(geometry, a, b, along, tolerance)) {
         continue;
       }
       pairs.push_back({a.group, b.group});
       for (const int g : pairs.back()) groups_[g].overlaps.push_back(shared);
     }
   }
+}
+
+// Whether any two of their polygons do, whose hulls may where they do not: a lamp lies in the hole
+// of its ceiling. Where there are very many, they count as if.
+bool CoplanarGroups::share_area(const CastGeometry& geometry, const Plane& a, const Plane& b,
+                                int along, double tolerance) {
+  using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
+  const Eigen::AlignedBox3d shared = a.box.intersection(b.box);
+  const auto polygons_there = [&](const Plane& plane) {
+    Polygons polygons;
+    for (std::size_t p = 0; p < plane.ends.size(); ++p) {
+      Eigen::AlignedBox3d box;
+      std::vector<Eigen::Vector2d> points;
+      for (int i = p == 0 ? 0 : plane.ends[p - 1]; i < plane.ends[p]; ++i) {
+        const Eigen::Vector3d& v = geometry.vertices[plane.vertices[i]];
+        box.extend(v);
+        points.emplace_back(v[(along + 1) % 3], v[(along + 2) % 3]);
+      }
+      if (box.intersects(shared)) polygons.push_back(convex_hull(std::move(points)));
+    }
+    return polygons;
+  };
+  const Polygons ones = polygons_there(a), others = polygons_there(b);
+  constexpr std::size_t most_pairs = 1 << 18;
+  if (ones.size() * others.size() > most_pairs) return true;
+  return std::ranges::any_of(ones, [&](const auto& one) {
+    return std::ranges::any_of(others, [&](const auto& other) {
+      return !is_apart(one, other, tolerance) && !is_apart(other, one, tolerance);
+    });
+  });
 }
 
 // Planes on opposite sides of the middle are as far from it as those that are one.

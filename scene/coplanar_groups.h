@@ -65,6 +65,8 @@ class CoplanarGroups {
                     std::vector<Pair>& pairs);
   static bool is_one_plane(const Plane& a, const Plane& b, const Eigen::Vector3d& place,
                            double tolerance);
+  static bool share_area(const CastGeometry& geometry, const Plane& a, const Plane& b, int along,
+                         double tolerance);
   static void flatten(const CastGeometry& geometry, int along, Plane& plane);
   void align_normals(const std::vector<Pair>& pairs);
   void find_bodies(const CastGeometry& geometry, double tolerance);

@@ -32,7 +32,7 @@ struct RayCaster::Impl : EmbreeScene {
     r.dir_x = static_cast<float>(ray.direction.x());
     r.dir_y = static_cast<float>(ray.direction.y());
     r.dir_z = static_cast<float>(ray.direction.z());
-    r.tfar = static_cast<float>(ends_covered(ray) ? past_target(ray) : ray.t_max);
+    r.tfar = static_cast<float>(ends_covered(ray) ? past_target(ray) : before_target(ray));
     r.time = 0.0f;
     r.mask = ~0u;
     r.id = id;
@@ -50,9 +50,22 @@ struct RayCaster::Impl : EmbreeScene {
 
   // Rounding may set what lies on the target behind it. `counts` drops what else is met there.
   double past_target(const Ray& ray) const {
-    constexpr double at_most = 1e-3;  // of the ray, where it grazes the target
     const double along = std::abs(planes->normal(ray.target_group).dot(ray.direction));
-    return ray.t_max + std::min(coplanar * rounding / along, at_most * ray.t_max);
+    return ray.t_max + target_depth(ray, along);
+  }
+
+  // As a ray starts past its own plane, it ends before its target's, which would else answer every
+  // other ray that nothing blocks, and have it cast three times. Spheres have no plane.
+  double before_target(const Ray& ray) const {
+    if (ray.target_group < 0) return ray.t_max;
+    const double along = std::abs(planes->normal(ray.target_group).dot(ray.direction));
+    return along > 0.0 ? ray.t_max - target_depth(ray, along) : ray.t_max;
+  }
+
+  // What rounding may set the target off by along a ray.
+  double target_depth(const Ray& ray, double along) const {
+    constexpr double at_most = 1e-3;  // of the ray, where it grazes the target
+    return std::min(coplanar * rounding / along, at_most * ray.t_max);
   }
 
   // Whether the plane of a hit is one with a group's, there where the ray meets it.
@@ -166,17 +179,18 @@ struct RayCaster::Impl : EmbreeScene {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
     const int lanes = static_cast<int>(rays.size());
     alignas(64) std::array<int, packet_size> valid{};
-    RTCRayHit16 query;
+    alignas(64) std::array<float, packet_size> end;
+    RTCRay16 shadow;
     for (int i = 0; i < packet_size; ++i) {
       const int from = std::min(i, lanes - 1);  // lanes without a ray hold numbers all the same
       valid[i] = i < lanes ? -1 : 0;
       RTCRay ray;
       set_ray(ray, rays[from], static_cast<unsigned>(from));
-      set_lane(query.ray, i, ray);
+      set_lane(shadow, i, ray);
+      end[i] = ray.tfar;
     }
     QueryContext context;
     init(context, rays.data());
-    RTCRay16 shadow = query.ray;
     occlude(scene, context, valid.data(), shadow);
 
     // A "blocked" may be the ray's own plane or its target: only then is the closest hit needed.
@@ -185,10 +199,15 @@ struct RayCaster::Impl : EmbreeScene {
       blocked[i] = shadow.tfar[i] < 0.0f;
       valid[i] = blocked[i] ? -1 : 0;
       any = any || blocked[i];
+    }
+    if (!any) return;
+    RTCRayHit16 query;
+    query.ray = shadow;
+    for (int i = 0; i < packet_size; ++i) {
+      query.ray.tfar[i] = end[i];
       query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
-    if (!any) return;
     intersect(scene, context, valid.data(), query);
     for (int i = 0; i < lanes; ++i) {
       if (!blocked[i]) continue;

@@ -187,9 +187,11 @@ TEST(EnvironmentFile, ReadsOpenExr) {
   for (int y = 0; y < 2; ++y) {
     for (int x = 0; x < 4; ++x) pixels[y][x] = Imf::Rgba(1.0f + y, 2.0f, 3.0f, 1.0f);
   }
-  Imf::RgbaOutputFile file((folder / "sky.exr").c_str(), 4, 2, Imf::WRITE_RGB);
-  file.setFrameBuffer(&pixels[0][0], 1, 4);
-  file.writePixels(2);
+  {
+    Imf::RgbaOutputFile file((folder / "sky.exr").c_str(), 4, 2, Imf::WRITE_RGB);
+    file.setFrameBuffer(&pixels[0][0], 1, 4);
+    file.writePixels(2);
+  }
   const auto map = read_environment_map(folder / "sky.exr");
   EXPECT_EQ(map->height(), 2);
   EXPECT_NEAR(map->at(-Eigen::Vector3d::UnitY())[0], 2.0f, 1e-3f);

@@ -1,0 +1,188 @@
+// Sky and sun in the solve: closed forms, energy, channels.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "radiosity/final_gather.h"
+#include "radiosity/polygon_form_factor.h"
+#include "radiosity/solve.h"
+#include "scene/parallel.h"
+#include "tests/radiosity/test_scenes.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double pi = std::numbers::pi;
+
+Sky grey_sky(const Bands& bands, float radiance, float ground) {
+  return {.up = Vector3d::UnitZ(),
+          .north = Vector3d::UnitY(),
+          .bright = Vector3d::UnitZ(),
+          .scale = constant_spectrum(bands, radiance),
+          .ground = constant_spectrum(bands, ground)};
+}
+
+// A room of 4 x 4 x 3 m whose wall x1 has a hole of 1.6 x 1.4 m.
+Scene room(float rho) {
+  Scene scene;
+  const int wall = test::add_material(scene, test::diffuse(scene.bands, rho));
+  test::add_box(scene, {0, 0, 0}, {4, 4, 3}, {wall, wall, wall, wall, wall, wall}, true);
+  auto& mesh = std::get<PolygonMesh>(scene.surfaces[1].shape);
+  const int first = static_cast<int>(mesh.vertices.size());
+  for (const Vector3d& p : {Vector3d(4, 1.2, 0.9), Vector3d(4, 2.8, 0.9), Vector3d(4, 2.8, 2.3),
+                            Vector3d(4, 1.2, 2.3)}) {
+    mesh.vertices.push_back(p);
+  }
+  mesh.facets[0].holes = {{first, first + 1, first + 2, first + 3}};
+  return scene;
+}
+
+SolveOptions quick() {
+  return {.form_factors = {.rays_per_patch = 256},
+          .gather = {.rays = 128, .shadows = {.min_rays = 16, .max_rays = 128}},
+          .refine = {.tolerance = 0.0},
+          .error_points = 128};
+}
+
+void expect_balance(const SolvedScene& solved) {
+  const EnergyBalance& energy = solved.solution.energy;
+  EXPECT_GT(energy.emitted, 0.0);
+  EXPECT_NEAR(energy.absorbed + energy.escaped + energy.unshot, energy.emitted,
+              1e-5 * energy.emitted);
+}
+
+// What floats alone in an even light all around gets pi L from everywhere: B = rho pi L.
+TEST(Daylight, ConvexBodyUnderAnEvenSkyIsAFurnace) {
+  Scene scene;
+  const int m = test::add_material(scene, test::diffuse(scene.bands, 0.6f));
+  test::add_box(scene, {0, 0, 0}, {1.0, 1.3, 0.8}, {m, m, m, m, m, m}, false);
+  scene.sky = grey_sky(scene.bands, 2.0f, 2.0f);
+  const SolvedScene solved = solve_scene(scene, quick());
+  const BandArray E = solved.solution.irradiance();
+  EXPECT_NEAR(E.minCoeff(), 2.0 * pi, 2e-3);
+  EXPECT_NEAR(E.maxCoeff(), 2.0 * pi, 2e-3);
+  EXPECT_NEAR(solved.solution.patch_radiosity.mean(), 0.6 * 2.0 * pi, 2e-3);
+  expect_balance(solved);
+  EXPECT_EQ(solved.solution.energy.missed, 0.0);
+}
+
+TEST(Daylight, RoomWithAWindowBalancesAndItsDirectLightIsTheClosedForm) {
+  Scene scene = room(0.5f);
+  scene.sky = grey_sky(scene.bands, 100.0f, 100.0f);
+  const SolvedScene solved = solve_scene(scene, quick());
+  expect_balance(solved);
+  const std::vector<Vector3d> window = {{4, 1.2, 0.9}, {4, 1.2, 2.3}, {4, 2.8, 2.3}, {4, 2.8, 0.9}};
+  // What enters is pi L times the window's area.
+  EXPECT_NEAR(solved.solution.energy.emitted, 3.0 * 100.0 * pi * 1.6 * 1.4,
+              0.01 * 3.0 * 100.0 * pi * 1.6 * 1.4);
+  double squares = 0.0, sum = 0.0;
+  const auto points = vertex_gather_points(solved.mesh);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const double truth =
+        100.0 * pi * std::abs(point_to_polygon(points[v].position, points[v].normal, window));
+    const double found =
+        static_cast<double>(solved.solution.direct_irradiance(static_cast<Eigen::Index>(v), 0));
+    squares += (found - truth) * (found - truth);
+    sum += truth;
+  }
+  const auto n = static_cast<double>(points.size());
+  EXPECT_LT(std::sqrt(squares / n) / (sum / n), 0.06);
+}
+
+TEST(Daylight, ShootingAndSolvingAgree) {
+  Scene scene = room(0.5f);
+  scene.sky = grey_sky(scene.bands, 100.0f, 20.0f);
+  const SolvedScene solved = solve_scene(scene, quick());
+  SolveOptions shooting = quick();
+  shooting.progressive = ProgressiveOptions{.tolerance = 1e-3};
+  const SolvedScene shot = solve_scene(scene, shooting);
+  const double one = solved.solution.irradiance().cast<double>().mean();
+  EXPECT_NEAR(shot.solution.irradiance().cast<double>().mean(), one, 0.02 * one);
+}
+
+// The sun comes in level, seen from the window's middle: a patch of light on the far wall.
+TEST(Daylight, SunDrawsTheWindowOnTheWall) {
+  Scene scene = room(0.0f);
+  scene.sky = grey_sky(scene.bands, 0.0f, 0.0f);
+  scene.sky->sun =
+      Sun{.direction = Vector3d::UnitX(), .irradiance = constant_spectrum(scene.bands, 500.0f)};
+  const PatchMesh mesh = build_patches(scene, {});
+  const ElementCaster caster(mesh);
+  const DirectLight light(scene, mesh);
+  const auto at = [&](double y, double z) {
+    return static_cast<double>(light.irradiance(caster, {0, y, z}, Vector3d::UnitX(), 0, 1)[0]);
+  };
+  EXPECT_NEAR(at(2.0, 1.5), 500.0, 1e-3);
+  EXPECT_NEAR(at(1.3, 2.2), 500.0, 1e-3);
+  EXPECT_EQ(at(1.0, 1.5), 0.0);
+  EXPECT_EQ(at(2.0, 2.6), 0.0);
+  // On its edge half of the disc is seen; the penumbra is 4 m tan 0.533 degrees = 37 mm wide.
+  EXPECT_NEAR(at(1.2, 1.5), 250.0, 40.0);
+  EXPECT_GT(at(1.21, 1.5), 290.0);
+  EXPECT_EQ(at(1.17, 1.5), 0.0);
+}
+
+// Beside an endless mirror the hidden half of the sky is seen in it.
+TEST(Daylight, MirrorGivesBackItsHalfOfTheSky) {
+  Scene scene;
+  const int ground = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  Material silver = test::diffuse(scene.bands, 0.0f);
+  silver.specular = constant_spectrum(scene.bands, 0.8f);
+  constexpr double far = 400.0;
+  test::add_polygon(scene, "ground", ground, {{0, -1, 0}, {2, -1, 0}, {2, 1, 0}, {0, 1, 0}});
+  test::add_polygon(scene, "mirror", test::add_material(scene, silver),
+                    {{0, -far, 0}, {0, far, 0}, {0, far, far}, {0, -far, far}});
+  scene.sky = grey_sky(scene.bands, 1.0f, 0.0f);
+  const PatchMesh mesh = build_patches(scene, {});
+  const ElementCaster caster(mesh);
+  const DirectLight light(scene, mesh);
+  const std::vector<GatherPoint> points = {{.position = {1, 0, 0}, .facet = 0}};
+  const BandArray none = BandArray::Zero(mesh.vertex_count(), 3);
+  const GatheredIrradiance E =
+      gather_irradiance(scene, caster, light, none, points, {.rays = 4096});
+  EXPECT_NEAR(E.direct(0, 0), 0.5 * pi, 0.02);
+  EXPECT_NEAR(E.indirect(0, 0), 0.8 * 0.5 * pi, 0.02);
+}
+
+TEST(Daylight, SkyAndSunAreChannelsThatAddUp) {
+  Scene scene = room(0.5f);
+  scene.sky = grey_sky(scene.bands, 100.0f, 20.0f);
+  scene.sky->sun = Sun{.direction = Vector3d(1, 0.1, 0.5).normalized(),
+                       .irradiance = constant_spectrum(scene.bands, 2000.0f)};
+  SolveOptions options = quick();
+  options.channels = channels_per_luminaire(scene);
+  EXPECT_EQ(options.channels.names, (std::vector<std::string>{"sky", "sun"}));
+  const SolvedScene solved = solve_scene(scene, options);
+  const SolvedScene together = solve_scene(scene, quick());
+  ASSERT_EQ(solved.solution.channels.size(), 2u);
+  const double sum = solved.solution.irradiance().cast<double>().mean();
+  EXPECT_NEAR(sum, together.solution.irradiance().cast<double>().mean(), 1e-3 * sum);
+  for (const LightChannel& channel : solved.solution.channels) {
+    EXPECT_GT(channel.direct_irradiance.mean(), 0.0f) << channel.name;
+  }
+}
+
+TEST(Daylight, SameBitsOnAnyNumberOfThreads) {
+  Scene scene = room(0.5f);
+  scene.sky = grey_sky(scene.bands, 100.0f, 20.0f);
+  scene.sky->sun = Sun{.direction = Vector3d(1, 0.1, 0.5).normalized(),
+                       .irradiance = constant_spectrum(scene.bands, 2000.0f)};
+  const auto found = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return solve_scene(scene, quick()).solution.irradiance();
+  };
+  EXPECT_TRUE((found(1) == found(3)).all());
+}
+
+TEST(Daylight, SceneWithoutLightIsStillRefused) {
+  Scene scene = room(0.5f);
+  scene.sky = grey_sky(scene.bands, 0.0f, 0.0f);
+  EXPECT_ANY_THROW(solve_scene(scene, quick()));
+}
+
+}  // namespace
+}  // namespace lightwell
