@@ -1,0 +1,91 @@
+// The sky in pictures: seen, mirrored, and the same light whatever the pass.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "radiosity/solve.h"
+#include "raytrace/render.h"
+#include "tests/raytrace/lit_scene.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double pi = std::numbers::pi;
+
+Sky grey_sky(const Bands& bands, float radiance) {
+  return {.up = Vector3d::UnitZ(),
+          .north = Vector3d::UnitY(),
+          .bright = Vector3d::UnitZ(),
+          .scale = constant_spectrum(bands, radiance),
+          .ground = constant_spectrum(bands, 0.25f * radiance)};
+}
+
+Camera looking(const Vector3d& from, const Vector3d& direction, double fov) {
+  Camera camera{.position = from, .direction = direction.normalized(), .fov_degrees = fov};
+  camera.up = camera.direction.unitOrthogonal();
+  camera.width = camera.height = 8;
+  return camera;
+}
+
+Image picture(const Scene& scene, const Camera& camera, Pass pass) {
+  const SolvedScene solved = solve_scene(scene, {.form_factors = {.rays_per_patch = 128},
+                                                 .gather = {.rays = 128},
+                                                 .refine = {.tolerance = 0.0},
+                                                 .error_points = 0});
+  const ElementCaster caster(solved.mesh);
+  const DirectLight light(scene, solved.mesh);
+  return render(scene, caster, light, solved.solution, camera,
+                {.pass = pass, .photons = 0, .max_subdivision = 0});
+}
+
+TEST(DaylightPictures, ShowTheSkyTheGroundAndTheSun) {
+  Scene scene =
+      SceneBuilder().square({.reflectance = 0.5f}, {0, 0, 0}, Vector3d::UnitZ(), 1).build();
+  scene.sky = grey_sky(scene.bands, 4.0f);
+  const Vector3d to_sun = Vector3d(1, 2, 2).normalized();
+  scene.sky->sun = Sun{.direction = to_sun, .irradiance = constant_spectrum(scene.bands, 10.0f)};
+  const auto mean = [&](const Vector3d& direction, double fov) {
+    return static_cast<double>(
+        picture(scene, looking({0, 0, 5}, direction, fov), Pass::direct).radiance.mean());
+  };
+  EXPECT_NEAR(mean({1, -1, 0.5}, 2.0), 4.0, 1e-4);
+  EXPECT_NEAR(mean({1, -1, -0.2}, 2.0), 1.0, 1e-4);
+  const double of_sun = 10.0 / scene.sky->sun->solid_angle();
+  EXPECT_NEAR(mean(to_sun, 0.1), 4.0 + of_sun, 1e-3 * of_sun);
+  // Open ground has no noise: L = rho (pi L_sky + E_sun cos) / pi.
+  EXPECT_NEAR(mean({0, 0, -1}, 5.0), 0.5 * (pi * 4.0 + 10.0 * 2.0 / 3.0) / pi, 1e-3);
+}
+
+TEST(DaylightPictures, MirrorShowsTheSkyBehind) {
+  Scene scene = SceneBuilder()
+                    .square({.reflectance = 0.5f}, {0, 0, -3}, Vector3d::UnitZ(), 1)
+                    .square({.specular = 0.5f}, {0, 0, 0}, Vector3d::UnitZ(), 1)
+                    .build();
+  scene.sky = grey_sky(scene.bands, 4.0f);
+  const Image image = picture(scene, looking({0, 0, 5}, {0, 0, -1}, 5.0), Pass::direct);
+  EXPECT_NEAR(image.radiance.mean(), 2.0f, 1e-3f);
+}
+
+TEST(DaylightPictures, PassesAgreeInARoomWithAWindow) {
+  Scene scene = SceneBuilder()
+                    .square({.reflectance = 0.5f}, {0, 0, 0}, Vector3d::UnitZ(), 1.5)
+                    .square({.reflectance = 0.5f}, {0, 0, 2}, -Vector3d::UnitZ(), 1.5)
+                    .square({.reflectance = 0.5f}, {-1.5, 0, 1}, Vector3d::UnitX(), 1.5)
+                    .square({.reflectance = 0.5f}, {0, 1.5, 1}, -Vector3d::UnitY(), 1.5)
+                    .square({.reflectance = 0.5f}, {0, -1.5, 1}, Vector3d::UnitY(), 1.5)
+                    .build();
+  scene.sky = grey_sky(scene.bands, 4.0f);
+  const Camera camera = looking({-0.8, 0, 1.9}, {0.2, 0, -1}, 40.0);
+  const double interpolated = picture(scene, camera, Pass::interpolate).radiance.mean();
+  const double direct = picture(scene, camera, Pass::direct).radiance.mean();
+  const double gathered = picture(scene, camera, Pass::gather).radiance.mean();
+  EXPECT_NEAR(direct, interpolated, 0.03 * interpolated);
+  EXPECT_NEAR(gathered, interpolated, 0.03 * interpolated);
+}
+
+}  // namespace
+}  // namespace lightwell
