@@ -13,6 +13,13 @@ namespace {
 constexpr std::uint64_t gloss_purpose = 0x61055, lamp_purpose = 0x1a4b;
 constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
 
+// Whether a direction is on one side of a facet and on the other of the smooth surface that it
+// stands for: light from there would come through the facet.
+bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d& smooth,
+                         const Eigen::Vector3d& flat) {
+  return (direction.dot(smooth) < 0.0) != (direction.dot(flat) < 0.0);
+}
+
 }  // namespace
 
 // The mean over directions of a rough surface's lobe.
@@ -57,8 +64,7 @@ void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const Eleme
   if (branch.depth >= deepest_path(options_.max_depth, true)) return;
   const auto lamp = lamps_.draw(at.position, hit.facet, lot[0], lot[1], lot[2]);
   if (!lamp) return;
-  // Light stays on the side of the facet that a smooth normal says it is on.
-  if ((lamp->direction.dot(meeting.normal) < 0.0) != (lamp->direction.dot(at.normal) < 0.0)) return;
+  if (crosses_facet_alone(lamp->direction, meeting.normal, at.normal)) return;
   const int material = facets_[hit.facet].material;
   const double density = lobe(material, hit.from_back).density(meeting, lamp->direction);
   const Onward way{.direction = lamp->direction,
@@ -108,6 +114,7 @@ void RayTree::add_free_source(const Branch& branch, const Meeting& meeting, cons
   const double chance = (sum[i] - (i > 0 ? sum[i - 1] : 0.0)) / sum.back();
   if (!(chance > 0.0)) return;
   const SourceGlimpse seen_source = glimpse(sources[i], at.position, lot[1], lot[2]);
+  if (crosses_facet_alone(seen_source.direction, meeting.normal, at.normal)) return;
   const int material = facets_[hit.facet].material;
   const double density = lobe(material, hit.from_back).density(meeting, seen_source.direction);
   if (!(density > 0.0)) return;

@@ -258,7 +258,7 @@ TEST(FreeLight, MirrorThrowsTheLampsLightOn) {
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
   const ElementCaster caster(mesh);
   const DirectLight light(scene, mesh);
-  const FreeLight cast = cast_free_light(caster, LightPaths(scene, caster, 8), light);
+  const FreeLight cast = cast_free_light(scene, caster, LightPaths(scene, caster, 8), light);
   const double thrown = cast.absorbed[0] / 0.2 * 0.8;
   const CausticPhotons photons = shoot_photons(scene, caster, light, 1 << 18, 8);
   EXPECT_NEAR(photons.power.col(0).sum() / thrown, 1.0, 0.01);

@@ -206,8 +206,8 @@ TEST(Progressive, KeepsChannelsApart) {
   EXPECT_LT(rms(room.mesh, solution.patch_radiosity, together.radiosity()), 1e-5);
   RadiositySolution wanted;
   wanted.patch_radiosity = solution.patch_radiosity;
-  solve_channels(room.scene, room.mesh, *F, channels, SolverMethod::automatic, {.tolerance = 1e-7},
-                 wanted);
+  solve_channels(room.scene, room.mesh, *F, FreeLight{}, channels, SolverMethod::automatic,
+                 {.tolerance = 1e-7}, wanted);
   EXPECT_EQ(solution.patch_channel, wanted.patch_channel);
   double emitted = 0.0;
   for (std::size_t c = 0; c < solution.channels.size(); ++c) {
