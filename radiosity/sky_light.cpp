@@ -38,6 +38,30 @@ int on_hilbert_curve(int size, int x, int y) {
   return distance;
 }
 
+// Place (u, v) of a cell in axes of north, east and up, of a dome of `rings` times `around` cells.
+// The rings have even height, so that all cells have the same solid angle and the horizon is
+// between two.
+Eigen::Vector3d dome_direction(int cell, int around, int rings, double u, double v) {
+  const double z = -1.0 + 2.0 * (cell / around + v) / rings;
+  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+  const double phi = 2.0 * std::numbers::pi * (cell % around + u) / around;
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+// The same of grids of n x n places over the cells, cell after cell: middles of the places, or the
+// cells' corners for n = 2.
+std::vector<Eigen::Vector3f> dome_grid(int around, int rings, int n) {
+  std::vector<Eigen::Vector3f> grid;
+  grid.reserve(static_cast<std::size_t>(around) * rings * n * n);
+  const auto at = [n](int i) { return n == 2 ? static_cast<double>(i) : (i + 0.5) / n; };
+  for (int c = 0; c < around * rings; ++c) {
+    for (int i = 0; i < n * n; ++i) {
+      grid.push_back(dome_direction(c, around, rings, at(i % n), at(i / n)).cast<float>());
+    }
+  }
+  return grid;
+}
+
 }  // namespace
 
 SkyLight::SkyLight(const Scene& scene, const PatchMesh& mesh)
@@ -47,13 +71,8 @@ SkyLight::SkyLight(const Scene& scene, const PatchMesh& mesh)
   learn(ElementCaster(mesh));
 }
 
-// The cells lie in rings of even height about the zenith, so that all have the same solid angle and
-// the horizon is between two.
 Eigen::Vector3d SkyLight::direction_at(int cell, double u, double v) const {
-  const double z = -1.0 + 2.0 * (cell / around + v) / rings;
-  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-  const double phi = 2.0 * pi * (cell % around + u) / around;
-  return axes_ * Eigen::Vector3d(r * std::cos(phi), r * std::sin(phi), z);
+  return axes_ * dome_direction(cell, around, rings, u, v);
 }
 
 void SkyLight::tabulate(const Sky& sky) {
@@ -142,19 +161,22 @@ double SkyLight::irradiance_of(int c, const Eigen::Vector3f& normal) const {
   if (height < -reach) return 0.0;
   const auto E = static_cast<double>(cell.vector.dot(normal));
   if (height > reach) return E;
-  const Eigen::Vector3d n = normal.cast<double>();
-  bool is_cut = false;
-  for (const double u : {0.0, 1.0}) {
-    for (const double v : {0.0, 1.0}) is_cut = is_cut || direction_at(c, u, v).dot(n) < -1e-7;
-  }
+  // Where the horizon is, every point asks for the same directions.
+  static const std::vector<Eigen::Vector3f> corners = dome_grid(around, rings, 2);
+  static const std::vector<Eigen::Vector3f> places = dome_grid(around, rings, fine);
+  const Eigen::Vector3f n = axes_.transpose().cast<float>() * normal;
+  constexpr float rounding = 1e-6f;
+  const auto of_cell = corners.begin() + std::ptrdiff_t{4} * c;
+  const bool is_cut = std::any_of(of_cell, of_cell + 4, [&](const Eigen::Vector3f& corner) {
+    return corner.dot(n) < -rounding;
+  });
   if (!is_cut) return E;
   constexpr double fine_angle = 4.0 * pi / (static_cast<double>(cells) * fine * fine);
   const std::size_t first = static_cast<std::size_t>(c) * fine * fine;
   double sum = 0.0;
-  for (int i = 0; i < fine * fine; ++i) {
-    const double cosine = direction_at(c, (i % fine + 0.5) / fine, (i / fine + 0.5) / fine).dot(n);
-    sum +=
-        std::max(0.0, cosine) * static_cast<double>(radiance_[first + static_cast<std::size_t>(i)]);
+  for (std::size_t i = first; i < first + fine * fine; ++i) {
+    const float cosine = places[i].dot(n);
+    if (cosine > 0.0f) sum += static_cast<double>(cosine * radiance_[i]);
   }
   return sum * fine_angle;
 }
