@@ -50,22 +50,24 @@ struct RayCaster::Impl : EmbreeScene {
 
   // Rounding may set what lies on the target behind it. `counts` drops what else is met there.
   double past_target(const Ray& ray) const {
-    const double along = std::abs(planes->normal(ray.target_group).dot(ray.direction));
-    return ray.t_max + target_depth(ray, along);
+    constexpr double at_most = 1e-3;  // of the ray, where it grazes the target
+    return ray.t_max + std::min(target_depth(ray), at_most * ray.t_max);
   }
 
   // As a ray starts past its own plane, it ends before its target's, which would else answer every
-  // other ray that nothing blocks, and have it cast three times. Spheres have no plane.
+  // other ray that nothing blocks, and have it cast three times. What stands on the target must
+  // still hide it: rays that graze it are rather cast again. Spheres have no plane.
   double before_target(const Ray& ray) const {
+    constexpr double at_most = 1e-5;  // of the ray
     if (ray.target_group < 0) return ray.t_max;
-    const double along = std::abs(planes->normal(ray.target_group).dot(ray.direction));
-    return along > 0.0 ? ray.t_max - target_depth(ray, along) : ray.t_max;
+    const double depth = target_depth(ray);
+    return depth < at_most * ray.t_max ? ray.t_max - depth : ray.t_max;
   }
 
   // What rounding may set the target off by along a ray.
-  double target_depth(const Ray& ray, double along) const {
-    constexpr double at_most = 1e-3;  // of the ray, where it grazes the target
-    return std::min(coplanar * rounding / along, at_most * ray.t_max);
+  double target_depth(const Ray& ray) const {
+    const double along = std::abs(planes->normal(ray.target_group).dot(ray.direction));
+    return coplanar * rounding / along;
   }
 
   // Whether the plane of a hit is one with a group's, there where the ray meets it.
