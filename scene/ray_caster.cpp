@@ -58,7 +58,7 @@ struct RayCaster::Impl : EmbreeScene {
   // other ray that nothing blocks, and have it cast three times. What stands on the target must
   // still hide it: rays that graze it are rather cast again. Spheres have no plane.
   double before_target(const Ray& ray) const {
-    constexpr double at_most = 1e-5;  // of the ray
+    constexpr double at_most = 1e-4;  // of the ray
     if (ray.target_group < 0) return ray.t_max;
     const double depth = target_depth(ray);
     return depth < at_most * ray.t_max ? ray.t_max - depth : ray.t_max;
