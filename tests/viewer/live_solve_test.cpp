@@ -259,8 +259,10 @@ TEST(LiveWindow, ShowsPausesAndSaves) {
 
 /// Keys dim a lamp while light arrives, and the solution that follows is as dimmed.
 TEST(LiveWindow, KeepsALampDimmedInTheSolution) {
+  const TemporaryFolder folder;
   const Scene scene = channel_room();
   ViewOptions options;
+  options.solution_file = folder.path() / "dimmed.vtp";
   options.cameras = scene.cameras;
   options.width = options.height = 120;
   SolveOptions solving = quick();
