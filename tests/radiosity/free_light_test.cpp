@@ -145,9 +145,10 @@ TEST(FreeLight, FluxOfALampIsAbsorbedAndEscaped) {
       std::printf("%s, %s: emitted %.6f absorbed %.6f escaped %.6f (missed %.6f) unshot %.1e\n",
                   open ? "open" : "closed", shoots ? "shooting" : "equations", e.emitted,
                   e.absorbed, e.escaped, e.missed, e.unshot);
-      EXPECT_NEAR(e.emitted, 3 * 10.0 * 4 * pi, 1e-5 * e.emitted);
-      EXPECT_NEAR(e.from_lamps, e.emitted, 1e-9 * e.emitted);
-      EXPECT_NEAR((e.absorbed + e.escaped + e.unshot) / e.emitted, 1.0, 1e-5);
+      // Floats hold the intensity and what surfaces get, to 6e-8 each, with errors of either sign.
+      EXPECT_NEAR(e.emitted, 3 * 10.0 * 4 * pi, 1.2e-7 * e.emitted);
+      EXPECT_NEAR(e.from_lamps, e.emitted, 1e-12 * e.emitted);
+      EXPECT_NEAR((e.absorbed + e.escaped + e.unshot) / e.emitted, 1.0, 2e-7);
       if (open) {
         EXPECT_GT(e.missed, 0.05 * e.emitted);
         EXPECT_GT(e.escaped, e.missed);
@@ -170,7 +171,7 @@ TEST(FreeLight, ClosedRoomAddsUpAllReflections) {
     reflected += mesh.area[i] * solved.solution.patch_radiosity(i, 0);
   }
   const double flux = 10.0 * 4.0 * pi;
-  EXPECT_NEAR(reflected, 0.5 * flux / (1.0 - 0.5), 1e-4 * flux);
+  EXPECT_NEAR(reflected, 0.5 * flux / (1.0 - 0.5), 1e-6 * flux);  // the solver's tolerance
 }
 
 // E of patches by rays is the mean of E at points of them.
@@ -197,7 +198,8 @@ TEST(FreeLight, RaysAgreeWithTheClosedForm) {
   }
   const double rms = std::sqrt(squares / mesh.area.sum()) / (sum / mesh.area.sum());
   std::printf("rays against centres of elements: %.3f of the mean\n", rms);
-  EXPECT_LT(rms, 0.06);
+  // A million rays for some 400 patches, 2500 each: sqrt(1 / 2500) of noise in each.
+  EXPECT_LT(rms, 0.02);
 }
 
 TEST(FreeLight, SameBitsOnAnyNumberOfThreads) {
@@ -228,15 +230,18 @@ TEST(FreeLight, ChannelsOfLampsAddUpAndRelight) {
   ASSERT_EQ(options.channels.names, (std::vector<std::string>{"bulb", "desk"}));
   SolvedScene apart = solve_scene(scene, options);
   const BandArray E = together.solution.irradiance();
-  EXPECT_LT((apart.solution.irradiance() - E).abs().maxCoeff(), 1e-3f * E.maxCoeff());
+  EXPECT_LT((apart.solution.irradiance() - E).abs().maxCoeff(), 2e-6f * E.maxCoeff())
+      << "the same rays, solved to 1e-6";
 
   // With the first off what is left is the room with the second alone.
   relight(apart, std::vector<Spectrum>{Spectrum::Zero(3), Spectrum::Ones(3)});
   scene.lamps = {other};
   const SolvedScene alone = solve_scene(scene, quick());
-  EXPECT_NEAR(apart.solution.energy.from_lamps, alone.solution.energy.from_lamps, 1e-4);
+  EXPECT_NEAR(apart.solution.energy.from_lamps, alone.solution.energy.from_lamps,
+              1.2e-7 * alone.solution.energy.from_lamps);
   const BandArray mean = apart.solution.irradiance().colwise().mean();
-  EXPECT_NEAR(mean(0, 0) / alone.solution.irradiance().col(0).mean(), 1.0, 0.01);
+  // Other rays, as they are shared out by flux: a million and more leave a thousandth in all.
+  EXPECT_NEAR(mean(0, 0) / alone.solution.irradiance().col(0).mean(), 1.0, 1e-3);
 
   scene.lamps = {point_lamp(scene), other};
   const ElementCaster caster(apart.mesh);
@@ -250,9 +255,7 @@ TEST(FreeLight, ChannelsOfLampsAddUpAndRelight) {
 TEST(FreeLight, MirrorThrowsTheLampsLightOn) {
   Scene scene;
   const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
-  Material material = test::diffuse(scene.bands, 0.0f);
-  material.specular = constant_spectrum(scene.bands, 0.8f);
-  const int mirror = test::add_material(scene, material);
+  const int mirror = test::add_material(scene, test::mirror(scene.bands, 0.8f));
   test::add_box(scene, {0, 0, 0}, {4, 5, 3}, {mirror, grey, grey, grey, grey, grey}, true);
   scene.lamps = {point_lamp(scene)};
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
@@ -261,7 +264,8 @@ TEST(FreeLight, MirrorThrowsTheLampsLightOn) {
   const FreeLight cast = cast_free_light(scene, caster, LightPaths(scene, caster, 8), light);
   const double thrown = cast.absorbed[0] / 0.2 * 0.8;
   const CausticPhotons photons = shoot_photons(scene, caster, light, 1 << 18, 8);
-  EXPECT_NEAR(photons.power.col(0).sum() / thrown, 1.0, 0.01);
+  // One of 2^18 photons in six or so meets it, and one of a million rays: 1 / sqrt(2^18 / 6).
+  EXPECT_NEAR(photons.power.col(0).sum() / thrown, 1.0, 0.005);
 
   const BandArray caustic = caustic_irradiance(scene, caster, light, 1 << 19, 8);
   const std::vector<GatherPoint> points = vertex_gather_points(mesh);
@@ -274,7 +278,9 @@ TEST(FreeLight, MirrorThrowsTheLampsLightOn) {
     found += caustic(static_cast<Eigen::Index>(v), 0);
     exact += E;
   }
-  EXPECT_NEAR(found / exact, 1.0, 0.05);  // edges of walls take the mean of one side
+  // Photons are counted within a distance, which at edges of walls reaches over them: an element's
+  // width in some hundred of them around, of which a fiftieth is missed or counted twice.
+  EXPECT_NEAR(found / exact, 1.0, 0.02);
 }
 
 // By way of a pane of glass light goes straight on, dimmed.
@@ -289,7 +295,7 @@ TEST(FreeSources, PanesPassLightStraightOn) {
   test::add_polygon(scene, "pane", glass, {{1, 1.5, 1}, {3, 1.5, 1}, {3, 3.5, 1}, {1, 3.5, 1}});
   const double through = direct(scene, below, Eigen::Vector3d::UnitZ());
   const double R1 = 0.04, R = R1 + (1 - R1) * (1 - R1) * R1 / (1 - R1 * R1);  // both faces
-  EXPECT_NEAR(through / open, (1.0 - R) * 0.9, 0.01);
+  EXPECT_NEAR(through / open, (1.0 - R) * 0.9, 1e-6);
 }
 
 TEST(FreeLight, RoomOfLampsAloneThatReflectsNothingIsSolved) {
@@ -299,7 +305,7 @@ TEST(FreeLight, RoomOfLampsAloneThatReflectsNothingIsSolved) {
   const SolvedScene solved = solve_scene(scene, options);
   EXPECT_EQ(solved.solution.patch_radiosity.maxCoeff(), 0.0f);
   EXPECT_GT(solved.solution.direct_irradiance.maxCoeff(), 0.0f);
-  EXPECT_NEAR(solved.solution.energy.absorbed / solved.solution.energy.emitted, 1.0, 1e-5);
+  EXPECT_NEAR(solved.solution.energy.absorbed / solved.solution.energy.emitted, 1.0, 2e-7);
 }
 
 }  // namespace

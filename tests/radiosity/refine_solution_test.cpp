@@ -169,9 +169,7 @@ TEST(Refinement, StopsWhenAsked) {
 TEST(Refinement, CarriesCausticsToItsVertices) {
   Scene scene;
   const int white = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
-  Material silver = test::diffuse(scene.bands, 0.0f);
-  silver.specular = constant_spectrum(scene.bands, 0.9f);
-  const int mirror = test::add_material(scene, silver);
+  const int mirror = test::add_material(scene, test::mirror(scene.bands, 0.9f));
   const int light = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 10.0f));
   test::add_box(scene, {-1, -1, 0}, {1, 1, 1.5}, {white, white, white, white, white, white}, true);
   test::add_polygon(scene, "mirror", mirror,
@@ -193,10 +191,8 @@ TEST(Refinement, IsNotMisledByTheSearchForCaustics) {
   const auto elements = [](bool with_mirror) {
     Scene scene = lit_floor({-1, -1}, {1, 1}, small_lamp());
     if (with_mirror) {
-      Material silver = test::diffuse(scene.bands, 0.0f);
-      silver.specular = constant_spectrum(scene.bands, 0.9f);
-      test::add_polygon(scene, "mirror", test::add_material(scene, silver),
-                        lamp_loop({0.9, 0.9, 1.0}, 0.005));
+      const int silver = test::add_material(scene, test::mirror(scene.bands, 0.9f));
+      test::add_polygon(scene, "mirror", silver, lamp_loop({0.9, 0.9, 1.0}, 0.005));
     }
     return solve_scene(scene, refined_to(0.002)).mesh.element_count();
   };

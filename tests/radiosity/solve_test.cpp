@@ -108,9 +108,7 @@ TEST(SolveScene, ElementsAbsorbWhatIsEmitted) {
 
 TEST(SolveScene, MirrorsAndGlassKeepTheEnergyBalance) {
   Scene scene = lit_room();
-  Material mirror = test::diffuse(scene.bands, 0.0f);
-  mirror.specular = constant_spectrum(scene.bands, 0.9f);
-  scene.surfaces[1].material = test::add_material(scene, mirror);
+  scene.surfaces[1].material = test::add_material(scene, test::mirror(scene.bands, 0.9f));
   Material glass = test::diffuse(scene.bands, 0.0f);
   glass.dielectric =
       Dielectric{.index_of_refraction = 1.5f, .tint = constant_spectrum(scene.bands, 1.0f)};

@@ -51,6 +51,13 @@ inline void add_box(Scene& scene, const Eigen::Vector3d& low, const Eigen::Vecto
   }
 }
 
+/// Grey: what it does not throw back it absorbs.
+inline Material mirror(const Bands& bands, float specular) {
+  Material mirror = diffuse(bands, 0.0f);
+  mirror.specular = constant_spectrum(bands, specular);
+  return mirror;
+}
+
 inline Material tinted_mirror(const Bands& bands) {
   Material mirror = diffuse(bands, 0.0f);
   mirror.specular << 0.9f, 0.8f, 0.7f;

@@ -52,12 +52,13 @@ TEST(DaylightPictures, ShowTheSkyTheGroundAndTheSun) {
     return static_cast<double>(
         picture(scene, looking({0, 0, 5}, direction, fov), Pass::direct).radiance.mean());
   };
-  EXPECT_NEAR(mean({1, -1, 0.5}, 2.0), 4.0, 1e-4);
-  EXPECT_NEAR(mean({1, -1, -0.2}, 2.0), 1.0, 1e-4);
+  constexpr double rounding = 1e-6;  // of weighted means in floats
+  EXPECT_NEAR(mean({1, -1, 0.5}, 2.0), 4.0, 4.0 * rounding);
+  EXPECT_NEAR(mean({1, -1, -0.2}, 2.0), 1.0, rounding);
   const double of_sun = 10.0 / scene.sky->sun->solid_angle();
-  EXPECT_NEAR(mean(to_sun, 0.1), 4.0 + of_sun, 1e-3 * of_sun);
+  EXPECT_NEAR(mean(to_sun, 0.1), 4.0 + of_sun, rounding * of_sun);
   // Open ground has no noise: L = rho (pi L_sky + E_sun cos) / pi.
-  EXPECT_NEAR(mean({0, 0, -1}, 5.0), 0.5 * (pi * 4.0 + 10.0 * 2.0 / 3.0) / pi, 1e-3);
+  EXPECT_NEAR(mean({0, 0, -1}, 5.0), 0.5 * (pi * 4.0 + 10.0 * 2.0 / 3.0) / pi, 4.0 * rounding);
 }
 
 TEST(DaylightPictures, MirrorShowsTheSkyBehind) {
@@ -67,7 +68,7 @@ TEST(DaylightPictures, MirrorShowsTheSkyBehind) {
                     .build();
   scene.sky = grey_sky(scene.bands, 4.0f);
   const Image image = picture(scene, looking({0, 0, 5}, {0, 0, -1}, 5.0), Pass::direct);
-  EXPECT_NEAR(image.radiance.mean(), 2.0f, 1e-3f);
+  EXPECT_NEAR(image.radiance.mean(), 2.0f, 2e-6f);
 }
 
 TEST(DaylightPictures, PassesAgreeInARoomWithAWindow) {
@@ -83,8 +84,10 @@ TEST(DaylightPictures, PassesAgreeInARoomWithAWindow) {
   const double interpolated = picture(scene, camera, Pass::interpolate).radiance.mean();
   const double direct = picture(scene, camera, Pass::direct).radiance.mean();
   const double gathered = picture(scene, camera, Pass::gather).radiance.mean();
-  EXPECT_NEAR(direct, interpolated, 0.03 * interpolated);
-  EXPECT_NEAR(gathered, interpolated, 0.03 * interpolated);
+  // Each of 64 pixels has rays of its own, of which 128 leave a tenth of noise: 0.1 / 8, and light
+  // from vertex to vertex is straight where it is curved, a share of (element / room)^2, 1 % here.
+  EXPECT_NEAR(direct, interpolated, 0.02 * interpolated);
+  EXPECT_NEAR(gathered, interpolated, 0.02 * interpolated);
 }
 
 }  // namespace

@@ -105,6 +105,7 @@ TEST(Motion, BladeThatTurnsIsSeenForItsShareOfTheTurn) {
   scene.surfaces[0].motion = 0;
   place_at_rest(scene, 0.5);
   const Image image = picture_of(scene, overhead(32, 32));
+  // 1024 samples at random would leave sqrt(0.09 / 1024) = 9e-3; Sobol's stay below it everywhere.
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {
       const double r = std::hypot(4.0 * (x + 0.5) / 32 - 2.0, 4.0 * (y + 0.5) / 32 - 2.0);
@@ -211,7 +212,8 @@ TEST(Motion, CameraThatMovesSeesWhatStandsStillMoveBackwards) {
   scene.surfaces[0].motion = -1;
   camera.motion = 0;
   const Image found = picture_of(scene, camera);
-  EXPECT_LT((found.radiance - expected.radiance).abs().maxCoeff(), 1e-2f);
+  // The same samples through the same way, back to front; edges may round to the other side once.
+  EXPECT_LT((found.radiance - expected.radiance).abs().maxCoeff(), 1e-3f);
 }
 
 TEST(Motion, WithTheShutterClosedNothingMovesAndNoBitChanges) {
