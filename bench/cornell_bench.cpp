@@ -42,10 +42,7 @@ std::vector<RTCRayHit> hemisphere_rays(const PatchMesh& mesh, int rays_per_patch
     for (int r = 0; r < rays_per_patch; ++r) {
       const Eigen::Array4f u = sobol.point(r, random_key(i, 99));
       const PatchPoint from = sampler.point(u[0], u[1]);
-      Eigen::Vector3d a, b;
-      tangent_frame(from.normal, a, b);
-      const Eigen::Vector3d local = cosine_direction(u[2], u[3]);
-      const Eigen::Vector3d d = local.x() * a + local.y() * b + local.z() * from.normal;
+      const Eigen::Vector3d d = cosine_ray(mesh, from, u[2], u[3]).direction;
       const Eigen::Vector3d o = from.position + 1e-6 * from.normal;
       RTCRayHit q{};
       q.ray.org_x = static_cast<float>(o.x());

@@ -124,4 +124,13 @@ PatchPoint PatchSampler::point_on_part(double u, double v) const {
           .normal = mesh_.is_back[patch_] != 0 ? Vector3d(-direction) : direction};
 }
 
+Ray cosine_ray(const PatchMesh& mesh, const PatchPoint& from, float u, float v) {
+  Vector3d a, b;
+  tangent_frame(from.normal, a, b);
+  const Vector3d d = cosine_direction(u, v);
+  return {.origin = from.position,
+          .direction = d.x() * a + d.y() * b + d.z() * from.normal,
+          .origin_group = mesh.facet[from.element]};
+}
+
 }  // namespace lightwell

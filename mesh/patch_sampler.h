@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/element_grid.h"
+#include "scene/ray_caster.h"
 
 namespace lightwell {
 
@@ -68,5 +69,9 @@ class PatchSampler {
   double area_ = 0.0;
   std::vector<Part> parts_;  // empty where there is a grid
 };
+
+/// A ray from a point of the mesh, about its normal with the density cos / pi for (u, v) uniform in
+/// [0,1)^2.
+Ray cosine_ray(const PatchMesh& mesh, const PatchPoint& from, float u, float v);
 
 }  // namespace lightwell

@@ -362,13 +362,7 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
     const PatchSampler sampler(mesh, p);
     send(count, key, direct_light.first_column(facet), [&](int r) {
       const Eigen::Array4f u = sobol.point(r, key);
-      const PatchPoint from = sampler.point(u[0], u[1]);
-      Eigen::Vector3d a, b;
-      tangent_frame(from.normal, a, b);
-      const Eigen::Vector3d d = cosine_direction(u[2], u[3]);
-      const Ray ray{.origin = from.position,
-                    .direction = d.x() * a + d.y() * b + d.z() * from.normal,
-                    .origin_group = facet};
+      const Ray ray = cosine_ray(mesh, sampler.point(u[0], u[1]), u[2], u[3]);
       return std::pair(ray, power_per_ray);
     });
   };

@@ -114,7 +114,7 @@ class Collector {
   Collector(const ElementCaster& caster, const LightPaths& paths, const DirectLight& direct_light)
       : caster_(caster), paths_(paths), bands_(caster.mesh().emission.cols()) {
     const Eigen::Index columns = direct_light.column_count();
-    power_ = Eigen::ArrayXXd::Zero(columns, caster.mesh().patch_count());
+    of_lamps_ = from_afar_ = Eigen::ArrayXXd::Zero(columns, caster.mesh().patch_count());
     light_.emitted = light_.absorbed = light_.escaped = light_.missed =
         Eigen::ArrayXd::Zero(columns);
   }
@@ -148,7 +148,7 @@ class Collector {
     const bool has_specular = paths_.has_specular() && dome && dome->is_on();
     constexpr int slice = 256, points = 16, rays = 128;
     const SobolPoints at_points(points), at_rays(rays);
-    BandArray E = BandArray::Zero(mesh.patch_count(), power_.rows());
+    BandArray E = BandArray::Zero(mesh.patch_count(), from_afar_.rows());
     for (int first = 0; first < mesh.patch_count(); first += slice) {
       report(progress, "daylight", static_cast<double>(first) / mesh.patch_count());
       const int count = std::min(slice, mesh.patch_count() - first);
@@ -174,30 +174,21 @@ class Collector {
       });
     }
     for (int i = 0; i < mesh.patch_count(); ++i) {
-      power_.col(i) += mesh.area[i] * E.row(i).transpose().cast<double>();
-    }
-    // Rays of the sun that came by way of mirrors are in power_ by now; lamps' as well.
-    for (Eigen::Index i = 0; i < power_.cols(); ++i) {
-      const Spectrum kept =
-          1.0f -
-          scene.materials[static_cast<std::size_t>(mesh.material[static_cast<std::size_t>(i)])]
-              .specular;
-      for (Eigen::Index k = 0; k < power_.rows(); k += bands_) {
-        light_.emitted.segment(k, bands_) +=
-            kept.cast<double>() *
-            (power_.col(i).segment(k, bands_) - of_lamps_.col(i).segment(k, bands_));
+      from_afar_.col(i) += mesh.area[i] * E.row(i).transpose().cast<double>();
+      const auto material = static_cast<std::size_t>(mesh.material[static_cast<std::size_t>(i)]);
+      const Eigen::ArrayXd kept = 1.0 - scene.materials[material].specular.cast<double>();
+      for (Eigen::Index k = 0; k < from_afar_.rows(); k += bands_) {
+        light_.emitted.segment(k, bands_) += kept * from_afar_.col(i).segment(k, bands_);
       }
     }
   }
 
-  // From here on power is that of distant sources.
-  void end_lamps() { of_lamps_ = power_; }
-
   FreeLight result() {
     const PatchMesh& mesh = caster_.mesh();
-    light_.irradiance.resize(mesh.patch_count(), power_.rows());
+    light_.irradiance.resize(mesh.patch_count(), of_lamps_.rows());
     for (int i = 0; i < mesh.patch_count(); ++i) {
-      light_.irradiance.row(i) = (power_.col(i) / mesh.area[i]).cast<float>().transpose();
+      light_.irradiance.row(i) =
+          ((of_lamps_.col(i) + from_afar_.col(i)) / mesh.area[i]).cast<float>().transpose();
     }
     return std::move(light_);
   }
@@ -208,8 +199,9 @@ class Collector {
     const Eigen::Index column = source.channel * bands_;
     const Eigen::ArrayXd watts = total_weight(source) / sums.sent * source.light.cast<double>();
     const auto of = [&](Eigen::ArrayXd& sum) { return sum.segment(column, bands_); };
-    for (Eigen::Index i = 0; i < power_.cols(); ++i) {
-      power_.col(i).segment(column, bands_) += watts * (sums.straight[i] + sums.by_specular.col(i));
+    Eigen::ArrayXXd& power = source.is_distant() ? from_afar_ : of_lamps_;
+    for (Eigen::Index i = 0; i < power.cols(); ++i) {
+      power.col(i).segment(column, bands_) += watts * (sums.straight[i] + sums.by_specular.col(i));
     }
     if (source.is_distant()) return;  // see receive()
     of(light_.emitted) += watts * sums.sent;
@@ -225,12 +217,7 @@ class Collector {
     for (int r = 0; r < sobol.count(); ++r) {
       const Eigen::Array4f u = sobol.point(r, key);
       const PatchPoint at = sampler.point(u[0], u[1]);
-      Eigen::Vector3d a, b;
-      tangent_frame(at.normal, a, b);
-      const Eigen::Vector3d d = cosine_direction(u[2], u[3]);
-      const Ray ray{.origin = at.position,
-                    .direction = d.x() * a + d.y() * b + d.z() * at.normal,
-                    .origin_group = caster_.mesh().facet[at.element]};
+      const Ray ray = cosine_ray(caster_.mesh(), at, u[2], u[3]);
       ElementHit hit;
       caster_.closest_hits({&ray, 1}, {&hit, 1});
       if (hit.facet < 0 || !paths_.is_specular(hit.facet)) continue;
@@ -245,8 +232,7 @@ class Collector {
   const ElementCaster& caster_;
   const LightPaths& paths_;
   Eigen::Index bands_;
-  Eigen::ArrayXXd power_;  // columns x patches, W
-  Eigen::ArrayXXd of_lamps_;
+  Eigen::ArrayXXd of_lamps_, from_afar_;  // power that patches get: columns x patches, W
   FreeLight light_{};
 };
 
@@ -301,7 +287,6 @@ FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const
   }
   report(progress, "lamps", 1.0);
   if (!sources.back().is_distant()) return collector.result();
-  collector.end_lamps();
   const FreeSource& last = sources.back();
   if (paths.has_specular() && last.is_on() && !last.is_dome()) {
     collector.cast(last, static_cast<int>(std::bit_ceil(static_cast<unsigned>(rays))));

@@ -149,18 +149,6 @@ std::vector<FreeSource> free_sources(const Scene& scene, const BandArray& scale,
     throw std::invalid_argument(
         fmt::format("{} factors for {} free sources", scale.rows(), free_source_count(scene)));
   }
-  const double clearance = clearance_share * scene_bounds(scene).diagonal();
-  for (const Lamp& lamp : scene.lamps) {
-    const auto number = static_cast<int>(sources.size());
-    FreeSource source{.number = number,
-                      .light = lamp.intensity,
-                      .shape = LampLight{.lamp = lamp, .clearance = clearance}};
-    if (!channel_of.empty()) {
-      source.channel = std::max(0, channel_of[static_cast<std::size_t>(number)]);
-    }
-    if (scale.size() > 0) source.light *= scale.row(number).transpose();
-    sources.push_back(std::move(source));
-  }
   const auto add = [&](const Spectrum& light, auto shape) {
     const auto number = static_cast<int>(sources.size());
     FreeSource source{.number = number, .light = light, .shape = std::move(shape)};
@@ -170,10 +158,14 @@ std::vector<FreeSource> free_sources(const Scene& scene, const BandArray& scale,
     if (scale.size() > 0) source.light *= scale.row(number).transpose();
     sources.push_back(std::move(source));
   };
+  const Bounds bounds = scene_bounds(scene);
+  const double clearance = clearance_share * bounds.diagonal();
+  for (const Lamp& lamp : scene.lamps) {
+    add(lamp.intensity, LampLight{.lamp = lamp, .clearance = clearance});
+  }
   if (!scene.sky) return sources;
   if (has_dome(*scene.sky)) add(constant_spectrum(scene.bands, 1.0f), DomeLight{});
   if (scene.sky->sun) {
-    const Bounds bounds = scene_bounds(scene);
     add(scene.sky->sun->irradiance, SunLight{.sun = *scene.sky->sun,
                                              .center = 0.5 * (bounds.low + bounds.high),
                                              .radius = 0.5 * bounds.diagonal()});
