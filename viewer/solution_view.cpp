@@ -1,5 +1,6 @@
 #include "viewer/solution_view.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkDoubleArray.h>
 #include <vtkLookupTable.h>
@@ -31,8 +32,17 @@ DrawnPictures pictures_of(const ViewOptions& options) {
 }
 
 /// Drawing sixteen times instead of sixteen times as large: text and lines keep their size, and no
-/// driver's largest picture or memory is the limit.
-constexpr int samples_along_pixel = 4;
+/// driver's largest picture or memory is the limit. The samples are Hammersley's set: sixteen
+/// different places across and up, so that edges along rows and columns, and gaps thinner than a
+/// pixel, are as smooth as slanted ones. A grid makes dotted lines of them.
+constexpr int samples_of_pixel = 16;
+
+/// Of a sample from the pixel's middle, in pixels.
+Eigen::Vector2d sample_offset(int sample) {
+  int turned = 0;  // its four bits in the other order
+  for (int bit = 0; bit < 4; ++bit) turned |= ((sample >> bit) & 1) << (3 - bit);
+  return (Eigen::Vector2d(sample, turned).array() + 0.5) / samples_of_pixel - 0.5;
+}
 
 void set_range(vtkScalarBarActor* legend, const LuxRange& range) {
   constexpr int entries = 256;
@@ -50,10 +60,8 @@ void set_range(vtkScalarBarActor* legend, const LuxRange& range) {
   legend->SetCustomLabels(labels);
 }
 
-vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char* unit) {
+vtkSmartPointer<vtkScalarBarActor> make_legend() {
   auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
-  set_range(legend, range);
-  legend->SetTitle(unit);
   legend->UseCustomLabelsOn();
   legend->SetLabelFormat("%.6g");
   legend->DrawBackgroundOn();
@@ -62,8 +70,6 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char
   legend->UnconstrainedFontSizeOn();
   legend->SetMaximumWidthInPixels(80);
   legend->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  legend->GetPositionCoordinate()->SetValue(0.9, 0.25);
-  legend->SetWidth(0.09);
   legend->SetHeight(0.5);
   legend->SetVerticalTitleSeparation(10);  // pixels; the highest label is as high as the bar
   for (vtkTextProperty* text : {legend->GetTitleTextProperty(), legend->GetLabelTextProperty()}) {
@@ -74,6 +80,22 @@ vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char
   }
   legend->VisibilityOff();
   return legend;
+}
+
+/// Keeps the legend as wide as its text, which does not shrink with the picture, from 256 pixels
+/// on.
+void keep_at_edge(vtkRenderer* renderer, vtkScalarBarActor* legend) {
+  vtkNew<vtkCallbackCommand> before_drawing;
+  before_drawing->SetClientData(legend);
+  before_drawing->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    constexpr double pixels = 92.0, from_edge = 6.0, most = 0.36;
+    const int width = std::max(1, static_cast<vtkRenderer*>(caller)->GetSize()[0]);
+    auto* const kept = static_cast<vtkScalarBarActor*>(data);
+    const double share = std::min(most, pixels / width);
+    kept->SetWidth(share);
+    kept->GetPositionCoordinate()->SetValue(1.0 - share - from_edge / width, 0.25);
+  });
+  renderer->AddObserver(vtkCommand::StartEvent, before_drawing);
 }
 
 /// Linear light of each sRGB byte: the inverse of srgb_encode.
@@ -106,8 +128,10 @@ std::vector<std::uint8_t> encode(const std::vector<float>& sums, int width, int 
 
 SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options)
     : solved_(&solved),
+      scene_(options.scene),
       materials_(options.materials),
-      keeps_range_(options.lux_range.has_value()),
+      given_range_(options.lux_range),
+      has_relative_units_(options.relative_units),
       caster_(solved.mesh),
       kinds_(element_kinds(solved, options.materials)),
       irradiance_(solved.solution.irradiance()),
@@ -118,8 +142,9 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       bounds_(mesh_bounds(solved.mesh)),
       up_axis_(guess_up_axis(options.cameras, bounds_)),
       actor_(solved.mesh, kinds_, radiance_, drawn_),
+      sky_(scene_ ? sky_in_force(*scene_, solved.mesh) : std::nullopt),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
-      legend_(make_legend(lux_range_, options.relative_units ? "relative" : "lx")),
+      legend_(make_legend()),
       isolux_levels_(options.isolux) {
   if (options.camera) {
     start_camera_ = *options.camera;
@@ -130,18 +155,21 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   }
   if (!drawn_.all().empty()) picture_gain_ = picture_gains(solved.mesh, drawn_);
   actor_.add_to(renderer_);
+  if (sky_) outside_.emplace(*sky_).add_to(renderer_);
   isolux_.add_to(renderer_);
   renderer_->AddViewProp(legend_);
+  keep_at_edge(renderer_, legend_);
   renderer_->SetBackground(0.0, 0.0, 0.0);
   look_.camera = start_camera_;
   look_.metered_scale = meter(start_camera_);
   look_.exposure_ev = options.exposure_ev;
   look_.mesh = options.mesh;
   look_.illuminance = options.illuminance;
+  look_.measure = options.measure;
   look_.interpolation_error = options.interpolation_error;
   look_.isolux = !options.isolux.empty();
   actor_.show_mesh(look_.mesh);
-  legend_->SetVisibility(look_.illuminance);
+  apply_legend();
   apply_camera();
   apply_colors();
   apply_isolux();
@@ -154,18 +182,18 @@ vtkRenderer* SolutionView::renderer() const {
 }
 
 double SolutionView::meter(const Camera& camera) const {
-  return metered_scale(caster_, kinds_, radiance_, solved_->solution.bands, camera);
+  return metered_scale(caster_, kinds_, radiance_, solved_->solution.bands, camera, sky());
 }
 
 void SolutionView::set_look(const Look& look) {
   const bool recolor = look.metered_scale != look_.metered_scale ||
                        look.exposure_ev != look_.exposure_ev ||
-                       look.illuminance != look_.illuminance ||
+                       look.illuminance != look_.illuminance || look.measure != look_.measure ||
                        look.interpolation_error != look_.interpolation_error;
   look_ = look;
   actor_.show_mesh(look.mesh);
   actor_.show_unlit(look.unlit);
-  legend_->SetVisibility(look.illuminance && !look.interpolation_error);
+  apply_legend();
   if (recolor) apply_colors();
   apply_camera();
   apply_isolux();
@@ -204,6 +232,10 @@ void SolutionView::light_changed() {
   irradiance_ = solved_->solution.irradiance();
   radiance_ = shown_radiance(*solved_, materials_);
   lux_ = vertex_illuminance(solved_->solution);
+  if (outside_) {
+    sky_ = sky_in_force(*scene_, solved_->mesh);
+    outside_->set_sky(*sky_);
+  }
   isolux_is_stale_ = true;
   apply_colors();
   apply_isolux();
@@ -218,22 +250,70 @@ void SolutionView::light_arrived() {
   kinds_ = element_kinds(solved_->mesh, solved_->solution.direct_irradiance, materials_);
   light_changed();
   actor_.set_shapes(solved_->mesh, kinds_, radiance_);
-  if (keeps_range_) return;
+  if (given_range_) return;
   lux_range_ = lux_range(lux_);
-  set_range(legend_, lux_range_);
+  apply_legend();
   if (look_.illuminance) apply_colors();
   isolux_is_stale_ = isolux_levels_.empty();
   apply_isolux();
 }
 
 void SolutionView::apply_colors() {
+  // No light falls on the sky.
+  if (outside_) outside_->show(!look_.interpolation_error && !look_.illuminance);
   if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_), {});
-  if (look_.illuminance) return actor_.set_colors(false_colors(lux_, lux_range_), {});
+  if (look_.illuminance) return actor_.set_colors(false_colors(measured(), measured_range()), {});
   const Bands& bands = solved_->solution.bands;
   const double scale = look_.metered_scale * std::exp2(look_.exposure_ev);
-  std::vector<std::uint8_t> white;
-  if (picture_gain_.size() > 0) white = display_colors(radiance_ * picture_gain_, bands, scale);
-  actor_.set_colors(display_colors(radiance_, bands, scale), white);
+  if (outside_) outside_->expose(bands, scale);
+  std::vector<std::uint8_t> codes;
+  if (picture_gain_.size() > 0) codes = light_codes(radiance_ * picture_gain_, bands, scale);
+  actor_.set_colors(display_colors(radiance_, bands, scale), codes);
+}
+
+std::vector<float> SolutionView::measured() const {
+  if (look_.measure == Measure::luminance) {
+    return luminous_rows(radiance_, solved_->solution.bands);
+  }
+  if (look_.measure == Measure::illuminance) return lux_;
+  return unshot_.empty() ? std::vector<float>(lux_.size(), 0.0f) : unshot_;
+}
+
+LuxRange SolutionView::measured_range() const {
+  if (given_range_) return *given_range_;
+  return look_.measure == Measure::illuminance ? lux_range_ : lux_range(measured());
+}
+
+void SolutionView::set_unshot(const Eigen::ArrayXf& unshot) {
+  const PatchMesh& mesh = solved_->mesh;
+  unshot_.assign(static_cast<std::size_t>(mesh.vertex_count()), 0.0f);
+  std::vector<float> patches(unshot_.size(), 0.0f);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const auto v = static_cast<std::size_t>(mesh.corners[e][c]);
+      unshot_[v] += unshot[mesh.patch[e]];
+      patches[v] += 1.0f;
+    }
+  }
+  for (std::size_t v = 0; v < unshot_.size(); ++v) unshot_[v] /= std::max(1.0f, patches[v]);
+  if (look_.illuminance && look_.measure == Measure::unshot) {
+    apply_legend();
+    apply_colors();
+  }
+}
+
+void SolutionView::apply_legend() {
+  legend_->SetVisibility(look_.illuminance || look_.interpolation_error);
+  if (look_.interpolation_error) {
+    legend_->SetTitle("%");
+    return set_range(legend_, {.low = 0.1, .high = 10.0});  // those of error_colors
+  }
+  if (!look_.illuminance) return;
+  const char* const unit = look_.measure == Measure::illuminance ? "lx"
+                           : look_.measure == Measure::luminance ? "cd/m2"
+                                                                 : "lm/m2";
+  legend_->SetTitle(has_relative_units_ ? "relative" : unit);
+  set_range(legend_, measured_range());
 }
 
 void SolutionView::apply_camera() {
@@ -249,7 +329,12 @@ void SolutionView::apply_camera() {
   // All of the bounding sphere; from inside, as near as a depth buffer of 24 bits affords.
   const double to_center = (0.5 * (bounds_.low + bounds_.high) - camera.position).norm();
   const double nearest = std::max(to_center - 0.51 * size, 5e-4 * size);
-  eye->SetClippingRange(nearest, std::max(to_center + 0.51 * size, 2.0 * nearest));
+  const double farthest = std::max(to_center + 0.51 * size, 2.0 * nearest);
+  // How finely a depth buffer tells apart what is near depends on the nearest plane alone, so a far
+  // dome costs nothing: this one is behind all else up to 84 degrees beside the line of sight.
+  constexpr double dome = 10.0;
+  if (outside_) outside_->place(camera.position, dome * farthest);
+  eye->SetClippingRange(nearest, outside_ ? 1.1 * dome * farthest : farthest);
 }
 
 std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, int height) {
@@ -264,11 +349,9 @@ std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, in
   std::vector<float> sums(count, 0.0f);
   vtkNew<vtkUnsignedCharArray> pixels;
   vtkCamera* eye = view.renderer()->GetActiveCamera();
-  for (int sample = 0; sample < samples_along_pixel * samples_along_pixel; ++sample) {
-    // A subpixel's offset from the pixel's centre; the picture is 2 wide and 2 high.
-    const auto offset = [](int i) { return (i + 0.5) / samples_along_pixel - 0.5; };
-    eye->SetWindowCenter(2.0 * offset(sample % samples_along_pixel) / width,
-                         2.0 * offset(sample / samples_along_pixel) / height);
+  for (int sample = 0; sample < samples_of_pixel; ++sample) {
+    const Eigen::Vector2d offset = sample_offset(sample);
+    eye->SetWindowCenter(2.0 * offset.x() / width, 2.0 * offset.y() / height);  // 2 wide, 2 high
     window->Render();
     const int* drawn = window->GetActualSize();
     if (drawn[0] == width && drawn[1] == height) {
@@ -283,7 +366,7 @@ std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, in
   }
   eye->SetWindowCenter(0.0, 0.0);
   window->RemoveRenderer(view.renderer());
-  return encode(sums, width, height, samples_along_pixel * samples_along_pixel);
+  return encode(sums, width, height, samples_of_pixel);
 }
 
 }  // namespace lightwell

@@ -3,10 +3,12 @@
 #include <vtkSmartPointer.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "viewer/appearance.h"
 #include "viewer/isolux.h"
+#include "viewer/sky_actor.h"
 #include "viewer/solution_actor.h"
 #include "viewer/start_view.h"
 #include "viewer/view.h"
@@ -24,8 +26,9 @@ struct Look {
   bool mesh = false;           ///< outlines of the elements
   bool unlit = true;           ///< surfaces without light are drawn, black; else looked through
   bool illuminance = false;    ///< false colours with a legend instead of light
-  bool interpolation_error = false;  ///< see error_colors; goes before illuminance
-  bool isolux = false;               ///< lines of equal illuminance
+  Measure measure = Measure::illuminance;  ///< what those show
+  bool interpolation_error = false;        ///< see error_colors; goes before illuminance
+  bool isolux = false;                     ///< lines of equal illuminance
 };
 
 /// A solution set up for drawing with VTK. Keeps a reference to the solution and its mesh.
@@ -43,6 +46,8 @@ class SolutionView {
   /// The same while light is arriving: its scale of false colours follows it, unless the options
   /// name one. What has no direct irradiance counts as unlit, for the rest is foretold.
   void light_arrived();
+  /// What each patch is still to shoot, lm/m^2: for Measure::unshot.
+  void set_unshot(const Eigen::ArrayXf& unshot);
   /// The exposure_scale of the picture the camera sees.
   double meter(const Camera& camera) const;
 
@@ -61,11 +66,21 @@ class SolutionView {
  private:
   void apply_camera();
   void apply_colors();
+  void apply_legend();
   void apply_isolux();
+  /// What false colours show, at vertices; and their scale.
+  std::vector<float> measured() const;
+  LuxRange measured_range() const;
+
+  /// What is seen outside, as bright as the solution has it; null: black.
+  const Sky* sky() const { return sky_ ? &*sky_ : nullptr; }
 
   const SolvedScene* solved_;
+  const Scene* scene_;
   std::vector<Material> materials_;
-  bool keeps_range_;
+  std::optional<LuxRange> given_range_;
+  bool has_relative_units_;
+  std::vector<float> unshot_{};  ///< at vertices
   ElementCaster caster_;
   std::vector<ElementKind> kinds_;
   BandArray irradiance_;
@@ -79,6 +94,8 @@ class SolutionView {
   Camera start_camera_;
   Look look_;
   SolutionActor actor_;
+  std::optional<Sky> sky_;
+  std::optional<SkyActor> outside_;
   vtkSmartPointer<vtkRenderer> renderer_;
   vtkSmartPointer<vtkScalarBarActor> legend_;
   std::vector<double> isolux_levels_;  ///< asked for; empty: they suit the scale
@@ -86,7 +103,7 @@ class SolutionView {
   IsoluxLines isolux_;
 };
 
-/// Draws off screen, 4 x 4 samples a pixel on a regular grid, averaged in linear light. 8-bit sRGB,
+/// Draws off screen, 16 samples a pixel (a Hammersley set), averaged in linear light. 8-bit sRGB,
 /// 3 bytes a pixel, row 0 on top. Needs a DisplayConnection. Throws std::runtime_error if the
 /// graphics driver cannot draw.
 std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, int height);

@@ -105,6 +105,56 @@ TEST(Snapshot, ShowsPicturesInTheirLight) {
   expect_pixel(with_hole.at(120, 75), {0, 0, 0}, "through the hole there is nothing");
 }
 
+/// Light far above white keeps its colour on a dark picture: it is tone-mapped with the texel, not
+/// before. Codes of light are right to 2 %, which is 4 of 255 at the most.
+TEST(Snapshot, DarkPicturesInBrightLightKeepItsColour) {
+  PicturedBox box;
+  ViewOptions options = options_for(box_camera());
+  options.materials = box.scene.materials;
+  options.scene = &box.scene;
+  BandArray warm(1, 3);
+  warm << 60.0f, 30.0f, 12.0f;
+  for (int v = 8; v < 12; ++v) box.solved.solution.direct_irradiance.row(v) = warm;
+  Look look = SolutionView(box.solved, options).look();
+  look.metered_scale = 0.1;  // up to 1.9 times white
+  const Picture picture = draw(box.solved, options, &look);
+  for (const auto& [x, rho] : {std::pair(80, bright_half), std::pair(120, dark_half)}) {
+    const BandArray L = rho * warm / std::numbers::pi_v<float>;
+    const auto wanted = display_colors(L, rgb_bands(), look.metered_scale);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.at(x, 75)[c], wanted[c], 5) << x << ' ' << c;
+  }
+}
+
+/// Beside the box there is the sky, the ground below the horizon, and the sun's disc; no light
+/// falls on them, so false colours leave them black.
+TEST(Snapshot, ShowsTheSkyOutside) {
+  const SolvedScene box = solved_box();
+  Scene scene = box_scene();
+  const Eigen::Vector3d to_sun = Eigen::Vector3d(0.7, 0.3, 2.0).normalized();
+  scene.sky = Sky{.name = "even",
+                  .scale = Eigen::Array3f(0.2f, 0.3f, 0.5f),
+                  .ground = Eigen::Array3f(0.1f, 0.1f, 0.05f),
+                  .sun = Sun{.direction = to_sun,
+                             .irradiance = Eigen::Array3f(1.0f, 1.0f, 1.0f),
+                             .angle_degrees = 4.0}};
+  ViewOptions options = options_for(box_camera());
+  options.scene = &scene;
+  options.exposure_ev = -1.0;  // so that nothing is white
+  const auto shown = [&](const Eigen::Array3f& L) {
+    return expected(box, options, std::numbers::pi_v<float> * L);
+  };
+  // At tan 20 deg = 0.364 for 100 pixels: the sun is 0.35 to the left and 0.15 up.
+  const Picture picture = draw(box, options);
+  expect_pixel(picture.at(4, 10), shown(scene.sky->scale), "the sky beside the box");
+  expect_pixel(picture.at(4, 140), shown(scene.sky->ground), "the ground");
+  const Eigen::Array3f sun = radiance_outside(*scene.sky, to_sun);
+  expect_pixel(picture.at(100 - 96, 75 - 41), shown(sun), "the sun");
+  EXPECT_EQ(picture.at(4, 73), picture.at(4, 60)) << "the horizon is sharp";
+  EXPECT_EQ(picture.at(4, 76), picture.at(4, 90)) << "the horizon is sharp";
+  options.illuminance = true;
+  expect_pixel(draw(box, options).at(4, 10), {0, 0, 0}, "no light falls on the sky");
+}
+
 TEST(Snapshot, BacksAreNotDrawn) {
   const SolvedScene box = solved_box();
   Camera camera = box_camera();
@@ -242,6 +292,44 @@ TEST(Snapshot, BeginsAsTheOptionsSay) {
       draw(box, options).at(100, 75),
       {static_cast<int>(quarter[0]), static_cast<int>(quarter[1]), static_cast<int>(quarter[2])},
       "a quarter up the scale");
+}
+
+Pixel quarter_up_the_scale() {
+  const Eigen::Array3f c = 255.0f * false_color(0.25f);
+  return {static_cast<int>(c[0]), static_cast<int>(c[1]), static_cast<int>(c[2])};
+}
+
+/// Of reflectance 1, luminance is E / pi.
+TEST(Snapshot, MeasuresLuminanceAndUnshotLight) {
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  options.illuminance = true;
+  options.measure = Measure::luminance;
+  const float lux = vertex_illuminance(box.solution)[8];  // of the back wall, even all over
+  options.lux_range = {0.0, 4.0 * lux / std::numbers::pi};
+  expect_pixel(draw(box, options).at(100, 75), quarter_up_the_scale(), "the back wall's luminance");
+
+  options.measure = Measure::unshot;
+  options.lux_range = {0.0, 40.0};
+  SolutionView view(box, options);
+  view.set_unshot(Eigen::ArrayXf::Constant(5, 10.0f));
+  const Picture picture{200, 150, draw_offscreen(view, 200, 150)};
+  expect_pixel(picture.at(100, 75), quarter_up_the_scale(), "a quarter of 40 lm/m2");
+}
+
+/// The legend's text, which is white, ends before the picture does.
+TEST(Snapshot, TheLegendFitsIntoNarrowPictures) {
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  options.illuminance = true;
+  options.lux_range = {1.0, 100000.0};
+  options.width = 256;
+  const Picture picture = draw(box, options);
+  int brightest = 0;
+  for (int y = 0; y < 150; ++y) {
+    for (int x = 253; x < 256; ++x) brightest = std::max(brightest, picture.at(x, y)[0]);
+  }
+  EXPECT_LT(brightest, 128);
 }
 
 /// A folder of its own that goes away with the test.

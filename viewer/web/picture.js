@@ -1,5 +1,15 @@
 // Drawing: the same colours as Lightwell's pictures (docs/tone-mapping.md), a fragment at a time.
 
+/** From radiance to what a screen shows. */
+const display_functions = `
+vec3 shoulder(vec3 x) {
+  return mix(0.5 + 0.5 * (1.0 - exp(-(x - 0.5) / 0.5)), x, lessThanEqual(x, vec3(0.5)));
+}
+vec3 srgb_encode(vec3 x) {
+  x = clamp(x, 0.0, 1.0);
+  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
+}`;
+
 const vertex_program = `
 in vec3 radiance;
 in float illuminance;
@@ -39,13 +49,7 @@ uniform sampler2D picture;
 uniform bool is_there;     // it has been decoded
 #endif
 
-vec3 shoulder(vec3 x) {
-  return mix(0.5 + 0.5 * (1.0 - exp(-(x - 0.5) / 0.5)), x, lessThanEqual(x, vec3(0.5)));
-}
-vec3 srgb_encode(vec3 x) {
-  x = clamp(x, 0.0, 1.0);
-  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
-}
+${display_functions}
 void main() {
   vec3 shown = L;
 #ifdef WITH_PICTURE
@@ -120,6 +124,9 @@ function palette_texture(hex) {
   return texture;
 }
 
+/** three.js' number for faces seen from behind. */
+const back_side = 1;
+
 /** WebGL's and three.js' numbers for how a picture goes on and is filtered. */
 const wraps = {repeat: 1000, clamp: 1001, mirror: 1002}, nearest = 1003, mipmap = 1008;
 
@@ -150,24 +157,39 @@ class Picture {
     }
     model.groups.forEach(({first, count}, g) => this.geometry.addGroup(3 * first, 3 * count, g));
     this.materials = [1, 1, 1, 1, glass_opacity].map((opacity) => this.make_material(opacity));
-    [, this.backed, this.dark, this.dark_backed, this.glass] = this.materials;  // the groups of Model.split_faces
-    this.with_pictures = (model.about.pictures ?? []).flatMap((picture) => this.make_pictured_materials(picture));
+    const [, backed, dark, dark_backed, glass] = this.materials;  // the groups of Model.split_faces
+    this.glass = glass;
+    this.with_pictures = (model.about.pictures ?? []).flatMap((picture, i) => this.make_pictured_materials(picture, i));
     this.materials.push(...this.with_pictures);
+    // Black backs are drawn by themselves, further away, so that they do not show along the outlines of what they belong to.
+    this.backs = [backed, dark_backed, ...this.with_pictures.filter((_, m) => m % 2 === 1)].map((front) => {
+      const back = this.make_material(1, {uniforms: front.uniforms, defines: front.defines ?? {}});
+      const {first, count} = model.groups[this.materials.indexOf(front)];
+      this.geometry.addGroup(3 * first, 3 * count, this.materials.push(back) - 1);
+      back.side = back_side;
+      return back;
+    });
     // Where a lit wall stands on a floor that is black under it, the edge is the wall's: several samples a pixel would
     // else let black through. In pixels of the black face's slope; dots were seen at 1, none from 2 on.
-    for (const material of [this.dark, this.dark_backed]) {
+    for (const material of [dark, dark_backed, ...this.backs]) {
       Object.assign(material, {polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4});
     }
     const mesh = new Library.Mesh(this.geometry, this.materials);
     mesh.frustumCulled = false;
     this.scene.add(mesh);
+    if (model.about.sky) {
+      this.sky = new SkyPicture(model, this.uniforms);
+      this.scene.add(this.sky.mesh);
+    }
     this.look_through(false);
   }
 
   /** Of faces without and with a black other side. Texels come when they are decoded. */
-  make_pictured_materials(about) {
+  make_pictured_materials(about, number) {
     const of_picture = {picture: {value: null}, is_there: {value: false}};
-    this.model.decode_picture(about).then(({data, width, height}) => {
+    this.model.decode_picture(about).then((decoded) => {
+      const {data, width, height} = decoded;
+      this.model.keep_picture(number, decoded);
       const texture = new Library.DataTexture(new Uint8Array(data.buffer), width, height);
       [texture.wrapS, texture.wrapT] = about.wrap.map((how) => wraps[how]);
       texture.magFilter = about.is_smooth ? Library.LinearFilter : nearest;
@@ -194,11 +216,7 @@ class Picture {
   /** Whether the dark backs of surfaces are left out. */
   look_through(looks_through) {
     this.looks_through = looks_through;
-    const pictured = this.with_pictures.filter((_, m) => m % 2 === 1);
-    for (const material of [this.backed, this.dark_backed, ...pictured]) {
-      material.side = looks_through ? Library.FrontSide : Library.DoubleSide;
-      material.needsUpdate = true;
-    }
+    for (const back of this.backs) back.visible = !looks_through;
   }
 
   set_false_colors(on) { this.uniforms.shows.value = on ? 1 : 0; }
@@ -208,6 +226,7 @@ class Picture {
   light_changed() {
     this.geometry.attributes.radiance.needsUpdate = true;
     this.geometry.attributes.illuminance.needsUpdate = true;
+    this.sky?.light_changed();
   }
 
   show_outlines(on) {
