@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 namespace lightwell {
 namespace {
@@ -32,17 +31,26 @@ std::array<double, 2> triangle_areas(const PatchMesh& mesh, int element) {
   return area;
 }
 
-// Over the area of all patches; `value` is per patch.
-double median(const PatchMesh& mesh, const Eigen::ArrayXd& value) {
-  std::vector<int> order(static_cast<std::size_t>(mesh.patch_count()));
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return std::pair(value[a], a) < std::pair(value[b], b); });
-  const double half = 0.5 * mesh.area.sum();
-  double area = 0.0;
-  for (const int p : order) {
+// How bright a patch must be. Backs of walls and rooms behind closed doors are no measure of what
+// is ordinary, so the median is that of the area which is lit; and where half of it is nearly dark,
+// the other half is not what rays miss.
+double least_brightness(const PatchMesh& mesh, const Eigen::ArrayXd& mean) {
+  std::vector<int> lit;
+  double area = 0.0, power = 0.0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (!(mean[p] > 0.0)) continue;
+    lit.push_back(p);
     area += mesh.area[p];
-    if (!(area < half)) return value[p];
+    power += mesh.area[p] * mean[p];
+  }
+  std::sort(lit.begin(), lit.end(),
+            [&](int a, int b) { return std::pair(mean[a], a) < std::pair(mean[b], b); });
+  double up_to = 0.0;
+  for (const int p : lit) {
+    up_to += mesh.area[p];
+    if (up_to < 0.5 * area) continue;
+    return std::max(BrightPatches::times_median * mean[p],
+                    BrightPatches::times_mean * power / area);
   }
   return 0.0;
 }
@@ -66,12 +74,12 @@ BrightPatches::BrightPatches(const Scene& scene, const PatchMesh& mesh, const Ba
     mean[p] = area > 0.0 ? sum / area : 0.0;
     square[p] = area > 0.0 ? sum2 / area : 0.0;
   }
-  const double ordinary = median(mesh, mean);
+  const double least = least_brightness(mesh, mean);
   std::vector<int> bright;
   for (int p = 0; p < count; ++p) {
     const Surface& surface = scene.surfaces[static_cast<std::size_t>(mesh.surface[p])];
     if (std::holds_alternative<Sphere>(surface.shape) || surface.motion >= 0) continue;
-    if (std::sqrt(square[p]) > times_median * ordinary) bright.push_back(p);
+    if (std::sqrt(square[p]) > least) bright.push_back(p);
   }
   if (bright.size() > static_cast<std::size_t>(most)) {
     const auto noisier = [&](int a, int b) {

@@ -15,9 +15,10 @@ namespace lightwell {
 /// and weighs both by the balance heuristic (Veach & Guibas 1995), which has no bias.
 class BrightPatches {
  public:
-  /// Of a patch's brightness, over the median of the scene's area: with rays that are spread by the
-  /// cosine, anything dimmer adds less noise than the many patches of ordinary brightness do.
-  static constexpr double times_median = 16.0;
+  /// Of a patch's brightness, over the median and the mean of the area that is lit: with rays that
+  /// are spread by the cosine, anything dimmer adds less noise than the many patches of ordinary
+  /// brightness do.
+  static constexpr double times_median = 16.0, times_mean = 2.0;
   static constexpr int most = 256;  ///< patches; those that would leave the most noise
 
   /// None.
