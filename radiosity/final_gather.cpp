@@ -11,6 +11,7 @@
 #include "mesh/patch_sampler.h"
 #include "mesh/patch_textures.h"
 #include "mesh/sphere_grid.h"
+#include "radiosity/bright_patches.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
 #include "scene/hemisphere_sets.h"
@@ -23,6 +24,7 @@ namespace {
 constexpr std::uint64_t gather_rays = 10;  // purposes of random keys
 constexpr std::uint64_t gather_branches = 11;
 constexpr std::uint64_t gather_shadows = 12;
+constexpr std::uint64_t aimed_rays = 15;
 constexpr std::uint64_t caustic_rays = 13;
 constexpr std::uint64_t caustic_branches = 14;
 constexpr std::uint64_t caustic_rays_of_lamps = 0xf4ee3;
@@ -43,7 +45,8 @@ class HemisphereGather {
         radiosity_(radiosity),
         paths_(scene, caster, options.max_specular_depth),
         options_(options),
-        bands_(scene.bands.count()) {
+        bands_(scene.bands.count()),
+        bright_(scene, mesh_, radiosity) {
     if (const FreeSource* dome = direct_light.dome()) {
       dome_ = dome->light;
       if (direct_light.column_count() == radiosity.cols()) dome_column_ = dome->channel * bands_;
@@ -51,17 +54,24 @@ class HemisphereGather {
     for (const GatherPoint& at : points) {
       const int rays = ray_count(at, options);
       if (!sets_.contains(rays)) sets_.emplace(rays, HemisphereSets(rays));
+      if (!bright_.is_empty() && !aims_.contains(rays)) {
+        aims_.emplace(rays, SobolPoints(bright_.aimed(rays)));
+      }
     }
   }
 
-  // E = (1/N) sum B over cosine-distributed rays, columns of `irradiance`. The first half of a
-  // sequence and the second are stratified each.
+  // E = (1/N) sum B over cosine-distributed rays, columns of `irradiance`, and a share of N more
+  // towards bright patches where there are any. The first half of a sequence and the second are
+  // stratified each.
   void gather(const GatherPoint& at, std::uint64_t key, float* irradiance, float& variance) const {
     const Eigen::Index columns = radiosity_.cols();
     std::array<Eigen::ArrayXd, 2> sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
     const HemisphereSets& set = sets_.at(ray_count(at, options_));
     const HemisphereSets::Draw draw = set.draw(random_key(key, gather_rays));
     const Eigen::Matrix3d frame = draw.frame(at.normal);
+    const int count = set.count();
+    BrightPatches::View view;
+    if (!bright_.is_empty()) view = bright_.view(at.position, at.normal, count);
     std::array<Ray, batch> ray;
     std::array<ElementHit, batch> hit;
     for (int begin = 0; begin < set.count(); begin += batch) {
@@ -78,24 +88,58 @@ class HemisphereGather {
       for (std::size_t r = 0; r < n; ++r) {
         const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;
         const int place = begin / HemisphereSets::block * HemisphereSets::block + points[r].rank;
-        add(ray[r], hit[r], key, index, sum[place < set.count() / 2 ? 0 : 1]);
+        const double share = view.is_empty() ? 1.0
+                                             : bright_.share(view, at.normal.dot(ray[r].direction),
+                                                             count, ray[r], hit[r]);
+        add(ray[r], hit[r], random_key(key, gather_branches, index), share,
+            sum[place < count / 2 ? 0 : 1]);
       }
     }
+    if (!view.is_empty()) aim(at, view, key, sum);
     Eigen::Map<Eigen::ArrayXf>(irradiance, columns) =
         ((sum[0] + sum[1]) / set.count()).cast<float>();
     variance = half_difference(sum, set.count());
   }
 
  private:
-  void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, std::uint64_t index,
+  // Rays towards bright patches, each for light straight from the one it was drawn for.
+  void aim(const GatherPoint& at, const BrightPatches::View& view, std::uint64_t key,
+           std::array<Eigen::ArrayXd, 2>& sum) const {
+    const int rays = ray_count(at, options_);
+    const SobolPoints& lots = aims_.at(rays);
+    std::array<Ray, batch> ray;
+    std::array<ElementHit, batch> hit;
+    std::array<int, batch> element;
+    for (int begin = 0; begin < lots.count(); begin += batch) {
+      const auto n = static_cast<std::size_t>(std::min(batch, lots.count() - begin));
+      for (std::size_t r = 0; r < n; ++r) {
+        const Eigen::Array4d lot =
+            lots.point(begin + static_cast<int>(r), random_key(key, aimed_rays)).cast<double>();
+        const BrightPatches::Aim aim = bright_.draw(view, lot[0], lot[1], lot[2]);
+        element[r] = aim.element;
+        ray[r] = {.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
+      }
+      caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+      for (std::size_t r = 0; r < n; ++r) {
+        if (hit[r].element != element[r] || !paths_.is_diffuse(hit[r].facet)) continue;
+        const bool is_first = begin + static_cast<int>(r) < lots.count() / 2;
+        add_radiosity(hit[r],
+                      bright_.share(view, at.normal.dot(ray[r].direction), rays, ray[r], hit[r]),
+                      sum[is_first ? 0 : 1]);
+      }
+    }
+  }
+
+  // `share` is of the light that comes straight from the place of the hit.
+  void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, double share,
            Eigen::ArrayXd& sum) const {
     if (hit.facet < 0) return;
-    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, sum);
+    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, share, sum);
     if (!paths_.is_specular(hit.facet)) return;
-    const PathLosses losses = paths_.follow(ray, hit, random_key(key, gather_branches, index),
-                                            [&](const ElementHit& end, const Spectrum& throughput) {
-                                              add_throughput(end, throughput, sum);
-                                            });
+    const PathLosses losses =
+        paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+          add_throughput(end, throughput, sum);
+        });
     if (losses.sky.size() == 0 || dome_.size() == 0) return;
     sum.segment(dome_column_, bands_) += (pi * dome_ * losses.sky).cast<double>();
   }
@@ -115,12 +159,12 @@ class HemisphereGather {
     }
   }
 
-  void add_radiosity(const ElementHit& hit, Eigen::ArrayXd& sum) const {
+  void add_radiosity(const ElementHit& hit, double share, Eigen::ArrayXd& sum) const {
     const auto& corners = mesh_.corners[hit.element];
     for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
       const float* B = radiosity_.data() + corners[c] * radiosity_.cols();
       for (Eigen::Index k = 0; k < sum.size(); ++k) {
-        sum[k] += static_cast<double>(hit.weights[c] * B[k]);
+        sum[k] += share * static_cast<double>(hit.weights[c] * B[k]);
       }
     }
   }
@@ -146,6 +190,8 @@ class HemisphereGather {
   Spectrum dome_{};  // factor of the sky's light; empty if there is none
   Eigen::Index dome_column_ = 0;
   std::map<int, HemisphereSets> sets_;  // by the rays of each
+  BrightPatches bright_;
+  std::map<int, SobolPoints> aims_;  // towards those, by the rays of sets_
 };
 
 // All that decides what is gathered, but for the scene.

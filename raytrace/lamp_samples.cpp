@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -17,6 +18,18 @@ double cone_height(const Sphere& sphere, double distance) {
   return sine * sine / (1.0 + std::sqrt(std::max(0.0, 1.0 - sine * sine)));
 }
 
+Eigen::Vector3d center_of(const Emitter& emitter) {
+  if (emitter.is_sphere) return emitter.sphere.center;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double before = 0.0;
+  for (std::size_t t = 0; t < emitter.triangles.size(); ++t) {
+    const auto& [a, b, c] = emitter.triangles[t];
+    sum += (emitter.area_cdf[t] - before) / 3.0 * (a + b + c);
+    before = emitter.area_cdf[t];
+  }
+  return sum;
+}
+
 }  // namespace
 
 LampSamples::LampSamples(const DirectLight& direct_light) : emitters_(direct_light.emitters()) {
@@ -24,6 +37,7 @@ LampSamples::LampSamples(const DirectLight& direct_light) : emitters_(direct_lig
   for (std::size_t e = 0; e < emitters_.size(); ++e) {
     share_.push_back(static_cast<double>(emitters_[e].exitance.sum()) * emitters_[e].area);
     cdf_.push_back(sum += share_.back());
+    center_.push_back(center_of(emitters_[e]));
     const auto facet = static_cast<std::size_t>(emitters_[e].facet);
     of_facet_.resize(std::max(of_facet_.size(), facet + 1), -1);
     of_facet_[facet] = static_cast<int>(e);
@@ -32,14 +46,56 @@ LampSamples::LampSamples(const DirectLight& direct_light) : emitters_(direct_lig
   for (double& share : cdf_) share = sum > 0.0 ? share / sum : 0.0;
 }
 
+// About what an emitter sends to a place, by its middle; 0 only where it sends nothing.
+double LampSamples::weight(std::size_t e, const Eigen::Vector3d& from) const {
+  const Emitter& emitter = emitters_[e];
+  const Eigen::Vector3d to = from - center_[e];
+  const double distance2 = to.squaredNorm();
+  if (emitter.is_sphere) {
+    const double radius = emitter.sphere.radius;
+    return share_[e] / std::max(distance2, radius * radius);
+  }
+  const double height = to.dot(emitter.normal);
+  if (!emitter.emits_both_sides && !(height > 0.0)) return 0.0;
+  // Beside a large one, some of it is nearer than its middle and seen less from the edge.
+  const double size2 = emitter.area / std::numbers::pi;
+  return share_[e] * (std::abs(height) + 0.1 * std::sqrt(size2)) /
+         (std::sqrt(distance2 + size2) * (distance2 + size2));
+}
+
+double LampSamples::chance(std::size_t emitter, const Eigen::Vector3d& from) const {
+  if (emitters_.size() == 1 || emitters_.size() > static_cast<std::size_t>(most_weighed)) {
+    return share_[emitter];
+  }
+  double sum = 0.0, own = 0.0;
+  for (std::size_t e = 0; e < emitters_.size(); ++e) {
+    const double of_this = weight(e, from);
+    sum += of_this;
+    if (e == emitter) own = of_this;
+  }
+  return sum > 0.0 ? own / sum : 0.0;
+}
+
+std::size_t LampSamples::drawn(const Eigen::Vector3d& from, double which) const {
+  if (emitters_.size() == 1 || emitters_.size() > static_cast<std::size_t>(most_weighed)) {
+    return static_cast<std::size_t>(std::upper_bound(cdf_.begin(), cdf_.end() - 1, which) -
+                                    cdf_.begin());
+  }
+  std::array<double, most_weighed> up_to;
+  double sum = 0.0;
+  for (std::size_t e = 0; e < emitters_.size(); ++e) up_to[e] = sum += weight(e, from);
+  const auto last = up_to.begin() + static_cast<std::ptrdiff_t>(emitters_.size()) - 1;
+  return static_cast<std::size_t>(std::upper_bound(up_to.begin(), last, which * sum) -
+                                  up_to.begin());
+}
+
 std::optional<LampSample> LampSamples::draw(const Eigen::Vector3d& from, int facet, double which,
                                             double u, double v) const {
   if (emitters_.empty()) return std::nullopt;
-  const auto drawn = std::upper_bound(cdf_.begin(), cdf_.end() - 1, which) - cdf_.begin();
-  const Emitter& emitter = emitters_[static_cast<std::size_t>(drawn)];
-  if (!(share_[static_cast<std::size_t>(drawn)] > 0.0) || emitter.facet == facet) {
-    return std::nullopt;
-  }
+  const std::size_t number = drawn(from, which);
+  const Emitter& emitter = emitters_[number];
+  const double share = chance(number, from);
+  if (!(share > 0.0) || emitter.facet == facet) return std::nullopt;
   LampSample sample{.emitter = &emitter};
   if (emitter.is_sphere) {
     const Eigen::Vector3d to = emitter.sphere.center - from;
@@ -63,7 +119,7 @@ std::optional<LampSample> LampSamples::draw(const Eigen::Vector3d& from, int fac
       return std::nullopt;
     }
   }
-  sample.density = density_of(emitter, from, sample.direction, sample.distance);
+  sample.density = density_of(share, emitter, from, sample.direction, sample.distance);
   if (!(sample.density > 0.0) || !std::isfinite(sample.density)) return std::nullopt;
   return sample;
 }
@@ -74,14 +130,13 @@ double LampSamples::density(const Eigen::Vector3d& from, const Eigen::Vector3d& 
   if (f >= of_facet_.size() || of_facet_[f] < 0) return 0.0;
   const Eigen::Vector3d to = place - from;
   const double distance = to.norm();
-  return distance > 0.0 ? density_of(emitters_[static_cast<std::size_t>(of_facet_[f])], from,
-                                     to / distance, distance)
-                        : 0.0;
+  if (!(distance > 0.0)) return 0.0;
+  const auto e = static_cast<std::size_t>(of_facet_[f]);
+  return density_of(chance(e, from), emitters_[e], from, to / distance, distance);
 }
 
-double LampSamples::density_of(const Emitter& emitter, const Eigen::Vector3d& from,
+double LampSamples::density_of(double share, const Emitter& emitter, const Eigen::Vector3d& from,
                                const Eigen::Vector3d& direction, double distance) const {
-  const double share = share_[static_cast<std::size_t>(&emitter - emitters_.data())];
   if (emitter.is_sphere) {
     const double to_center = (emitter.sphere.center - from).norm();
     if (!(to_center > emitter.sphere.radius)) return 0.0;

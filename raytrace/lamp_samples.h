@@ -19,9 +19,12 @@ struct LampSample {
 
 /// Directions towards the emitters of DirectLight, for rough surfaces: a highlight that is left to
 /// the lobe's own directions is noise, since few of them find a small lamp (Veach & Guibas 1995).
-/// An emitter is drawn by its power, a polygon's points evenly by area, a sphere's by solid angle.
+/// An emitter is drawn by about what it would send to the place, one of more than `most_weighed` by
+/// its power; a polygon's points evenly by area, a sphere's by solid angle.
 class LampSamples {
  public:
+  static constexpr int most_weighed = 64;  ///< so that a draw takes less time than its shadow ray
+
   explicit LampSamples(const DirectLight& direct_light);
 
   /// From a place on a facet; three numbers in [0,1). Nothing where the lamp drawn sends no light
@@ -33,11 +36,15 @@ class LampSamples {
   double density(const Eigen::Vector3d& from, const Eigen::Vector3d& place, int facet) const;
 
  private:
-  double density_of(const Emitter& emitter, const Eigen::Vector3d& from,
+  double density_of(double share, const Emitter& emitter, const Eigen::Vector3d& from,
                     const Eigen::Vector3d& direction, double distance) const;
+  double weight(std::size_t emitter, const Eigen::Vector3d& from) const;
+  double chance(std::size_t emitter, const Eigen::Vector3d& from) const;
+  std::size_t drawn(const Eigen::Vector3d& from, double which) const;
 
   const std::vector<Emitter>& emitters_;
-  std::vector<double> share_{};  // probability of each
+  std::vector<double> share_{};  // of all power
+  std::vector<Eigen::Vector3d> center_{};
   std::vector<double> cdf_{};    // its running sum
   std::vector<int> of_facet_{};  // emitter of a facet; -1: none
 };

@@ -11,7 +11,7 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t direction_purpose = 0x6a7e, branch_purpose = 0x6a7f;
+constexpr std::uint64_t direction_purpose = 0x6a7e, branch_purpose = 0x6a7f, aim_purpose = 0x6a80;
 constexpr int batch = 64;
 
 // A smooth normal's hemisphere reaches below the surface it rounds off; what would go there meets
@@ -21,13 +21,24 @@ Eigen::Vector3d above(const Eigen::Vector3d& direction, const Eigen::Vector3d& n
   return height < 0.0 ? Eigen::Vector3d(direction - 2.0 * height * normal) : direction;
 }
 
+// pi times the density of a direction once above() has turned up what went below.
+double measure(const GatherPlace& at, const Eigen::Vector3d& direction) {
+  const double height = direction.dot(at.normal);
+  if (!(height > 0.0)) return 0.0;
+  const Eigen::Vector3d below = direction - 2.0 * height * at.normal;
+  return std::max(direction.dot(at.smooth_normal), 0.0) +
+         std::max(below.dot(at.smooth_normal), 0.0);
+}
+
 }  // namespace
 
 PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
                          const DirectLight& direct_light, const RadiositySolution& solution,
                          int most_rays, int max_specular_depth)
     : paths_(scene, caster, max_specular_depth),
-      radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance())) {
+      radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance())),
+      bright_(scene, caster.mesh(), radiosity_),
+      aims_(BrightPatches::aimed(most_rays)) {
   if (const FreeSource* dome = direct_light.dome()) dome_ = dome->light;
   constexpr int fewest = 8;
   for (int rays = most_rays; rays >= std::min(fewest, most_rays) && rays > 0; rays /= 2) {
@@ -42,6 +53,9 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Gat
   const HemisphereSets::Draw draw = sets_[level].draw(random_key(key, direction_purpose));
   const Eigen::Matrix3d frame = draw.frame(at.smooth_normal);
   const auto points = draw.all();
+  const auto count = static_cast<int>(points.size());
+  BrightPatches::View view;
+  if (!bright_.is_empty()) view = bright_.view(at.position, at.smooth_normal, count);
   std::array<Ray, batch> rays;
   std::array<ElementHit, batch> hits;
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(radiosity_.cols());
@@ -57,18 +71,43 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Gat
     for (std::size_t r = 0; r < n; ++r) {
       if (hits[r].facet < 0) continue;
       const std::uint64_t ray_key = random_key(key, branch_purpose, begin + r);
-      sum += arriving(caster, rays[r], hits[r], ray_key).cast<double>();
+      const double straight = view.is_empty() ? 1.0
+                                              : bright_.share(view, measure(at, rays[r].direction),
+                                                              count, rays[r], hits[r]);
+      sum += arriving(caster, rays[r], hits[r], ray_key, straight).cast<double>();
     }
   }
+  if (!view.is_empty()) aim(caster, at, view, count, key, sum);
   return (sum / static_cast<double>(points.size())).cast<float>();
 }
 
-// B of what the ray ends on.
+// Light straight from bright patches, each ray for the one it was drawn for.
+void PixelGather::aim(const ElementCaster& caster, const GatherPlace& at,
+                      const BrightPatches::View& view, int rays, std::uint64_t key,
+                      Eigen::ArrayXd& sum) const {
+  const std::uint64_t aim_key = random_key(key, aim_purpose);
+  for (int i = 0; i < BrightPatches::aimed(rays); ++i) {
+    const Eigen::Array4d lot = aims_.point(i, aim_key).cast<double>();
+    const BrightPatches::Aim aim = bright_.draw(view, lot[0], lot[1], lot[2]);
+    const double cosine = measure(at, aim.direction);
+    if (!(cosine > 0.0)) continue;
+    const Ray ray{.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
+    ElementHit hit;
+    caster.closest_hits({&ray, 1}, {&hit, 1});
+    if (hit.element != aim.element || !paths_.is_diffuse(hit.facet)) continue;
+    const double share = bright_.share(view, cosine, rays, ray, hit);
+    sum += share * interpolate(caster.mesh(), radiosity_, hit).cast<double>();
+  }
+}
+
+// B of what the ray ends on, of which what comes straight from there counts by its share.
 Spectrum PixelGather::arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                               std::uint64_t key) const {
+                               std::uint64_t key, double share) const {
   const PatchMesh& mesh = caster.mesh();
   Spectrum B = Spectrum::Zero(radiosity_.cols());
-  if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) B = interpolate(mesh, radiosity_, hit);
+  if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
+    B = static_cast<float>(share) * interpolate(mesh, radiosity_, hit);
+  }
   if (!paths_.is_specular(hit.facet)) return B;
   const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
     B += end.throughput * interpolate(mesh, radiosity_, end.hit);

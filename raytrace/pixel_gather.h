@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "mesh/element_caster.h"
+#include "radiosity/bright_patches.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/light_path.h"
 #include "radiosity/solution.h"
 #include "scene/hemisphere_sets.h"
+#include "scene/sampling.h"
 
 namespace lightwell {
 
@@ -21,9 +23,10 @@ struct GatherPlace {
 
 /// Final gather (Reichert 1992) at places of a picture: indirect irradiance, E = (1/N) sum B over
 /// cosine-distributed rays of a scrambled Sobol sequence that read the solution's radiosity
-/// where they end, going on through mirrors and clear glass. Light that emitters of DirectLight
-/// send by way of those is not in it: see RadiositySolution::caustic_irradiance. That of the sky's
-/// dome is.
+/// where they end, going on through mirrors and clear glass, and a quarter as many more towards
+/// bright patches where there are any (see BrightPatches). Light that emitters of DirectLight send
+/// by way of mirrors and glass is not in it: see RadiositySolution::caustic_irradiance. That of the
+/// sky's dome is.
 class PixelGather {
  public:
   /// `most_rays` per place, at least 1; a power of two stratifies best.
@@ -36,13 +39,17 @@ class PixelGather {
                                std::uint64_t key, float share) const;
 
  private:
+  void aim(const ElementCaster& caster, const GatherPlace& at, const BrightPatches::View& view,
+           int rays, std::uint64_t key, Eigen::ArrayXd& sum) const;
   Spectrum arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                    std::uint64_t key) const;
+                    std::uint64_t key, double share) const;
 
   LightPaths paths_;
   BandArray radiosity_{};               // vertices x bands, W/m^2
   Spectrum dome_{};                     // factor of the sky's light; empty if there is none
   std::vector<HemisphereSets> sets_{};  // each of half as many rays as the one before
+  BrightPatches bright_;
+  SobolPoints aims_;  // towards those
 };
 
 }  // namespace lightwell

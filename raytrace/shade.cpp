@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "radiosity/final_gather.h"
 #include "scene/optics.h"
 #include "scene/sampling.h"
 
@@ -87,6 +88,14 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
     for (const bool is_back : {false, true}) {
       if (material.gloss_roughness() > 0.0f) of_sides[is_back].emplace(material, is_back);
     }
+  }
+  const auto is_rough_mirror = [](const Material& material) {
+    return material.gloss_roughness() > 0.0f && !material.dielectric;
+  };
+  if (std::any_of(scene.materials.begin(), scene.materials.end(), is_rough_mirror)) {
+    bright_ =
+        BrightPatches(scene, caster.mesh(),
+                      gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance()));
   }
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
@@ -209,6 +218,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
                 .place = place,
                 .is_sharp = parent.is_sharp,
                 .lobe_density = way.density,
+                .bright = way.density > 0.0 ? parent.bright : nullptr,
                 .width = cone_width(parent, at),
                 .media = parent.media};
   if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
@@ -301,8 +311,10 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
 // L = (M + rho E) / pi.
 void RayTree::shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at,
                     Walk& walk) const {
-  const Spectrum M = emission(branch, hit, at);
-  const Spectrum rho = reflectance(branch, hit, at);
+  const float share = share_of_bright(branch, hit, at);
+  Spectrum M = emission(branch, hit, at);
+  if (!direct_light_.owns(hit.facet, hit.from_back)) M *= share;
+  const Spectrum rho = share * reflectance(branch, hit, at);
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
   if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, walk);
   walk.sight.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/element_caster.h"
+#include "radiosity/bright_patches.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
 #include "raytrace/caustic_map.h"
@@ -102,7 +103,10 @@ class RayTree {
     bool is_sharp = true;  ///< no rough surface on the way
     /// Of its direction, 1/sr, off a rough surface, which samples lamps beside; else 0.
     double lobe_density = 0.0;
-    double width = 0.0;  ///< m, of the cone where the ray begins
+    /// By which that draws directions towards bright patches, too; null: it does not.
+    const BrightPatches::View* bright = nullptr;
+    bool is_aimed = false;  ///< such a direction
+    double width = 0.0;     ///< m, of the cone where the ray begins
     Media media{};
   };
   /// Irradiance at a place, W/m^2, by the way light takes.
@@ -130,6 +134,10 @@ class RayTree {
   void add_free_source(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
                        const SurfacePoint& at, const Eigen::Array4d& lot, float share,
                        Walk& walk) const;
+  void add_bright_patch(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+                        const SurfacePoint& at, const BrightPatches::View& view,
+                        const Eigen::Array4d& lot, float share, Walk& walk) const;
+  float share_of_bright(const Branch& branch, const ElementHit& hit, const SurfacePoint& at) const;
   Spectrum emission(const Branch& branch, const ElementHit& hit, const SurfacePoint& at) const;
   const RoughLobe& lobe(int material, bool from_back) const;
   void grow(const Branch& parent, std::uint64_t place, const Onward& way, const ElementHit& hit,
@@ -170,6 +178,7 @@ class RayTree {
   static constexpr int gloss_point_count = 1024;
   SobolPoints gloss_points_;  ///< of looks of one key; later ones use a new scrambling
   LampSamples lamps_;
+  BrightPatches bright_{};  ///< what rough mirrors aim at beside the lamps
   /// Of the front and the back of each material; empty if it is not rough.
   std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};
   bool absorbs_ = false;  ///< there is a body that does

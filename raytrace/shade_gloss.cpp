@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t gloss_purpose = 0x61055, lamp_purpose = 0x1a4b;
+constexpr std::uint64_t gloss_purpose = 0x61055, lamp_purpose = 0x1a4b, bright_purpose = 0x1a4c;
 constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
 
 // Whether a direction is on one side of a facet and on the other of the smooth surface that it
@@ -32,6 +32,12 @@ void RayTree::scatter(const Branch& branch, const Meeting& meeting, const Elemen
   const int first = walk.number.value_or(0);
   const std::uint64_t key = random_key(walk.gloss_key, branch.place, gloss_purpose,
                                        static_cast<std::uint64_t>(first / gloss_point_count));
+  // As many as a picture takes of one place or so.
+  constexpr int usual_looks = 64;
+  BrightPatches::View view;
+  if (!bright_.is_empty() && !meeting.material.dielectric) {
+    view = bright_.view(at.position, meeting.normal, usual_looks);
+  }
   for (int i = 0; i < count; ++i) {
     const int index = (first + i) % gloss_point_count;
     const auto lot_key = random_key(key, static_cast<std::uint64_t>(index));
@@ -43,11 +49,17 @@ void RayTree::scatter(const Branch& branch, const Meeting& meeting, const Elemen
         gloss_points_.point(index, random_key(key, lamp_purpose)).cast<double>();
     add_lamp(branch, meeting, hit, at, lamp_lot, 1.0f / static_cast<float>(count), walk);
     add_free_source(branch, meeting, hit, at, lamp_lot, 1.0f / static_cast<float>(count), walk);
+    if (!view.is_empty()) {
+      const Eigen::Array4d lot =
+          gloss_points_.point(index, random_key(key, bright_purpose)).cast<double>();
+      add_bright_patch(branch, meeting, hit, at, view, lot, 1.0f / static_cast<float>(count), walk);
+    }
     // Places of many looks are alike, so that theirs are spread over what lies behind as well.
     const auto place =
         random_key(branch.place, gloss_purpose, static_cast<std::uint64_t>(i), way.crosses);
     Branch spread = branch;
     spread.is_sharp = false;
+    spread.bright = view.is_empty() ? nullptr : &view;
     grow(spread, place, way, hit, at, walk);
   }
 }
@@ -141,11 +153,58 @@ void RayTree::add_free_source(const Branch& branch, const Meeting& meeting, cons
   }
 }
 
+// What a bright patch reflects, off a rough mirror: as add_lamp does for lamps.
+void RayTree::add_bright_patch(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+                               const SurfacePoint& at, const BrightPatches::View& view,
+                               const Eigen::Array4d& lot, float share, Walk& walk) const {
+  if (branch.depth >= deepest_path(options_.max_depth, true)) return;
+  const BrightPatches::Aim aim = bright_.draw(view, lot[0], lot[1], lot[2]);
+  if (!(aim.direction.dot(at.normal) > 0.0) || !(aim.direction.dot(meeting.normal) > 0.0)) return;
+  const double density =
+      lobe(facets_[hit.facet].material, hit.from_back).density(meeting, aim.direction);
+  if (!(density > 0.0)) return;
+  Branch aimed = branch;
+  aimed.ray = {.origin = at.position, .direction = aim.direction, .origin_group = hit.facet};
+  ElementHit met;
+  walk.caster->closest_hits({&aimed.ray, 1}, {&met, 1});
+  if (met.element != aim.element) return;
+  const SurfacePoint there = surface_point(aimed.ray, met, *walk.caster);
+  const double distance = (there.position - at.position).norm();
+  const double both = density + bright_.density(view, met.element, aim.direction, distance);
+  aimed.weight *= share_of(meeting, false) * (share * static_cast<float>(density / both));
+  if (absorbs_) {
+    aimed.weight *=
+        aimed.media.passed(scene_, facets_[met.facet].material, met.from_back, distance);
+  }
+  if (!(aimed.weight > 0.0f).any()) return;
+  aimed.depth = branch.depth + 1;
+  aimed.place = random_key(branch.place, bright_purpose, static_cast<std::uint64_t>(aim.element));
+  aimed.is_sharp = false;
+  aimed.width = cone_width(branch, at);
+  aimed.lobe_density = 0.0;
+  aimed.bright = nullptr;
+  aimed.is_aimed = true;
+  shade(aimed, met, there, walk);
+}
+
+// Of what a branch meets, what add_bright_patch leaves to it.
+float RayTree::share_of_bright(const Branch& branch, const ElementHit& hit,
+                               const SurfacePoint& at) const {
+  if (!branch.bright) return 1.0f;
+  const Eigen::Vector3d to = at.position - branch.ray.origin;
+  const double distance = to.norm();
+  if (!(distance > 0.0)) return 1.0f;
+  const double aimed = bright_.density(*branch.bright, hit.element, to / distance, distance);
+  return static_cast<float>(branch.lobe_density / (branch.lobe_density + aimed));
+}
+
 // M of the side that was met, without what add_lamp counts.
 Spectrum RayTree::emission(const Branch& branch, const ElementHit& hit,
                            const SurfacePoint& at) const {
   const PatchMesh& mesh = caster_.mesh();
   const Spectrum M = mesh.emission.row(mesh.patch[hit.element]).transpose();
+  if (branch.is_aimed && direct_light_.owns(hit.facet, hit.from_back))
+    return Spectrum::Zero(M.size());
   if (!(branch.lobe_density > 0.0) || !(M > 0.0f).any()) return M;
   if (!direct_light_.owns(hit.facet, hit.from_back)) return M;
   const double lamps = lamps_.density(branch.ray.origin, at.position, hit.facet);

@@ -68,15 +68,22 @@ inline void intersect(RTCScene scene, QueryContext& context, const int* valid, R
 #endif
 }
 
-inline void occlude(RTCScene scene, QueryContext& context, const int* valid, RTCRay16& query) {
+inline void occlude(RTCScene scene, QueryContext& context, const int* valid, RTCRay16& query,
+                    RTCFilterFunctionN filter = nullptr) {
 #if RTC_VERSION_MAJOR >= 4
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
   arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  if (filter) {
+    arguments.flags =
+        static_cast<RTCRayQueryFlags>(arguments.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
+  }
+  arguments.filter = filter;
   arguments.context = &context;
   rtcOccluded16(valid, scene, &query, &arguments);
 #else
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.filter = filter;
   rtcOccluded16(valid, scene, &context, &query);
 #endif
 }
