@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mesh/patch_sampler.h"
+#include "radiosity/effort.h"
 #include "radiosity/interpolation_error.h"
 #include "scene/sampling.h"
 
@@ -11,6 +12,8 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
+// As usual where no accuracy is asked for: see estimate_rays.
+constexpr ShadowOptions fewest_shadow_rays{.min_rays = 32, .max_rays = 256};
 
 }  // namespace
 
@@ -52,7 +55,11 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
     }
   }
   GatherOptions gather_options = options.gather;
-  gather_options.rays = 2 * options.gather.rays;
+  gather_options.rays =
+      estimate_rays(options.gather.rays, mesh.vertex_count(), options.error_points);
+  ShadowOptions& shadows = gather_options.shadows;
+  shadows.min_rays = std::max(shadows.min_rays, fewest_shadow_rays.min_rays);
+  shadows.max_rays = std::max(shadows.max_rays, fewest_shadow_rays.max_rays);
   gather_options.replica = options.gather.replica + 1;
   gather_options.progress = options.progress;
   gather_options.journal = options.journal;
