@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t probe_key = 30;  // purpose of random keys
 constexpr std::uint64_t draft_replica = 1000;
 constexpr int probe_count = 16;
-constexpr int share_of_rays = 8, fewest_rays = 16;
+constexpr int share_of_rays = 8;
 
 // Vertices lie this far inside the elements of the deepest level (see vertex_gather_points).
 constexpr double finest_inset = 0.02;
@@ -65,16 +65,13 @@ InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& 
       return progress("refine", share);
     };
   }
+  // Crumbs take fewer, but none so few that noise hides what there is to be seen.
+  const int rays = std::max(1, options.rays / share_of_rays);
   std::vector<GatherPoint> points(static_cast<std::size_t>(elements.base().vertex_count()));
-  share_rays(elements.base(), std::max(1, options.rays / share_of_rays), points);
-  for (const GatherPoint& point : points) rays_.push_back(enough(point.rays));
+  share_rays(elements.base(), rays, points);
+  for (const GatherPoint& point : points) rays_.push_back(std::min(2 * point.rays, rays));
   sharpen_radiosity(caustic);
   find_what_matters();
-}
-
-// Fewer do not tell noise from light.
-int InterpolationError::enough(int rays) const {
-  return std::max(rays, std::min(fewest_rays, std::max(1, options_.rays / share_of_rays)));
 }
 
 GatherPoint InterpolationError::gather_point(int vertex) const {
@@ -115,11 +112,11 @@ void InterpolationError::make_room() {
   }
   has_direct_.resize(count, 0);
   has_indirect_.resize(count, 0);
-  // A vertex half-way stands for a quarter of the area of those it lies between, see share_rays.
+  // As many as where it lies between: fewer would hide in noise what the next split is about.
   for (int v = static_cast<int>(rays_.size()); v < count; ++v) {
     int most = 0;
     for (const int end : elements_.ends(v)) most = end < 0 ? most : std::max(most, rays_[end]);
-    rays_.push_back(enough(most / 2));
+    rays_.push_back(most);
   }
   sight_.resize(count);
 }

@@ -24,10 +24,10 @@ Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradian
 /// A cell is compared at the middles of its edges and in its centre (weights of Simpson's rule; in
 /// triangles at the middles alone), and those gathers are kept as the values of the vertices that
 /// a split makes there. Direct light is gathered as for the final solution; indirect light twice,
-/// with an eighth of the rays each, or fewer at small elements as share_rays says, the same
-/// directions all over a side of a surface, so that most of the noise is alike at neighbours and
-/// not in what they differ by. The product of both differences is what counts, without the noise
-/// that is left, and only where it is more than that.
+/// with an eighth of the rays each, down to a quarter of that at the start's smallest elements, the
+/// same directions all over a side of a surface, so that most of the noise is alike at neighbours
+/// and not in what they differ by. The product of both differences is what counts, without the
+/// noise that is left, and only where it is more than that.
 ///
 /// What lies between these places is looked for with shadow rays from 16 more to each emitter that
 /// all of them see whole, or that none of them sees: where one says otherwise, a shadow or a beam
@@ -75,7 +75,6 @@ class InterpolationError {
   void find_what_matters();
   GatherPoint gather_point(int vertex) const;
   void make_room();
-  int enough(int rays) const;
   void gather_direct_at(const std::vector<int>& vertices);
   BandArray indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
                         const BandArray& radiosity) const;

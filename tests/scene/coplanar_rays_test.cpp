@@ -271,7 +271,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // A strip that is as long as the floor, and small ones beside it and beyond its end, in an order
 // of their own: whoever stands on one of them is told from whoever stands between.
-TEST(CoplanarGroups, ManySheetsOnAFloorEachHideWhatIsBelow) {
+TEST(CoplanarRays, ManySheetsOnAFloorEachHideWhatIsBelow) {
   CastGeometry geometry;
   add_square(geometry, 10.0, 0.0, true, 0);
   int group = 0;
