@@ -7,8 +7,8 @@
 namespace lightwell {
 namespace {
 
-// Both are independent: 0.7^2 + 0.6^2 leaves a little for what refinement has not seen.
-constexpr double share_of_interpolation = 0.7, share_of_noise = 0.6;
+// Both are independent: 0.6^2 + 0.6^2 leaves room for what refinement has not seen.
+constexpr double share_of_interpolation = 0.6, share_of_noise = 0.6;
 constexpr int fewest_rays = 128, most_rays = 1 << 15;
 constexpr int most_attempts = 4;
 // The error of stratified rays in a room falls with about this power of their number.

@@ -15,14 +15,15 @@ int form_factor_rays(double target, int most) {
 
 int patch_count_for(double target, int most) {
   if (!(target > 0.0)) return most;
-  constexpr double patches_for_one_percent = 1600.0, fewest = 400.0;
-  const double wanted = std::clamp(patches_for_one_percent * 0.01 / target, fewest, 1e6);
+  constexpr double patches_for_two_percent = 1600.0, fewest = 400.0;
+  const double wanted = std::clamp(patches_for_two_percent * 0.02 / target, fewest, 1e6);
   return std::min(most, static_cast<int>(std::lround(wanted)));
 }
 
 int deepest_level(double target, int usual) {
-  constexpr int deeper = 6;
-  return target > 0.0 ? std::max(usual, deeper) : usual;
+  if (!(target > 0.0)) return usual;
+  constexpr double enough_for = 0.02;
+  return usual + std::clamp(static_cast<int>(std::ceil(std::log2(enough_for / target))), 0, 2);
 }
 
 int estimate_rays(int rays, std::int64_t vertices, int places) {

@@ -11,12 +11,12 @@ namespace lightwell {
 int form_factor_rays(double target, int most);
 
 /// Patches that light is exchanged between for such a target, where a scene decides their size:
-/// `most`, or as many fewer, a quarter at least. What is read where gathered rays end is light at
-/// vertices, gathered itself, so that patches may be coarse.
+/// `most`, or as many fewer as the target is above two percent, a quarter at least. What is read
+/// where gathered rays end is light at vertices, gathered itself, so that patches may be coarse.
 int patch_count_for(double target, int most);
 
-/// How often elements may be split that a target is set for, `usual` where none is (0): shadows'
-/// edges take more splits than what is left of them by default.
+/// How often elements may be split for such a target: `usual`, and once more each time that it is
+/// halved below two percent, up to twice, since shadows' edges then are what is left.
 int deepest_level(double target, int usual);
 
 /// Rays of each of `places` that an error estimate looks at, beside a solution of `rays` a vertex:

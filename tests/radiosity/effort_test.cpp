@@ -19,9 +19,17 @@ TEST(Effort, LooseTargetsTakeLess) {
   EXPECT_EQ(form_factor_rays(0.02, 512), 256);
   EXPECT_EQ(form_factor_rays(0.05, 512), 128);  // 102.4, to a power of two
   EXPECT_EQ(form_factor_rays(0.5, 512), 64);
-  EXPECT_EQ(patch_count_for(0.01, 1600), 1600);
-  EXPECT_EQ(patch_count_for(0.02, 1600), 800);
+  EXPECT_EQ(patch_count_for(0.02, 1600), 1600);
+  EXPECT_EQ(patch_count_for(0.04, 1600), 800);
   EXPECT_EQ(patch_count_for(0.5, 1600), 400);
+}
+
+TEST(Effort, TightTargetsSplitMoreOften) {
+  EXPECT_EQ(deepest_level(0.05, 4), 4);
+  EXPECT_EQ(deepest_level(0.02, 4), 4);
+  EXPECT_EQ(deepest_level(0.01, 4), 5);
+  EXPECT_EQ(deepest_level(0.005, 4), 6);
+  EXPECT_EQ(deepest_level(1e-5, 4), 6);
 }
 
 // Who asks for fewer than an accuracy would take gets those.
