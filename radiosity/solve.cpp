@@ -182,7 +182,9 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
                 solution);
     relight(solved, scales_in_force(solution));
     spent["gather"] += watch.lap();
-    solution.error_estimate = estimate_error(scene, *caster, direct_light, in_force, solution);
+    Eigen::ArrayXf& of_elements = solution.interpolation_error;
+    solution.error_estimate = estimate_error(scene, *caster, direct_light, in_force, solution,
+                                             of_elements.size() == 0 ? &of_elements : nullptr);
     spent["error_estimate"] += watch.lap();
     if (!may_try_again || solution.error_estimate <= target) break;
     const auto next = next_effort(effort, target, solution.error_estimate,
