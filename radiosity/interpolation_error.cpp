@@ -198,7 +198,8 @@ GatheredIrradiance InterpolationError::values(const std::vector<int>& vertices) 
 }
 
 GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>& vertices,
-                                                         const ChannelLight& light) const {
+                                                         const ChannelLight& light) {
+  make_room();  // the last split's vertices have not been gathered at
   const PatchMesh& mesh = elements_.base();
   std::vector<int> base(mesh.vertex_count());
   std::iota(base.begin(), base.end(), 0);

@@ -66,8 +66,7 @@ class InterpolationError {
   GatheredIrradiance values(const std::vector<int>& vertices) const;
   /// The same gathers, made again of light by channels: their sum is what values() would give after
   /// gather().
-  GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
-                                       const ChannelLight& light) const;
+  GatheredIrradiance values_by_channel(const std::vector<int>& vertices, const ChannelLight& light);
   std::int64_t gathers() const { return gathers_; }
 
  private:
