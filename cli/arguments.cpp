@@ -10,6 +10,7 @@
 #include "cli/memory_size.h"
 #include "cli/refinement.h"
 #include "radiosity/caustic_photons.h"
+#include "radiosity/effort.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
@@ -265,8 +266,9 @@ void SolveArguments::add_to(CLI::App& command) {
       ->check(one_of("solver", solver_names()))
       ->group(group);
   command
-      .add_option("--rays", solve.form_factors.rays_per_patch,
-                  "form-factor rays per patch, a power of two (default 512)")
+      .add_option(
+          "--rays", solve.form_factors.rays_per_patch,
+          "form-factor rays per patch, a power of two (default 512; fewer for a loose --accuracy)")
       ->type_name("N")
       ->check(power_of_two())
       ->group(group);
@@ -310,6 +312,9 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
 
 std::string SolveArguments::text(const Scene& scene) const {
   std::string effort = accuracy_text(solve.accuracy);
+  const double target = solve.accuracy ? solve.accuracy->share : 0.0;
+  MeshArguments patches = mesh;
+  patches.mesh.auto_patch_count = patch_count_for(target, mesh.mesh.auto_patch_count);
   if (solve.accuracy && solve.refine.max_elements > 0) {
     effort += fmt::format(" --max-elements {}", solve.refine.max_elements);
   }
@@ -318,10 +323,10 @@ std::string SolveArguments::text(const Scene& scene) const {
   }
   return fmt::format(
       "{}{} --form-factors {}{} --solver {} --rays {} --tolerance {:g} --max-sweeps {}{}",
-      mesh.text(scene), effort, form_factors,
+      patches.text(scene), effort, form_factors,
       hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
-      solve.form_factors.rays_per_patch, solve.solver.tolerance, solve.solver.max_sweeps,
-      channels.text());
+      form_factor_rays(target, solve.form_factors.rays_per_patch), solve.solver.tolerance,
+      solve.solver.max_sweeps, channels.text());
 }
 
 void RenderArguments::add_to(CLI::App& command) {

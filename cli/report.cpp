@@ -25,13 +25,20 @@ std::string size_text(double megabytes) {
                            : fmt::format("{:.1f} GB", megabytes / 1024.0);
 }
 
+// Where rows are, and why there.
 std::string storage_text(const Json& storage) {
   const auto size = [&](const char* key) { return size_text(storage[key].get<double>()); };
   const bool is_on_disk = storage["disk_mb"].get<double>() > 0.0;
-  return fmt::format("rows {} in memory{} (budget {})", size("memory_mb"),
-                     is_on_disk ? fmt::format(", {} on disk in {}", size("disk_mb"),
-                                              storage["folder"].get<std::string>())
-                                : "",
+  if (!is_on_disk && !(storage["memory_mb"].get<double>() > 0.0)) {
+    return fmt::format("no rows are kept, since patches shoot theirs as they go (budget {})",
+                       size("budget_mb"));
+  }
+  if (!is_on_disk) {
+    return fmt::format("rows {} in memory (budget {}), which holds them all", size("memory_mb"),
+                       size("budget_mb"));
+  }
+  return fmt::format("rows {} in memory, {} on disk in {}, since no more fit (budget {})",
+                     size("memory_mb"), size("disk_mb"), storage["folder"].get<std::string>(),
                      size("budget_mb"));
 }
 

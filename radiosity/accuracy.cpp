@@ -40,7 +40,7 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
 }
 
 ShadowOptions Effort::shadows() const {
-  const int most = std::clamp(gather_rays / 2, 64, most_shadow_rays);
+  const int most = std::clamp(gather_rays / 4, 64, most_shadow_rays);
   return {.min_rays = std::max(16, most / 8), .max_rays = most};
 }
 

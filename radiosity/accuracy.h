@@ -19,8 +19,8 @@ struct Effort {
   double refine_tolerance = 0.0;  ///< 0: nothing is refined
   int gather_rays = 0;
 
-  /// Shadow rays that leave about as much in penumbras as those rays leave elsewhere: half of
-  /// them, 64 to 256, and first an eighth of that, 16 or more.
+  /// Shadow rays that leave about as much in penumbras as those rays leave elsewhere: a quarter
+  /// as many, 64 to 256, and first an eighth of that, 16 or more.
   ShadowOptions shadows() const;
 };
 

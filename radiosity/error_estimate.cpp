@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mesh/patch_sampler.h"
+#include "radiosity/effort.h"
 #include "radiosity/interpolation_error.h"
 #include "scene/sampling.h"
 
@@ -11,12 +12,34 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
+// As usual where no accuracy is asked for: see estimate_rays.
+constexpr ShadowOptions fewest_shadow_rays{.min_rays = 32, .max_rays = 256};
+
+// Per element: what interpolation may miss there, up to a factor that all share. (Range of the
+// corners' irradiance over its reference, or what a shadow that no corner tells of may be.)
+Eigen::ArrayXd indicators(const PatchMesh& mesh, const BandArray& irradiance) {
+  const Eigen::ArrayXd reference = error_references(mesh, irradiance);
+  Eigen::ArrayXd indicator = Eigen::ArrayXd::Zero(mesh.element_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any() || !(reference[e] > 0.0)) continue;
+    Spectrum low = irradiance.row(mesh.corners[e][0]).transpose(), high = low;
+    for (int c = 1; c < mesh.corner_count(e); ++c) {
+      const Spectrum E = irradiance.row(mesh.corners[e][c]).transpose();
+      low = low.min(E);
+      high = high.max(E);
+    }
+    constexpr double unseen = 0.05;
+    const double square = (high - low).cast<double>().square().mean();
+    indicator[e] = std::sqrt(square / (reference[e] * reference[e]) + unseen * unseen);
+  }
+  return indicator;
+}
 
 }  // namespace
 
 double estimate_error(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const SolveOptions& options,
-                      const RadiositySolution& solution) {
+                      const RadiositySolution& solution, Eigen::ArrayXf* of_elements) {
   const PatchMesh& mesh = caster.mesh();
   std::vector<double> area_to(mesh.patch_count());
   double total = 0.0;
@@ -31,6 +54,7 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
   std::vector<GatherPoint> points(options.error_points);
   BandArray caustic = BandArray::Zero(options.error_points, scene.bands.count());
   BandArray interpolated(options.error_points, scene.bands.count());
+  std::vector<int> element(points.size());
   const BandArray irradiance = solution.irradiance();
   const SobolPoints sobol(options.error_points);
   for (int i = 0; i < options.error_points; ++i) {
@@ -46,13 +70,18 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
     caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.element < 0)
       hit = {.facet = mesh.facet[point.element], .element = point.element, .weights = {1, 0, 0, 0}};
+    element[i] = hit.element;
     interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
     if (solution.caustic_irradiance.size() > 0) {
       caustic.row(i) = interpolate(mesh, solution.caustic_irradiance, hit).transpose();
     }
   }
   GatherOptions gather_options = options.gather;
-  gather_options.rays = 2 * options.gather.rays;
+  gather_options.rays =
+      estimate_rays(options.gather.rays, mesh.vertex_count(), options.error_points);
+  ShadowOptions& shadows = gather_options.shadows;
+  shadows.min_rays = std::max(shadows.min_rays, fewest_shadow_rays.min_rays);
+  shadows.max_rays = std::max(shadows.max_rays, fewest_shadow_rays.max_rays);
   gather_options.replica = options.gather.replica + 1;
   gather_options.progress = options.progress;
   gather_options.journal = options.journal;
@@ -65,7 +94,20 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
   const Eigen::ArrayXd reference = truth.cast<double>().rowwise().mean().unaryExpr(
       [mean](double own) { return error_reference(mean, own); });
   const Eigen::ArrayXd squares = (interpolated - truth).cast<double>().square().rowwise().mean();
-  return std::sqrt((squares / reference.square()).mean());
+  const Eigen::ArrayXd relative = squares / reference.square();
+  if (of_elements) {
+    const Eigen::ArrayXd indicator = indicators(mesh, irradiance);
+    double excess = 0.0, told = 0.0;
+    for (int i = 0; i < options.error_points; ++i) {
+      const double own_noise = independent.variance[i] / (reference[i] * reference[i]);
+      excess += relative[i] - own_noise - std::pow(solution.gather_noise[element[i]], 2);
+      told += std::pow(indicator[element[i]], 2);
+    }
+    if (told > 0.0) {
+      *of_elements = (std::sqrt(std::max(excess, 0.0) / told) * indicator).cast<float>();
+    }
+  }
+  return std::sqrt(relative.mean());
 }
 
 }  // namespace lightwell

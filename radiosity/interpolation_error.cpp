@@ -19,9 +19,11 @@ constexpr int share_of_rays = 8;
 // Vertices lie this far inside the elements of the deepest level (see vertex_gather_points).
 constexpr double finest_inset = 0.02;
 
-// A straight shadow edge crosses at most 32 of 256 stratified rays' cells, each of which is off by
-// 0.3 in the mean square.
-const double mixed_shadow_noise = 0.3 * std::sqrt(32.0) / 256.0;
+// A straight shadow edge crosses at most 2 sqrt(n) of n stratified rays' cells, each of which is
+// off by 0.3 in the mean square.
+double mixed_shadow_noise(int rays) {
+  return 0.3 * std::sqrt(2.0 * std::sqrt(static_cast<double>(rays))) / rays;
+}
 
 double mean_square(const Spectrum& difference) {
   return difference.cast<double>().square().mean();
@@ -63,6 +65,11 @@ InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& 
       return progress("refine", share);
     };
   }
+  // Crumbs take fewer, but none so few that noise hides what there is to be seen.
+  const int rays = std::max(1, options.rays / share_of_rays);
+  std::vector<GatherPoint> points(static_cast<std::size_t>(elements.base().vertex_count()));
+  share_rays(elements.base(), rays, points);
+  for (const GatherPoint& point : points) rays_.push_back(std::min(2 * point.rays, rays));
   sharpen_radiosity(caustic);
   find_what_matters();
 }
@@ -105,6 +112,12 @@ void InterpolationError::make_room() {
   }
   has_direct_.resize(count, 0);
   has_indirect_.resize(count, 0);
+  // As many as where it lies between: fewer would hide in noise what the next split is about.
+  for (int v = static_cast<int>(rays_.size()); v < count; ++v) {
+    int most = 0;
+    for (const int end : elements_.ends(v)) most = end < 0 ? most : std::max(most, rays_[end]);
+    rays_.push_back(most);
+  }
   sight_.resize(count);
 }
 
@@ -136,6 +149,7 @@ BandArray InterpolationError::indirect_at(const std::vector<int>& vertices, std:
     const int patch = mesh.patch[elements_.inside(v, 0.0).element];
     point.key = random_key(static_cast<std::uint64_t>(mesh.surface[patch]),
                            mesh.is_back[patch] != 0 ? 1 : 0);
+    point.rays = rays_[static_cast<std::size_t>(v)];
   }
   GatherOptions options = options_;
   options.rays = std::max(1, options_.rays / share_of_rays);
@@ -184,7 +198,8 @@ GatheredIrradiance InterpolationError::values(const std::vector<int>& vertices) 
 }
 
 GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>& vertices,
-                                                         const ChannelLight& light) const {
+                                                         const ChannelLight& light) {
+  make_room();  // the last split's vertices have not been gathered at
   const PatchMesh& mesh = elements_.base();
   std::vector<int> base(mesh.vertex_count());
   std::iota(base.begin(), base.end(), 0);
@@ -266,10 +281,11 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
   const double at_edge = n == 4 ? 4.0 / 36.0 : 1.0 / 3.0, at_center = 16.0 / 36.0;
   Differences differences;
   double shadow_noise = 0.0;
+  const double of_one = mixed_shadow_noise(options_.shadows.max_rays);
   const auto add_shadow_noise = [&](int v, double weight) {
     const double unshadowed = sight_[v].unshadowed, E = direct_.row(v).mean();
     const bool is_mixed = E > 0.0 && E < (1.0 - 1e-5) * unshadowed;
-    if (is_mixed) shadow_noise += weight * std::pow(mixed_shadow_noise * unshadowed, 2);
+    if (is_mixed) shadow_noise += weight * std::pow(of_one * unshadowed, 2);
   };
   Spectrum direct = Spectrum::Zero(scene_.bands.count()), first = direct, second = direct;
   for (int i = 0; i < n; ++i) {

@@ -24,9 +24,10 @@ Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradian
 /// A cell is compared at the middles of its edges and in its centre (weights of Simpson's rule; in
 /// triangles at the middles alone), and those gathers are kept as the values of the vertices that
 /// a split makes there. Direct light is gathered as for the final solution; indirect light twice,
-/// with an eighth of the rays each, the same directions all over a side of a surface, so that most
-/// of the noise is alike at neighbours and not in what they differ by. The product of both
-/// differences is what counts, without the noise that is left, and only where it is more than that.
+/// with an eighth of the rays each, down to a quarter of that at the start's smallest elements, the
+/// same directions all over a side of a surface, so that most of the noise is alike at neighbours
+/// and not in what they differ by. The product of both differences is what counts, without the
+/// noise that is left, and only where it is more than that.
 ///
 /// What lies between these places is looked for with shadow rays from 16 more to each emitter that
 /// all of them see whole, or that none of them sees: where one says otherwise, a shadow or a beam
@@ -65,8 +66,7 @@ class InterpolationError {
   GatheredIrradiance values(const std::vector<int>& vertices) const;
   /// The same gathers, made again of light by channels: their sum is what values() would give after
   /// gather().
-  GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
-                                       const ChannelLight& light) const;
+  GatheredIrradiance values_by_channel(const std::vector<int>& vertices, const ChannelLight& light);
   std::int64_t gathers() const { return gathers_; }
 
  private:
@@ -96,6 +96,7 @@ class InterpolationError {
   double area_ = 0.0, mean_ = 0.0;
   // Per vertex.
   std::vector<char> has_direct_, has_indirect_;
+  std::vector<int> rays_;  // of each of the two gathers of indirect light
   BandArray direct_, first_, second_;
   std::vector<EmitterSight> sight_;
   std::int64_t gathers_ = 0;

@@ -64,7 +64,7 @@ struct RadiositySolution {
 
   /// Per element: estimated RMS error of interpolated irradiance over it, with what the noise of
   /// its estimate may hide, of the mean irradiance or a quarter of the element's own, whichever is
-  /// more. Empty if the mesh was not refined.
+  /// more. Empty if nobody estimated it.
   Eigen::ArrayXf interpolation_error{};
   /// Per element: estimated RMS error that the rays of the final gather leave in it, relative to
   /// the same. Empty in files of earlier versions.

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "radiosity/effort.h"
 #include "radiosity/error_estimate.h"
 #include "radiosity/journal.h"
 #include "radiosity/journal_phase.h"
@@ -86,6 +87,10 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
   Stopwatch watch;
   FormFactorOptions form_factor_options = options.form_factors;
   form_factor_options.progress = options.progress;
+  if (options.accuracy) {
+    form_factor_options.rays_per_patch =
+        form_factor_rays(options.accuracy->share, options.form_factors.rays_per_patch);
+  }
   if (options.journal) form_factor_options.journal = options.journal;
   const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
                                                  report ? &report->form_factors : nullptr);
@@ -157,6 +162,7 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
     // Who asks for an accuracy asks for the elements it takes; about 1 GB of them.
     constexpr std::int64_t plenty = 1000000;
     in_force.refine.max_elements = std::max<std::int64_t>(plenty, 4 * base.element_count());
+    in_force.refine.max_level = deepest_level(target, options.refine.max_level);
   }
   const bool may_try_again = target > 0.0;
   std::optional<Draft> draft;
@@ -176,7 +182,9 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
                 solution);
     relight(solved, scales_in_force(solution));
     spent["gather"] += watch.lap();
-    solution.error_estimate = estimate_error(scene, *caster, direct_light, in_force, solution);
+    Eigen::ArrayXf& of_elements = solution.interpolation_error;
+    solution.error_estimate = estimate_error(scene, *caster, direct_light, in_force, solution,
+                                             of_elements.size() == 0 ? &of_elements : nullptr);
     spent["error_estimate"] += watch.lap();
     if (!may_try_again || solution.error_estimate <= target) break;
     const auto next = next_effort(effort, target, solution.error_estimate,
@@ -256,6 +264,10 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   MeshOptions mesh_options = options.mesh;
   mesh_options.progress = options.progress;
   mesh_options.to_be_refined = starts_coarse(options);
+  if (options.accuracy) {
+    mesh_options.auto_patch_count =
+        patch_count_for(options.accuracy->share, options.mesh.auto_patch_count);
+  }
   solved.mesh = build_patches(scene, mesh_options);
   require_room(solved.mesh, options.refine);
   std::optional<ElementCaster> caster(std::in_place, solved.mesh);

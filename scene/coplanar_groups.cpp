@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <unordered_map>
 
 #include "scene/sampling.h"
 
@@ -18,6 +17,7 @@ struct CoplanarGroups::Plane {
   Eigen::AlignedBox3d box{};
   std::vector<int> vertices{};                 // of the geometry, polygon after polygon
   std::vector<int> ends{};                     // of the polygons among those
+  std::vector<Eigen::AlignedBox2d> boxes{};    // of the polygons, flattened, once asked for
   std::vector<Eigen::Vector2d> convex_hull{};  // counter-clockwise, once asked for
   int seen_along = -1;                         // the axis along which that is flattened
 };
@@ -28,6 +28,10 @@ constexpr double margin = 4.0;  // tolerances by which what lies together may se
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
+}
+
+Eigen::Vector2d flattened(const Eigen::Vector3d& p, int axis) {
+  return {p[(axis + 1) % 3], p[(axis + 2) % 3]};
 }
 
 // Andrew's monotone chain.
@@ -67,18 +71,55 @@ bool is_apart(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Ve
 struct DirectedEdge {
   Eigen::Vector3d from, to;
   bool operator==(const DirectedEdge& other) const { return from == other.from && to == other.to; }
+  DirectedEdge reversed() const { return {to, from}; }
 };
 
-struct EdgeHash {
-  std::size_t operator()(const DirectedEdge& edge) const {
-    std::uint64_t key = 0;
-    for (int c = 0; c < 3; ++c) {
-      // -0 and 0 are one place.
-      key = random_key(key, std::bit_cast<std::uint64_t>(edge.from[c] + 0.0),
-                       std::bit_cast<std::uint64_t>(edge.to[c] + 0.0));
-    }
-    return static_cast<std::size_t>(key);
+std::uint64_t hash_of(const DirectedEdge& edge) {
+  std::uint64_t key = 0;
+  for (int c = 0; c < 3; ++c) {
+    // -0 and 0 are one place.
+    key = random_key(key, std::bit_cast<std::uint64_t>(edge.from[c] + 0.0),
+                     std::bit_cast<std::uint64_t>(edge.to[c] + 0.0));
   }
+  return key;
+}
+
+// Which groups have an edge: a table with open addressing, for there is an entry for each edge of
+// each element, and most that is looked up is not in it.
+class GroupsAtEdges {
+ public:
+  explicit GroupsAtEdges(std::size_t edges) : slots_(std::bit_ceil(2 * edges + 1)) {}
+
+  void add(const DirectedEdge& edge, int group) {
+    const std::uint64_t hash = hash_of(edge);
+    std::size_t i = hash & (slots_.size() - 1);
+    while (slots_[i].entry >= 0) i = next(i);
+    slots_[i] = {hash, static_cast<int>(entries_.size())};
+    entries_.push_back({edge, group});
+  }
+  template <class Visit>
+  void for_each_group(const DirectedEdge& edge, Visit visit) const {
+    const std::uint64_t hash = hash_of(edge);
+    for (std::size_t i = hash & (slots_.size() - 1); slots_[i].entry >= 0; i = next(i)) {
+      if (slots_[i].hash != hash) continue;
+      const Entry& entry = entries_[static_cast<std::size_t>(slots_[i].entry)];
+      if (entry.edge == edge) visit(entry.group);
+    }
+  }
+
+ private:
+  struct Slot {
+    std::uint64_t hash = 0;
+    int entry = -1;  // -1: empty
+  };
+  struct Entry {
+    DirectedEdge edge;
+    int group;
+  };
+  std::size_t next(std::size_t i) const { return (i + 1) & (slots_.size() - 1); }
+
+  std::vector<Slot> slots_;
+  std::vector<Entry> entries_{};
 };
 
 template <class Visit>
@@ -159,6 +200,7 @@ CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
     add_overlaps(geometry, {planes.data() + begin, end - begin}, tolerance, pairs);
   }
   align_normals(pairs);
+  for (Group& group : groups_) group.overlaps.sort();
   const bool has_any = std::any_of(groups_.begin(), groups_.end(),
                                    [](const Group& g) { return !g.overlaps.empty(); });
   if (has_any) find_bodies(geometry, tolerance);
@@ -196,29 +238,30 @@ void CoplanarGroups::align_normals(const std::vector<Pair>& pairs) {
 // A group's body are the faces that meet it along an edge, going on over the edge as faces of one
 // surface do: in the opposite direction. So the next room's walls are not taken for this one's.
 void CoplanarGroups::find_bodies(const CastGeometry& geometry, double tolerance) {
-  std::unordered_map<DirectedEdge, std::vector<int>, EdgeHash> groups_at;
+  std::size_t edges = 0;
+  for_each_polygon(geometry, [&](int group, std::span<const int> polygon) {
+    if (has_overlaps(group)) edges += polygon.size();
+  });
+  GroupsAtEdges groups_at(edges);
   for_each_polygon(geometry, [&](int group, std::span<const int> polygon) {
     if (!has_overlaps(group)) return;
-    for_each_edge(geometry, polygon,
-                  [&](const DirectedEdge& edge) { groups_at[edge].push_back(group); });
+    for_each_edge(geometry, polygon, [&](const DirectedEdge& edge) { groups_at.add(edge, group); });
   });
   std::vector<double> side(groups_.size(), 0.0);  // length of the edges on either
   for_each_polygon(geometry, [&](int group, std::span<const int> polygon) {
     for_each_edge(geometry, polygon, [&](const DirectedEdge& edge) {
-      const auto found = groups_at.find({edge.to, edge.from});
-      if (found == groups_at.end()) return;
-      for (const int other : found->second) {
-        if (other == group) continue;
+      groups_at.for_each_group(edge.reversed(), [&](int other) {
+        if (other == group) return;
         double above = 0.0, below = 0.0;
         for (const int v : polygon) {
           const double h = height(other, geometry.vertices[v]);
           above = std::max(above, h);
           below = std::max(below, -h);
         }
-        if (std::max(above, below) <= tolerance) continue;
+        if (std::max(above, below) <= tolerance) return;
         const double length = (edge.to - edge.from).norm();
         side[other] += above > below ? length : -length;
-      }
+      });
     });
   });
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -256,7 +299,7 @@ void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
       Plane& b = planes[j];
       if (b.box.min().x() > a.box.max().x()) break;
       if (pairs_left-- == 0) {
-        for (const Plane& plane : planes) groups_[plane.group].overlaps = {plane.box};
+        for (const Plane& plane : planes) groups_[plane.group].overlaps = Boxes(plane.box);
         return;
       }
       if (!lie_parallel(a.normal, b.normal) || !a.box.intersects(b.box)) continue;
@@ -273,7 +316,7 @@ void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
         continue;
       }
       pairs.push_back({a.group, b.group});
-      for (const int g : pairs.back()) groups_[g].overlaps.push_back(shared);
+      for (const int g : pairs.back()) groups_[g].overlaps.add(shared);
     }
   }
 }
@@ -284,17 +327,16 @@ bool CoplanarGroups::share_area(const CastGeometry& geometry, const Plane& a, co
                                 int along, double tolerance) {
   using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
   const Eigen::AlignedBox3d shared = a.box.intersection(b.box);
+  const Eigen::AlignedBox2d there(flattened(shared.min(), along), flattened(shared.max(), along));
   const auto polygons_there = [&](const Plane& plane) {
     Polygons polygons;
     for (std::size_t p = 0; p < plane.ends.size(); ++p) {
-      Eigen::AlignedBox3d box;
+      if (!plane.boxes[p].intersects(there)) continue;
       std::vector<Eigen::Vector2d> points;
       for (int i = p == 0 ? 0 : plane.ends[p - 1]; i < plane.ends[p]; ++i) {
-        const Eigen::Vector3d& v = geometry.vertices[plane.vertices[i]];
-        box.extend(v);
-        points.emplace_back(v[(along + 1) % 3], v[(along + 2) % 3]);
+        points.push_back(flattened(geometry.vertices[plane.vertices[i]], along));
       }
-      if (box.intersects(shared)) polygons.push_back(convex_hull(std::move(points)));
+      polygons.push_back(convex_hull(std::move(points)));
     }
     return polygons;
   };
@@ -319,19 +361,44 @@ bool CoplanarGroups::is_one_plane(const Plane& a, const Plane& b, const Eigen::V
 void CoplanarGroups::flatten(const CastGeometry& geometry, int along, Plane& plane) {
   if (plane.seen_along == along) return;
   std::vector<Eigen::Vector2d> points;
-  for (const int v : plane.vertices) {
-    const Eigen::Vector3d& p = geometry.vertices[v];
-    points.emplace_back(p[(along + 1) % 3], p[(along + 2) % 3]);
+  plane.boxes.clear();
+  std::size_t polygon = 0;
+  for (std::size_t i = 0; i < plane.vertices.size(); ++i) {
+    points.push_back(flattened(geometry.vertices[plane.vertices[i]], along));
+    if (static_cast<int>(i) >= plane.ends[polygon]) ++polygon;
+    if (polygon == plane.boxes.size()) plane.boxes.emplace_back();
+    plane.boxes[polygon].extend(points.back());
   }
   plane.convex_hull = convex_hull(std::move(points));
   plane.seen_along = along;
 }
 
 bool CoplanarGroups::may_be_covered(int group, const Eigen::Vector3d& point) const {
-  if (!is_known(group)) return false;
-  const auto& overlaps = groups_[group].overlaps;
-  return std::any_of(overlaps.begin(), overlaps.end(),
-                     [&](const Eigen::AlignedBox3d& box) { return box.contains(point); });
+  return is_known(group) && groups_[group].overlaps.contain(point);
+}
+
+void CoplanarGroups::Boxes::sort() {
+  if (boxes_.empty()) return;
+  Eigen::AlignedBox3d all;
+  for (const Eigen::AlignedBox3d& box : boxes_) all.extend(box);
+  all.sizes().maxCoeff(&axis_);
+  const auto low = [this](const Eigen::AlignedBox3d& box) { return box.min()[axis_]; };
+  std::ranges::stable_sort(boxes_, {}, low);
+  reach_.clear();
+  for (const Eigen::AlignedBox3d& box : boxes_) {
+    reach_.push_back(std::max(reach_.empty() ? box.max()[axis_] : reach_.back(), box.max()[axis_]));
+  }
+}
+
+bool CoplanarGroups::Boxes::contain(const Eigen::Vector3d& point) const {
+  const double at = point[axis_];
+  const auto end = std::ranges::partition_point(
+      boxes_, [&](const Eigen::AlignedBox3d& box) { return box.min()[axis_] <= at; });
+  for (std::size_t i = static_cast<std::size_t>(end - boxes_.begin()); i-- > 0;) {
+    if (reach_[i] < at) return false;
+    if (boxes_[i].contains(point)) return true;
+  }
+  return false;
 }
 
 }  // namespace lightwell

@@ -50,10 +50,25 @@ class CoplanarGroups {
   bool may_be_covered(int group, const Eigen::Vector3d& point) const;
 
  private:
+  // A hundred boxes may stand on a floor, and every ray from there asks for those about its origin.
+  class Boxes {
+   public:
+    Boxes() = default;
+    explicit Boxes(const Eigen::AlignedBox3d& box) : boxes_{box} {}
+    void add(const Eigen::AlignedBox3d& box) { boxes_.push_back(box); }
+    bool empty() const { return boxes_.empty(); }
+    void sort();  // when all are there, and before contain() is asked
+    bool contain(const Eigen::Vector3d& point) const;
+
+   private:
+    std::vector<Eigen::AlignedBox3d> boxes_{};  // by their low ends along the axis
+    std::vector<double> reach_{};               // the highest end of these and all before
+    int axis_ = 0;
+  };
   struct Group {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // a point of the plane
-    std::vector<Eigen::AlignedBox3d> overlaps{};       // with others of its plane
+    Boxes overlaps{};                                  // with others of its plane
     int facing = 0;  // of the front: 1 along the normal, -1 against it
     int body = 0;    // 1: its body lies on the side of the normal, -1: on the other, 0: not known
   };

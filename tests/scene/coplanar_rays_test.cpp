@@ -8,6 +8,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "scene/ray_caster.h"
 
@@ -267,6 +268,40 @@ INSTANTIATE_TEST_SUITE_P(
               .of_both = undecided(),
               .turns_second = -Vector3d::UnitZ()}),
     [](const auto& place) { return std::string(place.param.name); });
+
+// A strip that is as long as the floor, and small ones beside it and beyond its end, in an order
+// of their own: whoever stands on one of them is told from whoever stands between.
+TEST(CoplanarRays, ManySheetsOnAFloorEachHideWhatIsBelow) {
+  CastGeometry geometry;
+  add_square(geometry, 10.0, 0.0, true, 0);
+  int group = 0;
+  const auto add_sheet = [&](double x, double y, double half_x, double half_y) {
+    const int first = static_cast<int>(geometry.vertices.size());
+    geometry.vertices.insert(geometry.vertices.end(), {{x - half_x, y - half_y, 0.0},
+                                                       {x - half_x, y + half_y, 0.0},
+                                                       {x + half_x, y + half_y, 0.0},
+                                                       {x + half_x, y - half_y, 0.0}});
+    geometry.quads.push_back({first, first + 1, first + 2, first + 3});  // faces down
+    geometry.group.push_back(++group);
+  };
+  std::vector<Eigen::Vector2d> on, between;
+  for (int i = 0; i < 16; ++i) {
+    const double x = -7.0 + (i * 7) % 16;
+    add_sheet(x, 2.0, 0.2, 0.3);
+    on.emplace_back(x + 0.1, 2.2);
+    between.emplace_back(x + 0.5, 2.0);
+    between.emplace_back(x + 0.1, 2.5);
+  }
+  add_sheet(-1.0, 5.0, 8.0, 0.5);
+  for (int i = 0; i < 16; ++i) on.emplace_back(-8.9 + i, 5.4);
+  between.emplace_back(7.5, 5.0);
+  const RayCaster caster(geometry);
+  const auto is_blocked = [&](const Eigen::Vector2d& at) {
+    return cast(caster, {at.x(), at.y(), 0.0}, slanted, 0).is_blocked;
+  };
+  for (const Eigen::Vector2d& at : on) EXPECT_TRUE(is_blocked(at)) << at.transpose();
+  for (const Eigen::Vector2d& at : between) EXPECT_FALSE(is_blocked(at)) << at.transpose();
+}
 
 }  // namespace
 }  // namespace lightwell

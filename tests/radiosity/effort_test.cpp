@@ -1,0 +1,64 @@
+#include "radiosity/effort.h"
+
+#include <gtest/gtest.h>
+
+#include "radiosity/solve.h"
+#include "two_lamps.h"
+
+namespace lightwell {
+namespace {
+
+TEST(Effort, NoTargetChangesNothing) {
+  EXPECT_EQ(form_factor_rays(0.0, 512), 512);
+  EXPECT_EQ(patch_count_for(0.0, 1600), 1600);
+  EXPECT_EQ(deepest_level(0.0, 4), 4);
+}
+
+TEST(Effort, LooseTargetsTakeLess) {
+  EXPECT_EQ(form_factor_rays(0.01, 512), 512);
+  EXPECT_EQ(form_factor_rays(0.02, 512), 256);
+  EXPECT_EQ(form_factor_rays(0.05, 512), 128);  // 102.4, to a power of two
+  EXPECT_EQ(form_factor_rays(0.5, 512), 64);
+  EXPECT_EQ(patch_count_for(0.02, 1600), 1600);
+  EXPECT_EQ(patch_count_for(0.04, 1600), 800);
+  EXPECT_EQ(patch_count_for(0.5, 1600), 400);
+}
+
+TEST(Effort, TightTargetsSplitMoreOften) {
+  EXPECT_EQ(deepest_level(0.05, 4), 4);
+  EXPECT_EQ(deepest_level(0.02, 4), 4);
+  EXPECT_EQ(deepest_level(0.01, 4), 5);
+  EXPECT_EQ(deepest_level(0.005, 4), 6);
+  EXPECT_EQ(deepest_level(1e-5, 4), 6);
+}
+
+// Who asks for fewer than an accuracy would take gets those.
+TEST(Effort, NeverTakesMoreThanIsAskedFor) {
+  EXPECT_EQ(form_factor_rays(0.001, 512), 512);
+  EXPECT_EQ(form_factor_rays(0.5, 32), 32);
+  EXPECT_EQ(patch_count_for(0.001, 1600), 1600);
+  EXPECT_EQ(patch_count_for(0.5, 100), 100);
+}
+
+TEST(Effort, EstimateTakesMoreRaysWhereTheyAreCheap) {
+  constexpr int places = 512;
+  EXPECT_EQ(estimate_rays(1024, 6000, places), 2048);     // as many as an eighth would be, or more
+  EXPECT_EQ(estimate_rays(128, 40000, places), 1024);     // 40 000 x 128 / 8 / 512 = 1250
+  EXPECT_EQ(estimate_rays(512, 1000000, places), 2048);   // enough
+  EXPECT_EQ(estimate_rays(4096, 1000000, places), 8192);  // twice at least
+  EXPECT_EQ(estimate_rays(1, 8, places), 2);
+  EXPECT_EQ(estimate_rays(64, 1000, 0), 2048);  // nobody looks
+}
+
+TEST(Effort, LooseAccuracySolvesWithFewerPatches) {
+  const Scene scene = test::two_lamps();
+  const auto patches = [&](double share) {
+    SolveOptions options;
+    options.accuracy = Accuracy{.share = share};
+    return solve_scene(scene, options).mesh.patch_count();
+  };
+  EXPECT_LT(2 * patches(0.1), build_patches(scene, {.to_be_refined = true}).patch_count());
+}
+
+}  // namespace
+}  // namespace lightwell
