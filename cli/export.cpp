@@ -155,6 +155,11 @@ void add_lightmap(CLI::App& command, Arguments& arguments) {
       ->check(one_of("pass", {"interpolate", "direct", "gather"}))
       ->group(group)
       ->needs(lightmap);
+  command
+      .add_flag("--lightmap-channels", light.per_channel,
+                "data of each light channel too, FILE-lightmap-1-CHANNEL.exr, ...")
+      ->group(group)
+      ->needs(lightmap);
 }
 
 void check(const Arguments& arguments) {

@@ -36,6 +36,8 @@ constexpr const char* recipes =
                                                          a baked model: .glb, .ply, .obj
   lightwell probe room.toml room.vtp --points desk.csv -o lux.csv
                                                          irradiance and lux at points
+  lightwell report room.toml room.vtp --plane floor@0.75 -o room.html
+                                                         lux, uniformity and glare as a page
   lightwell compare mine.exr reference.exr               how far two pictures are apart
   lightwell form-factors room.stl -o room.mtx            view factors between facets
   lightwell info room.toml                               what is in a scene, solution or picture
@@ -48,7 +50,7 @@ struct NamedCommand {
   const char* name;
   Action (*add)(CLI::App&);
 };
-constexpr std::array<NamedCommand, 11> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 12> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight},
@@ -56,6 +58,7 @@ constexpr std::array<NamedCommand, 11> commands = {{{"run", add_run},
                                                     {"probe", add_probe},
                                                     {"view", add_view},
                                                     {"export", add_export},
+                                                    {"report", add_report},
                                                     {"compare", add_compare},
                                                     {"form-factors", add_form_factors},
                                                     {"info", add_info}}};

@@ -108,6 +108,24 @@ std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands&
   return bytes;
 }
 
+std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& bands, double scale) {
+  const float floor = std::exp2(-light_code_depth);
+  std::vector<std::uint8_t> codes(std::size_t{3} * radiance.rows());
+  parallel_for(static_cast<int>(radiance.rows()), vertex_grain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      const Eigen::Array3f x =
+          linear_rgb(bands, radiance.row(v).transpose()) * static_cast<float>(scale);
+      for (int c = 0; c < 3; ++c) {
+        const float light = x[c] > 0.0f ? x[c] : 0.0f;  // what is no number is black
+        const float code = (std::log2(light + floor) + light_code_depth) / light_code_stops;
+        codes[std::size_t{3} * v + c] =
+            static_cast<std::uint8_t>(255.0f * std::clamp(code, 0.0f, 1.0f) + 0.5f);
+      }
+    }
+  });
+  return codes;
+}
+
 std::vector<float> vertex_illuminance(const RadiositySolution& solution) {
   const BandArray E = solution.irradiance();
   std::vector<float> lux(static_cast<std::size_t>(E.rows()));
@@ -200,7 +218,7 @@ std::vector<std::uint8_t> error_colors(const SolvedScene& solved) {
 }
 
 Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                     const BandArray& radiance, const Camera& camera, int width) {
+                     const BandArray& radiance, const Camera& camera, int width, const Sky* sky) {
   Camera coarse = camera;
   coarse.width = width;
   coarse.height = std::clamp(
@@ -224,7 +242,12 @@ Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>
     std::vector<Ray> further;
     std::vector<int> further_pixels;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (hits[i].facet < 0) continue;
+      if (hits[i].facet < 0) {
+        if (!sky) continue;
+        const Spectrum L = radiance_outside(*sky, rays[i].direction.normalized());
+        image.radiance.row(pixels[i]) = L.transpose();
+        continue;
+      }
       if (hits[i].element >= 0 && kinds[hits[i].element] != ElementKind::glass) {
         image.radiance.row(pixels[i]) = interpolate(caster.mesh(), radiance, hits[i]).transpose();
         continue;
@@ -242,8 +265,9 @@ Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>
 }
 
 double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                     const BandArray& radiance, const Bands& bands, const Camera& camera) {
-  const Image seen = coarse_picture(caster, kinds, radiance, camera, metering_width);
+                     const BandArray& radiance, const Bands& bands, const Camera& camera,
+                     const Sky* sky) {
+  const Image seen = coarse_picture(caster, kinds, radiance, camera, metering_width, sky);
   if ((seen.radiance > 0.0f).any()) return exposure_scale(seen, bands);
   return exposure_scale({static_cast<int>(radiance.rows()), 1, radiance}, bands);
 }

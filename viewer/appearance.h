@@ -6,6 +6,7 @@
 #include "mesh/element_caster.h"
 #include "radiosity/solve.h"
 #include "raytrace/image.h"
+#include "scene/sky.h"
 
 namespace lightwell {
 
@@ -44,6 +45,14 @@ int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance);
 std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
                                          double scale);
 
+/// Light before tone mapping as graphics hardware blends it between vertices: code c of 255 stands
+/// for x = 2^(light_code_stops c - light_code_depth) - 2^-light_code_depth of white, which takes in
+/// 64 times white; each step is a factor of 1.039, so that x is right to 2 %.
+inline constexpr float light_code_stops = 14.0f, light_code_depth = 8.0f;
+
+/// 3 bytes a vertex: linear RGB times `scale` as such codes.
+std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& bands, double scale);
+
 /// Of a false-colour scale, lx, low < high: logarithmic, or even where `low` is 0.
 struct LuxRange {
   double low = 1.0, high = 1000.0;
@@ -74,14 +83,16 @@ std::vector<std::uint8_t> false_colors(const std::vector<float>& lux, const LuxR
 std::vector<std::uint8_t> error_colors(const SolvedScene& solved);
 
 /// A coarse picture, `width` pixels wide, of what the viewer draws for a camera: backs and glass
-/// are looked through, a miss is black. Its exposure_scale is what the second pass's picture from
-/// there has, up to mirrors and glass.
+/// are looked through, a miss shows the sky, or is black without. Its exposure_scale is what the
+/// second pass's picture from there has, up to mirrors and glass.
 Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                     const BandArray& radiance, const Camera& camera, int width);
+                     const BandArray& radiance, const Camera& camera, int width,
+                     const Sky* sky = nullptr);
 
 /// The exposure_scale of the second pass's picture from a camera, by a coarse picture; where
 /// nothing is to be seen from there, that of all vertices alike.
 double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                     const BandArray& radiance, const Bands& bands, const Camera& camera);
+                     const BandArray& radiance, const Bands& bands, const Camera& camera,
+                     const Sky* sky = nullptr);
 
 }  // namespace lightwell

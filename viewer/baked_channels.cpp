@@ -1,6 +1,7 @@
 #include "viewer/baked_channels.h"
 
 #include "viewer/appearance.h"
+#include "viewer/sky_grid.h"
 
 namespace lightwell {
 namespace {
@@ -72,7 +73,51 @@ BakedChannel bake(const SolvedScene& alone, const LightChannel& channel,
   return baked;
 }
 
+/// Places of azimuth in a page's sky: steps of 1.4 degrees, of a map 0.7.
+constexpr int sky_columns = 257, map_columns = 513;
+
+/// The channel of a free source; -1 where light is not kept apart.
+int channel_of(const RadiositySolution& solution, std::size_t source) {
+  return source < solution.source_channel.size() ? solution.source_channel[source] : -1;
+}
+
+/// What light of a channel is multiplied by before it becomes RGB; see split.
+Spectrum factor_within(const RadiositySolution& solution, int channel) {
+  if (channel < 0) return constant_spectrum(solution.bands, 1.0f);
+  return split(solution.bands, solution.channels[static_cast<std::size_t>(channel)].scale).within;
+}
+
 }  // namespace
+
+std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene) {
+  if (!scene.sky) return {};
+  const RadiositySolution& s = solved.solution;
+  const Sky& sky = *scene.sky;
+  auto source = scene.lamps.size();
+  BakedSky baked;
+  baked.channel = has_dome(sky) ? channel_of(s, source++) : -1;
+  baked.axes.col(0) = sky.north;
+  baked.axes.col(1) = sky_direction(sky, 90.0, 0.0);
+  baked.axes.col(2) = sky.up;
+  const SkyGrid grid = sky_grid(sky, sky.kind == SkyKind::map ? map_columns : sky_columns);
+  baked.columns = grid.columns;
+  baked.rows_above = grid.rows_above;
+  baked.rows_below = grid.rows_below;
+  const auto rgb = [&](const Spectrum& L, int channel) -> Eigen::Array3f {
+    return linear_rgb(s.bands, L * factor_within(s, channel)).unaryExpr(&finite_or_black);
+  };
+  baked.radiance.resize(grid.radiance.rows(), 3);
+  for (Eigen::Index i = 0; i < grid.radiance.rows(); ++i) {
+    baked.radiance.row(i) = rgb(grid.radiance.row(i).transpose(), baked.channel).transpose();
+  }
+  if (!sky.sun) return baked;
+  baked.sun = sky.sun->direction;
+  baked.cosine_of_edge = sky.sun->cosine_of_edge();
+  baked.sun_channel = channel_of(s, source);
+  baked.sun_radiance =
+      rgb(sky.sun->irradiance / static_cast<float>(sky.sun->solid_angle()), baked.sun_channel);
+  return baked;
+}
 
 std::vector<ElementKind> kinds_with_all_on(const SolvedScene& solved,
                                            const std::vector<Material>& materials) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "viewer/appearance.h"
@@ -17,6 +18,9 @@ inline float finite_or_black(float value) {
 /// even while it is off. Without channels, what it says.
 std::vector<ElementKind> kinds_with_all_on(const SolvedScene& solved,
                                            const std::vector<Material>& materials);
+
+/// What is seen outside of the scene; nothing without a sky.
+std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene);
 
 /// The light of each channel at the mesh's vertices that are listed.
 std::vector<BakedChannel> bake_channels(const SolvedScene& solved,

@@ -11,6 +11,7 @@
 #include "scene/errors.h"
 #include "viewer/appearance.h"
 #include "viewer/baked_channels.h"
+#include "viewer/sky_grid.h"
 #include "viewer/start_view.h"
 
 namespace lightwell {
@@ -216,8 +217,10 @@ void add_cameras(const SolvedScene& solved, const Scene& scene,
     cameras.front().name = "start";
   }
   const Bands& bands = solved.solution.bands;
+  const std::optional<Sky> sky = sky_in_force(scene, solved.mesh);
   for (const Camera& camera : cameras) {
-    const double scale = metered_scale(caster, kinds, radiance, bands, camera);
+    const double scale =
+        metered_scale(caster, kinds, radiance, bands, camera, sky ? &*sky : nullptr);
     model.cameras.push_back({.camera = camera, .scale = scale * std::exp2(exposure_ev)});
   }
 }
@@ -241,6 +244,7 @@ BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double expo
   add_vertices(solved, radiance, model);
   add_pictures(solved.mesh, drawn, model);
   model.channels = bake_channels(solved, scene.materials, model.mesh_vertex);
+  model.sky = bake_sky(solved, scene);
   const Eigen::Vector3d up_axis = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
   model.to_y_up = rotation_to_y_up(up_axis);
   add_cameras(solved, scene, kinds, radiance, up_axis, exposure_ev, model);

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,19 @@ struct BakedChannel {
   Eigen::Array3f weight = Eigen::Array3f::Ones();  ///< in force; spectral: three times the same
 };
 
+/// What is seen outside of the scene: radiance as linear Rec. 709 RGB, W/(m^2 sr), which is to be
+/// multiplied by the weight of its channel where it has one. Directions are the scene's, unit.
+struct BakedSky {
+  int columns = 0, rows_above = 0, rows_below = 0;     ///< see SkyGrid
+  RgbArray radiance{};                                 ///< of the grid
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: north, east and up
+  int channel = -1;                      ///< of the dome, index into BakedModel::channels
+  std::optional<Eigen::Vector3d> sun{};  ///< towards it
+  double cosine_of_edge = 1.0;           ///< of the angle from the sun's middle to its edge
+  Eigen::Array3f sun_radiance = Eigen::Array3f::Zero();  ///< on top of the dome's
+  int sun_channel = -1;
+};
+
 /// A solution ready to be written in another program's format: triangles and quads with a colour at
 /// every vertex. Vertices are those of the mesh, so they are shared only where light is continuous.
 /// Of two sides that lie on each other one without light is left out, so that nothing flickers and
@@ -83,6 +97,7 @@ struct BakedModel {
   std::vector<int> element{};                ///< of the mesh
   std::vector<std::uint8_t> black_behind{};  ///< 1: its other side was left out
 
+  std::optional<BakedSky> sky{};
   std::vector<BakedCamera> cameras{};  ///< the scene's, or one that shows all; never empty
   bool cameras_are_given = false;      ///< they are the scene's
   /// Rotates the scene's axes to those of glTF, y upwards. Its transpose rotates back.

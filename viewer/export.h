@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "viewer/appearance.h"
@@ -30,11 +31,20 @@ struct LightmapReport {
 /// The data files of a model's first `count` lightmaps: room-lightmap-1.exr, ... beside room.glb.
 std::vector<std::filesystem::path> lightmap_files(const std::filesystem::path& glb, int count);
 
+/// The data files of one channel, a number from 0, in the same lightmaps:
+/// room-lightmap-1-desk_lamp.exr. Letters, digits and "-" of the name stay; names that come out
+/// alike get the channel's number.
+std::vector<std::filesystem::path> channel_lightmap_files(const std::filesystem::path& glb,
+                                                          const std::vector<std::string>& channels,
+                                                          int channel, int count);
+
 /// The same geometry with its light in textures: TEXCOORD_1 (and 0) of each vertex leads into a
 /// lightmap, whose PNG in the file is radiance times exposure, clipped, as sRGB. The numbers are
 /// written beside it as OpenEXR (see lightmap_files): irradiance in R, G and B, radiosity and
-/// illuminance as layers, in half floats unless something is brighter than they go. What is thrown
-/// by lay_out_lightmap comes before any file.
+/// illuminance as layers, in half floats unless something is brighter than they go. With
+/// LightmapOptions::per_channel files of each channel follow, with its light as it was solved:
+/// those times the scales in force add up to the others. What is thrown by lay_out_lightmap, and
+/// InputError for a solution without channels, come before any file.
 LightmapReport write_lightmapped_gltf(const std::filesystem::path& path, const BakedModel& model,
                                       const SolvedScene& solved, const Scene& scene,
                                       const LightmapOptions& options = {});

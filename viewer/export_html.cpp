@@ -79,6 +79,7 @@ void write_walkthrough(const std::filesystem::path& path, const BakedModel& mode
   page.put("library", web::library_js);
   page.put("model", web::model_js);
   page.put("picture", web::picture_js);
+  page.put("sky", web::sky_js);
   page.put("probe", web::probe_js);
   page.put("walk", web::walk_js);
   page.put("lights", web::lights_js);

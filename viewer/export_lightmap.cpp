@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "radiosity/relight.h"
 #include "raytrace/display.h"
 #include "raytrace/encode_png.h"
+#include "scene/errors.h"
 #include "scene/parallel.h"
 #include "viewer/export.h"
 #include "viewer/gltf_parts.h"
@@ -35,8 +38,10 @@ LayerColumns layers_of(const LightmapAtlas& atlas, const Bands& bands) {
   return layers;
 }
 
+/// `channel`: whose light it is; empty: all that is in force.
 void write_light(const std::filesystem::path& path, LightmapAtlas& atlas, const BakedModel& model,
-                 const LightmapLayout& layout, const LightmapOptions& options) {
+                 const LightmapLayout& layout, const LightmapOptions& options,
+                 const std::string& channel = {}) {
   constexpr float largest_half = 65504.0f;
   const bool is_half = atlas.irradiance.maxCoeff() <= largest_half &&
                        atlas.radiosity.abs().maxCoeff() <= largest_half;
@@ -51,10 +56,39 @@ void write_light(const std::filesystem::path& path, LightmapAtlas& atlas, const 
              {"solveOptions", made.options},
              {"content", "R, G, B (and bands): irradiance; radiosity; illuminance"},
              {"unit", model.relative_units ? "relative" : "W/m^2; illuminance in lx"},
+             {"channel", channel.empty() ? "all in force" : channel},
              {"lightmapPass", pass_name(options.pass)},
              {"texelsPerMetre", layout.texels_per_metre},
              {"padding", static_cast<double>(layout.padding)}},
             {.half = is_half, .compression = ExrCompression::zip});
+}
+
+/// Only the light of one channel is in force, as it was solved; of all of them without a number.
+void switch_on(std::optional<std::size_t> channel, SolvedScene& solved) {
+  const Bands& bands = solved.solution.bands;
+  std::vector<Spectrum> scales(solved.solution.channels.size(),
+                               constant_spectrum(bands, channel ? 0.0f : 1.0f));
+  if (channel) scales[*channel] = constant_spectrum(bands, 1.0f);
+  relight(solved, scales);
+}
+
+/// The model with light of all channels, so that charts are laid out for what any of them lights.
+BakedModel with_all_on(const BakedModel& model, SolvedScene& solved) {
+  switch_on({}, solved);
+  BakedModel all = model;
+  const BandArray E = solved.solution.irradiance();
+  const BandArray B = vertex_radiosity(solved.mesh, solved.solution);
+  for (std::size_t i = 0; i < model.mesh_vertex.size(); ++i) {
+    all.irradiance.row(static_cast<Eigen::Index>(i)) = E.row(model.mesh_vertex[i]);
+    all.radiosity.row(static_cast<Eigen::Index>(i)) = B.row(model.mesh_vertex[i]);
+  }
+  return all;
+}
+
+std::vector<std::string> channel_names(const RadiositySolution& solution) {
+  std::vector<std::string> names;
+  for (const LightChannel& channel : solution.channels) names.push_back(channel.name);
+  return names;
 }
 
 /// Radiance times exposure as COLOR_0 of write_gltf has it, but encoded as sRGB.
@@ -232,10 +266,75 @@ std::vector<std::filesystem::path> lightmap_files(const std::filesystem::path& g
   return files;
 }
 
+std::vector<std::filesystem::path> channel_lightmap_files(const std::filesystem::path& glb,
+                                                          const std::vector<std::string>& channels,
+                                                          int channel, int count) {
+  const auto file_word = [](const std::string& name) {
+    std::string word;
+    for (const char c : name) {
+      const bool is_plain =
+          (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+      word += is_plain ? c : '_';
+    }
+    return word;
+  };
+  std::string word = file_word(channels[static_cast<std::size_t>(channel)]);
+  const auto alike = std::ranges::count(channels, word, file_word);
+  if (alike > 1) word += fmt::format("_{}", channel + 1);
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < count; ++i) {
+    std::filesystem::path file = exr_name(glb, i);
+    files.push_back(file.replace_filename(fmt::format("{}-{}.exr", file.stem().string(), word)));
+  }
+  return files;
+}
+
+namespace {
+
+/// Writes the data of each channel; returns what `extras` says of them, and adds to the files.
+GltfJson write_channels(const std::filesystem::path& path, const BakedModel& lit,
+                        SolvedScene& switched, const Scene& scene, const LightmapLayout& layout,
+                        const LightmapOptions& options, const std::vector<Spectrum>& in_force,
+                        std::vector<std::filesystem::path>& files) {
+  const std::vector<std::string> names = channel_names(switched.solution);
+  GltfJson channels = GltfJson::array();
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    switch_on(c, switched);
+    GltfJson written = GltfJson::array();
+    const auto of_channel =
+        channel_lightmap_files(path, names, static_cast<int>(c), layout.atlas_count);
+    for (int i = 0; i < layout.atlas_count; ++i) {
+      report(options.progress, "lightmaps of channels",
+             (static_cast<double>(c) + static_cast<double>(i) / layout.atlas_count) /
+                 static_cast<double>(names.size()));
+      LightmapAtlas atlas = paint_atlas(layout, i, lit, switched, scene, options);
+      write_light(of_channel[i], atlas, lit, layout, options, names[c]);
+      files.push_back(of_channel[i]);
+      written.push_back(of_channel[i].filename().string());
+    }
+    const Spectrum& scale = in_force[c];
+    channels.push_back({{"name", names[c]},
+                        {"files", std::move(written)},
+                        {"scale", std::vector<float>(scale.begin(), scale.end())}});
+  }
+  return channels;
+}
+
+}  // namespace
+
 LightmapReport write_lightmapped_gltf(const std::filesystem::path& path, const BakedModel& model,
                                       const SolvedScene& solved, const Scene& scene,
                                       const LightmapOptions& options) {
-  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, options);
+  if (options.per_channel && solved.solution.channels.empty()) {
+    throw InputError(
+        "the solution keeps no light channels apart, so there is no lightmap of each; solve with "
+        "'--channels per-luminaire', or with channels of your own");
+  }
+  std::optional<SolvedScene> switched;
+  std::optional<BakedModel> with_all;
+  if (options.per_channel) with_all = with_all_on(model, switched.emplace(solved));
+  const BakedModel& lit = with_all ? *with_all : model;
+  const LightmapLayout layout = lay_out_lightmap(lit, solved.mesh, options);
   const double exposure = model.cameras.front().scale;
   LightmapReport result{.atlases = layout.atlas_count,
                         .charts = static_cast<int>(layout.charts.size()),
@@ -245,7 +344,7 @@ LightmapReport write_lightmapped_gltf(const std::filesystem::path& path, const B
   std::int64_t covered = 0, bright = 0;
   for (int i = 0; i < layout.atlas_count; ++i) {
     report(options.progress, "lightmap", static_cast<double>(i) / layout.atlas_count);
-    LightmapAtlas atlas = paint_atlas(layout, i, model, solved, scene, options);
+    LightmapAtlas atlas = paint_atlas(layout, i, lit, solved, scene, options);
     covered += atlas.covered;
     bright += clipped(atlas, exposure);
     pictures.push_back(encode_png(atlas.size, atlas.size, shown_bytes(atlas, exposure)));
@@ -264,6 +363,11 @@ LightmapReport write_lightmapped_gltf(const std::filesystem::path& path, const B
       {"files", std::move(names)},       {"size", layout.size},
       {"padding", layout.padding},       {"texels_per_metre", layout.texels_per_metre},
       {"pass", pass_name(options.pass)}, {"clipped_texels", bright}};
+  if (switched) {
+    root["asset"]["extras"]["lightmap"]["channels"] =
+        write_channels(path, lit, *switched, scene, layout, options,
+                       scales_in_force(solved.solution), result.files);
+  }
   root["extensionsUsed"] = {"KHR_materials_unlit"};
   add_surfaces(model, buffer, root);
   buffer.add_pictures(pictures, root);

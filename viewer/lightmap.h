@@ -20,7 +20,8 @@ struct LightmapOptions {
   /// traced anew at the texel's centre (direct), or all of it anew (gather).
   Pass pass = Pass::interpolate;
   ShadowOptions shadows{};
-  int gather_rays = 256;  ///< for Pass::gather; 1 to most_gather_rays
+  int gather_rays = 256;     ///< for Pass::gather; 1 to most_gather_rays
+  bool per_channel = false;  ///< data of each light channel as well, in the same charts
   Progress progress{};
 };
 

@@ -127,6 +127,26 @@ void append_pictures(const BakedModel& model, PageData& page) {
   page.about["pictures"] = std::move(pictures);
 }
 
+/// Rows of `axes` are north, east and up in the page's axes.
+void append_sky(const BakedModel& model, PageData& page) {
+  if (!model.sky) return;
+  const BakedSky& sky = *model.sky;
+  const Eigen::Matrix3d axes = model.to_y_up * sky.axes;
+  Json about = {{"columns", sky.columns},
+                {"rows_above", sky.rows_above},
+                {"rows_below", sky.rows_below},
+                {"axes", {vector(axes.col(0)), vector(axes.col(1)), vector(axes.col(2))}},
+                {"basis", sky.channel}};
+  about["radiance"] = append_halves(numbers(sky.radiance), page.bytes);
+  if (sky.sun) {
+    about["sun"] = {{"direction", vector(model.to_y_up * *sky.sun)},
+                    {"cosine_of_edge", sky.cosine_of_edge},
+                    {"radiance", numbers(sky.sun_radiance)},
+                    {"basis", sky.sun_channel}};
+  }
+  page.about["sky"] = std::move(about);
+}
+
 Json parts(const BakedModel& model) {
   Json result = Json::array();
   for (const BakedPart& part : model.parts) {
@@ -203,6 +223,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range) {
   append_faces(model, page);
   page.about["bases"] = append_bases(model, page.bytes);
   append_pictures(model, page);
+  append_sky(model, page);
   page.about["parts"] = parts(model);
   page.about["materials"] = materials(model);
   page.about["cameras"] = cameras(model, box.low);

@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "scene/facet_textures.h"
+
 namespace lightwell {
 namespace {
 
@@ -47,6 +49,12 @@ PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArr
   reading.patch = mesh.patch[seen.hit.element];
   reading.irradiance = interpolate(mesh, irradiance, seen.hit);
   reading.reflectance = mesh.reflectance.row(reading.patch).transpose();
+  // A picture's patch knows its mean; a black back shows none of it.
+  const int facet = mesh.facet[seen.hit.element];
+  const bool is_black = !(reading.reflectance > 0.0f).any();
+  if (mesh.textures && mesh.textures->is_textured(facet) && !is_black) {
+    reading.reflectance = mesh.textures->reflectance(facet, seen.position);
+  }
   reading.lux = luminous(bands, reading.irradiance);
   const Spectrum emission = mesh.emission.row(reading.patch).transpose();
   const Spectrum B = emission + reading.reflectance * reading.irradiance;

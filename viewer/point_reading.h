@@ -13,7 +13,7 @@ struct PointReading {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< unit, on the side that was met
   Spectrum irradiance{};                               ///< W/m^2 per band, by the mesh
-  Spectrum reflectance{};
+  Spectrum reflectance{};  ///< rho there; of a picture that of the texel
   double lux = 0.0;
   double luminance = 0.0;  ///< cd/m^2 of the diffuse light, emission included
   std::string surface{}, material{};

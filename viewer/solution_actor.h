@@ -34,9 +34,9 @@ class SolutionActor {
                   const BandArray& radiance);
 
   void add_to(vtkRenderer* renderer) const;
-  /// 8-bit sRGB, 3 bytes a vertex: of elements without a picture, and of a white texel on the
-  /// others. Without the latter no pictures are shown.
-  void set_colors(const std::vector<std::uint8_t>& plain, const std::vector<std::uint8_t>& white);
+  /// 3 bytes a vertex: sRGB of elements without a picture, and for those with one light_codes of a
+  /// white texel. Without the latter no pictures are shown.
+  void set_colors(const std::vector<std::uint8_t>& plain, const std::vector<std::uint8_t>& codes);
   /// Draws the elements' outlines.
   void show_mesh(bool shown);
   /// Whether surfaces without any light are drawn (black) or looked through.
@@ -55,7 +55,9 @@ class SolutionActor {
     vtkSmartPointer<vtkTexture> texture;
     vtkSmartPointer<vtkUnsignedCharArray> colors;
     std::vector<int> element{}, mesh_vertex{};  ///< of each point the vertex
+    bool has_holes = false;
   };
+  static void show_picture(const PicturedPart& pictured, bool shown);
   void add_pictures(const PatchMesh& mesh, const DrawnPictures& drawn);
 
   std::vector<Part> parts_;

@@ -106,6 +106,7 @@ std::vector<std::uint8_t> encode(const std::vector<float>& sums, int width, int 
 
 SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options)
     : solved_(&solved),
+      scene_(options.scene),
       materials_(options.materials),
       keeps_range_(options.lux_range.has_value()),
       caster_(solved.mesh),
@@ -118,6 +119,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       bounds_(mesh_bounds(solved.mesh)),
       up_axis_(guess_up_axis(options.cameras, bounds_)),
       actor_(solved.mesh, kinds_, radiance_, drawn_),
+      sky_(scene_ ? sky_in_force(*scene_, solved.mesh) : std::nullopt),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
       legend_(make_legend(lux_range_, options.relative_units ? "relative" : "lx")),
       isolux_levels_(options.isolux) {
@@ -130,6 +132,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   }
   if (!drawn_.all().empty()) picture_gain_ = picture_gains(solved.mesh, drawn_);
   actor_.add_to(renderer_);
+  if (sky_) outside_.emplace(*sky_).add_to(renderer_);
   isolux_.add_to(renderer_);
   renderer_->AddViewProp(legend_);
   renderer_->SetBackground(0.0, 0.0, 0.0);
@@ -154,7 +157,7 @@ vtkRenderer* SolutionView::renderer() const {
 }
 
 double SolutionView::meter(const Camera& camera) const {
-  return metered_scale(caster_, kinds_, radiance_, solved_->solution.bands, camera);
+  return metered_scale(caster_, kinds_, radiance_, solved_->solution.bands, camera, sky());
 }
 
 void SolutionView::set_look(const Look& look) {
@@ -204,6 +207,10 @@ void SolutionView::light_changed() {
   irradiance_ = solved_->solution.irradiance();
   radiance_ = shown_radiance(*solved_, materials_);
   lux_ = vertex_illuminance(solved_->solution);
+  if (outside_) {
+    sky_ = sky_in_force(*scene_, solved_->mesh);
+    outside_->set_sky(*sky_);
+  }
   isolux_is_stale_ = true;
   apply_colors();
   apply_isolux();
@@ -227,13 +234,16 @@ void SolutionView::light_arrived() {
 }
 
 void SolutionView::apply_colors() {
+  // No light falls on the sky.
+  if (outside_) outside_->show(!look_.interpolation_error && !look_.illuminance);
   if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_), {});
   if (look_.illuminance) return actor_.set_colors(false_colors(lux_, lux_range_), {});
   const Bands& bands = solved_->solution.bands;
   const double scale = look_.metered_scale * std::exp2(look_.exposure_ev);
-  std::vector<std::uint8_t> white;
-  if (picture_gain_.size() > 0) white = display_colors(radiance_ * picture_gain_, bands, scale);
-  actor_.set_colors(display_colors(radiance_, bands, scale), white);
+  if (outside_) outside_->expose(bands, scale);
+  std::vector<std::uint8_t> codes;
+  if (picture_gain_.size() > 0) codes = light_codes(radiance_ * picture_gain_, bands, scale);
+  actor_.set_colors(display_colors(radiance_, bands, scale), codes);
 }
 
 void SolutionView::apply_camera() {
@@ -249,7 +259,12 @@ void SolutionView::apply_camera() {
   // All of the bounding sphere; from inside, as near as a depth buffer of 24 bits affords.
   const double to_center = (0.5 * (bounds_.low + bounds_.high) - camera.position).norm();
   const double nearest = std::max(to_center - 0.51 * size, 5e-4 * size);
-  eye->SetClippingRange(nearest, std::max(to_center + 0.51 * size, 2.0 * nearest));
+  const double farthest = std::max(to_center + 0.51 * size, 2.0 * nearest);
+  // How finely a depth buffer tells apart what is near depends on the nearest plane alone, so a far
+  // dome costs nothing: this one is behind all else up to 84 degrees beside the line of sight.
+  constexpr double dome = 10.0;
+  if (outside_) outside_->place(camera.position, dome * farthest);
+  eye->SetClippingRange(nearest, outside_ ? 1.1 * dome * farthest : farthest);
 }
 
 std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, int height) {

@@ -3,10 +3,12 @@
 #include <vtkSmartPointer.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "viewer/appearance.h"
 #include "viewer/isolux.h"
+#include "viewer/sky_actor.h"
 #include "viewer/solution_actor.h"
 #include "viewer/start_view.h"
 #include "viewer/view.h"
@@ -63,7 +65,11 @@ class SolutionView {
   void apply_colors();
   void apply_isolux();
 
+  /// What is seen outside, as bright as the solution has it; null: black.
+  const Sky* sky() const { return sky_ ? &*sky_ : nullptr; }
+
   const SolvedScene* solved_;
+  const Scene* scene_;
   std::vector<Material> materials_;
   bool keeps_range_;
   ElementCaster caster_;
@@ -79,6 +85,8 @@ class SolutionView {
   Camera start_camera_;
   Look look_;
   SolutionActor actor_;
+  std::optional<Sky> sky_;
+  std::optional<SkyActor> outside_;
   vtkSmartPointer<vtkRenderer> renderer_;
   vtkSmartPointer<vtkScalarBarActor> legend_;
   std::vector<double> isolux_levels_;  ///< asked for; empty: they suit the scale

@@ -88,6 +88,21 @@ class Model {
     return context.getImageData(0, 0, image.width, image.height);
   }
 
+  /** Keeps a decoded picture, linear, for readings: three numbers a texel. */
+  keep_picture(number, {data, width, height}) {
+    const linear = Float32Array.from({length: 256}, (_, byte) => srgb_decode(byte / 255));
+    const about = this.about.pictures[number], wrap = (x, how) => {
+      if (how === 'clamp') return Math.min(1, Math.max(0, x));
+      const turn = x - Math.floor(x);
+      return how === 'mirror' && Math.floor(x) % 2 !== 0 ? 1 - turn : turn;
+    };
+    (this.kept_pictures ??= [])[number] = (u, v) => {
+      const x = Math.min(width - 1, Math.floor(wrap(u, about.wrap[0]) * width));
+      const y = Math.min(height - 1, Math.floor(wrap(v, about.wrap[1]) * height));
+      return [0, 1, 2].map((c) => linear[data[4 * (y * width + x) + c]]);
+    };
+  }
+
   /** Adds the bases up with their weights. */
   mix() {
     const L = this.radiance.fill(0), E = this.illuminance.fill(0);

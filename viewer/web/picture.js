@@ -1,5 +1,15 @@
 // Drawing: the same colours as Lightwell's pictures (docs/tone-mapping.md), a fragment at a time.
 
+/** From radiance to what a screen shows. */
+const display_functions = `
+vec3 shoulder(vec3 x) {
+  return mix(0.5 + 0.5 * (1.0 - exp(-(x - 0.5) / 0.5)), x, lessThanEqual(x, vec3(0.5)));
+}
+vec3 srgb_encode(vec3 x) {
+  x = clamp(x, 0.0, 1.0);
+  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
+}`;
+
 const vertex_program = `
 in vec3 radiance;
 in float illuminance;
@@ -39,13 +49,7 @@ uniform sampler2D picture;
 uniform bool is_there;     // it has been decoded
 #endif
 
-vec3 shoulder(vec3 x) {
-  return mix(0.5 + 0.5 * (1.0 - exp(-(x - 0.5) / 0.5)), x, lessThanEqual(x, vec3(0.5)));
-}
-vec3 srgb_encode(vec3 x) {
-  x = clamp(x, 0.0, 1.0);
-  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
-}
+${display_functions}
 void main() {
   vec3 shown = L;
 #ifdef WITH_PICTURE
@@ -151,7 +155,7 @@ class Picture {
     model.groups.forEach(({first, count}, g) => this.geometry.addGroup(3 * first, 3 * count, g));
     this.materials = [1, 1, 1, 1, glass_opacity].map((opacity) => this.make_material(opacity));
     [, this.backed, this.dark, this.dark_backed, this.glass] = this.materials;  // the groups of Model.split_faces
-    this.with_pictures = (model.about.pictures ?? []).flatMap((picture) => this.make_pictured_materials(picture));
+    this.with_pictures = (model.about.pictures ?? []).flatMap((picture, i) => this.make_pictured_materials(picture, i));
     this.materials.push(...this.with_pictures);
     // Where a lit wall stands on a floor that is black under it, the edge is the wall's: several samples a pixel would
     // else let black through. In pixels of the black face's slope; dots were seen at 1, none from 2 on.
@@ -161,13 +165,19 @@ class Picture {
     const mesh = new Library.Mesh(this.geometry, this.materials);
     mesh.frustumCulled = false;
     this.scene.add(mesh);
+    if (model.about.sky) {
+      this.sky = new SkyPicture(model, this.uniforms);
+      this.scene.add(this.sky.mesh);
+    }
     this.look_through(false);
   }
 
   /** Of faces without and with a black other side. Texels come when they are decoded. */
-  make_pictured_materials(about) {
+  make_pictured_materials(about, number) {
     const of_picture = {picture: {value: null}, is_there: {value: false}};
-    this.model.decode_picture(about).then(({data, width, height}) => {
+    this.model.decode_picture(about).then((decoded) => {
+      const {data, width, height} = decoded;
+      this.model.keep_picture(number, decoded);
       const texture = new Library.DataTexture(new Uint8Array(data.buffer), width, height);
       [texture.wrapS, texture.wrapT] = about.wrap.map((how) => wraps[how]);
       texture.magFilter = about.is_smooth ? Library.LinearFilter : nearest;
@@ -208,6 +218,7 @@ class Picture {
   light_changed() {
     this.geometry.attributes.radiance.needsUpdate = true;
     this.geometry.attributes.illuminance.needsUpdate = true;
+    this.sky?.light_changed();
   }
 
   show_outlines(on) {

@@ -30,13 +30,19 @@ function weights_at(model, face, point) {
 
 /** Light on a face at a point: illuminance (lx), luminance (cd/m^2), radiosity (linear RGB; W/m^2 of RGB bands). */
 function light_at(model, face, point) {
-  const weights = weights_at(model, face, point), radiance = [0, 0, 0];
+  const weights = weights_at(model, face, point), radiance = [0, 0, 0], place = [0, 0], gain = [0, 0, 0];
   let illuminance = 0;
+  const texel_at = model.kept_pictures?.[model.about.parts[model.part_of_face[face]].picture];
   weights.forEach((w, c) => {
     const v = model.corners[4 * face + c];
     illuminance += w * model.illuminance[v];
     for (let k = 0; k < 3; ++k) radiance[k] += w * model.radiance[3 * v + k];
+    if (!texel_at) return;
+    for (let k = 0; k < 2; ++k) place[k] += w * model.places[2 * v + k];
+    for (let k = 0; k < 3; ++k) gain[k] += w * model.picture_gain[3 * v + k];
   });
+  // A patch has the mean of its picture; here it is what is seen.
+  if (texel_at) texel_at(...place).forEach((rho, k) => { radiance[k] *= gain[k] * rho; });
   const Y = 0.2126729 * radiance[0] + 0.7151522 * radiance[1] + 0.0721750 * radiance[2];
   return {illuminance, luminance: model.about.lumens_per_watt * Y, radiosity: radiance.map((L) => Math.PI * L)};
 }

@@ -1,0 +1,333 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <optional>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/lighting_page.h"
+#include "cli/lux_range.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/steps.h"
+#include "scene/errors.h"
+#include "scene/io/nearest_name.h"
+#include "scene/io/text_file.h"
+#include "viewer/start_view.h"
+#include "viewer/write_whole.h"
+
+namespace lightwell {
+namespace {
+
+/// A number after the last '@' or '='.
+struct Named {
+  std::string name{};
+  double value = 0.0;
+};
+
+struct Arguments {
+  std::string scene, solution;
+  std::vector<std::string> outputs, surfaces, observers;
+  std::vector<Named> planes, watts;
+  std::optional<double> margin;  // in the scene file's unit, as spacing; unset: 0.5 m
+  double spacing = 0.0;
+  double maintenance_factor = 1.0;
+  int rays = 1024;
+  std::optional<LuxRange> range;
+};
+
+Named named_number(const std::string& text, char mark, const char* option) {
+  const std::size_t at = text.rfind(mark);
+  Named named{.name = text.substr(0, at)};
+  if (at != std::string::npos && at > 0) {
+    const char* const last = text.data() + text.size();
+    const auto [end, bad] = std::from_chars(text.data() + at + 1, last, named.value);
+    if (bad == std::errc() && end == last && named.value > 0.0 && named.value < 1e9) return named;
+  }
+  throw CLI::ValidationError(
+      option, fmt::format("'{}' is not NAME{}NUMBER with a number above 0", text, mark));
+}
+
+int find_surface(const Scene& scene, const std::string& name) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+    if (scene.surfaces[i].name == name) return static_cast<int>(i);
+    names.push_back(scene.surfaces[i].name);
+  }
+  throw InputError(fmt::format("{}: there is no surface '{}'{}; 'lightwell info' lists them",
+                               scene.file.string(), name, did_you_mean(name, names)));
+}
+
+std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
+                                     const std::vector<Named>& watts) {
+  std::vector<LuminaireRow> rows;
+  const auto row_of = [&](const std::string& name) -> LuminaireRow& {
+    const auto at = std::ranges::find(rows, name, &LuminaireRow::name);
+    return at != rows.end() ? *at : rows.emplace_back(LuminaireRow{.name = name});
+  };
+  std::vector<char> counted(scene.surfaces.size(), 0);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const auto s = static_cast<std::size_t>(mesh.surface[p]);
+    if (!scene.materials[static_cast<std::size_t>(scene.surfaces[s].material)].is_emitter()) {
+      continue;
+    }
+    LuminaireRow& row = row_of(scene.surfaces[s].name);
+    row.count += counted[s] == 0 ? 1 : 0;
+    counted[s] = 1;
+    row.flux += mesh.area[p] * luminous(scene.bands, mesh.emission.row(p).transpose());
+  }
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
+    LuminaireRow& row = row_of(scene.lamps[i].name);
+    ++row.count;
+    Spectrum flux = lamp_flux(scene.lamps[i]);
+    if (mesh.source_scale.rows() > 0) {
+      flux *= mesh.source_scale.row(static_cast<Eigen::Index>(i)).transpose();
+    }
+    row.flux += luminous(scene.bands, flux);
+  }
+  for (const Named& known : watts) {
+    const auto at = std::ranges::find(rows, known.name, &LuminaireRow::name);
+    if (at == rows.end()) {
+      throw InputError(fmt::format("{}: '--watts' names '{}', which is no luminaire there",
+                                   scene.file.string(), known.name));
+    }
+    at->watts = at->count * known.value;
+  }
+  return rows;
+}
+
+/// The grids that were asked for, before any light is traced.
+std::vector<CalculationSurface> grids(const Arguments& arguments, const Scene& scene,
+                                      const Eigen::Vector3d& up) {
+  std::vector<CalculationSurface> surfaces;
+  const double metres = scene.metres_per_unit;
+  const double spacing = arguments.spacing * metres;
+  constexpr double strip = 0.5;  // m, which EN 12464-1 leaves out along walls
+  const double margin = arguments.margin ? *arguments.margin * metres : strip;
+  for (const std::string& name : arguments.surfaces) {
+    surfaces.push_back(
+        {.grid = lux_grid(scene, find_surface(scene, name), up, {.spacing = spacing})});
+  }
+  for (const Named& plane : arguments.planes) {
+    surfaces.push_back(
+        {.grid = lux_grid(scene, find_surface(scene, plane.name), up,
+                          {.height = plane.value * metres, .margin = margin, .spacing = spacing})});
+    surfaces.back().grid.name =
+        fmt::format("{} + {:g} {}", plane.name, plane.value, scene.unit_name);
+  }
+  return surfaces;
+}
+
+Json figures_json(const LightingReport& report) {
+  Json surfaces = Json::array(), observers = Json::array(), lamps = Json::array();
+  for (const auto& [grid, field] : report.surfaces) {
+    surfaces.push_back({{"name", grid.name},
+                        {"E_m", field.mean},
+                        {"E_min", field.least},
+                        {"E_max", field.greatest},
+                        {"U_0", field.uniformity},
+                        {"mean_within", field.mean_within * field.mean},
+                        {"point_within_relative", field.point_within},
+                        {"points", grid.points.size()},
+                        {"spacing_m", {grid.step_u, grid.step_v}},
+                        {"height_m", grid.options.height},
+                        {"margin_m", grid.options.margin}});
+  }
+  for (const auto& [name, glare] : report.observers) {
+    Json sources = Json::array();
+    for (const GlareSource& source : glare.sources) {
+      sources.push_back({{"name", source.name},
+                         {"luminance", source.luminance},
+                         {"solid_angle", source.solid_angle},
+                         {"position_index", source.position_index}});
+    }
+    Json ugr;  // null: none in sight
+    if (glare.ugr) ugr = *glare.ugr;
+    observers.push_back({{"name", name},
+                         {"UGR", std::move(ugr)},
+                         {"background_luminance", glare.background},
+                         {"sources", std::move(sources)},
+                         {"left_out", glare.left_out}});
+  }
+  for (const LuminaireRow& row : report.luminaires) {
+    lamps.push_back({{"name", row.name}, {"number", row.count}, {"lumens", row.flux}});
+    if (row.watts > 0.0) lamps.back()["watts"] = row.watts;
+  }
+  return {{"maintenance_factor", report.maintenance_factor},
+          {"luminaires", std::move(lamps)},
+          {"surfaces", std::move(surfaces)},
+          {"observers", std::move(observers)}};
+}
+
+std::string points_csv(const LightingReport& report) {
+  std::string csv = "surface,x,y,z,lux,lux_within\n";
+  for (const auto& [grid, field] : report.surfaces) {
+    std::string name = grid.name;
+    for (std::size_t at = 0; (at = name.find('"', at)) != std::string::npos; at += 2) {
+      name.insert(at, 1, '"');
+    }
+    for (std::size_t i = 0; i < grid.points.size(); ++i) {
+      const Eigen::Vector3d p = grid.points[i].position / report.metres_per_unit;
+      const double lux = field.lux[static_cast<Eigen::Index>(i)];
+      csv += fmt::format("\"{}\",{:.6g},{:.6g},{:.6g},{:.6g},{:.3g}\n", name, p.x(), p.y(), p.z(),
+                         lux, std::max(lux, 0.1 * field.mean) * field.point_within);
+    }
+  }
+  return csv;
+}
+
+void print_figures(const LightingReport& report) {
+  for (const auto& [grid, field] : report.surfaces) {
+    fmt::print("{}: E_m {:.4g} lx (± {:.2g} %), E_min {:.4g}, E_max {:.4g}, U_0 {:.2f}\n",
+               grid.name, field.mean, 100.0 * field.mean_within, field.least, field.greatest,
+               field.uniformity);
+  }
+  for (const auto& [name, glare] : report.observers) {
+    if (glare.ugr) {
+      fmt::print("{}: UGR {:.1f}\n", name, *glare.ugr);
+    } else {
+      fmt::print("{}: no luminaire in sight, so no UGR\n", name);
+    }
+  }
+}
+
+int report_lighting(const Arguments& arguments, Console& console) {
+  Report report(console.options());
+  const Scene scene = read_scene_step(arguments.scene, console, report);
+  if (scene.relative_units) {
+    throw InputError(fmt::format(
+        "{}: its light is in no known unit, so that there are no lux to report", arguments.scene));
+  }
+  for (const std::string& file : arguments.outputs) require_writable(file);
+  if (arguments.surfaces.empty() && arguments.planes.empty() && arguments.observers.empty()) {
+    throw InputError(
+        "nothing was asked for; name surfaces with '--surface floor', planes above them with "
+        "'--plane floor@0.75', or observers with '--observer CAMERA'");
+  }
+  const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  LightingReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
+                      .provenance = solved.solution.provenance,
+                      .metres_per_unit = scene.metres_per_unit,
+                      .unit_name = scene.unit_name,
+                      .maintenance_factor = arguments.maintenance_factor,
+                      .rays = arguments.rays,
+                      .error_estimate = solved.solution.error_estimate};
+  made.luminaires = luminaires(scene, solved.mesh, arguments.watts);
+  made.surfaces = grids(arguments, scene, guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)));
+  const Stopwatch watch;
+  const ElementCaster caster(solved.mesh);
+  const DirectLight direct_light(scene, solved.mesh);
+  GatherOptions gathering{.rays = arguments.rays};
+  gathering.progress = console.progress();
+  for (CalculationSurface& surface : made.surfaces) {
+    surface.field = measure_grid(scene, caster, direct_light, solved.solution, surface.grid,
+                                 arguments.maintenance_factor, gathering);
+    stop_if_interrupted();
+  }
+  for (const std::string& name : arguments.observers) {
+    constexpr int rays_of_an_eye = 1 << 14;
+    gathering.rays = std::max(arguments.rays, rays_of_an_eye);
+    made.observers.push_back(
+        {.name = name,
+         .glare = unified_glare_rating(scene, caster, direct_light, solved.solution,
+                                       choose_camera(scene, name), gathering)});
+    stop_if_interrupted();
+  }
+  console.finish_phase();
+  report.add_phase("measure", watch.seconds());
+  const Json figures = figures_json(made);
+  for (const auto& [key, value] : figures.items()) report.add(key, value);
+  for (const std::filesystem::path file : arguments.outputs) {
+    const std::string kind = lower_extension(file);
+    if (kind == ".html") write_whole(file, {lighting_page(made, arguments.range)});
+    if (kind == ".csv") write_whole(file, {points_csv(made)});
+    if (kind == ".json") write_json(file, figures);
+    report.add_file(file);
+  }
+  if (!console.options().json) print_figures(made);
+  report.print();
+  return exit_done;
+}
+
+}  // namespace
+
+Action add_report(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.description(
+      "Figures of a lighting design: mean and least illuminance and uniformity of surfaces and "
+      "working\nplanes, glare (UGR) of observers, the luminaires; as a page, JSON or CSV.");
+  command.add_option("scene", arguments->scene, "the scene file")->required()->type_name("SCENE");
+  command.add_option("solution", arguments->solution, "its solution, .vtp")
+      ->required()
+      ->type_name("SOLUTION");
+  command
+      .add_option("-o,--output", arguments->outputs,
+                  ".html (a page to print), .json (all figures) or .csv (every point); may be "
+                  "repeated")
+      ->type_name("FILE")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->check(with_extension({".html", ".json", ".csv"}));
+  command.add_option("--surface", arguments->surfaces, "measure on this surface; may be repeated")
+      ->type_name("NAME")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--plane",
+          [arguments](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) {
+              arguments->planes.push_back(named_number(text, '@', "--plane"));
+            }
+          },
+          "measure so far above this surface: floor@0.75; may be repeated")
+      ->type_name("NAME@HEIGHT")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command
+      .add_option("--margin", arguments->margin, "of planes, along their outline (default 0.5 m)")
+      ->type_name("LENGTH")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--spacing", arguments->spacing,
+                  "most between points (default: as EN 12464-1 has it)")
+      ->type_name("LENGTH")
+      ->check(positive());
+  command
+      .add_option("--maintenance", arguments->maintenance_factor,
+                  "factor of all illuminances, above 0 up to 1 (default 1)")
+      ->type_name("FACTOR")
+      ->check(CLI::Range(1e-6, 1.0));
+  command
+      .add_option("--observer", arguments->observers,
+                  "a camera, for whose eye UGR is found; may be repeated")
+      ->type_name("CAMERA")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--watts",
+          [arguments](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) {
+              arguments->watts.push_back(named_number(text, '=', "--watts"));
+            }
+          },
+          "electric power of each luminaire of that name; may be repeated")
+      ->type_name("NAME=W")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command
+      .add_option("--rays", arguments->rays, "gather rays per point, a power of two (default 1024)")
+      ->type_name("N")
+      ->check(power_of_two());
+  add_lux_range(command, arguments->range);
+  command.footer(
+      "Example: lightwell report office.toml office.vtp --plane floor@0.75 --maintenance 0.8 "
+      "--observer desk -o office.html");
+  return [arguments](Console& console) { return report_lighting(*arguments, console); };
+}
+
+}  // namespace lightwell

@@ -1,0 +1,199 @@
+#include "raytrace/glare.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace lightwell {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A piece of a source is small if it is so many times further away than long: then its middle
+/// stands for it, to 1e-3 of its solid angle.
+constexpr double far_enough = 16.0;
+constexpr int most_halvings = 8;
+/// Places of an opening that are looked for, each way.
+constexpr int opening_grid = 8;
+
+/// Adds up what is seen of each luminaire.
+class GlareSum {
+ public:
+  GlareSum(const Camera& eye, const ElementCaster& caster) : eye_(eye), caster_(caster) {}
+
+  const Eigen::Vector3d& position() const { return eye_.position; }
+  /// Whether any of it may be in sight.
+  bool is_ahead(const Eigen::Vector3d& point) const {
+    return (point - eye_.position).dot(eye_.direction) > 0.0;
+  }
+  /// Facet that the ray to a point meets before it; -1: none.
+  ElementHit first_hit(const Eigen::Vector3d& point, double share) const {
+    const Ray ray{.origin = eye_.position, .direction = point - eye_.position, .t_max = share};
+    ElementHit hit;
+    caster_.closest_hits({&ray, 1}, {&hit, 1});
+    return hit;
+  }
+  void add(const std::string& name, const Eigen::Vector3d& point, double solid_angle,
+           double luminance) {
+    const Eigen::Vector3d way = (point - eye_.position).normalized();
+    const double ahead = way.dot(eye_.direction);
+    if (!(ahead > 0.0)) return;
+    constexpr double degrees = 180.0 / pi;
+    const double above = way.dot(eye_.up);
+    const double beside = std::abs(way.dot(eye_.direction.cross(eye_.up)));
+    const double p = position_index(std::acos(std::min(1.0, ahead)) * degrees,
+                                    std::atan2(beside, above) * degrees);
+    if (!number_.contains(name)) {
+      number_[name] = sources_.size();
+      sources_.push_back({.name = name});
+    }
+    GlareSource& source = sources_[number_[name]];
+    source.solid_angle += solid_angle;
+    source.luminance += luminance * solid_angle;  // until finish
+    source.share += luminance * luminance / (p * p) * solid_angle;
+  }
+  std::vector<GlareSource> finish() {
+    for (GlareSource& source : sources_) {
+      source.luminance /= source.solid_angle;
+      const double plain = source.luminance * source.luminance * source.solid_angle;
+      source.position_index = std::sqrt(plain / source.share);
+    }
+    return std::move(sources_);
+  }
+
+ private:
+  const Camera& eye_;
+  const ElementCaster& caster_;
+  std::map<std::string, std::size_t> number_{};
+  std::vector<GlareSource> sources_{};
+};
+
+using Triangle = std::array<Eigen::Vector3d, 3>;
+
+/// A part of an emitting element; in four until it is small.
+void add_triangle(const std::string& name, const Triangle& t, const Eigen::Vector3d& normal,
+                  int facet, double luminance, int halvings, GlareSum& sum) {
+  const Eigen::Vector3d middle = (t[0] + t[1] + t[2]) / 3.0;
+  const Eigen::Vector3d way = middle - sum.position();
+  const double d = way.norm();
+  const double length =
+      std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
+  if (halvings < most_halvings && length * far_enough > d) {
+    const Eigen::Vector3d a = 0.5 * (t[0] + t[1]), b = 0.5 * (t[1] + t[2]), c = 0.5 * (t[2] + t[0]);
+    for (const Triangle& part :
+         {Triangle{t[0], a, c}, Triangle{a, t[1], b}, Triangle{c, b, t[2]}, Triangle{a, b, c}}) {
+      add_triangle(name, part, normal, facet, luminance, halvings + 1, sum);
+    }
+    return;
+  }
+  const double cosine = -normal.dot(way) / d;
+  if (!(cosine > 0.0) || !sum.is_ahead(middle)) return;
+  constexpr double beyond = 1.01;  // spheres are met a little off their elements
+  if (sum.first_hit(middle, beyond).facet != facet) return;
+  const double area = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
+  sum.add(name, middle, area * cosine / (d * d), luminance);
+}
+
+void add_surfaces(const Scene& scene, const PatchMesh& mesh, GlareSum& sum) {
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int patch = mesh.patch[e];
+    const double luminance = luminous(scene.bands, mesh.emission.row(patch).transpose()) / pi;
+    if (!(luminance > 0.0)) continue;
+    const std::string& name = scene.surfaces[static_cast<std::size_t>(mesh.surface[patch])].name;
+    const Eigen::Vector3d normal = element_center(mesh, e).normal;
+    const auto corner = [&](int c) { return mesh.position(mesh.corners[e][c]); };
+    for (int c = 2; c < mesh.corner_count(e); ++c) {
+      add_triangle(name, {corner(0), corner(c - 1), corner(c)}, normal, mesh.facet[e], luminance, 0,
+                   sum);
+    }
+  }
+}
+
+/// Of a flat opening the luminance is I / A cos, its solid angle A cos / d^2.
+void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& scale, GlareSum& sum) {
+  const LampOpening& opening = lamp.opening;
+  const double area = opening.along_c0 * opening.along_c90 * (opening.is_round ? pi / 4.0 : 1.0);
+  const Eigen::Vector3d from = sum.position() - lamp.position;
+  const double d = from.norm();
+  // Edge on, where a flat opening has no area, a real one has its rim.
+  constexpr double rim = 0.05;
+  const double cosine = std::max(rim, std::abs(lamp.aim().dot(from)) / d);
+  const double candela =
+      luminous(scene.bands, (lamp.intensity * scale).eval()) * relative_intensity(lamp, from / d);
+  if (!(candela > 0.0)) return;
+  constexpr int places = opening_grid * opening_grid;
+  for (int i = 0; i < places; ++i) {
+    const Eigen::Vector3d point = opening_point(lamp, (i % opening_grid + 0.5) / opening_grid,
+                                                (i / opening_grid + 0.5) / opening_grid);
+    constexpr double before = 0.999;  // a lamp hangs in what holds it
+    if (!sum.is_ahead(point) || sum.first_hit(point, before).facet >= 0) continue;
+    const double solid_angle = area * cosine / (places * (point - sum.position()).squaredNorm());
+    sum.add(lamp.name, point, solid_angle, candela / (area * cosine));
+  }
+}
+
+/// What surfaces reflect onto the eye, lx.
+double reflected_illuminance(const Scene& scene, const ElementCaster& caster,
+                             const DirectLight& direct_light, const RadiositySolution& solution,
+                             const Camera& eye, const GatherOptions& gathering) {
+  const PatchMesh& mesh = caster.mesh();
+  BandArray B = vertex_radiosity(mesh, solution);
+  std::vector<char> done(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const int v = mesh.corners[e][c];
+      if (!std::exchange(done[static_cast<std::size_t>(v)], 1)) {
+        B.row(v) -= mesh.emission.row(mesh.patch[e]);
+      }
+    }
+  }
+  const GatherPoint point{.position = eye.position, .normal = eye.direction};
+  const GatheredIrradiance E =
+      gather_indirect(scene, caster, direct_light, B.max(0.0f), {&point, 1}, gathering);
+  return luminous(scene.bands, E.indirect.row(0).transpose());
+}
+
+}  // namespace
+
+double position_index(double sigma, double tau) {
+  if (tau > 90.0) {
+    const double r = std::tan(sigma * pi / 180.0);
+    return 1.0 + (r < 0.6 ? 0.8 : 1.2) * r;
+  }
+  return std::exp((35.2 - 0.31889 * tau - 1.22 * std::exp(-2.0 * tau / 9.0)) * 1e-3 * sigma +
+                  (21.0 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
+}
+
+Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
+                           const DirectLight& direct_light, const RadiositySolution& solution,
+                           const Camera& eye, const GatherOptions& gathering) {
+  const PatchMesh& mesh = caster.mesh();
+  GlareSum sum(eye, caster);
+  Glare glare;
+  add_surfaces(scene, mesh, sum);
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
+    const Lamp& lamp = scene.lamps[i];
+    if (!(lamp.opening.along_c0 > 0.0 && lamp.opening.along_c90 > 0.0)) {
+      glare.left_out.push_back(lamp.name);
+      continue;
+    }
+    const Spectrum scale = mesh.source_scale.rows() > 0
+                               ? Spectrum(mesh.source_scale.row(static_cast<Eigen::Index>(i)))
+                               : constant_spectrum(scene.bands, 1.0f);
+    add_lamp(scene, lamp, scale, sum);
+  }
+  glare.sources = sum.finish();
+  glare.background =
+      reflected_illuminance(scene, caster, direct_light, solution, eye, gathering) / pi;
+  double all = 0.0;
+  for (const GlareSource& source : glare.sources) all += source.share;
+  if (all > 0.0 && glare.background > 0.0) {
+    glare.ugr = std::max(0.0, 8.0 * std::log10(0.25 / glare.background * all));
+  }
+  return glare;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/element_caster.h"
+#include "radiosity/direct_light.h"
+#include "radiosity/final_gather.h"
+#include "radiosity/solution.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Guth's position index of what is seen `sigma` degrees beside the line of sight, in a direction
+/// `tau` degrees from straight up around it. Above the line of sight after Levin 1975, which CIE
+/// 117 tabulates:
+///
+///     ln p = (35.2 - 0.31889 tau - 1.22 exp(-2 tau / 9)) 1e-3 sigma
+///            + (21 + 0.26667 tau - 0.002963 tau^2) 1e-5 sigma^2
+///
+/// below it, where CIE 117 has none, after Iwata & Tokura 1997: p = 1 + 0.8 r for r = tan sigma up
+/// to 0.6, beyond 1 + 1.2 r. sigma in [0, 90), tau in [0, 180]; p >= 1.
+double position_index(double sigma, double tau);
+
+/// What an observer sees of one luminaire, or of all of one name.
+struct GlareSource {
+  std::string name{};
+  double solid_angle = 0.0;     ///< sr, of what is seen of it
+  double luminance = 0.0;       ///< cd/m^2, mean over that
+  double position_index = 0.0;  ///< that with which it would be as bad as it is in one place
+  double share = 0.0;           ///< int L^2 / p^2 dw, cd^2 / m^4 sr
+};
+
+struct Glare {
+  /// The unified glare rating, 8 log10(0.25 / L_b sum L^2 w / p^2) (CIE 117-1995), not below 0;
+  /// empty where no luminaire is in sight, or nothing is lit.
+  std::optional<double> ugr{};
+  double background = 0.0;             ///< L_b = E_i / pi, cd/m^2
+  std::vector<GlareSource> sources{};  ///< those in sight, in the order of the scene
+  std::vector<std::string>
+      left_out{};  ///< lamps without a luminous area, for which there is no UGR
+};
+
+/// For an eye at a camera's place that looks along it. E_i is the illuminance of the eye by what
+/// surfaces reflect. Luminaires are surfaces that emit and lamps with an opening, as bright as they
+/// are in the solution; sky and sun are none, and what is seen through glass or in mirrors is left
+/// out. `gathering` is for E_i.
+Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
+                           const DirectLight& direct_light, const RadiositySolution& solution,
+                           const Camera& eye, const GatherOptions& gathering);
+
+}  // namespace lightwell

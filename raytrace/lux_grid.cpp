@@ -1,0 +1,205 @@
+#include "raytrace/lux_grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+using Edge = std::pair<int, int>;
+
+/// Facets of one plane.
+struct Plane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double area = 0.0;
+  std::vector<const Facet*> facets{};
+};
+
+std::vector<Plane> planes_of(const PolygonMesh& mesh, double size) {
+  constexpr double same_direction = 1.0 - 1e-6;  // 0.08 degrees
+  const double same_place = 1e-5 * size;
+  std::vector<Plane> planes;
+  for (const Facet& facet : mesh.facets) {
+    const Eigen::Vector3d normal = facet_normal(mesh, facet);
+    const Eigen::Vector3d point = mesh.vertices[static_cast<std::size_t>(facet.boundary.front())];
+    auto at = std::ranges::find_if(planes, [&](const Plane& plane) {
+      return plane.normal.dot(normal) > same_direction &&
+             std::abs(plane.normal.dot(point - plane.point)) <= same_place;
+    });
+    if (at == planes.end()) at = planes.insert(at, {.normal = normal, .point = point});
+    at->area += facet_area(mesh, facet);
+    at->facets.push_back(&facet);
+  }
+  return planes;
+}
+
+/// Edges that only one facet has.
+std::vector<Edge> outline_of(const Plane& plane) {
+  std::set<Edge> edges;
+  const auto add = [&](const std::vector<int>& loop) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Edge edge{loop[i], loop[(i + 1) % loop.size()]};
+      if (edges.erase({edge.second, edge.first}) == 0) edges.insert(edge);
+    }
+  };
+  for (const Facet* facet : plane.facets) {
+    add(facet->boundary);
+    for (const std::vector<int>& hole : facet->holes) add(hole);
+  }
+  return {edges.begin(), edges.end()};
+}
+
+/// The outline in the plane's own coordinates.
+struct FlatOutline {
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> edges{};
+
+  bool holds(const Eigen::Vector2d& p, double margin) const {
+    bool inside = false;
+    for (const auto& [a, b] : edges) {
+      const Eigen::Vector2d along = b - a;
+      const double t = std::clamp(along.dot(p - a) / along.squaredNorm(), 0.0, 1.0);
+      if ((p - a - t * along).norm() < margin * (1.0 - 1e-9)) return false;
+      if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+      if (p.x() < a.x() + (p.y() - a.y()) * along.x() / along.y()) inside = !inside;
+    }
+    return inside;
+  }
+};
+
+const Plane& largest(const std::vector<Plane>& planes, const Eigen::Vector3d& up) {
+  constexpr double alike = 1e-6;
+  const Plane* best = &planes.front();
+  for (const Plane& plane : planes) {
+    const bool is_as_large = std::abs(plane.area - best->area) <= alike * best->area;
+    const bool faces_up = plane.normal.dot(up) > best->normal.dot(up) + alike;
+    if (is_as_large ? faces_up : plane.area > best->area) best = &plane;
+  }
+  return *best;
+}
+
+}  // namespace
+
+double greatest_grid_spacing(double length) {
+  constexpr double most = 10.0;
+  return std::min(most, 0.2 * std::pow(5.0, std::log10(length)));
+}
+
+LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
+                 const LuxGridOptions& options) {
+  const Surface& named = scene.surfaces[static_cast<std::size_t>(surface)];
+  const auto* mesh = std::get_if<PolygonMesh>(&named.shape);
+  if (!mesh || mesh->facets.empty()) {
+    throw InputError(fmt::format(
+        "surface '{}' is a sphere, over which there is no plane grid; name a plane surface",
+        named.name));
+  }
+  const Plane plane = largest(planes_of(*mesh, scene_bounds(scene).diagonal()), up);
+  const std::vector<Edge> edges = outline_of(plane);
+  const auto place = [&](int v) { return mesh->vertices[static_cast<std::size_t>(v)]; };
+  LuxGrid grid{.name = named.name, .options = options};
+  double longest = 0.0;
+  for (const auto& [a, b] : edges) {
+    const Eigen::Vector3d along = place(b) - place(a);
+    // Of edges as long as each other the first stays, whatever the rounding.
+    if (along.norm() <= longest * (1.0 + 1e-9)) continue;
+    longest = along.norm();
+    grid.u = along.normalized();
+  }
+  grid.v = plane.normal.cross(grid.u);
+  FlatOutline outline;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = -low;
+  const auto flat = [&](int v) {
+    const Eigen::Vector3d p = place(v) - plane.point;
+    return Eigen::Vector2d(grid.u.dot(p), grid.v.dot(p));
+  };
+  for (const auto& [a, b] : edges) {
+    outline.edges.emplace_back(flat(a), flat(b));
+    low = low.cwiseMin(flat(a));
+    high = high.cwiseMax(flat(a));
+  }
+  low.array() += options.margin;
+  high.array() -= options.margin;
+  const Eigen::Vector2d size = high - low;
+  if (!(size.minCoeff() > 0.0)) {
+    throw InputError(
+        fmt::format("nothing is left of surface '{}' within a margin of {:g} m; give a smaller one",
+                    named.name, options.margin));
+  }
+  const double longer = size.maxCoeff(), shorter = size.minCoeff();
+  const double step = options.spacing > 0.0
+                          ? options.spacing
+                          : greatest_grid_spacing(longer > 2.0 * shorter ? shorter : longer);
+  grid.options.spacing = step;
+  const auto count = [&](double length) {
+    constexpr int most = 1000;
+    const double cells = std::ceil(length / step * (1.0 - 1e-9));
+    if (!(cells <= most)) {
+      throw InputError(
+          fmt::format("a spacing of {:g} m is too fine for surface '{}', which is {:.4g} m long: "
+                      "a grid has at most {} points a side",
+                      step, named.name, longer, most));
+    }
+    return std::max(1, static_cast<int>(cells));
+  };
+  grid.columns = count(size.x());
+  grid.rows = count(size.y());
+  grid.step_u = size.x() / grid.columns;
+  grid.step_v = size.y() / grid.rows;
+  grid.corner = plane.point + low.x() * grid.u + low.y() * grid.v + options.height * plane.normal;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const Eigen::Vector2d at(grid.step_u * (column + 0.5), grid.step_v * (row + 0.5));
+      if (!outline.holds(low + at, options.margin)) continue;
+      grid.cell.push_back(row * grid.columns + column);
+      grid.points.push_back(
+          {.position = grid.corner + at.x() * grid.u + at.y() * grid.v, .normal = plane.normal});
+    }
+  }
+  if (grid.points.empty()) {
+    throw InputError(fmt::format(
+        "no point of the grid lies on surface '{}'; give a smaller margin or spacing", named.name));
+  }
+  return grid;
+}
+
+LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
+                      const DirectLight& direct_light, const RadiositySolution& solution,
+                      const LuxGrid& grid, double factor, const GatherOptions& options) {
+  const auto count = static_cast<Eigen::Index>(grid.points.size());
+  std::array<Eigen::ArrayXd, 2> halves;
+  for (std::size_t replica = 0; replica < halves.size(); ++replica) {
+    GatherOptions half = options;
+    half.rays = std::max(1, options.rays / 2);
+    half.replica = options.replica + replica;
+    const BandArray E = probe_irradiance(scene, caster, direct_light, solution, grid.points, half);
+    halves[replica].resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      halves[replica][i] = factor * luminous(scene.bands, E.row(i).transpose());
+    }
+  }
+  LuxField field{.lux = 0.5 * (halves[0] + halves[1])};
+  field.mean = field.lux.mean();
+  field.least = field.lux.minCoeff();
+  field.greatest = field.lux.maxCoeff();
+  if (!(field.mean > 0.0)) return field;
+  field.uniformity = field.least / field.mean;
+  // The standard error of a mean of two is half of their difference; of one point that is a guess,
+  // of all together it is good. Where there is next to no light it would be all of it.
+  const Eigen::ArrayXd error = 0.5 * (halves[0] - halves[1]) / field.lux.max(0.1 * field.mean);
+  field.point_within = 2.0 * std::sqrt(error.square().mean());
+  field.mean_within = field.point_within / std::sqrt(static_cast<double>(count));
+  return field;
+}
+
+}  // namespace lightwell
