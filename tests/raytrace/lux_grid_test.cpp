@@ -102,8 +102,7 @@ TEST(LuxGrid, MeasuresAPanelOverAFloorAsTheFormulaHasIt) {
   const double full = luminous(lit.scene.bands, constant_spectrum(lit.scene.bands, 10.0f));
   double sum = 0.0, least = 1e30, greatest = 0.0;
   for (std::size_t i = 0; i < grid.points.size(); ++i) {
-    const double E =
-        maintenance * full * point_to_polygon(grid.points[i].position, up, Loop(loop));
+    const double E = maintenance * full * point_to_polygon(grid.points[i].position, up, Loop(loop));
     EXPECT_NEAR(field.lux[static_cast<Eigen::Index>(i)], E, 1e-5 * E);
     sum += E;
     least = std::min(least, E);

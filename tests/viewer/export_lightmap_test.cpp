@@ -3,8 +3,10 @@
 
 #include <cmath>
 
+#include "channel_room.h"
 #include "glb_file.h"
 #include "lit_sides.h"
+#include "scene/errors.h"
 #include "scene/io/read_scene.h"
 #include "viewer/export.h"
 
@@ -87,6 +89,47 @@ TEST_F(ExportLightmap, CoordinatesLeadIntoTheTexture) {
   const Json& view = glb.json["bufferViews"][glb.json["images"][0]["bufferView"].get<int>()];
   EXPECT_EQ(glb.binary.substr(view["byteOffset"].get<std::size_t>(), 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(glb.json["asset"]["extras"]["lightmap"]["files"][0], "room-lightmap-1.exr");
+}
+
+/// What an engine needs to dim lamps: the light of each, as it was solved, in the same charts.
+/// Times the scales in force they add up to the lightmap; single precision of sums, half floats in
+/// files.
+TEST_F(ExportLightmap, ChannelsAddUpToAllLight) {
+  const Scene scene = channel_room();
+  const SolvedScene solved = relit(solve_by_channel(scene), {"0.5", "off"});
+  for (const Pass pass : {Pass::interpolate, Pass::direct}) {
+    const LightmapReport made =
+        write(solved, scene, {.size = 64, .pass = pass, .per_channel = true});
+    ASSERT_EQ(made.files.size(), 3u);
+    EXPECT_EQ(made.files[1].filename(), "room-lightmap-1-desk.exr");
+    EXPECT_EQ(made.files[2].filename(), "room-lightmap-1-panel.exr");
+    const BandArray all = read_exr(made.files[0]).radiance;
+    const BandArray desk = read_exr(made.files[1]).radiance;
+    EXPECT_GT(read_exr(made.files[2]).radiance.maxCoeff(), 0.0f) << "off, and there all the same";
+    EXPECT_LT((all - 0.5f * desk).abs().maxCoeff(), 2e-3f * all.maxCoeff());
+    const Json extras =
+        parse_glb(content_of(folder / "room.glb")).json["asset"]["extras"]["lightmap"]["channels"];
+    EXPECT_EQ(extras[0]["name"], "desk");
+    EXPECT_EQ(extras[0]["scale"], Json::array({0.5, 0.5, 0.5}));
+    EXPECT_EQ(extras[1]["files"], Json::array({"room-lightmap-1-panel.exr"}));
+  }
+}
+
+TEST_F(ExportLightmap, ChannelsThatThereAreNotAreAskedFor) {
+  const std::string message = message_of<InputError>(
+      [&] { write(solved_box(), box_scene(), {.size = 64, .per_channel = true}); });
+  EXPECT_TRUE(says(message, "--channels per-luminaire"));
+  EXPECT_EQ(folder.file_count(), 0);
+}
+
+TEST_F(ExportLightmap, FilesOfChannelsHaveNamesOfTheirOwn) {
+  const std::vector<std::string> names = {"desk lamp", "desk/lamp", "Decke-2"};
+  const auto file = [&](int c) {
+    return channel_lightmap_files("a/room.glb", names, c, 1).front().generic_string();
+  };
+  EXPECT_EQ(file(0), "a/room-lightmap-1-desk_lamp_1.exr");
+  EXPECT_EQ(file(1), "a/room-lightmap-1-desk_lamp_2.exr");
+  EXPECT_EQ(file(2), "a/room-lightmap-1-Decke-2.exr");
 }
 
 TEST_F(ExportLightmap, KhronosValidatorHasNothingToSay) {

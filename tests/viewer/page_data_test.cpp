@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <filesystem>
 
 #include "lit_sides.h"
 #include "page_values.h"
@@ -153,6 +155,24 @@ TEST(Walkthrough, HoldsAllThatItNeeds) {
   }
   EXPECT_EQ(count_of(page, "{{"), 0);
   EXPECT_TRUE(says(page, "three.js authors"));
+}
+
+/// The worst a mesh of 100 000 elements can be: quads of which none shares a vertex. Pages are sent
+/// by mail, whose limits begin at 20 MB.
+TEST(PageSize, OfAHundredThousandElementsIsBelowFifteenMegabytes) {
+  SolvedQuads quads;
+  constexpr int side = 317;  // 100 489 quads
+  for (int i = 0; i < side * side; ++i) {
+    const double x = i % side, y = i / side;
+    quads.add({{{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}}},
+              {white, red, Eigen::Array3f(white * 0.001f * static_cast<float>(x)), grey});
+  }
+  SolvedScene solved = quads.solved();
+  std::ranges::fill(solved.mesh.surface, 0);
+  std::ranges::fill(solved.mesh.material, 0);
+  const TemporaryFolder folder;
+  write_walkthrough(folder / "page.html", bake_model(solved, box_scene()));
+  EXPECT_LT(std::filesystem::file_size(folder / "page.html"), 15'000'000u);
 }
 
 }  // namespace

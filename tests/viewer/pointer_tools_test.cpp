@@ -3,15 +3,36 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "channel_room.h"
+#include "pictured_wall.h"
 #include "raytrace/probe.h"
+#include "scene/facet_textures.h"
 #include "solved_box.h"
 #include "viewer/x_display.h"
 
 namespace lightwell {
 namespace {
+
+/// A patch knows the mean of its picture; what one points at is a texel. Its codes are right to
+/// 1e-3.
+TEST(PointReading, OfAPictureIsTheTexels) {
+  PicturedBox box;
+  box.solved.mesh.textures = std::make_shared<const FacetTextures>(box.scene);
+  const ElementCaster caster(box.solved.mesh);
+  const auto kinds = element_kinds(box.solved, box.scene.materials);
+  const BandArray E = box.solved.solution.irradiance();
+  for (const auto& [x, rho] : {std::pair(80, bright_half), std::pair(120, dark_half)}) {
+    const Seen seen = see_through_pixel(caster, kinds, box_camera(), x, 75);
+    ASSERT_TRUE(static_cast<bool>(seen));
+    const PointReading reading = read_point(box.solved.mesh, rgb_bands(), E, &box.scene, seen);
+    EXPECT_NEAR(reading.reflectance[1], rho, 1e-3f * rho);
+    EXPECT_NEAR(reading.luminance, rho * reading.lux / std::numbers::pi, 1e-3 * reading.luminance);
+  }
+}
 
 /// A window's answer is `lightwell probe --interpolate`'s at the same point and normal. Both
 /// interpolate in one element, from rays of other directions: float weights differ by some 1e-6 of

@@ -105,6 +105,55 @@ TEST(Snapshot, ShowsPicturesInTheirLight) {
   expect_pixel(with_hole.at(120, 75), {0, 0, 0}, "through the hole there is nothing");
 }
 
+/// Light far above white keeps its colour on a dark picture: it is tone-mapped with the texel, not
+/// before. Codes of light are right to 2 %, which is 4 of 255 at the most.
+TEST(Snapshot, DarkPicturesInBrightLightKeepItsColour) {
+  PicturedBox box;
+  ViewOptions options = options_for(box_camera());
+  options.materials = box.scene.materials;
+  options.scene = &box.scene;
+  const Eigen::Array3f warm{60.0f, 30.0f, 12.0f};
+  for (int v = 8; v < 12; ++v) box.solved.solution.direct_irradiance.row(v) = warm.transpose();
+  Look look = SolutionView(box.solved, options).look();
+  look.metered_scale = 0.1;  // up to 1.9 times white
+  const Picture picture = draw(box.solved, options, &look);
+  for (const auto& [x, rho] : {std::pair(80, bright_half), std::pair(120, dark_half)}) {
+    const BandArray L = rho * warm.transpose() / std::numbers::pi_v<float>;
+    const auto wanted = display_colors(L, rgb_bands(), look.metered_scale);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.at(x, 75)[c], wanted[c], 5) << x << ' ' << c;
+  }
+}
+
+/// Beside the box there is the sky, the ground below the horizon, and the sun's disc; no light
+/// falls on them, so false colours leave them black.
+TEST(Snapshot, ShowsTheSkyOutside) {
+  const SolvedScene box = solved_box();
+  Scene scene = box_scene();
+  const Eigen::Vector3d to_sun = Eigen::Vector3d(0.7, 0.3, 2.0).normalized();
+  scene.sky = Sky{.name = "even",
+                  .scale = Eigen::Array3f(0.2f, 0.3f, 0.5f),
+                  .ground = Eigen::Array3f(0.1f, 0.1f, 0.05f),
+                  .sun = Sun{.direction = to_sun,
+                             .irradiance = Eigen::Array3f(1.0f, 1.0f, 1.0f),
+                             .angle_degrees = 4.0}};
+  ViewOptions options = options_for(box_camera());
+  options.scene = &scene;
+  options.exposure_ev = -1.0;  // so that nothing is white
+  const auto shown = [&](const Eigen::Array3f& L) {
+    return expected(box, options, std::numbers::pi_v<float> * L);
+  };
+  // At tan 20 deg = 0.364 for 100 pixels: the sun is 0.35 to the left and 0.15 up.
+  const Picture picture = draw(box, options);
+  expect_pixel(picture.at(4, 10), shown(scene.sky->scale), "the sky beside the box");
+  expect_pixel(picture.at(4, 140), shown(scene.sky->ground), "the ground");
+  const Eigen::Array3f sun = radiance_outside(*scene.sky, to_sun);
+  expect_pixel(picture.at(100 - 96, 75 - 41), shown(sun), "the sun");
+  EXPECT_EQ(picture.at(4, 73), picture.at(4, 60)) << "the horizon is sharp";
+  EXPECT_EQ(picture.at(4, 76), picture.at(4, 90)) << "the horizon is sharp";
+  options.illuminance = true;
+  expect_pixel(draw(box, options).at(4, 10), {0, 0, 0}, "no light falls on the sky");
+}
+
 TEST(Snapshot, BacksAreNotDrawn) {
   const SolvedScene box = solved_box();
   Camera camera = box_camera();

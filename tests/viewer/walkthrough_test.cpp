@@ -161,6 +161,57 @@ TEST_F(InBrowser, ThePageShowsAndMeasuresTheSolution) {
   EXPECT_NEAR(back[2].get<double>(), -3.0, 1e-5);
 }
 
+/// Sky above the horizon, ground below, as bright as pictures have them; dimming their channel dims
+/// what is seen.
+TEST_F(InBrowser, ThePageShowsTheSky) {
+  constexpr const char* look = R"(<pre id="result"></pre><script>
+(async () => {
+  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+  const found = {};
+  for (let i = 0; i < 200 && !window.lightwell; ++i) await wait(50);
+  const page = window.lightwell, gl = page.picture.renderer.getContext();
+  const pixel = (x, y) => {
+    page.picture.draw();
+    const bytes = new Uint8Array(4);
+    gl.readPixels(x * gl.drawingBufferWidth, (1 - y) * gl.drawingBufferHeight, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return [...bytes].slice(0, 3);
+  };
+  found.sky = pixel(0.02, 0.1);
+  found.above = pixel(0.02, 0.485);
+  found.below = pixel(0.02, 0.515);
+  page.camera.lookAt(page.camera.position.clone().add(new Library.Vector3(...page.model.about.sky.sun.direction)));
+  found.sun = pixel(0.5, 0.5);
+  page.set_false_colors(true);
+  found.in_false_colours = pixel(0.5, 0.5);
+  found.errors = errors;
+  return found;
+})().catch((error) => ({failed: String(error.stack)}))
+    .then((found) => { element('result').textContent = encodeURIComponent(JSON.stringify(found)); });
+</script></body>)";
+  Scene scene = box_scene();
+  scene.sky = Sky{.name = "even",
+                  .scale = Eigen::Array3f(0.2f, 0.3f, 0.5f),
+                  .ground = Eigen::Array3f(0.1f, 0.1f, 0.05f),
+                  .sun = Sun{.direction = Eigen::Vector3d(-1.0, 2.0, -2.0) / 3.0,
+                             .irradiance = Eigen::Array3f(2e-4f, 1e-4f, 1e-4f)}};
+  const BakedModel model = bake_model(solved_box(), scene);
+  const Json found = run(model, look);
+  ASSERT_FALSE(found.is_null());
+  ASSERT_FALSE(found.contains("failed")) << found["failed"];
+  EXPECT_EQ(found["errors"], Json::array());
+  const auto expect_shown = [&](const char* what, const Eigen::Array3f& L) {
+    const auto wanted = display_colors(L.transpose(), rgb_bands(), model.cameras[0].scale);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(found[what][c].get<int>(), wanted[c], 2) << what << ' ' << c;
+    }
+  };
+  expect_shown("sky", scene.sky->scale);
+  expect_shown("above", scene.sky->scale);
+  expect_shown("below", scene.sky->ground);
+  expect_shown("sun", radiance_outside(*scene.sky, scene.sky->sun->direction));
+  EXPECT_EQ(found["in_false_colours"], Json::array({0, 0, 0})) << "no light falls on it";
+}
+
 TEST_F(InBrowser, WithoutWebGlThePageSaysWhatToDo) {
   write_walkthrough(folder / "driven.html", bake_model(solved_box(), box_scene()));
   const std::string dom = opened("--disable-3d-apis");
@@ -185,6 +236,12 @@ TEST_F(InBrowser, ThePageShowsPictures) {
     return [...bytes].slice(0, 3);
   };
   found.halves = [pixel(0.45, 0.5), pixel(0.55, 0.5)];
+  const canvas = element('view'), read = async (x) => {
+    canvas.dispatchEvent(new PointerEvent('pointermove', {clientX: x * canvas.clientWidth, clientY: 0.5 * canvas.clientHeight}));
+    while (page.probe_due) await new Promise(requestAnimationFrame);
+    return {...element('probe').dataset};
+  };
+  found.read = [await read(0.45), await read(0.55)];
   found.errors = errors;
   return found;
 })().catch((error) => ({failed: String(error.stack)}))
@@ -203,6 +260,11 @@ TEST_F(InBrowser, ThePageShowsPictures) {
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(found["halves"][half][c].get<int>(), wanted[c], 3) << half << ' ' << c;
     }
+    // The reading is of the texel, whose 8 bits are right to 1 % there.
+    const double lux = luminous(rgb_bands(), Spectrum(white));
+    const double luminance = rho * lux / std::numbers::pi;
+    EXPECT_NEAR(number(found["read"][half]["luminance"]), luminance, 0.01 * luminance);
+    EXPECT_NEAR(number(found["read"][half]["illuminance"]), lux, 1e-3 * lux);
   }
   box.scene.materials.back().mask = Mask{.image = picture_of(2, 1, {1.0f, 0.0f})};
   const Json with_hole = run(bake_model(box.solved, box.scene), look);
