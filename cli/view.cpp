@@ -47,7 +47,10 @@ ViewOptions view_options(const Arguments& arguments, const Scene& scene) {
                       .materials = scene.materials,
                       .scene = &scene};
   options.mesh = !arguments.overlay.empty();
-  options.illuminance = arguments.false_colour == "lux";
+  options.illuminance = !arguments.false_colour.empty() && arguments.false_colour != "error";
+  options.measure = arguments.false_colour == "luminance" ? Measure::luminance
+                    : arguments.false_colour == "unshot"  ? Measure::unshot
+                                                          : Measure::illuminance;
   options.interpolation_error = arguments.false_colour == "error";
   options.lux_range = arguments.range;
   options.relative_units = scene.relative_units;
@@ -152,6 +155,11 @@ int view(const Arguments& arguments, Console& console) {
     throw InputError(fmt::format("'--shots' is for light that is still arriving, and {} is solved",
                                  arguments.solution));
   }
+  if (options.illuminance && options.measure == Measure::unshot) {
+    throw InputError(
+        fmt::format("'--false-colour unshot' is for light that is still arriving, and {} is solved",
+                    arguments.solution));
+  }
   SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   if (options.interpolation_error && solved.solution.interpolation_error.size() == 0) {
     throw InputError(fmt::format(
@@ -220,11 +228,13 @@ Action add_view(CLI::App& command) {
       ->check(one_of("overlay", {"mesh"}));
   auto* const false_colour =
       command
-          .add_option("--false-colour,--false-color", arguments->false_colour,
-                      "begin in false colours: lux (key V), or error, what interpolation was "
-                      "estimated to miss, 0.1 % to 10 %")
+          .add_option(
+              "--false-colour,--false-color", arguments->false_colour,
+              "begin in false colours: lux (key V), luminance (U), unshot, what is still to "
+              "be shot while light arrives (U), or error, what interpolation was estimated "
+              "to miss")
           ->type_name("WHAT")
-          ->check(one_of("quantity", {"lux", "error"}));
+          ->check(one_of("quantity", {"lux", "luminance", "unshot", "error"}));
   add_lux_range(command, arguments->range)->needs(false_colour);
   command
       .add_option("--isolux", arguments->isolux,

@@ -127,12 +127,16 @@ std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& ba
 }
 
 std::vector<float> vertex_illuminance(const RadiositySolution& solution) {
-  const BandArray E = solution.irradiance();
-  std::vector<float> lux(static_cast<std::size_t>(E.rows()));
-  for (Eigen::Index v = 0; v < E.rows(); ++v) {
-    lux[v] = static_cast<float>(luminous(solution.bands, E.row(v).transpose()));
+  return luminous_rows(solution.irradiance(), solution.bands);
+}
+
+std::vector<float> luminous_rows(const BandArray& values, const Bands& bands) {
+  std::vector<float> result(static_cast<std::size_t>(values.rows()));
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    result[static_cast<std::size_t>(i)] =
+        static_cast<float>(luminous(bands, values.row(i).transpose()));
   }
-  return lux;
+  return result;
 }
 
 LuxRange lux_range(const std::vector<float>& lux) {

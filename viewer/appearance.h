@@ -53,7 +53,15 @@ inline constexpr float light_code_stops = 14.0f, light_code_depth = 8.0f;
 /// 3 bytes a vertex: linear RGB times `scale` as such codes.
 std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& bands, double scale);
 
-/// Of a false-colour scale, lx, low < high: logarithmic, or even where `low` is 0.
+/// What false colours show.
+enum class Measure {
+  illuminance,  ///< lx
+  luminance,    ///< cd/m^2, of what is drawn
+  unshot,       ///< lm/m^2 that patches are still to shoot, while light is being solved for
+};
+
+/// Of a false-colour scale, lx (or what else is measured), low < high: logarithmic, or even where
+/// `low` is 0.
 struct LuxRange {
   double low = 1.0, high = 1000.0;
 
@@ -67,6 +75,9 @@ LuxRange lux_range(const std::vector<float>& lux);
 /// Where a scale is labelled: about five even steps, or 1, 2 and 5 times the powers of ten; the
 /// powers alone and the ends over more than two decades. lx.
 std::vector<double> scale_steps(const LuxRange& range);
+
+/// luminous() of each row, cd/m^2 of radiance.
+std::vector<float> luminous_rows(const BandArray& values, const Bands& bands);
 
 /// Illuminance at each vertex, lx.
 std::vector<float> vertex_illuminance(const RadiositySolution& solution);

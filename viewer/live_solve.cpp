@@ -70,8 +70,21 @@ struct LiveSolve::Impl {
     return true;
   }
 
+  Eigen::ArrayXf unshot() const {
+    const BandArray& columns = progressive.unshot();
+    const int bands = scene.bands.count();
+    Eigen::ArrayXf result = Eigen::ArrayXf::Zero(columns.rows());
+    for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+      for (Eigen::Index first = 0; first < columns.cols(); first += bands) {
+        const Spectrum dB = columns.row(i).segment(first, bands).transpose().abs();
+        result[i] += static_cast<float>(luminous(scene.bands, dB));
+      }
+    }
+    return result;
+  }
+
   LiveLight light() const {
-    return {vertex_light.irradiance(), progressive.ambient(), progressive.shots(),
+    return {vertex_light.irradiance(), progressive.ambient(), unshot(), progressive.shots(),
             progressive.unshot_share()};
   }
 

@@ -15,6 +15,7 @@ struct LiveLight {
   BandArray irradiance{};
   /// What the unshot light would add everywhere, W/m^2 (Cohen et al. 1988), by the same columns.
   Eigen::ArrayXf ambient{};
+  Eigen::ArrayXf unshot{};  ///< what each patch is still to shoot, lm/m^2, with all channels on
   int shots = 0;
   double unshot_share = 0.0;  ///< unshot power over emitted power, all bands together
 };

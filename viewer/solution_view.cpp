@@ -50,10 +50,8 @@ void set_range(vtkScalarBarActor* legend, const LuxRange& range) {
   legend->SetCustomLabels(labels);
 }
 
-vtkSmartPointer<vtkScalarBarActor> make_legend(const LuxRange& range, const char* unit) {
+vtkSmartPointer<vtkScalarBarActor> make_legend() {
   auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
-  set_range(legend, range);
-  legend->SetTitle(unit);
   legend->UseCustomLabelsOn();
   legend->SetLabelFormat("%.6g");
   legend->DrawBackgroundOn();
@@ -108,7 +106,8 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
     : solved_(&solved),
       scene_(options.scene),
       materials_(options.materials),
-      keeps_range_(options.lux_range.has_value()),
+      given_range_(options.lux_range),
+      has_relative_units_(options.relative_units),
       caster_(solved.mesh),
       kinds_(element_kinds(solved, options.materials)),
       irradiance_(solved.solution.irradiance()),
@@ -121,7 +120,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       actor_(solved.mesh, kinds_, radiance_, drawn_),
       sky_(scene_ ? sky_in_force(*scene_, solved.mesh) : std::nullopt),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
-      legend_(make_legend(lux_range_, options.relative_units ? "relative" : "lx")),
+      legend_(make_legend()),
       isolux_levels_(options.isolux) {
   if (options.camera) {
     start_camera_ = *options.camera;
@@ -141,10 +140,11 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   look_.exposure_ev = options.exposure_ev;
   look_.mesh = options.mesh;
   look_.illuminance = options.illuminance;
+  look_.measure = options.measure;
   look_.interpolation_error = options.interpolation_error;
   look_.isolux = !options.isolux.empty();
   actor_.show_mesh(look_.mesh);
-  legend_->SetVisibility(look_.illuminance);
+  apply_legend();
   apply_camera();
   apply_colors();
   apply_isolux();
@@ -163,12 +163,12 @@ double SolutionView::meter(const Camera& camera) const {
 void SolutionView::set_look(const Look& look) {
   const bool recolor = look.metered_scale != look_.metered_scale ||
                        look.exposure_ev != look_.exposure_ev ||
-                       look.illuminance != look_.illuminance ||
+                       look.illuminance != look_.illuminance || look.measure != look_.measure ||
                        look.interpolation_error != look_.interpolation_error;
   look_ = look;
   actor_.show_mesh(look.mesh);
   actor_.show_unlit(look.unlit);
-  legend_->SetVisibility(look.illuminance && !look.interpolation_error);
+  apply_legend();
   if (recolor) apply_colors();
   apply_camera();
   apply_isolux();
@@ -225,9 +225,9 @@ void SolutionView::light_arrived() {
   kinds_ = element_kinds(solved_->mesh, solved_->solution.direct_irradiance, materials_);
   light_changed();
   actor_.set_shapes(solved_->mesh, kinds_, radiance_);
-  if (keeps_range_) return;
+  if (given_range_) return;
   lux_range_ = lux_range(lux_);
-  set_range(legend_, lux_range_);
+  apply_legend();
   if (look_.illuminance) apply_colors();
   isolux_is_stale_ = isolux_levels_.empty();
   apply_isolux();
@@ -237,13 +237,58 @@ void SolutionView::apply_colors() {
   // No light falls on the sky.
   if (outside_) outside_->show(!look_.interpolation_error && !look_.illuminance);
   if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_), {});
-  if (look_.illuminance) return actor_.set_colors(false_colors(lux_, lux_range_), {});
+  if (look_.illuminance) return actor_.set_colors(false_colors(measured(), measured_range()), {});
   const Bands& bands = solved_->solution.bands;
   const double scale = look_.metered_scale * std::exp2(look_.exposure_ev);
   if (outside_) outside_->expose(bands, scale);
   std::vector<std::uint8_t> codes;
   if (picture_gain_.size() > 0) codes = light_codes(radiance_ * picture_gain_, bands, scale);
   actor_.set_colors(display_colors(radiance_, bands, scale), codes);
+}
+
+std::vector<float> SolutionView::measured() const {
+  if (look_.measure == Measure::luminance) {
+    return luminous_rows(radiance_, solved_->solution.bands);
+  }
+  if (look_.measure == Measure::illuminance) return lux_;
+  return unshot_.empty() ? std::vector<float>(lux_.size(), 0.0f) : unshot_;
+}
+
+LuxRange SolutionView::measured_range() const {
+  if (given_range_) return *given_range_;
+  return look_.measure == Measure::illuminance ? lux_range_ : lux_range(measured());
+}
+
+void SolutionView::set_unshot(const Eigen::ArrayXf& unshot) {
+  const PatchMesh& mesh = solved_->mesh;
+  unshot_.assign(static_cast<std::size_t>(mesh.vertex_count()), 0.0f);
+  std::vector<float> patches(unshot_.size(), 0.0f);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const auto v = static_cast<std::size_t>(mesh.corners[e][c]);
+      unshot_[v] += unshot[mesh.patch[e]];
+      patches[v] += 1.0f;
+    }
+  }
+  for (std::size_t v = 0; v < unshot_.size(); ++v) unshot_[v] /= std::max(1.0f, patches[v]);
+  if (look_.illuminance && look_.measure == Measure::unshot) {
+    apply_legend();
+    apply_colors();
+  }
+}
+
+void SolutionView::apply_legend() {
+  legend_->SetVisibility(look_.illuminance || look_.interpolation_error);
+  if (look_.interpolation_error) {
+    legend_->SetTitle("%");
+    return set_range(legend_, {.low = 0.1, .high = 10.0});  // those of error_colors
+  }
+  if (!look_.illuminance) return;
+  const char* const unit = look_.measure == Measure::illuminance ? "lx"
+                           : look_.measure == Measure::luminance ? "cd/m2"
+                                                                 : "lm/m2";
+  legend_->SetTitle(has_relative_units_ ? "relative" : unit);
+  set_range(legend_, measured_range());
 }
 
 void SolutionView::apply_camera() {

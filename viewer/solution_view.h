@@ -26,8 +26,9 @@ struct Look {
   bool mesh = false;           ///< outlines of the elements
   bool unlit = true;           ///< surfaces without light are drawn, black; else looked through
   bool illuminance = false;    ///< false colours with a legend instead of light
-  bool interpolation_error = false;  ///< see error_colors; goes before illuminance
-  bool isolux = false;               ///< lines of equal illuminance
+  Measure measure = Measure::illuminance;  ///< what those show
+  bool interpolation_error = false;        ///< see error_colors; goes before illuminance
+  bool isolux = false;                     ///< lines of equal illuminance
 };
 
 /// A solution set up for drawing with VTK. Keeps a reference to the solution and its mesh.
@@ -45,6 +46,8 @@ class SolutionView {
   /// The same while light is arriving: its scale of false colours follows it, unless the options
   /// name one. What has no direct irradiance counts as unlit, for the rest is foretold.
   void light_arrived();
+  /// What each patch is still to shoot, lm/m^2: for Measure::unshot.
+  void set_unshot(const Eigen::ArrayXf& unshot);
   /// The exposure_scale of the picture the camera sees.
   double meter(const Camera& camera) const;
 
@@ -63,7 +66,11 @@ class SolutionView {
  private:
   void apply_camera();
   void apply_colors();
+  void apply_legend();
   void apply_isolux();
+  /// What false colours show, at vertices; and their scale.
+  std::vector<float> measured() const;
+  LuxRange measured_range() const;
 
   /// What is seen outside, as bright as the solution has it; null: black.
   const Sky* sky() const { return sky_ ? &*sky_ : nullptr; }
@@ -71,7 +78,9 @@ class SolutionView {
   const SolvedScene* solved_;
   const Scene* scene_;
   std::vector<Material> materials_;
-  bool keeps_range_;
+  std::optional<LuxRange> given_range_;
+  bool has_relative_units_;
+  std::vector<float> unshot_{};  ///< at vertices
   ElementCaster caster_;
   std::vector<ElementKind> kinds_;
   BandArray irradiance_;

@@ -107,11 +107,13 @@ int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::sp
   LiveSolve solve(scene, live.solve, live.provenance);
   const SolvedScene dark = without_light(solve, live);
   std::vector<SolvedScene> stages;
+  std::vector<Eigen::ArrayXf> unshot;
   int shot = 0;
   for (const int wanted : shots) {
     solve.shoot(wanted);
     const LiveLight light = solve.light();
     shot = light.shots;
+    unshot.push_back(light.unshot);
     show_light(light, live.ambient, stages.emplace_back(dark));
   }
   const double exposure = SolutionView(stages.back(), options).look().metered_scale;
@@ -121,6 +123,7 @@ int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::sp
     Look look = view.look();
     look.metered_scale = exposure;
     view.set_look(look);
+    view.set_unshot(unshot[k]);
     const auto drawn = draw_offscreen(view, options.width, options.height);
     const std::size_t row = std::size_t{3} * options.width;
     for (int y = 0; y < options.height; ++y) {

@@ -24,8 +24,9 @@ struct ViewOptions {
   std::vector<Material> materials{};
   /// For the names of what is pointed at. May be left out; must outlive the window.
   const Scene* scene = nullptr;
-  bool mesh = false;                    ///< begin with the elements' outlines
-  bool illuminance = false;             ///< begin in false colours
+  bool mesh = false;         ///< begin with the elements' outlines
+  bool illuminance = false;  ///< begin in false colours, of `measure`
+  Measure measure = Measure::illuminance;
   std::optional<LuxRange> lux_range{};  ///< of those; else what suits the solution
   /// Begin with the error of interpolation that refinement estimated, in the false colours of
   /// error_colors; of a solution that has it.

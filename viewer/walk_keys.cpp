@@ -40,6 +40,7 @@ std::span<const WalkWindow::Key> WalkWindow::keys() {
       Key{"", "", {"minus", "kp_subtract"}, &W::darker},
       Key{"0", "expose for this view", {"0"}, &W::expose_for_view},
       Key{"V", "false colours of illuminance", {"v"}, &W::switch_false_colours},
+      Key{"U", "luminance, unshot light", {"u"}, &W::switch_measure},
       Key{"I", "isolux lines", {"i"}, &W::switch_isolux},
       Key{"M", "mesh", {"m"}, &W::switch_mesh},
       Key{"X", "look through unlit surfaces", {"x"}, &W::switch_unlit},

@@ -105,6 +105,7 @@ void WalkWindow::show_arriving_light() {
   still_.discard();
   show_light(arrived_, ambient_, *own_);
   view_->light_arrived();
+  view_->set_unshot(arrived_.unshot);
   pointer_.light_changed(*view_, true);
   update_pointer();
   changed_ = true;

@@ -211,7 +211,27 @@ void WalkWindow::expose_for_view() {
 
 void WalkWindow::switch_false_colours() {
   Look look = current_look();
-  look.illuminance = !look.illuminance && !look.interpolation_error;
+  const bool is_shown = look.illuminance && look.measure == Measure::illuminance;
+  look.illuminance = !is_shown && !look.interpolation_error;
+  look.measure = Measure::illuminance;
+  look.interpolation_error = false;
+  change(look);
+}
+
+// Luminance, unshot light while there is any, and back to the picture.
+void WalkWindow::switch_measure() {
+  Look look = current_look();
+  const bool is_solving = live_ && live_state_.phase < LivePhase::done;
+  const bool is_shown = look.illuminance && !look.interpolation_error;
+  if (is_shown && look.measure == Measure::luminance && is_solving) {
+    look.measure = Measure::unshot;
+  } else if (is_shown && look.measure != Measure::illuminance) {
+    look.illuminance = false;
+    look.measure = Measure::illuminance;
+  } else {
+    look.illuminance = true;
+    look.measure = Measure::luminance;
+  }
   look.interpolation_error = false;
   change(look);
 }
@@ -284,7 +304,10 @@ void WalkWindow::say(const std::string& message) {
 
 void WalkWindow::update_text() {
   const Look& look = view_->look();
-  status_ = look.illuminance ? "illuminance" : fmt::format("{:+.1f} EV", look.exposure_ev);
+  const char* const measured = look.measure == Measure::illuminance ? "illuminance"
+                               : look.measure == Measure::luminance ? "luminance"
+                                                                    : "unshot light";
+  status_ = look.illuminance ? measured : fmt::format("{:+.1f} EV", look.exposure_ev);
   if (walking_) status_ += "   on foot";
   if (pivot_) status_ += "   orbiting";
   if (recording_) status_ += fmt::format("   recording {:.1f} s", path_seconds_);
@@ -299,7 +322,11 @@ void WalkWindow::update_text() {
 }
 
 void WalkWindow::replace_view(const SolvedScene& solved) {
-  const Look look = view_->look();
+  Look look = view_->look();
+  if (look.measure == Measure::unshot) {
+    look.illuminance = false;
+    look.measure = Measure::illuminance;
+  }
   window_->RemoveRenderer(view_->renderer());
   view_ = std::make_unique<SolutionView>(solved, options_);
   still_.add_to(view_->renderer());

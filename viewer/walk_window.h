@@ -97,6 +97,7 @@ class WalkWindow {
   void darker() { light_up(-1); }
   void expose_for_view();
   void switch_false_colours();
+  void switch_measure();
   void switch_mesh();
   void switch_unlit();
   void switch_isolux();

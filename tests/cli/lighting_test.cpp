@@ -1,0 +1,115 @@
+// What 'lightwell report' says of a design, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.h"
+
+namespace lightwell {
+namespace {
+using Words = std::vector<std::string>;
+using Json = nlohmann::json;
+
+class ReportCommand : public CommandTest {
+ protected:
+  void SetUp() override {
+    folder.write("room.toml", small_room());
+    const Ended solved = run(Words{"solve", "room.toml", "-o", "room.vtp", "--quiet"} + quick());
+    ASSERT_EQ(solved.code, 0) << solved.err;
+  }
+  void expect_refused(const Words& words, int code, const std::string& sentence) {
+    const int files = folder.file_count();
+    const Ended ended = run(Words{"report", "room.toml", "room.vtp"} + words);
+    EXPECT_EQ(ended.code, code) << ended.err;
+    EXPECT_TRUE(says(ended.err, sentence));
+    EXPECT_EQ(folder.file_count(), files);
+  }
+};
+
+/// The room's largest plane that faces up is its floor of 4 m x 3 m; 0.5 m of it all around are
+/// left out. All figures of a grid follow from its points, which the CSV has.
+TEST_F(ReportCommand, FiguresAreThoseOfThePoints) {
+  const Json json = run_json(
+      {"report",        "room.toml", "room.vtp",   "--plane", "room@0.75", "--surface", "panel",
+       "--maintenance", "0.8",       "--observer", "door",    "--watts",   "panel=40",  "--rays",
+       "256",           "-o",        "a.html",     "-o",      "a.json",    "-o",        "a.csv"});
+  ASSERT_EQ(json["surfaces"].size(), 2u);
+  const Json& plane = json["surfaces"][0];
+  EXPECT_EQ(plane["name"], "room + 0.75 m");
+  // p(3 m) = 0.43 m: 7 x 5 cells.
+  EXPECT_EQ(plane["points"], 35);
+  EXPECT_EQ(Json::parse(content_of(folder / "a.json"))["surfaces"], json["surfaces"]);
+
+  double sum = 0.0, least = 1e30;
+  int count = 0;
+  std::istringstream csv(content_of(folder / "a.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "surface,x,y,z,lux,lux_within");
+  while (std::getline(csv, line)) {
+    if (line.rfind("\"room + 0.75 m\",", 0) != 0) continue;
+    std::vector<double> values;
+    std::istringstream rest(line.substr(line.find("\",") + 2));
+    for (std::string value; std::getline(rest, value, ',');) values.push_back(std::stod(value));
+    ASSERT_EQ(values.size(), 5u);
+    EXPECT_GE(values[0], 0.5);
+    EXPECT_DOUBLE_EQ(values[2], 0.75);
+    sum += values[3];
+    least = std::min(least, values[3]);
+    ++count;
+  }
+  ASSERT_EQ(count, 35);
+  const double E_m = plane["E_m"];
+  EXPECT_NEAR(E_m, sum / count, 1e-5 * E_m);  // of six digits
+  EXPECT_NEAR(plane["E_min"].get<double>(), least, 1e-5 * least);
+  EXPECT_NEAR(plane["U_0"].get<double>(), least / E_m, 1e-4);
+  EXPECT_LT(plane["point_within_relative"].get<double>(), 0.2);
+
+  ASSERT_EQ(json["luminaires"].size(), 1u);
+  EXPECT_EQ(json["luminaires"][0]["name"], "panel");
+  EXPECT_EQ(json["luminaires"][0]["watts"], 40.0);
+  EXPECT_GT(json["luminaires"][0]["lumens"].get<double>(), 0.0);
+  EXPECT_TRUE(json["observers"][0]["UGR"].is_number()) << json["observers"];
+
+  const std::string page = content_of(folder / "a.html");
+  for (const char* piece : {"room + 0.75 m", "<svg", "UGR", "maintenance factor of 0.8"}) {
+    EXPECT_TRUE(says(page, piece));
+  }
+  EXPECT_EQ(page.find("src="), std::string::npos) << "it holds all it needs";
+}
+
+/// Illuminance is proportional to the maintenance factor, with the same rays.
+TEST_F(ReportCommand, MaintenanceDimsAllAlike) {
+  const auto mean = [&](const char* factor) {
+    return run_json({"report", "room.toml", "room.vtp", "--plane", "room@0.75", "--rays", "64",
+                     "--maintenance", factor})["surfaces"][0]["E_m"]
+        .get<double>();
+  };
+  const double full = mean("1");
+  EXPECT_NEAR(mean("0.5"), 0.5 * full, 1e-9 * full);
+}
+
+TEST_F(ReportCommand, PrintsItsFigures) {
+  const Ended ended = run({"report", "room.toml", "room.vtp", "--surface", "panel", "--observer",
+                           "door", "--rays", "64", "--quiet"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(says(ended.out, "panel: E_m "));
+  EXPECT_TRUE(says(ended.out, "door: UGR "));
+}
+
+TEST_F(ReportCommand, RefusesWhatItCannotMeasure) {
+  expect_refused({"--surface", "pannel", "-o", "a.html"}, 3, "Did you mean 'panel'?");
+  expect_refused({"-o", "a.html"}, 3, "--plane floor@0.75");
+  expect_refused({"--plane", "room", "-o", "a.html"}, 2, "NAME@NUMBER");
+  expect_refused({"--plane", "room@0.75", "--margin", "2", "-o", "a.html"}, 3, "smaller one");
+  expect_refused({"--observer", "window", "-o", "a.html"}, 3, "window");
+  expect_refused({"--surface", "panel", "--watts", "lamp=3", "-o", "a.html"}, 3, "no luminaire");
+  expect_refused({"--surface", "panel", "-o", "a.pdf"}, 2, ".html");
+}
+
+}  // namespace
+}  // namespace lightwell
