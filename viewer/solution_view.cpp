@@ -1,5 +1,6 @@
 #include "viewer/solution_view.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkDoubleArray.h>
 #include <vtkLookupTable.h>
@@ -60,8 +61,6 @@ vtkSmartPointer<vtkScalarBarActor> make_legend() {
   legend->UnconstrainedFontSizeOn();
   legend->SetMaximumWidthInPixels(80);
   legend->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  legend->GetPositionCoordinate()->SetValue(0.9, 0.25);
-  legend->SetWidth(0.09);
   legend->SetHeight(0.5);
   legend->SetVerticalTitleSeparation(10);  // pixels; the highest label is as high as the bar
   for (vtkTextProperty* text : {legend->GetTitleTextProperty(), legend->GetLabelTextProperty()}) {
@@ -72,6 +71,21 @@ vtkSmartPointer<vtkScalarBarActor> make_legend() {
   }
   legend->VisibilityOff();
   return legend;
+}
+
+/// Keeps the legend as wide as its text, which does not shrink with the picture.
+void keep_at_edge(vtkRenderer* renderer, vtkScalarBarActor* legend) {
+  vtkNew<vtkCallbackCommand> before_drawing;
+  before_drawing->SetClientData(legend);
+  before_drawing->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    constexpr double pixels = 92.0, from_edge = 6.0;
+    const int width = std::max(1, static_cast<vtkRenderer*>(caller)->GetSize()[0]);
+    auto* const kept = static_cast<vtkScalarBarActor*>(data);
+    const double share = std::min(0.5, pixels / width);
+    kept->SetWidth(share);
+    kept->GetPositionCoordinate()->SetValue(1.0 - share - from_edge / width, 0.25);
+  });
+  renderer->AddObserver(vtkCommand::StartEvent, before_drawing);
 }
 
 /// Linear light of each sRGB byte: the inverse of srgb_encode.
@@ -134,6 +148,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   if (sky_) outside_.emplace(*sky_).add_to(renderer_);
   isolux_.add_to(renderer_);
   renderer_->AddViewProp(legend_);
+  keep_at_edge(renderer_, legend_);
   renderer_->SetBackground(0.0, 0.0, 0.0);
   look_.camera = start_camera_;
   look_.metered_scale = meter(start_camera_);
