@@ -293,6 +293,43 @@ TEST(Snapshot, BeginsAsTheOptionsSay) {
       "a quarter up the scale");
 }
 
+Pixel quarter_up_the_scale() {
+  const Eigen::Array3f c = 255.0f * false_color(0.25f);
+  return {static_cast<int>(c[0]), static_cast<int>(c[1]), static_cast<int>(c[2])};
+}
+
+/// Of reflectance 1, luminance is E / pi.
+TEST(Snapshot, MeasuresLuminanceAndUnshotLight) {
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  options.illuminance = true;
+  options.measure = Measure::luminance;
+  const float lux = vertex_illuminance(box.solution)[8];  // of the back wall, even all over
+  options.lux_range = {0.0, 4.0 * lux / std::numbers::pi};
+  expect_pixel(draw(box, options).at(100, 75), quarter_up_the_scale(), "the back wall's luminance");
+
+  options.measure = Measure::unshot;
+  options.lux_range = {0.0, 40.0};
+  SolutionView view(box, options);
+  view.set_unshot(Eigen::ArrayXf::Constant(5, 10.0f));
+  const Picture picture{200, 150, draw_offscreen(view, 200, 150)};
+  expect_pixel(picture.at(100, 75), quarter_up_the_scale(), "a quarter of 40 lm/m2");
+}
+
+/// The legend's text, which is white, ends before the picture does, however narrow that is.
+TEST(Snapshot, TheLegendFitsIntoNarrowPictures) {
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  options.illuminance = true;
+  options.lux_range = {1.0, 100000.0};
+  const Picture picture = draw(box, options);
+  int brightest = 0;
+  for (int y = 0; y < 150; ++y) {
+    for (int x = 197; x < 200; ++x) brightest = std::max(brightest, picture.at(x, y)[0]);
+  }
+  EXPECT_LT(brightest, 128);
+}
+
 /// A folder of its own that goes away with the test.
 class SnapshotFile : public testing::Test {
  protected:
