@@ -124,6 +124,9 @@ function palette_texture(hex) {
   return texture;
 }
 
+/** three.js' number for faces seen from behind. */
+const back_side = 1;
+
 /** WebGL's and three.js' numbers for how a picture goes on and is filtered. */
 const wraps = {repeat: 1000, clamp: 1001, mirror: 1002}, nearest = 1003, mipmap = 1008;
 
@@ -154,12 +157,21 @@ class Picture {
     }
     model.groups.forEach(({first, count}, g) => this.geometry.addGroup(3 * first, 3 * count, g));
     this.materials = [1, 1, 1, 1, glass_opacity].map((opacity) => this.make_material(opacity));
-    [, this.backed, this.dark, this.dark_backed, this.glass] = this.materials;  // the groups of Model.split_faces
+    const [, backed, dark, dark_backed, glass] = this.materials;  // the groups of Model.split_faces
+    this.glass = glass;
     this.with_pictures = (model.about.pictures ?? []).flatMap((picture, i) => this.make_pictured_materials(picture, i));
     this.materials.push(...this.with_pictures);
+    // Black backs are drawn by themselves, further away, so that they do not show along the outlines of what they belong to.
+    this.backs = [backed, dark_backed, ...this.with_pictures.filter((_, m) => m % 2 === 1)].map((front) => {
+      const back = this.make_material(1, {uniforms: front.uniforms, defines: front.defines ?? {}});
+      const {first, count} = model.groups[this.materials.indexOf(front)];
+      this.geometry.addGroup(3 * first, 3 * count, this.materials.push(back) - 1);
+      back.side = back_side;
+      return back;
+    });
     // Where a lit wall stands on a floor that is black under it, the edge is the wall's: several samples a pixel would
     // else let black through. In pixels of the black face's slope; dots were seen at 1, none from 2 on.
-    for (const material of [this.dark, this.dark_backed]) {
+    for (const material of [dark, dark_backed, ...this.backs]) {
       Object.assign(material, {polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4});
     }
     const mesh = new Library.Mesh(this.geometry, this.materials);
@@ -204,11 +216,7 @@ class Picture {
   /** Whether the dark backs of surfaces are left out. */
   look_through(looks_through) {
     this.looks_through = looks_through;
-    const pictured = this.with_pictures.filter((_, m) => m % 2 === 1);
-    for (const material of [this.backed, this.dark_backed, ...pictured]) {
-      material.side = looks_through ? Library.FrontSide : Library.DoubleSide;
-      material.needsUpdate = true;
-    }
+    for (const back of this.backs) back.visible = !looks_through;
   }
 
   set_false_colors(on) { this.uniforms.shows.value = on ? 1 : 0; }
