@@ -103,7 +103,7 @@ class SolutionView {
   IsoluxLines isolux_;
 };
 
-/// Draws off screen, 4 x 4 samples a pixel on a regular grid, averaged in linear light. 8-bit sRGB,
+/// Draws off screen, 16 samples a pixel (a Hammersley set), averaged in linear light. 8-bit sRGB,
 /// 3 bytes a pixel, row 0 on top. Needs a DisplayConnection. Throws std::runtime_error if the
 /// graphics driver cannot draw.
 std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, int height);
