@@ -38,7 +38,7 @@ TEST_F(ReportCommand, FiguresAreThoseOfThePoints) {
        "--maintenance", "0.8",       "--observer", "door",    "--watts",   "panel=40",  "--rays",
        "256",           "-o",        "a.html",     "-o",      "a.json",    "-o",        "a.csv"});
   ASSERT_EQ(json["surfaces"].size(), 2u);
-  const Json& plane = json["surfaces"][0];
+  const Json& plane = json["surfaces"][1];  // after the surfaces
   EXPECT_EQ(plane["name"], "room + 0.75 m");
   // p(3 m) = 0.43 m: 7 x 5 cells.
   EXPECT_EQ(plane["points"], 35);

@@ -112,13 +112,14 @@ TEST(Snapshot, DarkPicturesInBrightLightKeepItsColour) {
   ViewOptions options = options_for(box_camera());
   options.materials = box.scene.materials;
   options.scene = &box.scene;
-  const Eigen::Array3f warm{60.0f, 30.0f, 12.0f};
-  for (int v = 8; v < 12; ++v) box.solved.solution.direct_irradiance.row(v) = warm.transpose();
+  BandArray warm(1, 3);
+  warm << 60.0f, 30.0f, 12.0f;
+  for (int v = 8; v < 12; ++v) box.solved.solution.direct_irradiance.row(v) = warm;
   Look look = SolutionView(box.solved, options).look();
   look.metered_scale = 0.1;  // up to 1.9 times white
   const Picture picture = draw(box.solved, options, &look);
   for (const auto& [x, rho] : {std::pair(80, bright_half), std::pair(120, dark_half)}) {
-    const BandArray L = rho * warm.transpose() / std::numbers::pi_v<float>;
+    const BandArray L = rho * warm / std::numbers::pi_v<float>;
     const auto wanted = display_colors(L, rgb_bands(), look.metered_scale);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.at(x, 75)[c], wanted[c], 5) << x << ' ' << c;
   }
