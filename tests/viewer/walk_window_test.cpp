@@ -109,6 +109,21 @@ TEST_F(WalkWindowTest, FShowsTheWholeScene) {
   EXPECT_GT((camera.position - Eigen::Vector3d(1, 1, 1)).norm(), 2.0 * std::sqrt(3.0));
 }
 
+/// Nothing is being solved, so there is no unshot light to show.
+TEST_F(WalkWindowTest, FalseColoursShowLuminanceOrIlluminance) {
+  tap("u");
+  EXPECT_TRUE(window_.look().illuminance);
+  EXPECT_EQ(window_.look().measure, Measure::luminance);
+  EXPECT_NE(window_.status().find("luminance"), std::string::npos) << window_.status();
+  tap("v");
+  EXPECT_TRUE(window_.look().illuminance);
+  EXPECT_EQ(window_.look().measure, Measure::illuminance);
+  tap("u");
+  EXPECT_EQ(window_.look().measure, Measure::luminance);
+  tap("u");
+  EXPECT_FALSE(window_.look().illuminance);
+}
+
 TEST_F(WalkWindowTest, SwitchesSwitchOncePerPress) {
   for (const char* key : {"m", "v", "x"}) {
     send(vtkCommand::KeyPressEvent, key);
