@@ -57,6 +57,25 @@ TEST(LiveSolve, LightArrivesShotByShot) {
   }
 }
 
+/// Before the first shot it is what lamps emit; every shot takes some of it away.
+TEST(LiveSolve, UnshotLightIsWhatPatchesAreStillToGive) {
+  const Scene scene = channel_room();
+  LiveSolve live(scene, quick(), {});
+  const SolvedScene dark = live.dark();
+  const PatchMesh& mesh = dark.mesh;
+  const Eigen::ArrayXf first = live.light().unshot;
+  ASSERT_EQ(first.size(), mesh.patch_count());
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const double M = luminous(scene.bands, mesh.emission.row(p).transpose());
+    EXPECT_NEAR(first[p], M, 1e-5 * M) << p;
+  }
+  const auto lumens = [&](const Eigen::ArrayXf& unshot) {
+    return (mesh.area * unshot.cast<double>()).sum();
+  };
+  live.shoot(50);
+  EXPECT_LT(lumens(live.light().unshot), 0.9 * lumens(first));
+}
+
 /// What has no shot to come by is said, until there is a solution, which has it.
 TEST(LiveSolve, SaysThatMirrorsSendTheirLightLater) {
   const Scene scene = channel_room();  // it has a mirror
