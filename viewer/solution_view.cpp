@@ -87,7 +87,7 @@ void keep_at_edge(vtkRenderer* renderer, vtkScalarBarActor* legend) {
   vtkNew<vtkCallbackCommand> before_drawing;
   before_drawing->SetClientData(legend);
   before_drawing->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
-    constexpr double pixels = 92.0, from_edge = 6.0;
+    constexpr double pixels = 72.0, from_edge = 6.0;
     const int width = std::max(1, static_cast<vtkRenderer*>(caller)->GetSize()[0]);
     auto* const kept = static_cast<vtkScalarBarActor*>(data);
     const double share = std::min(0.5, pixels / width);
