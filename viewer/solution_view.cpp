@@ -82,15 +82,16 @@ vtkSmartPointer<vtkScalarBarActor> make_legend() {
   return legend;
 }
 
-/// Keeps the legend as wide as its text, which does not shrink with the picture.
+/// Keeps the legend as wide as its text, which does not shrink with the picture, from 256 pixels
+/// on.
 void keep_at_edge(vtkRenderer* renderer, vtkScalarBarActor* legend) {
   vtkNew<vtkCallbackCommand> before_drawing;
   before_drawing->SetClientData(legend);
   before_drawing->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
-    constexpr double pixels = 72.0, from_edge = 6.0;
+    constexpr double pixels = 92.0, from_edge = 6.0, most = 0.36;
     const int width = std::max(1, static_cast<vtkRenderer*>(caller)->GetSize()[0]);
     auto* const kept = static_cast<vtkScalarBarActor*>(data);
-    const double share = std::min(0.5, pixels / width);
+    const double share = std::min(most, pixels / width);
     kept->SetWidth(share);
     kept->GetPositionCoordinate()->SetValue(1.0 - share - from_edge / width, 0.25);
   });
