@@ -18,7 +18,7 @@ class BrightPatches {
   /// Of a patch's brightness, over the median and the mean of the area that is lit: with rays that
   /// are spread by the cosine, anything dimmer adds less noise than the many patches of ordinary
   /// brightness do.
-  static constexpr double times_median = 16.0, times_mean = 2.0;
+  static constexpr double times_median = 32.0, times_mean = 2.0;
   static constexpr int most = 256;  ///< patches; those that would leave the most noise
 
   /// None.
