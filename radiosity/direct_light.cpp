@@ -383,39 +383,19 @@ Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vecto
 
 void DirectLight::add_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
                                  const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                                 const ShadowOptions& options, float* E,
+                                 const ShadowOptions& options, float* E, Lights lights,
                                  EmitterSight* sight) const {
-  for_each_light(0, caster, point, normal, facet, key, options, sight,
+  // Emitters come first, then lamps, then what is distant.
+  std::size_t first = 0;
+  if (lights != Lights::all) first = emitters_.size();
+  if (lights == Lights::distant) {
+    first += static_cast<std::size_t>(
+        std::ranges::count_if(free_sources_, [](const auto& s) { return !s.is_distant(); }));
+  }
+  for_each_light(static_cast<int>(first), caster, point, normal, facet, key, options, sight,
                  [&](int channel, const Spectrum& light, const auto& F) {
                    Eigen::Map<Eigen::ArrayXf>(E + channel * bands_, bands_) += light * F;
                  });
-}
-
-void DirectLight::add_distant_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                                         const Eigen::Vector3d& normal, int facet,
-                                         std::uint64_t key, const ShadowOptions& options,
-                                         float* E) const {
-  const auto first = std::find_if(free_sources_.begin(), free_sources_.end(),
-                                  [](const FreeSource& source) { return source.is_distant(); });
-  for_each_light(
-      static_cast<int>(emitters_.size()) + static_cast<int>(first - free_sources_.begin()), caster,
-      point, normal, facet, key, options, nullptr,
-      [&](int channel, const Spectrum& light, const auto& F) {
-        Eigen::Map<Eigen::ArrayXf>(E + channel * bands_, bands_) += light * F;
-      });
-}
-
-Eigen::ArrayXf DirectLight::irradiance_of_free_sources(const ElementCaster& caster,
-                                                       const Eigen::Vector3d& point,
-                                                       const Eigen::Vector3d& normal, int facet,
-                                                       std::uint64_t key,
-                                                       const ShadowOptions& options) const {
-  Eigen::ArrayXf E = Eigen::ArrayXf::Zero(column_count());
-  for_each_light(static_cast<int>(emitters_.size()), caster, point, normal, facet, key, options,
-                 nullptr, [&](int channel, const Spectrum& light, const auto& F) {
-                   E.segment(channel * bands_, bands_) += light * F;
-                 });
-  return E;
 }
 
 }  // namespace lightwell

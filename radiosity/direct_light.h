@@ -50,6 +50,9 @@ struct EmitterSight {
   std::uint64_t hidden = 0;  ///< bit i: none did
 };
 
+/// Whose light is asked for: everything's, that of free sources, or that of the sky and the sun.
+enum class Lights { all, free, distant };
+
 /// Light straight from the scene's emitters. Emitters are taken in order of falling exitance, all
 /// of one exitance together, while they add up to at most a quarter of the scene's area: those are
 /// small and bright, and a hemisphere of rays would find them by chance. What emits beyond that is
@@ -109,22 +112,12 @@ class DirectLight {
                       const Eigen::Vector3d& normal, int facet, std::uint64_t key,
                       const ShadowOptions& options = {}, EmitterSight* sight = nullptr) const;
 
-  /// The same, each channel's added to its columns of E, which has column_count() of them.
+  /// The same from some of the lights, each channel's added to its columns of E, which has
+  /// column_count() of them.
   void add_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
                       const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                      const ShadowOptions& options, float* E, EmitterSight* sight = nullptr) const;
-
-  /// The same from the sky and the sun alone.
-  void add_distant_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                              const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                              const ShadowOptions& options, float* E) const;
-
-  /// The same from free sources alone, each channel's in its columns.
-  Eigen::ArrayXf irradiance_of_free_sources(const ElementCaster& caster,
-                                            const Eigen::Vector3d& point,
-                                            const Eigen::Vector3d& normal, int facet,
-                                            std::uint64_t key,
-                                            const ShadowOptions& options = {}) const;
+                      const ShadowOptions& options, float* E, Lights lights = Lights::all,
+                      EmitterSight* sight = nullptr) const;
 
  private:
   template <class Add>

@@ -295,9 +295,9 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
   };
   for_each_point(points, options, phase, values, [&](int i, std::uint64_t key) {
     const GatherPoint& at = points[i];
-    direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
-                                random_key(key, gather_shadows), options.shadows,
-                                direct.row(i).data(), sights ? &(*sights)[i] : nullptr);
+    direct_light.add_irradiance(
+        caster, at.position, at.normal, at.facet, random_key(key, gather_shadows), options.shadows,
+        direct.row(i).data(), Lights::all, sights ? &(*sights)[i] : nullptr);
   });
   return direct;
 }
