@@ -47,28 +47,32 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 }
 
 // Scales what is read at vertices (W/m^2 of reflected light, interpolated over elements, in columns
-// of every channel) to leave patches with the power that their equations balanced: between vertices
-// that are far apart interpolation cuts peaks off, and would lose it at each reflection. What a
-// patch's value is off by on its own is smoothed away among its neighbours. All light together says
-// how much, so that channels add up.
+// of every channel) to leave the scene with the power that the patches' equations balanced: between
+// vertices that are far apart interpolation cuts peaks off, and would lose it at each reflection.
+// One factor a band for the whole scene, since what a patch's own value is off by where light is
+// steep, in a corner or beside what stands on it, is more than what it would set right there. All
+// light together says how much, so that channels add up.
 void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
                 const BandArray& patch_radiosity, BandArray& radiosity) {
   const Eigen::Index bands = mesh.reflectance.cols();
   const BandArray balanced = channel_sum(
       without_owned_emission(mesh, direct_light, patch_radiosity), static_cast<int>(bands));
   const BandArray read = channel_sum(radiosity, static_cast<int>(bands));
-  BandArray interpolated = BandArray::Zero(mesh.patch_count(), bands);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int n = mesh.corner_count(e), p = mesh.patch[e];
-    const auto share = static_cast<float>(mesh.element_area[e] / (n * mesh.area[p]));
-    for (int c = 0; c < n; ++c) interpolated.row(p) += share * read.row(mesh.corners[e][c]);
+  Eigen::ArrayXd wanted = Eigen::ArrayXd::Zero(bands), found = wanted;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    wanted += mesh.area[p] * balanced.row(p).transpose().cast<double>();
   }
-  const BandArray wanted = to_vertices(mesh, balanced), found = to_vertices(mesh, interpolated);
-  constexpr float most = 1.25f;  // more, and the edge of a shadow is what patches do not know of
-  const BandArray factor =
-      (found > 0.0f).select(wanted / found.max(1e-30f), 1.0f).max(1.0f / most).min(most);
-  for (Eigen::Index k = 0; k < radiosity.cols(); k += bands) {
-    radiosity.middleCols(k, bands) *= factor;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int n = mesh.corner_count(e);
+    for (int c = 0; c < n; ++c) {
+      found += mesh.element_area[e] / n * read.row(mesh.corners[e][c]).transpose().cast<double>();
+    }
+  }
+  constexpr double most = 1.25;  // more, and elements are too large to tell
+  const Eigen::ArrayXd factor =
+      (found > 0.0).select(wanted / found.max(1e-300), 1.0).max(1.0 / most).min(most);
+  for (Eigen::Index k = 0; k < radiosity.cols(); ++k) {
+    radiosity.col(k) *= static_cast<float>(factor[k % bands]);
   }
 }
 
