@@ -223,6 +223,7 @@ int report_lighting(const Arguments& arguments, Console& console) {
   GatherOptions gathering{.rays = arguments.rays};
   gathering.progress = console.progress();
   for (CalculationSurface& surface : made.surfaces) {
+    surface.grid = without_buried_points(caster, std::move(surface.grid));
     surface.field = measure_grid(scene, caster, direct_light, solved.solution, surface.grid,
                                  arguments.maintenance_factor, gathering);
     stop_if_interrupted();

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "scene/errors.h"
+#include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
@@ -171,6 +172,35 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
         "no point of the grid lies on surface '{}'; give a smaller margin or spacing", named.name));
   }
   return grid;
+}
+
+LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
+  constexpr int looks = 64;
+  const SobolPoints sobol(looks);
+  const auto is_buried = [&](const Probe& point) {
+    Eigen::Vector3d a, b;
+    tangent_frame(point.normal, a, b);
+    std::array<Ray, looks> rays;
+    std::array<ElementHit, looks> hits;
+    for (int i = 0; i < looks; ++i) {
+      const Eigen::Array4f lot = sobol.point(i, 0);
+      const Eigen::Vector3d d = cosine_direction(lot[0], lot[1]);
+      rays[static_cast<std::size_t>(i)] = {
+          .origin = point.position, .direction = d.x() * a + d.y() * b + d.z() * point.normal};
+    }
+    caster.closest_hits(rays, hits);
+    return std::ranges::all_of(
+        hits, [](const ElementHit& hit) { return hit.facet >= 0 && hit.from_back; });
+  };
+  LuxGrid open = grid;
+  open.cell.clear();
+  open.points.clear();
+  for (std::size_t i = 0; i < grid.points.size(); ++i) {
+    if (is_buried(grid.points[i])) continue;
+    open.cell.push_back(grid.cell[i]);
+    open.points.push_back(grid.points[i]);
+  }
+  return open.points.empty() ? grid : open;
 }
 
 LuxField measure_grid(const Scene& scene, const ElementCaster& caster,

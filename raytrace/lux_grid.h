@@ -38,6 +38,11 @@ struct LuxGrid {
 LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
                  const LuxGridOptions& options = {});
 
+/// The grid without points that are inside of bodies, as those of a working plane that a cupboard
+/// reaches through: from there every ray that leaves the plane meets the back of a surface. Where
+/// that is so of all points, the scene's surfaces face away from its rooms, and all stay.
+LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid);
+
 /// What a grid measured, lx.
 struct LuxField {
   Eigen::ArrayXd lux{};  ///< at each point

@@ -86,6 +86,26 @@ TEST(LuxGrid, SaysWhatItCannotDo) {
   EXPECT_TRUE(says(refused(1, {}), "is a sphere"));
 }
 
+/// A chest of 0.8 m reaches through the plane at 0.75 m.
+TEST(LuxGrid, LeavesOutWhatIsInsideOfBodies) {
+  const LitScene lit(SceneBuilder()
+                         .box({}, {0, 0, 0}, {4, 4, 3}, true)
+                         .box({}, {1, 1, 0}, {2, 2, 0.8}, false)
+                         .build());
+  const Scene& scene = lit.scene;
+  const LuxGrid grid = lux_grid(scene, 0, up, {.height = 0.75, .spacing = 0.5});
+  const LuxGrid open = without_buried_points(lit.caster, grid);
+  EXPECT_EQ(grid.points.size(), 64u);
+  EXPECT_EQ(open.points.size(), 60u);
+  EXPECT_EQ(open.cell.size(), 60u);
+  for (const Probe& probe : open.points) {
+    EXPECT_FALSE((probe.position.head<2>().array() > 1.0).all() &&
+                 (probe.position.head<2>().array() < 2.0).all());
+  }
+  const LuxGrid above = lux_grid(scene, 0, up, {.height = 1.0, .spacing = 0.5});
+  EXPECT_EQ(without_buried_points(lit.caster, above).points.size(), 64u);
+}
+
 /// A panel of even exitance M over a black floor: E = M F in closed form at every point. Half of
 /// the noise is the shadow rays', of which none is needed in the open.
 TEST(LuxGrid, MeasuresAPanelOverAFloorAsTheFormulaHasIt) {
