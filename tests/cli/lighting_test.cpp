@@ -64,10 +64,16 @@ TEST_F(ReportCommand, FiguresAreThoseOfThePoints) {
   }
   ASSERT_EQ(count, 35);
   const double E_m = plane["E_m"];
-  EXPECT_NEAR(E_m, sum / count, 1e-5 * E_m);  // of six digits
-  EXPECT_NEAR(plane["E_min"].get<double>(), least, 1e-5 * least);
-  EXPECT_NEAR(plane["U_0"].get<double>(), least / E_m, 1e-4);
-  EXPECT_LT(plane["point_within_relative"].get<double>(), 0.2);
+  // The CSV has six digits: half a unit in the sixth is 5e-6 at most.
+  constexpr double rounded = 5e-6;
+  EXPECT_NEAR(E_m, sum / count, rounded * E_m);
+  EXPECT_NEAR(plane["E_min"].get<double>(), least, rounded * least);
+  EXPECT_NEAR(plane["U_0"].get<double>(), least / E_m, rounded);
+  // 256 rays leave 1 / sqrt(256) even where single rays differ by all of the mean; it is said as
+  // two standard deviations.
+  const double point_within = plane["point_within_relative"];
+  EXPECT_GT(point_within, 0.0);
+  EXPECT_LT(point_within, 2.0 / 16.0);
 
   ASSERT_EQ(json["luminaires"].size(), 1u);
   EXPECT_EQ(json["luminaires"][0]["name"], "panel");
@@ -90,7 +96,7 @@ TEST_F(ReportCommand, MaintenanceDimsAllAlike) {
         .get<double>();
   };
   const double full = mean("1");
-  EXPECT_NEAR(mean("0.5"), 0.5 * full, 1e-9 * full);
+  EXPECT_EQ(mean("0.5"), 0.5 * full) << "halving a double rounds nothing";
 }
 
 TEST_F(ReportCommand, PrintsItsFigures) {
