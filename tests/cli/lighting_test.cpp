@@ -117,5 +117,29 @@ TEST_F(ReportCommand, RefusesWhatItCannotMeasure) {
   expect_refused({"--surface", "panel", "-o", "a.pdf"}, 2, ".html");
 }
 
+class InfoCommand : public CommandTest {};
+
+TEST_F(InfoCommand, PrintsAndHandsOverTheUgrTable) {
+  const std::string file = std::string(LIGHTWELL_TEST_DATA) + "/luminaires/ugr/sample_03.ldt";
+  const Json ugr = run_json({"info", file, "--ugr"})["ugr"];
+  ASSERT_EQ(ugr["rooms"].size(), 19u);
+  EXPECT_EQ(ugr["rooms"][7], Json::array({4, 3}));
+  EXPECT_EQ(ugr["reflectances_percent"][0], Json::array({70.0, 50.0, 20.0}));
+  ASSERT_EQ(ugr["crosswise"].size(), 19u);
+  ASSERT_EQ(ugr["endwise"][7].size(), 5u);
+  const Ended ended = run({"info", file, "--ugr"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  const std::string row = ended.out.substr(ended.out.find("4H x 3H"));
+  std::istringstream printed(row.substr(7));
+  for (const char* view : {"crosswise", "endwise"}) {
+    for (const Json& rating : ugr[view][7]) {
+      double value = 0.0;
+      ASSERT_TRUE(printed >> value);
+      constexpr double rounded = 0.05;  // half of its last digit
+      EXPECT_NEAR(value, rating.get<double>(), rounded * (1.0 + 1e-9));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lightwell
