@@ -1,4 +1,5 @@
-// What 'lightwell report' says of a design, and what it refuses.
+// What 'lightwell report' and 'info --ugr' say of a design and of a luminaire, and what they
+// refuse.
 #include <gtest/gtest.h>
 
 #include <algorithm>
