@@ -27,9 +27,10 @@ class GlareSum {
   GlareSum(const Camera& eye, const ElementCaster& caster) : eye_(eye), caster_(caster) {}
 
   const Eigen::Vector3d& position() const { return eye_.position; }
-  /// Whether any of it may be in sight.
-  bool is_ahead(const Eigen::Vector3d& point) const {
-    return (point - eye_.position).dot(eye_.direction) > 0.0;
+  bool counts(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d way = point - eye_.position;
+    return counts_for_glare(way.dot(eye_.direction), way.dot(eye_.direction.cross(eye_.up)),
+                            way.dot(eye_.up));
   }
   /// What the ray to a point meets within this share of the way.
   ElementHit first_hit(const Eigen::Vector3d& point, double share) const {
@@ -42,7 +43,6 @@ class GlareSum {
            double luminance) {
     const Eigen::Vector3d way = (point - eye_.position).normalized();
     const double ahead = way.dot(eye_.direction);
-    if (!(ahead > 0.0)) return;
     constexpr double degrees = 180.0 / pi;
     const double above = way.dot(eye_.up);
     const double beside = std::abs(way.dot(eye_.direction.cross(eye_.up)));
@@ -92,7 +92,7 @@ void add_triangle(const std::string& name, const Triangle& t, const Eigen::Vecto
     return;
   }
   const double cosine = -normal.dot(way) / d;
-  if (!(cosine > 0.0) || !sum.is_ahead(middle)) return;
+  if (!(cosine > 0.0) || !sum.counts(middle)) return;
   constexpr double beyond = 1.01;  // spheres are met a little off their elements
   if (sum.first_hit(middle, beyond).facet != facet) return;
   const double area = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
@@ -130,7 +130,7 @@ void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, Glare
     const Eigen::Vector3d point = opening_point(lamp, (i % opening_grid + 0.5) / opening_grid,
                                                 (i / opening_grid + 0.5) / opening_grid);
     constexpr double before = 0.999;  // a lamp hangs in what holds it
-    if (!sum.is_ahead(point) || sum.first_hit(point, before).facet >= 0) continue;
+    if (!sum.counts(point) || sum.first_hit(point, before).facet >= 0) continue;
     const double solid_angle = area * cosine / (places * (point - sum.position()).squaredNorm());
     sum.add(lamp.name, point, solid_angle, candela / (area * cosine));
   }
@@ -156,6 +156,11 @@ double position_index(double sigma, double tau) {
   }
   return std::exp((35.2 - 0.31889 * tau - 1.22 * std::exp(-2.0 * tau / 9.0)) * 1e-3 * sigma +
                   (21.0 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
+}
+
+bool counts_for_glare(double ahead, double beside, double above) {
+  constexpr double most_beside = 3.0, most_above = 1.9;
+  return ahead > 0.0 && std::abs(beside) <= most_beside * ahead && above <= most_above * ahead;
 }
 
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,

@@ -85,8 +85,7 @@ class Room {
       const double ahead = (i + 0.5) * apart;
       for (int j = 0; j < count_[1 - sight_]; ++j) {
         const double beside = (j + 0.5) * apart - 0.5 * size_[1 - sight_];
-        constexpr double most_beside = 3.0, most_above = 1.9;  // of the table of CIE 117
-        if (std::abs(beside) > most_beside * ahead || H > most_above * ahead) continue;
+        if (!counts_for_glare(ahead, beside, H)) continue;
         Eigen::Vector3d to_eye;
         to_eye[sight_] = -ahead;
         to_eye[1 - sight_] = -beside;

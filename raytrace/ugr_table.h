@@ -51,8 +51,7 @@ struct UgrTable {
 /// The table that makers print, for the file's own flux (CIE 117-1995, CIE 190:2010). Luminaires
 /// hang in an even grid 0.25 H apart, the eye is at the middle of a wall and looks level at the
 /// opposite one. A luminaire's luminance is its intensity over the area seen of its opening and
-/// luminous sides; those beyond CIE 117's position indices, more than 3 R beside the line of sight
-/// or 1.9 R above it at a distance R along it, do not count. The background is what walls receive
+/// luminous sides, where that counts_for_glare(). The background is what walls receive
 /// indirectly in a room of three surfaces, ceiling, walls and the plane at the eye, each evenly
 /// lit. Throws InputError if the file is radiant or says of no luminous area.
 UgrTable ugr_table(const LuminaireFile& luminaire);

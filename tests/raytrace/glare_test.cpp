@@ -89,6 +89,13 @@ TEST(UnifiedGlareRating, OfASmallLuminaireIsTheFormulas) {
   EXPECT_NEAR(*glare.ugr, 8.0 * std::log10(0.25 / L_b * L * L * omega / (p * p)), 0.006);
 }
 
+/// 1.7 m above the line of sight: that is within 1.9 times 1 m along it, and beyond 1.9 times 0.8
+/// m.
+TEST(UnifiedGlareRating, EndsWhereTheStandardsTableEnds) {
+  EXPECT_TRUE(rating(lit_room({2, 2, 2.9}), eye()).ugr.has_value());
+  EXPECT_FALSE(rating(lit_room({2, 1.8, 2.9}), eye()).ugr.has_value());
+}
+
 TEST(UnifiedGlareRating, IsEmptyBehindTheEyeAndBehindAWall) {
   EXPECT_FALSE(rating(lit_room({2, 0.5, 2.4}), eye()).ugr.has_value());
   const Paint wall{.reflectance = rho};
