@@ -237,11 +237,10 @@ Json ugr_json(const UgrTable& table) {
   for (const auto& [ceiling, walls, floor] : ugr_reflectances) {
     reflectances.push_back({100.0 * ceiling, 100.0 * walls, 100.0 * floor});
   }
-  return {{"crosswise_looks_along", table.crosswise_is_c0 ? "C0" : "C90"},
-          {"rooms", std::move(rooms)},
+  return {{"rooms", std::move(rooms)},
           {"reflectances_percent", std::move(reflectances)},
-          {"crosswise", rows(table.crosswise)},
-          {"endwise", rows(table.endwise)}};
+          {"along_c0", rows(table.along_c0)},
+          {"along_c90", rows(table.along_c90)}};
 }
 
 void print_ugr(const UgrTable& table) {
@@ -256,18 +255,14 @@ void print_ugr(const UgrTable& table) {
         [&](int, std::size_t r) { fmt::print("{:>6.0f}", 100.0 * share(ugr_reflectances[r])); });
     fmt::print("\n");
   };
-  const char *const first = table.crosswise_is_c0 ? "C0" : "C90", *const second =
-                                                                      table.crosswise_is_c0 ? "C90"
-                                                                                            : "C0";
-  fmt::print("\n{:<10}{:>30}{:>30}\n", "UGR", fmt::format("crosswise, along {}", first),
-             fmt::format("endwise, along {}", second));
+  fmt::print("\n{:<10}{:>30}{:>30}\n", "UGR", "looking along C0", "along C90");
   print_row("ceiling %", [](const UgrReflectances& rho) { return rho.ceiling; });
   print_row("walls %", [](const UgrReflectances& rho) { return rho.walls; });
   print_row("floor %", [](const UgrReflectances& rho) { return rho.floor; });
   for (std::size_t i = 0; i < ugr_rooms.size(); ++i) {
     fmt::print("{:<10}", fmt::format("{}H x {}H", ugr_rooms[i].across, ugr_rooms[i].along));
     for_both([&](int view, std::size_t r) {
-      const double ugr = (view == 0 ? table.crosswise : table.endwise)(
+      const double ugr = (view == 0 ? table.along_c0 : table.along_c90)(
           static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(r));
       constexpr double least = 10.0;  // below which tables only say so
       fmt::print("{:>6}", ugr < least ? "<10" : fmt::format("{:.1f}", ugr));

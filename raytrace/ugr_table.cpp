@@ -150,18 +150,18 @@ UgrTable ugr_table(const LuminaireFile& luminaire) {
         "{}: it says nothing of a luminous area, without which there is no luminance and no UGR",
         luminaire.file.string()));
   }
-  UgrTable table{.crosswise_is_c0 = opening.along_c0 <= opening.along_c90};
+  UgrTable table;
   const Flux flux = flux_of(*luminaire.web);
   for (std::size_t i = 0; i < ugr_rooms.size(); ++i) {
-    for (const bool is_crosswise : {true, false}) {
-      const Room room(ugr_rooms[i], is_crosswise == table.crosswise_is_c0 ? 0 : 1);
+    for (const int sight : {0, 1}) {
+      const Room room(ugr_rooms[i], sight);
       const double glare = room.glare(luminaire);
       const auto E = room.indirect(flux);
       for (std::size_t r = 0; r < E.size(); ++r) {
         const double background = E[r] / pi;
         const double ugr =
             glare > 0.0 ? std::max(0.0, 8.0 * std::log10(0.25 / background * glare)) : 0.0;
-        auto& ratings = is_crosswise ? table.crosswise : table.endwise;
+        auto& ratings = sight == 0 ? table.along_c0 : table.along_c90;
         ratings(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(r)) = ugr;
       }
     }

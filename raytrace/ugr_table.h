@@ -42,10 +42,9 @@ inline constexpr std::array<UgrReflectances, 5> ugr_reflectances = {
 /// a column for each of `ugr_reflectances`. 0 where none is seen.
 struct UgrTable {
   using Ratings = Eigen::Array<double, ugr_rooms.size(), ugr_reflectances.size()>;
-  Ratings crosswise{};  ///< looking across its length
-  Ratings endwise{};    ///< looking along its length
-  /// Whether C0 is crosswise: always in EULUMDAT, and where it has no length.
-  bool crosswise_is_c0 = true;
+  /// Looking along C0 and along C90: EULUMDAT's crosswise and endwise, and the other way about in
+  /// IES files, whose C0 runs along a luminaire's length.
+  Ratings along_c0{}, along_c90{};
 };
 
 /// The table that makers print, for the file's own flux (CIE 117-1995, CIE 190:2010). Luminaires

@@ -126,13 +126,13 @@ TEST_F(InfoCommand, PrintsAndHandsOverTheUgrTable) {
   ASSERT_EQ(ugr["rooms"].size(), 19u);
   EXPECT_EQ(ugr["rooms"][7], Json::array({4, 3}));
   EXPECT_EQ(ugr["reflectances_percent"][0], Json::array({70.0, 50.0, 20.0}));
-  ASSERT_EQ(ugr["crosswise"].size(), 19u);
-  ASSERT_EQ(ugr["endwise"][7].size(), 5u);
+  ASSERT_EQ(ugr["along_c0"].size(), 19u);
+  ASSERT_EQ(ugr["along_c90"][7].size(), 5u);
   const Ended ended = run({"info", file, "--ugr"});
   EXPECT_EQ(ended.code, 0) << ended.err;
   const std::string row = ended.out.substr(ended.out.find("4H x 3H"));
   std::istringstream printed(row.substr(7));
-  for (const char* view : {"crosswise", "endwise"}) {
+  for (const char* view : {"along_c0", "along_c90"}) {
     for (const Json& rating : ugr[view][7]) {
       double value = 0.0;
       ASSERT_TRUE(printed >> value);
