@@ -112,15 +112,27 @@ void add_surfaces(const Scene& scene, const PatchMesh& mesh, GlareSum& sum) {
   }
 }
 
-/// Of a flat opening the luminance is I / A cos, its solid angle A cos / d^2.
-void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& scale, GlareSum& sum) {
+/// m^2 of a luminaire's opening and of sides so high, as seen along `way` (unit): of a box, or of a
+/// cylinder over an ellipse.
+double projected_area(const Lamp& lamp, double height, const Eigen::Vector3d& way) {
   const LampOpening& opening = lamp.opening;
+  const Eigen::Vector3d seen = lamp.axes.transpose() * way;
+  const double across = opening.along_c0 * seen.y(), along = opening.along_c90 * seen.x();
+  const double width =
+      opening.is_round ? std::hypot(across, along) : std::abs(across) + std::abs(along);
   const double area = opening.along_c0 * opening.along_c90 * (opening.is_round ? pi / 4.0 : 1.0);
+  return area * std::abs(seen.z()) + height * width;
+}
+
+/// Its luminance is I / A, its solid angle A / d^2 with the projected area A.
+void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& scale, double height,
+              GlareSum& sum) {
   const Eigen::Vector3d from = sum.position() - lamp.position;
   const double d = from.norm();
   // Edge on, where a flat opening has no area, a real one has its rim.
   constexpr double rim = 0.05;
-  const double cosine = std::max(rim, std::abs(lamp.aim().dot(from)) / d);
+  const double area =
+      std::max(projected_area(lamp, height, from / d), rim * projected_area(lamp, 0.0, lamp.aim()));
   const double candela =
       luminous(scene.bands, (lamp.intensity * scale).eval()) * relative_intensity(lamp, from / d);
   if (!(candela > 0.0)) return;
@@ -130,8 +142,8 @@ void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& scale, Glare
                                                 (i / opening_grid + 0.5) / opening_grid);
     constexpr double before = 0.999;  // a lamp hangs in what holds it
     if (!sum.is_ahead(point) || sum.first_hit(point, before).facet >= 0) continue;
-    const double solid_angle = area * cosine / (places * (point - sum.position()).squaredNorm());
-    sum.add(lamp.name, point, solid_angle, candela / (area * cosine));
+    const double solid_angle = area / (places * (point - sum.position()).squaredNorm());
+    sum.add(lamp.name, point, solid_angle, candela / area);
   }
 }
 
@@ -169,7 +181,8 @@ double position_index(double sigma, double tau) {
 
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
-                           const Camera& eye, const GatherOptions& gathering) {
+                           const Camera& eye, const GatherOptions& gathering,
+                           std::span<const double> luminous_heights) {
   const PatchMesh& mesh = caster.mesh();
   GlareSum sum(eye, caster);
   Glare glare;
@@ -183,7 +196,7 @@ Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
     const Spectrum scale = mesh.source_scale.rows() > 0
                                ? Spectrum(mesh.source_scale.row(static_cast<Eigen::Index>(i)))
                                : constant_spectrum(scene.bands, 1.0f);
-    add_lamp(scene, lamp, scale, sum);
+    add_lamp(scene, lamp, scale, luminous_heights.empty() ? 0.0 : luminous_heights[i], sum);
   }
   glare.sources = sum.finish();
   glare.background =

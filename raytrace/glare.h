@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,9 +46,12 @@ struct Glare {
 /// For an eye at a camera's place that looks along it. E_i is the illuminance of the eye by what
 /// surfaces reflect. Luminaires are surfaces that emit and lamps with an opening, as bright as they
 /// are in the solution; sky and sun are none, and what is seen through glass or in mirrors is left
-/// out. `gathering` is for E_i.
+/// out. `gathering` is for E_i. `luminous_heights`, m, one for each of the scene's lamps or none:
+/// of the sides around an opening that shine as well, above it; the luminance of such a luminaire
+/// is its intensity over the projected area of opening and sides (CIE 117).
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
-                           const Camera& eye, const GatherOptions& gathering);
+                           const Camera& eye, const GatherOptions& gathering,
+                           std::span<const double> luminous_heights = {});
 
 }  // namespace lightwell

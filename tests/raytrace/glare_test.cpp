@@ -116,5 +116,30 @@ TEST(UnifiedGlareRating, OfALampGoesByItsOpening) {
   EXPECT_EQ(glare.left_out, std::vector<std::string>{"bulb"});
 }
 
+/// With sides 0.05 m high the same is seen as A cos + h w, w being the width across the line of
+/// sight: 0.1 m, that along C0, for an eye in the plane of C90. From a level eye there are the
+/// sides alone, and of a round luminaire the cylinder's outline.
+TEST(UnifiedGlareRating, OfALampCountsItsLuminousSides) {
+  LitScene& lit = lit_room({2, 0.5, 2.4});  // the surface is behind
+  const auto seen_by = [&](const Lamp& lamp, double height) {
+    lit.scene.lamps = {lamp};
+    const std::array<double, 1> heights = {height};
+    return unified_glare_rating(lit.scene, lit.caster, lit.direct_light, lit.solution, eye(),
+                                {.rays = 1024}, heights)
+        .sources.at(0);
+  };
+  Lamp lamp{.name = "drum",
+            .position = {2, 2, 2.2},
+            .intensity = constant_spectrum(lit.scene.bands, 3.0f),
+            .opening = {.along_c0 = 0.1, .along_c90 = 0.2}};
+  const double I = luminous(lit.scene.bands, lamp.intensity), half = std::sqrt(0.5);
+  const double below = 0.02 * half + 0.05 * 0.1 * half;
+  EXPECT_NEAR(seen_by(lamp, 0.05).luminance, I / below, 1e-2 * I / below);
+  lamp.position.z() = eye().position.z();
+  EXPECT_NEAR(seen_by(lamp, 0.05).luminance, I / (0.05 * 0.1), 1e-6 * I / (0.05 * 0.1));
+  lamp.opening = {.along_c0 = 0.2, .along_c90 = 0.2, .is_round = true};
+  EXPECT_NEAR(seen_by(lamp, 0.05).luminance, I / (0.05 * 0.2), 1e-6 * I / (0.05 * 0.2));
+}
+
 }  // namespace
 }  // namespace lightwell
