@@ -28,7 +28,7 @@ struct Observer {
   Glare glare{};
 };
 
-/// Installed power of all luminaires over the area of a working plane (EN 12464-1 and EN 15193
+/// Installed power of all luminaires over the area of a working plane (EN 15193
 /// have it as W/m^2 and, for each 100 lx of maintained illuminance, W/m^2/100 lx).
 struct PowerDensity {
   double watts_per_area = 0.0;   ///< W/m^2
