@@ -24,6 +24,14 @@ namespace lightwell {
 /// to 0.6, beyond 1 + 1.2 r. sigma in [0, 90), tau in [0, 180]; p >= 1.
 double position_index(double sigma, double tau);
 
+/// Whether what lies so far along the line of sight, beside it and above it counts for glare: the
+/// table of CIE 117 ends at 3 times the distance along it to the sides, and at 1.9 times above.
+bool counts_for_glare(double ahead, double beside, double above);
+
+/// m^2 that is seen of a luminaire from a unit direction of its own frame (see Lamp::axes): of its
+/// opening and of luminous sides so high, those of a box, or of a cylinder over an ellipse.
+double seen_area(const LampOpening& opening, double height, const Eigen::Vector3d& from);
+
 /// What an observer sees of one luminaire, or of all of one name.
 struct GlareSource {
   std::string name{};
@@ -43,12 +51,11 @@ struct Glare {
       left_out{};  ///< lamps without a luminous area, for which there is no UGR
 };
 
-/// For an eye at a camera's place that looks along it. E_i is the illuminance of the eye by what
-/// surfaces reflect. Luminaires are surfaces that emit and lamps with an opening, as bright as they
-/// are in the solution; sky and sun are none, and what is seen through glass or in mirrors is left
-/// out. `gathering` is for E_i. `luminous_heights`, m, one for each of the scene's lamps or none:
-/// of the sides around an opening that shine as well, above it; the luminance of such a luminaire
-/// is its intensity over the projected area of opening and sides (CIE 117).
+/// For an eye at a camera's place that looks along it, of what counts_for_glare(). E_i is the
+/// illuminance of the eye by what surfaces reflect. Luminaires are surfaces that emit and lamps
+/// with an opening, as bright as they are in the solution; sky and sun are none, and what is seen
+/// through glass or in mirrors is left out. `gathering` is for E_i. `luminous_heights`, m, one for
+/// each of the scene's lamps or none: of the sides around an opening that shine as well, above it.
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            const Camera& eye, const GatherOptions& gathering,
