@@ -65,7 +65,7 @@ int find_surface(const Scene& scene, const std::string& name) {
 
 // Watts of the file, and before those what the command line says.
 std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
-                                     const LightingDesign& design, const DirectLight& direct_light,
+                                     const DirectLight& direct_light, const LightingDesign& design,
                                      const std::vector<Named>& watts) {
   std::vector<LuminaireRow> rows;
   const auto row_of = [&](const std::string& name) -> LuminaireRow& {
@@ -91,8 +91,8 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
     LuminaireRow& row = row_of(light->lamp.name);
     ++row.count;
     row.flux += total_weight(source) * luminous(scene.bands, source.light);
-    const auto number = static_cast<std::size_t>(source.number);
-    const double known = number < design.watts.size() ? design.watts[number] : 0.0;
+    const auto i = static_cast<std::size_t>(source.number);
+    const double known = i < design.watts.size() ? design.watts[i] : 0.0;
     row.watts += known;
     if (!(known > 0.0)) partly_known.insert(row.name);
   }
@@ -254,7 +254,7 @@ int report_lighting(const Arguments& arguments, Console& console) {
   const Stopwatch watch;
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
-  made.luminaires = luminaires(scene, solved.mesh, design, direct_light, arguments.watts);
+  made.luminaires = luminaires(scene, solved.mesh, direct_light, design, arguments.watts);
   GatherOptions gathering{.rays = arguments.rays};
   gathering.progress = console.progress();
   for (CalculationSurface& surface : made.surfaces) {

@@ -24,13 +24,13 @@ namespace lightwell {
 /// to 0.6, beyond 1 + 1.2 r. sigma in [0, 90), tau in [0, 180]; p >= 1.
 double position_index(double sigma, double tau);
 
+/// What is seen of a luminaire's opening and of luminous sides so high, those of a box or of a
+/// cylinder over an ellipse: m^2, projected along `way`, unit, in the luminaire's own frame.
+double luminous_area(const LampOpening& opening, double height, const Eigen::Vector3d& way);
+
 /// Whether what lies so far along the line of sight, beside it and above it counts for glare: the
 /// table of CIE 117 ends at 3 times the distance along it to the sides, and at 1.9 times above.
 bool counts_for_glare(double ahead, double beside, double above);
-
-/// m^2 that is seen of a luminaire from a unit direction of its own frame (see Lamp::axes): of its
-/// opening and of luminous sides so high, those of a box, or of a cylinder over an ellipse.
-double seen_area(const LampOpening& opening, double height, const Eigen::Vector3d& from);
 
 /// What an observer sees of one luminaire, or of all of one name.
 struct GlareSource {
@@ -55,7 +55,8 @@ struct Glare {
 /// illuminance of the eye by what surfaces reflect. Luminaires are surfaces that emit and lamps
 /// with an opening, as bright as they are in the solution; sky and sun are none, and what is seen
 /// through glass or in mirrors is left out. `gathering` is for E_i. `luminous_heights`, m, one for
-/// each of the scene's lamps or none: of the sides around an opening that shine as well, above it.
+/// each of the scene's lamps or none: of the sides around an opening that shine as well (see
+/// luminous_area); they are taken to stand where the opening is.
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            const Camera& eye, const GatherOptions& gathering,

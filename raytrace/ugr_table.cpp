@@ -85,10 +85,10 @@ class Room {
         to_eye /= d;
         const double I = luminaire.web->at(to_eye);
         if (!(I > 0.0)) continue;
+        const double area = luminous_area(luminaire.opening, luminaire.opening_height, to_eye);
         const double p = position_index(std::acos(ahead / d) * degrees,
                                         std::atan2(std::abs(beside), H) * degrees);
-        sum += I * I /
-               (seen_area(luminaire.opening, luminaire.opening_height, to_eye) * d * d * p * p);
+        sum += I * I / (area * d * d * p * p);
       }
     }
     return sum;
