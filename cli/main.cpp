@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <map>
@@ -71,6 +72,15 @@ class TightFormatter : public CLI::Formatter {
     std::string help = CLI::Formatter::make_help(app, std::move(name), mode);
     for (std::size_t at; (at = help.find("\n\n\n")) != std::string::npos;) help.erase(at, 1);
     return help;
+  }
+
+  /// Without what goes with what: descriptions say so, and lines that are not broken are read.
+  std::string make_option_opts(const CLI::Option* option) const override {
+    std::string text = CLI::Formatter::make_option_opts(option);
+    for (const char* mark : {" Needs:", " Excludes:"}) {
+      text.resize(std::min(text.size(), text.find(mark)));
+    }
+    return text;
   }
 };
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -38,20 +39,15 @@ struct Arguments {
   std::vector<double> isolux;
   double eye_height = 0.0;  // in the scene file's unit; 0: a person's
   bool walk = false, look_through = false, from_outside = false;
-  std::vector<double> pointer, click, measured;  // pixels
+  std::vector<Eigen::Vector2d> pointer, clicks;  // pixels
 };
 
 #ifdef LIGHTWELL_VIEWER
 Annotations annotations(const Arguments& arguments) {
-  const auto place = [](const std::vector<double>& xy, std::size_t first) {
-    return Eigen::Vector2d(xy[first], xy[first + 1]);
-  };
   Annotations result{.keys = arguments.overlay == "keys"};
-  if (!arguments.pointer.empty()) result.pointer = place(arguments.pointer, 0);
-  if (!arguments.click.empty()) result.click = place(arguments.click, 0);
-  if (!arguments.measured.empty()) {
-    result.measured = {place(arguments.measured, 0), place(arguments.measured, 2)};
-  }
+  if (!arguments.pointer.empty()) result.pointer = arguments.pointer[0];
+  if (arguments.clicks.size() == 1) result.click = arguments.clicks[0];
+  if (arguments.clicks.size() == 2) result.measured = {arguments.clicks[0], arguments.clicks[1]};
   return result;
 }
 
@@ -232,6 +228,28 @@ int view(const Arguments&, Console&) {
 }
 #endif
 
+// Up to so many places, as X,Y,X,Y.
+std::vector<Eigen::Vector2d> pixels(const std::string& text, const char* option, std::size_t most,
+                                    const char* form) {
+  std::vector<double> numbers;
+  const char* at = text.data();
+  const char* const last = at + text.size();
+  for (bool goes_on = true; goes_on;) {
+    const auto [end, bad] = std::from_chars(at, last, numbers.emplace_back());
+    goes_on = bad == std::errc() && end != last && *end == ',';
+    at = bad == std::errc() ? end + (goes_on ? 1 : 0) : nullptr;
+  }
+  if (at != last || numbers.size() % 2 != 0 || numbers.size() > 2 * most) {
+    throw CLI::ValidationError(
+        option, fmt::format("'{}' is no place in a picture; write {} in pixels", text, form));
+  }
+  std::vector<Eigen::Vector2d> places;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) {
+    places.emplace_back(numbers[i], numbers[i + 1]);
+  }
+  return places;
+}
+
 }  // namespace
 
 Action add_view(CLI::App& command) {
@@ -290,21 +308,24 @@ Action add_view(CLI::App& command) {
                   "of a person on foot (default: 1.6 m, less in a model smaller than a room)")
       ->type_name("LENGTH")
       ->check(positive());
-  const auto add_pixels = [&](const char* name, std::vector<double>& places, int count,
-                              const char* does, const char* type) {
-    return command.add_option(name, places, does)
-        ->delimiter(',')
-        ->expected(count)
-        ->type_name(type)
-        ->needs(offscreen);
-  };
-  add_pixels("--pointer", arguments->pointer, 2,
-             "with --offscreen: read what is at this pixel, beside it (key T)", "X,Y");
-  auto* const click = add_pixels("--click", arguments->click, 2,
-                                 "with --offscreen: read what is at this pixel, in full", "X,Y");
-  add_pixels("--measure", arguments->measured, 4,
-             "with --offscreen: the distance between what is at two pixels (key L)", "X,Y,X,Y")
-      ->excludes(click);
+  command
+      .add_option_function<std::string>(
+          "--pointer",
+          [arguments](const std::string& text) {
+            arguments->pointer = pixels(text, "--pointer", 1, "X,Y");
+          },
+          "with --offscreen: read what is at this pixel, beside it (key T)")
+      ->type_name("X,Y")
+      ->needs(offscreen);
+  command
+      .add_option_function<std::string>(
+          "--click",
+          [arguments](const std::string& text) {
+            arguments->clicks = pixels(text, "--click", 2, "X,Y or X,Y,X,Y");
+          },
+          "with --offscreen: read what is at this pixel, in full; of two, the distance (key L)")
+      ->type_name("X,Y[,X,Y]")
+      ->needs(offscreen);
   auto* const path =
       command.add_option("--path", arguments->path, "a path recorded with the key J, for --frames")
           ->type_name("FILE");

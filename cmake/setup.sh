@@ -15,8 +15,8 @@ build_packages=(
 display_packages=(xvfb xauth libgl1-mesa-dri)
 # What opens exported pages and checks exported models, in the tests.
 browser_packages=(chromium nodejs)
-# A second browser, 0.3 GB: without it the tests in it are skipped.
-second_browser=firefox-esr
+# A second browser (0.3 GB), and hands for the window: without them the tests with them are skipped.
+extra_packages=(firefox-esr xdotool)
 
 say() { printf '==> %s\n' "$*"; }
 die() { printf 'error: %s\n' "$*" >&2; exit 1; }

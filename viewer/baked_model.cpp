@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "mesh/sphere_grid.h"
 #include "scene/errors.h"
 #include "viewer/appearance.h"
 #include "viewer/baked_channels.h"
@@ -143,6 +144,7 @@ std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
     const std::string name = s < scene.surfaces.size() ? scene.surfaces[s].name : std::string();
     const int first_face = model.face_count(), first_vertex = vertex.count();
     int map = -1;
+    const SphereGrid* const grid = sphere_grid_of(mesh, mesh.facet[elements.front()]);
     vertex.begin_group();
     for (const int e : elements) {
       const int facet = mesh.facet[e];
@@ -155,6 +157,7 @@ std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
                            .surface = side.surface,
                            .material = material(mesh.material[mesh.patch[elements.front()]]),
                            .picture = side.picture,
+                           .sphere = grid ? std::optional(grid->sphere) : std::nullopt,
                            .is_back = side.is_back,
                            .first_vertex = first_vertex,
                            .vertex_count = vertex.count() - first_vertex,

@@ -19,10 +19,11 @@ using RgbArray = Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// One side of one surface, or of it what shows a picture, or what shows none. Its vertices and
 /// faces follow one another, and no other part uses them.
 struct BakedPart {
-  std::string name{};  ///< the surface's; "surface 3" where no scene tells it
-  int surface = 0;     ///< index into Scene::surfaces
-  int material = 0;    ///< index into BakedModel::materials
-  int picture = -1;    ///< index into BakedModel::pictures; -1: none
+  std::string name{};              ///< the surface's; "surface 3" where no scene tells it
+  int surface = 0;                 ///< index into Scene::surfaces
+  int material = 0;                ///< index into BakedModel::materials
+  int picture = -1;                ///< index into BakedModel::pictures; -1: none
+  std::optional<Sphere> sphere{};  ///< on which its vertices lie, in the scene's axes
   bool is_back = false;
   int first_vertex = 0, vertex_count = 0;
   int first_face = 0, face_count = 0;

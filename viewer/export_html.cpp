@@ -77,6 +77,7 @@ void write_walkthrough(const std::filesystem::path& path, const BakedModel& mode
   page.put("data", base64(data.bytes));
   page.put("licenses", web::licenses_txt);
   page.put("library", web::library_js);
+  page.put("spheres", web::spheres_js);
   page.put("model", web::model_js);
   page.put("picture", web::picture_js);
   page.put("sky", web::sky_js);

@@ -147,7 +147,7 @@ void append_sky(const BakedModel& model, PageData& page) {
   page.about["sky"] = std::move(about);
 }
 
-Json parts(const BakedModel& model) {
+Json parts(const BakedModel& model, const Eigen::Vector3d& low) {
   Json result = Json::array();
   for (const BakedPart& part : model.parts) {
     result.push_back({{"name", part.name},
@@ -156,6 +156,9 @@ Json parts(const BakedModel& model) {
                       {"is_back", part.is_back},
                       {"first_face", part.first_face},
                       {"face_count", part.face_count}});
+    if (!part.sphere) continue;
+    result.back()["sphere"] = {{"center", vector(model.to_y_up * part.sphere->center - low)},
+                               {"radius", part.sphere->radius}};
   }
   return result;
 }
@@ -229,7 +232,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range) {
   page.about["bases"] = append_bases(model, page.bytes);
   append_pictures(model, page);
   append_sky(model, page);
-  page.about["parts"] = parts(model);
+  page.about["parts"] = parts(model, box.low);
   page.about["materials"] = materials(model);
   page.about["cameras"] = cameras(model, box.low);
   page.about["false_colors"] = false_colors_of(model, range);

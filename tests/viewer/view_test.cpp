@@ -19,6 +19,8 @@
 #include "tests/temporary_folder.h"
 #include "viewer/solution_view.h"
 #include "viewer/start_view.h"
+#include "viewer/walk_window.h"
+#include "viewer/x_display.h"
 
 namespace lightwell {
 namespace {
@@ -503,6 +505,47 @@ TEST_F(SnapshotFile, AWindowCanBeWalkedPhotographedAndClosed) {
   const Pixel white_now = expected(box, options, white);
   expect_pixel(after.at(160 - 96, 120), white_now, "the back wall has come closer");
   EXPECT_NE(before.at(160 - 96, 120), after.at(160 - 96, 120));
+}
+
+/// On foot, against the wall at z = 2: the eye stops a radius of its body before it. There a click
+/// in the middle reads the wall, which is lit evenly.
+TEST_F(SnapshotFile, AWindowStopsAtWallsAndReadsWhatIsClicked) {
+  if (std::system("command -v xdotool >/dev/null") != 0) GTEST_SKIP() << "xdotool is not installed";
+  const SolvedScene box = solved_box();
+  const Scene scene = box_scene();
+  const WalkBody body = walk_body({{0, 0, 0}, {2, 2, 2}}, {0, 1, 0}, 0.0);
+  Camera camera = box_camera();
+  camera.position.y() = body.eye_height;  // no step up into the box
+  ViewOptions options = options_for(camera);
+  options.width = 320;
+  options.height = 240;
+  options.scene = &scene;
+  options.bookmark_file = folder_ / "box.views.json";
+  std::thread person([] {
+    const char* script =
+        "timeout 60 xdotool search --sync --name 'Lightwell - box.toml' >/dev/null && sleep 0.5 &&"
+        " xdotool mousemove 160 120 && sleep 0.2 && xdotool key g && sleep 0.2 &&"
+        " xdotool keydown Shift_L keydown w && sleep 6 && xdotool keyup w keyup Shift_L &&"
+        " sleep 0.3 && xdotool key ctrl+1 && sleep 0.3 && xdotool key v && sleep 0.3 &&"
+        " xdotool click 1 && sleep 0.5 && xdotool key Escape";
+    EXPECT_EQ(std::system(script), 0);
+  });
+  const DisplayConnection display;
+  WalkWindow window(box, options);
+  window.run();
+  person.join();
+  EXPECT_TRUE(window.is_walking());
+  EXPECT_TRUE(window.look().illuminance);
+  const auto kept = read_views(options.bookmark_file).bookmarks[0];
+  ASSERT_TRUE(kept.has_value());
+  EXPECT_NEAR(kept->position.z(), 2.0 - body.radius, 0.01 * body.radius);
+  EXPECT_NEAR(kept->position.y(), body.eye_height, 0.01 * body.eye_height)
+      << "it stands on the floor";
+  ASSERT_TRUE(window.pointer().reading().has_value());
+  const PointReading& reading = *window.pointer().reading();
+  const float lux = vertex_illuminance(box.solution)[8];
+  EXPECT_NEAR(reading.lux, lux, 1e-5 * lux);  // single precision
+  EXPECT_EQ(reading.surface, scene.surfaces[2].name);
 }
 
 }  // namespace

@@ -51,8 +51,10 @@ class Model {
       this.places = new Float32Array(bytes.buffer, about.places.offset, 2 * n);
       this.picture_gain = this.unpack_halves(about.picture_gain, 3 * n, halves);
     }
-    this.radiance = new Float32Array(3 * n);
-    this.illuminance = new Float32Array(n);
+    about.element_count = about.face_count;
+    split_spheres(this);
+    this.radiance = new Float32Array(3 * about.vertex_count);
+    this.illuminance = new Float32Array(about.vertex_count);
     this.mix();
     this.split_faces();
   }

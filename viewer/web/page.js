@@ -43,7 +43,7 @@ class Page {
     const {about} = this.model;
     element('heading').textContent = document.title;
     element('origin').textContent =
-      `Computed with Lightwell ${about.version} from ${about.scene_file}: ${about.face_count} elements.` +
+      `Computed with Lightwell ${about.version} from ${about.scene_file}: ${about.element_count} elements.` +
       (about.relative_units ? ' Its light is in no known unit; figures are relative.' : '');
     element('licenses-text').textContent = element('licenses').textContent;
     about.cameras.forEach((camera, i) => {

@@ -244,9 +244,11 @@ class Picture {
   }
 
   make_outlines() {
-    const {model} = this, lines = new Uint32Array(8 * model.about.face_count);
-    let count = 0;
+    const {model} = this, lines = new Uint32Array(8 * model.about.face_count + model.arcs.length);
+    lines.set(model.arcs);
+    let count = model.arcs.length;
     for (let f = 0; f < model.about.face_count; ++f) {
+      if (model.is_split?.[f]) continue;  // a part of an element
       const corners = model.corner_count(f);
       for (let c = 0; c < corners; ++c) {
         lines[count++] = model.corners[4 * f + c];
