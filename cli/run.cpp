@@ -58,9 +58,10 @@ void render_pictures(const Scene& scene, const SolvedScene& solved, const Argume
   for (const auto& each : outputs.pictures) files.insert(files.end(), each.begin(), each.end());
   Checkpoint checkpoint(kept, picture_provenance(scene, solved.solution, arguments.render), files,
                         console);
+  SceneRenderer renderer(scene, solved.mesh, solved.solution);
   try {
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-      render_step(scene, solved, scene.cameras[i], arguments.render, outputs.pictures[i],
+      render_step(scene, solved, renderer, scene.cameras[i], arguments.render, outputs.pictures[i],
                   checkpoint, console, report);
     }
   } catch (const InterruptedWith&) {

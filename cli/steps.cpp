@@ -132,13 +132,12 @@ Provenance picture_provenance(const Scene& scene, const RadiositySolution& solut
                                  solution.provenance.options)};
 }
 
-void render_step(const Scene& scene, const SolvedScene& solved, const Camera& camera,
-                 const RenderArguments& arguments, const std::vector<fs::path>& files,
-                 Checkpoint& checkpoint, Console& console, Report& report) {
+void render_step(const Scene& scene, const SolvedScene& solved, SceneRenderer& renderer,
+                 const Camera& camera, const RenderArguments& arguments,
+                 const std::vector<fs::path>& files, Checkpoint& checkpoint, Console& console,
+                 Report& report) {
   const Stopwatch watch;
   console.say_verbose(fmt::format("rendering {} with {}", camera.name, arguments.text()));
-  const ElementCaster caster(solved.mesh);
-  const DirectLight direct_light(scene, solved.mesh);
   RenderOptions options = arguments.options();
   options.layers = arguments.film.rendered_layers(scene);
   options.progress = checkpoint.watched(console.progress());
@@ -147,7 +146,7 @@ void render_step(const Scene& scene, const SolvedScene& solved, const Camera& ca
   const Camera view = arguments.sized(camera);
   Image image;
   try {
-    image = render(scene, caster, direct_light, solved.solution, view, options, &rendered);
+    image = renderer.render(view, options, &rendered);
     stop_if_interrupted();
   } catch (const std::exception&) {
     checkpoint.rethrow_stopped();
