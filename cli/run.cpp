@@ -117,6 +117,7 @@ Action add_run(CLI::App& command) {
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first);
   arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
+  command.get_option("--depth")->group("");  // rarely asked for: 'render --help' shows it
   arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::hidden);
   command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");
   return [arguments](Console& console) { return run(*arguments, console); };

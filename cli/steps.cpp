@@ -162,9 +162,19 @@ void render_step(const Scene& scene, const SolvedScene& solved, SceneRenderer& r
     report.add_file(file);
   }
   report.add_phase("render_" + camera.name, watch.seconds());
+  report.add("depth_cut_" + camera.name, rendered.cut_share);
+  // Below a grey level of an 8-bit picture nobody would see it.
+  constexpr double visible = 1.0 / 255.0;
   if (rendered.depth_cut > 0) {
-    console.say_verbose(fmt::format("{}: {} branches ended at depth {} (mirrors facing mirrors)",
-                                    camera.name, rendered.depth_cut, options.max_depth));
+    const std::string cut = fmt::format(
+        "{}: {} branches ended behind {} mirrors and glass surfaces; about {:.2g} % of the "
+        "picture's light was in them",
+        camera.name, rendered.depth_cut, options.max_depth, 100.0 * rendered.cut_share);
+    if (rendered.cut_share > visible) {
+      console.say("note: " + cut + ". '--depth' follows more");
+    } else {
+      console.say_verbose(cut);
+    }
   }
 }
 

@@ -16,15 +16,10 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr std::uint64_t learn_purpose = 0x51e7, ray_purpose = 0x51e8, point_purpose = 0x51e9;
-constexpr int most_sites = 4096, points_per_site = 4;
-constexpr int learn_rays = 2, edge_rays = 10;  // through every cell; more where they disagree
+constexpr int most_sites = 4096, points_per_site = 4, learn_rays = 2;
 
 // A cube is no larger than this share of the scene's diagonal; more cubes cost more learning.
 constexpr double cube_share = 1.0 / 32.0;
-
-// Rays for a cell through which all of its site's rays got out, per light that it gives, beside
-// those for one through which some did.
-constexpr double quiet = 0.25;
 
 // Where a place of a square grid of 2^k places each way comes on Hilbert's curve (1891).
 int on_hilbert_curve(int size, int x, int y) {
@@ -271,83 +266,47 @@ void SkyLight::learn(const ElementCaster& caster) {
   });
 }
 
-// Rays of a site through cells, and how many of them got out.
-struct SkyLight::Trials {
-  std::vector<Ray> rays{};
-  std::vector<int> of{};
-  std::array<std::int16_t, cells> tried{}, clear{};
-
-  void cast(const ElementCaster& caster, const ClearPanes& panes) {
-    std::vector<std::uint8_t> blocked(rays.size());
-    caster.occluded(rays, blocked);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const auto c = static_cast<std::size_t>(of[i]);
-      const bool passes =
-          blocked[i] == 0 || (!panes.empty() && (panes.passed(caster, rays[i]) > 0.0f).any());
-      ++tried[c];
-      if (passes) ++clear[c];
-    }
-    rays.clear();
-    of.clear();
-  }
-  /// Of a cell and the eight around it.
-  std::pair<int, int> tried_and_clear_about(int c) const {
-    const int ring = c / around, place = c % around;
-    std::pair<int, int> sum{0, 0};
-    for (int dr = -1; dr <= 1; ++dr) {
-      if (ring + dr < 0 || ring + dr >= rings) continue;
-      for (int dp = -1; dp <= 1; ++dp) {
-        const auto i =
-            static_cast<std::size_t>((ring + dr) * around + (place + dp + around) % around);
-        sum.first += tried[i];
-        sum.second += clear[i];
-      }
-    }
-    return sum;
-  }
-};
-
-// Adds rays number `first` to `first + count - 1` of a cell, from the site's points in turn.
-void SkyLight::try_cell(int cell, int first, int count, std::span<const SitePoint> points,
-                        std::uint64_t key, Trials& trials) const {
-  for (int r = first; r < first + count; ++r) {
-    const auto number = static_cast<std::size_t>(cell * edge_rays + r);
-    const SitePoint& from = points[static_cast<std::size_t>(cell + r) % points.size()];
-    const std::uint64_t ray_key = random_key(key, number);
-    const Eigen::Vector3d direction =
-        direction_at(cell, random_uniform(ray_key), random_uniform(random_key(ray_key, 1)));
-    if (!(direction.dot(from.normal) > 0.0)) continue;
-    trials.rays.push_back(
-        {.origin = from.position, .direction = direction, .origin_group = from.facet});
-    trials.of.push_back(cell);
-  }
-}
-
 SkyLight::Site SkyLight::learn_at(const ElementCaster& caster, std::span<const SitePoint> points,
                                   std::uint64_t key) const {
-  Trials trials;
+  std::vector<Ray> rays;
+  std::vector<int> of;
+  std::array<bool, cells> was_tried{}, is_open{};
   for (int c = 0; c < cells; ++c) {
     if (!(cell_[static_cast<std::size_t>(c)].power > 0.0)) continue;
-    try_cell(c, 0, learn_rays, points, key, trials);
+    for (int r = 0; r < learn_rays; ++r) {
+      const auto number = static_cast<std::size_t>(c * learn_rays + r);
+      const SitePoint& from = points[number % points.size()];
+      const std::uint64_t ray_key = random_key(key, number);
+      const Eigen::Vector3d direction =
+          direction_at(c, random_uniform(ray_key), random_uniform(random_key(ray_key, 1)));
+      if (!(direction.dot(from.normal) > 0.0)) continue;
+      rays.push_back({.origin = from.position, .direction = direction, .origin_group = from.facet});
+      of.push_back(c);
+    }
   }
-  trials.cast(caster, panes_);
-  for (int c = 0; c < cells; ++c) {
-    if (trials.tried[static_cast<std::size_t>(c)] == 0) continue;
-    const auto [tried, clear] = trials.tried_and_clear_about(c);
-    if (clear == 0 || clear == tried) continue;
-    try_cell(c, learn_rays, edge_rays - learn_rays, points, key, trials);
+  std::vector<std::uint8_t> blocked(rays.size());
+  caster.occluded(rays, blocked);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto c = static_cast<std::size_t>(of[i]);
+    was_tried[c] = true;
+    is_open[c] = is_open[c] || blocked[i] == 0 ||
+                 (!panes_.empty() && (panes_.passed(caster, rays[i]) > 0.0f).any());
   }
-  trials.cast(caster, panes_);
   Site site;
   for (int c = 0; c < cells; ++c) {
     const auto i = static_cast<std::size_t>(c);
-    const int tried = trials.tried[i], clear = trials.clear[i];
-    if (clear > 0 && clear < tried) {
-      site[i] = Found::mixed;
-    } else if (tried == 0 || clear > 0 || trials.tried_and_clear_about(c).second > 0) {
-      site[i] = Found::open;  // what is beside an open cell is likely to be open in part
-    } else {
-      site[i] = Found::hidden;
+    site[i] = is_open[i] || !was_tried[i] ? Found::open : Found::hidden;
+    if (site[i] == Found::open) continue;
+    // What is beside an open cell is likely to be open in part.
+    const int ring = c / around, place = c % around;
+    for (int dr = -1; dr <= 1; ++dr) {
+      for (int dp = -1; dp <= 1; ++dp) {
+        const int other = ring + dr;
+        if (other < 0 || other >= rings) continue;
+        if (is_open[static_cast<std::size_t>(other * around + (place + dp + around) % around)]) {
+          site[i] = Found::open;
+        }
+      }
     }
   }
   return site;
@@ -381,7 +340,7 @@ void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<
     const double power = cell_[static_cast<std::size_t>(share.cell)].power;
     samples.push_back({.weight = cosine * power * all / (share.weight * rays),
                        .cell = share.cell,
-                       .is_open = share.found != Found::hidden});
+                       .is_open = share.is_open});
     ray.push_back({.origin = at.position, .direction = drawn.direction, .origin_group = at.facet});
   }
   std::vector<std::uint8_t> blocked(ray.size());
@@ -426,18 +385,17 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
     const double E = irradiance_of(c, n);
     if (!(E > 0.0)) continue;
     const Found found = (*site)[static_cast<std::size_t>(c)];
-    if (found != Found::hidden) E_open += E * colour_.row(c).transpose().cast<double>();
-    const double weight = found == Found::mixed ? E : found == Found::open ? quiet * E : 0.0;
-    open += weight;
-    if (found == Found::hidden) elsewhere += E;
-    shares.push_back({.cell = c, .E = E, .weight = weight, .found = found});
+    Share share{.cell = c, .E = E, .weight = E, .is_open = found == Found::open};
+    if (share.is_open) {
+      E_open += E * colour_.row(c).transpose().cast<double>();
+      open += E;
+    } else {
+      share.weight = 0.0;  // known below
+      elsewhere += E;
+    }
+    shares.push_back(share);
   }
   if (shares.empty()) return {Spectrum::Zero(bands_)};
-  // Steps that stand for as much light each follow one another, so that as many as are due fall on
-  // either kind.
-  const auto is = [](Found found) { return [found](const Share& s) { return s.found == found; }; };
-  const auto rest = std::stable_partition(shares.begin(), shares.end(), is(Found::mixed));
-  std::stable_partition(rest, shares.end(), is(Found::open));
   // Of the rays at most so many go where the site saw nothing; all, but few, if it saw nothing at
   // all.
   constexpr double most_elsewhere = 0.08;
@@ -446,7 +404,7 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
       sees_nothing ? 1.0 : std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300));
   double sum = 0.0;
   for (Share& share : shares) {
-    if (share.found == Found::hidden) share.weight = thinning * share.E;
+    if (!(share.weight > 0.0)) share.weight = thinning * share.E;
     share.cdf = sum += share.weight;
   }
 

@@ -33,11 +33,10 @@ struct SkyGlow {
 /// with nothing in the way is known. What a window shows is a small part of that, so rays are not
 /// spent evenly: *sites*, cubes of space by the side that surfaces in them face, learn beforehand
 /// through which cells rays get out, and a point sends its rays there, by what each cell would give
-/// it: the more where, of the site's rays through a cell, some got out and some did not, since
-/// there is what the others leave no doubt about. A few go elsewhere, with the weight that this
-/// asks for, so that what no ray of the site had found is right in the mean. Of the cells that are
-/// open the result is their unobstructed irradiance times the visible share of what the rays stand
-/// for: with nothing in the way there is no noise.
+/// it. A few go elsewhere, with the weight that this asks for, so that what no ray of the site had
+/// found is right in the mean. Of the cells that are open the result is their unobstructed
+/// irradiance times the visible share of what the rays stand for: with nothing in the way there is
+/// no noise.
 ///
 /// Within cells directions follow the sky's luminance on a grid of 0.7 degrees, on which maps are
 /// averaged.
@@ -61,11 +60,7 @@ class SkyLight {
   static constexpr int around = 64, rings = 32;  // cells
   static constexpr int cells = around * rings;
   static constexpr int fine = 8;  // grid within a cell, each way
-  enum class Found : std::uint8_t {
-    hidden,  ///< no ray got out here or beside
-    open,    ///< all did, or those beside
-    mixed    ///< some did: an edge of what hides the sky is there
-  };
+  enum class Found : std::uint8_t { hidden, open };
   using Site = std::array<Found, cells>;
   struct SitePoint {
     Eigen::Vector3d position, normal;
@@ -87,7 +82,7 @@ class SkyLight {
     double E = 0.0;       // unobstructed, mean of the bands
     double cdf = 0.0;     // running sum of what rays are given by
     double weight = 0.0;  // its step
-    Found found = Found::open;
+    bool is_open = false;
   };
   struct Tally {
     Eigen::ArrayXd seen_open, all_open, seen_elsewhere;  // per band
@@ -96,9 +91,6 @@ class SkyLight {
 
   void tabulate(const Sky& sky);
   void learn(const ElementCaster& caster);
-  struct Trials;
-  void try_cell(int cell, int first, int count, std::span<const SitePoint> points,
-                std::uint64_t key, Trials& trials) const;
   Site learn_at(const ElementCaster& caster, std::span<const SitePoint> points,
                 std::uint64_t key) const;
   std::uint64_t site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,

@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -35,6 +36,13 @@ constexpr std::uint64_t edge_purpose = 0xed6e;
 
 struct Counters {
   std::atomic<std::int64_t> eye_rays{0}, depth_cut{0};
+  // Weight of what was cut, in steps that add up to the same in any order.
+  static constexpr double weight_step = 0x1p-30;
+  std::atomic<std::int64_t> cut_steps{0};
+
+  void add_cut(double weight) {
+    if (weight > 0.0) cut_steps += std::llround(weight / weight_step);
+  }
 };
 
 // Looks at points of the picture, given in lattice steps from its top left corner.
@@ -48,6 +56,7 @@ class Eye {
     Sight sight = tree_.look(ray(x, y), key, effort);
     counters_.eye_rays.fetch_add(1, std::memory_order_relaxed);
     counters_.depth_cut.fetch_add(sight.depth_cut, std::memory_order_relaxed);
+    counters_.add_cut(double{sight.cut_weight});
     return sight;
   }
   std::uint64_t fingerprint(double x, double y) const { return tree_.fingerprint(ray(x, y)); }
@@ -357,6 +366,7 @@ class TileRenderer {
           sample_rows(*samples_, first_row, rows, options_.progress, part, image_, layers_);
       counters_.eye_rays += took.looks;
       counters_.depth_cut += took.depth_cut;
+      counters_.add_cut(took.cut_weight);
       return;
     }
     if (row_of_corners_ != first_row) look_at_corners(eye_, first_row, {corners_.data(), 1});
@@ -452,6 +462,8 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
         .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
         .eye_rays = counters.eye_rays,
         .depth_cut = counters.depth_cut,
+        .cut_share = static_cast<double>(counters.cut_steps) * Counters::weight_step /
+                     static_cast<double>(std::max<std::int64_t>(1, counters.eye_rays)),
         .tiles = tile,
         .recalled_tiles = recalled};
   }

@@ -79,8 +79,11 @@ bool needs_caustic_photons(const RadiositySolution& solution, const RenderOption
 
 struct RenderReport {
   double seconds = 0.0;
-  std::int64_t eye_rays = 0;          ///< pixel samples
-  std::int64_t depth_cut = 0;         ///< branches that max_depth ended
+  std::int64_t eye_rays = 0;   ///< pixel samples
+  std::int64_t depth_cut = 0;  ///< branches that max_depth ended
+  /// Their weight, a mean over the samples: the share of the picture that is missing, if what they
+  /// did not see is as bright as the rest.
+  double cut_share = 0.0;
   int tiles = 0, recalled_tiles = 0;  ///< all, and those the journal had; no rays are counted there
 };
 

@@ -224,6 +224,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
   if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
   if (branch.depth > deepest_path(options_.max_depth, !branch.is_sharp)) {
     ++walk.sight.depth_cut;
+    walk.sight.cut_weight += branch.weight.maxCoeff();
     return;
   }
   const int material = facets_[hit.facet].material;

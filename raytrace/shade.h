@@ -29,6 +29,7 @@ struct Sight {
   SampledLayers layers = SampledLayers::Zero();
   std::uint64_t fingerprint = 0;  ///< of the surfaces seen, see RayTree
   std::int64_t depth_cut = 0;     ///< branches that max_depth ended
+  float cut_weight = 0.0f;        ///< sum of what they weighed, the largest of the bands
 };
 
 /// Whitted's ray tree (1980) over a radiosity solution. Where a ray meets something diffuse,
