@@ -249,8 +249,10 @@ TEST(SmoothNormals, MirrorBallThrowsLightAsTheSphereDoes) {
   const double smooth = error(Ball::smooth), faceted = error(Ball::faceted);
   RecordProperty("smooth", std::to_string(smooth));
   RecordProperty("faceted", std::to_string(faceted));
-  EXPECT_LT(smooth, 0.1);
-  EXPECT_LT(smooth, 0.2 * faceted);
+  // Facets lie up to 0.04 r below the sphere, and two maps of 160 neighbours leave sqrt(2) times
+  // sqrt(4/3 / 160) = 0.13 of independent photons, stratified ones less.
+  EXPECT_LT(smooth, 0.13);
+  EXPECT_LT(smooth, 0.05 * faceted);
 }
 
 // A sheet whose normals lean far over, and a lamp behind it that they face.
