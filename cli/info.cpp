@@ -15,6 +15,8 @@
 #include "mesh/planar_regions.h"
 #include "radiosity/solution_file.h"
 #include "raytrace/image.h"
+#include "raytrace/ugr_table.h"
+#include "scene/errors.h"
 #include "scene/io/luminaire_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
@@ -222,6 +224,53 @@ Json luminaire_json(const LuminaireFile& luminaire) {
   return facts;
 }
 
+/// Rooms are X x Y in heights of the luminaires above the eye, reflectances percent of ceiling,
+/// walls and floor.
+Json ugr_json(const UgrTable& table) {
+  const auto rows = [](const UgrTable::Ratings& ratings) {
+    Json all = Json::array();
+    for (const auto& row : ratings.rowwise()) all.push_back(std::vector(row.begin(), row.end()));
+    return all;
+  };
+  Json rooms = Json::array(), reflectances = Json::array();
+  for (const auto& [across, along] : ugr_rooms) rooms.push_back({across, along});
+  for (const auto& [ceiling, walls, floor] : ugr_reflectances) {
+    reflectances.push_back({100.0 * ceiling, 100.0 * walls, 100.0 * floor});
+  }
+  return {{"rooms", std::move(rooms)},
+          {"reflectances_percent", std::move(reflectances)},
+          {"along_c0", rows(table.along_c0)},
+          {"along_c90", rows(table.along_c90)}};
+}
+
+void print_ugr(const UgrTable& table) {
+  const auto for_both = [](auto&& print) {
+    for (int view = 0; view < 2; ++view) {
+      for (std::size_t r = 0; r < ugr_reflectances.size(); ++r) print(view, r);
+    }
+  };
+  const auto print_row = [&](const char* name, auto&& share) {
+    fmt::print("{:<10}", name);
+    for_both(
+        [&](int, std::size_t r) { fmt::print("{:>6.0f}", 100.0 * share(ugr_reflectances[r])); });
+    fmt::print("\n");
+  };
+  fmt::print("\n{:<10}{:>30}{:>30}\n", "UGR", "looking along C0", "along C90");
+  print_row("ceiling %", [](const UgrReflectances& rho) { return rho.ceiling; });
+  print_row("walls %", [](const UgrReflectances& rho) { return rho.walls; });
+  print_row("floor %", [](const UgrReflectances& rho) { return rho.floor; });
+  for (std::size_t i = 0; i < ugr_rooms.size(); ++i) {
+    fmt::print("{:<10}", fmt::format("{}H x {}H", ugr_rooms[i].across, ugr_rooms[i].along));
+    for_both([&](int view, std::size_t r) {
+      const double ugr = (view == 0 ? table.along_c0 : table.along_c90)(
+          static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(r));
+      constexpr double least = 10.0;  // below which tables only say so
+      fmt::print("{:>6}", ugr < least ? "<10" : fmt::format("{:.1f}", ugr));
+    });
+    fmt::print("\n");
+  }
+}
+
 Json solution_json(const SolvedScene& solved) {
   const RadiositySolution& solution = solved.solution;
   Json json = {{"kind", "solution"},
@@ -296,18 +345,37 @@ void print_for_people(const Json& facts) {
 }  // namespace
 
 Action add_info(CLI::App& command) {
-  const auto file = std::make_shared<std::string>();
+  struct Arguments {
+    std::string file{};
+    bool ugr = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
   command.description(
       "What is in a scene (.toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3), a "
       "solution (.vtp), a picture (.exr) or a luminaire (.ies, .ldt).");
-  command.add_option("file", *file, "the file")->required()->type_name("FILE");
+  command.add_option("file", arguments->file, "the file")->required()->type_name("FILE");
+  command.add_flag("--ugr", arguments->ugr,
+                   "of a luminaire: its UGR in the 19 standard rooms (CIE 117, CIE 190)");
   command.footer("Example: lightwell info cornell/cornell.toml");
-  return [file](Console& console) {
-    const Json facts = describe(*file);
+  return [arguments](Console& console) {
+    const std::string& file = arguments->file;
+    if (arguments->ugr && !is_luminaire_file(file)) {
+      throw InputError(fmt::format(
+          "{}: '--ugr' is for luminaires (.ies, .ldt); 'lightwell report' has the UGR of a room",
+          file));
+    }
+    Json facts = describe(file);
+    if (!arguments->ugr) {
+      console.options().json ? print_json(facts) : print_for_people(facts);
+      return int{exit_done};
+    }
+    const UgrTable table = ugr_table(read_luminaire(file));
     if (console.options().json) {
+      facts["ugr"] = ugr_json(table);
       print_json(facts);
     } else {
       print_for_people(facts);
+      print_ugr(table);
     }
     return int{exit_done};
   };

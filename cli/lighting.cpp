@@ -62,6 +62,7 @@ int find_surface(const Scene& scene, const std::string& name) {
 }
 
 std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
+                                     const DirectLight& direct_light,
                                      const std::vector<Named>& watts) {
   std::vector<LuminaireRow> rows;
   const auto row_of = [&](const std::string& name) -> LuminaireRow& {
@@ -79,14 +80,12 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
     counted[s] = 1;
     row.flux += mesh.area[p] * luminous(scene.bands, mesh.emission.row(p).transpose());
   }
-  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
-    LuminaireRow& row = row_of(scene.lamps[i].name);
+  for (const FreeSource& source : direct_light.free_sources()) {
+    const auto* light = std::get_if<LampLight>(&source.shape);
+    if (!light) continue;
+    LuminaireRow& row = row_of(light->lamp.name);
     ++row.count;
-    Spectrum flux = lamp_flux(scene.lamps[i]);
-    if (mesh.source_scale.rows() > 0) {
-      flux *= mesh.source_scale.row(static_cast<Eigen::Index>(i)).transpose();
-    }
-    row.flux += luminous(scene.bands, flux);
+    row.flux += total_weight(source) * luminous(scene.bands, source.light);
   }
   for (const Named& known : watts) {
     const auto at = std::ranges::find(rows, known.name, &LuminaireRow::name);
@@ -215,11 +214,11 @@ int report_lighting(const Arguments& arguments, Console& console) {
                       .maintenance_factor = arguments.maintenance_factor,
                       .rays = arguments.rays,
                       .error_estimate = solved.solution.error_estimate};
-  made.luminaires = luminaires(scene, solved.mesh, arguments.watts);
   made.surfaces = grids(arguments, scene, guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)));
   const Stopwatch watch;
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
+  made.luminaires = luminaires(scene, solved.mesh, direct_light, arguments.watts);
   GatherOptions gathering{.rays = arguments.rays};
   gathering.progress = console.progress();
   for (CalculationSurface& surface : made.surfaces) {

@@ -121,8 +121,11 @@ void check_probes(const Subject& subject, Verdict& verdict) {
   }
   std::sort(relative.begin(), relative.end());
   const std::string of = fmt::format("irradiance at {} probes: ", R.rows());
-  verdict.figure(of + "relative RMSE",
-                 100.0 * std::sqrt(difference.square().mean()) / R.cast<double>().mean(), 1.5);
+  const double rmse = std::sqrt(difference.square().mean()) / R.cast<double>().mean();
+  verdict.figure(of + "relative RMSE", 100.0 * rmse, 1.5);
+  if (const double estimate = subject.solved.solution.error_estimate; estimate > 0.0) {
+    verdict.figure(of + "the same, of its estimate", 100.0 * rmse / estimate, 100.0);
+  }
   verdict.figure(of + "95th percentile of |E - R| / R",
                  100.0 * relative[static_cast<std::size_t>(0.95 * relative.size())], 4.0);
   verdict.remark(of + "largest |E - R| / R", 100.0 * relative.back());

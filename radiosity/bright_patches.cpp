@@ -174,7 +174,7 @@ BrightPatches::Aim BrightPatches::draw(const View& view, double which, double u,
       begin, last, within, [](double x, const Element& element) { return x < element.up_to; });
   const auto [first, second] = triangle_areas(*mesh_, found->number);
   double along = v * (first + second);
-  const bool is_second = along > first;
+  const bool is_second = along >= first;
   along = is_second ? (along - first) / second : along / first;
   const auto& corners = mesh_->corners[found->number];
   const std::size_t i = is_second ? 2 : 1;

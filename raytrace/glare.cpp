@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "mesh/patch_textures.h"
+
 namespace lightwell {
 namespace {
 
@@ -25,11 +27,12 @@ class GlareSum {
   GlareSum(const Camera& eye, const ElementCaster& caster) : eye_(eye), caster_(caster) {}
 
   const Eigen::Vector3d& position() const { return eye_.position; }
-  /// Whether any of it may be in sight.
-  bool is_ahead(const Eigen::Vector3d& point) const {
-    return (point - eye_.position).dot(eye_.direction) > 0.0;
+  bool counts(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d way = point - eye_.position;
+    return counts_for_glare(way.dot(eye_.direction), way.dot(eye_.direction.cross(eye_.up)),
+                            way.dot(eye_.up));
   }
-  /// Facet that the ray to a point meets before it; -1: none.
+  /// What the ray to a point meets within this share of the way.
   ElementHit first_hit(const Eigen::Vector3d& point, double share) const {
     const Ray ray{.origin = eye_.position, .direction = point - eye_.position, .t_max = share};
     ElementHit hit;
@@ -40,7 +43,6 @@ class GlareSum {
            double luminance) {
     const Eigen::Vector3d way = (point - eye_.position).normalized();
     const double ahead = way.dot(eye_.direction);
-    if (!(ahead > 0.0)) return;
     constexpr double degrees = 180.0 / pi;
     const double above = way.dot(eye_.up);
     const double beside = std::abs(way.dot(eye_.direction.cross(eye_.up)));
@@ -90,7 +92,7 @@ void add_triangle(const std::string& name, const Triangle& t, const Eigen::Vecto
     return;
   }
   const double cosine = -normal.dot(way) / d;
-  if (!(cosine > 0.0) || !sum.is_ahead(middle)) return;
+  if (!(cosine > 0.0) || !sum.counts(middle)) return;
   constexpr double beyond = 1.01;  // spheres are met a little off their elements
   if (sum.first_hit(middle, beyond).facet != facet) return;
   const double area = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
@@ -113,7 +115,7 @@ void add_surfaces(const Scene& scene, const PatchMesh& mesh, GlareSum& sum) {
 }
 
 /// Of a flat opening the luminance is I / A cos, its solid angle A cos / d^2.
-void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& scale, GlareSum& sum) {
+void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, GlareSum& sum) {
   const LampOpening& opening = lamp.opening;
   const double area = opening.along_c0 * opening.along_c90 * (opening.is_round ? pi / 4.0 : 1.0);
   const Eigen::Vector3d from = sum.position() - lamp.position;
@@ -121,15 +123,14 @@ void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& scale, Glare
   // Edge on, where a flat opening has no area, a real one has its rim.
   constexpr double rim = 0.05;
   const double cosine = std::max(rim, std::abs(lamp.aim().dot(from)) / d);
-  const double candela =
-      luminous(scene.bands, (lamp.intensity * scale).eval()) * relative_intensity(lamp, from / d);
+  const double candela = luminous(scene.bands, light) * relative_intensity(lamp, from / d);
   if (!(candela > 0.0)) return;
   constexpr int places = opening_grid * opening_grid;
   for (int i = 0; i < places; ++i) {
     const Eigen::Vector3d point = opening_point(lamp, (i % opening_grid + 0.5) / opening_grid,
                                                 (i / opening_grid + 0.5) / opening_grid);
     constexpr double before = 0.999;  // a lamp hangs in what holds it
-    if (!sum.is_ahead(point) || sum.first_hit(point, before).facet >= 0) continue;
+    if (!sum.counts(point) || sum.first_hit(point, before).facet >= 0) continue;
     const double solid_angle = area * cosine / (places * (point - sum.position()).squaredNorm());
     sum.add(lamp.name, point, solid_angle, candela / (area * cosine));
   }
@@ -139,20 +140,10 @@ void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& scale, Glare
 double reflected_illuminance(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const RadiositySolution& solution,
                              const Camera& eye, const GatherOptions& gathering) {
-  const PatchMesh& mesh = caster.mesh();
-  BandArray B = vertex_radiosity(mesh, solution);
-  std::vector<char> done(static_cast<std::size_t>(mesh.vertex_count()), 0);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    for (int c = 0; c < mesh.corner_count(e); ++c) {
-      const int v = mesh.corners[e][c];
-      if (!std::exchange(done[static_cast<std::size_t>(v)], 1)) {
-        B.row(v) -= mesh.emission.row(mesh.patch[e]);
-      }
-    }
-  }
+  const BandArray reflected = vertex_reflectance(caster.mesh()) * solution.irradiance();
   const GatherPoint point{.position = eye.position, .normal = eye.direction};
   const GatheredIrradiance E =
-      gather_indirect(scene, caster, direct_light, B.max(0.0f), {&point, 1}, gathering);
+      gather_indirect(scene, caster, direct_light, reflected, {&point, 1}, gathering);
   return luminous(scene.bands, E.indirect.row(0).transpose());
 }
 
@@ -167,6 +158,11 @@ double position_index(double sigma, double tau) {
                   (21.0 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
 }
 
+bool counts_for_glare(double ahead, double beside, double above) {
+  constexpr double most_beside = 3.0, most_above = 1.9;
+  return ahead > 0.0 && std::abs(beside) <= most_beside * ahead && above <= most_above * ahead;
+}
+
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            const Camera& eye, const GatherOptions& gathering) {
@@ -174,16 +170,15 @@ Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
   GlareSum sum(eye, caster);
   Glare glare;
   add_surfaces(scene, mesh, sum);
-  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
-    const Lamp& lamp = scene.lamps[i];
-    if (!(lamp.opening.along_c0 > 0.0 && lamp.opening.along_c90 > 0.0)) {
-      glare.left_out.push_back(lamp.name);
-      continue;
+  for (const FreeSource& source : direct_light.free_sources()) {
+    const auto* light = std::get_if<LampLight>(&source.shape);
+    if (!light) continue;
+    const LampOpening& opening = light->lamp.opening;
+    if (opening.along_c0 > 0.0 && opening.along_c90 > 0.0) {
+      add_lamp(scene, light->lamp, source.light, sum);
+    } else {
+      glare.left_out.push_back(light->lamp.name);
     }
-    const Spectrum scale = mesh.source_scale.rows() > 0
-                               ? Spectrum(mesh.source_scale.row(static_cast<Eigen::Index>(i)))
-                               : constant_spectrum(scene.bands, 1.0f);
-    add_lamp(scene, lamp, scale, sum);
   }
   glare.sources = sum.finish();
   glare.background =

@@ -23,6 +23,10 @@ namespace lightwell {
 /// to 0.6, beyond 1 + 1.2 r. sigma in [0, 90), tau in [0, 180]; p >= 1.
 double position_index(double sigma, double tau);
 
+/// Whether what lies so far along the line of sight, beside it and above it counts for glare: the
+/// table of CIE 117 ends at 3 times the distance along it to the sides, and at 1.9 times above.
+bool counts_for_glare(double ahead, double beside, double above);
+
 /// What an observer sees of one luminaire, or of all of one name.
 struct GlareSource {
   std::string name{};
@@ -42,10 +46,10 @@ struct Glare {
       left_out{};  ///< lamps without a luminous area, for which there is no UGR
 };
 
-/// For an eye at a camera's place that looks along it. E_i is the illuminance of the eye by what
-/// surfaces reflect. Luminaires are surfaces that emit and lamps with an opening, as bright as they
-/// are in the solution; sky and sun are none, and what is seen through glass or in mirrors is left
-/// out. `gathering` is for E_i.
+/// For an eye at a camera's place that looks along it, of what counts_for_glare(). E_i is the
+/// illuminance of the eye by what surfaces reflect. Luminaires are surfaces that emit and lamps
+/// with an opening, as bright as they are in the solution; sky and sun are none, and what is seen
+/// through glass or in mirrors is left out. `gathering` is for E_i.
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            const Camera& eye, const GatherOptions& gathering);

@@ -71,6 +71,7 @@ const Mistake mistakes[] = {
     {"MissingFile", {"solve", "nowhere.toml", "-o", "S.vtp"}, 3, {"nowhere.toml"}},
     {"MissingMesh", {"run", "nowhere.obj"}, 3, {"nowhere.obj"}},
     {"UnknownFormat", {"info", "scene.xyz"}, 3, {"scene.xyz", ".toml"}},
+    {"UgrOfARoom", {"info", "room.toml", "--ugr"}, 3, {"room.toml", ".ldt", "lightwell report"}},
     {"MalformedToml", {"solve", "torn.toml", "-o", "S.vtp"}, 3, {"torn.toml:2"}},
     {"VertexThatIsNoNumber", {"solve", "nan.toml", "-o", "S.vtp"}, 3, {"nan.toml", "panel"}},
     {"PolygonWithoutArea", {"solve", "flat.toml", "-o", "S.vtp"}, 3, {"flat.toml", "panel"}},
