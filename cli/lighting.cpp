@@ -4,6 +4,7 @@
 #include <charconv>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -14,6 +15,7 @@
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "scene/errors.h"
+#include "scene/io/lighting_design.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
 #include "viewer/start_view.h"
@@ -61,14 +63,16 @@ int find_surface(const Scene& scene, const std::string& name) {
                                scene.file.string(), name, did_you_mean(name, names)));
 }
 
+// Watts of the file, and before those what the command line says.
 std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
-                                     const DirectLight& direct_light,
+                                     const DirectLight& direct_light, const LightingDesign& design,
                                      const std::vector<Named>& watts) {
   std::vector<LuminaireRow> rows;
   const auto row_of = [&](const std::string& name) -> LuminaireRow& {
     const auto at = std::ranges::find(rows, name, &LuminaireRow::name);
     return at != rows.end() ? *at : rows.emplace_back(LuminaireRow{.name = name});
   };
+  std::set<std::string> partly_known;
   std::vector<char> counted(scene.surfaces.size(), 0);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const auto s = static_cast<std::size_t>(mesh.surface[p]);
@@ -76,6 +80,7 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
       continue;
     }
     LuminaireRow& row = row_of(scene.surfaces[s].name);
+    partly_known.insert(row.name);
     row.count += counted[s] == 0 ? 1 : 0;
     counted[s] = 1;
     row.flux += mesh.area[p] * luminous(scene.bands, mesh.emission.row(p).transpose());
@@ -86,6 +91,13 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
     LuminaireRow& row = row_of(light->lamp.name);
     ++row.count;
     row.flux += total_weight(source) * luminous(scene.bands, source.light);
+    const auto i = static_cast<std::size_t>(source.number);
+    const double known = i < design.watts.size() ? design.watts[i] : 0.0;
+    row.watts += known;
+    if (!(known > 0.0)) partly_known.insert(row.name);
+  }
+  for (LuminaireRow& row : rows) {
+    if (partly_known.contains(row.name)) row.watts = 0.0;
   }
   for (const Named& known : watts) {
     const auto at = std::ranges::find(rows, known.name, &LuminaireRow::name);
@@ -98,14 +110,23 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
   return rows;
 }
 
-/// The grids that were asked for, before any light is traced.
+/// The grids of the file and those that were asked for, before any light is traced.
 std::vector<CalculationSurface> grids(const Arguments& arguments, const Scene& scene,
-                                      const Eigen::Vector3d& up) {
+                                      const LightingDesign& design, const Eigen::Vector3d& up) {
   std::vector<CalculationSurface> surfaces;
   const double metres = scene.metres_per_unit;
   const double spacing = arguments.spacing * metres;
   constexpr double strip = 0.5;  // m, which EN 12464-1 leaves out along walls
   const double margin = arguments.margin ? *arguments.margin * metres : strip;
+  for (const CalculationGrid& grid : design.grids) {
+    const double usual = grid.height > 0.0 ? margin : 0.0;
+    surfaces.push_back(
+        {.grid = lux_grid(scene, grid.surface, up,
+                          {.height = grid.height,
+                           .margin = grid.margin.value_or(usual),
+                           .spacing = grid.spacing > 0.0 ? grid.spacing : spacing})});
+    surfaces.back().grid.name = grid.name;
+  }
   for (const std::string& name : arguments.surfaces) {
     surfaces.push_back(
         {.grid = lux_grid(scene, find_surface(scene, name), up, {.spacing = spacing})});
@@ -122,7 +143,8 @@ std::vector<CalculationSurface> grids(const Arguments& arguments, const Scene& s
 
 Json figures_json(const LightingReport& report) {
   Json surfaces = Json::array(), observers = Json::array(), lamps = Json::array();
-  for (const auto& [grid, field] : report.surfaces) {
+  for (const CalculationSurface& surface : report.surfaces) {
+    const auto& [grid, field] = surface;
     surfaces.push_back({{"name", grid.name},
                         {"E_m", field.mean},
                         {"E_min", field.least},
@@ -133,7 +155,12 @@ Json figures_json(const LightingReport& report) {
                         {"points", grid.points.size()},
                         {"spacing_m", {grid.step_u, grid.step_v}},
                         {"height_m", grid.options.height},
-                        {"margin_m", grid.options.margin}});
+                        {"margin_m", grid.options.margin},
+                        {"area_m2", grid.area}});
+    if (const auto power = power_density(report, surface)) {
+      surfaces.back()["W_per_m2"] = power->watts_per_area;
+      surfaces.back()["W_per_m2_per_100_lx"] = power->per_hundred_lux;
+    }
   }
   for (const auto& [name, glare] : report.observers) {
     Json sources = Json::array();
@@ -179,10 +206,15 @@ std::string points_csv(const LightingReport& report) {
 }
 
 void print_figures(const LightingReport& report) {
-  for (const auto& [grid, field] : report.surfaces) {
+  for (const CalculationSurface& surface : report.surfaces) {
+    const LuxField& field = surface.field;
     fmt::print("{}: E_m {:.4g} lx (± {:.2g} %), E_min {:.4g}, E_max {:.4g}, U_0 {:.2f}\n",
-               grid.name, field.mean, 100.0 * field.mean_within, field.least, field.greatest,
-               field.uniformity);
+               surface.grid.name, field.mean, 100.0 * field.mean_within, field.least,
+               field.greatest, field.uniformity);
+    if (const auto power = power_density(report, surface)) {
+      fmt::print("{}: {:.2f} W/m2, {:.2f} W/m2 per 100 lx\n", surface.grid.name,
+                 power->watts_per_area, power->per_hundred_lux);
+    }
   }
   for (const auto& [name, glare] : report.observers) {
     if (glare.ugr) {
@@ -201,10 +233,13 @@ int report_lighting(const Arguments& arguments, Console& console) {
         "{}: its light is in no known unit, so that there are no lux to report", arguments.scene));
   }
   for (const std::string& file : arguments.outputs) require_writable(file);
-  if (arguments.surfaces.empty() && arguments.planes.empty() && arguments.observers.empty()) {
+  const LightingDesign design = read_lighting_design(scene);
+  if (design.grids.empty() && arguments.surfaces.empty() && arguments.planes.empty() &&
+      arguments.observers.empty()) {
     throw InputError(
         "nothing was asked for; name surfaces with '--surface floor', planes above them with "
-        "'--plane floor@0.75', or observers with '--observer CAMERA'");
+        "'--plane floor@0.75' or as [[grids]] in the scene file, or observers with '--observer "
+        "CAMERA'");
   }
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   LightingReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
@@ -214,11 +249,12 @@ int report_lighting(const Arguments& arguments, Console& console) {
                       .maintenance_factor = arguments.maintenance_factor,
                       .rays = arguments.rays,
                       .error_estimate = solved.solution.error_estimate};
-  made.surfaces = grids(arguments, scene, guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)));
+  made.surfaces =
+      grids(arguments, scene, design, guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)));
   const Stopwatch watch;
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
-  made.luminaires = luminaires(scene, solved.mesh, direct_light, arguments.watts);
+  made.luminaires = luminaires(scene, solved.mesh, direct_light, design, arguments.watts);
   GatherOptions gathering{.rays = arguments.rays};
   gathering.progress = console.progress();
   for (CalculationSurface& surface : made.surfaces) {
@@ -230,10 +266,10 @@ int report_lighting(const Arguments& arguments, Console& console) {
   for (const std::string& name : arguments.observers) {
     constexpr int rays_of_an_eye = 1 << 14;
     gathering.rays = std::max(arguments.rays, rays_of_an_eye);
-    made.observers.push_back(
-        {.name = name,
-         .glare = unified_glare_rating(scene, caster, direct_light, solved.solution,
-                                       choose_camera(scene, name), gathering)});
+    made.observers.push_back({.name = name,
+                              .glare = unified_glare_rating(
+                                  scene, caster, direct_light, solved.solution,
+                                  choose_camera(scene, name), gathering, design.luminous_height)});
     stop_if_interrupted();
   }
   console.finish_phase();

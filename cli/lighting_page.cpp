@@ -164,6 +164,15 @@ void add_surfaces(const LightingReport& report, const std::optional<LuxRange>& r
   }
   page += "</table>\n";
   for (const CalculationSurface& surface : report.surfaces) {
+    if (const auto power = power_density(report, surface)) {
+      fmt::format_to(out,
+                     "<p>Installed power over {} ({:.1f} m²): {:.2f} W/m², {:.2f} W/m² per 100 "
+                     "lx.</p>\n",
+                     escaped(surface.grid.name), surface.grid.area, power->watts_per_area,
+                     power->per_hundred_lux);
+    }
+  }
+  for (const CalculationSurface& surface : report.surfaces) {
     const LuxGrid& grid = surface.grid;
     fmt::format_to(out, "<figure><figcaption><b>{}</b>", escaped(grid.name));
     if (grid.options.height > 0.0) {
@@ -215,6 +224,19 @@ void add_observers(const LightingReport& report, std::string& page) {
 }
 
 }  // namespace
+
+std::optional<PowerDensity> power_density(const LightingReport& report,
+                                          const CalculationSurface& surface) {
+  double watts = 0.0;
+  for (const LuminaireRow& row : report.luminaires) {
+    if (!(row.watts > 0.0)) return {};
+    watts += row.watts;
+  }
+  const bool is_working_plane = surface.grid.options.height > 0.0;
+  if (!(is_working_plane && watts > 0.0 && surface.field.mean > 0.0)) return {};
+  const double density = watts / surface.grid.area;
+  return PowerDensity{density, density / (surface.field.mean / 100.0)};
+}
 
 std::string lighting_page(const LightingReport& report, const std::optional<LuxRange>& range) {
   const Provenance& made = report.provenance;

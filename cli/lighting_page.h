@@ -15,7 +15,7 @@ struct LuminaireRow {
   std::string name{};
   int count = 0;       ///< surfaces or lamps
   double flux = 0.0;   ///< lm, of all of them, as bright as they are in the solution
-  double watts = 0.0;  ///< electric power, of all of them; 0: unknown
+  double watts = 0.0;  ///< installed electric power, of all of them; 0: unknown
 };
 
 struct CalculationSurface {
@@ -26,6 +26,13 @@ struct CalculationSurface {
 struct Observer {
   std::string name{};
   Glare glare{};
+};
+
+/// Installed power of all luminaires over the area of a working plane (EN 12464-1 and EN 15193
+/// have it as W/m^2 and, for each 100 lx of maintained illuminance, W/m^2/100 lx).
+struct PowerDensity {
+  double watts_per_area = 0.0;   ///< W/m^2
+  double per_hundred_lux = 0.0;  ///< W/m^2 for each 100 lx of E_m
 };
 
 /// All that a report says.
@@ -41,6 +48,10 @@ struct LightingReport {
   std::vector<CalculationSurface> surfaces{};
   std::vector<Observer> observers{};
 };
+
+/// Of a plane above a surface, where the power of every luminaire is known and there is light.
+std::optional<PowerDensity> power_density(const LightingReport& report,
+                                          const CalculationSurface& surface);
 
 /// One page to read and to print, which holds all it needs. Plans are in false colours; `range`:
 /// theirs, else what suits each.

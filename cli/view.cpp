@@ -37,16 +37,48 @@ struct Arguments {
   int frames = 0, turntable = 0;
   std::vector<double> isolux;
   double eye_height = 0.0;  // in the scene file's unit; 0: a person's
-  bool walk = false;
+  bool walk = false, look_through = false, from_outside = false;
+  std::vector<double> pointer, click, measured;  // pixels
 };
 
 #ifdef LIGHTWELL_VIEWER
+Annotations annotations(const Arguments& arguments) {
+  const auto place = [](const std::vector<double>& xy, std::size_t first) {
+    return Eigen::Vector2d(xy[first], xy[first + 1]);
+  };
+  Annotations result{.keys = arguments.overlay == "keys"};
+  if (!arguments.pointer.empty()) result.pointer = place(arguments.pointer, 0);
+  if (!arguments.click.empty()) result.click = place(arguments.click, 0);
+  if (!arguments.measured.empty()) {
+    result.measured = {place(arguments.measured, 0), place(arguments.measured, 2)};
+  }
+  return result;
+}
+
+// A camera of the scene; or what the digit's key shows, where no camera has it for a name.
+Camera choose_view(const Scene& scene, const std::string& name, const fs::path& bookmark_file) {
+  const bool is_digit = name.size() == 1 && name[0] >= '1' && name[0] <= '9';
+  const auto has_name = [&](const Camera& camera) { return camera.name == name; };
+  if (is_digit && std::ranges::none_of(scene.cameras, has_name)) {
+    const auto index = static_cast<std::size_t>(name[0] - '1');
+    if (fs::exists(bookmark_file)) {
+      const auto bookmark = read_views(bookmark_file).bookmarks[index];
+      if (bookmark) return *bookmark;
+    }
+    if (index < scene.cameras.size()) return scene.cameras[index];
+  }
+  return choose_camera(scene, name);
+}
+
 ViewOptions view_options(const Arguments& arguments, const Scene& scene) {
   ViewOptions options{.cameras = scene.cameras,
                       .exposure_ev = arguments.exposure_ev,
                       .materials = scene.materials,
                       .scene = &scene};
-  options.mesh = !arguments.overlay.empty();
+  options.mesh = arguments.overlay == "mesh";
+  options.annotations = annotations(arguments);
+  options.look_through = arguments.look_through;
+  options.from_outside = arguments.from_outside;
   options.illuminance = !arguments.false_colour.empty() && arguments.false_colour != "error";
   options.measure = arguments.false_colour == "luminance" ? Measure::luminance
                     : arguments.false_colour == "unshot"  ? Measure::unshot
@@ -62,7 +94,9 @@ ViewOptions view_options(const Arguments& arguments, const Scene& scene) {
   if (!arguments.output.empty()) beside = arguments.output;
   if (!arguments.solution.empty()) beside = arguments.solution;
   options.bookmark_file = beside.replace_extension(".views.json");
-  if (!arguments.camera.empty()) options.camera = choose_camera(scene, arguments.camera);
+  if (!arguments.camera.empty()) {
+    options.camera = choose_view(scene, arguments.camera, options.bookmark_file);
+  }
   // Off screen, the picture that 'render' would make; a window is as large as suits a screen.
   if (!arguments.offscreen.empty() && !scene.cameras.empty()) {
     const Camera& camera = options.camera ? *options.camera : scene.cameras.front();
@@ -217,15 +251,23 @@ Action add_view(CLI::App& command) {
                                           "draw into this .png instead of a window")
                               ->type_name("FILE")
                               ->check(with_extension({".png"}));
-  command.add_option("--camera", arguments->camera, "where to start (default: the first camera)")
+  command
+      .add_option("--camera", arguments->camera,
+                  "where to start: a camera's name, or a digit for what its key shows (default: "
+                  "the first camera)")
       ->type_name("NAME");
   add_size(command, arguments->size);
   add_exposure(command, arguments->exposure_ev);
   command
       .add_option("--overlay", arguments->overlay,
-                  "mesh: begin with the outlines of the elements (key M)")
+                  "mesh: begin with the outlines of the elements (key M); keys: with the list of "
+                  "keys (H), off screen")
       ->type_name("WHAT")
-      ->check(one_of("overlay", {"mesh"}));
+      ->check(one_of("overlay", {"mesh", "keys"}));
+  command.add_flag("--look-through", arguments->look_through,
+                   "begin looking through surfaces that get no light (key X)");
+  command.add_flag("--from-outside", arguments->from_outside,
+                   "begin with all of the scene in the picture (key F)");
   auto* const false_colour =
       command
           .add_option(
@@ -248,6 +290,21 @@ Action add_view(CLI::App& command) {
                   "of a person on foot (default: 1.6 m, less in a model smaller than a room)")
       ->type_name("LENGTH")
       ->check(positive());
+  const auto add_pixels = [&](const char* name, std::vector<double>& places, int count,
+                              const char* does, const char* type) {
+    return command.add_option(name, places, does)
+        ->delimiter(',')
+        ->expected(count)
+        ->type_name(type)
+        ->needs(offscreen);
+  };
+  add_pixels("--pointer", arguments->pointer, 2,
+             "with --offscreen: read what is at this pixel, beside it (key T)", "X,Y");
+  auto* const click = add_pixels("--click", arguments->click, 2,
+                                 "with --offscreen: read what is at this pixel, in full", "X,Y");
+  add_pixels("--measure", arguments->measured, 4,
+             "with --offscreen: the distance between what is at two pixels (key L)", "X,Y,X,Y")
+      ->excludes(click);
   auto* const path =
       command.add_option("--path", arguments->path, "a path recorded with the key J, for --frames")
           ->type_name("FILE");

@@ -15,6 +15,8 @@ build_packages=(
 display_packages=(xvfb xauth libgl1-mesa-dri)
 # What opens exported pages and checks exported models, in the tests.
 browser_packages=(chromium nodejs)
+# A second browser, 0.3 GB: without it the tests in it are skipped.
+second_browser=firefox-esr
 
 say() { printf '==> %s\n' "$*"; }
 die() { printf 'error: %s\n' "$*" >&2; exit 1; }
@@ -24,7 +26,7 @@ need_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     say "This is not Debian, so nothing is installed for you. What is needed: a C++20 compiler, CMake 3.25,"
     say "Ninja, Eigen 3.4, oneTBB, fmt, Embree 3.13 or 4, CGAL 5.5, OpenMesh, VTK 9.1, toml++,"
-    say "assimp, pugixml, muParser, libjpeg, OpenEXR, libpng, CLI11, nlohmann-json, GoogleTest; for the tests Xvfb, Chromium and node."
+    say "assimp, pugixml, muParser, libjpeg, OpenEXR, libpng, CLI11, nlohmann-json, GoogleTest; for the tests Xvfb, Chromium, Firefox and node."
     return 0
   fi
   local name missing=()
@@ -40,7 +42,7 @@ need_packages() {
 Run that as root (or install sudo), then start this again."
     as_root=(sudo)
   fi
-  say "Installing ${#missing[@]} Debian packages and what they need (up to 0.7 GB to download): ${missing[*]}"
+  say "Installing ${#missing[@]} Debian packages and what they need (up to 0.8 GB to download): ${missing[*]}"
   local log=build/install.log
   mkdir -p build
   local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=600 -o Acquire::Retries=3)
@@ -48,6 +50,11 @@ Run that as root (or install sudo), then start this again."
     tail -n 20 "$log" >&2
     die "the packages could not be installed; the lines above (all of them: $log) say why. Is the network up?"
   }
+}
+
+# want_packages NAME...: the same, but goes on without them.
+want_packages() {
+  (need_packages "$@") || say "Going on without $*."
 }
 
 # Compiling against CGAL or VTK takes up to 1.6 GB at a time: as many jobs as cores and free memory allow.

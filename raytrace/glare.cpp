@@ -114,25 +114,27 @@ void add_surfaces(const Scene& scene, const PatchMesh& mesh, GlareSum& sum) {
   }
 }
 
-/// Of a flat opening the luminance is I / A cos, its solid angle A cos / d^2.
-void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, GlareSum& sum) {
-  const LampOpening& opening = lamp.opening;
-  const double area = opening.along_c0 * opening.along_c90 * (opening.is_round ? pi / 4.0 : 1.0);
-  const Eigen::Vector3d from = sum.position() - lamp.position;
-  const double d = from.norm();
+/// Of each of its places, all of which give the same share of its intensity (see LampOpening), the
+/// luminance is I / A and the solid angle A / d^2, with the area A that is seen from the eye.
+void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, double height,
+              GlareSum& sum) {
+  const double candela = luminous(scene.bands, light);
+  if (!(candela > 0.0)) return;
   // Edge on, where a flat opening has no area, a real one has its rim.
   constexpr double rim = 0.05;
-  const double cosine = std::max(rim, std::abs(lamp.aim().dot(from)) / d);
-  const double candela = luminous(scene.bands, light) * relative_intensity(lamp, from / d);
-  if (!(candela > 0.0)) return;
+  const double least = rim * luminous_area(lamp.opening, 0.0, Eigen::Vector3d::UnitZ());
   constexpr int places = opening_grid * opening_grid;
   for (int i = 0; i < places; ++i) {
     const Eigen::Vector3d point = opening_point(lamp, (i % opening_grid + 0.5) / opening_grid,
                                                 (i / opening_grid + 0.5) / opening_grid);
     constexpr double before = 0.999;  // a lamp hangs in what holds it
     if (!sum.counts(point) || sum.first_hit(point, before).facet >= 0) continue;
-    const double solid_angle = area * cosine / (places * (point - sum.position()).squaredNorm());
-    sum.add(lamp.name, point, solid_angle, candela / (area * cosine));
+    const Eigen::Vector3d from = sum.position() - point;
+    const double d = from.norm();
+    const double I = candela * relative_intensity(lamp, from / d);
+    const double area =
+        std::max(luminous_area(lamp.opening, height, lamp.axes.transpose() * from / d), least);
+    if (I > 0.0) sum.add(lamp.name, point, area / (places * d * d), I / area);
   }
 }
 
@@ -158,6 +160,14 @@ double position_index(double sigma, double tau) {
                   (21.0 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
 }
 
+double luminous_area(const LampOpening& opening, double height, const Eigen::Vector3d& way) {
+  const double across = opening.along_c0 * way.y(), along = opening.along_c90 * way.x();
+  const double width =
+      opening.is_round ? std::hypot(across, along) : std::abs(across) + std::abs(along);
+  const double area = opening.along_c0 * opening.along_c90 * (opening.is_round ? pi / 4.0 : 1.0);
+  return area * std::abs(way.z()) + height * width;
+}
+
 bool counts_for_glare(double ahead, double beside, double above) {
   constexpr double most_beside = 3.0, most_above = 1.9;
   return ahead > 0.0 && std::abs(beside) <= most_beside * ahead && above <= most_above * ahead;
@@ -165,7 +175,8 @@ bool counts_for_glare(double ahead, double beside, double above) {
 
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
-                           const Camera& eye, const GatherOptions& gathering) {
+                           const Camera& eye, const GatherOptions& gathering,
+                           std::span<const double> luminous_heights) {
   const PatchMesh& mesh = caster.mesh();
   GlareSum sum(eye, caster);
   Glare glare;
@@ -175,7 +186,10 @@ Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
     if (!light) continue;
     const LampOpening& opening = light->lamp.opening;
     if (opening.along_c0 > 0.0 && opening.along_c90 > 0.0) {
-      add_lamp(scene, light->lamp, source.light, sum);
+      const double height = luminous_heights.empty()
+                                ? 0.0
+                                : luminous_heights[static_cast<std::size_t>(source.number)];
+      add_lamp(scene, light->lamp, source.light, height, sum);
     } else {
       glare.left_out.push_back(light->lamp.name);
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ namespace lightwell {
 /// below it, where CIE 117 has none, after Iwata & Tokura 1997: p = 1 + 0.8 r for r = tan sigma up
 /// to 0.6, beyond 1 + 1.2 r. sigma in [0, 90), tau in [0, 180]; p >= 1.
 double position_index(double sigma, double tau);
+
+/// What is seen of a luminaire's opening and of luminous sides so high, those of a box or of a
+/// cylinder over an ellipse: m^2, projected along `way`, unit, in the luminaire's own frame.
+double luminous_area(const LampOpening& opening, double height, const Eigen::Vector3d& way);
 
 /// Whether what lies so far along the line of sight, beside it and above it counts for glare: the
 /// table of CIE 117 ends at 3 times the distance along it to the sides, and at 1.9 times above.
@@ -49,9 +54,12 @@ struct Glare {
 /// For an eye at a camera's place that looks along it, of what counts_for_glare(). E_i is the
 /// illuminance of the eye by what surfaces reflect. Luminaires are surfaces that emit and lamps
 /// with an opening, as bright as they are in the solution; sky and sun are none, and what is seen
-/// through glass or in mirrors is left out. `gathering` is for E_i.
+/// through glass or in mirrors is left out. `gathering` is for E_i. `luminous_heights`, m, one for
+/// each of the scene's lamps or none: of the sides around an opening that shine as well (see
+/// luminous_area); they are taken to stand where the opening is.
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
-                           const Camera& eye, const GatherOptions& gathering);
+                           const Camera& eye, const GatherOptions& gathering,
+                           std::span<const double> luminous_heights = {});
 
 }  // namespace lightwell

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,6 +79,12 @@ struct FlatOutline {
   }
 };
 
+double mesh_diagonal(const PatchMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (int v = 0; v < mesh.vertex_count(); ++v) box.extend(mesh.position(v));
+  return box.diagonal().norm();
+}
+
 const Plane& largest(const std::vector<Plane>& planes, const Eigen::Vector3d& up) {
   constexpr double alike = 1e-6;
   const Plane* best = &planes.front();
@@ -107,7 +115,7 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
   const Plane plane = largest(planes_of(*mesh, scene_bounds(scene).diagonal()), up);
   const std::vector<Edge> edges = outline_of(plane);
   const auto place = [&](int v) { return mesh->vertices[static_cast<std::size_t>(v)]; };
-  LuxGrid grid{.name = named.name, .options = options};
+  LuxGrid grid{.name = named.name, .options = options, .area = plane.area};
   double longest = 0.0;
   for (const auto& [a, b] : edges) {
     const Eigen::Vector3d along = place(b) - place(a);
@@ -177,20 +185,31 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
 LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
   constexpr int looks = 64;
   const SobolPoints sobol(looks);
-  const auto is_buried = [&](const Probe& point) {
+  // Which side of a face a point is on that lies in it is for rounding to say; light of its inside
+  // is none of the plane's.
+  constexpr double beside = 1e-5;  // of the scene
+  const double aside = beside * mesh_diagonal(caster.mesh());
+  const auto is_inside = [&](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
     Eigen::Vector3d a, b;
-    tangent_frame(point.normal, a, b);
+    tangent_frame(normal, a, b);
     std::array<Ray, looks> rays;
     std::array<ElementHit, looks> hits;
     for (int i = 0; i < looks; ++i) {
       const Eigen::Array4f lot = sobol.point(i, 0);
       const Eigen::Vector3d d = cosine_direction(lot[0], lot[1]);
-      rays[static_cast<std::size_t>(i)] = {
-          .origin = point.position, .direction = d.x() * a + d.y() * b + d.z() * point.normal};
+      rays[static_cast<std::size_t>(i)] = {.origin = position,
+                                           .direction = d.x() * a + d.y() * b + d.z() * normal};
     }
     caster.closest_hits(rays, hits);
     return std::ranges::all_of(
         hits, [](const ElementHit& hit) { return hit.facet >= 0 && hit.from_back; });
+  };
+  const auto is_buried = [&](const Probe& point) {
+    const std::array<Eigen::Vector3d, 5> places = {
+        point.position, point.position + aside * grid.u, point.position - aside * grid.u,
+        point.position + aside * grid.v, point.position - aside * grid.v};
+    return std::ranges::any_of(
+        places, [&](const Eigen::Vector3d& place) { return is_inside(place, point.normal); });
   };
   LuxGrid open = grid;
   open.cell.clear();

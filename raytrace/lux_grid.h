@@ -27,6 +27,7 @@ struct LuxGrid {
   Eigen::Vector3d u = Eigen::Vector3d::UnitX(), v = Eigen::Vector3d::UnitY();  ///< unit, in plane
   double step_u = 0.0, step_v = 0.0;  ///< m, sizes of a cell
   int columns = 0, rows = 0;
+  double area = 0.0;            ///< m^2 of the surface, the margin included
   std::vector<int> cell{};      ///< row * columns + column of each point, rising
   std::vector<Probe> points{};  ///< those inside of the surface's outline less the margin
 };
@@ -38,9 +39,10 @@ struct LuxGrid {
 LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
                  const LuxGridOptions& options = {});
 
-/// The grid without points that are inside of bodies, as those of a working plane that a cupboard
-/// reaches through: from there every ray that leaves the plane meets the back of a surface. Where
-/// that is so of all points, the scene's surfaces face away from its rooms, and all stay.
+/// The grid without points that are inside of bodies or on their faces, as those of a working plane
+/// that a cupboard reaches through: from there, or from just beside, every ray that leaves the
+/// plane meets the back of a surface. Where that is so of all points, the scene's surfaces face
+/// away from its rooms, and all stay.
 LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid);
 
 /// What a grid measured, lx.

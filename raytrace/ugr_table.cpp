@@ -20,15 +20,6 @@ constexpr double degrees = 180.0 / pi;
 constexpr double H = 2.0;  // m, of the luminaires above the eye
 constexpr double apart = 0.25 * H;
 
-/// Area that is seen from a unit direction of the luminaire's frame.
-double seen_area(const LuminaireFile& luminaire, const Eigen::Vector3d& from) {
-  const auto& [c0, c90, is_round] = luminaire.opening;
-  const double sides = is_round ? std::hypot(c90 * from.x(), c0 * from.y())
-                                : c90 * std::abs(from.x()) + c0 * std::abs(from.y());
-  const double area = c0 * c90 * (is_round ? pi / 4.0 : 1.0);
-  return area * std::abs(from.z()) + luminaire.opening_height * sides;
-}
-
 /// Light that leaves a luminaire within a small solid angle downwards.
 struct FluxRay {
   std::array<double, 2> reach{};  ///< m, how far it goes along C0 and C90 on its way to the floor
@@ -94,9 +85,10 @@ class Room {
         to_eye /= d;
         const double I = luminaire.web->at(to_eye);
         if (!(I > 0.0)) continue;
+        const double area = luminous_area(luminaire.opening, luminaire.opening_height, to_eye);
         const double p = position_index(std::acos(ahead / d) * degrees,
                                         std::atan2(std::abs(beside), H) * degrees);
-        sum += I * I / (seen_area(luminaire, to_eye) * d * d * p * p);
+        sum += I * I / (area * d * d * p * p);
       }
     }
     return sum;

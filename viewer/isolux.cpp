@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t most_labels = 60;
 
 // The triangles that are drawn, with light and normals at their corners.
-vtkSmartPointer<vtkPolyData> lit_triangles(const PatchMesh& mesh,
+vtkSmartPointer<vtkPolyData> lit_triangles(const PatchMesh& mesh, const FineSpheres& spheres,
                                            const std::vector<ElementKind>& kinds,
                                            const std::vector<float>& lux,
                                            const BandArray& radiance) {
@@ -40,9 +40,28 @@ vtkSmartPointer<vtkPolyData> lit_triangles(const PatchMesh& mesh,
     light->InsertNextValue(lux[static_cast<std::size_t>(v)]);
     normals->InsertNextTuple(mesh.vertex_normal[static_cast<std::size_t>(v)].data());
   }
+  for (const FineSpheres::Point& point : spheres.points) {
+    float value = 0.0f;
+    for (int c = 0; c < 4; ++c) {
+      if (point.vertex[c] >= 0) value += point.weight[c] * lux[point.vertex[c]];
+    }
+    points->InsertNextPoint(point.position.data());
+    light->InsertNextValue(value);
+    normals->InsertNextTuple(point.normal.data());
+  }
   vtkNew<vtkCellArray> triangles;
+  for (const FineSpheres::Face& face : spheres.faces) {
+    if (kinds[face.element] == ElementKind::glass) continue;
+    for (int c = 1; c < 3 && face.corner[c + 1] >= 0; ++c) {
+      triangles->InsertNextCell(3);
+      for (const int k : {0, c, c + 1}) {
+        triangles->InsertCellPoint(mesh.vertex_count() + face.corner[k]);
+      }
+    }
+  }
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (kinds[static_cast<std::size_t>(e)] == ElementKind::glass) continue;
+    if (!spheres.has_faces.empty() && spheres.has_faces[e]) continue;
     const int count = mesh.corner_count(e), first = first_corner(mesh, e, radiance);
     for (int c = 1; c + 1 < count; ++c) {
       triangles->InsertNextCell(3);
@@ -103,11 +122,11 @@ void IsoluxLines::add_to(vtkRenderer* renderer) const {
   for (const auto& text : texts_) renderer->AddViewProp(text);
 }
 
-void IsoluxLines::set(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
-                      const std::vector<float>& lux, const BandArray& radiance,
-                      const std::vector<double>& levels, double lift) {
+void IsoluxLines::set(const PatchMesh& mesh, const FineSpheres& spheres,
+                      const std::vector<ElementKind>& kinds, const std::vector<float>& lux,
+                      const BandArray& radiance, const std::vector<double>& levels, double lift) {
   segments_.clear();
-  const auto triangles = lit_triangles(mesh, kinds, lux, radiance);
+  const auto triangles = lit_triangles(mesh, spheres, kinds, lux, radiance);
   for (const double level : levels) {
     vtkNew<vtkContourFilter> contour;
     contour->SetInputData(triangles);

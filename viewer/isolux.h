@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "viewer/fine_spheres.h"
 #include "viewer/sight.h"
 
 class vtkActor;
@@ -23,7 +24,7 @@ class IsoluxLines {
   void add_to(vtkRenderer* renderer) const;
   /// At the levels, lx; `lux` is one a vertex, `radiance` splits quads as they are drawn. Lines are
   /// lifted off the surfaces by `lift`, m.
-  void set(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
+  void set(const PatchMesh& mesh, const FineSpheres& spheres, const std::vector<ElementKind>& kinds,
            const std::vector<float>& lux, const BandArray& radiance,
            const std::vector<double>& levels, double lift);
   void show(bool shown);

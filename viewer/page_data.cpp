@@ -184,7 +184,11 @@ Json cameras(const BakedModel& model, const Eigen::Vector3d& low) {
   return result;
 }
 
-Json false_colors_of(const LuxRange& range) {
+Json scale_of(const LuxRange& range) {
+  return {{"low", range.low}, {"high", range.high}, {"steps", scale_steps(range)}};
+}
+
+Json false_colors_of(const BakedModel& model, const LuxRange& range) {
   constexpr int entries = 256;
   std::string palette;
   for (int i = 0; i < entries; ++i) {
@@ -192,9 +196,10 @@ Json false_colors_of(const LuxRange& range) {
       palette += fmt::format("{:02x}", static_cast<int>(255.0f * c + 0.5f));
     }
   }
-  return {{"low", range.low},
-          {"high", range.high},
-          {"steps", scale_steps(range)},
+  // The page's radiance is linear RGB, of whatever bands the solution has.
+  const auto luminance = luminous_rows(model.radiance, rgb_bands(model.bands.lumens_per_watt));
+  return {{"illuminance", scale_of(range)},
+          {"luminance", scale_of(lux_range(luminance))},
           {"palette", std::move(palette)}};
 }
 
@@ -227,7 +232,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range) {
   page.about["parts"] = parts(model);
   page.about["materials"] = materials(model);
   page.about["cameras"] = cameras(model, box.low);
-  page.about["false_colors"] = false_colors_of(range);
+  page.about["false_colors"] = false_colors_of(model, range);
   return page;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "scene/facet_textures.h"
@@ -67,7 +68,10 @@ PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArr
 }
 
 std::string full_text(const PointReading& reading, const Bands& bands, const ShownUnits& units) {
-  const Eigen::Vector3d p = reading.position / units.metres_per_unit;
+  // What rounding of rays leaves of a zero is not worth digits.
+  const double distance = reading.position.norm();
+  const Eigen::Vector3d p = reading.position.unaryExpr(
+      [&](double x) { return std::abs(x) < 1e-6 * distance ? 0.0 : x / units.metres_per_unit; });
   const Eigen::Vector3d& n = reading.normal;
   const bool relative = units.relative;
   return fmt::format(

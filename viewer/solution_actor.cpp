@@ -22,25 +22,7 @@
 namespace lightwell {
 namespace {
 
-/// Those that show a picture are left to others, where they are lit.
-vtkSmartPointer<vtkCellArray> polygons_of_kind(const PatchMesh& mesh,
-                                               const std::vector<ElementKind>& kinds,
-                                               const std::vector<char>& has_picture,
-                                               const BandArray& radiance, ElementKind kind) {
-  auto polygons = vtkSmartPointer<vtkCellArray>::New();
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    if (kinds[e] != kind) continue;
-    if (kind == ElementKind::lit && !has_picture.empty() && has_picture[e]) continue;
-    const int corner_count = mesh.corner_count(e);
-    // VTK splits a quad along the diagonal from its first corner.
-    const int first = first_corner(mesh, e, radiance);
-    polygons->InsertNextCell(corner_count);
-    for (int c = 0; c < corner_count; ++c) {
-      polygons->InsertCellPoint(mesh.corners[e][(first + c) % corner_count]);
-    }
-  }
-  return polygons;
-}
+constexpr double edge_grey = 0.1;
 
 vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, bool is_glass) {
   vtkNew<vtkPolyDataMapper> mapper;
@@ -52,7 +34,7 @@ vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, bool is_glass) {
   vtkProperty* property = actor->GetProperty();
   property->LightingOff();
   property->BackfaceCullingOn();
-  property->SetEdgeColor(0.1, 0.1, 0.1);
+  property->SetEdgeColor(edge_grey, edge_grey, edge_grey);
   property->SetLineWidth(1.0f);
   if (is_glass) property->SetOpacity(glass_opacity);
   return actor;
@@ -66,6 +48,28 @@ void draw_behind(vtkActor* actor) {
       "//VTK::Light::Impl", true,
       "//VTK::Light::Impl\n  gl_FragDepth = gl_FragCoord.z + 4.0 * fwidth(gl_FragCoord.z);\n",
       false);
+}
+
+/// Where the light of an element ends, along the true sphere.
+vtkSmartPointer<vtkActor> make_outlines(vtkPoints* points, int first, const FineSpheres& spheres) {
+  vtkNew<vtkCellArray> lines;
+  for (const auto& [from, to] : spheres.outlines) {
+    const vtkIdType ends[2] = {first + from, first + to};
+    lines->InsertNextCell(2, ends);
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetLines(lines);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  mapper->SetResolveCoincidentTopologyToPolygonOffset();
+  mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, -20.0);
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  actor->GetProperty()->LightingOff();
+  actor->GetProperty()->SetColor(edge_grey, edge_grey, edge_grey);
+  actor->VisibilityOff();
+  return actor;
 }
 
 vtkSmartPointer<vtkTexture> make_texture(const DrawnPicture& picture) {
@@ -96,24 +100,35 @@ vtkSmartPointer<vtkTexture> make_texture(const DrawnPicture& picture) {
 
 }  // namespace
 
-SolutionActor::SolutionActor(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
-                             const BandArray& radiance, const DrawnPictures& drawn)
-    : colors_(vtkSmartPointer<vtkUnsignedCharArray>::New()) {
+SolutionActor::SolutionActor(const PatchMesh& mesh, const FineSpheres& spheres,
+                             const std::vector<ElementKind>& kinds, const BandArray& radiance,
+                             const DrawnPictures& drawn)
+    : spheres_(spheres), colors_(vtkSmartPointer<vtkUnsignedCharArray>::New()) {
+  // The mesh's vertices, and after them the spheres' points.
+  const vtkIdType count = mesh.vertex_count() + static_cast<vtkIdType>(spheres.points.size());
   colors_->SetNumberOfComponents(3);
-  colors_->SetNumberOfTuples(mesh.vertex_count());
+  colors_->SetNumberOfTuples(count);
   colors_->FillValue(0);
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(mesh.vertex_count());
+  points->SetNumberOfPoints(count);
   for (int v = 0; v < mesh.vertex_count(); ++v) points->SetPoint(v, mesh.position(v).data());
+  for (std::size_t i = 0; i < spheres.points.size(); ++i) {
+    points->SetPoint(mesh.vertex_count() + static_cast<vtkIdType>(i),
+                     spheres.points[i].position.data());
+  }
 
   for (const ElementKind kind : {ElementKind::lit, ElementKind::unlit, ElementKind::glass}) {
-    auto data = vtkSmartPointer<vtkPolyData>::New();
-    data->SetPoints(points);
-    data->GetPointData()->SetScalars(colors_);
-    parts_.push_back({kind, data, make_actor(data, kind == ElementKind::glass)});
-    if (kind == ElementKind::unlit) draw_behind(parts_.back().actor);
+    for (const bool is_fine : {false, true}) {
+      if (is_fine && spheres.points.empty()) continue;
+      auto data = vtkSmartPointer<vtkPolyData>::New();
+      data->SetPoints(points);
+      data->GetPointData()->SetScalars(colors_);
+      parts_.push_back({kind, is_fine, data, make_actor(data, kind == ElementKind::glass)});
+      if (kind == ElementKind::unlit) draw_behind(parts_.back().actor);
+    }
   }
+  outlines_ = make_outlines(points, mesh.vertex_count(), spheres);
   if (!drawn.all().empty()) add_pictures(mesh, drawn);
   set_shapes(mesh, kinds, radiance);
 }
@@ -148,17 +163,47 @@ void SolutionActor::add_pictures(const PatchMesh& mesh, const DrawnPictures& dra
     data->SetPoints(points);
     data->GetPointData()->SetScalars(pictured.colors);
     data->GetPointData()->SetTCoords(places);
-    pictured.part = {ElementKind::lit, data, make_actor(data, false)};
+    pictured.part = {ElementKind::lit, false, data, make_actor(data, false)};
     pictured.has_holes = drawn.all()[p].has_holes;
     if (pictured.has_holes) pictured.part.actor->ForceOpaqueOn();
     pictured_.push_back(std::move(pictured));
   }
 }
 
+/// Elements that show a picture are left to others, where they are lit.
+vtkSmartPointer<vtkCellArray> SolutionActor::polygons_of(const PatchMesh& mesh, const Part& part,
+                                                         const std::vector<ElementKind>& kinds,
+                                                         const BandArray& radiance) const {
+  auto polygons = vtkSmartPointer<vtkCellArray>::New();
+  if (part.is_fine) {
+    for (const FineSpheres::Face& face : spheres_.faces) {
+      if (kinds[face.element] != part.kind) continue;
+      polygons->InsertNextCell(face.corner[3] < 0 ? 3 : 4);
+      for (const int point : face.corner) {
+        if (point >= 0) polygons->InsertCellPoint(mesh.vertex_count() + point);
+      }
+    }
+    return polygons;
+  }
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (kinds[e] != part.kind) continue;
+    if (part.kind == ElementKind::lit && !has_picture_.empty() && has_picture_[e]) continue;
+    if (!spheres_.has_faces.empty() && spheres_.has_faces[e]) continue;
+    const int corner_count = mesh.corner_count(e);
+    // VTK splits a quad along the diagonal from its first corner.
+    const int first = first_corner(mesh, e, radiance);
+    polygons->InsertNextCell(corner_count);
+    for (int c = 0; c < corner_count; ++c) {
+      polygons->InsertCellPoint(mesh.corners[e][(first + c) % corner_count]);
+    }
+  }
+  return polygons;
+}
+
 void SolutionActor::set_shapes(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
                                const BandArray& radiance) {
   for (const Part& part : parts_) {
-    part.data->SetPolys(polygons_of_kind(mesh, kinds, has_picture_, radiance, part.kind));
+    part.data->SetPolys(polygons_of(mesh, part, kinds, radiance));
   }
   for (const PicturedPart& pictured : pictured_) {
     auto polygons = vtkSmartPointer<vtkCellArray>::New();
@@ -177,12 +222,22 @@ void SolutionActor::set_shapes(const PatchMesh& mesh, const std::vector<ElementK
 
 void SolutionActor::add_to(vtkRenderer* renderer) const {
   for (const Part& part : parts_) renderer->AddActor(part.actor);
+  renderer->AddActor(outlines_);
   for (const PicturedPart& pictured : pictured_) renderer->AddActor(pictured.part.actor);
 }
 
 void SolutionActor::set_colors(const std::vector<std::uint8_t>& plain,
                                const std::vector<std::uint8_t>& codes) {
-  std::copy(plain.begin(), plain.end(), colors_->GetPointer(0));
+  unsigned char* next = std::copy(plain.begin(), plain.end(), colors_->GetPointer(0));
+  for (const FineSpheres::Point& point : spheres_.points) {
+    Eigen::Array3f color = Eigen::Array3f::Constant(0.5f);  // to be rounded
+    for (int c = 0; c < 4; ++c) {
+      if (point.vertex[c] < 0) continue;
+      const auto* const bytes = &plain[3 * static_cast<std::size_t>(point.vertex[c])];
+      color += point.weight[c] * Eigen::Array3f(bytes[0], bytes[1], bytes[2]);
+    }
+    for (const float component : color) *next++ = static_cast<unsigned char>(component);
+  }
   colors_->Modified();
   for (const Part& part : parts_) part.data->Modified();
   const std::vector<std::uint8_t>& of_pictures = codes.empty() ? plain : codes;
@@ -224,7 +279,10 @@ void SolutionActor::show_picture(const PicturedPart& pictured, bool shown) {
 }
 
 void SolutionActor::show_mesh(bool shown) {
-  for (const Part& part : parts_) part.actor->GetProperty()->SetEdgeVisibility(shown);
+  for (const Part& part : parts_) {
+    part.actor->GetProperty()->SetEdgeVisibility(shown && !part.is_fine);
+  }
+  outlines_->SetVisibility(shown);
   for (const PicturedPart& pictured : pictured_) {
     pictured.part.actor->GetProperty()->SetEdgeVisibility(shown);
   }

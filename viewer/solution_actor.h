@@ -8,8 +8,10 @@
 #include "mesh/patch_mesh.h"
 #include "viewer/appearance.h"
 #include "viewer/drawn_pictures.h"
+#include "viewer/fine_spheres.h"
 
 class vtkActor;
+class vtkCellArray;
 class vtkPolyData;
 class vtkRenderer;
 class vtkTexture;
@@ -24,9 +26,11 @@ namespace lightwell {
 class SolutionActor {
  public:
   /// `radiance` (vertices x bands) decides how quads are split: along the diagonal whose ends
-  /// differ less, so that the crease follows the light. Lit elements show their pictures.
-  SolutionActor(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
-                const BandArray& radiance, const DrawnPictures& drawn);
+  /// differ less, so that the crease follows the light. Lit elements show their pictures. Keeps a
+  /// reference to `spheres`.
+  SolutionActor(const PatchMesh& mesh, const FineSpheres& spheres,
+                const std::vector<ElementKind>& kinds, const BandArray& radiance,
+                const DrawnPictures& drawn);
   ~SolutionActor();
 
   /// Of the same mesh: what its elements are, and how quads are split, with other light.
@@ -45,6 +49,7 @@ class SolutionActor {
  private:
   struct Part {
     ElementKind kind;
+    bool is_fine = false;  ///< of spheres, whose outlines are drawn by themselves
     vtkSmartPointer<vtkPolyData> data;
     vtkSmartPointer<vtkActor> actor;
   };
@@ -57,10 +62,15 @@ class SolutionActor {
     std::vector<int> element{}, mesh_vertex{};  ///< of each point the vertex
     bool has_holes = false;
   };
+  vtkSmartPointer<vtkCellArray> polygons_of(const PatchMesh& mesh, const Part& part,
+                                            const std::vector<ElementKind>& kinds,
+                                            const BandArray& radiance) const;
   static void show_picture(const PicturedPart& pictured, bool shown);
   void add_pictures(const PatchMesh& mesh, const DrawnPictures& drawn);
 
+  const FineSpheres& spheres_;
   std::vector<Part> parts_;
+  vtkSmartPointer<vtkActor> outlines_;  ///< of the spheres' elements
   vtkSmartPointer<vtkUnsignedCharArray> colors_;
   std::vector<PicturedPart> pictured_;
   std::vector<char> has_picture_;  ///< by element; empty: none has

@@ -131,6 +131,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       scene_(options.scene),
       materials_(options.materials),
       given_range_(options.lux_range),
+      given_measure_(options.measure),
       has_relative_units_(options.relative_units),
       caster_(solved.mesh),
       kinds_(element_kinds(solved, options.materials)),
@@ -138,10 +139,12 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       radiance_(shown_radiance(solved, options.materials)),
       drawn_(pictures_of(options)),
       lux_(vertex_illuminance(solved.solution)),
-      lux_range_(options.lux_range.value_or(lux_range(lux_))),
+      lux_range_(given_measure_ == Measure::illuminance && given_range_ ? *given_range_
+                                                                        : lux_range(lux_)),
       bounds_(mesh_bounds(solved.mesh)),
       up_axis_(guess_up_axis(options.cameras, bounds_)),
-      actor_(solved.mesh, kinds_, radiance_, drawn_),
+      spheres_(fine_spheres(solved.mesh)),
+      actor_(solved.mesh, spheres_, kinds_, radiance_, drawn_),
       sky_(scene_ ? sky_in_force(*scene_, solved.mesh) : std::nullopt),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
       legend_(make_legend()),
@@ -152,6 +155,10 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
     start_camera_ = options.cameras.front();
   } else {
     start_camera_ = find_start(caster_, kinds_, radiance_, up_axis_, options.width, options.height);
+  }
+  if (options.from_outside) {
+    start_camera_ =
+        frame_all(bounds_, start_camera_.direction, up_axis_, options.width, options.height);
   }
   if (!drawn_.all().empty()) picture_gain_ = picture_gains(solved.mesh, drawn_);
   actor_.add_to(renderer_);
@@ -164,11 +171,13 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   look_.metered_scale = meter(start_camera_);
   look_.exposure_ev = options.exposure_ev;
   look_.mesh = options.mesh;
+  look_.unlit = !options.look_through;
   look_.illuminance = options.illuminance;
   look_.measure = options.measure;
   look_.interpolation_error = options.interpolation_error;
   look_.isolux = !options.isolux.empty();
   actor_.show_mesh(look_.mesh);
+  actor_.show_unlit(look_.unlit);
   apply_legend();
   apply_camera();
   apply_colors();
@@ -221,7 +230,8 @@ std::vector<double> SolutionView::isolux_levels() const {
 void SolutionView::apply_isolux() {
   if (look_.isolux && isolux_is_stale_) {
     constexpr double lift = 1e-3;  // of the scene, so that no depth buffer mixes them with walls
-    isolux_.set(solved_->mesh, kinds_, lux_, radiance_, isolux_levels(), lift * bounds_.diagonal());
+    isolux_.set(solved_->mesh, spheres_, kinds_, lux_, radiance_, isolux_levels(),
+                lift * bounds_.diagonal());
     isolux_is_stale_ = false;
   }
   isolux_.show(look_.isolux);
@@ -250,7 +260,7 @@ void SolutionView::light_arrived() {
   kinds_ = element_kinds(solved_->mesh, solved_->solution.direct_irradiance, materials_);
   light_changed();
   actor_.set_shapes(solved_->mesh, kinds_, radiance_);
-  if (given_range_) return;
+  if (given_range_ && given_measure_ == Measure::illuminance) return;
   lux_range_ = lux_range(lux_);
   apply_legend();
   if (look_.illuminance) apply_colors();
@@ -280,7 +290,7 @@ std::vector<float> SolutionView::measured() const {
 }
 
 LuxRange SolutionView::measured_range() const {
-  if (given_range_) return *given_range_;
+  if (given_range_ && look_.measure == given_measure_) return *given_range_;
   return look_.measure == Measure::illuminance ? lux_range_ : lux_range(measured());
 }
 

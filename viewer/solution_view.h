@@ -78,7 +78,8 @@ class SolutionView {
   const SolvedScene* solved_;
   const Scene* scene_;
   std::vector<Material> materials_;
-  std::optional<LuxRange> given_range_;
+  std::optional<LuxRange> given_range_;  ///< of given_measure_
+  Measure given_measure_;
   bool has_relative_units_;
   std::vector<float> unshot_{};  ///< at vertices
   ElementCaster caster_;
@@ -88,11 +89,12 @@ class SolutionView {
   DrawnPictures drawn_;
   BandArray picture_gain_;  ///< see picture_gains; empty without pictures
   std::vector<float> lux_;
-  LuxRange lux_range_;
+  LuxRange lux_range_;  ///< of illuminance
   Bounds bounds_;
   Eigen::Vector3d up_axis_;
   Camera start_camera_;
   Look look_;
+  FineSpheres spheres_;
   SolutionActor actor_;
   std::optional<Sky> sky_;
   std::optional<SkyActor> outside_;

@@ -4,12 +4,18 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include "radiosity/relight.h"
+#include "radiosity/vtk_messages.h"
 #include "raytrace/image.h"
 #include "scene/errors.h"
 #include "viewer/camera_path.h"
 #include "viewer/live_solve.h"
+#include "viewer/marks.h"
+#include "viewer/overlay.h"
+#include "viewer/pointer_tools.h"
 #include "viewer/solution_view.h"
 #include "viewer/walk_window.h"
 #include "viewer/x_display.h"
@@ -34,15 +40,71 @@ void require_size(const ViewOptions& options) {
   }
 }
 
+void require_within(const ViewOptions& options, const Eigen::Vector2d& place) {
+  const bool is_within = place.x() >= 0.0 && place.y() >= 0.0 && place.x() < options.width &&
+                         place.y() < options.height;
+  if (is_within) return;
+  throw InputError(fmt::format("pixel {:g},{:g} is outside of the picture, which has {} x {}",
+                               place.x(), place.y(), options.width, options.height));
+}
+
+/// Draws pictures as a window shows them after the keys and clicks of the options' annotations.
+class AnnotatedPictures {
+ public:
+  /// Keeps references to both.
+  AnnotatedPictures(SolutionView& view, const ViewOptions& options)
+      : view_(view), options_(options) {
+    overlay_.add_to(view.renderer());
+    marks_.add_to(view.renderer());
+  }
+
+  /// Of what the view looks at; throws InputError for a place outside of the picture.
+  std::vector<std::uint8_t> draw() {
+    const Annotations& asked = options_.annotations;
+    const int width = options_.width, height = options_.height;
+    Look look = view_.look();
+    std::tie(look.camera.width, look.camera.height) = std::pair(width, height);
+    view_.set_look(look);
+    PointerTools pointer(options_.scene);
+    const auto click = [&](const Eigen::Vector2d& place) {
+      require_within(options_, place);
+      pointer.click(view_, place.x(), place.y());
+    };
+    if (asked.click) click(*asked.click);
+    if (asked.measured) {
+      pointer.switch_measuring();
+      for (const Eigen::Vector2d& place : *asked.measured) click(place);
+    }
+    marks_.set(pointer.marks());
+    overlay_.set_panel(pointer.panel(view_));
+    if (asked.pointer) {
+      const double x = asked.pointer->x(), y = asked.pointer->y();
+      require_within(options_, *asked.pointer);
+      pointer.switch_probe();
+      pointer.hover(view_, x, y);
+      overlay_.set_cursor(pointer.beside_pointer(view_), static_cast<int>(x), static_cast<int>(y),
+                          width, height);
+    }
+    if (asked.keys) overlay_.set_help(walk_help(), width, height);
+    const VtkMessages messages;  // text that finds no room in a tiny picture complains
+    return draw_offscreen(view_, width, height);
+  }
+
+ private:
+  SolutionView& view_;
+  const ViewOptions& options_;
+  Overlay overlay_;
+  Marks marks_;
+};
+
 }  // namespace
 
 void write_snapshot(const SolvedScene& solved, const ViewOptions& options,
                     const std::filesystem::path& png) {
   require_size(options);
   const DisplayConnection display;
-  const SolutionView view(solved, options);
-  write_png(png, options.width, options.height,
-            draw_offscreen(view, options.width, options.height));
+  SolutionView view(solved, options);
+  write_png(png, options.width, options.height, AnnotatedPictures(view, options).draw());
 }
 
 std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& options,
@@ -66,6 +128,7 @@ std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const V
   const std::vector<Camera> cameras =
       path.empty() ? turntable(view.start_camera(), center, view.up_axis(), film.frames)
                    : frames_along(path, film.frames);
+  AnnotatedPictures pictures(view, options);
   Look look = view.look();
   look.metered_scale = view.meter(cameras.front());
   for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -73,8 +136,7 @@ std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const V
     look.camera =
         path.empty() ? cameras[i] : fit_to_window(cameras[i], options.width, options.height);
     view.set_look(look);
-    write_png(files[i], options.width, options.height,
-              draw_offscreen(view, options.width, options.height));
+    write_png(files[i], options.width, options.height, pictures.draw());
   }
   return files;
 }
@@ -124,7 +186,7 @@ int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::sp
     look.metered_scale = exposure;
     view.set_look(look);
     view.set_unshot(unshot[k]);
-    const auto drawn = draw_offscreen(view, options.width, options.height);
+    const auto drawn = AnnotatedPictures(view, options).draw();
     const std::size_t row = std::size_t{3} * options.width;
     for (int y = 0; y < options.height; ++y) {
       std::copy_n(drawn.begin() + static_cast<std::ptrdiff_t>(row * y), row,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -12,6 +13,16 @@
 #include "viewer/appearance.h"
 
 namespace lightwell {
+
+/// What keys and the mouse put over the picture in a window, for pictures drawn off screen. Places
+/// are pixels from the left and from the top.
+struct Annotations {
+  bool keys = false;                         ///< the list of keys (H)
+  std::optional<Eigen::Vector2d> pointer{};  ///< reads what is under it, beside it (T)
+  std::optional<Eigen::Vector2d> click{};    ///< reads there, in full
+  /// Instead of a click, two: the distance between what is there (L).
+  std::optional<std::array<Eigen::Vector2d, 2>> measured{};
+};
 
 struct ViewOptions {
   std::optional<Camera>
@@ -42,8 +53,11 @@ struct ViewOptions {
   /// Isolux lines begin shown at these levels, lx; empty: at 1, 2 and 5 times the powers of
   /// ten on the scale (the steps of an even one), and hidden.
   std::vector<double> isolux{};
-  double eye_height = 0.0;  ///< of a person who walks, m; 0: 1.6, less in a model
-  bool walk = false;        ///< begin on foot, with weight and stopped by walls
+  double eye_height = 0.0;    ///< of a person who walks, m; 0: 1.6, less in a model
+  bool walk = false;          ///< begin on foot, with weight and stopped by walls
+  bool look_through = false;  ///< begin looking through surfaces that get no light
+  bool from_outside = false;  ///< begin with all of the scene in the picture
+  Annotations annotations{};  ///< off screen
 };
 
 /// Opens a window with the smooth-shaded solution and walk controls (the key H lists them); returns

@@ -9,6 +9,7 @@
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
+#include "scene/io/toml_design.h"
 #include "scene/io/toml_lamps.h"
 #include "scene/io/toml_materials.h"
 #include "scene/io/toml_motions.h"
@@ -147,8 +148,8 @@ Scene read_toml(const std::filesystem::path& path) {
   const TextFile file(path);
   const toml::table root = parse(file);
   const TomlValue all(file.path(), root, "");
-  const TomlTable document = all.table(
-      {"title", "unit", "bands", "materials", "motions", "surfaces", "lamps", "sky", "cameras"});
+  const TomlTable document = all.table({"title", "unit", "bands", "materials", "motions",
+                                        "surfaces", "lamps", "sky", "cameras", "grids"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
@@ -193,8 +194,23 @@ Scene read_toml(const std::filesystem::path& path) {
     }
   }
   settle_toml_motions(document, have_shutter, scene);
+  // They do not belong to the light, but are to be right when the scene is first used.
+  if (const auto grids = document.find("grids")) read_toml_grids(*grids, scene);
   validate(scene);
   return scene;
+}
+
+LightingDesign read_lighting_design(const Scene& scene) {
+  if (lower_extension(scene.file) != ".toml") return {};
+  const TextFile file(scene.file);
+  const toml::table root = parse(file);
+  const TomlValue all(file.path(), root, "");
+  LightingDesign design;
+  if (const auto grids = all.member("grids")) design.grids = read_toml_grids(*grids, scene);
+  if (const auto lamps = all.member("lamps")) {
+    for (const auto& lamp : lamps->elements("lamp")) read_toml_lamp_design(lamp, design);
+  }
+  return design;
 }
 
 }  // namespace lightwell

@@ -89,6 +89,28 @@ TEST_F(ReportCommand, FiguresAreThoseOfThePoints) {
   EXPECT_EQ(page.find("src="), std::string::npos) << "it holds all it needs";
 }
 
+/// 40 W over the 12 m2 of the floor.
+TEST_F(ReportCommand, GridsOfTheSceneFileAreMeasured) {
+  folder.write("room.toml", small_room() +
+                                "[[grids]]\nname = \"desks\"\nsurface = \"room\"\nheight = "
+                                "0.75\nmargin = 0.25\nspacing = 1\n");
+  const Json json = run_json(
+      {"report", "room.toml", "room.vtp", "--watts", "panel=40", "--rays", "64", "-o", "a.html"});
+  ASSERT_EQ(json["surfaces"].size(), 1u);
+  const Json& desks = json["surfaces"][0];
+  EXPECT_EQ(desks["name"], "desks");
+  EXPECT_EQ(desks["points"], 4 * 3);  // 3.5 m x 2.5 m in cells of at most 1 m
+  EXPECT_EQ(desks["margin_m"], 0.25);
+  EXPECT_NEAR(desks["W_per_m2"].get<double>(), 40.0 / 12.0, 1e-9);
+  EXPECT_NEAR(desks["W_per_m2_per_100_lx"].get<double>(),
+              40.0 / 12.0 / (desks["E_m"].get<double>() / 100.0), 1e-9);
+  EXPECT_TRUE(says(content_of(folder / "a.html"), "3.33 W/m²"));
+  EXPECT_FALSE(
+      run_json({"report", "room.toml", "room.vtp", "--rays", "64"})["surfaces"][0].contains(
+          "W_per_m2"))
+      << "nobody knows the panel's power";
+}
+
 /// Illuminance is proportional to the maintenance factor, with the same rays.
 TEST_F(ReportCommand, MaintenanceDimsAllAlike) {
   const auto mean = [&](const char* factor) {

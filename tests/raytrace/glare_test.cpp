@@ -62,10 +62,10 @@ Camera eye() {
           .up = Eigen::Vector3d::UnitZ()};
 }
 
-Glare rating(const LitScene& lit, const Camera& camera) {
+Glare rating(const LitScene& lit, const Camera& camera, const std::vector<double>& heights = {}) {
   const DirectLight direct_light(lit.scene, lit.caster.mesh());  // with lamps that came later
   return unified_glare_rating(lit.scene, lit.caster, direct_light, lit.solution, camera,
-                              {.rays = 256});
+                              {.rays = 256}, heights);
 }
 
 /// CIE 117 by hand: a square of 0.1 m at 4 m and 1.2 m above the line of sight, facing the eye.
@@ -122,12 +122,42 @@ TEST(UnifiedGlareRating, OfALampGoesByItsOpening) {
   const double d2 = 2.0;
   ASSERT_EQ(glare.sources.size(), 1u);
   const GlareSource& seen = glare.sources[0];
-  EXPECT_NEAR(seen.luminance, I / (A * cosine), single * I / (A * cosine));
   // Half of its length over the distance is 0.07, 2.9 degrees as seen, over which p changes by
   // 15 %: squares of those, the latter's as the mean of a square.
+  EXPECT_NEAR(seen.luminance, I / (A * cosine), 5e-3 * I / (A * cosine));
   EXPECT_NEAR(seen.solid_angle, A * cosine / d2, 5e-3 * A * cosine / d2);
   EXPECT_NEAR(seen.position_index, position_index(45.0, 0.0), 8e-3 * position_index(45.0, 0.0));
   EXPECT_EQ(glare.left_out, std::vector<std::string>{"bulb"});
+}
+
+/// Sides 0.05 m high add what an eye sees of a box, or of a cylinder's outline.
+TEST(LuminousArea, IsThatOfOpeningAndSides) {
+  const LampOpening box{.along_c0 = 0.1, .along_c90 = 0.2};
+  const double half = std::sqrt(0.5);
+  EXPECT_DOUBLE_EQ(luminous_area(box, 0.0, {0, half, half}), 0.02 * half);
+  EXPECT_DOUBLE_EQ(luminous_area(box, 0.05, {0, half, half}), (0.02 + 0.05 * 0.1) * half);
+  EXPECT_DOUBLE_EQ(luminous_area(box, 0.05, {0, -1, 0}), 0.05 * 0.1);
+  EXPECT_DOUBLE_EQ(luminous_area(box, 0.05, {half, half, 0}), 0.05 * (0.1 + 0.2) * half);
+  const LampOpening drum{.along_c0 = 0.2, .along_c90 = 0.2, .is_round = true};
+  EXPECT_DOUBLE_EQ(luminous_area(drum, 0.05, {half, half, 0}), 0.05 * 0.2);
+  EXPECT_DOUBLE_EQ(luminous_area(drum, 0.05, {0, 0, 1}), pi * 0.01);
+}
+
+TEST(UnifiedGlareRating, OfALampCountsItsLuminousSides) {
+  LitScene& lit = lit_room({2, 0.5, 2.4});  // the surface is behind
+  Lamp lamp{.name = "drum",
+            .position = {2, 2, 2.2},
+            .intensity = constant_spectrum(lit.scene.bands, 3.0f),
+            .opening = {.along_c0 = 0.1, .along_c90 = 0.2}};
+  lit.scene.lamps = {lamp};
+  const Glare glare = rating(lit, eye(), {0.05});
+  const double I = luminous(lit.scene.bands, lamp.intensity);
+  const double area = (0.02 + 0.05 * 0.1) * std::sqrt(0.5), L = I / area;
+  ASSERT_EQ(glare.sources.size(), 1u);
+  // As above; and places off the middle, 0.025 m at 1.41 m in the mean, see something of the sides
+  // that face C0: 0.018 * 0.2 m * 0.05 m, a hundredth of the area.
+  EXPECT_NEAR(glare.sources[0].luminance, L, 1.5e-2 * L);
+  EXPECT_NEAR(glare.sources[0].solid_angle, area / 2.0, 1.5e-2 * area / 2.0);
 }
 
 }  // namespace

@@ -106,6 +106,23 @@ TEST(LuxGrid, LeavesOutWhatIsInsideOfBodies) {
   EXPECT_EQ(without_buried_points(lit.caster, above).points.size(), 64u);
 }
 
+/// Points every metre, of which two lie on the sides of a chest, one to its left and one to its
+/// right, and one inside.
+TEST(LuxGrid, LeavesOutWhatIsOnTheFacesOfBodies) {
+  const LitScene lit(SceneBuilder()
+                         .box({}, {0, 0, 0}, {5, 5, 3}, true)
+                         .box({}, {1.5, 1.2, 0}, {3.5, 1.8, 0.8}, false)
+                         .build());
+  const LuxGrid grid = lux_grid(lit.scene, 0, up, {.height = 0.75, .spacing = 1.0});
+  ASSERT_EQ(grid.points.size(), 25u);
+  const LuxGrid open = without_buried_points(lit.caster, grid);
+  EXPECT_EQ(open.points.size(), 22u);
+  for (const Probe& probe : open.points) {
+    EXPECT_FALSE(probe.position.y() == 1.5 && probe.position.x() > 1.0 && probe.position.x() < 4.0)
+        << probe.position.transpose();
+  }
+}
+
 /// A panel of even exitance M over a black floor: E = M F in closed form at every point. Half of
 /// the noise is the shadow rays', of which none is needed in the open.
 TEST(LuxGrid, MeasuresAPanelOverAFloorAsTheFormulaHasIt) {

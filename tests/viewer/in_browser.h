@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -16,10 +18,14 @@ namespace lightwell {
 
 using Json = nlohmann::json;
 
-inline std::string find_browser() {
-  for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
-    const std::string command = std::string("command -v ") + name + " >/dev/null 2>&1";
-    if (std::system(command.c_str()) == 0) return name;
+inline bool has_program(const std::string& name) {
+  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+/// The first that is installed; empty: none is.
+inline std::string first_program(std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (has_program(name)) return name;
   }
   return {};
 }
@@ -36,13 +42,41 @@ inline std::string output_of(const std::string& command) {
 }
 
 /// Collects what goes wrong from the very beginning. A browser that only dumps its document shows
-/// no frames, so a clock stands in for them.
+/// no frames, so a clock stands in for them. What was found is left in that document; Firefox,
+/// which cannot dump it, writes it to its standard output and closes.
 inline constexpr const char* watch = R"(<head><script>
 const errors = [];
 for (const kind of ['error', 'warn']) console[kind] = (...words) => errors.push(words.join(' '));
 window.addEventListener('error', (event) => errors.push(event.message));
 window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 16);
+const report = (found) => {
+  const text = encodeURIComponent(JSON.stringify(found));
+  document.getElementById('result').textContent = text;
+  if (!window.dump) return;
+  window.dump(document.getElementById('result').outerHTML);
+  window.close();
+};
 </script>)";
+
+/// A new profile: nothing but the page is opened, nothing is fetched (no one listens at port 9),
+/// and pages may write and close.
+inline constexpr const char* firefox_settings = R"(
+user_pref("browser.dom.window.dump.enabled", true);
+user_pref("dom.allow_scripts_to_close_windows", true);
+user_pref("webgl.force-enabled", true);
+user_pref("browser.aboutwelcome.enabled", false);
+user_pref("browser.startup.homepage_override.mstone", "ignore");
+user_pref("browser.startup.page", 0);
+user_pref("browser.shell.checkDefaultBrowser", false);
+user_pref("datareporting.policy.dataSubmissionEnabled", false);
+user_pref("toolkit.telemetry.reportingpolicy.firstRun", false);
+user_pref("app.update.enabled", false);
+user_pref("network.proxy.type", 1);
+user_pref("network.proxy.http", "127.0.0.1");
+user_pref("network.proxy.http_port", 9);
+user_pref("network.proxy.ssl", "127.0.0.1");
+user_pref("network.proxy.ssl_port", 9);
+)";
 
 inline std::string decoded(const std::string& text) {
   std::string result;
@@ -57,47 +91,81 @@ inline std::string decoded(const std::string& text) {
   return result;
 }
 
-class InBrowser : public testing::Test {
+enum class BrowserKind { chromium, firefox };
+
+/// A page in each of the browsers.
+class InBrowser : public testing::TestWithParam<BrowserKind> {
  protected:
+  bool is_firefox() const { return GetParam() == BrowserKind::firefox; }
+
   void SetUp() override {
-    browser = find_browser();
+    browser = is_firefox() ? first_program({"firefox-esr", "firefox"})
+                           : first_program({"chromium", "chromium-browser", "google-chrome"});
     if (browser.empty()) {
-      GTEST_SKIP()
-          << "no Chromium here, so the page is not opened; on Debian: apt install chromium";
+      GTEST_SKIP() << "the page is not opened, for there is no such browser here; on Debian: apt "
+                      "install "
+                   << (is_firefox() ? "firefox-esr" : "chromium");
+    }
+    // Without a display Firefox has no WebGL.
+    has_display = std::getenv("DISPLAY") != nullptr;
+    if (is_firefox() && !has_display && !has_program("xvfb-run")) {
+      GTEST_SKIP() << "Firefox draws nothing without a display; on Debian: apt install xvfb xauth";
     }
   }
 
-  /// Opens the page with a script in it that leaves what it found in the element "result".
-  Json run(const BakedModel& model, const std::string& drive) {
+  /// Opens the page with a script in it that hands what it found to report().
+  Json run(const BakedModel& model, const std::string& drive, bool with_webgl = true) {
     write_walkthrough(folder / "page.html", model, LuxRange{.low = 0.0, .high = 4000.0});
     std::string page = content_of(folder / "page.html");
     page.replace(page.find("<head>"), 6, watch);
     const std::size_t end = page.rfind("</body>");
-    page.replace(end, 7, drive);
+    page.replace(end, 7, "<pre id=\"result\"></pre>" + drive + "</body>");
     folder.write("driven.html", page);
-    const std::string dom = opened("--use-angle=swiftshader --enable-unsafe-swiftshader");
+    const std::string said = is_firefox() ? firefox(with_webgl) : chromium(with_webgl);
     const std::string mark = "<pre id=\"result\">";
-    const std::size_t begin = dom.find(mark) + mark.size(), stop = dom.find("</pre>", begin);
-    if (dom.find(mark) == std::string::npos || stop == begin) {
+    const std::size_t begin = said.find(mark) + mark.size(), stop = said.find("</pre>", begin);
+    const std::string complaints = content_of(folder / "said");
+    if (said.find(mark) == std::string::npos || stop == begin) {
       ADD_FAILURE() << "the page was not driven to its end; the browser said: "
-                    << content_of(folder / "said").substr(0, 2000);
+                    << complaints.substr(0, 2000);
       return {};
     }
-    return Json::parse(decoded(dom.substr(begin, stop - begin)));
+    // What Firefox itself finds wrong with the page.
+    EXPECT_FALSE(says(complaints, "JavaScript error: file:")) << complaints;
+    return Json::parse(decoded(said.substr(begin, stop - begin)));
   }
 
   /// The document of driven.html in the end.
-  std::string opened(const std::string& options) {
+  std::string chromium(bool with_webgl) {
     const std::string sandbox = ::geteuid() == 0 ? " --no-sandbox " : " ";
-    return output_of(
-        "HOME='" + folder.path().string() + "' timeout 240 " + browser + " --headless" + sandbox +
-        options + " --window-size=640,640 --virtual-time-budget=60000 --dump-dom 'file://" +
-        (folder / "driven.html").string() + "' 2>'" + (folder / "said").string() + "'");
+    const std::string options =
+        with_webgl ? "--use-angle=swiftshader --enable-unsafe-swiftshader" : "--disable-3d-apis";
+    return output_of(at_home(browser + " --headless" + sandbox + options +
+                             " --window-size=640,640 --virtual-time-budget=60000 --dump-dom"));
+  }
+
+  /// What driven.html writes.
+  std::string firefox(bool with_webgl) {
+    const std::string webgl = with_webgl ? "" : "user_pref(\"webgl.disabled\", true);\n";
+    std::filesystem::create_directory(folder / "profile");
+    folder.write("profile/user.js", firefox_settings + webgl);
+    return output_of(at_home((has_display ? "" : "xvfb-run -a ") + browser +
+                             " --no-remote --profile '" + (folder / "profile").string() + "'"));
+  }
+
+  std::string at_home(const std::string& command) const {
+    return "HOME='" + folder.path().string() + "' timeout 240 " + command + " 'file://" +
+           (folder / "driven.html").string() + "' 2>'" + (folder / "said").string() + "'";
   }
 
   TemporaryFolder folder;
   std::string browser;
+  bool has_display = false;
 };
+
+inline std::string name_of_browser(const testing::TestParamInfo<BrowserKind>& info) {
+  return info.param == BrowserKind::firefox ? "Firefox" : "Chromium";
+}
 
 inline double number(const Json& json) {
   return std::stod(json.get<std::string>());

@@ -12,7 +12,7 @@ namespace lightwell {
 namespace {
 
 /// Dims, recolours and switches lamps, and reads the light after each.
-constexpr const char* drive = R"(<pre id="result"></pre><script>
+constexpr const char* drive = R"(<script>
 (async () => {
   const wait = (ms) => new Promise((done) => setTimeout(done, ms));
   const found = {};
@@ -69,9 +69,8 @@ constexpr const char* drive = R"(<pre id="result"></pre><script>
   found.exposure_of_darkness = exposure();
   found.errors = errors;
   return found;
-})().catch((error) => ({failed: String(error.stack)}))
-    .then((found) => { element('result').textContent = encodeURIComponent(JSON.stringify(found)); });
-</script></body>)";
+})().catch((error) => ({failed: String(error.stack)})).then(report);
+</script>)";
 
 /// Readings are the light that relight() puts at the same places: half floats keep 2^-11 of it,
 /// positions single precision.
@@ -100,7 +99,7 @@ double exposure_for(const SolvedScene& lit, const Scene& scene) {
   return bake_model(lit, scene).cameras[0].scale;
 }
 
-TEST_F(InBrowser, SlidersRelightTheScene) {
+TEST_P(InBrowser, SlidersRelightTheScene) {
   const Scene scene = channel_room();
   const SolvedScene solved = solve_by_channel(scene);
   ASSERT_EQ(solved.solution.channels.size(), 2u);

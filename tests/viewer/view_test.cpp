@@ -14,9 +14,11 @@
 #include "pictured_wall.h"
 #include "raytrace/display.h"
 #include "raytrace/image.h"
+#include "scene/errors.h"
 #include "solved_box.h"
 #include "tests/temporary_folder.h"
 #include "viewer/solution_view.h"
+#include "viewer/start_view.h"
 
 namespace lightwell {
 namespace {
@@ -315,6 +317,73 @@ TEST(Snapshot, MeasuresLuminanceAndUnshotLight) {
   view.set_unshot(Eigen::ArrayXf::Constant(5, 10.0f));
   const Picture picture{200, 150, draw_offscreen(view, 200, 150)};
   expect_pixel(picture.at(100, 75), quarter_up_the_scale(), "a quarter of 40 lm/m2");
+}
+
+/// A range is of what it was given for: with another quantity the scale suits the solution.
+TEST(Snapshot, ARangeHoldsForItsOwnQuantity) {
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  options.illuminance = true;
+  Look look = SolutionView(box, options).look();
+  look.measure = Measure::luminance;
+  const Picture suits = draw(box, options, &look);
+  options.lux_range = {0.0, 1e6};
+  EXPECT_EQ(draw(box, options, &look).bytes, suits.bytes);
+  options.measure = Measure::luminance;
+  EXPECT_NE(draw(box, options, &look).bytes, suits.bytes);
+}
+
+/// The marks' colour, whatever blending made of their edges.
+bool has_mark(const Picture& picture, int x, int y) {
+  const Pixel p = picture.at(x, y);
+  return p[0] > 240 && p[1] > 190 && p[2] < 80;
+}
+
+TEST(Snapshot, WhatKeysAndClicksShowIsDrawnOffScreen) {
+  const TemporaryFolder folder;
+  const SolvedScene box = solved_box();
+  ViewOptions options = options_for(box_camera());
+  options.width = 800;
+  options.height = 600;
+  const auto written = [&] {
+    write_snapshot(box, options, folder / "picture.png");
+    vtkNew<vtkPNGReader> reader;
+    reader->SetFileName((folder / "picture.png").string().c_str());
+    reader->Update();
+    vtkImageData* const image = reader->GetOutput();
+    Picture picture{800, 600, {}};
+    for (int y = 599; y >= 0; --y) {
+      const auto* const row = static_cast<std::uint8_t*>(image->GetScalarPointer(0, y, 0));
+      picture.bytes.insert(picture.bytes.end(), row, row + 2400);
+    }
+    return picture;
+  };
+  const Picture plain = written();
+  options.annotations.click = Eigen::Vector2d(400.5, 300.5);
+  const Picture clicked = written();
+  EXPECT_TRUE(has_mark(clicked, 400, 300));
+  EXPECT_NE(clicked.at(20, 20), plain.at(20, 20)) << "the reading is above on the left";
+  options.annotations = {};
+  options.annotations.measured = {Eigen::Vector2d(300.5, 300.5), Eigen::Vector2d(500.5, 300.5)};
+  const Picture measured = written();
+  for (const int x : {300, 400, 500}) EXPECT_TRUE(has_mark(measured, x, 300)) << x;
+  options.annotations = {.pointer = Eigen::Vector2d(200.5, 300.5)};
+  const Picture pointed = written();
+  int changed = 0;  // pixels on its right, where there is room
+  for (int x = 210; x < 400; ++x) changed += pointed.at(x, 320) != plain.at(x, 320);
+  EXPECT_GT(changed, 50);
+  options.annotations.pointer = Eigen::Vector2d(800.0, 300.0);
+  EXPECT_THROW(written(), InputError);
+  options.annotations = {.keys = true};
+  EXPECT_NE(written().at(600, 200), plain.at(600, 200));
+
+  options.annotations = {};
+  options.from_outside = true;
+  const SolutionView outside(box, options);
+  EXPECT_EQ(outside.look().camera.position,
+            frame_all(outside.bounds(), {0, 0, 1}, {0, 1, 0}, 800, 600).position);
+  options.look_through = true;
+  EXPECT_FALSE(SolutionView(box, options).look().unlit);
 }
 
 /// The legend's text, which is white, ends before the picture does.

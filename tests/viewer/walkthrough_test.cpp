@@ -1,5 +1,5 @@
-// The walkthrough page in a browser. Skipped where there is no Chromium (Debian: apt install
-// chromium).
+// The walkthrough page in Chromium and in Firefox. Skipped where there is no such browser (Debian:
+// apt install chromium firefox-esr).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace lightwell {
 namespace {
 
 /// Presses keys, moves the mouse, and leaves what is then to be seen as JSON.
-constexpr const char* drive = R"(<pre id="result"></pre><script>
+constexpr const char* drive = R"(<script>
 (async () => {
   const wait = (ms) => new Promise((done) => setTimeout(done, ms));
   const key = (type, key, code) => window.dispatchEvent(new KeyboardEvent(type, {key, code}));
@@ -53,7 +53,12 @@ constexpr const char* drive = R"(<pre id="result"></pre><script>
   tap('v');
   found.legend = !element('legend').hidden && [...document.querySelectorAll('.step')].map((s) => s.textContent);
   found.false_color_pixel = pixel(0.5, 0.5);
-  tap('v');
+  tap('u');
+  found.luminance_legend = !element('legend').hidden && element('unit').textContent;
+  found.luminance_scale = page.model.about.false_colors.luminance;
+  found.luminance_pixel = pixel(0.5, 0.5);
+  tap('u');
+  found.legend_goes = element('legend').hidden;
   tap('m');
   page.picture.draw();
   tap('m');
@@ -79,9 +84,8 @@ constexpr const char* drive = R"(<pre id="result"></pre><script>
   tap('x');
   found.errors = errors;
   return found;
-})().catch((error) => ({failed: String(error.stack)}))
-    .then((found) => { element('result').textContent = encodeURIComponent(JSON.stringify(found)); });
-</script></body>)";
+})().catch((error) => ({failed: String(error.stack)})).then(report);
+</script>)";
 
 /// The box with light that changes over each wall, seen from the front.
 SolvedScene shaded_box() {
@@ -94,7 +98,7 @@ SolvedScene shaded_box() {
   return box;
 }
 
-TEST_F(InBrowser, ThePageShowsAndMeasuresTheSolution) {
+TEST_P(InBrowser, ThePageShowsAndMeasuresTheSolution) {
   const SolvedScene box = shaded_box();
   Scene scene = box_scene();
   scene.surfaces[2].name = "</script><b>wall";
@@ -134,11 +138,16 @@ TEST_F(InBrowser, ThePageShowsAndMeasuresTheSolution) {
   const auto brighter = display_colors(L, rgb_bands(), scale * std::exp2(1.0 / 3.0));
   const double lux = luminous(rgb_bands(), L.row(0).transpose()) * std::numbers::pi;
   const auto in_false_color = false_colors({static_cast<float>(lux)}, {.low = 0.0, .high = 4000.0});
+  const Json& scale_of_luminance = found["luminance_scale"];
+  const auto in_luminance = false_colors({static_cast<float>(lux / std::numbers::pi)},
+                                         {.low = scale_of_luminance["low"].get<double>(),
+                                          .high = scale_of_luminance["high"].get<double>()});
   for (std::size_t c = 0; c < 3; ++c) {
     // The light of this wall is linear, so triangles show it as it is; two roundings.
     EXPECT_NEAR(found["wall_pixel"][c].get<int>(), wanted[c], 2) << c;
     EXPECT_NEAR(found["brighter_pixel"][c].get<int>(), brighter[c], 2) << c;
     EXPECT_NEAR(found["false_color_pixel"][c].get<int>(), in_false_color[c], 2) << c;
+    EXPECT_NEAR(found["luminance_pixel"][c].get<int>(), in_luminance[c], 2) << c;
   }
   // The same light in the same picture; pixels on edges, two or three in a hundred, may belong to
   // either of two walls, whose light differs by less than two stops.
@@ -147,6 +156,8 @@ TEST_F(InBrowser, ThePageShowsAndMeasuresTheSolution) {
   ASSERT_TRUE(found["legend"].is_array());
   EXPECT_EQ(found["legend"].front(), "0");
   EXPECT_EQ(found["legend"].back(), "4000");
+  EXPECT_EQ(found["luminance_legend"], "cd/m²");
+  EXPECT_EQ(found["legend_goes"], true);
   EXPECT_EQ(found["help"], true);
   EXPECT_EQ(found["orbits"], true);
 
@@ -163,8 +174,8 @@ TEST_F(InBrowser, ThePageShowsAndMeasuresTheSolution) {
 
 /// Sky above the horizon, ground below, as bright as pictures have them; dimming their channel dims
 /// what is seen.
-TEST_F(InBrowser, ThePageShowsTheSky) {
-  constexpr const char* look = R"(<pre id="result"></pre><script>
+TEST_P(InBrowser, ThePageShowsTheSky) {
+  constexpr const char* look = R"(<script>
 (async () => {
   const wait = (ms) => new Promise((done) => setTimeout(done, ms));
   const found = {};
@@ -181,13 +192,12 @@ TEST_F(InBrowser, ThePageShowsTheSky) {
   found.below = pixel(0.02, 0.515);
   page.camera.lookAt(page.camera.position.clone().add(new Library.Vector3(...page.model.about.sky.sun.direction)));
   found.sun = pixel(0.5, 0.5);
-  page.set_false_colors(true);
+  page.set_false_colors('illuminance');
   found.in_false_colours = pixel(0.5, 0.5);
   found.errors = errors;
   return found;
-})().catch((error) => ({failed: String(error.stack)}))
-    .then((found) => { element('result').textContent = encodeURIComponent(JSON.stringify(found)); });
-</script></body>)";
+})().catch((error) => ({failed: String(error.stack)})).then(report);
+</script>)";
   Scene scene = box_scene();
   scene.sky = Sky{.name = "even",
                   .scale = Eigen::Array3f(0.2f, 0.3f, 0.5f),
@@ -212,17 +222,17 @@ TEST_F(InBrowser, ThePageShowsTheSky) {
   EXPECT_EQ(found["in_false_colours"], Json::array({0, 0, 0})) << "no light falls on it";
 }
 
-TEST_F(InBrowser, WithoutWebGlThePageSaysWhatToDo) {
-  write_walkthrough(folder / "driven.html", bake_model(solved_box(), box_scene()));
-  const std::string dom = opened("--disable-3d-apis");
-  const std::string mark = "<div id=\"message\">";
-  ASSERT_NE(dom.find(mark), std::string::npos) << content_of(folder / "said").substr(0, 2000);
-  EXPECT_TRUE(says(dom.substr(dom.find(mark), 200), "This browser shows no WebGL 2"));
+TEST_P(InBrowser, WithoutWebGlThePageSaysWhatToDo) {
+  const Json found =
+      run(bake_model(solved_box(), box_scene()),
+          "<script>report({message: element('message').textContent})</script>", false);
+  ASSERT_FALSE(found.is_null());
+  EXPECT_TRUE(says(found["message"], "This browser shows no WebGL 2")) << found;
 }
 
 /// Halves of a wall show what they reflect, to one step of rounding more than plain walls.
-TEST_F(InBrowser, ThePageShowsPictures) {
-  constexpr const char* look = R"(<pre id="result"></pre><script>
+TEST_P(InBrowser, ThePageShowsPictures) {
+  constexpr const char* look = R"(<script>
 (async () => {
   const wait = (ms) => new Promise((done) => setTimeout(done, ms));
   const found = {};
@@ -244,9 +254,8 @@ TEST_F(InBrowser, ThePageShowsPictures) {
   found.read = [await read(0.45), await read(0.55)];
   found.errors = errors;
   return found;
-})().catch((error) => ({failed: String(error.stack)}))
-    .then((found) => { element('result').textContent = encodeURIComponent(JSON.stringify(found)); });
-</script></body>)";
+})().catch((error) => ({failed: String(error.stack)})).then(report);
+</script>)";
   PicturedBox box;
   const BakedModel whole = bake_model(box.solved, box.scene);
   const Json found = run(whole, look);
@@ -273,6 +282,10 @@ TEST_F(InBrowser, ThePageShowsPictures) {
   EXPECT_GT(with_hole["halves"][0][1].get<int>(), 100);
   EXPECT_LT(with_hole["halves"][1][1].get<int>(), 60) << "the page's own ground";
 }
+
+INSTANTIATE_TEST_SUITE_P(Pages, InBrowser,
+                         testing::Values(BrowserKind::chromium, BrowserKind::firefox),
+                         name_of_browser);
 
 }  // namespace
 }  // namespace lightwell

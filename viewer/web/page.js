@@ -2,6 +2,9 @@
 
 const element = (id) => document.getElementById(id);
 
+/** What false colours can show, and its unit; buttons have these names. */
+const measures = {illuminance: 'lx', luminance: 'cd/m²'};
+
 class Page {
   constructor(model) {
     const {about} = model;
@@ -29,7 +32,7 @@ class Page {
     this.set_up_mouse();
     this.resize();
     this.go_to(0);
-    this.set_false_colors(false);
+    this.set_false_colors(null);
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     this.time = performance.now();
     this.frame = this.frame.bind(this);
@@ -46,7 +49,6 @@ class Page {
     about.cameras.forEach((camera, i) => {
       element('cameras').append(new Option(`${i < 9 ? `${i + 1} ` : ''}${camera.name}`, i));
     });
-    draw_legend(about);
   }
 
   set_up_buttons() {
@@ -56,7 +58,7 @@ class Page {
     });
     click('mode', () => this.set_orbit(!this.orbit.enabled_here));
     click('auto', () => this.expose());
-    click('lux', () => this.set_false_colors(!this.false_colors));
+    for (const measure of Object.keys(measures)) click(measure, () => this.switch_false_colors(measure));
     click('lock', () => this.lock());
     click('ask', () => this.toggle_help());
     // Keys walk again after the mouse has moved a slider.
@@ -88,7 +90,8 @@ class Page {
       case '0': return this.expose();
       case '+': case '=': return this.change_exposure(1 / 3);
       case '-': return this.change_exposure(-1 / 3);
-      case 'v': return this.set_false_colors(!this.false_colors);
+      case 'v': return this.switch_false_colors('illuminance');
+      case 'u': return this.switch_false_colors('luminance');
       case 't': return this.lights.toggle();
       case 'm': return this.set_outlines(!this.outlined);
       case 'x': return this.look_through(!this.picture.looks_through);
@@ -206,11 +209,15 @@ class Page {
     return this.due = true;
   }
 
-  set_false_colors(on) {
-    this.false_colors = on;
-    this.picture.set_false_colors(on);
-    element('lux').setAttribute('aria-pressed', on);
-    element('legend').hidden = !on;
+  switch_false_colors(measure) { return this.set_false_colors(this.false_colors === measure ? null : measure); }
+
+  /** Of 'illuminance' or 'luminance'; null: light. */
+  set_false_colors(measure) {
+    this.false_colors = measure;
+    this.picture.set_false_colors(measure);
+    for (const each of Object.keys(measures)) element(each).setAttribute('aria-pressed', each === measure);
+    element('legend').hidden = measure === null;
+    if (measure !== null) draw_legend(this.model.about, measure);
     return this.due = true;
   }
 
@@ -302,13 +309,15 @@ class Page {
   }
 }
 
-function draw_legend(about) {
-  const {low, high, steps, palette} = about.false_colors, context = element('scale').getContext('2d');
+function draw_legend(about, measure) {
+  const {palette} = about.false_colors, {low, high, steps} = about.false_colors[measure];
+  const context = element('scale').getContext('2d');
   for (let i = 0; i < 256; ++i) {
     context.fillStyle = `#${palette.substr(6 * i, 6)}`;
     context.fillRect(0, 255 - i, 1, 1);
   }
-  element('unit').textContent = about.relative_units ? 'relative' : 'lx';
+  element('unit').textContent = about.relative_units ? 'relative' : measures[measure];
+  for (const label of document.querySelectorAll('.step')) label.remove();
   for (const value of steps) {
     const place = low === 0 ? value / high : Math.log(value / low) / Math.log(high / low);
     const label = document.createElement('span');

@@ -37,10 +37,11 @@ precision highp sampler2D;
 in vec3 L;
 in float E;
 out vec4 pixel;
-uniform int shows;         // 0: light, 1: illuminance in false colours, 2: radiance for the light meter
+uniform int shows;         // 0: light, 1: illuminance and 2: luminance in false colours, 3: radiance for the light meter
 uniform float scale;       // exposure
 uniform float opacity;
 uniform vec2 range;        // of the false colours; even from 0, else logarithmic
+uniform float lumens_per_watt;
 uniform sampler2D palette;
 #ifdef WITH_PICTURE
 in vec2 at;
@@ -60,11 +61,12 @@ void main() {
 #endif
   if (!gl_FrontFacing) {
     pixel = vec4(0.0, 0.0, 0.0, 1.0);
-  } else if (shows == 2) {
+  } else if (shows == 3) {
     pixel = vec4(L, 1.0);
-  } else if (shows == 1) {
-    float place = range.x == 0.0 ? E / range.y
-                : E > 0.0 ? log(E / range.x) / log(range.y / range.x) : 0.0;
+  } else if (shows != 0) {
+    float value = shows == 1 ? E : lumens_per_watt * dot(shown, vec3(0.2126729, 0.7151522, 0.0721750));
+    float place = range.x == 0.0 ? value / range.y
+                : value > 0.0 ? log(value / range.x) / log(range.y / range.x) : 0.0;
     // Texel centres are the ends of the scale.
     pixel = vec4(texture(palette, vec2((clamp(place, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb, opacity);
   } else {
@@ -139,12 +141,12 @@ class Picture {
     this.camera = new Library.PerspectiveCamera();
     this.looks_through = false;
     this.picture_came = () => {};  // for the owner to set: there is something to draw
-    const colors = model.about.false_colors;
     this.uniforms = {
       shows: {value: 0},
       scale: {value: 1},
-      range: {value: [colors.low, colors.high]},
-      palette: {value: palette_texture(colors.palette)},
+      range: {value: [0, 1]},
+      lumens_per_watt: {value: model.about.lumens_per_watt},
+      palette: {value: palette_texture(model.about.false_colors.palette)},
     };
     this.geometry = new Library.BufferGeometry();
     this.geometry.setAttribute('position', new Library.BufferAttribute(model.positions, 3));
@@ -219,7 +221,14 @@ class Picture {
     for (const back of this.backs) back.visible = !looks_through;
   }
 
-  set_false_colors(on) { this.uniforms.shows.value = on ? 1 : 0; }
+  /** Of 'illuminance' or 'luminance'; null: light. */
+  set_false_colors(measure) {
+    this.uniforms.shows.value = measure === null ? 0 : measure === 'illuminance' ? 1 : 2;
+    if (measure === null) return;
+    const {low, high} = this.model.about.false_colors[measure];
+    this.uniforms.range.value = [low, high];
+  }
+
   set_scale(scale) { this.uniforms.scale.value = scale; }
 
   /** Tells the graphics card that the model has been mixed anew. */
@@ -282,7 +291,7 @@ class Picture {
     const target = new Library.WebGLRenderTarget(width, height, {type: Library.FloatType});
     const pixels = new Float32Array(4 * width * height), shown = this.uniforms.shows.value;
     const outlined = this.outlines?.visible;
-    this.uniforms.shows.value = 2;
+    this.uniforms.shows.value = 3;
     this.glass.visible = false;  // a veil is not to be measured
     this.show_outlines(false);
     this.fit_depth();
