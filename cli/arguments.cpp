@@ -361,6 +361,12 @@ void RenderArguments::add_to(CLI::App& command) {
       ->check(whole_number(0, most_photons))
       ->group(group);
   command
+      .add_option("--depth", depth,
+                  "mirrors and glass behind one another that are followed (default 10)")
+      ->type_name("N")
+      ->check(whole_number(0, deepest_tree))
+      ->group(group);
+  command
       .add_option("--samples", samples,
                   "most samples per pixel (default: 256 where there is gloss or a lens; else "
                   "edges alone are sampled)")
@@ -393,6 +399,7 @@ RenderOptions RenderArguments::options() const {
                                        : Pass::direct;
   options.gather_rays = gather_samples;
   options.photons = photons;
+  options.max_depth = depth;
   options.sampling.most = samples;
   options.sampling.noise = static_cast<float>(noise);
   options.shadows.max_rays = shadow_rays;
@@ -404,6 +411,7 @@ std::string RenderArguments::text() const {
   std::string text = fmt::format("--pass {} --shadow-rays {}", pass, shadow_rays);
   if (pass == "gather") text += fmt::format(" --gather-samples {}", gather_samples);
   if (pass != "interpolate") text += fmt::format(" --photons {}", photons);
+  if (depth != RenderOptions{}.max_depth) text += fmt::format(" --depth {}", depth);
   if (samples > 0) text += fmt::format(" --samples {}", samples);
   return text + fmt::format(" --noise {:g}%", 100.0 * noise);
 }

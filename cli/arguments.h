@@ -51,6 +51,7 @@ struct RenderArguments {
   int shadow_rays = 64;
   int gather_samples = 256;
   int photons = RenderOptions{}.photons;
+  int depth = RenderOptions{}.max_depth;
   int samples = 0;      ///< most per pixel; 0: see SampleOptions
   double noise = 0.02;  ///< share of a pixel that ends its sampling
   double exposure_ev = 0.0;

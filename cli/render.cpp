@@ -34,7 +34,9 @@ int render(const Arguments& arguments, Console& console) {
   Checkpoint checkpoint(arguments.checkpoint,
                         picture_provenance(scene, solved.solution, arguments.render), files,
                         console);
-  render_step(scene, solved, camera, arguments.render, files, checkpoint, console, report);
+  SceneRenderer renderer(scene, solved.mesh, solved.solution);
+  render_step(scene, solved, renderer, camera, arguments.render, files, checkpoint, console,
+              report);
   checkpoint.finish(report);
   report.print();
   return exit_done;

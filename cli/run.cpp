@@ -58,9 +58,10 @@ void render_pictures(const Scene& scene, const SolvedScene& solved, const Argume
   for (const auto& each : outputs.pictures) files.insert(files.end(), each.begin(), each.end());
   Checkpoint checkpoint(kept, picture_provenance(scene, solved.solution, arguments.render), files,
                         console);
+  SceneRenderer renderer(scene, solved.mesh, solved.solution);
   try {
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-      render_step(scene, solved, scene.cameras[i], arguments.render, outputs.pictures[i],
+      render_step(scene, solved, renderer, scene.cameras[i], arguments.render, outputs.pictures[i],
                   checkpoint, console, report);
     }
   } catch (const InterruptedWith&) {
@@ -116,6 +117,7 @@ Action add_run(CLI::App& command) {
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first);
   arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
+  command.get_option("--depth")->group("");  // rarely asked for: 'render --help' shows it
   arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::hidden);
   command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");
   return [arguments](Console& console) { return run(*arguments, console); };

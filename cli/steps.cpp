@@ -132,13 +132,12 @@ Provenance picture_provenance(const Scene& scene, const RadiositySolution& solut
                                  solution.provenance.options)};
 }
 
-void render_step(const Scene& scene, const SolvedScene& solved, const Camera& camera,
-                 const RenderArguments& arguments, const std::vector<fs::path>& files,
-                 Checkpoint& checkpoint, Console& console, Report& report) {
+void render_step(const Scene& scene, const SolvedScene& solved, SceneRenderer& renderer,
+                 const Camera& camera, const RenderArguments& arguments,
+                 const std::vector<fs::path>& files, Checkpoint& checkpoint, Console& console,
+                 Report& report) {
   const Stopwatch watch;
   console.say_verbose(fmt::format("rendering {} with {}", camera.name, arguments.text()));
-  const ElementCaster caster(solved.mesh);
-  const DirectLight direct_light(scene, solved.mesh);
   RenderOptions options = arguments.options();
   options.layers = arguments.film.rendered_layers(scene);
   options.progress = checkpoint.watched(console.progress());
@@ -147,7 +146,7 @@ void render_step(const Scene& scene, const SolvedScene& solved, const Camera& ca
   const Camera view = arguments.sized(camera);
   Image image;
   try {
-    image = render(scene, caster, direct_light, solved.solution, view, options, &rendered);
+    image = renderer.render(view, options, &rendered);
     stop_if_interrupted();
   } catch (const std::exception&) {
     checkpoint.rethrow_stopped();
@@ -163,9 +162,19 @@ void render_step(const Scene& scene, const SolvedScene& solved, const Camera& ca
     report.add_file(file);
   }
   report.add_phase("render_" + camera.name, watch.seconds());
+  report.add("depth_cut_" + camera.name, rendered.cut_share);
+  // Below a grey level of an 8-bit picture nobody would see it.
+  constexpr double visible = 1.0 / 255.0;
   if (rendered.depth_cut > 0) {
-    console.say_verbose(fmt::format("{}: {} branches ended at depth {} (mirrors facing mirrors)",
-                                    camera.name, rendered.depth_cut, options.max_depth));
+    const std::string cut = fmt::format(
+        "{}: {} branches ended behind {} mirrors and glass surfaces; about {:.2g} % of the "
+        "picture's light was in them",
+        camera.name, rendered.depth_cut, options.max_depth, 100.0 * rendered.cut_share);
+    if (rendered.cut_share > visible) {
+      console.say("note: " + cut + ". '--depth' follows more");
+    } else {
+      console.say_verbose(cut);
+    }
   }
 }
 

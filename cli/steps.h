@@ -10,6 +10,7 @@
 #include "cli/report.h"
 #include "radiosity/solve.h"
 #include "raytrace/image.h"
+#include "raytrace/scene_renderer.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -46,10 +47,11 @@ Provenance picture_provenance(const Scene& scene, const RadiositySolution& solut
                               const RenderArguments& arguments);
 
 /// Renders one camera's picture into every file given (.exr or .png). Its finished tiles are taken
-/// from the checkpoint, and more are kept there.
-void render_step(const Scene& scene, const SolvedScene& solved, const Camera& camera,
-                 const RenderArguments& arguments, const std::vector<std::filesystem::path>& files,
-                 Checkpoint& checkpoint, Console& console, Report& report);
+/// from the checkpoint, and more are kept there. `renderer` is of the solved scene.
+void render_step(const Scene& scene, const SolvedScene& solved, SceneRenderer& renderer,
+                 const Camera& camera, const RenderArguments& arguments,
+                 const std::vector<std::filesystem::path>& files, Checkpoint& checkpoint,
+                 Console& console, Report& report);
 
 /// 0, or 4 where the solver stopped early.
 int exit_code(const RadiositySolution& solution);

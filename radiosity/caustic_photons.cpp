@@ -272,7 +272,7 @@ CausticPhotons shoot_photons(const Scene& scene, const ElementCaster& caster,
         fmt::format("{} photons; there must be between 1 and {}", count, most_photons));
   }
   const int bands = scene.bands.count();
-  const LightPaths paths(scene, caster, max_specular_depth);
+  const LightPaths paths(scene, caster, max_specular_depth, PathNormals::smooth);
   const SpecularTargets targets(scene);
   std::vector<Beam> beams = make_beams(direct_light, targets);
   if (beams.empty()) return {.power = BandArray(0, bands)};

@@ -28,8 +28,10 @@ constexpr int most_photons = 1 << 24;
 /// sphere around the other. A photon starts at a place of the emitter, evenly spread over its area,
 /// into the cone which that sphere fills seen from there, by a scrambled Sobol sequence of the
 /// pair's own, and counts if that surface is the first it meets; so each path belongs to one
-/// pair, and the sum of powers has no bias. Surfaces are followed as LightPaths does. Light that
-/// only goes straight through smooth thin panes is none of it: DirectLight has that.
+/// pair, and the sum of powers has no bias. Surfaces are followed as LightPaths does, by smooth
+/// normals where there are any: a photon keeps its power, so that what a facet catches goes where
+/// the surface that it stands for sends it, all of it. Light that only goes straight through smooth
+/// thin panes is none of it: DirectLight has that.
 ///
 /// The same photons for any number of threads. Throws std::invalid_argument if the count is out of
 /// range, Interrupted when progress says stop.

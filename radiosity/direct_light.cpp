@@ -189,13 +189,14 @@ Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
   return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
 }
 
-DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels)
+DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
+                         const DirectLight* like)
     : free_sources_(lightwell::free_sources(scene, mesh.source_scale, channels.of_source)),
       bands_(scene.bands.count()),
       channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
       samples_(most_shadow_rays),
       panes_(scene) {
-  if (dome()) sky_ = std::make_shared<const SkyLight>(scene, mesh);
+  if (dome()) sky_ = like ? like->sky_ : std::make_shared<const SkyLight>(scene, mesh);
   const std::vector<FacetRef> facets = scene_facets(scene);
   owned_.assign(facets.size(), Owned::nothing);
   first_column_.assign(facets.size(), 0);

@@ -68,7 +68,10 @@ enum class Lights { all, free, distant };
 /// c * bands on.
 class DirectLight {
  public:
-  DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels = {});
+  /// `like`: another of the same scene and mesh, whose knowledge of the sky is shared instead of
+  /// learnt again.
+  DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels = {},
+              const DirectLight* like = nullptr);
 
   const std::vector<Emitter>& emitters() const { return emitters_; }
   const std::vector<FreeSource>& free_sources() const { return free_sources_; }

@@ -3,12 +3,15 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "scene/optics.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 
-LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth)
+LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
+                       PathNormals normals)
     : scene_(scene), caster_(caster), max_depth_(max_depth) {
+  if (normals == PathNormals::smooth) smooth_.emplace(scene);
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
     const Material& material = scene.materials[surface.material];
@@ -44,24 +47,34 @@ bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const Elemen
     normal = pose->linear() * normal;
   }
   if (hit.from_back) normal = -normal;
+  const Eigen::Vector3d direction = ray.direction.normalized();
+  const bool is_smooth = smooth_ && smooth_->is_given(hit.facet);
+  Eigen::Vector3d bent = normal;
+  if (is_smooth && !pose) {
+    bent = smooth_->at(hit.facet, point, normal);
+  } else if (is_smooth) {
+    bent = pose->linear() *
+           smooth_->at(hit.facet, pose->inverse() * point, pose->linear().transpose() * normal);
+  }
+  if (is_smooth) bent = visible_normal(direction, normal, bent);
   OnwardLot lot{.way = random_uniform(key), .key = key};
   if (material.gloss_roughness() > 0.0f) {
     constexpr std::uint64_t microfacets = 0x66c3;
     lot.u = random_uniform(random_key(key, microfacets, 1));
     lot.v = random_uniform(random_key(key, microfacets, 2));
   }
-  const Onward way = draw_way({.material = material,
-                               .direction = ray.direction.normalized(),
-                               .normal = normal,
-                               .from_back = hit.from_back},
-                              lot);
+  const Onward way = draw_way(
+      {.material = material, .direction = direction, .normal = bent, .from_back = hit.from_back},
+      lot);
   media.go_on(material_[hit.facet], material, way, hit.from_back);
   through_panes_only = through_panes_only && way.crosses && is_clear_pane(material);
   // What a partly diffuse surface does not mirror was taken up by its diffuse side, where the
   // caller counts it.
   if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - way.share);
   throughput *= way.share;
-  ray = {.origin = point, .direction = way.direction, .origin_group = hit.facet};
+  ray = {.origin = point,
+         .direction = is_smooth ? on_its_side(way.direction, normal, way.crosses) : way.direction,
+         .origin_group = hit.facet};
   return (throughput > 0.0f).any();
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "mesh/element_caster.h"
+#include "scene/facet_normals.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
 
@@ -28,13 +30,20 @@ struct LightArrival {
   bool through_panes_only;   ///< it went straight on, through smooth thin panes and nothing else
 };
 
+/// Which normals mirror and refract.
+enum class PathNormals {
+  facets,  ///< of the polygons, so that what is reflected adds up facet by facet
+  smooth,  ///< of the surfaces they stand for, where files give those (see FacetNormals)
+};
+
 /// Follows rays through mirrors and clear glass until something diffuse takes them up (extended
 /// form factors, Sillion & Puech 1989). At glass one branch is followed, picked with Fresnel's
 /// probability, and at rough surfaces one direction of their lobe (see draw_way), so that a ray
 /// stays a ray and the mean is exact. Bodies that absorb do so along the way, see Media.
 class LightPaths {
  public:
-  LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth);
+  LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
+             PathNormals normals = PathNormals::facets);
 
   /// Whether the scene has any mirror or glass at all.
   bool has_specular() const { return has_specular_; }
@@ -70,6 +79,7 @@ class LightPaths {
   std::vector<int> material_;            // per facet
   std::vector<Eigen::Vector3d> normal_;  // per facet; zero for spheres
   std::vector<const Sphere*> sphere_;    // per facet; null for polygons
+  std::optional<FacetNormals> smooth_;   // null: the facets' own
 };
 
 }  // namespace lightwell

@@ -143,7 +143,7 @@ Draft refined_draft(const Scene& scene, const ElementCaster& caster,
     found = refine_solution(scene, caster, direct_light, radiosity, caustic, elements,
                             gather_options, options.refine);
   } else {
-    const DirectLight all_light(scene, caster.mesh());
+    const DirectLight all_light(scene, caster.mesh(), {}, &direct_light);
     const ChannelLight by_channel{direct_light, radiosity, caustic};
     found = refine_solution(scene, caster, all_light,
                             patch_to_vertex(caster.mesh(), all_light, patch_radiosity),

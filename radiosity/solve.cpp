@@ -209,9 +209,10 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
 
 // Direct light by channel, where light is kept apart.
 std::optional<DirectLight> light_by_channel(const Scene& scene, const PatchMesh& mesh,
+                                            const DirectLight& all_light,
                                             const EmitterChannels& channels) {
   if (channels.empty()) return std::nullopt;
-  return std::make_optional<DirectLight>(scene, mesh, channels);
+  return std::make_optional<DirectLight>(scene, mesh, channels, &all_light);
 }
 
 // What of a solution does not depend on the light.
@@ -232,7 +233,7 @@ SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const So
   describe(scene, solved.solution);
   std::vector<PhaseSeconds> seconds = std::move(solved.solution.seconds);
   const DirectLight direct_light(scene, solved.mesh);
-  const auto by_channel = light_by_channel(scene, solved.mesh, options.channels);
+  const auto by_channel = light_by_channel(scene, solved.mesh, direct_light, options.channels);
   illuminate_elements(scene, direct_light, by_channel ? *by_channel : direct_light, options, solved,
                       seconds, report);
   solved.solution.seconds = std::move(seconds);
@@ -272,7 +273,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   require_room(solved.mesh, options.refine);
   std::optional<ElementCaster> caster(std::in_place, solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
-  const auto by_channel = light_by_channel(scene, solved.mesh, options.channels);
+  const auto by_channel = light_by_channel(scene, solved.mesh, direct_light, options.channels);
   const DirectLight& kept_apart = by_channel ? *by_channel : direct_light;
   seconds.push_back({"mesh", watch.lap()});
 

@@ -234,4 +234,12 @@ Spectrum CausticMap::irradiance(const Eigen::Vector3d& place, const Eigen::Vecto
   return E;
 }
 
+std::shared_ptr<const CausticMap> trace_caustics(const Scene& scene, const ElementCaster& caster,
+                                                 const DirectLight& direct_light, int photons,
+                                                 int max_specular_depth, const Progress& progress) {
+  return std::make_shared<const CausticMap>(
+      caster.mesh(),
+      shoot_photons(scene, caster, direct_light, photons, max_specular_depth, progress));
+}
+
 }  // namespace lightwell

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -49,5 +50,11 @@ class CausticMap {
   BandArray power_;        // per disc, over pi r^2 / 2 and the share of the kernel that is within
   std::vector<int> root_;  // per region; -1: no photons
 };
+
+/// Shoots photons, see shoot_photons, and makes the map of them.
+std::shared_ptr<const CausticMap> trace_caustics(const Scene& scene, const ElementCaster& caster,
+                                                 const DirectLight& direct_light, int photons,
+                                                 int max_specular_depth,
+                                                 const Progress& progress = {});
 
 }  // namespace lightwell

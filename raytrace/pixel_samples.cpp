@@ -97,6 +97,7 @@ void PixelSamples::look(int x, int y, int until, PixelTally& tally) const {
     tally.sum.radiance += sight.radiance;
     tally.sum.layers += sight.layers;
     tally.sum.depth_cut += sight.depth_cut;
+    tally.sum.cut_weight += sight.cut_weight;
   }
 }
 

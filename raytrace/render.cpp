@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -33,26 +34,15 @@ constexpr int lattice_steps = 1 << max_levels;
 
 constexpr std::uint64_t edge_purpose = 0xed6e;
 
-void check(const RenderOptions& options) {
-  const auto fail = [](const std::string& what) { throw std::invalid_argument("render: " + what); };
-  const auto within = [&](const char* what, int value, int low, int high) {
-    if (value >= low && value <= high) return;
-    fail(fmt::format("{} is {}, it must lie between {} and {}", what, value, low, high));
-  };
-  within("max_subdivision", options.max_subdivision, 0, max_levels);
-  within("max_depth", options.max_depth, 0, deepest_tree);
-  within("gather_rays", options.gather_rays, 1, most_gather_rays);
-  within("photons", options.photons, 0, most_photons);
-  within("glossy_rays", options.glossy_rays, 1, 256);
-  within("sampling.most", options.sampling.most, 0, SampleOptions::limit);
-  within("sampling.least", options.sampling.least, 1, SampleOptions::limit);
-  if (!(options.sampling.noise >= 0.0f)) fail("sampling.noise must not be negative");
-  if (!(options.contrast > 0.0f)) fail("contrast must be above 0");
-  if (!(options.min_contribution >= 0.0f)) fail("min_contribution must not be negative");
-}
-
 struct Counters {
   std::atomic<std::int64_t> eye_rays{0}, depth_cut{0};
+  // Weight of what was cut, in steps that add up to the same in any order.
+  static constexpr double weight_step = 0x1p-30;
+  std::atomic<std::int64_t> cut_steps{0};
+
+  void add_cut(double weight) {
+    if (weight > 0.0) cut_steps += std::llround(weight / weight_step);
+  }
 };
 
 // Looks at points of the picture, given in lattice steps from its top left corner.
@@ -66,6 +56,7 @@ class Eye {
     Sight sight = tree_.look(ray(x, y), key, effort);
     counters_.eye_rays.fetch_add(1, std::memory_order_relaxed);
     counters_.depth_cut.fetch_add(sight.depth_cut, std::memory_order_relaxed);
+    counters_.add_cut(double{sight.cut_weight});
     return sight;
   }
   std::uint64_t fingerprint(double x, double y) const { return tree_.fingerprint(ray(x, y)); }
@@ -375,6 +366,7 @@ class TileRenderer {
           sample_rows(*samples_, first_row, rows, options_.progress, part, image_, layers_);
       counters_.eye_rays += took.looks;
       counters_.depth_cut += took.depth_cut;
+      counters_.add_cut(took.cut_weight);
       return;
     }
     if (row_of_corners_ != first_row) look_at_corners(eye_, first_row, {corners_.data(), 1});
@@ -398,11 +390,34 @@ class TileRenderer {
 
 }  // namespace
 
+void validate(const RenderOptions& options) {
+  const auto fail = [](const std::string& what) { throw std::invalid_argument("render: " + what); };
+  const auto within = [&](const char* what, int value, int low, int high) {
+    if (value >= low && value <= high) return;
+    fail(fmt::format("{} is {}, it must lie between {} and {}", what, value, low, high));
+  };
+  within("max_subdivision", options.max_subdivision, 0, max_levels);
+  within("max_depth", options.max_depth, 0, deepest_tree);
+  within("gather_rays", options.gather_rays, 1, most_gather_rays);
+  within("photons", options.photons, 0, most_photons);
+  within("glossy_rays", options.glossy_rays, 1, 256);
+  within("sampling.most", options.sampling.most, 0, SampleOptions::limit);
+  within("sampling.least", options.sampling.least, 1, SampleOptions::limit);
+  if (!(options.sampling.noise >= 0.0f)) fail("sampling.noise must not be negative");
+  if (!(options.contrast > 0.0f)) fail("contrast must be above 0");
+  if (!(options.min_contribution >= 0.0f)) fail("min_contribution must not be negative");
+}
+
+bool needs_caustic_photons(const RadiositySolution& solution, const RenderOptions& options) {
+  return options.pass != Pass::interpolate && options.photons > 0 &&
+         solution.caustic_irradiance.size() > 0;
+}
+
 Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
              const RadiositySolution& solution, const Camera& camera, const RenderOptions& options,
              RenderReport* render_report) {
   const auto start = std::chrono::steady_clock::now();
-  check(options);
+  validate(options);
   const CameraRays rays(camera);
   const RayTree tree(scene, caster, direct_light, solution, options, rays.pixel_width());
   Counters counters;
@@ -447,6 +462,8 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
         .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
         .eye_rays = counters.eye_rays,
         .depth_cut = counters.depth_cut,
+        .cut_share = static_cast<double>(counters.cut_steps) * Counters::weight_step /
+                     static_cast<double>(std::max<std::int64_t>(1, counters.eye_rays)),
         .tiles = tile,
         .recalled_tiles = recalled};
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "mesh/element_caster.h"
@@ -12,6 +13,7 @@
 
 namespace lightwell {
 
+class CausticMap;
 class Journal;
 
 /// How a diffuse hit is shaded.
@@ -43,6 +45,9 @@ struct RenderOptions {
   /// Sent from emitters by way of mirrors and glass, for caustics of Pass::direct and
   /// Pass::gather: see CausticMap. 0: those of the solution, as sharp as its mesh.
   int photons = 1 << 19;
+  /// What trace_caustics() found with as many photons and this depth, for pictures that share it
+  /// (see SceneRenderer). Null: found anew.
+  std::shared_ptr<const CausticMap> caustics{};
   int glossy_rays = 8;  ///< from the first rough surface; one from those behind it. 1 to 256
   SampleOptions sampling{};
   /// Whitted's adaptive supersampling: a pixel whose corners differ by more than `contrast`
@@ -66,10 +71,19 @@ constexpr int most_gather_rays = 1 << 16;
 /// Deeper recursion might exhaust a thread's stack.
 constexpr int deepest_tree = 1000;
 
+/// Throws std::invalid_argument where a number lies out of its range.
+void validate(const RenderOptions& options);
+
+/// Whether pictures with these options ask for trace_caustics().
+bool needs_caustic_photons(const RadiositySolution& solution, const RenderOptions& options);
+
 struct RenderReport {
   double seconds = 0.0;
-  std::int64_t eye_rays = 0;          ///< pixel samples
-  std::int64_t depth_cut = 0;         ///< branches that max_depth ended
+  std::int64_t eye_rays = 0;   ///< pixel samples
+  std::int64_t depth_cut = 0;  ///< branches that max_depth ended
+  /// Their weight, a mean over the samples: the share of the picture that is missing, if what they
+  /// did not see is as bright as the rest.
+  double cut_share = 0.0;
   int tiles = 0, recalled_tiles = 0;  ///< all, and those the journal had; no rays are counted there
 };
 

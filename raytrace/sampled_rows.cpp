@@ -60,6 +60,7 @@ SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
     for (int x = 0; x < image.width; ++x) {
       result.looks += tallies[slot(x, y)].count;
       result.depth_cut += tallies[slot(x, y)].sum.depth_cut;
+      result.cut_weight += double{tallies[slot(x, y)].sum.cut_weight};
     }
   }
   return result;

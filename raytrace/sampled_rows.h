@@ -12,6 +12,7 @@ namespace lightwell {
 /// What rows of a picture took.
 struct SampledRows {
   std::int64_t looks = 0, depth_cut = 0;
+  double cut_weight = 0.0;
 };
 
 /// Fills some rows of a picture, and their sampled layers, by many looks per pixel. Rows do not

@@ -76,10 +76,10 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
   }
-  if (options.pass != Pass::interpolate && options.photons > 0 &&
-      solution.caustic_irradiance.size() > 0) {
-    caustics_.emplace(caster.mesh(), shoot_photons(scene, caster, direct_light, options.photons,
-                                                   options.max_depth, options.progress));
+  if (needs_caustic_photons(solution, options)) {
+    caustics_ = options.caustics ? options.caustics
+                                 : trace_caustics(scene, caster, direct_light, options.photons,
+                                                  options.max_depth, options.progress);
   }
   for (const Material& material : scene.materials) {
     const auto& glass = material.dielectric;
@@ -224,16 +224,15 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
   if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
   if (branch.depth > deepest_path(options_.max_depth, !branch.is_sharp)) {
     ++walk.sight.depth_cut;
+    walk.sight.cut_weight += branch.weight.maxCoeff();
     return;
   }
   const int material = facets_[hit.facet].material;
   branch.media.go_on(material, scene_.materials[material], way, hit.from_back);
   branch.ray = {
       .origin = at.position, .direction = way.direction.normalized(), .origin_group = hit.facet};
-  // A smooth normal may send it to the wrong side of the facet, where it would be lost.
-  const double height = branch.ray.direction.dot(at.normal);
-  if (normals_.is_given(hit.facet) && (way.crosses ? height > 0.0 : height < 0.0)) {
-    branch.ray.direction -= 2.0 * height * at.normal;
+  if (normals_.is_given(hit.facet)) {
+    branch.ray.direction = on_its_side(branch.ray.direction, at.normal, way.crosses);
   }
   follow(branch, walk);
 }

@@ -29,6 +29,7 @@ struct Sight {
   SampledLayers layers = SampledLayers::Zero();
   std::uint64_t fingerprint = 0;  ///< of the surfaces seen, see RayTree
   std::int64_t depth_cut = 0;     ///< branches that max_depth ended
+  float cut_weight = 0.0f;        ///< sum of what they weighed, the largest of the bands
 };
 
 /// Whitted's ray tree (1980) over a radiosity solution. Where a ray meets something diffuse,
@@ -172,9 +173,9 @@ class RayTree {
   FacetNormals normals_;
   double least_lift_ = 0.0;  ///< m, off a facet: more than rounding may move a ray's origin
   bool with_layers_ = false;
-  Eigen::Array3f white_rgb_;              ///< of what reflects everything, under equal-energy light
-  std::optional<PixelGather> gather_{};   ///< for Pass::gather
-  std::optional<CausticMap> caustics_{};  ///< in place of the solution's
+  Eigen::Array3f white_rgb_;             ///< of what reflects everything, under equal-energy light
+  std::optional<PixelGather> gather_{};  ///< for Pass::gather
+  std::shared_ptr<const CausticMap> caustics_{};  ///< in place of the solution's; null: none
   static constexpr int gloss_point_count = 1024;
   SobolPoints gloss_points_;  ///< of looks of one key; later ones use a new scrambling
   LampSamples lamps_;

@@ -79,4 +79,11 @@ double FacetNormals::height(int facet, const Eigen::Vector3d& point,
   return std::max(0.0, least);
 }
 
+Eigen::Vector3d on_its_side(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal,
+                            bool crosses) {
+  const double height = direction.dot(normal);
+  const bool is_wrong = crosses ? height > 0.0 : height < 0.0;
+  return is_wrong ? Eigen::Vector3d(direction - 2.0 * height * normal) : direction;
+}
+
 }  // namespace lightwell

@@ -48,4 +48,9 @@ class FacetNormals {
   std::uint64_t hash_ = 0;
 };
 
+/// A direction on which light goes on at a facet whose `normal` is on the side it came from: as it
+/// is, or mirrored at the facet's plane where a smooth normal has sent it to the wrong side.
+Eigen::Vector3d on_its_side(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal,
+                            bool crosses);
+
 }  // namespace lightwell

@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "raytrace/render.h"
+#include "raytrace/scene_renderer.h"
 #include "scene/errors.h"
 #include "viewer/appearance.h"
 
@@ -32,13 +32,41 @@ SolvedScene for_rendering(const SolvedScene& solved) {
   return copy;
 }
 
+bool is_same(const BandArray& a, const BandArray& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() && (a == b).all();
+}
+
+// Of one scene, whose elements and lamps dimming alone can change.
+bool is_same_light(const SolvedScene& a, const SolvedScene& b) {
+  return a.mesh.element_count() == b.mesh.element_count() &&
+         is_same(a.mesh.emission, b.mesh.emission) &&
+         is_same(a.mesh.source_scale, b.mesh.source_scale) &&
+         is_same(a.solution.direct_irradiance, b.solution.direct_irradiance) &&
+         is_same(a.solution.indirect_irradiance, b.solution.indirect_irradiance) &&
+         is_same(a.solution.caustic_irradiance, b.solution.caustic_irradiance);
+}
+
 }  // namespace
 
+struct Still::Kept {
+  Kept(const Scene& of_scene, const SolvedScene& of) : scene(of_scene), solved(for_rendering(of)) {}
+
+  // Made by the first thread that asks, beside the window.
+  SceneRenderer& renderer() {
+    const std::lock_guard lock(mutex);
+    if (!made) made = std::make_unique<SceneRenderer>(scene, solved.mesh, solved.solution);
+    return *made;
+  }
+
+  const Scene& scene;
+  const SolvedScene solved;
+  std::mutex mutex{};  // of what is made
+  std::unique_ptr<SceneRenderer> made{};
+};
+
 struct Still::Job {
-  Job(const Scene& scene, const SolvedScene& of, const Camera& camera, double with_scale)
-      : solved(for_rendering(of)),
-        scale(with_scale),
-        thread([this, &scene, camera] { run(scene, camera); }) {}
+  Job(std::shared_ptr<Kept> with, const Camera& camera, double with_scale)
+      : kept(std::move(with)), scale(with_scale), thread([this, camera] { run(camera); }) {}
   ~Job() {
     cancelled = true;
     thread.join();
@@ -46,10 +74,8 @@ struct Still::Job {
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
-  void run(const Scene& scene, const Camera& camera) {
+  void run(const Camera& camera) {
     try {
-      const ElementCaster caster(solved.mesh);
-      const DirectLight direct_light(scene, solved.mesh);
       RenderOptions options;
       options.progress = [this](std::string_view, double share) {
         progress = share;
@@ -58,7 +84,7 @@ struct Still::Job {
       options.rows_done = [this](const Image& so_far, int first, int rows) {
         show(so_far, first, rows);
       };
-      image = render(scene, caster, direct_light, solved.solution, camera, options);
+      image = kept->renderer().render(camera, options);
     } catch (const Interrupted&) {
       // Nobody waits for it.
     } catch (const std::exception& error) {
@@ -70,12 +96,12 @@ struct Still::Job {
   void show(const Image& so_far, int first, int rows) {
     const BandArray strip = so_far.radiance.middleRows(Eigen::Index{first} * so_far.width,
                                                        Eigen::Index{rows} * so_far.width);
-    const auto colors = display_colors(strip, solved.solution.bands, scale);
+    const auto colors = display_colors(strip, kept->solved.solution.bands, scale);
     const std::lock_guard lock(mutex);
     fresh.insert(fresh.end(), colors.begin(), colors.end());
   }
 
-  SolvedScene solved;
+  std::shared_ptr<Kept> kept;
   double scale;
   Image image{};
   std::string failure{};
@@ -108,7 +134,10 @@ void Still::begin(const Scene& scene, const SolvedScene& solved, const Camera& c
   camera_ = camera;
   picture_.assign(std::size_t{3} * camera.width * camera.height, 0);
   phase_ = StillPhase::rendering;
-  job_ = std::make_unique<Job>(scene, solved, camera, scale);
+  if (!kept_ || &kept_->scene != &scene || !is_same_light(kept_->solved, solved)) {
+    kept_ = std::make_shared<Kept>(scene, solved);
+  }
+  job_ = std::make_unique<Job>(kept_, camera, scale);
 }
 
 void Still::discard() {

@@ -31,7 +31,8 @@ class Still {
   /// Before the text, which is drawn over it.
   void add_to(vtkRenderer* renderer) const;
   /// Begins to render what the camera sees, as large as it says, exposed by `scale`. Copies of the
-  /// solution what it needs; keeps a reference to the scene.
+  /// solution what it needs, once for as long as its light is the same; keeps a reference to the
+  /// scene.
   void begin(const Scene& scene, const SolvedScene& solved, const Camera& camera, double scale);
   /// Stops, and shows nothing.
   void discard();
@@ -51,8 +52,10 @@ class Still {
 
  private:
   struct Job;
+  struct Kept;
   void draw();
 
+  std::shared_ptr<Kept> kept_;  ///< what pictures of the same light share
   std::unique_ptr<Job> job_;
   std::vector<std::unique_ptr<Job>> ending_{};  ///< told to stop; nobody waits for them
   StillPhase phase_ = StillPhase::none;

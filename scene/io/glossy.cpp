@@ -2,19 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "scene/optics.h"
 
 namespace lightwell {
+namespace {
 
-double diffuse_fresnel(double index) {
+// Mean over the hemisphere, weighted by the cosine, of what depends on it alone.
+template <class F>
+double diffuse_mean(F&& of_cosine) {
   // Midpoint rule in cos^2: 2 cos dcos = d(cos^2), so the weights are equal.
   constexpr int steps = 1000;
   double sum = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    sum += fresnel_reflectance(std::sqrt((i + 0.5) / steps), index);
-  }
+  for (int i = 0; i < steps; ++i) sum += of_cosine(std::sqrt((i + 0.5) / steps));
   return sum / steps;
+}
+
+// Of unpolarised light; the index is complex.
+double metal_reflectance(double cosine, std::complex<double> index) {
+  if (!(std::abs(index) > 0.0)) return 1.0;
+  const std::complex<double> inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
+  const auto across = (cosine - index * inside) / (cosine + index * inside);
+  const auto along = (index * cosine - inside) / (index * cosine + inside);
+  return 0.5 * (std::norm(across) + std::norm(along));
+}
+
+}  // namespace
+
+double diffuse_fresnel(double index) {
+  return diffuse_mean([index](double cosine) { return fresnel_reflectance(cosine, index); });
 }
 
 Coat::Coat(double index, bool saturating, const Spectrum& specular)
@@ -35,9 +52,14 @@ Spectrum coated_reflectance(const Spectrum& rho, double index, bool saturating,
   return Coat(index, saturating, specular)(rho);
 }
 
-Spectrum metal_reflectance(const Spectrum& eta, const Spectrum& k) {
-  const Spectrum absorbed = k.square();
-  return ((eta - 1.0f).square() + absorbed) / ((eta + 1.0f).square() + absorbed);
+Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k) {
+  Spectrum mean(eta.size());
+  for (Eigen::Index i = 0; i < mean.size(); ++i) {
+    const std::complex<double> index(static_cast<double>(eta[i]), static_cast<double>(k[i]));
+    mean[i] = static_cast<float>(
+        diffuse_mean([&](double cosine) { return metal_reflectance(cosine, index); }));
+  }
+  return mean;
 }
 
 double pane_transmittance(double index) {

@@ -39,8 +39,10 @@ class Coat {
   Spectrum specular_;
 };
 
-/// Reflectance at normal incidence of a metal of refractive index eta + i k (Born & Wolf, 14.2).
-Spectrum metal_reflectance(const Spectrum& eta, const Spectrum& k);
+/// Reflectance under diffuse light of a metal of refractive index eta + i k, by Fresnel's equations
+/// (Born & Wolf, 14.2). Materials reflect the same at every angle, and light that bounces meets a
+/// metal at all of them: a dim one such as tungsten reflects a tenth more than straight on.
+Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k);
 
 /// Share of light that crosses a thin pane of this index at normal incidence, reflections between
 /// its two faces included: (1 - F) / (1 + F).

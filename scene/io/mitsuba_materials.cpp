@@ -142,7 +142,7 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
   Spectrum reflectance = Spectrum::Ones(3);
   const auto eta = colors_.positive(bsdf, "eta"), k = colors_.positive(bsdf, "k");
   if (eta && k) {
-    reflectance = metal_reflectance(*eta, *k);
+    reflectance = diffuse_metal_reflectance(*eta, *k);
   } else if (bsdf.type != "mirror") {
     const std::string name = bsdf.string_or("material", eta || k ? "none" : "Cu");
     if (const auto known = metal_preset(name)) {

@@ -146,6 +146,7 @@ TEST(Render, EveryPathBetweenTwoMirrorsIsCutOnce) {
   lit.render(tilted, {.max_depth = 5}, &report);
   EXPECT_GE(report.eye_rays, 81);
   EXPECT_EQ(report.depth_cut, report.eye_rays);
+  EXPECT_DOUBLE_EQ(report.cut_share, 1.0);
   // A lossy mirror is left when its contribution is spent, and nothing is counted as cut.
   const LitScene dim(SceneBuilder()
                          .square({.specular = 0.1f}, {0, 0, 0}, {0, 0, 1}, 1000)
@@ -153,6 +154,7 @@ TEST(Render, EveryPathBetweenTwoMirrorsIsCutOnce) {
                          .build());
   dim.render(tilted, {.max_depth = 5, .min_contribution = 1e-3f}, &report);
   EXPECT_EQ(report.depth_cut, 0);
+  EXPECT_EQ(report.cut_share, 0.0);
 }
 
 /// A room with a small lamp, a block, a mirror and a glass sphere.

@@ -213,7 +213,7 @@ TEST_F(Mitsuba, OneSidedUnlessTheFileSaysTwosided) {
 TEST_F(Mitsuba, MetalsAndGlassKeepTheirGloss) {
   const Material chrome = material(R"(<bsdf type="conductor"><rgb name="eta" value="1.5"/>
       <rgb name="k" value="0"/><rgb name="specular_reflectance" value="0.5"/></bsdf>)");
-  EXPECT_NEAR(chrome.specular[1], 0.5 * 0.04, 1e-7);
+  EXPECT_NEAR(chrome.specular[1], 0.5 * diffuse_fresnel(1.5), 1e-7);
   EXPECT_FLOAT_EQ(
       material(R"(<bsdf type="conductor"><string name="material" value="none"/></bsdf>)")
           .specular[0],
