@@ -50,29 +50,56 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 // of every channel) to leave the scene with the power that the patches' equations balanced: between
 // vertices that are far apart interpolation cuts peaks off, and would lose it at each reflection.
 // One factor a band for the whole scene, since what a patch's own value is off by where light is
-// steep, in a corner or beside what stands on it, is more than what it would set right there. All
-// light together says how much, so that channels add up.
+// steep, in a corner or beside what stands on it, is more than what it would set right there. But
+// peaks that are cut by a notable share of the scene's light, such as the place that a spotlight
+// falls on, get it back themselves, or all other surfaces would shine with it. All light together
+// says how much, so that channels add up.
 void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
                 const BandArray& patch_radiosity, BandArray& radiosity) {
   const Eigen::Index bands = mesh.reflectance.cols();
   const BandArray balanced = channel_sum(
       without_owned_emission(mesh, direct_light, patch_radiosity), static_cast<int>(bands));
   const BandArray read = channel_sum(radiosity, static_cast<int>(bands));
-  Eigen::ArrayXd wanted = Eigen::ArrayXd::Zero(bands), found = wanted;
+  Eigen::ArrayXXd wanted(mesh.patch_count(), bands);  // W
   for (int p = 0; p < mesh.patch_count(); ++p) {
-    wanted += mesh.area[p] * balanced.row(p).transpose().cast<double>();
+    wanted.row(p) = mesh.area[p] * balanced.row(p).cast<double>();
   }
+  Eigen::ArrayXXd found = Eigen::ArrayXXd::Zero(mesh.patch_count(), bands);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int n = mesh.corner_count(e);
     for (int c = 0; c < n; ++c) {
-      found += mesh.element_area[e] / n * read.row(mesh.corners[e][c]).transpose().cast<double>();
+      found.row(mesh.patch[e]) +=
+          mesh.element_area[e] / n * read.row(mesh.corners[e][c]).cast<double>();
     }
   }
   constexpr double most = 1.25;  // more, and elements are too large to tell
-  const Eigen::ArrayXd factor =
-      (found > 0.0).select(wanted / found.max(1e-300), 1.0).max(1.0 / most).min(most);
-  for (Eigen::Index k = 0; k < radiosity.cols(); ++k) {
-    radiosity.col(k) *= static_cast<float>(factor[k % bands]);
+  const auto ratio = [most](const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) -> Eigen::ArrayXd {
+    return (b > 0.0).select(a / b.max(1e-300), 1.0).max(1.0 / most).min(most);
+  };
+  // Of all light, and several times what a patch holds in the mean, so that few patches are not all
+  // peaks.
+  const double notable = std::max(0.002, 4.0 / std::max(1, mesh.patch_count()));
+  const double least = notable * wanted.sum();
+  const auto is_peak = [&](int p) {
+    return std::abs(wanted.row(p).sum() - found.row(p).sum()) > least;
+  };
+  Eigen::ArrayXd other_wanted = Eigen::ArrayXd::Zero(bands), other_found = other_wanted;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (is_peak(p)) continue;
+    other_wanted += wanted.row(p).transpose();
+    other_found += found.row(p).transpose();
+  }
+  const Eigen::ArrayXf of_others = ratio(other_wanted, other_found).cast<float>();
+  BandArray factor(mesh.patch_count(), bands);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    factor.row(p) = of_others.transpose();
+    if (!is_peak(p)) continue;
+    factor.row(p) =
+        ratio(wanted.row(p).transpose(), found.row(p).transpose()).cast<float>().transpose();
+  }
+  const BandArray at_vertices = to_vertices(mesh, factor);
+  for (Eigen::Index k = 0; k < radiosity.cols(); k += bands) {
+    radiosity.middleCols(k, bands) *= at_vertices;
   }
 }
 
