@@ -4,13 +4,17 @@
 #include <bit>
 #include <cmath>
 
+#include "radiosity/gather_noise.h"
+
 namespace lightwell {
 namespace {
 
-// Both are independent: 0.6^2 + 0.6^2 leaves room for what refinement has not seen.
-constexpr double share_of_interpolation = 0.6, share_of_noise = 0.6;
-constexpr int fewest_rays = 128, most_rays = 1 << 15;
-constexpr int most_attempts = 4;
+// Both are independent, and what is compared with is noisy as well. Interpolation leaves between
+// half of the tolerance and all of it; where that turns out too much, a later attempt adds to what
+// the first has found.
+constexpr double share_of_interpolation = 0.9, share_of_noise = 0.45;
+constexpr int fewest_rays = 64, most_rays = 1 << 15;
+constexpr int most_attempts = 6;
 // The error of stratified rays in a room falls with about this power of their number.
 constexpr double order = 2.0 / 3.0;
 
@@ -20,6 +24,10 @@ int power_of_two(double rays) {
 }
 
 }  // namespace
+
+double noise_share(double target) {
+  return share_of_noise * target;
+}
 
 double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
                         const BandArray& patch_radiosity) {
@@ -56,29 +64,31 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
   if (attempt + 1 >= most_attempts || (!can_split && refinement.estimate >= target)) {
     return std::nullopt;
   }
-  // Random places are gathered with noise of their own, which is in the error as well: nearly as
-  // much, since they have twice the rays, but are not means of corners.
-  const double in_error = std::sqrt(2.0) * noise;
-  const double without = std::sqrt(std::max(error * error - in_error * in_error, 0.0));
+  const double without = std::sqrt(std::max(error * error - noise * noise, 0.0));
   if (!can_split && without >= target) return std::nullopt;
+  // Both together come to 0.95 of the target.
+  const auto beside = [target](double other) {
+    constexpr double goal = 0.95, least = 0.1;
+    return std::sqrt(std::max(std::pow(goal * target, 2) - other * other, least * target * target));
+  };
   Effort next = spent;
-  const double times = std::pow(in_error / (share_of_noise * target), 1.0 / order);
+  const double noise_goal = can_split ? share_of_noise * target : beside(without);
+  const double times = std::pow(noise / noise_goal, 1.0 / order);
   if (times > 1.0) next.gather_rays = power_of_two(spent.gather_rays * std::min(times, 16.0));
-  // Rays alone will not do it: interpolation misses more than was seen.
-  if (can_split && (attempt > 0 || without >= target)) next.refine_tolerance *= 0.6;
+  const double goal = beside(std::min(noise, noise_goal));
+  if (can_split && without > goal) {
+    // It may have gone below the tolerance by itself.
+    const double reached =
+        std::clamp(refinement.estimate, 0.5 * spent.refine_tolerance, spent.refine_tolerance);
+    next.refine_tolerance = reached * std::clamp(0.95 * goal / without, 0.4, 0.9);
+  }
   const bool is_more =
       next.gather_rays > spent.gather_rays || next.refine_tolerance < spent.refine_tolerance;
   return is_more ? std::optional(next) : std::nullopt;
 }
 
 double rms_noise(const PatchMesh& mesh, const RadiositySolution& solution) {
-  double sum = 0.0, area = 0.0;
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
-    sum += mesh.element_area[e] * std::pow(double{solution.gather_noise[e]}, 2);
-    area += mesh.element_area[e];
-  }
-  return area > 0.0 ? std::sqrt(sum / area) : 0.0;
+  return rms_noise(mesh, solution.gather_noise);
 }
 
 }  // namespace lightwell

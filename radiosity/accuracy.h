@@ -33,9 +33,13 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
 /// be split.
 Effort first_effort(double target, bool refines);
 
-/// The effort after one that left an `error`, `noise` of it by the rays of the gather, or nothing
-/// where more would not help: noise falls with rays, what interpolation leaves with the tolerance
-/// of refinement, as far as there may be elements. `attempt` counts from 0.
+/// What of a target error is left to the noise of the gather.
+double noise_share(double target);
+
+/// The effort after one that left an `error`, `noise` of it by rays, those of what it was compared
+/// with included, or nothing where more would not help: noise falls with rays, what interpolation
+/// leaves with the tolerance of refinement, as far as there may be elements. `attempt` counts from
+/// 0.
 std::optional<Effort> next_effort(const Effort& spent, double target, double error, double noise,
                                   const RefineReport& refinement, int attempt);
 

@@ -5,19 +5,23 @@
 namespace lightwell {
 
 /// Rays of each patch's row of form factors for a target error relative to the mean irradiance:
-/// `most`, or as many fewer as the target is above one percent, 64 at least; for no target (0)
+/// `most`, or as many fewer as the target is above half a percent, 64 at least; for no target (0)
 /// `most`. A gather reads very many patches, so that what their noise leaves of error is a small
 /// share of it. It has to be: no error estimate sees it.
 int form_factor_rays(double target, int most);
 
 /// Patches that light is exchanged between for such a target, where a scene decides their size:
-/// `most`, or as many fewer as the target is above two percent, a quarter at least. What is read
+/// `most`, or as many fewer as the target is above one percent, 600 at least. What is read
 /// where gathered rays end is light at vertices, gathered itself, so that patches may be coarse.
 int patch_count_for(double target, int most);
 
 /// How often elements may be split for such a target: `usual`, and once more each time that it is
-/// halved below two percent, up to twice, since shadows' edges then are what is left.
+/// halved below four percent, up to three times, since shadows' edges then are what is left.
 int deepest_level(double target, int usual);
+
+/// Rays of a gather that leave the share `target` of noise, where `rays` of them left `found`: a
+/// power of two. Stratified rays' error in a room falls with about the power 2/3 of their number.
+int rays_for_noise(int rays, double found, double target);
 
 /// Rays of each of `places` that an error estimate looks at, beside a solution of `rays` a vertex:
 /// twice as many, or up to 2048 where that is an eighth of the solution's work at most. Else the

@@ -37,9 +37,9 @@ Eigen::ArrayXd indicators(const PatchMesh& mesh, const BandArray& irradiance) {
 
 }  // namespace
 
-double estimate_error(const Scene& scene, const ElementCaster& caster,
-                      const DirectLight& direct_light, const SolveOptions& options,
-                      const RadiositySolution& solution, Eigen::ArrayXf* of_elements) {
+ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
+                             const DirectLight& direct_light, const SolveOptions& options,
+                             const RadiositySolution& solution, Eigen::ArrayXf* of_elements) {
   const PatchMesh& mesh = caster.mesh();
   std::vector<double> area_to(mesh.patch_count());
   double total = 0.0;
@@ -49,7 +49,7 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
     if (is_seen && (mesh.reflectance.row(p) > 0.0f).any()) total += mesh.area[p];
     area_to[p] = total;
   }
-  if (!(total > 0.0) || options.error_points < 1) return 0.0;
+  if (!(total > 0.0) || options.error_points < 1) return {};
 
   std::vector<GatherPoint> points(options.error_points);
   BandArray caustic = BandArray::Zero(options.error_points, scene.bands.count());
@@ -90,24 +90,26 @@ double estimate_error(const Scene& scene, const ElementCaster& caster,
       gather_options);
   const BandArray truth = independent.direct + independent.indirect + caustic;
   const double mean = truth.cast<double>().mean();
-  if (!(mean > 0.0)) return 0.0;
+  if (!(mean > 0.0)) return {};
   const Eigen::ArrayXd reference = truth.cast<double>().rowwise().mean().unaryExpr(
       [mean](double own) { return error_reference(mean, own); });
   const Eigen::ArrayXd squares = (interpolated - truth).cast<double>().square().rowwise().mean();
   const Eigen::ArrayXd relative = squares / reference.square();
+  Eigen::ArrayXd noise(options.error_points);  // squared
+  for (int i = 0; i < options.error_points; ++i) {
+    noise[i] = independent.variance[i] / (reference[i] * reference[i]) +
+               std::pow(double{solution.gather_noise[element[i]]}, 2);
+  }
   if (of_elements) {
     const Eigen::ArrayXd indicator = indicators(mesh, irradiance);
-    double excess = 0.0, told = 0.0;
-    for (int i = 0; i < options.error_points; ++i) {
-      const double own_noise = independent.variance[i] / (reference[i] * reference[i]);
-      excess += relative[i] - own_noise - std::pow(solution.gather_noise[element[i]], 2);
-      told += std::pow(indicator[element[i]], 2);
-    }
+    double told = 0.0;
+    for (const int e : element) told += std::pow(indicator[e], 2);
+    const double excess = (relative - noise).sum();
     if (told > 0.0) {
       *of_elements = (std::sqrt(std::max(excess, 0.0) / told) * indicator).cast<float>();
     }
   }
-  return std::sqrt(relative.mean());
+  return {.error = std::sqrt(relative.mean()), .noise = std::sqrt(noise.mean())};
 }
 
 }  // namespace lightwell

@@ -6,6 +6,11 @@
 
 namespace lightwell {
 
+struct ErrorEstimate {
+  double error = 0.0;
+  double noise = 0.0;  ///< in it: what the rays of both gathers leave, as they tell themselves
+};
+
 /// Relative RMS error of interpolated irradiance over the area that reflects: at
 /// `options.error_points` random places, against gathers with twice the rays of the solution's or
 /// more (see estimate_rays) and other random numbers. It holds the noise of both, so it errs on the
@@ -15,8 +20,9 @@ namespace lightwell {
 /// solutions of which refinement tells none: it is in proportion to the range of the corners'
 /// irradiance, no less than 5 %, and in the mean square over the places what is off there beyond
 /// the noise of both gathers. (Unchanged if there is nothing to go by.)
-double estimate_error(const Scene& scene, const ElementCaster& caster,
-                      const DirectLight& direct_light, const SolveOptions& options,
-                      const RadiositySolution& solution, Eigen::ArrayXf* of_elements = nullptr);
+ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
+                             const DirectLight& direct_light, const SolveOptions& options,
+                             const RadiositySolution& solution,
+                             Eigen::ArrayXf* of_elements = nullptr);
 
 }  // namespace lightwell

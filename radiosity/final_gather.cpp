@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numbers>
-#include <numeric>
 
 #include "mesh/patch_sampler.h"
 #include "mesh/patch_textures.h"
@@ -14,6 +12,7 @@
 #include "radiosity/bright_patches.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
+#include "radiosity/told_vertices.h"
 #include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -448,30 +447,7 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
 }
 
 void share_rays(const PatchMesh& mesh, int rays, std::span<GatherPoint> points) {
-  std::vector<double> area(mesh.vertex_count(), 0.0);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int n = mesh.corner_count(e);
-    for (int c = 0; c < n; ++c) area[mesh.corners[e][c]] += mesh.element_area[e] / n;
-  }
-  std::vector<double> sorted = area;
-  std::sort(sorted.begin(), sorted.end(), std::greater<>());
-  const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
-  double typical = 0.0, larger = 0.0;
-  constexpr double about_half = 0.47;  // no share that elements of a grid add up to
-  for (std::size_t i = 0; i < sorted.size() && larger < about_half * total; ++i) {
-    typical = sorted[i];
-    larger += sorted[i];
-  }
-  for (GatherPoint& point : points) point.rays = rays;
-  if (!(typical > 0.0)) return;
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    // sqrt(area / typical), to a power of two. It changes between the areas that a grid's vertices
-    // have, halves and quarters, so that rounding does not decide.
-    constexpr double between = 0.45;
-    const double halvings = -0.5 * std::log2(std::max(area[v] / typical, 1e-6));
-    const int shift = std::clamp(static_cast<int>(std::floor(halvings + between)), -1, 3);
-    points[v].rays = shift < 0 ? 2 * rays : std::max(1, rays >> shift);
-  }
+  share_rays(vertex_areas(mesh), rays, points);
 }
 
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {

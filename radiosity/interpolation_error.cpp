@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "radiosity/effort.h"
+#include "radiosity/gather_noise.h"
 #include "radiosity/refine_solution.h"
 #include "scene/parallel.h"
 
@@ -15,6 +17,9 @@ constexpr std::uint64_t probe_key = 30;  // purpose of random keys
 constexpr std::uint64_t draft_replica = 1000;
 constexpr int probe_count = 16;
 constexpr int share_of_rays = 8;
+// Of it, what may hide in an indirect light that is taken for even: the product of two gathers has
+// none in the mean, and most of what it hides is nothing.
+constexpr double share_of_noise = 0.25;
 
 // Vertices lie this far inside the elements of the deepest level (see vertex_gather_points).
 constexpr double finest_inset = 0.02;
@@ -51,27 +56,42 @@ Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradian
 InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& caster,
                                        const DirectLight& direct_light, const BandArray& radiosity,
                                        const BandArray& caustic, RefinedElements& elements,
-                                       const GatherOptions& options, int deepest_level)
+                                       const GatherOptions& options, const RefineOptions& refine,
+                                       double noise)
     : scene_(scene),
       caster_(caster),
       direct_light_(direct_light),
       radiosity_(radiosity),
       elements_(elements),
       options_(options),
-      inset_(std::ldexp(finest_inset, -deepest_level)),
+      inset_(std::ldexp(finest_inset, -refine.max_level)),
       probes_(probe_count) {
   if (options.progress) {
     options_.progress = [progress = options.progress](std::string_view, double share) {
       return progress("refine", share);
     };
   }
-  // Crumbs take fewer, but none so few that noise hides what there is to be seen.
-  const int rays = std::max(1, options.rays / share_of_rays);
-  std::vector<GatherPoint> points(static_cast<std::size_t>(elements.base().vertex_count()));
-  share_rays(elements.base(), rays, points);
-  for (const GatherPoint& point : points) rays_.push_back(std::min(2 * point.rays, rays));
-  sharpen_radiosity(caustic);
+  go_on(refine.tolerance);
+  share_draft_rays();
+  sharpen_radiosity(caustic, noise);
+  std::vector<int> all(static_cast<std::size_t>(elements.base().vertex_count()));
+  std::iota(all.begin(), all.end(), 0);
+  gather_indirect_at(all);
   find_what_matters();
+}
+
+void InterpolationError::go_on(double tolerance) {
+  constexpr double share = 0.3;  // a tenth of the squared error that is allowed, at worst
+  even_ = std::pow(share * tolerance, 2);
+}
+
+// Crumbs take fewer, but none so few that noise hides what there is to be seen.
+void InterpolationError::share_draft_rays() {
+  const int rays = std::max(1, options_.rays / share_of_rays);
+  std::vector<GatherPoint> points(static_cast<std::size_t>(elements_.base().vertex_count()));
+  share_rays(elements_.base(), rays, points);
+  rays_.clear();
+  for (const GatherPoint& point : points) rays_.push_back(std::min(2 * point.rays, rays));
 }
 
 GatherPoint InterpolationError::gather_point(int vertex) const {
@@ -111,7 +131,7 @@ void InterpolationError::make_room() {
     }
   }
   has_direct_.resize(count, 0);
-  has_indirect_.resize(count, 0);
+  indirect_.resize(count, Indirect::unknown);
   // As many as where it lies between: fewer would hide in noise what the next split is about.
   for (int v = static_cast<int>(rays_.size()); v < count; ++v) {
     int most = 0;
@@ -119,6 +139,7 @@ void InterpolationError::make_room() {
     rays_.push_back(most);
   }
   sight_.resize(count);
+  sides_.resize(elements_.cell_count());
 }
 
 void InterpolationError::gather_direct_at(const std::vector<int>& vertices) {
@@ -140,8 +161,9 @@ void InterpolationError::gather_direct_at(const std::vector<int>& vertices) {
   gathers_ += static_cast<std::int64_t>(points.size());
 }
 
-BandArray InterpolationError::indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
-                                          const BandArray& radiosity) const {
+GatheredIrradiance InterpolationError::indirect_at(const std::vector<int>& vertices,
+                                                   std::uint64_t replica,
+                                                   const BandArray& radiosity) const {
   const PatchMesh& mesh = elements_.base();
   std::vector<GatherPoint> points;
   for (const int v : vertices) {
@@ -154,36 +176,146 @@ BandArray InterpolationError::indirect_at(const std::vector<int>& vertices, std:
   GatherOptions options = options_;
   options.rays = std::max(1, options_.rays / share_of_rays);
   options.replica = options_.replica + draft_replica + replica;
-  return gather_indirect(scene_, caster_, direct_light_, radiosity, points, options).indirect;
+  return gather_indirect(scene_, caster_, direct_light_, radiosity, points, options);
 }
 
-void InterpolationError::sharpen_radiosity(const BandArray& caustic) {
+// With `noise`, it also says what the final gather takes to leave no more of that.
+void InterpolationError::sharpen_radiosity(const BandArray& caustic, double noise) {
   const PatchMesh& mesh = elements_.base();
   std::vector<int> all(mesh.vertex_count());
   std::iota(all.begin(), all.end(), 0);
   make_room();
   gather_direct_at(all);
-  BandArray irradiance = direct_.topRows(mesh.vertex_count()) + indirect_at(all, 2, radiosity_);
+  GatheredIrradiance gathered = indirect_at(all, 2, radiosity_);
+  BandArray irradiance = direct_.topRows(mesh.vertex_count()) + gathered.indirect;
   if (caustic.size() > 0) irradiance += caustic;
   radiosity_ = gatherable_radiosity(mesh, direct_light_, irradiance);
-  gather(all);
+  if (!(noise > 0.0)) return;
+  const Eigen::ArrayXf rays =
+      Eigen::Map<const Eigen::ArrayXi>(rays_.data(), mesh.vertex_count()).cast<float>();
+  const double found =
+      rms_noise(mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays));
+  options_.rays = rays_for_noise(std::max(1, options_.rays / share_of_rays), found, noise);
+  share_draft_rays();
 }
 
-void InterpolationError::gather(const std::vector<int>& vertices) {
-  make_room();
-  gather_direct_at(vertices);
+void InterpolationError::gather_indirect_at(const std::vector<int>& vertices) {
   std::vector<int> fresh;
   for (const int v : vertices) {
-    if (has_indirect_[v]) continue;
-    has_indirect_[v] = 1;
+    if (indirect_[v] == Indirect::gathered) continue;
+    indirect_[v] = Indirect::gathered;
     fresh.push_back(v);
   }
-  const BandArray first = indirect_at(fresh, 0, radiosity_),
-                  second = indirect_at(fresh, 1, radiosity_);
+  const BandArray first = indirect_at(fresh, 0, radiosity_).indirect,
+                  second = indirect_at(fresh, 1, radiosity_).indirect;
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     first_.row(fresh[i]) = first.row(static_cast<Eigen::Index>(i));
     second_.row(fresh[i]) = second.row(static_cast<Eigen::Index>(i));
   }
+}
+
+// Unless it is known already.
+void InterpolationError::tell_indirect(int vertex) {
+  if (indirect_[vertex] != Indirect::unknown) return;
+  indirect_[vertex] = Indirect::told;
+  Eigen::RowVectorXf first = Eigen::RowVectorXf::Zero(first_.cols()), second = first;
+  int count = 0;
+  for (const int end : elements_.ends(vertex)) {
+    if (end < 0) continue;
+    tell_indirect(end);
+    first += first_.row(end).matrix();
+    second += second_.row(end).matrix();
+    ++count;
+  }
+  first_.row(vertex) = first.array() / static_cast<float>(count);
+  second_.row(vertex) = second.array() / static_cast<float>(count);
+}
+
+// Whether corners tell the indirect light in a cell, or in one that it is part of.
+bool InterpolationError::is_even(int cell, int side) const {
+  for (int c = cell; c >= 0; c = elements_.parent(c)) {
+    const auto known = static_cast<std::size_t>(c) < sides_.size();
+    if (known && sides_[c][side].indirect <= even_) return true;
+  }
+  return false;
+}
+
+bool InterpolationError::is_told(int cell, int side) const {
+  return elements_.parent(cell) >= 0 && is_even(elements_.parent(cell), side);
+}
+
+bool InterpolationError::is_stale(int cell) const {
+  for (int side = 0; side < elements_.side_count(cell); ++side) {
+    const bool known = static_cast<std::size_t>(cell) < sides_.size();
+    if (known && sides_[cell][side].was_told && !is_told(cell, side)) return true;
+  }
+  return false;
+}
+
+// Those in the middle of its edges, and in its own.
+template <class Visit>
+void InterpolationError::for_each_inner_vertex(int cell, int side, Visit&& visit) const {
+  const int n = elements_.corner_count(cell);
+  for (int i = 0; i < n; ++i) visit(elements_.edge_vertex(cell, side, i));
+  if (n == 4) visit(elements_.center_vertex(cell, side));
+}
+
+std::vector<ToldVertex> InterpolationError::told(const std::vector<int>& vertices) {
+  // Told is what no cell asks for that was split, and whose indirect light its corners do not tell.
+  std::vector<char> is_asked_for(elements_.vertex_count(), 0);
+  for (int cell = 0; cell < elements_.cell_count(); ++cell) {
+    if (!elements_.is_split(cell)) continue;
+    for (int side = 0; side < elements_.side_count(cell); ++side) {
+      if (is_even(cell, side)) continue;
+      for_each_inner_vertex(cell, side, [&](int v) {
+        is_asked_for.resize(elements_.vertex_count(), 0);
+        is_asked_for[v] = 1;
+      });
+    }
+  }
+  make_room();
+  is_asked_for.resize(elements_.vertex_count(), 0);
+  std::vector<int> number(elements_.vertex_count(), -1);  // in `vertices`
+  for (std::size_t i = 0; i < vertices.size(); ++i) number[vertices[i]] = static_cast<int>(i);
+  std::vector<ToldVertex> told;
+  for (int v = 0; v < elements_.vertex_count(); ++v) {  // ends have lower numbers
+    if (number[v] < 0 || is_asked_for[v]) continue;
+    ToldVertex t{.vertex = number[v]};
+    bool has_ends = elements_.ends(v)[0] >= 0;
+    for (int i = 0; i < 4; ++i) {
+      const int end = elements_.ends(v)[i];
+      if (end < 0) continue;
+      t.ends[i] = number[end];
+      has_ends = has_ends && number[end] >= 0;
+    }
+    if (has_ends) told.push_back(t);
+  }
+  return told;
+}
+
+namespace {
+
+// The places in a list of `count` that are not told by others.
+std::vector<int> without(std::span<const ToldVertex> told, std::size_t count) {
+  std::vector<char> is_told(count, 0);
+  for (const ToldVertex& t : told) is_told[t.vertex] = 1;
+  std::vector<int> others;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_told[i]) others.push_back(static_cast<int>(i));
+  }
+  return others;
+}
+
+}  // namespace
+
+void InterpolationError::gather(const std::vector<int>& vertices,
+                                std::span<const ToldVertex> told) {
+  make_room();
+  gather_direct_at(vertices);
+  std::vector<int> others = without(told, vertices.size());
+  for (int& place : others) place = vertices[place];
+  gather_indirect_at(others);
+  for (const int v : vertices) tell_indirect(v);
 }
 
 GatheredIrradiance InterpolationError::values(const std::vector<int>& vertices) const {
@@ -198,8 +330,8 @@ GatheredIrradiance InterpolationError::values(const std::vector<int>& vertices) 
 }
 
 GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>& vertices,
+                                                         std::span<const ToldVertex> told,
                                                          const ChannelLight& light) {
-  make_room();  // the last split's vertices have not been gathered at
   const PatchMesh& mesh = elements_.base();
   std::vector<int> base(mesh.vertex_count());
   std::iota(base.begin(), base.end(), 0);
@@ -217,13 +349,21 @@ GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>&
   }
   const BandArray direct = gather_direct(scene_, caster_, light.direct_light, points, options_);
   BandArray irradiance =
-      direct.topRows(mesh.vertex_count()) + indirect_at(base, 2, light.radiosity);
+      direct.topRows(mesh.vertex_count()) + indirect_at(base, 2, light.radiosity).indirect;
   if (light.caustic.size() > 0) irradiance += light.caustic;
   const BandArray sharpened = gatherable_radiosity(mesh, light.direct_light, irradiance);
 
+  const std::vector<int> gathered = without(told, vertices.size());
+  std::vector<int> at;
+  for (const int place : gathered) at.push_back(vertices[place]);
+  const BandArray indirect =
+      0.5f * (indirect_at(at, 0, sharpened).indirect + indirect_at(at, 1, sharpened).indirect);
   GatheredIrradiance result;
-  result.indirect =
-      0.5f * (indirect_at(vertices, 0, sharpened) + indirect_at(vertices, 1, sharpened));
+  result.indirect.resize(static_cast<Eigen::Index>(vertices.size()), indirect.cols());
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    result.indirect.row(gathered[i]) = indirect.row(static_cast<Eigen::Index>(i));
+  }
+  tell(told, result.indirect);
   result.direct.resize(result.indirect.rows(), direct.cols());
   for (Eigen::Index i = 0; i < result.direct.rows(); ++i) {
     result.direct.row(i) = direct.row(row_of[vertices[static_cast<std::size_t>(i)]]);
@@ -316,7 +456,8 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
   const bool shadow_counts = error > beyond_doubt * shadow_noise;
   return {.error = shadow_counts ? error - shadow_noise : 0.0,
           .hidden = (indirect_counts ? 0.0 : differences.noise) +
-                    (shadow_counts ? 0.0 : std::clamp(error, 0.0, shadow_noise))};
+                    (shadow_counts ? 0.0 : std::clamp(error, 0.0, shadow_noise)),
+          .indirect = std::max(differences.indirect, 0.0) + share_of_noise * differences.noise};
 }
 
 double InterpolationError::probed_error(int cell, int side) {
@@ -369,19 +510,24 @@ double InterpolationError::probed_error(int cell, int side) {
 
 std::vector<InterpolationError::Measured> InterpolationError::measure(
     const std::vector<int>& cells) {
-  std::vector<int> vertices;
+  std::vector<int> vertices, to_gather, to_tell;
   for (const int cell : cells) {
     for (int side = 0; side < elements_.side_count(cell); ++side) {
       if (!matters(elements_.element(cell, side))) continue;
-      const int n = elements_.corner_count(cell);
-      for (int i = 0; i < n; ++i) {
+      const std::size_t first = vertices.size();
+      for (int i = 0; i < elements_.corner_count(cell); ++i) {
         vertices.push_back(elements_.corner_vertex(cell, side, i));
-        vertices.push_back(elements_.edge_vertex(cell, side, i));
       }
-      if (n == 4) vertices.push_back(elements_.center_vertex(cell, side));
+      for_each_inner_vertex(cell, side, [&](int v) { vertices.push_back(v); });
+      std::vector<int>& indirect = is_told(cell, side) ? to_tell : to_gather;
+      indirect.insert(indirect.end(), vertices.begin() + static_cast<std::ptrdiff_t>(first),
+                      vertices.end());
     }
   }
-  gather(vertices);
+  make_room();
+  gather_direct_at(vertices);
+  gather_indirect_at(to_gather);
+  for (const int v : to_tell) tell_indirect(v);
   const int count = static_cast<int>(cells.size());
   std::vector<Measured> measured(cells.size());
   constexpr int slice = 4096;  // cells between two looks at the stop request
@@ -390,17 +536,25 @@ std::vector<InterpolationError::Measured> InterpolationError::measure(
     parallel_for(std::min(slice, count - begin), 16, [&](int low, int high) {
       for (int i = begin + low; i < begin + high; ++i) {
         for (int side = 0; side < elements_.side_count(cells[i]); ++side) {
-          if (!matters(elements_.element(cells[i], side))) continue;
-          const double E = reference(cells[i], side);
-          if (!(E > 0.0)) continue;
-          const Squares lattice = lattice_error(cells[i], side);
-          measured[i].error[side] = (lattice.error + probed_error(cells[i], side)) / (E * E);
-          measured[i].hidden[side] = lattice.hidden / (E * E);
+          measure(cells[i], side, measured[i]);
         }
       }
     });
   }
   return measured;
+}
+
+void InterpolationError::measure(int cell, int side, Measured& measured) {
+  if (!matters(elements_.element(cell, side))) return;
+  const double E = reference(cell, side);
+  if (!(E > 0.0)) return;
+  CellSide& known = sides_[cell][side];
+  known.was_told = is_told(cell, side);
+  if (known.probed < 0.0) known.probed = probed_error(cell, side) / (E * E);
+  const Squares lattice = lattice_error(cell, side);
+  measured.error[side] = lattice.error / (E * E) + known.probed;
+  measured.hidden[side] = lattice.hidden / (E * E);
+  if (!known.was_told) known.indirect = lattice.indirect / (E * E);
 }
 
 }  // namespace lightwell

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <array>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "mesh/refine_elements.h"
 #include "radiosity/final_gather.h"
+#include "radiosity/told_vertices.h"
 
 namespace lightwell {
 
 struct ChannelLight;
+struct RefineOptions;
 
 /// What errors of irradiance are relative to, W/m^2: the scene's mean irradiance or a quarter of
 /// the place's own, whichever is more. (Else a palm's breadth of lamp shade, lit a thousand times
@@ -33,16 +38,29 @@ Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradian
 /// all of them see whole, or that none of them sees: where one says otherwise, a shadow or a beam
 /// narrower than half the cell runs through it, and direct light gathered there is compared too.
 ///
+/// Where indirect light was found to be what the corners of a cell tell, to three tenths of
+/// the tolerance, with a quarter of the noise's square, nothing is gathered of it any more in what
+/// the cell is split into: that is for the edges of shadows.
+///
 /// Caustics are left out, and the light on places that reflect none.
 class InterpolationError {
  public:
   /// At the base's vertices: `radiosity` as gatherable_radiosity makes it, and caustic irradiance
   /// (or nothing). A first gather there replaces that radiosity, which patches hold as one value
-  /// each, before the gathers that are compared. `caster` is of the base.
+  /// each, before the gathers that are compared; with `noise` above 0 it also tells how many rays
+  /// the final gather takes to leave no larger a share of the mean irradiance. `caster` is of the
+  /// base.
   InterpolationError(const Scene& scene, const ElementCaster& caster,
                      const DirectLight& direct_light, const BandArray& radiosity,
                      const BandArray& caustic, RefinedElements& elements,
-                     const GatherOptions& options, int deepest_level);
+                     const GatherOptions& options, const RefineOptions& refine, double noise);
+
+  /// Goes on to another tolerance: what was gathered is kept.
+  void go_on(double tolerance);
+  /// Whether measure() would see more now than it did before go_on().
+  bool is_stale(int cell) const;
+  /// Of the final gather.
+  int rays() const { return options_.rays; }
 
   /// Whether light on a side of an element of the base is of interest.
   bool matters(int element) const { return matters_[element] != 0; }
@@ -60,25 +78,38 @@ class InterpolationError {
   };
   std::vector<Measured> measure(const std::vector<int>& cells);
 
-  /// Gathers at those of these vertices where nobody has yet.
-  void gather(const std::vector<int>& vertices);
+  /// Those of a mesh's vertices whose indirect light is told by others of them; numbers are places
+  /// in the list.
+  std::vector<ToldVertex> told(const std::vector<int>& vertices);
+  /// Gathers where nobody has yet, but for indirect light where it is told.
+  void gather(const std::vector<int>& vertices, std::span<const ToldVertex> told);
   /// What was gathered at vertices, in their order.
   GatheredIrradiance values(const std::vector<int>& vertices) const;
   /// The same gathers, made again of light by channels: their sum is what values() would give after
   /// gather().
-  GatheredIrradiance values_by_channel(const std::vector<int>& vertices, const ChannelLight& light);
+  GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
+                                       std::span<const ToldVertex> told, const ChannelLight& light);
   std::int64_t gathers() const { return gathers_; }
 
  private:
-  void sharpen_radiosity(const BandArray& caustic);
+  void share_draft_rays();
+  void sharpen_radiosity(const BandArray& caustic, double noise);
   void find_what_matters();
   GatherPoint gather_point(int vertex) const;
   void make_room();
   void gather_direct_at(const std::vector<int>& vertices);
-  BandArray indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
-                        const BandArray& radiosity) const;
+  void gather_indirect_at(const std::vector<int>& vertices);
+  void tell_indirect(int vertex);
+  GatheredIrradiance indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
+                                 const BandArray& radiosity) const;
+  bool is_even(int cell, int side) const;
+  bool is_told(int cell, int side) const;
+  template <class Visit>
+  void for_each_inner_vertex(int cell, int side, Visit&& visit) const;
+  void measure(int cell, int side, Measured& measured);
   struct Squares {
     double error = 0.0, hidden = 0.0;
+    double indirect = 0.0;  // of indirect light alone, with a share of its noise
   };
   Squares lattice_error(int cell, int side);
   double probed_error(int cell, int side);
@@ -94,8 +125,19 @@ class InterpolationError {
   double inset_;
   std::vector<char> matters_;
   double area_ = 0.0, mean_ = 0.0;
+  double even_ = 0.0;  // of squared errors of indirect light, relative: told by corners if below
+  // Per cell and side: the squared error of indirect light, or how large it may be; that of direct
+  // light between vertices, below 0 if nobody looked for it; whether indirect light was told when
+  // the cell was measured.
+  struct CellSide {
+    double indirect = std::numeric_limits<double>::infinity(), probed = -1.0;
+    bool was_told = false;
+  };
+  std::vector<std::array<CellSide, 2>> sides_;
   // Per vertex.
-  std::vector<char> has_direct_, has_indirect_;
+  std::vector<char> has_direct_;
+  enum class Indirect : char { unknown, told, gathered };
+  std::vector<Indirect> indirect_;
   std::vector<int> rays_;  // of each of the two gathers of indirect light
   BandArray direct_, first_, second_;
   std::vector<EmitterSight> sight_;

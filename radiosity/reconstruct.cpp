@@ -1,17 +1,18 @@
 #include "radiosity/reconstruct.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "radiosity/interpolation_error.h"
+#include "radiosity/gather_noise.h"
 #include "radiosity/light_path.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t draft_replica = 1000;
+constexpr std::uint64_t draft_replica = 1000, later_replicas = 2000;
 
 // Patch radiosities less what DirectLight accounts for, patches x columns of its channels.
 BandArray without_owned_emission(const PatchMesh& mesh, const DirectLight& direct_light,
@@ -156,64 +157,6 @@ class EvenCaustics {
   int known_ = 0;  // vertices; 0: there are no caustics
 };
 
-Draft refined_draft(const Scene& scene, const ElementCaster& caster,
-                    const DirectLight& direct_light, const SolveOptions& options,
-                    const GatherOptions& gather_options, const BandArray& radiosity,
-                    const BandArray& patch_radiosity) {
-  RefinedElements elements(caster.mesh());
-  EvenCaustics even_caustics(scene, direct_light, options, elements);
-  std::vector<int> base_vertices(caster.mesh().vertex_count());
-  std::iota(base_vertices.begin(), base_vertices.end(), 0);
-  const BandArray caustic = even_caustics.at(elements, base_vertices);
-  RefinedSolution found;
-  if (direct_light.channel_count() == 1) {
-    found = refine_solution(scene, caster, direct_light, radiosity, caustic, elements,
-                            gather_options, options.refine);
-  } else {
-    const DirectLight all_light(scene, caster.mesh(), {}, &direct_light);
-    const ChannelLight by_channel{direct_light, radiosity, caustic};
-    found = refine_solution(scene, caster, all_light,
-                            patch_to_vertex(caster.mesh(), all_light, patch_radiosity),
-                            channel_sum(caustic, scene.bands.count()), elements, gather_options,
-                            options.refine, &by_channel);
-  }
-  return {.refined = std::move(found.refined.mesh),
-          .direct = std::move(found.draft.direct),
-          .indirect = std::move(found.draft.indirect),
-          .caustic = even_caustics.at(elements, found.refined.vertex),
-          .interpolation_error = std::move(found.error),
-          .refinement = found.report};
-}
-
-// Of the error in an element's interpolated irradiance, see RadiositySolution. `ray_variance`: at
-// vertices, that of a single ray. What one vertex says of it is little more than a guess, so that a
-// patch's vertices say it together.
-Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
-                            const Eigen::ArrayXf& ray_variance,
-                            std::span<const GatherPoint> points) {
-  Eigen::ArrayXd of_patch = Eigen::ArrayXd::Zero(mesh.patch_count());
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int n = mesh.corner_count(e);
-    for (int c = 0; c < n; ++c) {
-      of_patch[mesh.patch[e]] += mesh.element_area[e] / n * ray_variance[mesh.corners[e][c]];
-    }
-  }
-  const Eigen::ArrayXd reference = error_references(mesh, irradiance);
-  Eigen::ArrayXf noise = Eigen::ArrayXf::Zero(mesh.element_count());
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int n = mesh.corner_count(e), p = mesh.patch[e];
-    if (!(reference[e] > 0.0) || !(mesh.area[p] > 0.0)) continue;
-    double of_corners = 0.0;
-    for (int c = 0; c < n; ++c) of_corners += 1.0 / points[mesh.corners[e][c]].rays / n;
-    // What is left of independent errors at the corners, over the element: the mean of the sum of
-    // squared weights.
-    const double interpolated = n == 4 ? 4.0 / 9.0 : 1.0 / 2.0;
-    const double variance = of_patch[p] / mesh.area[p] * of_corners * interpolated;
-    noise[e] = static_cast<float>(std::sqrt(variance) / reference[e]);
-  }
-  return noise;
-}
-
 // Of patches, with columns of every channel.
 BandArray unscaled_radiosity(const RadiositySolution& solution) {
   if (solution.channels.empty()) return solution.patch_radiosity;
@@ -227,30 +170,174 @@ GatherOptions gather_options(const SolveOptions& options) {
   return gather;
 }
 
+// What gather_indirect() finds at vertices that are not told, and the variance of one of its rays;
+// told ones have the means of their ends. `rays` gets how many each vertex stands for.
+GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
+                               const DirectLight& direct_light, const BandArray& radiosity,
+                               const GatherOptions& gather, std::span<const GatherPoint> points,
+                               const Draft& draft, KeptGathers& kept, Eigen::ArrayXf& rays) {
+  const int count = static_cast<int>(points.size());
+  const auto numbers =
+      static_cast<std::size_t>(*std::max_element(draft.number.begin(), draft.number.end()) + 1);
+  if (kept.rays.size() < numbers) {
+    const auto rows = static_cast<Eigen::Index>(numbers);
+    const Eigen::Index before = kept.indirect.rows();
+    kept.rays.resize(numbers, 0);
+    kept.indirect.conservativeResize(rows, radiosity.cols());
+    kept.variance.conservativeResize(rows);
+    kept.indirect.bottomRows(rows - before).setZero();
+    kept.variance.tail(rows - before).setZero();
+  }
+  std::vector<int> where;
+  std::vector<GatherPoint> fresh;
+  for (int v = 0; v < count; ++v) {
+    const int missing = points[v].rays - kept.rays[draft.number[v]];
+    if (missing <= 0) continue;
+    where.push_back(v);
+    fresh.push_back(points[v]);
+    fresh.back().rays = static_cast<int>(std::bit_ceil(static_cast<unsigned>(missing)));
+    fresh.back().key = static_cast<std::uint64_t>(v);
+  }
+  GatherOptions options = gather;
+  if (kept.count > 0) options.replica += later_replicas + kept.count;
+  ++kept.count;
+  const GatheredIrradiance found =
+      gather_indirect(scene, caster, direct_light, radiosity, fresh, options);
+  for (std::size_t i = 0; i < where.size(); ++i) {
+    const auto n = static_cast<std::size_t>(draft.number[where[i]]);
+    const auto row = static_cast<Eigen::Index>(n), of_found = static_cast<Eigen::Index>(i);
+    const int sum = kept.rays[n] + fresh[i].rays;
+    const float share = static_cast<float>(fresh[i].rays) / static_cast<float>(sum);
+    kept.indirect.row(row) =
+        (1.0f - share) * kept.indirect.row(row) + share * found.indirect.row(of_found);
+    kept.variance[row] = (1.0f - share) * (1.0f - share) * kept.variance[row] +
+                         share * share * found.variance[of_found];
+    kept.rays[n] = sum;
+  }
+  GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
+                            .variance = Eigen::ArrayXf::Zero(count)};
+  rays = Eigen::ArrayXf::Zero(count);
+  for (int v = 0; v < count; ++v) {
+    const int n = draft.number[v];
+    if (kept.rays[n] == 0) continue;
+    result.indirect.row(v) = kept.indirect.row(n);
+    rays[v] = static_cast<float>(kept.rays[n]);
+    result.variance[v] = rays[v] * kept.variance[n];
+  }
+  tell(draft.told, result.indirect);
+  for (const ToldVertex& t : draft.told) {
+    float inverse = 0.0f, variance = 0.0f;
+    for (int i = 0; i < t.end_count(); ++i) {
+      inverse += 1.0f / rays[t.ends[i]];
+      variance += result.variance[t.ends[i]];
+    }
+    const auto ends = static_cast<float>(t.end_count());
+    rays[t.vertex] = ends / inverse;
+    result.variance[t.vertex] = variance / ends;
+  }
+  return result;
+}
+
 }  // namespace
 
-Draft make_draft(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, const RadiositySolution& solution) {
-  const BandArray radiosity =
-      patch_to_vertex(caster.mesh(), direct_light, unscaled_radiosity(solution));
+struct Drafting::Impl {
+  Draft unrefined(const SolveOptions& options);
+  void prepare(const SolveOptions& options);
+  Draft refined(const SolveOptions& options);
+
+  const Scene& scene;
+  PatchMesh base;
+  const DirectLight& direct_light;
+  double noise;
+  BandArray radiosity;     // at vertices, with columns of every channel
+  BandArray of_all_light;  // the same of all channels together, if there are any
+  BandArray caustic{};
+  std::optional<DirectLight> all_light{};  // if channels are kept apart
+  std::optional<ElementCaster> caster{};   // there while a draft is made
+  std::optional<RefinedElements> elements{};
+  std::optional<EvenCaustics> even_caustics{};
+  std::optional<SolutionRefinement> refinement{};
+};
+
+Drafting::Drafting(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
+                   const RadiositySolution& solution, double noise)
+    : impl_(new Impl{.scene = scene,
+                     .base = std::move(base),
+                     .direct_light = direct_light,
+                     .noise = noise,
+                     .radiosity = {},
+                     .of_all_light = {}}) {
+  const PatchMesh& mesh = impl_->base;
+  impl_->radiosity = patch_to_vertex(mesh, direct_light, unscaled_radiosity(solution));
+  if (direct_light.channel_count() == 1) return;
+  impl_->all_light.emplace(scene, mesh, EmitterChannels{}, &direct_light);
+  impl_->of_all_light = patch_to_vertex(mesh, *impl_->all_light, solution.patch_radiosity);
+}
+
+Drafting::~Drafting() = default;
+
+PatchMesh& Drafting::base() {
+  return impl_->base;
+}
+
+Draft Drafting::draft(const SolveOptions& options) {
+  impl_->caster.emplace(impl_->base);
+  Draft draft =
+      options.refine.tolerance > 0.0 ? impl_->refined(options) : impl_->unrefined(options);
+  impl_->caster.reset();
+  return draft;
+}
+
+Draft Drafting::Impl::unrefined(const SolveOptions& options) {
   GatherOptions gather = gather_options(options);
-  if (options.refine.tolerance > 0.0) {
-    return refined_draft(scene, caster, direct_light, options, gather, radiosity,
-                         solution.patch_radiosity);
-  }
   gather.rays = std::max(1, gather.rays / 4);
   gather.replica += draft_replica;
   gather.shadows = {.min_rays = std::max(1, gather.shadows.min_rays / 2),
                     .max_rays = std::max(1, gather.shadows.max_rays / 4)};
-  GatheredIrradiance draft = gather_irradiance(scene, caster, direct_light, radiosity,
-                                               vertex_gather_points(caster.mesh()), gather);
+  GatheredIrradiance draft = gather_irradiance(scene, *caster, direct_light, radiosity,
+                                               vertex_gather_points(base), gather);
   return {.direct = std::move(draft.direct),
           .indirect = std::move(draft.indirect),
-          .caustic = caustics(scene, caster, direct_light, options)};
+          .caustic = caustics(scene, *caster, direct_light, options),
+          .gather_rays = options.gather.rays};
+}
+
+void Drafting::Impl::prepare(const SolveOptions& options) {
+  elements.emplace(base);
+  even_caustics.emplace(scene, direct_light, options, *elements);
+  std::vector<int> base_vertices(static_cast<std::size_t>(base.vertex_count()));
+  std::iota(base_vertices.begin(), base_vertices.end(), 0);
+  caustic = even_caustics->at(*elements, base_vertices);
+  const GatherOptions gather = gather_options(options);
+  if (all_light) {
+    refinement.emplace(scene, *caster, *all_light, of_all_light,
+                       channel_sum(caustic, scene.bands.count()), *elements, gather, options.refine,
+                       noise);
+  } else {
+    refinement.emplace(scene, *caster, direct_light, radiosity, caustic, *elements, gather,
+                       options.refine, noise);
+  }
+}
+
+Draft Drafting::Impl::refined(const SolveOptions& options) {
+  if (!refinement) prepare(options);
+  const ChannelLight by_channel{direct_light, radiosity, caustic};
+  RefinedSolution found = refinement->refine(options.refine, all_light ? &by_channel : nullptr);
+  BandArray at_vertices = even_caustics->at(*elements, found.refined.vertex);
+  return {.refined = std::move(found.refined.mesh),
+          .direct = std::move(found.draft.direct),
+          .indirect = std::move(found.draft.indirect),
+          .caustic = std::move(at_vertices),
+          .interpolation_error = std::move(found.error),
+          .refinement = found.report,
+          .told = std::move(found.told),
+          .number = std::move(found.refined.vertex),
+          .gather_rays = found.gather_rays};
 }
 
 void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, Draft draft, RadiositySolution& solution) {
+                 const SolveOptions& options, Draft draft, RadiositySolution& solution,
+                 KeptGathers* kept) {
   const PatchMesh& mesh = caster.mesh();
   const bool has_caustics = draft.caustic.size() > 0;
   BandArray irradiance = draft.direct + draft.indirect;
@@ -259,12 +346,13 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (draft.refined) keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
   const GatherOptions gather = gather_options(options);
   std::vector<GatherPoint> points = vertex_gather_points(mesh);
-  share_rays(mesh, gather.rays, points);
-  Eigen::ArrayXf variance;
+  share_rays(mesh, draft.told, gather.rays, points);
+  Eigen::ArrayXf variance, rays;
   if (draft.refined) {
     solution.direct_irradiance = std::move(draft.direct);
-    GatheredIrradiance gathered =
-        gather_indirect(scene, caster, direct_light, radiosity, points, gather);
+    KeptGathers none;
+    GatheredIrradiance gathered = gather_once(scene, caster, direct_light, radiosity, gather,
+                                              points, draft, kept ? *kept : none, rays);
     solution.indirect_irradiance = std::move(gathered.indirect);
     variance = std::move(gathered.variance);
   } else {
@@ -272,13 +360,12 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
         gather_irradiance(scene, caster, direct_light, radiosity, points, gather);
     solution.direct_irradiance = std::move(gathered.direct);
     solution.indirect_irradiance = std::move(gathered.indirect);
-    variance = std::move(gathered.variance);
-  }
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    variance[v] *= static_cast<float>(points[v].rays);
+    rays.resize(mesh.vertex_count());
+    for (int v = 0; v < mesh.vertex_count(); ++v) rays[v] = static_cast<float>(points[v].rays);
+    variance = gathered.variance * rays;
   }
   solution.gather_noise =
-      gather_noise(mesh, channel_sum(irradiance, scene.bands.count()), variance, points);
+      gather_noise(mesh, channel_sum(irradiance, scene.bands.count()), variance, rays);
   if (has_caustics) solution.indirect_irradiance += draft.caustic;
   solution.caustic_irradiance = std::move(draft.caustic);
   solution.interpolation_error = std::move(draft.interpolation_error);

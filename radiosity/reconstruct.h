@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "radiosity/solve.h"
 
@@ -14,18 +17,51 @@ struct Draft {
   BandArray caustic{};                   ///< the same; empty if the scene has no mirrors or glass
   Eigen::ArrayXf interpolation_error{};  ///< see RadiositySolution; empty without refinement
   RefineReport refinement{};
+  std::vector<ToldVertex> told{};  ///< where the second gather leaves indirect light out
+  /// Per vertex, what it is called in later drafts of the same elements too; empty without
+  /// refinement.
+  std::vector<int> number{};
+  int gather_rays = 0;  ///< that the second gather is to take
 };
 
-/// Refines the elements, if options.refine says so, and gathers at their vertices. `solution` has
-/// patch radiosities; `direct_light` keeps apart its channels, if there are any, and what is
-/// gathered has columns for each. Elements are split as all light together asks for.
-Draft make_draft(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, const RadiositySolution& solution);
+/// First gathers at the vertices of elements that are refined ever further.
+class Drafting {
+ public:
+  /// Over patches whose radiosities `solution` has; `direct_light` keeps apart its channels, if
+  /// there are any, and what is gathered has columns for each. Elements are split as all light
+  /// together asks for. With `noise` above 0 drafts of refined elements say how many rays the
+  /// second gather takes to leave no larger a share of the mean irradiance. Keeps references to
+  /// `scene` and `direct_light`.
+  Drafting(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
+           const RadiositySolution& solution, double noise = 0.0);
+  ~Drafting();
+
+  /// Refines the elements, if options.refine says so, and gathers at their vertices. Called again,
+  /// with a smaller tolerance, it goes on where it ended.
+  Draft draft(const SolveOptions& options);
+
+  /// The mesh that drafts without refinement are of; may be moved from after the last draft.
+  PatchMesh& base();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What second gathers have found so far, by Draft::number: more is added to it. Of indirect light,
+/// W/m^2, columns of every channel.
+struct KeptGathers {
+  std::vector<int> rays{};  ///< 0: none there
+  BandArray indirect{};
+  Eigen::ArrayXf variance{};  ///< of it
+  std::uint64_t count = 0;    ///< of gathers
+};
 
 /// The final gather; `caster` is of the mesh whose vertices the draft is for. The direct light of
 /// a refined mesh has been gathered for good. With channels it is theirs that is filled in; their
-/// sum is left to relight().
+/// sum is left to relight(). What `kept` has of refined elements is not gathered again.
 void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, Draft draft, RadiositySolution& solution);
+                 const SolveOptions& options, Draft draft, RadiositySolution& solution,
+                 KeptGathers* kept = nullptr);
 
 }  // namespace lightwell

@@ -14,6 +14,12 @@
 namespace lightwell {
 namespace {
 
+// A split leaves a sixteenth of the squared error where light is smooth, and half of it along an
+// edge, where it has cells left that the edge runs through: that is what most are split for. Who
+// may go on later ends by what is expected so; else all is measured that counts, or taken to be as
+// bad as what it was split from, and only the report expects something between.
+constexpr double of_a_split = 0.5, of_a_split_in_the_end = 0.25;
+
 // About as many as elements of a quarter of the edge everywhere would be, both sides; those that
 // are small already, leaves and crumbs, would stay what they are.
 std::int64_t default_room(const RefinedElements& elements) {
@@ -38,12 +44,15 @@ std::int64_t default_room(const RefinedElements& elements) {
 
 class Refinement {
  public:
-  Refinement(RefinedElements& elements, InterpolationError& error, const RefineOptions& options)
+  Refinement(RefinedElements& elements, InterpolationError& error, const RefineOptions& options,
+             bool may_go_on)
       : elements_(elements),
         error_(error),
         options_(options),
         max_elements_(options.max_elements > 0 ? options.max_elements : default_room(elements)),
-        allowed_(std::pow(options.tolerance, 2) * error.area()) {
+        of_children_(may_go_on ? of_a_split : 1.0),
+        in_the_end_(may_go_on ? 1.0 : of_a_split_in_the_end),
+        report_{.elements_at_first = elements.element_count()} {
     resize();
     for (const int cell : elements.leaves()) {
       std::array<double, 2> expected{0.0, 0.0};
@@ -54,10 +63,15 @@ class Refinement {
     }
   }
 
-  RefineReport run() {
-    RefineReport report{.tolerance = options_.tolerance,
-                        .elements_at_first = elements_.element_count()};
-    while (report.outcome == RefineOutcome::off) {
+  // Until the tolerance is reached; goes on from where it ended before.
+  RefineReport run(double tolerance) {
+    options_.tolerance = report_.tolerance = tolerance;
+    allowed_ = std::pow(tolerance, 2) * error_.area();
+    for (const int cell : elements_.leaves()) {
+      if (error_.is_stale(cell)) measured_[cell] = 0;
+    }
+    report_.outcome = RefineOutcome::off;
+    while (report_.outcome == RefineOutcome::off) {
       std::vector<int> marks = cells_to_split();
       // No more than there may be elements for, each split making three of them or more. (Bounds
       // fall when they are measured, and others come to the front.)
@@ -67,24 +81,27 @@ class Refinement {
       const std::size_t most = std::max(static_cast<std::size_t>(room / 3 + 1), at_once);
       if (marks.size() > most) marks.resize(most);
       if (sum_ <= allowed_) {
-        report.outcome = RefineOutcome::tolerance_reached;
+        report_.outcome = RefineOutcome::tolerance_reached;
       } else if (marks.empty()) {
-        report.outcome = RefineOutcome::smallest_size_reached;
+        report_.outcome = RefineOutcome::smallest_size_reached;
       } else if (!measure(marks)) {
-        if (!split(marks)) report.outcome = RefineOutcome::max_elements_reached;
-        ++report.rounds;
+        if (!split(marks)) report_.outcome = RefineOutcome::max_elements_reached;
+        ++report_.rounds;
       }
     }
-    expect_of_unmeasured();
-    cells_to_split();
-    report.estimate = error_.area() > 0.0 ? std::sqrt(sum_ / error_.area()) : 0.0;
-    report.elements = elements_.element_count();
-    return report;
+    double left = 0.0;
+    for (const int cell : elements_.leaves()) {
+      left += share_left(cell) * elements_.area(cell) * (squares_[cell][0] + squares_[cell][1]);
+    }
+    report_.estimate = error_.area() > 0.0 ? std::sqrt(left / error_.area()) : 0.0;
+    report_.elements = elements_.element_count();
+    return report_;
   }
 
   /// With what noise may hide.
   float relative_error(int cell, int side) const {
-    return static_cast<float>(std::sqrt(squares_[cell][side] + hidden_[cell][side]));
+    return static_cast<float>(
+        std::sqrt(share_left(cell) * (squares_[cell][side] + hidden_[cell][side])));
   }
 
  private:
@@ -118,10 +135,16 @@ class Refinement {
     std::sort(by_error.begin(), by_error.end());
     std::vector<int> marks;
     double last = 0.0;
+    const double all = rest, fixed = sum_ - all;
     for (const auto& [minus_square, cell] : by_error) {
       // Cells of equal error, by a scene's symmetry, are split together: rounding must not choose.
       constexpr double about_equal = 0.999;
-      if (rest <= 0.5 * allowed_ && (marks.empty() || -minus_square < about_equal * last)) break;
+      // In the last round no more than it takes, as far as that can be foreseen.
+      const bool will_do = fixed + rest + of_children_ * (all - rest) <= 0.8 * allowed_;
+      if ((rest <= 0.5 * allowed_ || will_do) &&
+          (marks.empty() || -minus_square < about_equal * last)) {
+        break;
+      }
       rest += minus_square;
       last = -minus_square;
       marks.push_back(cell);
@@ -129,14 +152,8 @@ class Refinement {
     return marks;
   }
 
-  // A split leaves a sixteenth of the squared error where light is smooth, half of it along an
-  // edge: for those that nobody has measured since, something between.
-  void expect_of_unmeasured() {
-    for (const int cell : elements_.leaves()) {
-      if (measured_[cell] || elements_.level(cell) == 0) continue;
-      for (double& square : squares_[cell]) square *= 0.25;
-      for (double& square : hidden_[cell]) square *= 0.25;
-    }
+  double share_left(int cell) const {
+    return measured_[cell] || elements_.level(cell) == 0 ? 1.0 : in_the_end_;
   }
 
   // Whether any of them had not been measured yet.
@@ -171,22 +188,30 @@ class Refinement {
     }
     elements_.split(marks);
     resize();
-    // Until they are measured, children are as bad as what they were split from. (Their numbers may
-    // be old: what was merged is split into the same again.)
+    // What children are expected to be until they are measured. (Their numbers may be old: what was
+    // merged is split into the same again.)
     for (const int cell : elements_.leaves()) {
       if (is_known_[cell]) continue;
-      set(cell, squares_[elements_.parent(cell)], hidden_[elements_.parent(cell)]);
+      std::array<double, 2> squares = squares_[elements_.parent(cell)],
+                            hidden = hidden_[elements_.parent(cell)];
+      for (int side = 0; side < 2; ++side) {
+        squares[side] *= of_children_;
+        hidden[side] *= of_children_;
+      }
+      set(cell, squares, hidden);
     }
     return all;
   }
 
   RefinedElements& elements_;
   InterpolationError& error_;
-  const RefineOptions& options_;
+  RefineOptions options_;
   std::int64_t max_elements_;
-  double allowed_;
+  double of_children_, in_the_end_;
+  RefineReport report_;
+  double allowed_ = 0.0;
   double sum_ = 0.0;  // squared error times area, over all leaves
-  // Per cell and side; of those split since nobody measured, as of what they were split from.
+  // Per cell and side, measured or expected.
   std::vector<std::array<double, 2>> squares_, hidden_;
   std::vector<char> is_known_, measured_;
 };
@@ -224,23 +249,46 @@ std::string sentence(const RefineReport& report) {
                      report.rounds);
 }
 
-RefinedSolution refine_solution(const Scene& scene, const ElementCaster& caster,
-                                const DirectLight& direct_light, const BandArray& radiosity,
-                                const BandArray& caustic, RefinedElements& elements,
-                                const GatherOptions& gather, const RefineOptions& options,
-                                const ChannelLight* by_channel) {
+struct SolutionRefinement::Impl {
+  Impl(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+       const BandArray& radiosity, const BandArray& caustic, RefinedElements& all,
+       const GatherOptions& gather, const RefineOptions& options, double noise)
+      : elements(all),
+        error(scene, caster, direct_light, radiosity, caustic, all, gather, options, noise),
+        refinement(all, error, options, noise > 0.0) {}
+
+  RefinedElements& elements;
+  InterpolationError error;
+  Refinement refinement;
+};
+
+SolutionRefinement::SolutionRefinement(const Scene& scene, const ElementCaster& caster,
+                                       const DirectLight& direct_light, const BandArray& radiosity,
+                                       const BandArray& caustic, RefinedElements& elements,
+                                       const GatherOptions& gather, const RefineOptions& options,
+                                       double noise) {
   require_room(elements.base(), options);
-  InterpolationError error(scene, caster, direct_light, radiosity, caustic, elements, gather,
-                           options.max_level);
-  Refinement refinement(elements, error, options);
+  impl_ = std::make_unique<Impl>(scene, caster, direct_light, radiosity, caustic, elements, gather,
+                                 options, noise);
+}
+
+SolutionRefinement::~SolutionRefinement() = default;
+
+RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
+                                           const ChannelLight* by_channel) {
+  auto& [elements, error, refinement] = *impl_;
+  error.go_on(options.tolerance);
   RefinedSolution result;
-  result.report = refinement.run();
+  result.report = refinement.run(options.tolerance);
   result.refined = elements.mesh();
+  result.told = error.told(result.refined.vertex);
   if (by_channel) {
-    result.draft = error.values_by_channel(result.refined.vertex, *by_channel);
+    result.draft = error.values_by_channel(result.refined.vertex, result.told, *by_channel);
   } else {
-    error.gather(result.refined.vertex);
+    error.gather(result.refined.vertex, result.told);
     result.draft = error.values(result.refined.vertex);
+    // Some were gathered before others told of them: as with channels, those have the last word.
+    tell(result.told, result.draft.indirect);
   }
   const PatchMesh& mesh = result.refined.mesh;
   result.error = Eigen::ArrayXf::Zero(mesh.element_count());
@@ -251,6 +299,7 @@ RefinedSolution refine_solution(const Scene& scene, const ElementCaster& caster,
     result.error[e] = refinement.relative_error(cell, is_back_of_two ? 1 : 0);
   }
   result.report.gathers = error.gathers();
+  result.gather_rays = error.rays();
   return result;
 }
 

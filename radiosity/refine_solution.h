@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "mesh/refine_elements.h"
 #include "radiosity/final_gather.h"
+#include "radiosity/told_vertices.h"
 
 namespace lightwell {
 
@@ -47,10 +50,12 @@ struct ChannelLight {
 /// Refined elements, and a first gather at their vertices.
 struct RefinedSolution {
   RefinedMesh refined{};
-  GatheredIrradiance draft{};  ///< vertices x bands; the direct light is as good as it gets
+  GatheredIrradiance draft{};      ///< vertices x bands; the direct light is as good as it gets
+  std::vector<ToldVertex> told{};  ///< where the final gather of indirect light may be left out
   /// Per element: estimated relative RMS error of interpolation over it, with what noise may hide.
   Eigen::ArrayXf error{};
   RefineReport report{};
+  int gather_rays = 0;  ///< that the final gather is to take
 };
 
 /// Adaptive subdivision (Cohen, Greenberg, Immel & Brock 1986, "An efficient radiosity approach for
@@ -60,14 +65,27 @@ struct RefinedSolution {
 /// it takes for the others to hold no more than half of what the tolerance allows (Doerfler 1996,
 /// "A convergent adaptive algorithm for Poisson's equation"). What a bound by the corners' values
 /// shows not to matter is not measured.
-///
-/// `radiosity` (as gatherable_radiosity makes it) and `caustic` irradiance (or nothing) are at the
-/// base's vertices; `caster` is of the base. With `by_channel` the draft is of that light, which
-/// has the same sum. Throws as require_room does.
-RefinedSolution refine_solution(const Scene& scene, const ElementCaster& caster,
-                                const DirectLight& direct_light, const BandArray& radiosity,
-                                const BandArray& caustic, RefinedElements& elements,
-                                const GatherOptions& gather, const RefineOptions& options,
-                                const ChannelLight* by_channel = nullptr);
+class SolutionRefinement {
+ public:
+  /// `radiosity` (as gatherable_radiosity makes it) and `caustic` irradiance (or nothing) are at
+  /// the base's vertices; `caster` is of the base. With `noise` above 0 a first gather tells how
+  /// many rays the final gather takes to leave no larger a share of the mean irradiance; else they
+  /// are those of `gather`. Keeps references to the first three and to `elements`. Throws as
+  /// require_room does.
+  SolutionRefinement(const Scene& scene, const ElementCaster& caster,
+                     const DirectLight& direct_light, const BandArray& radiosity,
+                     const BandArray& caustic, RefinedElements& elements,
+                     const GatherOptions& gather, const RefineOptions& options, double noise = 0.0);
+  ~SolutionRefinement();
+
+  /// Splits until the tolerance is reached, and goes on from there when it is called again: what
+  /// was gathered is kept. Of `options` only the tolerance may have changed. With `by_channel` the
+  /// draft is of that light, which has the same sum.
+  RefinedSolution refine(const RefineOptions& options, const ChannelLight* by_channel = nullptr);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace lightwell

@@ -157,38 +157,44 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   std::map<std::string, double> spent;
   Stopwatch watch;
   RadiositySolution& solution = solved.solution;
-  PatchMesh base = std::move(solved.mesh);
   if (target > 0.0 && in_force.refine.max_elements == 0) {
     // Who asks for an accuracy asks for the elements it takes; about 1 GB of them.
     constexpr std::int64_t plenty = 1000000;
-    in_force.refine.max_elements = std::max<std::int64_t>(plenty, 4 * base.element_count());
+    in_force.refine.max_elements = std::max<std::int64_t>(plenty, 4 * solved.mesh.element_count());
     in_force.refine.max_level = deepest_level(target, options.refine.max_level);
   }
   const bool may_try_again = target > 0.0;
+  std::optional<Drafting> drafting(std::in_place, scene, std::move(solved.mesh), kept_apart,
+                                   solution, noise_share(target));
   std::optional<Draft> draft;
   std::optional<ElementCaster> caster;
+  KeptGathers kept;
   for (int attempt = 0;; ++attempt) {
     if (!draft) {
-      caster.emplace(base);
-      draft = make_draft(scene, *caster, kept_apart, in_force, solution);
       caster.reset();
-      PatchMesh& lit = draft->refined ? *draft->refined : base;
+      draft = drafting->draft(in_force);
+      if (attempt == 0 && target > 0.0) {
+        effort.gather_rays = draft->gather_rays;
+        take(effort);
+      }
+      PatchMesh& lit = draft->refined ? *draft->refined : drafting->base();
       solved.mesh = may_try_again ? lit : std::move(lit);
-      if (!may_try_again) base = {};
+      if (!may_try_again) drafting.reset();
       caster.emplace(solved.mesh);
       if (draft->refined) spent["refine"] += watch.lap();
     }
     reconstruct(scene, *caster, kept_apart, in_force, may_try_again ? *draft : std::move(*draft),
-                solution);
+                solution, may_try_again ? &kept : nullptr);
     relight(solved, scales_in_force(solution));
     spent["gather"] += watch.lap();
     Eigen::ArrayXf& of_elements = solution.interpolation_error;
-    solution.error_estimate = estimate_error(scene, *caster, direct_light, in_force, solution,
-                                             of_elements.size() == 0 ? &of_elements : nullptr);
+    const ErrorEstimate estimate = estimate_error(scene, *caster, direct_light, in_force, solution,
+                                                  of_elements.size() == 0 ? &of_elements : nullptr);
+    solution.error_estimate = estimate.error;
     spent["error_estimate"] += watch.lap();
     if (!may_try_again || solution.error_estimate <= target) break;
-    const auto next = next_effort(effort, target, solution.error_estimate,
-                                  rms_noise(solved.mesh, solution), draft->refinement, attempt);
+    const auto next =
+        next_effort(effort, target, estimate.error, estimate.noise, draft->refinement, attempt);
     if (!next) {
       if (solution.outcome == Outcome::converged) solution.outcome = Outcome::accuracy_missed;
       break;

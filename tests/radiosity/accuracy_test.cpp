@@ -170,7 +170,7 @@ TEST(Accuracy, EffortFollowsTheError) {
   EXPECT_EQ(first_effort(0.01, false).refine_tolerance, 0.0);
 
   RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.006};
-  const auto noisy = next_effort(first, 0.01, 0.02, 0.013, reached, 0);
+  const auto noisy = next_effort(first, 0.01, 0.02, 0.019, reached, 0);
   ASSERT_TRUE(noisy);
   EXPECT_GT(noisy->gather_rays, first.gather_rays);
   EXPECT_EQ(noisy->refine_tolerance, first.refine_tolerance);
@@ -188,7 +188,7 @@ TEST(Accuracy, EffortFollowsTheError) {
 TEST(Accuracy, RaysAreNotCastWhereElementsAreTooLarge) {
   const Effort first = first_effort(0.03, false);
   EXPECT_FALSE(next_effort(first, 0.03, 0.2, 0.005, RefineReport{}, 0));
-  const auto noisy = next_effort(first, 0.03, 0.045, 0.03, RefineReport{}, 0);
+  const auto noisy = next_effort(first, 0.03, 0.045, 0.042, RefineReport{}, 0);
   ASSERT_TRUE(noisy);
   EXPECT_GT(noisy->gather_rays, first.gather_rays);
 }

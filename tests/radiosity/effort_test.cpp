@@ -15,21 +15,30 @@ TEST(Effort, NoTargetChangesNothing) {
 }
 
 TEST(Effort, LooseTargetsTakeLess) {
-  EXPECT_EQ(form_factor_rays(0.01, 512), 512);
-  EXPECT_EQ(form_factor_rays(0.02, 512), 256);
-  EXPECT_EQ(form_factor_rays(0.05, 512), 128);  // 102.4, to a power of two
+  EXPECT_EQ(form_factor_rays(0.005, 512), 512);
+  EXPECT_EQ(form_factor_rays(0.01, 512), 256);
+  EXPECT_EQ(form_factor_rays(0.025, 512), 128);  // 102.4, to a power of two
   EXPECT_EQ(form_factor_rays(0.5, 512), 64);
-  EXPECT_EQ(patch_count_for(0.02, 1600), 1600);
-  EXPECT_EQ(patch_count_for(0.04, 1600), 800);
-  EXPECT_EQ(patch_count_for(0.5, 1600), 400);
+  EXPECT_EQ(patch_count_for(0.01, 1600), 1600);
+  EXPECT_EQ(patch_count_for(0.02, 1600), 800);
+  EXPECT_EQ(patch_count_for(0.5, 1600), 600);
 }
 
 TEST(Effort, TightTargetsSplitMoreOften) {
   EXPECT_EQ(deepest_level(0.05, 4), 4);
-  EXPECT_EQ(deepest_level(0.02, 4), 4);
-  EXPECT_EQ(deepest_level(0.01, 4), 5);
-  EXPECT_EQ(deepest_level(0.005, 4), 6);
-  EXPECT_EQ(deepest_level(1e-5, 4), 6);
+  EXPECT_EQ(deepest_level(0.02, 4), 5);
+  EXPECT_EQ(deepest_level(0.01, 4), 6);
+  EXPECT_EQ(deepest_level(0.005, 4), 7);
+  EXPECT_EQ(deepest_level(1e-5, 4), 7);
+}
+
+// The error of stratified rays falls with the power 2/3 of their number: 8 times as many, a
+// quarter.
+TEST(Effort, RaysFollowTheNoise) {
+  EXPECT_EQ(rays_for_noise(128, 0.04, 0.01), 1024);
+  EXPECT_EQ(rays_for_noise(128, 0.041, 0.01), 2048);
+  EXPECT_EQ(rays_for_noise(128, 0.0, 0.01), 64);
+  EXPECT_EQ(rays_for_noise(1 << 15, 1.0, 0.01), 1 << 15);
 }
 
 // Who asks for fewer than an accuracy would take gets those.

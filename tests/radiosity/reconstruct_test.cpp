@@ -1,0 +1,159 @@
+#include "radiosity/reconstruct.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <vector>
+
+#include "radiosity/accuracy.h"
+#include "two_lamps.h"
+
+namespace lightwell {
+namespace {
+
+// Patches of a room that are solved, to be drafted on.
+struct Room {
+  Scene scene = test::two_lamps();
+  SolveOptions options{};
+  SolvedScene patches{};
+
+  explicit Room(double tolerance) {
+    options.mesh = {.max_patch_size = 0.35, .to_be_refined = true};
+    options.gather = {.rays = 128, .shadows = {.min_rays = 16, .max_rays = 64}};
+    options.refine = {.tolerance = tolerance, .max_elements = 1000000};
+    patches.mesh = build_patches(scene, options.mesh);
+    const ElementCaster caster(patches.mesh);
+    const auto form_factors = compute_form_factors(scene, caster, DirectLight(scene, patches.mesh),
+                                                   {.rays_per_patch = 128});
+    patches.solution =
+        solve_radiosity(SolverMethod::automatic, patches.mesh, *form_factors, options.solver);
+  }
+};
+
+TEST(ToldVertices, AreMeansOfTheirEnds) {
+  BandArray values(5, 1);
+  values << 1.0f, 3.0f, 100.0f, 5.0f, 100.0f;
+  const std::vector<ToldVertex> told{{.vertex = 2, .ends = {0, 1, -1, -1}},
+                                     {.vertex = 4, .ends = {0, 1, 2, 3}}};
+  tell(told, values);
+  EXPECT_FLOAT_EQ(values(2, 0), 2.0f);
+  EXPECT_FLOAT_EQ(values(4, 0), 2.75f);
+}
+
+TEST(ToldVertices, GiveTheirAreaToTheirEnds) {
+  Scene scene;
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
+  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, {grey, grey, grey, grey, grey, grey}, true);
+  const PatchMesh mesh =
+      build_patches(scene, {.max_patch_size = 1.0, .elements_per_patch_edge = 2});
+  const std::vector<double> area = vertex_areas(mesh);
+  double sum = 0.0;
+  for (const double a : area) sum += a;
+  EXPECT_NEAR(sum, 6.0, 1e-12);  // a few roundings of each of 24 elements
+  std::vector<GatherPoint> points(area.size());
+  std::vector<ToldVertex> told;
+  for (int v = 1; v < mesh.vertex_count(); ++v) told.push_back({v, {0, 0, -1, -1}});
+  share_rays(mesh, told, 64, points);
+  EXPECT_EQ(points[0].rays, 64);  // all of the area is as large as the typical one
+  for (std::size_t v = 1; v < points.size(); ++v) EXPECT_EQ(points[v].rays, 0);
+}
+
+// A finer draft has the coarser one's vertices, by the same numbers and with the same light, and
+// gathers no more than one that was made at once. (But for the few that closed elements against
+// finer neighbours, and go when the elements are split themselves.)
+TEST(Drafting, GoesOnWhereItEnded) {
+  Room room(0.03);
+  const DirectLight direct_light(room.scene, room.patches.mesh);
+  Drafting drafting(room.scene, room.patches.mesh, direct_light, room.patches.solution);
+  const Draft coarse = drafting.draft(room.options);
+  room.options.refine.tolerance = 0.01;
+  const Draft fine = drafting.draft(room.options);
+  Drafting at_once(room.scene, room.patches.mesh, direct_light, room.patches.solution);
+  const Draft other = at_once.draft(room.options);
+  ASSERT_TRUE(coarse.refined && fine.refined && other.refined);
+  std::printf("%d elements with %lld gathers, %d with %lld; at once %d with %lld\n",
+              coarse.refined->element_count(), static_cast<long long>(coarse.refinement.gathers),
+              fine.refined->element_count(), static_cast<long long>(fine.refinement.gathers),
+              other.refined->element_count(), static_cast<long long>(other.refinement.gathers));
+  EXPECT_LE(coarse.refinement.estimate, 0.03);
+  EXPECT_LE(fine.refinement.estimate, 0.01);
+  EXPECT_GT(fine.refined->element_count(), coarse.refined->element_count());
+  EXPECT_EQ(fine.refinement.elements_at_first, other.refinement.elements_at_first);
+  // Which cells are split in which round depends on the rounds: a tenth either way.
+  EXPECT_LT(fine.refinement.gathers, 1.1 * static_cast<double>(other.refinement.gathers));
+
+  std::vector<int> place(
+      static_cast<std::size_t>(*std::max_element(fine.number.begin(), fine.number.end())) + 1, -1);
+  for (std::size_t v = 0; v < fine.number.size(); ++v) {
+    place[static_cast<std::size_t>(fine.number[v])] = static_cast<int>(v);
+  }
+  std::size_t gone = 0;
+  for (std::size_t v = 0; v < coarse.number.size(); ++v) {
+    const auto number = static_cast<std::size_t>(coarse.number[v]);
+    if (number >= place.size() || place[number] < 0) {
+      EXPECT_GE(coarse.number[v], room.patches.mesh.vertex_count());
+      ++gone;
+      continue;
+    }
+    const auto before = static_cast<Eigen::Index>(v),
+               now = static_cast<Eigen::Index>(place[number]);
+    EXPECT_TRUE((coarse.direct.row(before) == fine.direct.row(now)).all());
+  }
+  std::printf("%zu of %zu vertices gone\n", gone, coarse.number.size());
+  EXPECT_LT(200 * gone, coarse.number.size());  // one in 1444 here
+}
+
+// Told vertices lie between others of the mesh, which come first where they are told themselves.
+TEST(Drafting, TellsIndirectLightFromVerticesOfTheMesh) {
+  Room room(0.02);
+  room.options.gather.rays = 2048;
+  const DirectLight direct_light(room.scene, room.patches.mesh);
+  Drafting drafting(room.scene, room.patches.mesh, direct_light, room.patches.solution);
+  const Draft draft = drafting.draft(room.options);
+  ASSERT_TRUE(draft.refined);
+  std::printf("%zu of %d vertices are told\n", draft.told.size(), draft.refined->vertex_count());
+  EXPECT_GT(draft.told.size(), 0u);
+  std::set<int> still_to_come;
+  for (const ToldVertex& t : draft.told) still_to_come.insert(t.vertex);
+  for (const ToldVertex& t : draft.told) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (int i = 0; i < t.end_count(); ++i) {
+      EXPECT_FALSE(still_to_come.contains(t.ends[i]));
+      mean += draft.refined->position(t.ends[i]) / t.end_count();
+    }
+    still_to_come.erase(t.vertex);
+    // In the room's 3 m, to the rounding of single precision.
+    EXPECT_LT((mean - draft.refined->position(t.vertex)).norm(), 1e-6);
+  }
+}
+
+TEST(Reconstruct, AddsToWhatIsKept) {
+  Room room(0.03);
+  const DirectLight direct_light(room.scene, room.patches.mesh);
+  Drafting drafting(room.scene, room.patches.mesh, direct_light, room.patches.solution);
+  const Draft draft = drafting.draft(room.options);
+  const ElementCaster caster(*draft.refined);
+  KeptGathers kept;
+  RadiositySolution solution = room.patches.solution;
+  const auto gather = [&](int rays) {
+    room.options.gather.rays = rays;
+    reconstruct(room.scene, caster, direct_light, room.options, draft, solution, &kept);
+    return BandArray(solution.indirect_irradiance);
+  };
+  const BandArray first = gather(64);
+  const double noise = rms_noise(*draft.refined, solution);
+  EXPECT_TRUE((gather(64) == first).all());  // nothing is missing
+  const BandArray second = gather(128);
+  EXPECT_FALSE((second == first).all());
+  // Two independent gathers of 64 rays: half of the variance, which some 1000 vertices tell to a
+  // few percent.
+  const double left = rms_noise(*draft.refined, solution) / noise;
+  std::printf("noise of twice the rays: %.3f of that of once\n", left);
+  EXPECT_NEAR(left, std::sqrt(0.5), 0.07);
+}
+
+}  // namespace
+}  // namespace lightwell
