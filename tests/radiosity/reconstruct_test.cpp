@@ -155,5 +155,35 @@ TEST(Reconstruct, AddsToWhatIsKept) {
   EXPECT_NEAR(left, std::sqrt(0.5), 0.07);
 }
 
+// In a closed grey room reflections bring rho / (1 - rho) times what a lamp brings, wherever that
+// falls: here into a pool of light much smaller than patches, whose peak interpolation cuts off. It
+// must neither be lost nor shine from other surfaces.
+TEST(Reconstruct, KeepsThePowerOfAPool) {
+  Scene scene;
+  constexpr float rho = 0.5f;
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, rho));
+  test::add_box(scene, {0, 0, 0}, {4, 4, 3}, {grey, grey, grey, grey, grey, grey}, true);
+  scene.lamps.push_back({.name = "spot",
+                         .position = {1.7, 1.9, 2.5},
+                         .intensity = constant_spectrum(scene.bands, 100.0f),
+                         .shape = SpotCone{.inner = 0.06, .outer = 0.08}});
+  SolveOptions options;
+  options.mesh.max_patch_size = 1.0;
+  const SolvedScene solved = solve_scene(scene, options);
+  const PatchMesh& mesh = solved.mesh;
+  const BandArray E = element_mean(mesh, solved.solution.indirect_irradiance);
+  double indirect = 0.0, on_floor = 0.0;  // W
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const double power = mesh.element_area[e] * double{E(e, 0)};
+    indirect += power;
+    if (mesh.position(mesh.corners[e][0]).z() == 0.0 && element_center(mesh, e).normal.z() > 0.5) {
+      on_floor += power;
+    }
+  }
+  const double wanted = lamp_flux(scene.lamps[0])[0] * rho / (1.0 - rho);
+  std::printf("indirect %.4f W of %.4f, %.4f of them on the floor\n", indirect, wanted, on_floor);
+  EXPECT_NEAR(indirect, wanted, 0.01 * wanted);
+}
+
 }  // namespace
 }  // namespace lightwell

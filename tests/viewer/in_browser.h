@@ -56,6 +56,42 @@ const report = (found) => {
   window.dump(document.getElementById('result').outerHTML);
   window.close();
 };
+// What scripts do with the page; places on it are in [0,1].
+const driver = {
+  wait: (ms) => new Promise((done) => setTimeout(done, ms)),
+  frame: () => new Promise(requestAnimationFrame),
+  async opened() {
+    for (let i = 0; i < 200 && !window.lightwell; ++i) await driver.wait(50);
+    return window.lightwell;
+  },
+  tap(key, code = '') {
+    for (const type of ['keydown', 'keyup']) window.dispatchEvent(new KeyboardEvent(type, {key, code}));
+  },
+  async read(x, y) {
+    const page = window.lightwell, canvas = element('view');
+    const at = {clientX: x * canvas.clientWidth, clientY: y * canvas.clientHeight};
+    canvas.dispatchEvent(new PointerEvent('pointermove', at));
+    do await driver.frame(); while (page.probe_due || page.light_due);
+    return {...element('probe').dataset, text: element('probe').textContent};
+  },
+  pixel(x, y) {
+    const {picture} = window.lightwell, gl = picture.renderer.getContext(), bytes = new Uint8Array(4);
+    picture.draw();
+    gl.readPixels(x * gl.drawingBufferWidth, (1 - y) * gl.drawingBufferHeight, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return [...bytes].slice(0, 3);
+  },
+  // `drive(page, found)` puts into `found` what a test is to know.
+  async run(drive) {
+    const found = {};
+    try {
+      await drive(await driver.opened(), found);
+      found.errors = errors;
+      report(found);
+    } catch (error) {
+      report({failed: String(error.stack)});
+    }
+  },
+};
 </script>)";
 
 /// A new profile: nothing but the page is opened, nothing is fetched (no one listens at port 9),

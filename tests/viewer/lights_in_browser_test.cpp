@@ -13,21 +13,13 @@ namespace {
 
 /// Dims, recolours and switches lamps, and reads the light after each.
 constexpr const char* drive = R"(<script>
-(async () => {
-  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
-  const found = {};
-  for (let i = 0; i < 200 && !window.lightwell; ++i) await wait(50);
+driver.run(async (page, found) => {
+  const {wait, tap} = driver;
   await wait(300);
-  const page = window.lightwell, canvas = element('view');
-  const frame = () => new Promise(requestAnimationFrame);
-  const tap = (key) => window.dispatchEvent(new KeyboardEvent('keydown', {key}));
   const read = async () => {
     const readings = [];
     for (const [x, y] of [[0.5, 0.5], [0.6, 0.9], [0.3, 0.4], [0.8, 0.3], [0.45, 0.75]]) {
-      canvas.dispatchEvent(new PointerEvent('pointermove',
-        {clientX: x * canvas.clientWidth, clientY: y * canvas.clientHeight}));
-      do await frame(); while (page.probe_due || page.light_due);
-      readings.push({...element('probe').dataset});
+      readings.push(await driver.read(x, y));
     }
     return readings;
   };
@@ -67,9 +59,7 @@ constexpr const char* drive = R"(<script>
   found.off = await read();
   tap('0');
   found.exposure_of_darkness = exposure();
-  found.errors = errors;
-  return found;
-})().catch((error) => ({failed: String(error.stack)})).then(report);
+});
 </script>)";
 
 /// Readings are the light that relight() puts at the same places: half floats keep 2^-11 of it,

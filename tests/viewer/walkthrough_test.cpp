@@ -17,31 +17,15 @@ namespace {
 
 /// Presses keys, moves the mouse, and leaves what is then to be seen as JSON.
 constexpr const char* drive = R"(<script>
-(async () => {
-  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+driver.run(async (page, found) => {
+  const {wait, frame, tap, read, pixel} = driver;
   const key = (type, key, code) => window.dispatchEvent(new KeyboardEvent(type, {key, code}));
-  const tap = (k, code = '') => { key('keydown', k, code); key('keyup', k, code); };
-  const found = {};
-  for (let i = 0; i < 200 && !window.lightwell; ++i) await wait(50);
   await wait(300);
-  const page = window.lightwell, canvas = element('view');
   found.message_hidden = element('message').hidden;
   found.options = [...element('cameras').options].map((option) => option.text);
 
-  const point = async (x, y) => {  // in [0,1]
-    const at = {clientX: x * canvas.clientWidth, clientY: y * canvas.clientHeight};
-    canvas.dispatchEvent(new PointerEvent('pointermove', at));
-    while (page.probe_due) await new Promise(requestAnimationFrame);
-    return {...element('probe').dataset, text: element('probe').textContent};
-  };
-  const pixel = (x, y) => {
-    page.picture.draw();
-    const gl = page.picture.renderer.getContext(), bytes = new Uint8Array(4);
-    gl.readPixels(x * gl.drawingBufferWidth, (1 - y) * gl.drawingBufferHeight, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
-    return [...bytes].slice(0, 3);
-  };
-  found.probes = [await point(0.5, 0.5), await point(0.45, 0.6), await point(0.5, 0.9)];
-  found.outside = await point(0.02, 0.5);
+  found.probes = [await read(0.5, 0.5), await read(0.45, 0.6), await read(0.5, 0.9)];
+  found.outside = await read(0.02, 0.5);
   found.wall_pixel = pixel(0.5, 0.5);
   page.camera.aspect = page.bookmark.aspect;  // of the camera's own picture, not of the window
   page.fit_view();
@@ -70,7 +54,7 @@ constexpr const char* drive = R"(<script>
   key('keydown', 'w', 'KeyW');
   key('keydown', 'Shift', 'ShiftLeft');
   const start = page.camera.position.z;
-  for (let i = 0; i < 9 && page.camera.position.z === start; ++i) await new Promise(requestAnimationFrame);
+  for (let i = 0; i < 9 && page.camera.position.z === start; ++i) await frame();
   found.walks = page.camera.position.z !== start;
   for (let i = 0; i < 300; ++i) page.walker.advance(1 / 30);
   key('keyup', 'w', 'KeyW');
@@ -82,9 +66,7 @@ constexpr const char* drive = R"(<script>
   await wait(100);
   found.orbits = page.orbit.enabled_here;
   tap('x');
-  found.errors = errors;
-  return found;
-})().catch((error) => ({failed: String(error.stack)})).then(report);
+});
 </script>)";
 
 /// The box with light that changes over each wall, seen from the front.
@@ -176,17 +158,8 @@ TEST_P(InBrowser, ThePageShowsAndMeasuresTheSolution) {
 /// what is seen.
 TEST_P(InBrowser, ThePageShowsTheSky) {
   constexpr const char* look = R"(<script>
-(async () => {
-  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
-  const found = {};
-  for (let i = 0; i < 200 && !window.lightwell; ++i) await wait(50);
-  const page = window.lightwell, gl = page.picture.renderer.getContext();
-  const pixel = (x, y) => {
-    page.picture.draw();
-    const bytes = new Uint8Array(4);
-    gl.readPixels(x * gl.drawingBufferWidth, (1 - y) * gl.drawingBufferHeight, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
-    return [...bytes].slice(0, 3);
-  };
+driver.run(async (page, found) => {
+  const {pixel} = driver;
   found.sky = pixel(0.02, 0.1);
   found.above = pixel(0.02, 0.485);
   found.below = pixel(0.02, 0.515);
@@ -194,9 +167,7 @@ TEST_P(InBrowser, ThePageShowsTheSky) {
   found.sun = pixel(0.5, 0.5);
   page.set_false_colors('illuminance');
   found.in_false_colours = pixel(0.5, 0.5);
-  found.errors = errors;
-  return found;
-})().catch((error) => ({failed: String(error.stack)})).then(report);
+});
 </script>)";
   Scene scene = box_scene();
   scene.sky = Sky{.name = "even",
@@ -233,28 +204,12 @@ TEST_P(InBrowser, WithoutWebGlThePageSaysWhatToDo) {
 /// Halves of a wall show what they reflect, to one step of rounding more than plain walls.
 TEST_P(InBrowser, ThePageShowsPictures) {
   constexpr const char* look = R"(<script>
-(async () => {
-  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
-  const found = {};
-  for (let i = 0; i < 200 && !window.lightwell; ++i) await wait(50);
-  const page = window.lightwell, gl = page.picture.renderer.getContext();
+driver.run(async (page, found) => {
+  const {wait, read, pixel} = driver;
   for (let i = 0; i < 200 && !page.picture.with_pictures[0].uniforms.is_there.value; ++i) await wait(50);
-  const pixel = (x, y) => {
-    page.picture.draw();
-    const bytes = new Uint8Array(4);
-    gl.readPixels(x * gl.drawingBufferWidth, (1 - y) * gl.drawingBufferHeight, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
-    return [...bytes].slice(0, 3);
-  };
   found.halves = [pixel(0.45, 0.5), pixel(0.55, 0.5)];
-  const canvas = element('view'), read = async (x) => {
-    canvas.dispatchEvent(new PointerEvent('pointermove', {clientX: x * canvas.clientWidth, clientY: 0.5 * canvas.clientHeight}));
-    while (page.probe_due) await new Promise(requestAnimationFrame);
-    return {...element('probe').dataset};
-  };
-  found.read = [await read(0.45), await read(0.55)];
-  found.errors = errors;
-  return found;
-})().catch((error) => ({failed: String(error.stack)})).then(report);
+  found.read = [await read(0.45, 0.5), await read(0.55, 0.5)];
+});
 </script>)";
   PicturedBox box;
   const BakedModel whole = bake_model(box.solved, box.scene);
@@ -289,11 +244,9 @@ TEST_P(InBrowser, ThePageShowsPictures) {
 /// light varies over an element of 60 degrees, here by a half.
 TEST_P(InBrowser, ThePageShowsRoundSpheres) {
   constexpr const char* look = R"(<script>
-(async () => {
-  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
-  for (let i = 0; i < 200 && !window.lightwell; ++i) await wait(50);
-  const page = window.lightwell, {model} = page, {sphere} = model.about.parts[0], canvas = element('view');
-  const center = new Library.Vector3(...sphere.center), found = {area: 0, off: 0, inwards: 0};
+driver.run(async (page, found) => {
+  const {model} = page, {sphere} = model.about.parts[0], center = new Library.Vector3(...sphere.center);
+  Object.assign(found, {area: 0, off: 0, inwards: 0});
   for (let t = 0; t < model.triangles.length; t += 3) {
     const [a, b, c] = [0, 1, 2].map((k) => new Library.Vector3().fromArray(model.positions, 3 * model.triangles[t + k]));
     const normal = b.clone().sub(a).cross(c.clone().sub(a));
@@ -303,14 +256,10 @@ TEST_P(InBrowser, ThePageShowsRoundSpheres) {
   }
   found.elements = model.about.element_count;
   found.outlines = page.picture.make_outlines().geometry.index.count / 2;
-  canvas.dispatchEvent(new PointerEvent('pointermove', {clientX: 0.47 * canvas.clientWidth, clientY: 0.46 * canvas.clientHeight}));
-  while (page.probe_due) await new Promise(requestAnimationFrame);
-  found.read = {...element('probe').dataset};
+  found.read = await driver.read(0.47, 0.46);
   page.picture.show_outlines(true);
   page.picture.draw();
-  found.errors = errors;
-  return found;
-})().catch((error) => ({failed: String(error.stack)})).then(report);
+});
 </script>)";
   Scene scene = box_scene();
   const Sphere ball{.center = {1.0, 2.0, 3.0}, .radius = 0.5};
