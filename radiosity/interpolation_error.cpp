@@ -7,6 +7,7 @@
 
 #include "radiosity/effort.h"
 #include "radiosity/gather_noise.h"
+#include "radiosity/patch_power.h"
 #include "radiosity/refine_solution.h"
 #include "scene/parallel.h"
 
@@ -189,7 +190,7 @@ void InterpolationError::sharpen_radiosity(const BandArray& caustic, double nois
   GatheredIrradiance gathered = indirect_at(all, 2, radiosity_);
   BandArray irradiance = direct_.topRows(mesh.vertex_count()) + gathered.indirect;
   if (caustic.size() > 0) irradiance += caustic;
-  radiosity_ = gatherable_radiosity(mesh, direct_light_, irradiance);
+  radiosity_ = with_pools(mesh, radiosity_, gatherable_radiosity(mesh, direct_light_, irradiance));
   if (!(noise > 0.0)) return;
   const Eigen::ArrayXf rays =
       Eigen::Map<const Eigen::ArrayXi>(rays_.data(), mesh.vertex_count()).cast<float>();
@@ -351,7 +352,8 @@ GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>&
   BandArray irradiance =
       direct.topRows(mesh.vertex_count()) + indirect_at(base, 2, light.radiosity).indirect;
   if (light.caustic.size() > 0) irradiance += light.caustic;
-  const BandArray sharpened = gatherable_radiosity(mesh, light.direct_light, irradiance);
+  const BandArray sharpened =
+      with_pools(mesh, light.radiosity, gatherable_radiosity(mesh, light.direct_light, irradiance));
 
   const std::vector<int> gathered = without(told, vertices.size());
   std::vector<int> at;

@@ -8,6 +8,7 @@
 
 #include "radiosity/gather_noise.h"
 #include "radiosity/light_path.h"
+#include "radiosity/patch_power.h"
 
 namespace lightwell {
 namespace {
@@ -65,22 +66,12 @@ void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
   for (int p = 0; p < mesh.patch_count(); ++p) {
     wanted.row(p) = mesh.area[p] * balanced.row(p).cast<double>();
   }
-  Eigen::ArrayXXd found = Eigen::ArrayXXd::Zero(mesh.patch_count(), bands);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int n = mesh.corner_count(e);
-    for (int c = 0; c < n; ++c) {
-      found.row(mesh.patch[e]) +=
-          mesh.element_area[e] / n * read.row(mesh.corners[e][c]).cast<double>();
-    }
-  }
+  const Eigen::ArrayXXd found = patch_power(mesh, read);
   constexpr double most = 1.25;  // more, and elements are too large to tell
   const auto ratio = [most](const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) -> Eigen::ArrayXd {
     return (b > 0.0).select(a / b.max(1e-300), 1.0).max(1.0 / most).min(most);
   };
-  // Of all light, and several times what a patch holds in the mean, so that few patches are not all
-  // peaks.
-  const double notable = std::max(0.002, 4.0 / std::max(1, mesh.patch_count()));
-  const double least = notable * wanted.sum();
+  const double least = notable_share(mesh) * wanted.sum();
   const auto is_peak = [&](int p) {
     return std::abs(wanted.row(p).sum() - found.row(p).sum()) > least;
   };

@@ -1,0 +1,38 @@
+#include "radiosity/patch_power.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lightwell {
+
+Eigen::ArrayXXd patch_power(const PatchMesh& mesh, const BandArray& vertex_radiosity) {
+  Eigen::ArrayXXd power = Eigen::ArrayXXd::Zero(mesh.patch_count(), vertex_radiosity.cols());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int n = mesh.corner_count(e);
+    for (int c = 0; c < n; ++c) {
+      power.row(mesh.patch[e]) +=
+          mesh.element_area[e] / n * vertex_radiosity.row(mesh.corners[e][c]).cast<double>();
+    }
+  }
+  return power;
+}
+
+double notable_share(const PatchMesh& mesh) {
+  return std::max(0.002, 4.0 / std::max(1, mesh.patch_count()));
+}
+
+BandArray with_pools(const PatchMesh& mesh, const BandArray& even, BandArray gathered) {
+  const Eigen::ArrayXd wanted = patch_power(mesh, even).rowwise().sum();
+  const Eigen::ArrayXd found = patch_power(mesh, gathered).rowwise().sum();
+  const double least = notable_share(mesh) * wanted.sum();
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    if (!(std::abs(wanted[p] - found[p]) > least)) continue;
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      gathered.row(mesh.corners[e][c]) = even.row(mesh.corners[e][c]);
+    }
+  }
+  return gathered;
+}
+
+}  // namespace lightwell
