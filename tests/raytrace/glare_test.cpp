@@ -108,13 +108,18 @@ TEST(UnifiedGlareRating, IsEmptyBehindTheEyeAndBehindAWall) {
   EXPECT_FALSE(rating(hidden, eye()).ugr.has_value());
 }
 
-/// An opening of 0.1 m x 0.2 m at 45 degrees: L = I / (A cos), w = A cos / d^2.
+/// An opening of 0.1 m x 0.2 m that the eye sees at 45 degrees.
+Lamp downlight() {
+  return {.name = "downlight",
+          .position = {2, 2, 2.2},
+          .intensity = constant_spectrum(rgb_bands(), 3.0f),
+          .opening = {.along_c0 = 0.1, .along_c90 = 0.2}};
+}
+
+/// L = I / (A cos), w = A cos / d^2.
 TEST(UnifiedGlareRating, OfALampGoesByItsOpening) {
   LitScene& lit = lit_room({2, 0.5, 2.4});  // the surface is behind
-  Lamp lamp{.name = "downlight",
-            .position = {2, 2, 2.2},
-            .intensity = constant_spectrum(lit.scene.bands, 3.0f),
-            .opening = {.along_c0 = 0.1, .along_c90 = 0.2}};
+  const Lamp lamp = downlight();
   lit.scene.lamps = {lamp, {.name = "bulb", .position = {2, 3, 2}}};
   lit.scene.lamps[1].intensity = lamp.intensity;
   const Glare glare = rating(lit, eye());
@@ -145,13 +150,9 @@ TEST(LuminousArea, IsThatOfOpeningAndSides) {
 
 TEST(UnifiedGlareRating, OfALampCountsItsLuminousSides) {
   LitScene& lit = lit_room({2, 0.5, 2.4});  // the surface is behind
-  Lamp lamp{.name = "drum",
-            .position = {2, 2, 2.2},
-            .intensity = constant_spectrum(lit.scene.bands, 3.0f),
-            .opening = {.along_c0 = 0.1, .along_c90 = 0.2}};
-  lit.scene.lamps = {lamp};
+  lit.scene.lamps = {downlight()};
   const Glare glare = rating(lit, eye(), {0.05});
-  const double I = luminous(lit.scene.bands, lamp.intensity);
+  const double I = luminous(lit.scene.bands, downlight().intensity);
   const double area = (0.02 + 0.05 * 0.1) * std::sqrt(0.5), L = I / area;
   ASSERT_EQ(glare.sources.size(), 1u);
   // As above; and places off the middle, 0.025 m at 1.41 m in the mean, see something of the sides
