@@ -300,7 +300,8 @@ driver.run(async (page, found) => {
   ASSERT_GE(hit.element, 0);
   const double lux =
       luminous(scene.bands, interpolate(solved.mesh, solution.direct_irradiance, hit));
-  EXPECT_NEAR(number(reading["illuminance"]), lux, 0.005 * lux);
+  // The page's faces lie up to 1e-3 of the radius below the sphere, over which it changes by half.
+  EXPECT_NEAR(number(reading["illuminance"]), lux, 0.002 * lux);
 }
 
 INSTANTIATE_TEST_SUITE_P(Pages, InBrowser,
