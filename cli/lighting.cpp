@@ -14,6 +14,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "mesh/mesh_bounds.h"
 #include "scene/errors.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/nearest_name.h"

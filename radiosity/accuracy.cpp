@@ -1,10 +1,9 @@
 #include "radiosity/accuracy.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
-#include "radiosity/gather_noise.h"
+#include "radiosity/effort.h"
 
 namespace lightwell {
 namespace {
@@ -13,15 +12,7 @@ namespace {
 // half of the tolerance and all of it; where that turns out too much, a later attempt adds to what
 // the first has found.
 constexpr double share_of_interpolation = 0.9, share_of_noise = 0.45;
-constexpr int fewest_rays = 64, most_rays = 1 << 15;
 constexpr int most_attempts = 6;
-// The error of stratified rays in a room falls with about this power of their number.
-constexpr double order = 2.0 / 3.0;
-
-int power_of_two(double rays) {
-  const double limited = std::clamp(rays, double{fewest_rays}, double{most_rays});
-  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(limited))));
-}
 
 }  // namespace
 
@@ -53,9 +44,9 @@ ShadowOptions Effort::shadows() const {
 }
 
 Effort first_effort(double target, bool refines) {
-  constexpr double rays_for_one_percent = 1024.0;
+  constexpr int rays_for_one_percent = 1024;
   return {.refine_tolerance = refines ? share_of_interpolation * target : 0.0,
-          .gather_rays = power_of_two(rays_for_one_percent * std::pow(0.01 / target, 1.0 / order))};
+          .gather_rays = rays_for_noise(rays_for_one_percent, 0.01, target)};
 }
 
 std::optional<Effort> next_effort(const Effort& spent, double target, double error, double noise,
@@ -73,8 +64,11 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
   };
   Effort next = spent;
   const double noise_goal = can_split ? share_of_noise * target : beside(without);
-  const double times = std::pow(noise / noise_goal, 1.0 / order);
-  if (times > 1.0) next.gather_rays = power_of_two(spent.gather_rays * std::min(times, 16.0));
+  constexpr int most_times = 16;  // what noise says of itself may be wrong by chance
+  if (noise > noise_goal) {
+    next.gather_rays = std::min(rays_for_noise(spent.gather_rays, noise, noise_goal),
+                                most_times * spent.gather_rays);
+  }
   const double goal = beside(std::min(noise, noise_goal));
   if (can_split && without > goal) {
     // It may have gone below the tolerance by itself.
@@ -85,10 +79,6 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
   const bool is_more =
       next.gather_rays > spent.gather_rays || next.refine_tolerance < spent.refine_tolerance;
   return is_more ? std::optional(next) : std::nullopt;
-}
-
-double rms_noise(const PatchMesh& mesh, const RadiositySolution& solution) {
-  return rms_noise(mesh, solution.gather_noise);
 }
 
 }  // namespace lightwell

@@ -43,7 +43,4 @@ double noise_share(double target);
 std::optional<Effort> next_effort(const Effort& spent, double target, double error, double noise,
                                   const RefineReport& refinement, int attempt);
 
-/// The RMS of RadiositySolution::gather_noise over all area that reflects.
-double rms_noise(const PatchMesh& mesh, const RadiositySolution& solution);
-
 }  // namespace lightwell

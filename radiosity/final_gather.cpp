@@ -12,7 +12,6 @@
 #include "radiosity/bright_patches.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
-#include "radiosity/told_vertices.h"
 #include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -444,10 +443,6 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
     }
   }
   return vertex_power.colwise() / vertex_area.max(1e-30f);
-}
-
-void share_rays(const PatchMesh& mesh, int rays, std::span<GatherPoint> points) {
-  share_rays(vertex_areas(mesh), rays, points);
 }
 
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {

@@ -83,12 +83,6 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, int rays, int max_specular_depth,
                              const Progress& progress = {}, Journal* journal = nullptr);
 
-/// Gives each point a share of the rays that falls with the square root of the area it stands for,
-/// which makes the mean noise over all area least for the work: `rays` where the larger elements
-/// are that make up half of all area, at most twice as many on still larger ones, at least an
-/// eighth anywhere; powers of two. `points` are the mesh's vertices.
-void share_rays(const PatchMesh& mesh, int rays, std::span<GatherPoint> points);
-
 /// For every vertex, a point a hair inside one of its elements, so that it lies on no edge, and
 /// that element's facet and normal; where facets that meet smoothly share it, a hair above them
 /// too, with the normal of them all, on no facet.

@@ -3,18 +3,13 @@
 #include <cmath>
 
 #include "radiosity/interpolation_error.h"
+#include "radiosity/patch_power.h"
 
 namespace lightwell {
 
 Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
                             const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays) {
-  Eigen::ArrayXd of_patch = Eigen::ArrayXd::Zero(mesh.patch_count());
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int n = mesh.corner_count(e);
-    for (int c = 0; c < n; ++c) {
-      of_patch[mesh.patch[e]] += mesh.element_area[e] / n * ray_variance[mesh.corners[e][c]];
-    }
-  }
+  const Eigen::ArrayXd of_patch = patch_integral(mesh, ray_variance).col(0);
   const Eigen::ArrayXd reference = error_references(mesh, irradiance);
   Eigen::ArrayXf noise = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {

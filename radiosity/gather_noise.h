@@ -1,8 +1,6 @@
 #pragma once
 
-#include <span>
-
-#include "radiosity/final_gather.h"
+#include "mesh/patch_mesh.h"
 
 namespace lightwell {
 

@@ -90,7 +90,7 @@ void InterpolationError::go_on(double tolerance) {
 void InterpolationError::share_draft_rays() {
   const int rays = std::max(1, options_.rays / share_of_rays);
   std::vector<GatherPoint> points(static_cast<std::size_t>(elements_.base().vertex_count()));
-  share_rays(elements_.base(), rays, points);
+  share_rays(elements_.base(), {}, rays, points);
   rays_.clear();
   for (const GatherPoint& point : points) rays_.push_back(std::min(2 * point.rays, rays));
 }

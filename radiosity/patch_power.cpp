@@ -5,16 +5,16 @@
 
 namespace lightwell {
 
-Eigen::ArrayXXd patch_power(const PatchMesh& mesh, const BandArray& vertex_radiosity) {
-  Eigen::ArrayXXd power = Eigen::ArrayXXd::Zero(mesh.patch_count(), vertex_radiosity.cols());
+Eigen::ArrayXXd patch_integral(const PatchMesh& mesh, const BandArray& vertex_values) {
+  Eigen::ArrayXXd integral = Eigen::ArrayXXd::Zero(mesh.patch_count(), vertex_values.cols());
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int n = mesh.corner_count(e);
     for (int c = 0; c < n; ++c) {
-      power.row(mesh.patch[e]) +=
-          mesh.element_area[e] / n * vertex_radiosity.row(mesh.corners[e][c]).cast<double>();
+      integral.row(mesh.patch[e]) +=
+          mesh.element_area[e] / n * vertex_values.row(mesh.corners[e][c]).cast<double>();
     }
   }
-  return power;
+  return integral;
 }
 
 double notable_share(const PatchMesh& mesh) {
@@ -22,8 +22,8 @@ double notable_share(const PatchMesh& mesh) {
 }
 
 BandArray with_pools(const PatchMesh& mesh, const BandArray& even, BandArray gathered) {
-  const Eigen::ArrayXd wanted = patch_power(mesh, even).rowwise().sum();
-  const Eigen::ArrayXd found = patch_power(mesh, gathered).rowwise().sum();
+  const Eigen::ArrayXd wanted = patch_integral(mesh, even).rowwise().sum();
+  const Eigen::ArrayXd found = patch_integral(mesh, gathered).rowwise().sum();
   const double least = notable_share(mesh) * wanted.sum();
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];

@@ -4,8 +4,9 @@
 
 namespace lightwell {
 
-/// Power of each patch, W, as interpolation of the radiosity at vertices has it: patches x columns.
-Eigen::ArrayXXd patch_power(const PatchMesh& mesh, const BandArray& vertex_radiosity);
+/// Integral over each patch, m^2, of what is interpolated between vertices: patches x columns. Of
+/// radiosity that is power, W.
+Eigen::ArrayXXd patch_integral(const PatchMesh& mesh, const BandArray& vertex_values);
 
 /// Of all power, what matters where a single patch is off by it: 0.2 %, and several times what a
 /// patch holds in the mean, so that few patches do not all matter.

@@ -66,7 +66,7 @@ void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
   for (int p = 0; p < mesh.patch_count(); ++p) {
     wanted.row(p) = mesh.area[p] * balanced.row(p).cast<double>();
   }
-  const Eigen::ArrayXXd found = patch_power(mesh, read);
+  const Eigen::ArrayXXd found = patch_integral(mesh, read);
   constexpr double most = 1.25;  // more, and elements are too large to tell
   const auto ratio = [most](const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) -> Eigen::ArrayXd {
     return (b > 0.0).select(a / b.max(1e-300), 1.0).max(1.0 / most).min(most);

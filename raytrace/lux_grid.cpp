@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "mesh/mesh_bounds.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 
@@ -78,12 +78,6 @@ struct FlatOutline {
     return inside;
   }
 };
-
-double mesh_diagonal(const PatchMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (int v = 0; v < mesh.vertex_count(); ++v) box.extend(mesh.position(v));
-  return box.diagonal().norm();
-}
 
 const Plane& largest(const std::vector<Plane>& planes, const Eigen::Vector3d& up) {
   constexpr double alike = 1e-6;
@@ -188,7 +182,7 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
   // Which side of a face a point is on that lies in it is for rounding to say; light of its inside
   // is none of the plane's.
   constexpr double beside = 1e-5;  // of the scene
-  const double aside = beside * mesh_diagonal(caster.mesh());
+  const double aside = beside * mesh_bounds(caster.mesh()).diagonal();
   const auto is_inside = [&](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
     Eigen::Vector3d a, b;
     tangent_frame(normal, a, b);

@@ -10,8 +10,8 @@
 
 namespace lightwell {
 
-/// Renders pictures of one solution. What all of them share is made once: the tree of rays, what is
-/// known of lamps and sky, and the photons of caustics, which take a second or two. Each picture
+/// Renders pictures of one solution. What all of them share is made once: the caster of rays, what
+/// is known of lamps and sky, and the photons of caustics, which take a second or two. Each picture
 /// has the same bits as by render() alone. Keeps references to what it is made of.
 class SceneRenderer {
  public:

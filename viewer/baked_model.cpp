@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "mesh/mesh_bounds.h"
 #include "mesh/sphere_grid.h"
 #include "scene/errors.h"
 #include "viewer/appearance.h"

@@ -18,6 +18,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "mesh/mesh_bounds.h"
 #include "radiosity/vtk_messages.h"
 #include "raytrace/display.h"
 

@@ -1,4 +1,5 @@
 #include "viewer/start_view.h"
+#include "mesh/mesh_bounds.h"
 
 #include <Eigen/Geometry>
 #include <array>
@@ -38,16 +39,6 @@ double share_of_light(const Image& image) {
 }
 
 }  // namespace
-
-Bounds mesh_bounds(const PatchMesh& mesh) {
-  Bounds bounds{Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()),
-                Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity())};
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    bounds.low = bounds.low.cwiseMin(mesh.position(v));
-    bounds.high = bounds.high.cwiseMax(mesh.position(v));
-  }
-  return bounds;
-}
 
 Eigen::Vector3d guess_up_axis(const std::vector<Camera>& cameras, const Bounds& bounds) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -10,7 +10,6 @@
 namespace lightwell {
 
 /// Axis-aligned bounds of the mesh's vertices.
-Bounds mesh_bounds(const PatchMesh& mesh);
 
 /// The coordinate axis most cameras' up leans to; without cameras the one of y and z in which the
 /// scene is lower, as rooms are wider than high.

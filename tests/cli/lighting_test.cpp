@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -101,9 +102,10 @@ TEST_F(ReportCommand, GridsOfTheSceneFileAreMeasured) {
   EXPECT_EQ(desks["name"], "desks");
   EXPECT_EQ(desks["points"], 4 * 3);  // 3.5 m x 2.5 m in cells of at most 1 m
   EXPECT_EQ(desks["margin_m"], 0.25);
-  EXPECT_NEAR(desks["W_per_m2"].get<double>(), 40.0 / 12.0, 1e-9);
-  EXPECT_NEAR(desks["W_per_m2_per_100_lx"].get<double>(),
-              40.0 / 12.0 / (desks["E_m"].get<double>() / 100.0), 1e-9);
+  // JSON hands doubles over unrounded.
+  EXPECT_DOUBLE_EQ(desks["W_per_m2"].get<double>(), 40.0 / 12.0);
+  EXPECT_DOUBLE_EQ(desks["W_per_m2_per_100_lx"].get<double>(),
+                   40.0 / 12.0 / (desks["E_m"].get<double>() / 100.0));
   EXPECT_TRUE(says(content_of(folder / "a.html"), "3.33 W/m²"));
   EXPECT_FALSE(
       run_json({"report", "room.toml", "room.vtp", "--rays", "64"})["surfaces"][0].contains(
@@ -158,8 +160,7 @@ TEST_F(InfoCommand, PrintsAndHandsOverTheUgrTable) {
     for (const Json& rating : ugr[view][7]) {
       double value = 0.0;
       ASSERT_TRUE(printed >> value);
-      constexpr double rounded = 0.05;  // half of its last digit
-      EXPECT_NEAR(value, rating.get<double>(), rounded * (1.0 + 1e-9));
+      EXPECT_DOUBLE_EQ(value, std::round(10.0 * rating.get<double>()) / 10.0);
     }
   }
 }

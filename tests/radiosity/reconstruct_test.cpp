@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "radiosity/accuracy.h"
+#include "radiosity/gather_noise.h"
 #include "two_lamps.h"
 
 namespace lightwell {
@@ -144,13 +144,13 @@ TEST(Reconstruct, AddsToWhatIsKept) {
     return BandArray(solution.indirect_irradiance);
   };
   const BandArray first = gather(64);
-  const double noise = rms_noise(*draft.refined, solution);
+  const double noise = rms_noise(*draft.refined, solution.gather_noise);
   EXPECT_TRUE((gather(64) == first).all());  // nothing is missing
   const BandArray second = gather(128);
   EXPECT_FALSE((second == first).all());
   // Two independent gathers of 64 rays: half of the variance, which some 1000 vertices tell to a
   // few percent.
-  const double left = rms_noise(*draft.refined, solution) / noise;
+  const double left = rms_noise(*draft.refined, solution.gather_noise) / noise;
   std::printf("noise of twice the rays: %.3f of that of once\n", left);
   EXPECT_NEAR(left, std::sqrt(0.5), 0.07);
 }

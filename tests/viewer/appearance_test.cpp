@@ -1,4 +1,5 @@
 #include "viewer/appearance.h"
+#include "mesh/mesh_bounds.h"
 
 #include <gtest/gtest.h>
 
