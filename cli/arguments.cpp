@@ -10,7 +10,6 @@
 #include "cli/memory_size.h"
 #include "cli/refinement.h"
 #include "radiosity/caustic_photons.h"
-#include "radiosity/effort.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
@@ -312,9 +311,10 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
 
 std::string SolveArguments::text(const Scene& scene) const {
   std::string effort = accuracy_text(solve.accuracy);
-  const double target = solve.accuracy ? solve.accuracy->share : 0.0;
+  SolveOptions asked = solve;
+  asked.mesh = mesh.mesh;
   MeshArguments patches = mesh;
-  patches.mesh.auto_patch_count = patch_count_for(target, mesh.mesh.auto_patch_count);
+  patches.mesh.auto_patch_count = auto_patch_count(asked);
   if (solve.accuracy && solve.refine.max_elements > 0) {
     effort += fmt::format(" --max-elements {}", solve.refine.max_elements);
   }
@@ -325,8 +325,7 @@ std::string SolveArguments::text(const Scene& scene) const {
       "{}{} --form-factors {}{} --solver {} --rays {} --tolerance {:g} --max-sweeps {}{}",
       patches.text(scene), effort, form_factors,
       hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
-      form_factor_rays(target, solve.form_factors.rays_per_patch), solve.solver.tolerance,
-      solve.solver.max_sweeps, channels.text());
+      rays_per_patch(asked), solve.solver.tolerance, solve.solver.max_sweeps, channels.text());
 }
 
 void RenderArguments::add_to(CLI::App& command) {

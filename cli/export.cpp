@@ -101,12 +101,16 @@ int export_model(const Arguments& arguments, Console& console) {
   Report report(console.options());
   require_all_writable(arguments);
   Scene scene;
-  if (!arguments.scene.empty()) scene = read_scene_step(arguments.scene, console, report);
+  CleanUpReport clean_up;
+  if (!arguments.scene.empty()) {
+    scene = read_scene_step(arguments.scene, console, report, &clean_up);
+  }
   const SolvedScene solved = arguments.scene.empty()
                                  ? read_alone(arguments.solution, console, report)
                                  : read_solution_step(arguments.solution, scene, console, report);
   const Stopwatch watch;
-  const Exported exported{scene, solved, bake_model(solved, scene, arguments.exposure_ev)};
+  const Exported exported{scene, solved,
+                          bake_model(solved, scene, arguments.exposure_ev, clean_up.names.get())};
   const BakedModel& model = exported.model;
   report.add("exported", {{"vertices", model.vertex_count()},
                           {"faces", model.face_count()},

@@ -14,6 +14,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "mesh/joined_surfaces.h"
 #include "mesh/mesh_bounds.h"
 #include "scene/errors.h"
 #include "scene/io/lighting_design.h"
@@ -228,7 +229,8 @@ void print_figures(const LightingReport& report) {
 
 int report_lighting(const Arguments& arguments, Console& console) {
   Report report(console.options());
-  const Scene scene = read_scene_step(arguments.scene, console, report);
+  CleanUpReport clean_up;
+  const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
   if (scene.relative_units) {
     throw InputError(fmt::format(
         "{}: its light is in no known unit, so that there are no lux to report", arguments.scene));
@@ -250,8 +252,9 @@ int report_lighting(const Arguments& arguments, Console& console) {
                       .maintenance_factor = arguments.maintenance_factor,
                       .rays = arguments.rays,
                       .error_estimate = solved.solution.error_estimate};
-  made.surfaces =
-      grids(arguments, scene, design, guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)));
+  // A surface is asked for as the file has it, not with what it was joined with.
+  made.surfaces = grids(arguments, clean_up.names ? clean_up.names->apart(scene) : scene, design,
+                        guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)));
   const Stopwatch watch;
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);

@@ -10,6 +10,7 @@
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "mesh/element_quality.h"
+#include "mesh/joined_surfaces.h"
 #include "radiosity/mesh_file.h"
 
 namespace lightwell {
@@ -22,17 +23,22 @@ struct Arguments {
 };
 
 // Where to find it: in the scene file's names, unit and axes.
-Json element_json(const Scene& scene, const PatchMesh& mesh, int element) {
+Json element_json(const Scene& scene, const JoinedSurfaces* names, const PatchMesh& mesh,
+                  int element) {
   const int patch = mesh.patch[element];
-  const Eigen::Vector3d at = element_center(mesh, element).position / scene.metres_per_unit;
+  const Eigen::Vector3d middle = element_center(mesh, element).position;
+  const Eigen::Vector3d at = middle / scene.metres_per_unit;
+  const int surface =
+      names ? names->surface_of(mesh, element, middle) : mesh.surface[mesh.patch[element]];
   return {{"element", element},
           {"area", mesh.element_area[element]},
-          {"surface", scene.surfaces[mesh.surface[patch]].name},
+          {"surface", scene.surfaces[surface].name},
           {"patch", patch},
           {"center", {at.x(), at.y(), at.z()}}};
 }
 
-Json facts(const Scene& scene, const PatchMesh& mesh, const std::string& options) {
+Json facts(const Scene& scene, const JoinedSurfaces* names, const PatchMesh& mesh,
+           const std::string& options) {
   const ElementQuality quality = element_quality(mesh);
   const double area = scene_area(scene);
   return {{"scene", scene.file.string()},
@@ -49,8 +55,8 @@ Json facts(const Scene& scene, const PatchMesh& mesh, const std::string& options
           {"below_10_degrees", quality.below_10_degrees},
           {"below_20_degrees", quality.below_20_degrees},
           {"largest_aspect_ratio", quality.largest_aspect_ratio},
-          {"smallest_element", element_json(scene, mesh, quality.smallest)},
-          {"largest_element", element_json(scene, mesh, quality.largest)}};
+          {"smallest_element", element_json(scene, names, mesh, quality.smallest)},
+          {"largest_element", element_json(scene, names, mesh, quality.largest)}};
 }
 
 std::string for_people(const Json& facts, const CleanUpReport& clean_up) {
@@ -103,7 +109,7 @@ int mesh(const Arguments& arguments, Console& console) {
   stop_if_interrupted();
   report.add_phase("mesh", watch.lap());
   note_mesh(scene, mesh, console, report);
-  const Json found = facts(scene, mesh, options);
+  const Json found = facts(scene, clean_up.names.get(), mesh, options);
   for (const auto& [key, value] : found.items()) report.add(key, value);
   report.add_phase("quality", watch.lap());
 

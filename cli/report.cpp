@@ -218,10 +218,15 @@ std::string light_name(bool relative_units) {
 }
 
 Json clean_up_json(const CleanUpReport& report) {
-  return {{"facets", report.facets_after},      {"welded_vertices", report.welded_vertices},
-          {"degenerate", report.degenerate},    {"duplicates", report.duplicates},
-          {"flipped", report.flipped},          {"merged", report.merged},
-          {"hanging_vertices", report.hanging}, {"area_change", report.area_change()}};
+  return {{"facets", report.facets_after},
+          {"welded_vertices", report.welded_vertices},
+          {"degenerate", report.degenerate},
+          {"duplicates", report.duplicates},
+          {"flipped", report.flipped},
+          {"merged", report.merged},
+          {"joined", report.joined},
+          {"hanging_vertices", report.hanging},
+          {"area_change", report.area_change()}};
 }
 
 Json energy_json(const EnergyBalance& energy) {

@@ -169,8 +169,10 @@ int view_live(const Arguments& arguments, const Scene& scene, const ViewOptions&
 
 int view(const Arguments& arguments, Console& console) {
   Report report(console.options());
-  const Scene scene = read_scene_step(arguments.scene, console, report);
-  const ViewOptions options = view_options(arguments, scene);
+  CleanUpReport clean_up;
+  const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
+  ViewOptions options = view_options(arguments, scene);
+  options.names = clean_up.names.get();
   const bool is_film = arguments.frames > 0 || arguments.turntable > 0;
   if (is_film && arguments.solution.empty()) {
     throw InputError("a film needs a solution: lightwell view SCENE SOLUTION.vtp --frames ...");

@@ -13,6 +13,7 @@
 #include "mesh/facet_loops.h"
 #include "mesh/facet_plane.h"
 #include "mesh/hanging_points.h"
+#include "mesh/joined_surfaces.h"
 #include "mesh/plane_regions.h"
 #include "mesh/straighten.h"
 #include "mesh/welded_points.h"
@@ -185,6 +186,7 @@ std::string sentence(const CleanUpReport& report) {
   add(report.duplicates, "duplicates dropped");
   add(report.flipped, "turned over");
   add(report.merged, "merged into larger polygons");
+  add(report.joined, "joined with those of other surfaces");
   add(report.hanging, "vertices inside edges of their neighbours");
   return fmt::format("{} facets became {}: {}; area changed by {:.1e} of it", report.facets_before,
                      report.facets_after, fmt::join(what, ", "), std::abs(report.area_change()));
@@ -233,7 +235,10 @@ Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {
       total.merged += r.merged;
       total.hanging += r.hanging;
     }
+    const auto apart = static_cast<std::int64_t>(scene_facets(result).size());
+    total.names = join_surfaces(result);
     total.facets_after = static_cast<std::int64_t>(scene_facets(result).size());
+    if (total.names) total.joined = apart - total.facets_after;
     total.area_before = scene_area(scene);
     total.area_after = scene_area(result);
   }

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "scene/scene.h"
 
 namespace lightwell {
+
+class JoinedSurfaces;
 
 /// What merge_planar_regions() found and did.
 struct CleanUpReport {
@@ -16,11 +19,14 @@ struct CleanUpReport {
   std::int64_t flipped = 0;          ///< facets turned over to face as their neighbours do
   std::int64_t merged = 0;           ///< facets that became part of a larger polygon
   std::int64_t hanging = 0;  ///< vertices found inside an edge of another facet of their surface
+  std::int64_t joined = 0;   ///< polygons that went into one of another surface
   double area_before = 0.0, area_after = 0.0;  ///< of one side of all surfaces, m^2
+  /// Which surface a place of those belongs to; null: there are none.
+  std::shared_ptr<const JoinedSurfaces> names{};
 
   double area_change() const { return area_before > 0.0 ? area_after / area_before - 1.0 : 0.0; }
   bool is_clean() const {
-    return welded_vertices + degenerate + duplicates + flipped + merged == 0;
+    return welded_vertices + degenerate + duplicates + flipped + merged + joined == 0;
   }
 };
 
@@ -45,6 +51,8 @@ std::string sentence(const CleanUpReport& report);
 ///    boundaries that would cross) all stay;
 /// 7. vertices inside straight edges of those polygons go, to 1e-7 of the diagonal, where no facet
 ///    left as it was has them.
+///
+/// Then polygons of surfaces that differ in name alone are joined too (see join_surfaces).
 ///
 /// All this is the rounding of single-precision files: no point moves by more than t = 1e-7 of the
 /// diagonal, so the area changes by less than t times the length of the facets' edges (measured: by

@@ -19,6 +19,7 @@
 #include "radiosity/pair_shafts.h"
 #include "radiosity/ray_cast_rows.h"
 #include "radiosity/row_estimates.h"
+#include "radiosity/transport.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -30,24 +31,6 @@ struct Estimate {
   KnownExchange known;
   std::vector<float> row_error{};
 };
-
-// What is still to come beside rows: numbers for each patch here and in what is done with the
-// result, and what each thread counts in.
-std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
-                               const FormFactorOptions& options) {
-  // Outlines and their quadratures, places in stores, balance's vectors; a solver's vectors;
-  // scratch of a row.
-  constexpr std::int64_t per_patch = 900, per_band = 128, per_thread = 48, per_emitter = 16;
-  const std::int64_t bands = mesh.reflectance.cols();
-  std::int64_t each =
-      per_patch + per_band * bands + per_thread * thread_count() + per_emitter * emitters;
-  const bool analytic = options.method == FormFactorMethod::analytic;
-  if (analytic) each += std::int64_t{sizeof(PatchSampler)};
-  const bool clips =
-      analytic || (options.method == FormFactorMethod::automatic && options.target_error > 0.0);
-  const std::int64_t journal = options.journal ? 2 * Journal::most_buffered : 0;
-  return journal + mesh.patch_count() * each + (clips ? PairShafts::bytes_for(mesh) : 0);
-}
 
 // All that decides what form factors come out: not how much surfaces reflect and emit, as long as
 // it is the same ones that do.

@@ -19,6 +19,7 @@
 #include "radiosity/solve_channels.h"
 #include "radiosity/solve_radiosity.h"
 #include "radiosity/start_radiosity.h"
+#include "radiosity/transport.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -87,10 +88,7 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
   Stopwatch watch;
   FormFactorOptions form_factor_options = options.form_factors;
   form_factor_options.progress = options.progress;
-  if (options.accuracy) {
-    form_factor_options.rays_per_patch =
-        form_factor_rays(options.accuracy->share, options.form_factors.rays_per_patch);
-  }
+  form_factor_options.rays_per_patch = rays_per_patch(options);
   if (options.journal) form_factor_options.journal = options.journal;
   const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
                                                  report ? &report->form_factors : nullptr);
@@ -120,6 +118,33 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
       energy_balance(scene, mesh, *form_factors, solution.patch_radiosity, free_light);
   solution.seconds = {{"form_factors", form_factor_seconds}, {"solve", watch.lap()}};
   return solution;
+}
+
+// Where no way was asked for, and form factors cannot be kept: shooting.
+std::optional<ProgressiveOptions> without_rows(const PatchMesh& mesh,
+                                               const DirectLight& direct_light,
+                                               const SolveOptions& options, SolveReport* report) {
+  if (options.progressive || options.start || options.solver_method != SolverMethod::automatic ||
+      options.form_factors.method != FormFactorMethod::automatic) {
+    return options.progressive;
+  }
+  const auto memory = options.form_factors.memory;
+  const StorageReport storage = memory ? memory->report() : MemoryBudget().report();
+  FormFactorOptions rows = options.form_factors;
+  rows.rays_per_patch = rays_per_patch(options);
+  rows.journal = options.journal;
+  const TransportChoice choice =
+      choose_transport({.patches = mesh.patch_count(),
+                        .rows = most_row_bytes(mesh.patch_count(), rows),
+                        .work = bytes_beside_rows(
+                            mesh, static_cast<std::int64_t>(direct_light.emitters().size()), rows),
+                        .resident = resident_memory().now,
+                        .limit = storage.limit,
+                        .disk = room_on_disk(storage.folder)});
+  if (report) report->transport = choice.reason;
+  if (choice.transport != Transport::shooting) return std::nullopt;
+  return ProgressiveOptions{.tolerance = options.solver.tolerance,
+                            .overshooting = Overshooting::ambient};
 }
 
 void require_unit(const Scene& scene, const SolveOptions& options) {
@@ -246,6 +271,16 @@ SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const So
   return solved;
 }
 
+int rays_per_patch(const SolveOptions& options) {
+  const int most = options.form_factors.rays_per_patch;
+  return options.accuracy ? form_factor_rays(options.accuracy->share, most) : most;
+}
+
+int auto_patch_count(const SolveOptions& options) {
+  const int most = options.mesh.auto_patch_count;
+  return options.accuracy ? patch_count_for(options.accuracy->share, most) : most;
+}
+
 bool starts_coarse(const SolveOptions& options) {
   return options.refine.tolerance > 0.0 && !options.mesh.discontinuity &&
          !(options.mesh.max_element_size > 0.0);
@@ -271,10 +306,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   MeshOptions mesh_options = options.mesh;
   mesh_options.progress = options.progress;
   mesh_options.to_be_refined = starts_coarse(options);
-  if (options.accuracy) {
-    mesh_options.auto_patch_count =
-        patch_count_for(options.accuracy->share, options.mesh.auto_patch_count);
-  }
+  mesh_options.auto_patch_count = auto_patch_count(options);
   solved.mesh = build_patches(scene, mesh_options);
   require_room(solved.mesh, options.refine);
   std::optional<ElementCaster> caster(std::in_place, solved.mesh);
@@ -283,9 +315,11 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   const DirectLight& kept_apart = by_channel ? *by_channel : direct_light;
   seconds.push_back({"mesh", watch.lap()});
 
-  solved.solution = options.progressive ? shoot(scene, *caster, kept_apart, options)
-                                        : solve_equations(scene, *caster, direct_light, kept_apart,
-                                                          options, report);
+  SolveOptions exchange = options;
+  exchange.progressive = without_rows(solved.mesh, direct_light, options, report);
+  solved.solution = exchange.progressive ? shoot(scene, *caster, kept_apart, exchange)
+                                         : solve_equations(scene, *caster, direct_light, kept_apart,
+                                                           exchange, report);
   RadiositySolution& solution = solved.solution;
   for (const PhaseSeconds& phase : solution.seconds) seconds.push_back(phase);
   watch.lap();

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "mesh/joined_surfaces.h"
 #include "mesh/mesh_bounds.h"
 #include "mesh/sphere_grid.h"
 #include "scene/errors.h"
@@ -63,12 +64,14 @@ struct Side {
 /// Elements to keep; where they show a picture, in the order of its maps.
 std::map<Side, std::vector<int>> sides_of(const PatchMesh& mesh,
                                           const std::vector<ElementKind>& kinds,
-                                          const DrawnPictures& drawn) {
+                                          const DrawnPictures& drawn, const JoinedSurfaces* names) {
   std::map<Side, std::vector<int>> sides;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
     if (is_left_out(mesh, kinds, e)) continue;
-    sides[{mesh.surface[p], mesh.is_back[p] != 0, drawn.of(mesh.facet[e])}].push_back(e);
+    const int surface =
+        names ? names->surface_of(mesh, e, element_center(mesh, e).position) : mesh.surface[p];
+    sides[{surface, mesh.is_back[p] != 0, drawn.of(mesh.facet[e])}].push_back(e);
   }
   for (auto& [side, elements] : sides) {
     if (side.picture < 0) continue;
@@ -137,10 +140,11 @@ void add_face(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
 /// Fills parts, materials and faces; returns the mesh vertex of each vertex.
 std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
                            const std::vector<ElementKind>& kinds, const BandArray& radiance,
-                           const DrawnPictures& drawn, BakedModel& model) {
+                           const DrawnPictures& drawn, const JoinedSurfaces* names,
+                           BakedModel& model) {
   VertexNumbers vertex(mesh.vertex_count());
   MaterialNumbers material(scene, model.materials);
-  for (const auto& [side, elements] : sides_of(mesh, kinds, drawn)) {
+  for (const auto& [side, elements] : sides_of(mesh, kinds, drawn, names)) {
     const auto s = static_cast<std::size_t>(side.surface);
     const std::string name = s < scene.surfaces.size() ? scene.surfaces[s].name : std::string();
     const int first_face = model.face_count(), first_vertex = vertex.count();
@@ -154,16 +158,18 @@ std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
       }
       add_face(mesh, kinds, radiance, e, vertex, model);
     }
-    model.parts.push_back({.name = name_or_number(name, "surface", side.surface),
-                           .surface = side.surface,
-                           .material = material(mesh.material[mesh.patch[elements.front()]]),
-                           .picture = side.picture,
-                           .sphere = grid ? std::optional(grid->sphere) : std::nullopt,
-                           .is_back = side.is_back,
-                           .first_vertex = first_vertex,
-                           .vertex_count = vertex.count() - first_vertex,
-                           .first_face = first_face,
-                           .face_count = model.face_count() - first_face});
+    model.parts.push_back(
+        {.name = name_or_number(name, "surface", side.surface),
+         .surface = side.surface,
+         .material = material(names ? scene.surfaces[s].material
+                                    : mesh.material[mesh.patch[elements.front()]]),
+         .picture = side.picture,
+         .sphere = grid ? std::optional(grid->sphere) : std::nullopt,
+         .is_back = side.is_back,
+         .first_vertex = first_vertex,
+         .vertex_count = vertex.count() - first_vertex,
+         .first_face = first_face,
+         .face_count = model.face_count() - first_face});
   }
   return vertex.order();
 }
@@ -237,14 +243,15 @@ Eigen::Matrix3d rotation_to_y_up(const Eigen::Vector3d& up_axis) {
 
 }  // namespace
 
-BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double exposure_ev) {
+BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double exposure_ev,
+                      const JoinedSurfaces* names) {
   check_input(solved, scene);
   const std::vector<ElementKind> kinds = kinds_with_all_on(solved, scene.materials);
   const BandArray radiance = shown_radiance(solved, scene.materials);
   BakedModel model;
   model.title = scene.title;
   const DrawnPictures drawn(scene, longest_picture);
-  model.mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, drawn, model);
+  model.mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, drawn, names, model);
   add_vertices(solved, radiance, model);
   add_pictures(solved.mesh, drawn, model);
   model.channels = bake_channels(solved, scene.materials, model.mesh_vertex);

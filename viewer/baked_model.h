@@ -13,6 +13,8 @@
 
 namespace lightwell {
 
+class JoinedSurfaces;
+
 /// One row of linear Rec. 709 RGB per vertex.
 using RgbArray = Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
@@ -116,9 +118,11 @@ struct BakedModel {
 
 /// `scene` gives names, mirrors, glass and cameras; without surfaces and cameras in it they have
 /// numbers for names, and the model is looked at from where all is seen. `exposure_ev`: stops on
-/// top of the automatic exposure of every camera. Throws InputError if it has other surfaces or
-/// materials than the solution.
-BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double exposure_ev = 0.0);
+/// top of the automatic exposure of every camera. Where polygons of several surfaces were joined
+/// (`names`, of this scene; null: nowhere) an element goes to the surface that has its middle.
+/// Throws InputError if the scene has other surfaces or materials than the solution.
+BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double exposure_ev = 0.0,
+                      const JoinedSurfaces* names = nullptr);
 
 /// 8-bit sRGB, 3 bytes a vertex: the picture from the first camera (see display_colors).
 std::vector<std::uint8_t> srgb_colors(const BakedModel& model);

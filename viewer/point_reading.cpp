@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/joined_surfaces.h"
 #include "scene/facet_textures.h"
 
 namespace lightwell {
@@ -42,7 +43,7 @@ std::string per_band(const Spectrum& values, const Bands& bands) {
 }  // namespace
 
 PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArray& irradiance,
-                        const Scene* scene, const Seen& seen) {
+                        const Scene* scene, const Seen& seen, const JoinedSurfaces* names) {
   PointReading reading;
   reading.position = seen.position;
   reading.normal = normal_at(mesh, seen);
@@ -60,10 +61,12 @@ PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArr
   const Spectrum emission = mesh.emission.row(reading.patch).transpose();
   const Spectrum B = emission + reading.reflectance * reading.irradiance;
   reading.luminance = luminous(bands, B) / std::numbers::pi;
-  reading.surface =
-      name_of(scene ? &scene->surfaces : nullptr, mesh.surface[reading.patch], "surface");
-  reading.material =
-      name_of(scene ? &scene->materials : nullptr, mesh.material[reading.patch], "material");
+  const int surface =
+      names ? names->surface_of(mesh, reading.element, seen.position) : mesh.surface[reading.patch];
+  reading.surface = name_of(scene ? &scene->surfaces : nullptr, surface, "surface");
+  const int material = names && scene ? scene->surfaces[static_cast<std::size_t>(surface)].material
+                                      : mesh.material[reading.patch];
+  reading.material = name_of(scene ? &scene->materials : nullptr, material, "material");
   return reading;
 }
 

@@ -8,6 +8,8 @@
 
 namespace lightwell {
 
+class JoinedSurfaces;
+
 /// What there is to know of a point of a solved scene.
 struct PointReading {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
@@ -21,9 +23,11 @@ struct PointReading {
 };
 
 /// Interpolates as `lightwell probe --interpolate` does. `irradiance` is vertices x bands. Without
-/// a scene surface and material go by their numbers.
+/// a scene surface and material go by their numbers; `names` are of the scene's polygons that
+/// several surfaces share (null: there are none).
 PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArray& irradiance,
-                        const Scene* scene, const Seen& seen);
+                        const Scene* scene, const Seen& seen,
+                        const JoinedSurfaces* names = nullptr);
 
 /// How the numbers of a scene are shown to people.
 struct ShownUnits {

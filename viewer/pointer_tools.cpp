@@ -20,7 +20,7 @@ Seen look_at(const SolutionView& view, double x, double y) {
 
 PointReading PointerTools::read(const SolutionView& view, const Seen& seen) const {
   const SolvedScene& solved = view.solved();
-  return read_point(solved.mesh, solved.solution.bands, view.irradiance(), scene_, seen);
+  return read_point(solved.mesh, solved.solution.bands, view.irradiance(), scene_, seen, names_);
 }
 
 void PointerTools::click(const SolutionView& view, double x, double y) {

@@ -13,7 +13,9 @@ namespace lightwell {
 /// over, and the distance between two points.
 class PointerTools {
  public:
-  explicit PointerTools(const Scene* scene) : scene_(scene) {}
+  /// What read_point() takes for names.
+  explicit PointerTools(const Scene* scene, const JoinedSurfaces* names = nullptr)
+      : scene_(scene), names_(names) {}
 
   // Places are pixels of the look's picture from the left and from the top.
   void click(const SolutionView& view, double x, double y);
@@ -45,6 +47,7 @@ class PointerTools {
   PointReading read(const SolutionView& view, const Seen& seen) const;
 
   const Scene* scene_;
+  const JoinedSurfaces* names_;
   bool probing_ = false, measuring_ = false;
   Seen clicked_{};
   std::optional<PointReading> reading_{}, under_pointer_{};

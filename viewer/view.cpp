@@ -65,7 +65,7 @@ class AnnotatedPictures {
     Look look = view_.look();
     std::tie(look.camera.width, look.camera.height) = std::pair(width, height);
     view_.set_look(look);
-    PointerTools pointer(options_.scene);
+    PointerTools pointer(options_.scene, options_.names);
     const auto click = [&](const Eigen::Vector2d& place) {
       require_within(options_, place);
       pointer.click(view_, place.x(), place.y());

@@ -14,6 +14,8 @@
 
 namespace lightwell {
 
+class JoinedSurfaces;
+
 /// What keys and the mouse put over the picture in a window, for pictures drawn off screen. Places
 /// are pixels from the left and from the top.
 struct Annotations {
@@ -35,8 +37,9 @@ struct ViewOptions {
   std::vector<Material> materials{};
   /// For the names of what is pointed at. May be left out; must outlive the window.
   const Scene* scene = nullptr;
-  bool mesh = false;         ///< begin with the elements' outlines
-  bool illuminance = false;  ///< begin in false colours, of `measure`
+  const JoinedSurfaces* names = nullptr;  ///< beside it, where several surfaces share polygons
+  bool mesh = false;                      ///< begin with the elements' outlines
+  bool illuminance = false;               ///< begin in false colours, of `measure`
   Measure measure = Measure::illuminance;
   std::optional<LuxRange> lux_range{};  ///< of those; else what suits the solution
   /// Begin with the error of interpolation that refinement estimated, in the false colours of

@@ -60,7 +60,7 @@ WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> ow
       physics_(walk_body(view_->bounds(), view_->up_axis(), options.eye_height), view_->up_axis()),
       walking_(options.walk),
       lights_(view_->solved().solution),
-      pointer_(options.scene),
+      pointer_(options.scene, options.names),
       window_(vtkSmartPointer<vtkRenderWindow>::New()),
       interactor_(vtkSmartPointer<vtkRenderWindowInteractor>::New()) {
   still_.add_to(view_->renderer());
