@@ -106,7 +106,7 @@ Scene room_of_boxes() {
   return scene;
 }
 
-Scene room_of_polygons(int cells) {
+Scene room_of_polygons(int cells, bool own_names) {
   Scene scene = grey_scene();
   const int lamp = add_lamp(scene, 10.0f);
   scene.materials[lamp].reflectance.setZero();
@@ -130,7 +130,7 @@ Scene room_of_polygons(int cells) {
     add_cut(scene, wall, of_wall, of_wall, grey);
   }
   for (const Block& block : blocks) add_block(scene, block, cells);
-  return one_object_each(std::move(scene));
+  return own_names ? scene : one_object_each(std::move(scene));
 }
 
 }  // namespace lightwell

@@ -10,7 +10,7 @@ Scene room_of_boxes();
 
 /// A unit cube with a lamp in its ceiling and two blocks on its floor, closed, all reflecting half,
 /// that arrives cut up: into 41 rectangles along the lines of what stands in it (`cells` 0), or
-/// into squares of 1/cells: 708 for 10, 2832 for 20.
-Scene room_of_polygons(int cells);
+/// into squares of 1/cells: 708 for 10, 2832 for 20. With `own_names` each polygon is a surface.
+Scene room_of_polygons(int cells, bool own_names = false);
 
 }  // namespace lightwell

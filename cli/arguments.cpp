@@ -10,6 +10,7 @@
 #include "cli/memory_size.h"
 #include "cli/refinement.h"
 #include "radiosity/caustic_photons.h"
+#include "radiosity/in_force.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"

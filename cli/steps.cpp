@@ -75,10 +75,6 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   report.add_solution(solved, true);
   report.add("refinement", refinement_json(solve_report.refinement));
   report.add_storage(options.form_factors.memory->report());
-  if (!solve_report.transport.empty()) {
-    report.add("transport", solve_report.transport);
-    if (solved.solution.solver == "progressive") console.say("note: " + solve_report.transport);
-  }
   if (solve_report.refinement.outcome == RefineOutcome::max_elements_reached) {
     console.say("note: refinement " + sentence(solve_report.refinement));
   }

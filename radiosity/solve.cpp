@@ -12,6 +12,7 @@
 
 #include "radiosity/effort.h"
 #include "radiosity/error_estimate.h"
+#include "radiosity/in_force.h"
 #include "radiosity/journal.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/reconstruct.h"
@@ -120,10 +121,9 @@ RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caste
   return solution;
 }
 
-// Where no way was asked for, and form factors cannot be kept: shooting.
-std::optional<ProgressiveOptions> without_rows(const PatchMesh& mesh,
-                                               const DirectLight& direct_light,
-                                               const SolveOptions& options, SolveReport* report) {
+// Where no way was asked for, and form factors cannot be kept: shooting. A note says so.
+std::optional<ProgressiveOptions> without_rows(const DirectLight& direct_light,
+                                               const SolveOptions& options, PatchMesh& mesh) {
   if (options.progressive || options.start || options.solver_method != SolverMethod::automatic ||
       options.form_factors.method != FormFactorMethod::automatic) {
     return options.progressive;
@@ -133,18 +133,20 @@ std::optional<ProgressiveOptions> without_rows(const PatchMesh& mesh,
   FormFactorOptions rows = options.form_factors;
   rows.rays_per_patch = rays_per_patch(options);
   rows.journal = options.journal;
+  const ProgressiveOptions shooting{.tolerance = options.solver.tolerance,
+                                    .overshooting = Overshooting::ambient};
+  const auto emitters = static_cast<std::int64_t>(direct_light.emitters().size());
   const TransportChoice choice =
       choose_transport({.patches = mesh.patch_count(),
                         .rows = most_row_bytes(mesh.patch_count(), rows),
-                        .work = bytes_beside_rows(
-                            mesh, static_cast<std::int64_t>(direct_light.emitters().size()), rows),
+                        .work = bytes_beside_rows(mesh, emitters, rows),
+                        .shooting = bytes_to_shoot(mesh, shooting.most_rays),
                         .resident = resident_memory().now,
                         .limit = storage.limit,
                         .disk = room_on_disk(storage.folder)});
-  if (report) report->transport = choice.reason;
   if (choice.transport != Transport::shooting) return std::nullopt;
-  return ProgressiveOptions{.tolerance = options.solver.tolerance,
-                            .overshooting = Overshooting::ambient};
+  mesh.notes.push_back(choice.reason);
+  return shooting;
 }
 
 void require_unit(const Scene& scene, const SolveOptions& options) {
@@ -315,8 +317,10 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   const DirectLight& kept_apart = by_channel ? *by_channel : direct_light;
   seconds.push_back({"mesh", watch.lap()});
 
+  // What comes after rows has to fit as well, and is told before they are made.
+  if (options.form_factors.memory) options.form_factors.memory->plan(bytes_to_gather(solved.mesh));
   SolveOptions exchange = options;
-  exchange.progressive = without_rows(solved.mesh, direct_light, options, report);
+  exchange.progressive = without_rows(direct_light, options, solved.mesh);
   solved.solution = exchange.progressive ? shoot(scene, *caster, kept_apart, exchange)
                                          : solve_equations(scene, *caster, direct_light, kept_apart,
                                                            exchange, report);

@@ -22,9 +22,7 @@ struct SolveOptions {
   SolverMethod solver_method = SolverMethod::automatic;
   SolverOptions solver{};  ///< but for `progress`, `journal` and `name_of`
   /// Patches shoot, with rows found on the fly and forgotten, instead of all form factors and a
-  /// solver: of the options above only `form_factors.max_specular_depth` then counts. Where nothing
-  /// is given here, `solver_method` and the form factors' method are automatic and no rows can be
-  /// kept (see choose_transport), patches shoot to `solver.tolerance`.
+  /// solver: of the options above only `form_factors.max_specular_depth` then counts.
   std::optional<ProgressiveOptions> progressive{};
   GatherOptions gather{.rays = 1024};
   RefineOptions refine{};
@@ -60,14 +58,7 @@ struct SolveReport {
   RefineReport refinement{};
   double accuracy = 0.0;  ///< what was asked for, of the mean irradiance; 0: nothing was
   int gather_rays = 0;    ///< in force
-  /// How light was exchanged, why, and what would change that: one sentence (see choose_transport).
-  /// Empty: it was asked for.
-  std::string transport{};
 };
-
-/// In force: as asked for, or fewer for a loose accuracy (see form_factor_rays, patch_count_for).
-int rays_per_patch(const SolveOptions& options);
-int auto_patch_count(const SolveOptions& options);
 
 /// Whether elements start twice as long as asked for, and are split where that matters: unless
 /// nothing is refined, and unless a longest size is given or lines of discontinuity are drawn,

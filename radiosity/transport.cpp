@@ -36,6 +36,9 @@ TransportChoice choose_transport(const TransportFigures& figures) {
   if (figures.rows <= room) {
     return {Transport::rows_in_memory, fmt::format("{}, which fit into {}", rows, left)};
   }
+  if (figures.resident + figures.shooting > figures.limit) {
+    return {Transport::rows_in_memory, fmt::format("{}, and nothing fits into {}", rows, left)};
+  }
   const std::string enough =
       fmt::format("'--memory {:.0f}M'", static_cast<double>(figures.limit - room + figures.rows) /
                                                 static_cast<double>(mebibyte) +
@@ -82,6 +85,20 @@ std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
       analytic || (options.method == FormFactorMethod::automatic && options.target_error > 0.0);
   const std::int64_t journal = options.journal ? 2 * Journal::most_buffered : 0;
   return journal + mesh.patch_count() * each + (clips ? PairShafts::bytes_for(mesh) : 0);
+}
+
+std::int64_t bytes_to_shoot(const PatchMesh& mesh, int most_rays) {
+  // What was shot, what is unshot, what arrives and what goes with it, in floats and doubles; 16
+  // rows at a time, each with a number and a place for every ray.
+  constexpr std::int64_t per_band = 48, per_ray = 16, rows_at_once = 16;
+  return mesh.patch_count() * per_band * mesh.reflectance.cols() +
+         rows_at_once * per_ray * most_rays;
+}
+
+std::int64_t bytes_to_gather(const PatchMesh& mesh) {
+  // Direct, indirect and caustic light, its draft and its noise; places and rays of gathers.
+  constexpr std::int64_t per_element = 100, per_band = 50;
+  return mesh.element_count() * (per_element + per_band * mesh.reflectance.cols());
 }
 
 std::int64_t room_on_disk(const std::filesystem::path& folder) {

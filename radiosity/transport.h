@@ -21,6 +21,7 @@ struct TransportFigures {
   int patches = 0;
   std::int64_t rows = 0;      ///< of all form factors, at most: see most_row_bytes
   std::int64_t work = 0;      ///< beside rows while they are made and solved with
+  std::int64_t shooting = 0;  ///< instead of both, for shooting
   std::int64_t resident = 0;  ///< what the process has in memory already
   std::int64_t limit = 0;     ///< what it may have
   std::int64_t disk = 0;      ///< free where rows would go: see room_on_disk
@@ -38,7 +39,8 @@ inline constexpr std::int64_t most_rows_on_disk = std::int64_t{8} << 30;
 /// Form factors are kept wherever they fit, since they see every exchange from both ends: in
 /// memory, else on disk, if that has twice their size free and they are no more than
 /// most_rows_on_disk. Else, and where even the work beside rows is more than the limit leaves,
-/// patches shoot.
+/// patches shoot. Where that does not fit either it is rows in memory, for which MemoryBudget says
+/// what would do.
 TransportChoice choose_transport(const TransportFigures& figures);
 
 /// Bytes that the rows of so many patches take at most with rays: those that a patch's rays meet,
@@ -49,6 +51,13 @@ std::int64_t most_row_bytes(int patches, const FormFactorOptions& options);
 /// solved with, and what each thread counts in.
 std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
                                const FormFactorOptions& options);
+
+/// Bytes that progressive refinement takes beside the mesh, with so many rays of a shot at most.
+std::int64_t bytes_to_shoot(const PatchMesh& mesh, int most_rays);
+
+/// Bytes that light on so many vertices and elements takes while it is gathered, refinement apart:
+/// rows are given up by then.
+std::int64_t bytes_to_gather(const PatchMesh& mesh);
 
 /// Bytes free in a folder; 0 where that cannot be known, and where it is itself kept in memory.
 std::int64_t room_on_disk(const std::filesystem::path& folder);

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 
+#include "mesh/element_quality.h"
 #include "mesh/planar_regions.h"
 #include "mesh_scenes.h"
 

@@ -10,6 +10,7 @@
 
 #include "lit_sides.h"
 #include "scene/errors.h"
+#include "shared_floor.h"
 #include "tests/temporary_folder.h"
 #include "viewer/appearance.h"
 
@@ -45,6 +46,23 @@ TEST(BakedModel, OfTwoDarkSidesTheFrontStays) {
   ASSERT_EQ(model.parts.size(), 1u);
   EXPECT_FALSE(model.parts[0].is_back);
   EXPECT_EQ(model.black_behind, std::vector<std::uint8_t>{1});
+}
+
+TEST(BakedModel, ASharedPolygonIsPartedByNameAgain) {
+  const SharedFloor floor;
+  ASSERT_TRUE(floor.names);
+  EXPECT_EQ(bake_model(floor.solved, floor.scene).parts.size(), 2u);
+  const BakedModel model = bake_model(floor.solved, floor.scene, 0.0, floor.names.get());
+  ASSERT_EQ(model.parts.size(), 3u);
+  for (const BakedPart& part : model.parts) {
+    EXPECT_EQ(model.materials[part.material].name, part.name + " paint");
+    if (part.name == "lamp") continue;
+    for (int v = part.first_vertex; v < part.first_vertex + part.vertex_count; ++v) {
+      // Elements are 0.25 long, and 1 is a multiple of that.
+      EXPECT_TRUE(part.name == "left" ? model.position[v].x() <= 1.0
+                                      : model.position[v].x() >= 1.0);
+    }
+  }
 }
 
 TEST(BakedModel, NamesMaterialsAndCamerasComeFromTheScene) {

@@ -11,6 +11,7 @@
 #include "pictured_wall.h"
 #include "raytrace/probe.h"
 #include "scene/facet_textures.h"
+#include "shared_floor.h"
 #include "solved_box.h"
 #include "viewer/x_display.h"
 
@@ -61,6 +62,21 @@ TEST(PointReading, IsWhatProbeInterpolates) {
     }
   }
   EXPECT_GT(compared, 50);
+}
+
+TEST(PointReading, KnowsWhoseAPlaceOnASharedPolygonIs) {
+  const SharedFloor floor;
+  const ElementCaster caster(floor.solved.mesh);
+  const auto kinds = element_kinds(floor.solved, floor.scene.materials);
+  for (const double x : {0.2, 0.9, 1.1, 1.9}) {
+    const Ray ray{.origin = {x, 0.4, 0.5}, .direction = -Eigen::Vector3d::UnitZ()};
+    const Seen seen = see(caster, kinds, {&ray, 1})[0];
+    const PointReading reading =
+        read_point(floor.solved.mesh, floor.solved.solution.bands,
+                   floor.solved.solution.irradiance(), &floor.scene, seen, floor.names.get());
+    EXPECT_EQ(reading.surface, x < 1.0 ? "left" : "right");
+    EXPECT_EQ(reading.material, reading.surface + " paint");
+  }
 }
 
 /// L = (M + rho E) / pi of the wall in the middle: white light of 2 W/m2 in all bands, rho = 1.
