@@ -153,6 +153,14 @@ std::string Report::for_people() const {
            fmt::format("{:.4g} % of the emitted power; {:.4f} % left without meeting anything",
                        percent("from_lamps"), percent("missed")));
     }
+    constexpr double worth_a_line = 0.005;
+    if (facts_.contains("unlit") && facts_["unlit"]["share"].get<double>() >= worth_a_line) {
+      const Json& unlit = facts_["unlit"];
+      line("dark", fmt::format("{:.3g} m2 of surfaces ({:.0f} %) get no light on either side, most "
+                               "of it of '{}': do they see a lamp?",
+                               unlit["area"].get<double>(), 100.0 * unlit["share"].get<double>(),
+                               unlit["surface"].get<std::string>()));
+    }
     if (facts_.contains("channels")) line("channels", channel_text(facts_["channels"]));
     const std::string by =
         facts_.contains("solver") ? " of " + facts_["solver"].get<std::string>() : "";

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/refinement.h"
@@ -12,6 +15,36 @@
 
 namespace lightwell {
 namespace fs = std::filesystem;
+namespace {
+
+// What no light reaches on either side: a room without a lamp, or what is walled in.
+Json unlit_json(const Scene& scene, const SolvedScene& solved) {
+  const PatchMesh& mesh = solved.mesh;
+  const BandArray E = solved.solution.irradiance();
+  const auto is_dark = [&](int e) {
+    if (e < 0) return true;
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      if ((E.row(mesh.corners[e][c]) > 0.0f).any()) return false;
+    }
+    return true;
+  };
+  std::vector<double> dark(scene.surfaces.size(), 0.0);
+  double all = 0.0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    if (mesh.is_back[p] || !(mesh.reflectance.row(p) > 0.0f).any()) continue;
+    all += mesh.element_area[e];
+    if (is_dark(e) && is_dark(mesh.twin[e])) dark[mesh.surface[p]] += mesh.element_area[e];
+  }
+  const auto most = std::ranges::max_element(dark);
+  const double area = std::accumulate(dark.begin(), dark.end(), 0.0);
+  if (!(area > 0.0)) return {{"area", 0.0}, {"share", 0.0}};
+  return {{"area", area},
+          {"share", area / all},
+          {"surface", scene.surfaces[static_cast<std::size_t>(most - dark.begin())].name}};
+}
+
+}  // namespace
 Scene read_scene_step(const fs::path& file, Console& console, Report& report,
                       CleanUpReport* clean_up) {
   const Stopwatch watch;
@@ -74,6 +107,7 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   solved.solution.provenance.options = arguments.text(scene);
   report.add_solution(solved, true);
   report.add("refinement", refinement_json(solve_report.refinement));
+  report.add("unlit", unlit_json(scene, solved));
   report.add_storage(options.form_factors.memory->report());
   if (solve_report.refinement.outcome == RefineOutcome::max_elements_reached) {
     console.say("note: refinement " + sentence(solve_report.refinement));

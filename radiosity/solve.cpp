@@ -230,6 +230,7 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
     effort = *next;
     take(effort);
   }
+  require_finite(scene, solution);
   if (draft->refined) solution.provenance.refinement = sentence(draft->refinement);
   for (const char* phase : {"refine", "gather", "error_estimate"}) {
     if (spent[phase] > 0.0) seconds.push_back({phase, spent[phase]});
@@ -238,6 +239,16 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   report->refinement = draft->refinement;
   report->accuracy = target;
   report->gather_rays = effort.gather_rays;
+}
+
+void require_finite(const Scene& scene, const RadiositySolution& solution) {
+  const BandArray E = solution.irradiance();
+  const Eigen::Index odd = E.rows() - E.isFinite().rowwise().all().count();
+  if (odd == 0 && solution.patch_radiosity.allFinite()) return;
+  throw InputError(fmt::format(
+      "{}: its light is no finite number at {} of {} vertices; what emits 1e38 W/m2 is more than "
+      "can be counted. Check the units of its emission",
+      scene.file.empty() ? "the scene" : scene.file.string(), odd, E.rows()));
 }
 
 // Direct light by channel, where light is kept apart.

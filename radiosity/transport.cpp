@@ -4,6 +4,7 @@
 #include <sys/vfs.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "mesh/patch_sampler.h"
 #include "radiosity/journal.h"
@@ -39,10 +40,9 @@ TransportChoice choose_transport(const TransportFigures& figures) {
   if (figures.resident + figures.shooting > figures.limit) {
     return {Transport::rows_in_memory, fmt::format("{}, and nothing fits into {}", rows, left)};
   }
+  const double to_hold = static_cast<double>(figures.limit - room + figures.rows);
   const std::string enough =
-      fmt::format("'--memory {:.0f}M'", static_cast<double>(figures.limit - room + figures.rows) /
-                                                static_cast<double>(mebibyte) +
-                                            0.5);
+      fmt::format("'--memory {:.0f}M'", std::ceil(to_hold / static_cast<double>(mebibyte)));
   const bool has_slice = room >= std::min(least_slice, figures.rows);
   if (has_slice && figures.rows <= figures.disk / 2 && figures.rows <= most_rows_on_disk) {
     return {Transport::rows_on_disk,
