@@ -165,6 +165,16 @@ double target_of(const Scene& scene, const SolveOptions& options, const SolvedSc
   return mean > 0.0 ? std::min(options.accuracy->lux / mean, 1.0) : 1.0;
 }
 
+void require_finite(const Scene& scene, const RadiositySolution& solution) {
+  const BandArray E = solution.irradiance();
+  const Eigen::Index odd = E.rows() - E.isFinite().rowwise().all().count();
+  if (odd == 0 && solution.patch_radiosity.allFinite()) return;
+  throw InputError(fmt::format(
+      "{}: its light is no finite number at {} of {} vertices; what emits 1e38 W/m2 is more than "
+      "can be counted. Check the units of its emission",
+      scene.file.empty() ? "the scene" : scene.file.string(), odd, E.rows()));
+}
+
 // From the light on patches to that at vertices, refined and gathered as exactly as is asked for.
 // `kept_apart` is the direct light, by channel where there are channels.
 void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
@@ -239,16 +249,6 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   report->refinement = draft->refinement;
   report->accuracy = target;
   report->gather_rays = effort.gather_rays;
-}
-
-void require_finite(const Scene& scene, const RadiositySolution& solution) {
-  const BandArray E = solution.irradiance();
-  const Eigen::Index odd = E.rows() - E.isFinite().rowwise().all().count();
-  if (odd == 0 && solution.patch_radiosity.allFinite()) return;
-  throw InputError(fmt::format(
-      "{}: its light is no finite number at {} of {} vertices; what emits 1e38 W/m2 is more than "
-      "can be counted. Check the units of its emission",
-      scene.file.empty() ? "the scene" : scene.file.string(), odd, E.rows()));
 }
 
 // Direct light by channel, where light is kept apart.

@@ -32,6 +32,41 @@ class ReportCommand : public CommandTest {
   }
 };
 
+/// The light is solved for on a floor of 4 m x 2 m, and asked for on its halves.
+TEST_F(ReportCommand, SurfacesOfOnePlaneAreMeasuredByName) {
+  folder.write("floor.toml", R"(
+unit = "m"
+[materials.white]
+reflectance = 0.5
+[materials.panel]
+power = 10
+[[surfaces]]
+name = "left"
+material = "white"
+polygon = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]]
+[[surfaces]]
+name = "right"
+material = "white"
+polygon = [[2, 0, 0], [4, 0, 0], [4, 2, 0], [2, 2, 0]]
+[[surfaces]]
+name = "panel"
+material = "panel"
+polygon = [[0, 0, 2], [0, 2, 2], [1, 2, 2], [1, 0, 2]]
+)");
+  const Json solved = run_json(Words{"solve", "floor.toml", "-o", "floor.vtp"} + quick());
+  EXPECT_EQ(solved["cleaned"]["joined"], 1);
+  const Json json = run_json({"report", "floor.toml", "floor.vtp", "--surface", "left", "--surface",
+                              "right", "--rays", "64"});
+  ASSERT_EQ(json["surfaces"].size(), 2u);
+  for (const Json& surface : json["surfaces"]) {
+    EXPECT_NEAR(surface["area_m2"].get<double>(), 4.0, 1e-9);
+    EXPECT_EQ(surface["points"], json["surfaces"][0]["points"]);
+  }
+  EXPECT_EQ(json["surfaces"][1]["name"], "right");
+  // The panel hangs over the left half.
+  EXPECT_GT(json["surfaces"][0]["E_min"], json["surfaces"][1]["E_max"]);
+}
+
 /// The room's largest plane that faces up is its floor of 4 m x 3 m; 0.5 m of it all around are
 /// left out. All figures of a grid follow from its points, which the CSV has.
 TEST_F(ReportCommand, FiguresAreThoseOfThePoints) {

@@ -88,6 +88,28 @@ TEST_F(Memory, SolveAndRunKeepToItToo) {
   EXPECT_EQ(folder.file_count(), 3) << "two scenes and the solution";
 }
 
+// Shooting takes 16 MB for its rays and 144 bytes a patch; rows take 1.2 kB a patch beside a slice
+// of 16 MB. Of 12 000 patches a budget in between holds the one and not the other.
+TEST_F(Memory, PatchesShootWhereRowsDoNotFit) {
+  if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
+  const auto solve = [&](const char* output, const std::string& memory) {
+    return run(Words{"solve", "room.toml", "-o", output, "--json", "--max-patch-size", "0.1",
+                     "--elements-per-patch-edge", "1", "--refine", "off", "--rays", "64",
+                     "--gather-rays", "32", "--tolerance", "1e-3", "--memory", memory});
+  };
+  const std::string refused = solve("S.vtp", "2M").err;
+  std::smatch taken;
+  ASSERT_TRUE(std::regex_search(refused, taken, std::regex("its tree take (\\d+) MB"))) << refused;
+  const int budget = std::stoi(taken[1]) + 24;
+  const Ended ended = solve("S.vtp", std::to_string(budget) + "M");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(says(ended.err, "so patches shoot their light without them"));
+  const auto json = nlohmann::json::parse(ended.out);
+  EXPECT_EQ(json["solver"], "progressive");
+  EXPECT_LT(json["peak_memory_mb"].get<double>(), 1.15 * budget);
+  EXPECT_NE(nlohmann::json::parse(solve("T.vtp", "1G").out)["solver"], "progressive");
+}
+
 TEST_F(Memory, AmountsThatAreNoneAreRefused) {
   for (const char* wrong : {"", "much", "G", "-1G", "0", "100", "512K", "5X", "2GG", "nan", "inf",
                             "1e400", "9999999999T", "1,5G"}) {

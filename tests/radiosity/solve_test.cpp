@@ -9,6 +9,7 @@
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "test_scenes.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -104,6 +105,12 @@ TEST(SolveScene, ElementsAbsorbWhatIsEmitted) {
   // Reflected light is smoother than direct light, and loses no more by being interpolated. (At
   // each reflection anew it would come to 3.6 times as much.)
   EXPECT_LT(lost, 2.0 * lost_directly);
+}
+
+// B = M / (1 - rho) is ten times what a float holds.
+TEST(SolveScene, LightThatIsNoFiniteNumberIsRefused) {
+  const Scene scene = test::furnace(0.9f, 3e38f, false);
+  EXPECT_NE(message_of<InputError>([&] { solve_scene(scene, quick()); }), "");
 }
 
 TEST(SolveScene, MirrorsAndGlassKeepTheEnergyBalance) {
