@@ -53,7 +53,7 @@ PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
     grid_ = element_grid(mesh, patch);
   }
   if (!grid_) {
-    add_parts();
+    add_parts(mesh.first_element[patch], mesh.first_element[patch + 1]);
     return;
   }
   const Vector3d along_row = grid_->columns * grid_->step, across = grid_->rows * grid_->rise;
@@ -62,8 +62,18 @@ PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
   across_ = (1.0 - inset) * across;
 }
 
-void PatchSampler::add_parts() {
-  for (int e = mesh_.first_element[patch_]; e < mesh_.first_element[patch_ + 1]; ++e) {
+PatchSampler::PatchSampler(const PatchMesh& mesh, int patch, int element)
+    : mesh_(mesh),
+      patch_(patch),
+      sphere_(sphere_grid_of(mesh, mesh.facet[element])),
+      is_flat_(!sphere_),
+      has_holes_(mesh.textures && mesh.textures->has_holes(mesh.facet[element])),
+      normal_(element_center(mesh, element).normal) {
+  add_parts(element, element + 1);
+}
+
+void PatchSampler::add_parts(int first_element, int end_element) {
+  for (int e = first_element; e < end_element; ++e) {
     if (sphere_) {
       area_ += mesh_.element_area[e];
       parts_.push_back({.element = e, .area_up_to = area_});

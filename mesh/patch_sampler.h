@@ -13,6 +13,8 @@ namespace lightwell {
 class PatchSampler {
  public:
   PatchSampler(const PatchMesh& mesh, int patch);
+  /// Of one of its elements alone.
+  PatchSampler(const PatchMesh& mesh, int patch, int element);
 
   /// Whether the normal is the same everywhere.
   bool is_flat() const { return is_flat_; }
@@ -39,7 +41,7 @@ class PatchSampler {
     Eigen::Vector3d first_edge = Eigen::Vector3d::Zero(), second_edge = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
-  void add_parts();
+  void add_parts(int first_element, int end_element);
   PatchPoint any_point(double u, double v) const {
     return grid_ ? point_on_grid(u, v) : point_on_part(u, v);
   }

@@ -8,7 +8,7 @@ namespace lightwell {
 
 int form_factor_rays(double target, int most) {
   if (!(target > 0.0)) return most;
-  constexpr double rays_for_one_percent = 256.0, fewest = 64.0;
+  constexpr double rays_for_one_percent = 128.0, fewest = 64.0;
   const double wanted = std::clamp(rays_for_one_percent * 0.01 / target, fewest, 1e6);
   return std::min(most, static_cast<int>(std::bit_ceil(static_cast<unsigned>(wanted))));
 }
@@ -27,18 +27,26 @@ int deepest_level(double target, int usual) {
 }
 
 int rays_for_noise(int rays, double found, double target) {
-  constexpr double order = 2.0 / 3.0, fewest = 64.0, most = 1 << 15;
+  constexpr double order = 2.0 / 3.0, fewest = 128.0, most = 1 << 15;
   const double wanted = rays * std::pow(found / target, 1.0 / order);
-  return static_cast<int>(
-      std::bit_ceil(static_cast<unsigned>(std::ceil(std::clamp(wanted, fewest, most)))));
+  const double enough = std::clamp(wanted, fewest, most);
+  const auto whole = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(enough))));
+  const int less = 3 * (whole / 4);
+  return less >= enough ? less : whole;
+}
+
+int estimate_places(int asked, std::int64_t vertices) {
+  constexpr std::int64_t share = 32, most_times = 4;
+  std::int64_t places = asked;
+  while (places > 0 && places < most_times * asked && 2 * places * share <= vertices) places *= 2;
+  return static_cast<int>(places);
 }
 
 int estimate_rays(int rays, std::int64_t vertices, int places) {
-  constexpr std::int64_t share = 8, enough = 2048;
-  const std::int64_t least = 2 * std::int64_t{rays};
-  const std::int64_t cheap = vertices * rays / (share * std::max(places, 1));
-  const auto wanted = static_cast<std::uint64_t>(std::clamp(cheap, least, std::max(least, enough)));
-  return static_cast<int>(std::max<std::uint64_t>(std::bit_floor(wanted), least));
+  constexpr std::int64_t share = 8, often = 4;
+  constexpr int fewest = 256;
+  const bool is_cheap = often * places * share <= vertices;
+  return std::max((is_cheap ? 4 : 2) * rays, fewest);
 }
 
 }  // namespace lightwell

@@ -20,12 +20,18 @@ int patch_count_for(double target, int most);
 int deepest_level(double target, int usual);
 
 /// Rays of a gather that leave the share `target` of noise, where `rays` of them left `found`: a
-/// power of two. Stratified rays' error in a room falls with about the power 2/3 of their number.
+/// power of two, or three quarters of one. Stratified rays' error in a room falls with about the
+/// power 2/3 of their number.
 int rays_for_noise(int rays, double found, double target);
 
-/// Rays of each of `places` that an error estimate looks at, beside a solution of `rays` a vertex:
-/// twice as many, or up to 2048 where that is an eighth of the solution's work at most. Else the
-/// estimate would be mostly the noise of what it compares with.
+/// Places that an error estimate looks at, for a solution that gathers at `vertices`: those `asked`
+/// for, or twice or four times as many where that is a 32nd of the vertices at most. An estimate
+/// from more of them is surer by the square root.
+int estimate_places(int asked, std::int64_t vertices);
+
+/// Rays of each of `places`, beside a solution of `rays` a vertex: twice as many, or four times
+/// where that is an eighth of the solution's work at most; 256 at least. Else the estimate would be
+/// mostly the noise of what it compares with.
 int estimate_rays(int rays, std::int64_t vertices, int places);
 
 }  // namespace lightwell

@@ -7,14 +7,18 @@
 namespace lightwell {
 
 struct ErrorEstimate {
-  double error = 0.0;
+  double error = 0.0;  ///< one standard error up
   double noise = 0.0;  ///< in it: what the rays of both gathers leave, as they tell themselves
 };
 
-/// Relative RMS error of interpolated irradiance over the area that reflects: at
-/// `options.error_points` random places, against gathers with twice the rays of the solution's or
-/// more (see estimate_rays) and other random numbers. It holds the noise of both, so it errs on the
-/// high side; what it is relative to, error_reference() says. `caster` is of the solution's mesh.
+/// Relative RMS error of interpolated irradiance over the area that reflects: at random places,
+/// `options.error_points` or more (see estimate_places), against gathers with twice the rays of
+/// the solution's or more (see estimate_rays) and other random numbers. It holds the noise of both,
+/// which makes up for what both have in common, the light that patches exchange. Half of the places
+/// are spread evenly, half go by the squared error that refinement says is left in elements
+/// (importance sampling: few places tell of errors that sit in few). What is given is the upper end
+/// of what is known: the mean square and its standard error. What it is relative to,
+/// error_reference() says. `caster` is of the solution's mesh.
 ///
 /// `of_elements`, if given, gets the estimated RMS error of interpolation over each element, for
 /// solutions of which refinement tells none: it is in proportion to the range of the corners'

@@ -1,7 +1,6 @@
 #include "radiosity/reconstruct.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -186,7 +185,7 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
     if (missing <= 0) continue;
     where.push_back(v);
     fresh.push_back(points[v]);
-    fresh.back().rays = static_cast<int>(std::bit_ceil(static_cast<unsigned>(missing)));
+    fresh.back().rays = missing;
     fresh.back().key = static_cast<std::uint64_t>(v);
   }
   GatherOptions options = gather;

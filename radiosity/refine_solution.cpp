@@ -18,7 +18,7 @@ namespace {
 // edge, where it has cells left that the edge runs through: that is what most are split for. Who
 // may go on later ends by what is expected so; else all is measured that counts, or taken to be as
 // bad as what it was split from, and only the report expects something between.
-constexpr double of_a_split = 0.5, of_a_split_in_the_end = 0.25;
+constexpr double of_a_split = 0.4, of_a_split_in_the_end = 0.25;
 
 // About as many as elements of a quarter of the edge everywhere would be, both sides; those that
 // are small already, leaves and crumbs, would stay what they are.
@@ -91,7 +91,7 @@ class Refinement {
     }
     double left = 0.0;
     for (const int cell : elements_.leaves()) {
-      left += share_left(cell) * elements_.area(cell) * (squares_[cell][0] + squares_[cell][1]);
+      left += share_left(cell) * counted(cell);
     }
     report_.estimate = error_.area() > 0.0 ? std::sqrt(left / error_.area()) : 0.0;
     report_.elements = elements_.element_count();
@@ -125,7 +125,7 @@ class Refinement {
     sum_ = 0.0;
     double rest = 0.0;
     for (const int cell : elements_.leaves()) {
-      const double square = elements_.area(cell) * (squares_[cell][0] + squares_[cell][1]);
+      const double square = counted(cell);
       sum_ += square;
       if (elements_.level(cell) < options_.max_level && square > 0.0) {
         by_error.emplace_back(-square, cell);
@@ -150,6 +150,16 @@ class Refinement {
       marks.push_back(cell);
     }
     return marks;
+  }
+
+  // Squared error times area. What noise may hide in a cell is nothing for the most part; but where
+  // it could be a notable share of all that is allowed, the cell is split, and looked at again
+  // nearer by.
+  double counted(int cell) const {
+    constexpr double notable = 0.01;
+    const double known = elements_.area(cell) * (squares_[cell][0] + squares_[cell][1]);
+    const double hidden = elements_.area(cell) * (hidden_[cell][0] + hidden_[cell][1]);
+    return hidden > notable * allowed_ ? known + hidden : known;
   }
 
   double share_left(int cell) const {

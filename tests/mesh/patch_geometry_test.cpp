@@ -57,6 +57,34 @@ TEST(PatchSampler, IsUniformByAreaOnAnyPatch) {
   }
 }
 
+// Of a patch that draws from a grid as of one that does not.
+TEST(PatchSampler, OfOneElementIsUniformOnIt) {
+  Scene scene = empty_scene();
+  add_polygon(scene, "square", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {}, 1);
+  add_polygon(scene, "triangle", {{5, 0, 0}, {7, 0.3, 0.5}, {5.5, 2, 1}}, {}, 1);
+  const PatchMesh mesh =
+      build_patches(scene, {.max_patch_size = 1.0, .elements_per_patch_edge = 3});
+  const int n = 200;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    Vector3d mean = Vector3d::Zero();
+    const PatchSampler sampler(mesh, mesh.patch[e], e);
+    for_each_sample(n, [&](double u, double v) {
+      const PatchPoint point = sampler.point(u, v);
+      ASSERT_EQ(point.element, e);
+      mean += point.position / (n * n);
+    });
+    Vector3d centroid = Vector3d::Zero();
+    const auto& c = mesh.corners[e];
+    for (int i = 1; i + 1 < mesh.corner_count(e); ++i) {
+      const Vector3d a = mesh.position(c[0]), b = mesh.position(c[i]), d = mesh.position(c[i + 1]);
+      centroid += 0.5 * (b - a).cross(d - a).norm() * (a + b + d) / 3.0;
+    }
+    centroid /= mesh.element_area[e];
+    // A midpoint rule of n strips over half a metre at most.
+    EXPECT_NEAR((mean - centroid).norm(), 0.0, 0.5 / n);
+  }
+}
+
 TEST(PatchSampler, OnASphereLiesOnTheSphereAndIsUniform) {
   Scene scene = empty_scene();
   const Sphere ball{.center = {1, 2, 3}, .radius = 0.7};

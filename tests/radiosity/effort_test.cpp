@@ -15,9 +15,9 @@ TEST(Effort, NoTargetChangesNothing) {
 }
 
 TEST(Effort, LooseTargetsTakeLess) {
-  EXPECT_EQ(form_factor_rays(0.005, 512), 512);
-  EXPECT_EQ(form_factor_rays(0.01, 512), 256);
-  EXPECT_EQ(form_factor_rays(0.025, 512), 128);  // 102.4, to a power of two
+  EXPECT_EQ(form_factor_rays(0.0025, 512), 512);
+  EXPECT_EQ(form_factor_rays(0.005, 512), 256);
+  EXPECT_EQ(form_factor_rays(0.0125, 512), 128);  // 102.4, to a power of two
   EXPECT_EQ(form_factor_rays(0.5, 512), 64);
   EXPECT_EQ(patch_count_for(0.01, 1600), 1600);
   EXPECT_EQ(patch_count_for(0.02, 1600), 800);
@@ -33,11 +33,12 @@ TEST(Effort, TightTargetsSplitMoreOften) {
 }
 
 // The error of stratified rays falls with the power 2/3 of their number: 8 times as many, a
-// quarter.
+// quarter. Three quarters of a power of two stratify nearly as well as it does.
 TEST(Effort, RaysFollowTheNoise) {
   EXPECT_EQ(rays_for_noise(128, 0.04, 0.01), 1024);
-  EXPECT_EQ(rays_for_noise(128, 0.041, 0.01), 2048);
-  EXPECT_EQ(rays_for_noise(128, 0.0, 0.01), 64);
+  EXPECT_EQ(rays_for_noise(128, 0.041, 0.01), 1536);  // 1063
+  EXPECT_EQ(rays_for_noise(128, 0.053, 0.01), 2048);  // 1562
+  EXPECT_EQ(rays_for_noise(128, 0.0, 0.01), 128);
   EXPECT_EQ(rays_for_noise(1 << 15, 1.0, 0.01), 1 << 15);
 }
 
@@ -49,14 +50,17 @@ TEST(Effort, NeverTakesMoreThanIsAskedFor) {
   EXPECT_EQ(patch_count_for(0.5, 100), 100);
 }
 
-TEST(Effort, EstimateTakesMoreRaysWhereTheyAreCheap) {
-  constexpr int places = 512;
-  EXPECT_EQ(estimate_rays(1024, 6000, places), 2048);     // as many as an eighth would be, or more
-  EXPECT_EQ(estimate_rays(128, 40000, places), 1024);     // 40 000 x 128 / 8 / 512 = 1250
-  EXPECT_EQ(estimate_rays(512, 1000000, places), 2048);   // enough
-  EXPECT_EQ(estimate_rays(4096, 1000000, places), 8192);  // twice at least
-  EXPECT_EQ(estimate_rays(1, 8, places), 2);
-  EXPECT_EQ(estimate_rays(64, 1000, 0), 2048);  // nobody looks
+TEST(Effort, EstimateTakesMorePlacesAndRaysWhereTheyAreCheap) {
+  constexpr int asked = 512;
+  EXPECT_EQ(estimate_places(asked, 6000), 512);
+  EXPECT_EQ(estimate_places(asked, 32768), 1024);  // a 32nd
+  EXPECT_EQ(estimate_places(asked, 32767), 512);
+  EXPECT_EQ(estimate_places(asked, 1000000), 2048);  // enough
+  EXPECT_EQ(estimate_places(0, 1000000), 0);         // nobody looks
+  EXPECT_EQ(estimate_rays(1024, 6000, asked), 2048);
+  EXPECT_EQ(estimate_rays(1024, 16384, asked), 4096);  // 4 x 512 are an eighth of the places
+  EXPECT_EQ(estimate_rays(1024, 16383, asked), 2048);
+  EXPECT_EQ(estimate_rays(64, 8, asked), 256);  // the fewest
 }
 
 TEST(Effort, LooseAccuracySolvesWithFewerPatches) {
