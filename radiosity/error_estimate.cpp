@@ -4,14 +4,16 @@
 #include <cmath>
 
 #include "mesh/patch_sampler.h"
+#include "mesh/sphere_grid.h"
 #include "radiosity/effort.h"
 #include "radiosity/interpolation_error.h"
+#include "scene/facet_textures.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
+constexpr std::uint64_t error_point_key = 20, told_point_key = 21;  // purposes of random keys
 // As usual where no accuracy is asked for: see estimate_rays.
 constexpr ShadowOptions fewest_shadow_rays{.min_rays = 32, .max_rays = 256};
 
@@ -35,41 +37,117 @@ Eigen::ArrayXd indicators(const PatchMesh& mesh, const BandArray& irradiance) {
   return indicator;
 }
 
+// Whom there is an error to ask of: nobody sees what another surface lies on.
+std::vector<char> patches_that_count(const ElementCaster& caster) {
+  const PatchMesh& mesh = caster.mesh();
+  std::vector<char> counts(static_cast<std::size_t>(mesh.patch_count()));
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    counts[p] = caster.hidden_elements(p) == 0 && (mesh.reflectance.row(p) > 0.0f).any();
+  }
+  return counts;
+}
+
+std::size_t drawn(const std::vector<double>& up_to, double u) {
+  const auto at = std::upper_bound(up_to.begin(), up_to.end() - 1, u * up_to.back());
+  return static_cast<std::size_t>(at - up_to.begin());
+}
+
+// Uniform over a flat element, a little inside as all samples are (see PatchSampler).
+PatchPoint point_on_element(const PatchMesh& mesh, int element, double u, double v) {
+  const auto [number, middle, normal] = element_center(mesh, element);
+  const auto& c = mesh.corners[element];
+  const Eigen::Vector3d a = mesh.position(c[0]);
+  int second = 1;
+  if (mesh.corner_count(element) == 4) {
+    const Eigen::Vector3d diagonal = mesh.position(c[2]) - a;
+    const double first = (mesh.position(c[1]) - a).cross(diagonal).norm();
+    const double share = first / (first + diagonal.cross(mesh.position(c[3]) - a).norm());
+    second = u < share ? 1 : 2;
+    u = second == 1 ? u / share : (u - share) / (1.0 - share);
+  }
+  const Eigen::Vector3d w = triangle_point(u, v);
+  const Eigen::Vector3d at =
+      w[0] * a + w[1] * mesh.position(c[second]) + w[2] * mesh.position(c[second + 1]);
+  constexpr double inset = 1e-4;
+  return {.element = number, .position = at + inset * (middle - at), .normal = normal};
+}
+
+struct Place {
+  PatchPoint point{};
+  double weight = 1.0;  // of it in a mean over area
+};
+
+// Half of them anywhere, the others where elements are told to be off, in proportion to the square
+// of that: what few elements hold would else be met by luck. (Defensive importance sampling,
+// Hesterberg 1995, "Weighted average importance sampling and defensive mixture distributions": no
+// weight is above 2.) Nothing if nothing counts.
+std::vector<Place> places_to_look_at(const ElementCaster& caster, const RadiositySolution& solution,
+                                     int count) {
+  const PatchMesh& mesh = caster.mesh();
+  const std::vector<char> counts = patches_that_count(caster);
+  std::vector<double> area_to(mesh.patch_count());
+  double area = 0.0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    area_to[p] = area += counts[p] != 0 ? mesh.area[p] : 0.0;
+  }
+  if (!(area > 0.0) || count < 1) return {};
+
+  // Squared, times area. Those of spheres, and with holes, are left to chance.
+  const auto told = [&](int e) {
+    const bool is_flat = sphere_grid_of(mesh, mesh.facet[e]) == nullptr;
+    const bool has_holes = mesh.textures && mesh.textures->has_holes(mesh.facet[e]);
+    if (counts[mesh.patch[e]] == 0 || !is_flat || has_holes) return 0.0;
+    return mesh.element_area[e] * (std::pow(double{solution.interpolation_error[e]}, 2) +
+                                   std::pow(double{solution.gather_noise[e]}, 2));
+  };
+  std::vector<double> told_to(mesh.element_count(), 0.0);
+  double all_told = 0.0;
+  for (int e = 0; e < mesh.element_count() && solution.interpolation_error.size() > 0; ++e) {
+    told_to[e] = all_told += told(e);
+  }
+  const int by_told = all_told > 0.0 ? count / 2 : 0, by_area = count - by_told;
+  const double share_of_area = static_cast<double>(by_area) / count;
+  std::vector<Place> places;
+  const SobolPoints sobol(std::max(1, by_area));
+  for (int i = 0; i < count; ++i) {
+    Place place;
+    if (i < by_area) {
+      const Eigen::Array4d u = sobol.point(i, error_point_key).cast<double>();
+      place.point = PatchSampler(mesh, static_cast<int>(drawn(area_to, u[0]))).point(u[1], u[2]);
+    } else {
+      const Eigen::Array4d u = sobol.point(i - by_area, told_point_key).cast<double>();
+      place.point = point_on_element(mesh, static_cast<int>(drawn(told_to, u[0])), u[1], u[2]);
+    }
+    if (by_told > 0) {
+      const int e = place.point.element;
+      const double of_told = told(e) / all_told, of_area = mesh.element_area[e] / area;
+      place.weight = of_area / (share_of_area * of_area + (1.0 - share_of_area) * of_told);
+    }
+    places.push_back(place);
+  }
+  return places;
+}
+
 }  // namespace
 
 ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const SolveOptions& options,
                              const RadiositySolution& solution, Eigen::ArrayXf* of_elements) {
   const PatchMesh& mesh = caster.mesh();
-  std::vector<double> area_to(mesh.patch_count());
-  double total = 0.0;
-  for (int p = 0; p < mesh.patch_count(); ++p) {
-    // Nobody sees what another surface lies on; looking from above would find that surface.
-    const bool is_seen = caster.hidden_elements(p) == 0;
-    if (is_seen && (mesh.reflectance.row(p) > 0.0f).any()) total += mesh.area[p];
-    area_to[p] = total;
-  }
-  if (!(total > 0.0) || options.error_points < 1) return {};
+  const std::vector<Place> places = places_to_look_at(caster, solution, options.error_points);
+  if (places.empty()) return {};
 
-  std::vector<GatherPoint> points(options.error_points);
+  std::vector<GatherPoint> points(places.size());
+  Eigen::ArrayXd weight(options.error_points);
   BandArray caustic = BandArray::Zero(options.error_points, scene.bands.count());
   BandArray interpolated(options.error_points, scene.bands.count());
   std::vector<int> element(points.size());
   const BandArray irradiance = solution.irradiance();
-  const SobolPoints sobol(options.error_points);
   for (int i = 0; i < options.error_points; ++i) {
-    const Eigen::Array4f u = sobol.point(i, error_point_key);
-    const auto at = std::upper_bound(area_to.begin(), area_to.end() - 1, u[0] * total);
-    const int p = static_cast<int>(at - area_to.begin());
-    const PatchPoint point = PatchSampler(mesh, p).point(u[1], u[2]);
+    const PatchPoint& point = places[i].point;
     points[i] = {point.position, point.normal, mesh.facet[point.element]};
-    // The element's own interpolation: look at the point from just above it.
-    const double above = 1e-3 * std::sqrt(mesh.element_area[point.element]);
-    const Ray ray{.origin = point.position + above * point.normal, .direction = -point.normal};
-    ElementHit hit;
-    caster.closest_hits({&ray, 1}, {&hit, 1});
-    if (hit.element < 0)
-      hit = {.facet = mesh.facet[point.element], .element = point.element, .weights = {1, 0, 0, 0}};
+    weight[i] = places[i].weight;
+    const ElementHit hit = place_on_element(mesh, point);
     element[i] = hit.element;
     interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
     if (solution.caustic_irradiance.size() > 0) {
@@ -89,10 +167,11 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
       scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
       gather_options);
   const BandArray truth = independent.direct + independent.indirect + caustic;
-  const double mean = truth.cast<double>().mean();
+  const Eigen::ArrayXd own = truth.cast<double>().rowwise().mean();
+  const double mean = (weight * own).sum() / weight.sum();
   if (!(mean > 0.0)) return {};
-  const Eigen::ArrayXd reference = truth.cast<double>().rowwise().mean().unaryExpr(
-      [mean](double own) { return error_reference(mean, own); });
+  const Eigen::ArrayXd reference =
+      own.unaryExpr([mean](double E) { return error_reference(mean, E); });
   const Eigen::ArrayXd squares = (interpolated - truth).cast<double>().square().rowwise().mean();
   const Eigen::ArrayXd relative = squares / reference.square();
   Eigen::ArrayXd noise(options.error_points);  // squared
@@ -109,7 +188,8 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
       *of_elements = (std::sqrt(std::max(excess, 0.0) / told) * indicator).cast<float>();
     }
   }
-  return {.error = std::sqrt(relative.mean()), .noise = std::sqrt(noise.mean())};
+  return {.error = std::sqrt((weight * relative).mean()),
+          .noise = std::sqrt((weight * noise).mean())};
 }
 
 }  // namespace lightwell
