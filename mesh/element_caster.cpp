@@ -20,33 +20,29 @@ bool is_front_polygon(const PatchMesh& mesh, int patch) {
   return mesh.is_back[patch] == 0 && sphere_grid_of(mesh, facet) == nullptr;
 }
 
-// (alpha, beta) of QuadShape.
-Eigen::Vector2d shape_of_quad(const PatchMesh& mesh, const std::array<int, 4>& c) {
-  const Vector3d p0 = mesh.position(c[0]);
-  const Vector3d x = mesh.position(c[1]) - p0, y = mesh.position(c[3]) - p0,
-                 d = mesh.position(c[2]) - p0;
+// (a, b) for which a x + b y is nearest to d.
+Eigen::Vector2d in_terms_of(const Vector3d& x, const Vector3d& y, const Vector3d& d) {
   const double xx = x.squaredNorm(), xy = x.dot(y), yy = y.squaredNorm();
   const double determinant = xx * yy - xy * xy;
   return {(yy * d.dot(x) - xy * d.dot(y)) / determinant,
           (xx * d.dot(y) - xy * d.dot(x)) / determinant};
 }
 
-// The ray caster meets a quad as the triangles (0,1,3) and (2,3,1), with u and v linear in each; so
-// the point is v0 + a (v1 - v0) + b (v3 - v0), and the bilinear (s, t) of that point solves
-//   a = s + (alpha - 1) s t,  b = t + (beta - 1) s t,   v2 - v0 = alpha (v1-v0) + beta (v3-v0).
-Array4f quad_weights(double alpha, double beta, double u, double v) {
+// (alpha, beta) of QuadShape.
+Eigen::Vector2d shape_of_quad(const PatchMesh& mesh, const std::array<int, 4>& c) {
+  const Vector3d p0 = mesh.position(c[0]);
+  return in_terms_of(mesh.position(c[1]) - p0, mesh.position(c[3]) - p0, mesh.position(c[2]) - p0);
+}
+
+bool is_parallelogram(double alpha, double beta) {
   constexpr double parallelogram = 1e-6;
-  if (std::abs(alpha - 1.0) + std::abs(beta - 1.0) < parallelogram) {
-    return Eigen::Array4d((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v).cast<float>();
-  }
-  double a = u, b = v;
-  if (u + v > 1.0) {
-    const double w1 = 1.0 - v, w3 = 1.0 - u, w2 = 1.0 - w1 - w3;
-    a = w1 + alpha * w2;
-    b = w3 + beta * w2;
-  }
-  // Newton from the parallelogram's answer; a convex quad has one root in the unit square.
-  double s = u, t = v;
+  return std::abs(alpha - 1.0) + std::abs(beta - 1.0) < parallelogram;
+}
+
+// Of the point v0 + a (v1 - v0) + b (v3 - v0), whose bilinear (s, t) solves
+//   a = s + (alpha - 1) s t,  b = t + (beta - 1) s t,   v2 - v0 = alpha (v1-v0) + beta (v3-v0),
+// by Newton from a first guess; a convex quad has one root in the unit square.
+Array4f bilinear_weights(double alpha, double beta, double a, double b, double s, double t) {
   constexpr int most_steps = 8;
   constexpr double converged = 1e-7;  // of the element; the next step would square it
   for (int step = 0; step < most_steps; ++step) {
@@ -61,6 +57,20 @@ Array4f quad_weights(double alpha, double beta, double u, double v) {
   s = std::clamp(s, 0.0, 1.0);
   t = std::clamp(t, 0.0, 1.0);
   return Eigen::Array4d((1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t).cast<float>();
+}
+
+// The ray caster meets a quad as the triangles (0,1,3) and (2,3,1), with u and v linear in each.
+Array4f quad_weights(double alpha, double beta, double u, double v) {
+  if (is_parallelogram(alpha, beta)) {
+    return Eigen::Array4d((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v).cast<float>();
+  }
+  double a = u, b = v;
+  if (u + v > 1.0) {
+    const double w1 = 1.0 - v, w3 = 1.0 - u, w2 = 1.0 - w1 - w3;
+    a = w1 + alpha * w2;
+    b = w3 + beta * w2;
+  }
+  return bilinear_weights(alpha, beta, a, b, u, v);  // from the parallelogram's answer
 }
 
 // The same place seen from the other side, whose corners run (0, 3, 2, 1) or (0, 2, 1).
@@ -371,6 +381,33 @@ void ElementCaster::closest_hits(std::span<const Ray> rays, std::span<ElementHit
 
 void ElementCaster::closest_elements(std::span<const Ray> rays, std::span<ElementHit> hits) const {
   cast<false>(rays, hits);
+}
+
+ElementHit place_on_element(const PatchMesh& mesh, const PatchPoint& point) {
+  const bool is_back = mesh.is_back[mesh.patch[point.element]] != 0;
+  ElementHit result{
+      .facet = mesh.facet[point.element], .element = point.element, .from_back = is_back};
+  if (const SphereGrid* grid = sphere_grid_of(mesh, result.facet)) {
+    const SpherePlace place = sphere_place(*grid, point.position - grid->sphere.center);
+    result.element = grid->element[place.ring * grid->sectors + place.sector];
+    result.weights = sphere_weights(*grid, place);
+    if (!is_back) return result;
+    result.element = mesh.twin[result.element];
+    result.weights = turned(result.weights, place.ring == 0 || place.ring == grid->rings - 1);
+    return result;
+  }
+  const auto& c = mesh.corners[point.element];
+  const bool is_triangle = mesh.corner_count(point.element) == 3;
+  const Vector3d p0 = mesh.position(c[0]);
+  const Eigen::Vector2d at = in_terms_of(
+      mesh.position(c[1]) - p0, mesh.position(c[is_triangle ? 2 : 3]) - p0, point.position - p0);
+  if (is_triangle) {
+    result.weights = Eigen::Array4d(1.0 - at[0] - at[1], at[0], at[1], 0.0).cast<float>();
+  } else {
+    const Eigen::Vector2d shape = shape_of_quad(mesh, c);
+    result.weights = bilinear_weights(shape[0], shape[1], at[0], at[1], at[0], at[1]);
+  }
+  return result;
 }
 
 Spectrum interpolate(const PatchMesh& mesh, const BandArray& vertex_values, const ElementHit& hit) {

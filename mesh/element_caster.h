@@ -77,6 +77,10 @@ class ElementCaster {
   std::shared_ptr<const std::vector<std::uint8_t>> hidden_{};  // per element, a bit per side
 };
 
+/// What a ray would meet at a point of an element if nothing else were there: the point must lie in
+/// the element, or on its sphere.
+ElementHit place_on_element(const PatchMesh& mesh, const PatchPoint& point);
+
 /// Value at a hit from values at vertices (vertices x bands).
 Spectrum interpolate(const PatchMesh& mesh, const BandArray& vertex_values, const ElementHit& hit);
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "radiosity/emitter_point.h"
+#include "radiosity/near_emitter.h"
 #include "radiosity/shadow_rays.h"
 
 namespace lightwell {
@@ -95,10 +96,20 @@ ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
           .weight = std::max(0.0, direction.dot(normal))};
 }
 
-ShadowSample shadow_sample(const Emitter& emitter, const Eigen::Vector3d& point,
-                           const Eigen::Vector3d& normal, int facet, double u, double v) {
+// The same of one that is near.
+ShadowSample near_sample(const NearEmitter& near, const Eigen::Vector3d& point,
+                         const Eigen::Vector3d& normal, double u, double v) {
+  const Eigen::Vector3d to = near.to_place(u, v);
+  return {.ray = {.origin = point, .direction = to, .t_max = 1.0},
+          .weight = std::max(0.0, to.normalized().dot(normal))};
+}
+
+ShadowSample shadow_sample(const Emitter& emitter, const NearEmitter& near,
+                           const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
+                           double u, double v) {
   ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u, v)
-                                          : polygon_sample(emitter, point, normal, u, v);
+                        : near.empty()    ? polygon_sample(emitter, point, normal, u, v)
+                                          : near_sample(near, point, normal, u, v);
   sample.ray.origin_group = facet;
   sample.ray.target_group = emitter.facet;
   return sample;
@@ -108,6 +119,7 @@ ShadowSample shadow_sample(const Emitter& emitter, const Eigen::Vector3d& point,
 struct LightShadow {
   const Emitter* emitter = nullptr;    // or
   const FreeSource* source = nullptr;  // whose kernel F then is
+  NearEmitter near{};
   int index = 0;
   double F = 0.0;
   int channel = 0;
@@ -129,8 +141,9 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
       const Eigen::Array4f u = sobol.point(s, shadows[i].key);
       const LightShadow& shadow = shadows[i];
       batch.add(static_cast<int>(i),
-                shadow.emitter ? shadow_sample(*shadow.emitter, point, normal, facet, u[0], u[1])
-                               : shadow_sample(*shadow.source, point, normal, facet, u[0], u[1]));
+                shadow.emitter
+                    ? shadow_sample(*shadow.emitter, shadow.near, point, normal, facet, u[0], u[1])
+                    : shadow_sample(*shadow.source, point, normal, facet, u[0], u[1]));
     }
   };
   for (std::size_t i = 0; i < shadows.size(); ++i) add(i, 0, shadows[i].least);
@@ -281,6 +294,7 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
   LightShadow shadow{
       .emitter = &emitter, .F = unoccluded_form_factor(emitter, point, normal, facet), .key = key};
   if (!(shadow.F > 0.0)) return 0.0;
+  shadow.near = NearEmitter(emitter, point);
   set_effort({&shadow, 1}, 1, options);
   return shadow.F *
          cast_shadows({&shadow, 1}, caster, samples_, point, normal, facet, nullptr)[0].share();
@@ -292,7 +306,8 @@ std::optional<bool> DirectLight::sees(int light, const ElementCaster& caster,
   const auto emitter_count = static_cast<int>(emitters_.size());
   const ShadowSample sample =
       light < emitter_count
-          ? shadow_sample(emitters_[light], point, normal, facet, u, v)
+          ? shadow_sample(emitters_[light], NearEmitter(emitters_[light], point), point, normal,
+                          facet, u, v)
           : shadow_sample(free_sources_[light - emitter_count], point, normal, facet, u, v);
   if (!(sample.weight > 0.0)) return std::nullopt;
   return (passed(caster, sample.ray) > 0.0f).any();
@@ -335,7 +350,9 @@ void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
     }
     shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, point, normal, facet)
                               : unoccluded_kernel(*shadow.source, point, normal);
-    if (shadow.F > 0.0) shadows.push_back(shadow);
+    if (!(shadow.F > 0.0)) continue;
+    if (shadow.emitter) shadow.near = NearEmitter(*shadow.emitter, point);
+    shadows.push_back(std::move(shadow));
   }
   set_effort(shadows, channel_count_, options);
   const std::vector<ShadowTally> tallies = cast_shadows(shadows, caster, samples_, point, normal,

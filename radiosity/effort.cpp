@@ -21,9 +21,8 @@ int patch_count_for(double target, int most) {
 }
 
 int deepest_level(double target, int usual) {
-  if (!(target > 0.0)) return usual;
-  constexpr double enough_for = 0.04;
-  return usual + std::clamp(static_cast<int>(std::ceil(std::log2(enough_for / target))), 0, 3);
+  constexpr int deeper = 3;
+  return target > 0.0 ? usual + deeper : usual;
 }
 
 int rays_for_noise(int rays, double found, double target) {

@@ -15,8 +15,9 @@ int form_factor_rays(double target, int most);
 /// where gathered rays end is light at vertices, gathered itself, so that patches may be coarse.
 int patch_count_for(double target, int most);
 
-/// How often elements may be split for such a target: `usual`, and once more each time that it is
-/// halved below four percent, up to three times, since shadows' edges then are what is left.
+/// How often elements may be split for such a target: three times more often than is `usual` where
+/// there is none. In the end the edges of shadows are what is left, on whatever large element they
+/// lie.
 int deepest_level(double target, int usual);
 
 /// Rays of a gather that leave the share `target` of noise, where `rays` of them left `found`: a

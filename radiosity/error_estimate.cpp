@@ -47,7 +47,7 @@ class ErrorPlaces {
   ErrorPlaces(const ElementCaster& caster, const Eigen::ArrayXf& interpolation_error)
       : mesh_(caster.mesh()), area_(mesh_.element_count(), 0.0), error_(area_) {
     for (int p = 0; p < mesh_.patch_count(); ++p) {
-      // Nobody sees what another surface lies on; looking from above would find that surface.
+      // Nobody sees what another surface lies on.
       const bool is_seen = caster.hidden_elements(p) == 0;
       if (!is_seen || !(mesh_.reflectance.row(p) > 0.0f).any()) continue;
       for (int e = mesh_.first_element[p]; e < mesh_.first_element[p + 1]; ++e) {
@@ -106,13 +106,7 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
   for (int i = 0; i < count; ++i) {
     const PatchPoint point = places.place(sobol.point(i, error_point_key), weight[i]);
     points[i] = {point.position, point.normal, mesh.facet[point.element]};
-    // The element's own interpolation: look at the point from just above it.
-    const double above = 1e-3 * std::sqrt(mesh.element_area[point.element]);
-    const Ray ray{.origin = point.position + above * point.normal, .direction = -point.normal};
-    ElementHit hit;
-    caster.closest_hits({&ray, 1}, {&hit, 1});
-    if (hit.element < 0)
-      hit = {.facet = mesh.facet[point.element], .element = point.element, .weights = {1, 0, 0, 0}};
+    const ElementHit hit = place_on_element(mesh, point);
     element[i] = hit.element;
     interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
     if (solution.caustic_irradiance.size() > 0) {

@@ -20,6 +20,9 @@ namespace {
 // bad as what it was split from, and only the report expects something between.
 constexpr double of_a_split = 0.4, of_a_split_in_the_end = 0.25;
 
+// Cells of equal error, by a scene's symmetry, are split together: rounding must not choose.
+constexpr double about_equal = 0.999;
+
 // About as many as elements of a quarter of the edge everywhere would be, both sides; those that
 // are small already, leaves and crumbs, would stay what they are.
 std::int64_t default_room(const RefinedElements& elements) {
@@ -85,7 +88,7 @@ class Refinement {
       } else if (marks.empty()) {
         report_.outcome = RefineOutcome::smallest_size_reached;
       } else if (!measure(marks)) {
-        if (!split(marks)) report_.outcome = RefineOutcome::max_elements_reached;
+        if (!split(worst_of(marks))) report_.outcome = RefineOutcome::max_elements_reached;
         ++report_.rounds;
       }
     }
@@ -137,16 +140,12 @@ class Refinement {
     double last = 0.0;
     const double all = rest, fixed = sum_ - all;
     for (const auto& [minus_square, cell] : by_error) {
-      // Cells of equal error, by a scene's symmetry, are split together: rounding must not choose.
-      constexpr double about_equal = 0.999;
       // In the last round no more than it takes, as far as that can be foreseen.
       const bool will_do = fixed + rest + of_children_ * (all - rest) <= 0.8 * allowed_;
-      if ((rest <= 0.5 * allowed_ || will_do) &&
-          (marks.empty() || -minus_square < about_equal * last)) {
-        break;
-      }
+      const bool is_enough = rest <= 0.5 * allowed_ || will_do;
+      if (is_enough && (marks.empty() || -minus_square < about_equal * last)) break;
       rest += minus_square;
-      last = -minus_square;
+      if (!is_enough) last = -minus_square;
       marks.push_back(cell);
     }
     return marks;
@@ -160,6 +159,17 @@ class Refinement {
     const double known = elements_.area(cell) * (squares_[cell][0] + squares_[cell][1]);
     const double hidden = elements_.area(cell) * (hidden_[cell][0] + hidden_[cell][1]);
     return hidden > notable * allowed_ ? known + hidden : known;
+  }
+
+  // Of leaves in falling order of squared error, those that are above what the children of the
+  // first will be by expectation: whoever is below can wait for them. So elements go where they
+  // serve most, however few there may be.
+  std::vector<int> worst_of(std::vector<int> marks) const {
+    constexpr double of_a_child = of_a_split / 4.0;
+    const double least = about_equal * of_a_child * counted(marks.front());
+    const auto end = std::ranges::find_if(marks, [&](int cell) { return counted(cell) < least; });
+    marks.erase(end, marks.end());
+    return marks;
   }
 
   double share_left(int cell) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/patch_sampler.h"
 #include "mesh_scenes.h"
 #include "scene/sampling.h"
 
@@ -95,6 +96,34 @@ TEST(ElementCaster, EveryElementIsFoundFromItsOwnSide) {
     Vector3d x = Vector3d::Zero();
     for (int i = 0; i < n; ++i) x += double(hits[e].weights[i]) * mesh.position(mesh.corners[e][i]);
     EXPECT_NEAR((x - element_center(mesh, e).position).norm(), 0.0, 1e-6);
+  }
+}
+
+// Whatever is in front of it: an element's own weights, without a ray.
+TEST(ElementCaster, PlaceOnAnElementIsWhereARayMeetsIt) {
+  Scene scene = cornell_with_oblique_facets();
+  add_sphere(scene, "ball", {.center = {0.3, 0.48, 0.1}, .radius = 0.03});
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.05});
+  const ElementCaster caster(mesh);
+  const BandArray values = positions_as_values(mesh);
+  constexpr double away = 1e-3;  // nothing in the scene is that close to anything else
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const PatchSampler sampler(mesh, p);
+    for (std::uint64_t i = 0; i < 4; ++i) {
+      const PatchPoint point = sampler.point(random_uniform(random_key(p, 2 * i)),
+                                             random_uniform(random_key(p, 2 * i + 1)));
+      const Ray ray{.origin = point.position + away * point.normal, .direction = -point.normal};
+      ElementHit met;
+      caster.closest_hits({&ray, 1}, {&met, 1});
+      const ElementHit place = place_on_element(mesh, point);
+      ASSERT_EQ(place.element, met.element);
+      EXPECT_EQ(place.facet, met.facet);
+      EXPECT_EQ(place.from_back, met.from_back);
+      const Spectrum value = interpolate(mesh, values, place);
+      // Rays know their place to float's 6e-8 of 0.5 m, in elements of some millimetres.
+      EXPECT_LT((value - interpolate(mesh, values, met)).abs().maxCoeff(), 1e-6f);
+      EXPECT_NEAR(place.weights.sum(), 1.0f, 1e-6f);
+    }
   }
 }
 
