@@ -67,7 +67,6 @@ std::vector<Eigen::Vector3f> dome_grid(int around, int rings, int n) {
 SkyLight::SkyLight(const Scene& scene, const PatchMesh& mesh)
     : bands_(scene.bands.count()), panes_(scene), sobol_(most_sky_rays) {
   tabulate(*scene.sky);
-  find_bright();
   cube_ = cube_share * std::max(scene_bounds(scene).diagonal(), 1e-9);
   learn(ElementCaster(mesh));
 }
@@ -127,15 +126,6 @@ void SkyLight::tabulate(const Sky& sky) {
       }
     }
   });
-}
-
-void SkyLight::find_bright() {
-  double all = 0.0;
-  for (const Cell& cell : cell_) all += cell.power;
-  constexpr double least_share = 1.0 / 32.0;
-  for (int c = 0; c < cells; ++c) {
-    if (cell_[static_cast<std::size_t>(c)].power > least_share * all) bright_.push_back(c);
-  }
 }
 
 SkyLight::Draw SkyLight::draw(int cell, double u, double v) const {
@@ -327,7 +317,7 @@ void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<
                     int rays, std::uint64_t key, Tally& tally) const {
   struct Sample {
     double weight = 0.0;
-    int cell = 0, bright = -1;
+    int cell = 0;
     bool is_open = false;
   };
   std::vector<Ray> ray;
@@ -350,7 +340,6 @@ void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<
     const double power = cell_[static_cast<std::size_t>(share.cell)].power;
     samples.push_back({.weight = cosine * power * all / (share.weight * rays),
                        .cell = share.cell,
-                       .bright = share.bright,
                        .is_open = share.is_open});
     ray.push_back({.origin = at.position, .direction = drawn.direction, .origin_group = at.facet});
   }
@@ -360,26 +349,17 @@ void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<
     const Sample& sample = samples[i];
     const Eigen::ArrayXd weight =
         sample.weight * colour_.row(sample.cell).transpose().cast<double>();
-    OfBright* const bright =
-        sample.bright < 0 ? nullptr : &tally.bright[static_cast<std::size_t>(sample.bright)];
-    if (bright) {
-      bright->all += weight;
-    } else if (sample.is_open) {
-      tally.all_open += weight;
-    }
-    Eigen::ArrayXd& seen = bright           ? bright->seen
-                           : sample.is_open ? tally.seen_open
-                                            : tally.seen_elsewhere;
+    if (sample.is_open) tally.all_open += weight;
     ++tally.rays;
     if (blocked[i] == 0) {
-      seen += weight;
+      (sample.is_open ? tally.seen_open : tally.seen_elsewhere) += weight;
       ++tally.clear;
       continue;
     }
     if (panes_.empty()) continue;
     const Spectrum passed = panes_.passed(caster, ray[i]);
     if (!(passed > 0.0f).any()) continue;
-    seen += weight * passed.cast<double>();
+    (sample.is_open ? tally.seen_open : tally.seen_elsewhere) += weight * passed.cast<double>();
     ++tally.clear;
   }
 }
@@ -408,74 +388,42 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
   if (shares.empty()) return {Spectrum::Zero(bands_)};
   const bool sees_nothing =
       std::ranges::none_of(shares, [](const Share& share) { return share.is_open; });
-  const int first = sees_nothing ? std::max(8, effort.first / 4) : effort.first;
   Eigen::ArrayXd E_open;
-  std::vector<double> E_bright;
   const auto share_out = [&] {
     double open = 0.0, elsewhere = 0.0, sum = 0.0;
-    int bright_elsewhere = 0;
-    for (Share& share : shares) {
-      const auto bright = std::ranges::find(bright_, share.cell);
-      share.bright = bright == bright_.end() ? -1 : static_cast<int>(bright - bright_.begin());
-      if (share.is_open) {
-        open += share.E;
-      } else if (share.bright < 0) {
-        elsewhere += share.E;
-      } else {
-        ++bright_elsewhere;
-      }
+    E_open = Eigen::ArrayXd::Zero(bands_);
+    for (const Share& share : shares) {
+      (share.is_open ? open : elsewhere) += share.E;
+      if (!share.is_open) continue;
+      E_open += share.E * colour_.row(share.cell).transpose().cast<double>();
     }
-    // Of the rays at most so many go where the site saw nothing, and to what is bright there; all,
-    // but few, if it saw nothing at all.
-    constexpr double most_elsewhere = 0.08, most_bright_elsewhere = 0.25;
+    // Of the rays at most so many go where the site saw nothing; all, but few, if it saw nothing at
+    // all.
+    constexpr double most_elsewhere = 0.08;
     const double thinning =
-        sees_nothing ? 1.0 : std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300));
+        open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
     for (Share& share : shares) {
       share.weight = share.is_open ? share.E : thinning * share.E;
-      if (!share.is_open && share.bright >= 0 && !sees_nothing) {
-        share.weight = std::min(share.E, most_bright_elsewhere * open / bright_elsewhere);
-      }
       share.cdf = sum += share.weight;
-    }
-    // A tally of its own needs a ray at least: what is as wide as two steps has one.
-    E_open = Eigen::ArrayXd::Zero(bands_);
-    E_bright.assign(bright_.size(), 0.0);
-    for (Share& share : shares) {
-      if (share.weight * std::min(first, effort.most) < 2.0 * sum) share.bright = -1;
-      if (share.bright >= 0) {
-        E_bright[static_cast<std::size_t>(share.bright)] = share.E;
-      } else if (share.is_open) {
-        E_open += share.E * colour_.row(share.cell).transpose().cast<double>();
-      }
     }
   };
   share_out();
 
-  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(bands_);
   const auto tally_of = [&](int rays, std::uint64_t purpose) {
-    Tally tally{.seen_open = none,
-                .all_open = none,
-                .seen_elsewhere = none,
-                .bright = std::vector<OfBright>(bright_.size(), {none, none})};
+    Tally tally{.seen_open = Eigen::ArrayXd::Zero(bands_),
+                .all_open = Eigen::ArrayXd::Zero(bands_),
+                .seen_elsewhere = Eigen::ArrayXd::Zero(bands_)};
     cast(caster, at, shares, std::clamp(rays, 1, most_sky_rays), random_key(key, purpose), tally);
     return tally;
   };
-  const auto share_of = [](const Eigen::ArrayXd& seen,
-                           const Eigen::ArrayXd& all) -> Eigen::ArrayXd {
-    return (all > 0.0).select(seen / all.max(1e-300), 0.0);
-  };
   const auto result = [&](const Tally& tally) -> Eigen::ArrayXd {
-    Eigen::ArrayXd E = E_open * share_of(tally.seen_open, tally.all_open) + tally.seen_elsewhere;
-    for (std::size_t b = 0; b < bright_.size(); ++b) {
-      E += E_bright[b] * colour_.row(bright_[b]).transpose().cast<double>() *
-           share_of(tally.bright[b].seen, tally.bright[b].all);
-    }
-    return E;
+    const Eigen::ArrayXd share =
+        (tally.all_open > 0.0).select(tally.seen_open / tally.all_open.max(1e-300), 0.0);
+    return E_open * share + tally.seen_elsewhere;
   };
+  const int first = sees_nothing ? std::max(8, effort.first / 4) : effort.first;
   const Tally look = tally_of(first, 1);
-  if (sees_nothing ? look.clear == 0 : look.clear == look.rays) {
-    return {result(look).cast<float>()};
-  }
+  if (sees_nothing && look.clear == 0) return {result(look).cast<float>()};
   // Where the site tells little of the point, as beside a wall that parts light from dark, rays
   // that follow it are few for what they find.
   constexpr double much = 0.2;
@@ -486,6 +434,7 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
     return {result(all).cast<float>(), all.clear < all.rays};
   }
   // A small opening is often missed by the first rays: that they see nothing settles nothing.
+  if (look.clear == look.rays) return {result(look).cast<float>()};
   const Tally more = tally_of(effort.most, 2);
   const double share = static_cast<double>(first) / (first + effort.most);
   return {(share * result(look) + (1.0 - share) * result(more)).cast<float>(), true};

@@ -36,8 +36,7 @@ struct SkyGlow {
 /// it. A few go elsewhere, with the weight that this asks for, so that what no ray of the site had
 /// found is right in the mean. Of the cells that are open the result is their unobstructed
 /// irradiance times the visible share of what the rays stand for: with nothing in the way there is
-/// no noise. *Bright* cells, such as the one in which a map has its sun, have such a share each,
-/// and rays whatever the site has found: seen or not, they are most of what a point gets.
+/// no noise.
 ///
 /// Within cells directions follow the sky's luminance on a grid of 0.7 degrees, on which maps are
 /// averaged.
@@ -84,20 +83,13 @@ class SkyLight {
     double cdf = 0.0;     // running sum of what rays are given by
     double weight = 0.0;  // its step
     bool is_open = false;
-    int bright = -1;  // its own tally
-  };
-  // Rays to a bright cell and what of them gets out, per band.
-  struct OfBright {
-    Eigen::ArrayXd seen, all;
   };
   struct Tally {
     Eigen::ArrayXd seen_open, all_open, seen_elsewhere;  // per band
-    std::vector<OfBright> bright{};
     int rays = 0, clear = 0;
   };
 
   void tabulate(const Sky& sky);
-  void find_bright();
   void learn(const ElementCaster& caster);
   Site learn_at(const ElementCaster& caster, std::span<const SitePoint> points,
                 std::uint64_t key) const;
@@ -114,7 +106,6 @@ class SkyLight {
   Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // columns: north, east, up
   std::array<Cell, cells> cell_{};
   std::array<int, cells> order_{};   // in which steps go over them
-  std::vector<int> bright_{};        // cells
   std::vector<float> radiance_{};    // of the fine grid, cell after cell, mean of the bands
   std::vector<float> row_cdf_{};     // of the rows of each cell's fine grid
   std::vector<float> column_cdf_{};  // within each of its rows

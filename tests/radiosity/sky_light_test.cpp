@@ -184,8 +184,8 @@ TEST(SkyLight, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(found(1), found(3));
 }
 
-// A map with one bright place is as good as a sun there: sharp, and found wherever it is.
-TEST(SkyLight, BrightPlaceOfAMapIsFound) {
+// Of radiance 0.1, and of 5000 in three pixels of 1.4 degrees that give nine tenths of the light.
+Sky map_with_a_sun() {
   constexpr int width = 256, height = 128;
   BandArray pixels = BandArray::Constant(width * height, 3, 0.1f);
   for (int y = 30; y < 33; ++y) pixels.row(y * width + 140).setConstant(5000.0f);
@@ -193,13 +193,57 @@ TEST(SkyLight, BrightPlaceOfAMapIsFound) {
   sky.map = std::make_shared<EnvironmentMap>(width, height, pixels);
   sky.to_map << Vector3d::UnitX().transpose(), Vector3d::UnitZ().transpose(),
       -Vector3d::UnitY().transpose();
+  return sky;
+}
+
+// A map with one bright place is as good as a sun there: sharp, and found wherever it is.
+TEST(SkyLight, BrightPlaceOfAMapIsFound) {
   Scene scene = open_plane();
-  scene.sky = sky;
+  scene.sky = map_with_a_sun();
   const UnderSky plane{scene};
-  const double expected = static_cast<double>(diffuse_horizontal_irradiance(sky)[0]);
+  const double expected = static_cast<double>(diffuse_horizontal_irradiance(*scene.sky)[0]);
   // Three pixels of 1.4 degrees are drawn as cells of 0.7: their light is kept, but its cosine is
   // that of the cell, off by up to half of 0.7 degrees.
   EXPECT_NEAR(plane.at({0, 0, 0}, Vector3d::UnitZ(), 0), expected, 0.006 * expected);
+}
+
+// Wherever the shadow of a plate ends in a site, and whatever the site has found of that.
+TEST(SkyLight, ShadowOfABrightPlaceIsFoundWithoutNoise) {
+  Scene scene = open_plane();
+  scene.sky = map_with_a_sun();
+  const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+  constexpr double height = 0.5;
+  test::add_polygon(
+      scene, "plate", black,
+      {{-0.7, -0.7, height}, {0.7, -0.7, height}, {0.7, 0.7, height}, {-0.7, 0.7, height}});
+  const UnderSky plane{scene};
+  const double open = static_cast<double>(diffuse_horizontal_irradiance(*scene.sky)[0]);
+  double squares = 0.0;
+  int count = 0, in_shadow = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Vector3d point{-1.9 + 0.097 * i, 0.1, 0.0};
+    double truth = 0.0;
+    constexpr int keys = 4;
+    for (std::uint64_t key = 0; key < keys; ++key) {
+      truth += static_cast<double>(plane.light
+                                       .irradiance(plane.caster, point, Vector3d::UnitZ(), 0,
+                                                   100 + key, {.first = 1024, .most = 1024})
+                                       .irradiance[1]) /
+               keys;
+    }
+    const bool is_shadow = truth < 0.2 * open;
+    in_shadow += is_shadow ? 1 : 0;
+    if (!is_shadow && truth < 0.9 * open) continue;  // penumbra
+    for (std::uint64_t key = 0; key < keys; ++key) {
+      squares += std::pow(plane.at(point, Vector3d::UnitZ(), 0, key) / open - truth / open, 2);
+      ++count;
+    }
+  }
+  std::printf("%d points in the shadow, noise %.4f of the open sky\n", in_shadow,
+              std::sqrt(squares / count));
+  EXPECT_GT(in_shadow, 4);
+  EXPECT_GT(count, 100);
+  EXPECT_LT(std::sqrt(squares / count), 0.01);
 }
 
 }  // namespace
