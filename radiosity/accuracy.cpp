@@ -74,7 +74,13 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
     // It may have gone below the tolerance by itself.
     const double reached =
         std::clamp(refinement.estimate, 0.5 * spent.refine_tolerance, spent.refine_tolerance);
-    next.refine_tolerance = reached * std::clamp(0.95 * goal / without, 0.4, 0.9);
+    // What is off besides, such as places between two sheets, no splitting takes away: elements
+    // take the rest of what is allowed.
+    const double besides = std::sqrt(std::max(without * without - reached * reached, 0.0));
+    const double left = std::sqrt(std::max(goal * goal - besides * besides, 0.0));
+    const double wanted = besides > 0.0 ? left : 0.95 * goal / without * reached;
+    constexpr double largest_step = 0.6, smallest_step = 0.9;
+    next.refine_tolerance = std::clamp(wanted, largest_step * reached, smallest_step * reached);
   }
   const bool is_more =
       next.gather_rays > spent.gather_rays || next.refine_tolerance < spent.refine_tolerance;
