@@ -53,6 +53,7 @@ class Refinement {
         error_(error),
         options_(options),
         max_elements_(options.max_elements > 0 ? options.max_elements : default_room(elements)),
+        may_go_on_(may_go_on),
         of_children_(may_go_on ? of_a_split : 1.0),
         in_the_end_(may_go_on ? 1.0 : of_a_split_in_the_end),
         report_{.elements_at_first = elements.element_count()} {
@@ -88,7 +89,9 @@ class Refinement {
       } else if (marks.empty()) {
         report_.outcome = RefineOutcome::smallest_size_reached;
       } else if (!measure(marks)) {
-        if (!split(worst_of(marks))) report_.outcome = RefineOutcome::max_elements_reached;
+        if (!split(may_wait(marks) ? worst_of(marks) : marks)) {
+          report_.outcome = RefineOutcome::max_elements_reached;
+        }
         ++report_.rounds;
       }
     }
@@ -161,6 +164,13 @@ class Refinement {
     return hidden > notable * allowed_ ? known + hidden : known;
   }
 
+  // Whether it pays to choose anew after the worst are split: where no more elements are wanted
+  // than it takes, or where there may soon be none left. Else all at once are fewer rounds.
+  bool may_wait(const std::vector<int>& marks) const {
+    const auto made = 3 * static_cast<std::int64_t>(marks.size());
+    return may_go_on_ || 2 * (elements_.element_count() + made) > max_elements_;
+  }
+
   // Of leaves in falling order of squared error, those that are above what the children of the
   // first will be by expectation: whoever is below can wait for them. So elements go where they
   // serve most, however few there may be.
@@ -227,6 +237,7 @@ class Refinement {
   InterpolationError& error_;
   RefineOptions options_;
   std::int64_t max_elements_;
+  bool may_go_on_;
   double of_children_, in_the_end_;
   RefineReport report_;
   double allowed_ = 0.0;
