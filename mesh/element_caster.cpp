@@ -34,11 +34,6 @@ Eigen::Vector2d shape_of_quad(const PatchMesh& mesh, const std::array<int, 4>& c
   return in_terms_of(mesh.position(c[1]) - p0, mesh.position(c[3]) - p0, mesh.position(c[2]) - p0);
 }
 
-bool is_parallelogram(double alpha, double beta) {
-  constexpr double parallelogram = 1e-6;
-  return std::abs(alpha - 1.0) + std::abs(beta - 1.0) < parallelogram;
-}
-
 // Of the point v0 + a (v1 - v0) + b (v3 - v0), whose bilinear (s, t) solves
 //   a = s + (alpha - 1) s t,  b = t + (beta - 1) s t,   v2 - v0 = alpha (v1-v0) + beta (v3-v0),
 // by Newton from a first guess; a convex quad has one root in the unit square.
@@ -61,7 +56,8 @@ Array4f bilinear_weights(double alpha, double beta, double a, double b, double s
 
 // The ray caster meets a quad as the triangles (0,1,3) and (2,3,1), with u and v linear in each.
 Array4f quad_weights(double alpha, double beta, double u, double v) {
-  if (is_parallelogram(alpha, beta)) {
+  constexpr double parallelogram = 1e-6;
+  if (std::abs(alpha - 1.0) + std::abs(beta - 1.0) < parallelogram) {
     return Eigen::Array4d((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v).cast<float>();
   }
   double a = u, b = v;
@@ -76,6 +72,18 @@ Array4f quad_weights(double alpha, double beta, double u, double v) {
 // The same place seen from the other side, whose corners run (0, 3, 2, 1) or (0, 2, 1).
 Array4f turned(const Array4f& w, bool is_triangle) {
   return is_triangle ? Array4f(w[0], w[2], w[1], 0.0f) : Array4f(w[0], w[3], w[2], w[1]);
+}
+
+// Puts the element under a point of a sphere into `hit`, `from_center` away from its center.
+void find_on_sphere(const PatchMesh& mesh, const SphereGrid& grid, const Vector3d& from_center,
+                    ElementHit& hit) {
+  const SpherePlace place = sphere_place(grid, from_center);
+  hit.element = grid.element[place.ring * grid.sectors + place.sector];
+  hit.weights = sphere_weights(grid, place);
+  if (!hit.from_back) return;
+  hit.element = mesh.twin[hit.element];
+  const bool is_triangle = place.ring == 0 || place.ring == grid.rings - 1;
+  hit.weights = hit.element < 0 ? Array4f(Array4f::Zero()) : turned(hit.weights, is_triangle);
 }
 
 // v2 - v0 = alpha (v1 - v0) + beta (v3 - v0); both 1 in a parallelogram.
@@ -164,23 +172,20 @@ struct ElementCaster::Part {
                       .element = primitives.element[hit.primitive],
                       .from_back = hit.from_back,
                       .t = hit.t};
-    const bool is_polygon = hit.primitive < polygons;
-    bool is_triangle = hit.primitive < triangles;
-    if (!with_weights && is_polygon) {
+    if (hit.primitive >= polygons) {
+      const SphereGrid& grid = mesh.sphere_grids[result.element];
+      find_on_sphere(mesh, grid, ray.origin + hit.t * ray.direction - grid.sphere.center, result);
+      return result;
+    }
+    const bool is_triangle = hit.primitive < triangles;
+    if (!with_weights) {
       // Nothing more to find out.
     } else if (is_triangle) {
       result.weights = {1.0f - hit.u - hit.v, hit.u, hit.v, 0.0f};
-    } else if (is_polygon) {
+    } else {
       const QuadShape& shape =
           primitives.quad_shape[static_cast<std::size_t>(hit.primitive - triangles)];
       result.weights = quad_weights(shape.alpha, shape.beta, hit.u, hit.v);
-    } else {
-      const SphereGrid& grid = mesh.sphere_grids[result.element];
-      const SpherePlace place =
-          sphere_place(grid, ray.origin + hit.t * ray.direction - grid.sphere.center);
-      result.element = grid.element[place.ring * grid.sectors + place.sector];
-      result.weights = sphere_weights(grid, place);
-      is_triangle = place.ring == 0 || place.ring == grid.rings - 1;
     }
     if (!hit.from_back) return result;
     result.element = mesh.twin[result.element];
@@ -388,12 +393,7 @@ ElementHit place_on_element(const PatchMesh& mesh, const PatchPoint& point) {
   ElementHit result{
       .facet = mesh.facet[point.element], .element = point.element, .from_back = is_back};
   if (const SphereGrid* grid = sphere_grid_of(mesh, result.facet)) {
-    const SpherePlace place = sphere_place(*grid, point.position - grid->sphere.center);
-    result.element = grid->element[place.ring * grid->sectors + place.sector];
-    result.weights = sphere_weights(*grid, place);
-    if (!is_back) return result;
-    result.element = mesh.twin[result.element];
-    result.weights = turned(result.weights, place.ring == 0 || place.ring == grid->rings - 1);
+    find_on_sphere(mesh, *grid, point.position - grid->sphere.center, result);
     return result;
   }
   const auto& c = mesh.corners[point.element];

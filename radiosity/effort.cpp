@@ -20,11 +20,6 @@ int patch_count_for(double target, int most) {
   return std::min(most, static_cast<int>(std::lround(wanted)));
 }
 
-int deepest_level(double target, int usual) {
-  constexpr int deeper = 3;
-  return target > 0.0 ? usual + deeper : usual;
-}
-
 int rays_for_noise(int rays, double found, double target) {
   constexpr double order = 2.0 / 3.0, fewest = 128.0, most = 1 << 15;
   const double wanted = rays * std::pow(found / target, 1.0 / order);

@@ -15,11 +15,6 @@ int form_factor_rays(double target, int most);
 /// where gathered rays end is light at vertices, gathered itself, so that patches may be coarse.
 int patch_count_for(double target, int most);
 
-/// How often elements may be split for such a target: three times more often than is `usual` where
-/// there is none. In the end the edges of shadows are what is left, on whatever large element they
-/// lie.
-int deepest_level(double target, int usual);
-
 /// Rays of a gather that leave the share `target` of noise, where `rays` of them left `found`: a
 /// power of two, or three quarters of one. Stratified rays' error in a room falls with about the
 /// power 2/3 of their number.

@@ -39,6 +39,11 @@ Eigen::ArrayXd indicators(const PatchMesh& mesh, const BandArray& irradiance) {
   return indicator;
 }
 
+struct ErrorPlace {
+  PatchPoint point{};
+  double weight = 0.0;  // the share of the area over that of places
+};
+
 // Draws places on all that reflects and is seen: half of them evenly over its area, half in
 // proportion to the squared error that refinement says is left in elements. That may sit in few
 // small ones, along the edges of shadows, which as many places spread evenly would hardly meet.
@@ -65,12 +70,11 @@ class ErrorPlaces {
 
   bool is_empty() const { return !(total_area_ > 0.0); }
 
-  // `weight` gets the share of the area over that of places.
-  PatchPoint place(const Eigen::Array4f& u, double& weight) const {
+  ErrorPlace place(const Eigen::Array4f& u) const {
     const auto at = std::upper_bound(up_to_.begin(), up_to_.end() - 1, u[0] * up_to_.back());
     const auto e = static_cast<int>(at - up_to_.begin());
-    weight = area_[e] / total_area_ / density(e);
-    return PatchSampler(mesh_, mesh_.patch[e], e).point(u[1], u[2]);
+    return {PatchSampler(mesh_, mesh_.patch[e], e).point(u[1], u[2]),
+            area_[e] / total_area_ / density(e)};
   }
 
  private:
@@ -86,22 +90,24 @@ class ErrorPlaces {
   std::vector<double> up_to_{};  // densities of an element and all before
 };
 
-// Places in cracks, where another surface lies a hair above, count for nothing: nobody sees them,
-// and what a crack lets in there, light or none of it, the vertices around cannot tell.
-void leave_out_cracks(const ElementCaster& caster, double width,
-                      const std::vector<GatherPoint>& points, Eigen::ArrayXd& weight) {
+// Those that are in no crack. Where another surface lies a hair above nobody sees a place, and what
+// light the crack lets in there the vertices around cannot tell.
+std::vector<ErrorPlace> open_places(const ElementCaster& caster, double width,
+                                    const std::vector<ErrorPlace>& places) {
   std::vector<Ray> rays;
-  for (const GatherPoint& point : points) {
+  for (const auto& [point, weight] : places) {
     rays.push_back({.origin = point.position,
                     .direction = width * point.normal,
                     .t_max = 1.0,
-                    .origin_group = point.facet});
+                    .origin_group = caster.mesh().facet[point.element]});
   }
   std::vector<std::uint8_t> blocked(rays.size());
   caster.occluded(rays, blocked);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (blocked[i] != 0) weight[static_cast<Eigen::Index>(i)] = 0.0;
+  std::vector<ErrorPlace> open;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (blocked[i] == 0) open.push_back(places[i]);
   }
+  return open;
 }
 
 }  // namespace
@@ -111,34 +117,39 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
                              const RadiositySolution& solution, Eigen::ArrayXf* of_elements) {
   const PatchMesh& mesh = caster.mesh();
   const ErrorPlaces places(caster, solution.interpolation_error);
-  const int count = estimate_places(options.error_points, mesh.vertex_count());
-  if (places.is_empty() || count < 1) return {};
+  const int wanted = estimate_places(options.error_points, mesh.vertex_count());
+  if (places.is_empty() || wanted < 1) return {};
+  const SobolPoints sobol(wanted);
+  std::vector<ErrorPlace> drawn;
+  for (int i = 0; i < wanted; ++i) drawn.push_back(places.place(sobol.point(i, error_point_key)));
+  constexpr double crack = 1e-4;  // of the scene
+  drawn = open_places(caster, crack * scene_bounds(scene).diagonal(), drawn);
+  if (drawn.empty()) return {};
 
-  std::vector<GatherPoint> points(static_cast<std::size_t>(count));
+  const auto count = static_cast<Eigen::Index>(drawn.size());
+  std::vector<GatherPoint> points;
   BandArray caustic = BandArray::Zero(count, scene.bands.count());
   BandArray interpolated(count, scene.bands.count());
-  std::vector<int> element(points.size());
+  std::vector<int> element;
   Eigen::ArrayXd weight(count);
   const BandArray irradiance = solution.irradiance();
-  const SobolPoints sobol(count);
-  for (int i = 0; i < count; ++i) {
-    const PatchPoint point = places.place(sobol.point(i, error_point_key), weight[i]);
-    points[i] = {point.position, point.normal, mesh.facet[point.element]};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto& [point, share] = drawn[static_cast<std::size_t>(i)];
+    points.push_back({point.position, point.normal, mesh.facet[point.element]});
     const ElementHit hit = place_on_element(mesh, point);
-    element[i] = hit.element;
+    element.push_back(hit.element);
     interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
     if (solution.caustic_irradiance.size() > 0) {
       caustic.row(i) = interpolate(mesh, solution.caustic_irradiance, hit).transpose();
     }
+    weight[i] = share;
   }
-  constexpr double crack = 1e-4;  // of the scene
-  leave_out_cracks(caster, crack * scene_bounds(scene).diagonal(), points, weight);
-  if (!(weight > 0.0).any()) return {};
+  weight /= weight.mean();
   GatherOptions gather_options = options.gather;
   ShadowOptions& shadows = gather_options.shadows;
   shadows.min_rays = std::max(shadows.min_rays, fewest_shadow_rays.min_rays);
   shadows.max_rays = std::max(shadows.max_rays, fewest_shadow_rays.max_rays);
-  gather_options.rays = estimate_rays(options.gather.rays, mesh.vertex_count(), count);
+  gather_options.rays = estimate_rays(options.gather.rays, mesh.vertex_count(), wanted);
   gather_options.replica = options.gather.replica + 1;
   gather_options.progress = options.progress;
   gather_options.journal = options.journal;
@@ -146,16 +157,17 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
       scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
       gather_options);
   const BandArray truth = independent.direct + independent.indirect + caustic;
-  const double mean = (truth.cast<double>().rowwise().mean() * weight).sum() / weight.sum();
+  const Eigen::ArrayXd own = truth.cast<double>().rowwise().mean();
+  const double mean = (weight * own).mean();
   if (!(mean > 0.0)) return {};
-  const Eigen::ArrayXd reference = truth.cast<double>().rowwise().mean().unaryExpr(
-      [mean](double own) { return error_reference(mean, own); });
+  const Eigen::ArrayXd reference =
+      own.unaryExpr([mean](double here) { return error_reference(mean, here); });
   const Eigen::ArrayXd squares = (interpolated - truth).cast<double>().square().rowwise().mean();
   const Eigen::ArrayXd relative = squares / reference.square();
   Eigen::ArrayXd noise(count);  // squared
-  for (int i = 0; i < count; ++i) {
+  for (Eigen::Index i = 0; i < count; ++i) {
     noise[i] = independent.variance[i] / (reference[i] * reference[i]) +
-               std::pow(double{solution.gather_noise[element[i]]}, 2);
+               std::pow(double{solution.gather_noise[element[static_cast<std::size_t>(i)]]}, 2);
   }
   if (of_elements) {
     const Eigen::ArrayXd indicator = indicators(mesh, irradiance);
@@ -168,7 +180,8 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
   }
   const Eigen::ArrayXd squared = weight * relative;
   const double standard_error =
-      std::sqrt((squared - squared.mean()).square().mean() / std::max(count - 1, 1));
+      std::sqrt((squared - squared.mean() * weight).square().mean() /
+                static_cast<double>(std::max<Eigen::Index>(count - 1, 1)));
   return {.error = std::sqrt(squared.mean() + standard_error),
           .noise = std::sqrt(of_whole_set * (weight * noise).mean())};
 }

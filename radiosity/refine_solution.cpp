@@ -15,9 +15,9 @@ namespace lightwell {
 namespace {
 
 // A split leaves a sixteenth of the squared error where light is smooth, and half of it along an
-// edge, where it has cells left that the edge runs through: that is what most are split for. Who
-// may go on later ends by what is expected so; else all is measured that counts, or taken to be as
-// bad as what it was split from, and only the report expects something between.
+// edge, where it has cells left that the edge runs through: that is what most are split for, not
+// all. Who may go on later ends by what is expected so; else all is measured that counts, or taken
+// to be as bad as what it was split from, and only the report expects something between.
 constexpr double of_a_split = 0.4, of_a_split_in_the_end = 0.25;
 
 // Cells of equal error, by a scene's symmetry, are split together: rounding must not choose.

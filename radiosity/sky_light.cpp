@@ -388,18 +388,11 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
   if (shares.empty()) return {Spectrum::Zero(bands_)};
   const bool sees_nothing =
       std::ranges::none_of(shares, [](const Share& share) { return share.is_open; });
-  Eigen::ArrayXd E_open;
-  const auto share_out = [&] {
+  // For a ray to what the site saw open at most `most_elsewhere` rays go where it saw nothing; if
+  // it saw nothing at all, all go there.
+  const auto share_out = [&](double most_elsewhere) {
     double open = 0.0, elsewhere = 0.0, sum = 0.0;
-    E_open = Eigen::ArrayXd::Zero(bands_);
-    for (const Share& share : shares) {
-      (share.is_open ? open : elsewhere) += share.E;
-      if (!share.is_open) continue;
-      E_open += share.E * colour_.row(share.cell).transpose().cast<double>();
-    }
-    // Of the rays at most so many go where the site saw nothing; all, but few, if it saw nothing at
-    // all.
-    constexpr double most_elsewhere = 0.08;
+    for (const Share& share : shares) (share.is_open ? open : elsewhere) += share.E;
     const double thinning =
         open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
     for (Share& share : shares) {
@@ -407,7 +400,14 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
       share.cdf = sum += share.weight;
     }
   };
-  share_out();
+  const auto open_irradiance = [&] {
+    Eigen::ArrayXd E = Eigen::ArrayXd::Zero(bands_);
+    for (const Share& share : shares) {
+      if (share.is_open) E += share.E * colour_.row(share.cell).transpose().cast<double>();
+    }
+    return E;
+  };
+  Eigen::ArrayXd E_open = open_irradiance();
 
   const auto tally_of = [&](int rays, std::uint64_t purpose) {
     Tally tally{.seen_open = Eigen::ArrayXd::Zero(bands_),
@@ -422,6 +422,10 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
     return E_open * share + tally.seen_elsewhere;
   };
   const int first = sees_nothing ? std::max(8, effort.first / 4) : effort.first;
+  // The first rays also tell whether the site knows the point's sky at all; once that is known,
+  // what it knows is where noise is.
+  constexpr double at_first = 0.33, later = 0.08;
+  share_out(at_first);
   const Tally look = tally_of(first, 1);
   if (sees_nothing && look.clear == 0) return {result(look).cast<float>()};
   // Where the site tells little of the point, as beside a wall that parts light from dark, rays
@@ -429,12 +433,14 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
   constexpr double much = 0.2;
   if (look.seen_elsewhere.sum() > much * result(look).sum()) {
     for (Share& share : shares) share.is_open = true;
-    share_out();
+    E_open = open_irradiance();
+    share_out(later);
     const Tally all = tally_of(effort.most, 2);
     return {result(all).cast<float>(), all.clear < all.rays};
   }
   // A small opening is often missed by the first rays: that they see nothing settles nothing.
   if (look.clear == look.rays) return {result(look).cast<float>()};
+  share_out(later);
   const Tally more = tally_of(effort.most, 2);
   const double share = static_cast<double>(first) / (first + effort.most);
   return {(share * result(look) + (1.0 - share) * result(more)).cast<float>(), true};

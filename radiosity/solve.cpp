@@ -194,11 +194,14 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   std::map<std::string, double> spent;
   Stopwatch watch;
   RadiositySolution& solution = solved.solution;
-  if (target > 0.0 && in_force.refine.max_elements == 0) {
+  if (target > 0.0) {
+    // In the end the edges of shadows are what is left, on whatever large elements they lie.
+    constexpr int deeper = 3;
+    in_force.refine.max_level += deeper;
     // Who asks for an accuracy asks for the elements it takes; about 1 GB of them.
     constexpr std::int64_t plenty = 1000000;
-    in_force.refine.max_elements = std::max<std::int64_t>(plenty, 4 * solved.mesh.element_count());
-    in_force.refine.max_level = deepest_level(target, options.refine.max_level);
+    auto& most = in_force.refine.max_elements;
+    if (most == 0) most = std::max<std::int64_t>(plenty, 4 * solved.mesh.element_count());
   }
   const bool may_try_again = target > 0.0;
   std::optional<Drafting> drafting(std::in_place, scene, std::move(solved.mesh), kept_apart,

@@ -59,7 +59,7 @@ polygon = [[0, 0, 2], [0, 2, 2], [1, 2, 2], [1, 0, 2]]
                               "right", "--rays", "64"});
   ASSERT_EQ(json["surfaces"].size(), 2u);
   for (const Json& surface : json["surfaces"]) {
-    EXPECT_NEAR(surface["area_m2"].get<double>(), 4.0, 1e-9);
+    EXPECT_DOUBLE_EQ(surface["area_m2"].get<double>(), 4.0);
     EXPECT_EQ(surface["points"], json["surfaces"][0]["points"]);
   }
   EXPECT_EQ(json["surfaces"][1]["name"], "right");

@@ -140,8 +140,8 @@ TEST(JoinedSurfaces, WhatFillsAHoleStaysAnObjectOfItsOwn) {
   const auto names = join_surfaces(scene);
   ASSERT_TRUE(names);
   EXPECT_EQ(facet_count(scene), 2);
-  EXPECT_NEAR(surface_area(scene.surfaces[0]), 2.0 - 0.04, 1e-12);
-  EXPECT_NEAR(surface_area(scene.surfaces[1]), 0.04, 1e-12);
+  EXPECT_DOUBLE_EQ(surface_area(scene.surfaces[0]), 2.0 - 0.04);
+  EXPECT_DOUBLE_EQ(surface_area(scene.surfaces[1]), 0.04);
   EXPECT_EQ(mesh_of(scene, 2).facets.size(), 0u);
 }
 
@@ -165,7 +165,7 @@ TEST(JoinedSurfaces, OtherPolygonsOfASurfaceStay) {
   ASSERT_TRUE(join_surfaces(scene));
   // Four sides of both became one each; the two faces between them cover each other.
   EXPECT_EQ(facet_count(scene), 8);
-  EXPECT_NEAR(scene_area(scene), area, 1e-12);
+  EXPECT_DOUBLE_EQ(scene_area(scene), area);
   EXPECT_NO_THROW(build_patches(scene, {.max_patch_size = 0.5}));
 }
 

@@ -11,7 +11,6 @@ namespace {
 TEST(Effort, NoTargetChangesNothing) {
   EXPECT_EQ(form_factor_rays(0.0, 512), 512);
   EXPECT_EQ(patch_count_for(0.0, 1600), 1600);
-  EXPECT_EQ(deepest_level(0.0, 4), 4);
 }
 
 TEST(Effort, LooseTargetsTakeLess) {
@@ -22,11 +21,6 @@ TEST(Effort, LooseTargetsTakeLess) {
   EXPECT_EQ(patch_count_for(0.01, 1600), 1600);
   EXPECT_EQ(patch_count_for(0.02, 1600), 800);
   EXPECT_EQ(patch_count_for(0.5, 1600), 600);
-}
-
-TEST(Effort, TargetsSplitMoreOften) {
-  EXPECT_EQ(deepest_level(0.05, 4), 7);
-  EXPECT_EQ(deepest_level(1e-5, 2), 5);
 }
 
 // The error of stratified rays falls with the power 2/3 of their number: 8 times as many, a
