@@ -41,6 +41,8 @@ const char* outcome_name(RefineOutcome outcome) {
       return "tolerance_reached";
     case RefineOutcome::max_elements_reached:
       return "max_elements_reached";
+    case RefineOutcome::memory_limit_reached:
+      return "memory_limit_reached";
     case RefineOutcome::smallest_size_reached:
       return "smallest_size_reached";
     case RefineOutcome::off:

@@ -45,11 +45,12 @@ struct ErrorPlace {
 };
 
 // Draws places on all that reflects and is seen: half of them evenly over its area, half in
-// proportion to the squared error that refinement says is left in elements. That may sit in few
-// small ones, along the edges of shadows, which as many places spread evenly would hardly meet.
+// proportion to the squared error that elements are told to have (any multiple of it). That may sit
+// in few small ones, along the edges of shadows, which as many places spread evenly would hardly
+// meet.
 class ErrorPlaces {
  public:
-  ErrorPlaces(const ElementCaster& caster, const Eigen::ArrayXf& interpolation_error)
+  ErrorPlaces(const ElementCaster& caster, const Eigen::ArrayXd& told)
       : mesh_(caster.mesh()), area_(mesh_.element_count(), 0.0), error_(area_) {
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       // Nobody sees what another surface lies on.
@@ -58,8 +59,7 @@ class ErrorPlaces {
       for (int e = mesh_.first_element[p]; e < mesh_.first_element[p + 1]; ++e) {
         area_[e] = mesh_.element_area[e];
         total_area_ += area_[e];
-        if (interpolation_error.size() == 0) continue;
-        error_[e] = area_[e] * std::pow(double{interpolation_error[e]}, 2);
+        error_[e] = area_[e] * std::pow(told[e], 2);
         total_error_ += error_[e];
       }
     }
@@ -116,7 +116,11 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const SolveOptions& options,
                              const RadiositySolution& solution, Eigen::ArrayXf* of_elements) {
   const PatchMesh& mesh = caster.mesh();
-  const ErrorPlaces places(caster, solution.interpolation_error);
+  const BandArray irradiance = solution.irradiance();
+  const Eigen::ArrayXd told = solution.interpolation_error.size() > 0
+                                  ? Eigen::ArrayXd(solution.interpolation_error.cast<double>())
+                                  : indicators(mesh, irradiance);
+  const ErrorPlaces places(caster, told);
   const int wanted = estimate_places(options.error_points, mesh.vertex_count());
   if (places.is_empty() || wanted < 1) return {};
   const SobolPoints sobol(wanted);
@@ -132,7 +136,6 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
   BandArray interpolated(count, scene.bands.count());
   std::vector<int> element;
   Eigen::ArrayXd weight(count);
-  const BandArray irradiance = solution.irradiance();
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto& [point, share] = drawn[static_cast<std::size_t>(i)];
     points.push_back({point.position, point.normal, mesh.facet[point.element]});
@@ -170,12 +173,13 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
                std::pow(double{solution.gather_noise[element[static_cast<std::size_t>(i)]]}, 2);
   }
   if (of_elements) {
-    const Eigen::ArrayXd indicator = indicators(mesh, irradiance);
-    double told = 0.0;
-    for (const int e : element) told += std::pow(indicator[e], 2);
+    double square = 0.0;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      square += weight[i] * std::pow(told[element[static_cast<std::size_t>(i)]], 2);
+    }
     const double excess = (weight * (relative - noise)).sum();
-    if (told > 0.0) {
-      *of_elements = (std::sqrt(std::max(excess, 0.0) / told) * indicator).cast<float>();
+    if (square > 0.0) {
+      *of_elements = (std::sqrt(std::max(excess, 0.0) / square) * told).cast<float>();
     }
   }
   const Eigen::ArrayXd squared = weight * relative;

@@ -15,8 +15,9 @@ struct ErrorEstimate {
 /// `options.error_points` or more (see estimate_places), against gathers with twice the rays of
 /// the solution's or more (see estimate_rays) and other random numbers. It holds the noise of both,
 /// which makes up for what both have in common, the light that patches exchange. Half of the places
-/// are spread evenly, half go by the squared error that refinement says is left in elements
-/// (importance sampling: few places tell of errors that sit in few). What is given is the upper end
+/// are spread evenly, half go by the squared error that refinement says is left in elements, or
+/// where nothing was refined by the range of their corners (importance sampling: few places tell of
+/// errors that sit in few). What is given is the upper end
 /// of what is known: the mean square and its standard error. What it is relative to,
 /// error_reference() says. `caster` is of the solution's mesh.
 ///

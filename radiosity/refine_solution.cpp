@@ -53,10 +53,12 @@ class Refinement {
         error_(error),
         options_(options),
         max_elements_(options.max_elements > 0 ? options.max_elements : default_room(elements)),
+        is_memory_short_(options.room >= 0 && options.room < max_elements_),
         may_go_on_(may_go_on),
         of_children_(may_go_on ? of_a_split : 1.0),
         in_the_end_(may_go_on ? 1.0 : of_a_split_in_the_end),
         report_{.elements_at_first = elements.element_count()} {
+    if (is_memory_short_) max_elements_ = std::max(options.room, report_.elements_at_first);
     resize();
     for (const int cell : elements.leaves()) {
       std::array<double, 2> expected{0.0, 0.0};
@@ -90,7 +92,8 @@ class Refinement {
         report_.outcome = RefineOutcome::smallest_size_reached;
       } else if (!measure(marks)) {
         if (!split(may_wait(marks) ? worst_of(marks) : marks)) {
-          report_.outcome = RefineOutcome::max_elements_reached;
+          report_.outcome = is_memory_short_ ? RefineOutcome::memory_limit_reached
+                                             : RefineOutcome::max_elements_reached;
         }
         ++report_.rounds;
       }
@@ -237,6 +240,7 @@ class Refinement {
   InterpolationError& error_;
   RefineOptions options_;
   std::int64_t max_elements_;
+  bool is_memory_short_;
   bool may_go_on_;
   double of_children_, in_the_end_;
   RefineReport report_;
@@ -269,6 +273,11 @@ std::string sentence(const RefineReport& report) {
     case RefineOutcome::max_elements_reached:
       end = fmt::format("stopped at the most elements allowed, before the tolerance of {}",
                         percent(report.tolerance));
+      break;
+    case RefineOutcome::memory_limit_reached:
+      end = fmt::format(
+          "stopped at the most elements that '--memory' has room for, before the tolerance of {}",
+          percent(report.tolerance));
       break;
     case RefineOutcome::smallest_size_reached:
       end = fmt::format("stopped at the smallest elements allowed, before the tolerance of {}",

@@ -18,12 +18,21 @@ struct RefineOptions {
   /// Elements that there may be, both sides; 0: about as many as an even mesh of a quarter of the
   /// edges would have, small ones left as they are.
   std::int64_t max_elements = 0;
+  /// Elements that there is memory for, both sides; below 0: any number. Those of the start are
+  /// kept however few these are.
+  std::int64_t room = -1;
   /// How often an element of the start may be split: its edge by 2 to this.
   int max_level = 4;
 };
 
 /// Why refinement ended.
-enum class RefineOutcome { off, tolerance_reached, max_elements_reached, smallest_size_reached };
+enum class RefineOutcome {
+  off,
+  tolerance_reached,
+  max_elements_reached,
+  memory_limit_reached,  ///< as many elements as there is room for
+  smallest_size_reached
+};
 
 struct RefineReport {
   RefineOutcome outcome = RefineOutcome::off;

@@ -189,7 +189,7 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
     if (target > 0.0) in_force.gather.shadows = effort.shadows();
   };
   Effort effort{options.refine.tolerance, options.gather.rays};
-  if (target > 0.0) effort = first_effort(target, starts_coarse(options));
+  if (target > 0.0) effort = first_effort(target, options.refine.tolerance > 0.0);
   take(effort);
   std::map<std::string, double> spent;
   Stopwatch watch;
@@ -202,6 +202,10 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
     constexpr std::int64_t plenty = 1000000;
     auto& most = in_force.refine.max_elements;
     if (most == 0) most = std::max<std::int64_t>(plenty, 4 * solved.mesh.element_count());
+  }
+  if (const auto memory = options.form_factors.memory) {
+    in_force.refine.room =
+        elements_in(memory->report().limit - resident_memory().now, kept_apart.column_count());
   }
   const bool may_try_again = target > 0.0;
   std::optional<Drafting> drafting(std::in_place, scene, std::move(solved.mesh), kept_apart,

@@ -4,6 +4,7 @@
 #include <sys/vfs.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "mesh/patch_sampler.h"
@@ -99,6 +100,15 @@ std::int64_t bytes_to_gather(const PatchMesh& mesh) {
   // Direct, indirect and caustic light, its draft and its noise; places and rays of gathers.
   constexpr std::int64_t per_element = 100, per_band = 50;
   return mesh.element_count() * (per_element + per_band * mesh.reflectance.cols());
+}
+
+std::int64_t elements_in(std::int64_t bytes, std::int64_t columns) {
+  constexpr std::int64_t per_element = 1000, per_column = 50;
+  const std::int64_t count =
+      std::max<std::int64_t>(bytes, 0) / (per_element + per_column * columns);
+  const std::int64_t step = std::max<std::int64_t>(
+      static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(count))) / 16, 1);
+  return count / step * step;
 }
 
 std::int64_t room_on_disk(const std::filesystem::path& folder) {

@@ -59,6 +59,12 @@ std::int64_t bytes_to_shoot(const PatchMesh& mesh, int most_rays);
 /// rows are given up by then.
 std::int64_t bytes_to_gather(const PatchMesh& mesh);
 
+/// Elements that refinement may make, in all, of light in so many columns (bands of each channel),
+/// where so many bytes are left for them: what the solution of each takes, and its share of what
+/// finds out where to split. Whole sixteenths of a power of two, so that what a process happens to
+/// have resident decides hardly ever.
+std::int64_t elements_in(std::int64_t bytes, std::int64_t columns);
+
 /// Bytes free in a folder; 0 where that cannot be known, and where it is itself kept in memory.
 std::int64_t room_on_disk(const std::filesystem::path& folder);
 

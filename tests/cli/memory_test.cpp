@@ -110,6 +110,26 @@ TEST_F(Memory, PatchesShootWhereRowsDoNotFit) {
   EXPECT_NE(nlohmann::json::parse(solve("T.vtp", "1G").out)["solver"], "progressive");
 }
 
+TEST_F(Memory, NoMoreElementsAreMadeThanFit) {
+  if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
+  const auto solve = [&](const Words& more) {
+    return run(Words{"solve", "room.toml", "-o", "S.vtp", "--json", "--max-patch-size", "0.3",
+                     "--gather-rays", "32", "--refine", "0.01%", "--max-elements", "200000"} +
+               more);
+  };
+  const std::string refused = solve({"--memory", "2M"}).err;
+  std::smatch taken;
+  ASSERT_TRUE(std::regex_search(refused, taken, std::regex("its tree take (\\d+) MB"))) << refused;
+  const int budget = std::stoi(taken[1]) + 50;
+  const Ended ended = solve({"--memory", std::to_string(budget) + "M"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(says(ended.err, "stopped at the most elements that '--memory' has room for"));
+  const auto json = nlohmann::json::parse(ended.out);
+  EXPECT_EQ(json["refinement"]["outcome"], "memory_limit_reached");
+  EXPECT_GT(json["elements"], 20000);
+  EXPECT_LT(json["peak_memory_mb"].get<double>(), 1.15 * budget);
+}
+
 TEST_F(Memory, AmountsThatAreNoneAreRefused) {
   for (const char* wrong : {"", "much", "G", "-1G", "0", "100", "512K", "5X", "2GG", "nan", "inf",
                             "1e400", "9999999999T", "1,5G"}) {

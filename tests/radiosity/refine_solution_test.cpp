@@ -7,6 +7,7 @@
 
 #include "lit_places.h"
 #include "scene/parallel.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell {
 namespace {
@@ -106,6 +107,27 @@ TEST(MostElements, AreNeverExceeded) {
     // One more split adds 3 elements and closes up to four neighbours, 2 each, on both sides.
     EXPECT_GE(solved.mesh.element_count(), first + more - 2 * 11);
   }
+}
+
+// What there is memory for is no wish, so that the start is kept where even that is more.
+TEST(MostElements, AreThoseThatThereIsRoomFor) {
+  const Scene scene = lit_floor({-1, -1}, {1, 1}, small_lamp());
+  const int first = build_patches(scene, {.to_be_refined = true}).element_count();
+  for (const int more : {-first, 0, 100, 1234}) {
+    SolveOptions options = refined_to(1e-4);
+    options.refine.room = first + more;
+    SolveReport report;
+    const SolvedScene solved = solve_scene(scene, options, &report);
+    EXPECT_LE(solved.mesh.element_count(), first + std::max(more, 0));
+    EXPECT_EQ(report.refinement.outcome, RefineOutcome::memory_limit_reached);
+    EXPECT_TRUE(says(sentence(report.refinement), "that '--memory' has room for"));
+  }
+  SolveOptions options = refined_to(1e-4);
+  options.refine.max_elements = first + 100;
+  options.refine.room = first + 1000;
+  SolveReport report;
+  solve_scene(scene, options, &report);
+  EXPECT_EQ(report.refinement.outcome, RefineOutcome::max_elements_reached);
 }
 
 TEST(MostElements, BelowThoseOfTheSceneAreRefused) {
