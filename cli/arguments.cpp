@@ -316,7 +316,9 @@ std::string SolveArguments::text(const Scene& scene) const {
   asked.mesh = mesh.mesh;
   MeshArguments patches = mesh;
   patches.mesh.auto_patch_count = auto_patch_count(asked);
-  if (solve.accuracy && solve.refine.max_elements > 0) {
+  if (solve.accuracy && !(solve.refine.tolerance > 0.0)) {
+    effort += refinement_text(solve.refine);
+  } else if (solve.accuracy && solve.refine.max_elements > 0) {
     effort += fmt::format(" --max-elements {}", solve.refine.max_elements);
   }
   if (!solve.accuracy) {

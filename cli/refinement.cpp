@@ -99,7 +99,11 @@ void add_accuracy(CLI::App& command, std::optional<Accuracy>& accuracy, const st
       .add_option_function<std::string>(
           "--accuracy",
           [&accuracy, &command](const std::string& text) {
-            refuse_beside(command, "--accuracy", {"--refine", "--gather-rays"});
+            refuse_beside(command, "--accuracy", {"--gather-rays"});
+            const CLI::Option& refine = *command.get_option("--refine");
+            if (refine.count() > 0 && refine.as<std::string>() != "off") {
+              refuse_beside(command, "--accuracy", {"--refine"});
+            }
             accuracy = parse_accuracy(text);
             if (accuracy) return;
             throw CLI::ValidationError(

@@ -128,6 +128,29 @@ TEST(Accuracy, IsKept) {
   }
 }
 
+// Cut along shadows, or short already: elements are where an accuracy is found all the same, unless
+// they are to stay what they are.
+TEST(Accuracy, SplitsWhateverElementsStartAs) {
+  const auto refinement = [](const auto& change) {
+    SolveOptions options = quick();
+    options.accuracy = Accuracy{.share = 0.03};
+    change(options);
+    SolveReport report;
+    const SolvedScene solved = solve_scene(test::two_lamps(), options, &report);
+    if (report.refinement.outcome == RefineOutcome::tolerance_reached) {
+      EXPECT_EQ(solved.solution.outcome, Outcome::converged);
+      EXPECT_GT(report.refinement.elements, report.refinement.elements_at_first);
+    }
+    return report.refinement.outcome;
+  };
+  EXPECT_EQ(refinement([](SolveOptions& options) { options.mesh.discontinuity = true; }),
+            RefineOutcome::tolerance_reached);
+  EXPECT_EQ(refinement([](SolveOptions& options) { options.mesh.max_element_size = 0.3; }),
+            RefineOutcome::tolerance_reached);
+  EXPECT_EQ(refinement([](SolveOptions& options) { options.refine.tolerance = unrefined; }),
+            RefineOutcome::off);
+}
+
 TEST(Accuracy, OutOfReachIsSaid) {
   SolveOptions options = quick();
   options.accuracy = Accuracy{.share = 0.001};
