@@ -61,7 +61,7 @@ TEST(NearEmitter, PlacesAreEvenInSolidAngle) {
     cosines += std::max(0.0, to.normalized().dot(normal)) / count;
     lower_left += at.x() < point.x() && at.y() < point.y() ? 1 : 0;
   }
-// Stratified in two dimensions: off by about n^(-3/4) = 0.002 where an edge cuts through.
+  // Stratified in two dimensions: off by about n^(-3/4) = 0.002 where an edge cuts through.
   EXPECT_NEAR(static_cast<double>(lower_left) / count, corner(left, below) / all, 8e-4);
   const double F = std::abs(point_to_polygon(point, normal, window.loops));
   std::printf("F by places %.6f, exact %.6f\n", cosines * all / std::numbers::pi, F);
