@@ -110,8 +110,8 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   report.add("unlit", unlit_json(scene, solved));
   report.add_storage(options.form_factors.memory->report());
   const RefineOutcome refined = solve_report.refinement.outcome;
-  const bool is_memory_short = refined == RefineOutcome::memory_limit_reached;
-  if (refined == RefineOutcome::max_elements_reached || is_memory_short) {
+  if (refined == RefineOutcome::max_elements_reached ||
+      refined == RefineOutcome::memory_limit_reached) {
     console.say("note: refinement " + sentence(solve_report.refinement));
   }
   if (solve_report.accuracy > 0.0) {
@@ -122,9 +122,11 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   if (solved.solution.outcome == Outcome::accuracy_missed) {
     console.say(fmt::format(
         "warning: an error of {:.3g} % was asked for, and {:.3g} % is left by estimate; what there "
-        "is is written. Allow more {}, or smaller elements with --max-patch-size",
+        "is is written. {}, or make elements smaller with --max-patch-size",
         100.0 * solve_report.accuracy, 100.0 * solved.solution.error_estimate,
-        is_memory_short ? "--memory" : "--max-elements"));
+        refined == RefineOutcome::off                    ? "Leave out '--refine off'"
+        : refined == RefineOutcome::memory_limit_reached ? "Allow more --memory"
+                                                         : "Allow more --max-elements"));
   }
   if (solved.solution.outcome == Outcome::max_sweeps_reached) {
     console.say(

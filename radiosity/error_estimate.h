@@ -17,9 +17,9 @@ struct ErrorEstimate {
 /// which makes up for what both have in common, the light that patches exchange. Half of the places
 /// are spread evenly, half go by the squared error that refinement says is left in elements, or
 /// where nothing was refined by the range of their corners (importance sampling: few places tell of
-/// errors that sit in few). What is given is the upper end
-/// of what is known: the mean square and its standard error. What it is relative to,
-/// error_reference() says. `caster` is of the solution's mesh.
+/// errors that sit in few). What is given is the upper end of what is known: the mean square and
+/// its standard error. What it is relative to, error_reference() says. `caster` is of the
+/// solution's mesh.
 ///
 /// `of_elements`, if given, gets the estimated RMS error of interpolation over each element, for
 /// solutions of which refinement tells none: it is in proportion to the range of the corners'
