@@ -48,6 +48,10 @@ inline constexpr const char* watch = R"(<head><script>
 const errors = [];
 for (const kind of ['error', 'warn']) console[kind] = (...words) => errors.push(words.join(' '));
 window.addEventListener('error', (event) => errors.push(event.message));
+// The display's own pointer, which other windows share, is kept out.
+for (const kind of ['move', 'enter', 'leave', 'over', 'out', 'down', 'up']) {
+  window.addEventListener(`pointer${kind}`, (event) => event.isTrusted && event.stopImmediatePropagation(), true);
+}
 window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 16);
 const report = (found) => {
   const text = encodeURIComponent(JSON.stringify(found));
