@@ -16,7 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr std::uint64_t learn_purpose = 0x51e7, ray_purpose = 0x51e8, point_purpose = 0x51e9;
-constexpr int most_sites = 4096, points_per_site = 4, learn_rays = 2;
+constexpr int most_sites = 4096, points_per_octant = 3;
 
 // A cube is no larger than this share of the scene's diagonal; more cubes cost more learning.
 constexpr double cube_share = 1.0 / 32.0;
@@ -36,6 +36,14 @@ int on_hilbert_curve(int size, int x, int y) {
     }
   }
   return distance;
+}
+
+// Which eighth of its cube a point lies in.
+int octant_of(const Eigen::Vector3d& position, double cube) {
+  const Eigen::Array3d halves = (position.array() / (0.5 * cube)).floor();
+  int octant = 0;
+  for (int i = 0; i < 3; ++i) octant |= (static_cast<std::int64_t>(halves[i]) & 1) << i;
+  return octant;
 }
 
 // Place (u, v) of a cell in axes of north, east and up, of a dome of `rings` times `around` cells.
@@ -201,7 +209,8 @@ std::uint64_t SkyLight::site_key(const Eigen::Vector3d& position, const Eigen::V
 }
 
 // Sites are where surfaces are: cubes through which an element passes, known by points of it about
-// half a cube apart.
+// half a cube apart; of surfaces behind one another, as a wall and the picture on it, by points of
+// each.
 void SkyLight::learn(const ElementCaster& caster) {
   const PatchMesh& mesh = caster.mesh();
   std::map<std::uint64_t, std::vector<SitePoint>> points;  // in an order of their own
@@ -240,7 +249,16 @@ void SkyLight::learn(const ElementCaster& caster) {
               if (is_back) normal = -normal;
             }
             auto& list = points[site_key(p, normal, cube_)];
-            if (list.size() < points_per_site) {
+            const int octant = octant_of(p, cube_);
+            int there = 0;
+            bool is_known = false;  // its plane is
+            for (const SitePoint& other : list) {
+              if (octant_of(other.position, cube_) != octant) continue;
+              ++there;
+              constexpr double thin = 1e-6;
+              is_known = is_known || std::abs(normal.dot(other.position - p)) < thin * cube_;
+            }
+            if (!is_known && there < points_per_octant) {
               list.push_back({p, normal, mesh.facet[static_cast<std::size_t>(e)]});
             }
           }
@@ -250,7 +268,6 @@ void SkyLight::learn(const ElementCaster& caster) {
     }
     if (!is_too_many) break;
   }
-  sites_.resize(points.size());
   std::vector<const std::vector<SitePoint>*> lists;
   std::vector<std::uint64_t> keys;
   for (const auto& [key, list] : points) {
@@ -258,56 +275,112 @@ void SkyLight::learn(const ElementCaster& caster) {
     lists.push_back(&list);
     keys.push_back(key);
   }
-  parallel_for(static_cast<int>(lists.size()), 4, [&](int begin, int end) {
+  const auto count = static_cast<int>(lists.size());
+  std::vector<Look> looks(lists.size());
+  parallel_for(count, 4, [&](int begin, int end) {
     for (int s = begin; s < end; ++s) {
       const auto i = static_cast<std::size_t>(s);
-      sites_[i] = learn_at(caster, *lists[i], random_key(keys[i], learn_purpose));
+      looks[i] = look_from(caster, *lists[i], random_key(keys[i], learn_purpose));
+    }
+  });
+  sites_.resize(lists.size());
+  parallel_for(count, 16, [&](int begin, int end) {
+    for (int s = begin; s < end; ++s) {
+      const auto i = static_cast<std::size_t>(s);
+      const SitePoint& point = lists[i]->front();
+      std::vector<const Look*> beside;
+      for (int side = 0; side < 6; ++side) {
+        Eigen::Vector3d position = point.position;
+        position[side / 2] += side % 2 == 0 ? cube_ : -cube_;
+        const auto found = site_of_.find(site_key(position, point.normal, cube_));
+        if (found != site_of_.end())
+          beside.push_back(&looks[static_cast<std::size_t>(found->second)]);
+      }
+      sites_[i] = site_of(looks[i], beside);
     }
   });
 }
 
-SkyLight::Site SkyLight::learn_at(const ElementCaster& caster, std::span<const SitePoint> points,
-                                  std::uint64_t key) const {
-  std::vector<Ray> rays;
-  std::vector<int> of;
-  std::array<bool, cells> was_tried{}, is_open{};
-  for (int c = 0; c < cells; ++c) {
-    if (!(cell_[static_cast<std::size_t>(c)].power > 0.0)) continue;
-    for (int r = 0; r < learn_rays; ++r) {
-      const auto number = static_cast<std::size_t>(c * learn_rays + r);
-      const SitePoint& from = points[number % points.size()];
-      const std::uint64_t ray_key = random_key(key, number);
-      const Eigen::Vector3d direction =
-          direction_at(c, random_uniform(ray_key), random_uniform(random_key(ray_key, 1)));
-      if (!(direction.dot(from.normal) > 0.0)) continue;
-      rays.push_back({.origin = from.position, .direction = direction, .origin_group = from.facet});
-      of.push_back(c);
+SkyLight::Look SkyLight::look_from(const ElementCaster& caster, std::span<const SitePoint> points,
+                                   std::uint64_t key) const {
+  struct Sample {
+    int cell = 0;
+    std::size_t point = 0;
+    bool is_open = false;
+  };
+  // A ray through each cell, from points that are drawn among those `from`.
+  const auto samples_from = [&](std::span<const std::size_t> from, std::uint64_t number) {
+    std::vector<Ray> rays;
+    std::vector<Sample> samples;
+    for (int c = 0; c < cells; ++c) {
+      if (!(cell_[static_cast<std::size_t>(c)].power > 0.0)) continue;
+      const std::uint64_t ray_key = random_key(key, number, static_cast<std::uint64_t>(c));
+      const auto u = [&](std::uint64_t i) { return random_uniform(random_key(ray_key, i)); };
+      const std::size_t p = from[static_cast<std::size_t>(u(0) * static_cast<double>(from.size()))];
+      const SitePoint& point = points[p];
+      const Eigen::Vector3d direction = direction_at(c, u(1), u(2));
+      if (!(direction.dot(point.normal) > 0.0)) continue;
+      rays.push_back(
+          {.origin = point.position, .direction = direction, .origin_group = point.facet});
+      samples.push_back({.cell = c, .point = p});
     }
+    std::vector<std::uint8_t> blocked(rays.size());
+    caster.occluded(rays, blocked);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      samples[i].is_open =
+          blocked[i] == 0 || (!panes_.empty() && (panes_.passed(caster, rays[i]) > 0.0f).any());
+    }
+    return samples;
+  };
+  Look look;
+  const auto count_in = [&](const Sample& sample) {
+    look.tried[static_cast<std::size_t>(sample.cell)] += 1.0f;
+    look.open[static_cast<std::size_t>(sample.cell)] += sample.is_open ? 1.0f : 0.0f;
+  };
+  std::vector<std::size_t> all(points.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::vector<Sample> first = samples_from(all, 0);
+  // A point that sees nothing, as on a wall behind a picture, tells nothing of the others.
+  std::vector<std::uint8_t> sees(points.size());
+  for (const Sample& sample : first) sees[sample.point] |= sample.is_open ? 1 : 0;
+  std::vector<std::size_t> seeing;
+  std::ranges::copy_if(all, std::back_inserter(seeing),
+                       [&](std::size_t p) { return sees[p] != 0; });
+  for (const Sample& sample : first) {
+    if (seeing.empty() || sees[sample.point] != 0) count_in(sample);
   }
-  std::vector<std::uint8_t> blocked(rays.size());
-  caster.occluded(rays, blocked);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const auto c = static_cast<std::size_t>(of[i]);
-    was_tried[c] = true;
-    is_open[c] = is_open[c] || blocked[i] == 0 ||
-                 (!panes_.empty() && (panes_.passed(caster, rays[i]) > 0.0f).any());
+  for (const Sample& sample : samples_from(seeing.empty() ? all : seeing, 1)) count_in(sample);
+  return look;
+}
+
+// What gets out of a cell is likely to get out of those around it, and from the cubes beside, whose
+// points may see what those of this one, being few, do not. Rays are best given in proportion to
+// the root of how likely that is, since of light that is there or not that is the deviation.
+SkyLight::Site SkyLight::site_of(const Look& own, std::span<const Look* const> beside) {
+  constexpr float of_cube_beside = 0.25f, of_cell_beside = 0.125f;  // own rays count 1
+  // Less would save few rays, and make what they find too bright a dot.
+  constexpr float least = 0.3f;
+  Look all = own;
+  for (const Look* look : beside) {
+    for (std::size_t i = 0; i < cells; ++i) {
+      all.tried[i] += of_cube_beside * look->tried[i];
+      all.open[i] += of_cube_beside * look->open[i];
+    }
   }
   Site site;
   for (int c = 0; c < cells; ++c) {
-    const auto i = static_cast<std::size_t>(c);
-    site[i] = is_open[i] || !was_tried[i] ? Found::open : Found::hidden;
-    if (site[i] == Found::open) continue;
-    // What is beside an open cell is likely to be open in part.
     const int ring = c / around, place = c % around;
-    for (int dr = -1; dr <= 1; ++dr) {
-      for (int dp = -1; dp <= 1; ++dp) {
-        const int other = ring + dr;
-        if (other < 0 || other >= rings) continue;
-        if (is_open[static_cast<std::size_t>(other * around + (place + dp + around) % around)]) {
-          site[i] = Found::open;
-        }
+    float tried = 0.0f, open = 0.0f;
+    for (int r = std::max(ring - 1, 0); r <= std::min(ring + 1, rings - 1); ++r) {
+      for (int p = place - 1; p <= place + 1; ++p) {
+        const auto i = static_cast<std::size_t>(r * around + (p + around) % around);
+        const float weight = r == ring && p == place ? 1.0f : of_cell_beside;
+        tried += weight * all.tried[i];
+        open += weight * all.open[i];
       }
     }
+    const float likely = tried > 0.0f ? open / tried : 1.0f;
+    site[static_cast<std::size_t>(c)] = likely > 0.0f ? std::max(least, std::sqrt(likely)) : 0.0f;
   }
   return site;
 }
@@ -340,7 +413,7 @@ void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<
     const double power = cell_[static_cast<std::size_t>(share.cell)].power;
     samples.push_back({.weight = cosine * power * all / (share.weight * rays),
                        .cell = share.cell,
-                       .is_open = share.is_open});
+                       .is_open = share.is_open()});
     ray.push_back({.origin = at.position, .direction = drawn.direction, .origin_group = at.facet});
   }
   std::vector<std::uint8_t> blocked(ray.size());
@@ -373,7 +446,7 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
   if (const auto found = site_of_.find(site_key(point, normal, cube_)); found != site_of_.end()) {
     site = &sites_[static_cast<std::size_t>(found->second)];
   } else {
-    learnt = learn_at(caster, {&at, 1}, random_key(key, point_purpose));
+    learnt = site_of(look_from(caster, {&at, 1}, random_key(key, point_purpose)), {});
     site = &learnt;
   }
   const Eigen::Vector3f n = normal.cast<float>();
@@ -382,28 +455,34 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
   for (const int c : order_) {
     const double E = irradiance_of(c, n);
     if (!(E > 0.0)) continue;
-    const Found found = (*site)[static_cast<std::size_t>(c)];
-    shares.push_back({.cell = c, .E = E, .is_open = found == Found::open});
+    const auto likely = static_cast<double>((*site)[static_cast<std::size_t>(c)]);
+    shares.push_back({.cell = c, .E = E, .likely = likely});
   }
   if (shares.empty()) return {Spectrum::Zero(bands_)};
   const bool sees_nothing =
-      std::ranges::none_of(shares, [](const Share& share) { return share.is_open; });
-  // For a ray to what the site saw open at most `most_elsewhere` rays go where it saw nothing; if
-  // it saw nothing at all, all go there.
-  const auto share_out = [&](double most_elsewhere) {
+      std::ranges::none_of(shares, [](const Share& share) { return share.is_open(); });
+  // Besides rays to what the site saw open, a third as many at most go where it saw nothing; if it
+  // saw nothing at all, all go there. Fewer would be as exact in the mean; but what they find would
+  // weigh as much more, and leave a bright dot in a picture here and there.
+  double all_to_open = 1.0;  // rays
+  const auto share_out = [&] {
+    constexpr double most_elsewhere = 1.0 / 3.0;
     double open = 0.0, elsewhere = 0.0, sum = 0.0;
-    for (const Share& share : shares) (share.is_open ? open : elsewhere) += share.E;
+    for (const Share& share : shares) {
+      (share.is_open() ? open : elsewhere) += share.E * (share.is_open() ? share.likely : 1.0);
+    }
     const double thinning =
         open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
     for (Share& share : shares) {
-      share.weight = share.is_open ? share.E : thinning * share.E;
+      share.weight = share.E * (share.is_open() ? share.likely : thinning);
       share.cdf = sum += share.weight;
     }
+    all_to_open = open > 0.0 ? sum / open : 1.0;
   };
   const auto open_irradiance = [&] {
     Eigen::ArrayXd E = Eigen::ArrayXd::Zero(bands_);
     for (const Share& share : shares) {
-      if (share.is_open) E += share.E * colour_.row(share.cell).transpose().cast<double>();
+      if (share.is_open()) E += share.E * colour_.row(share.cell).transpose().cast<double>();
     }
     return E;
   };
@@ -413,37 +492,45 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d&
     Tally tally{.seen_open = Eigen::ArrayXd::Zero(bands_),
                 .all_open = Eigen::ArrayXd::Zero(bands_),
                 .seen_elsewhere = Eigen::ArrayXd::Zero(bands_)};
-    cast(caster, at, shares, std::clamp(rays, 1, most_sky_rays), random_key(key, purpose), tally);
+    const auto count = static_cast<int>(std::lround(all_to_open * rays));
+    cast(caster, at, shares, std::clamp(count, 1, most_sky_rays), random_key(key, purpose), tally);
     return tally;
   };
+  const auto seen_share = [](const Tally& tally) -> Eigen::ArrayXd {
+    return (tally.all_open > 0.0).select(tally.seen_open / tally.all_open.max(1e-300), 0.0);
+  };
   const auto result = [&](const Tally& tally) -> Eigen::ArrayXd {
-    const Eigen::ArrayXd share =
-        (tally.all_open > 0.0).select(tally.seen_open / tally.all_open.max(1e-300), 0.0);
-    return E_open * share + tally.seen_elsewhere;
+    return E_open * seen_share(tally) + tally.seen_elsewhere;
   };
   const int first = sees_nothing ? std::max(8, effort.first / 4) : effort.first;
-  // The first rays also tell whether the site knows the point's sky at all; once that is known,
-  // what it knows is where noise is.
-  constexpr double at_first = 0.33, later = 0.08;
-  share_out(at_first);
+  share_out();
   const Tally look = tally_of(first, 1);
   if (sees_nothing && look.clear == 0) return {result(look).cast<float>()};
   // Where the site tells little of the point, as beside a wall that parts light from dark, rays
   // that follow it are few for what they find.
   constexpr double much = 0.2;
   if (look.seen_elsewhere.sum() > much * result(look).sum()) {
-    for (Share& share : shares) share.is_open = true;
+    for (Share& share : shares) share.likely = 1.0;
     E_open = open_irradiance();
-    share_out(later);
+    share_out();
     const Tally all = tally_of(effort.most, 2);
     return {result(all).cast<float>(), all.clear < all.rays};
   }
   // A small opening is often missed by the first rays: that they see nothing settles nothing.
-  if (look.clear == look.rays) return {result(look).cast<float>()};
-  share_out(later);
+  // That they all get out does where nothing of the site said otherwise.
+  const bool is_clear =
+      std::ranges::all_of(shares, [](const Share& share) { return share.likely >= 1.0; });
+  if (is_clear && look.clear == look.rays) return {result(look).cast<float>()};
   const Tally more = tally_of(effort.most, 2);
+  // What rays make of all that is open is off by as much as they are not even over it, and what
+  // they see of it about in proportion. The proportion is that of the other rays: one's own would
+  // be a ratio of two guesses, whose mean is not that of what is seen.
+  const auto corrected = [&](const Tally& tally, const Tally& other) -> Eigen::ArrayXd {
+    return tally.seen_open + seen_share(other) * (E_open - tally.all_open) + tally.seen_elsewhere;
+  };
   const double share = static_cast<double>(first) / (first + effort.most);
-  return {(share * result(look) + (1.0 - share) * result(more)).cast<float>(), true};
+  const Eigen::ArrayXd E = share * corrected(look, more) + (1.0 - share) * corrected(more, look);
+  return {E.max(0.0).cast<float>(), look.clear < look.rays || more.clear < more.rays};
 }
 
 }  // namespace lightwell

@@ -14,7 +14,8 @@
 
 namespace lightwell {
 
-/// Rays from a point to the sky: `first` always; unless all of them get out, `most` besides.
+/// Rays to what is known of the sky: `first`, and `most` unless all get out; a third more
+/// elsewhere.
 struct SkyEffort {
   int first = 32;
   int most = 128;  ///< 1 to most_sky_rays
@@ -32,9 +33,9 @@ struct SkyGlow {
 /// The dome is cut into cells of even solid angle, 5.6 degrees wide, whose irradiance of a point
 /// with nothing in the way is known. What a window shows is a small part of that, so rays are not
 /// spent evenly: *sites*, cubes of space by the side that surfaces in them face, learn beforehand
-/// through which cells rays get out, and a point sends its rays there, by what each cell would give
-/// it. A few go elsewhere, with the weight that this asks for, so that what no ray of the site had
-/// found is right in the mean. Of the cells that are open the result is their unobstructed
+/// through which cells rays get out, and a point sends its rays there, by what each would give it
+/// and how likely it is open. Some go elsewhere, weighted for it, so that what no ray of the site
+/// had found is right in the mean. Of the cells that are open the result is their unobstructed
 /// irradiance times the visible share of what the rays stand for: with nothing in the way there is
 /// no noise.
 ///
@@ -60,8 +61,12 @@ class SkyLight {
   static constexpr int around = 64, rings = 32;  // cells
   static constexpr int cells = around * rings;
   static constexpr int fine = 8;  // grid within a cell, each way
-  enum class Found : std::uint8_t { hidden, open };
-  using Site = std::array<Found, cells>;
+  /// Rays tried through each cell, and those that got out.
+  struct Look {
+    std::array<float, cells> tried{}, open{};
+  };
+  /// What rays to each cell are given by, next to what it would give; 0: none is known to get out.
+  using Site = std::array<float, cells>;
   struct SitePoint {
     Eigen::Vector3d position, normal;
     int facet = -1;
@@ -80,9 +85,10 @@ class SkyLight {
   struct Share {
     int cell = 0;
     double E = 0.0;       // unobstructed, mean of the bands
+    double likely = 0.0;  // the root of how likely it is open; 0: not known to be
     double cdf = 0.0;     // running sum of what rays are given by
     double weight = 0.0;  // its step
-    bool is_open = false;
+    bool is_open() const { return likely > 0.0; }
   };
   struct Tally {
     Eigen::ArrayXd seen_open, all_open, seen_elsewhere;  // per band
@@ -91,8 +97,9 @@ class SkyLight {
 
   void tabulate(const Sky& sky);
   void learn(const ElementCaster& caster);
-  Site learn_at(const ElementCaster& caster, std::span<const SitePoint> points,
-                std::uint64_t key) const;
+  Look look_from(const ElementCaster& caster, std::span<const SitePoint> points,
+                 std::uint64_t key) const;
+  static Site site_of(const Look& own, std::span<const Look* const> beside);
   std::uint64_t site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
                          double cube) const;
   Eigen::Vector3d direction_at(int cell, double u, double v) const;

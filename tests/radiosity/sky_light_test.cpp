@@ -165,6 +165,26 @@ TEST(SkyLight, WindowGivesItsClosedFormWithLittleNoise) {
   EXPECT_NEAR(spread(room, {0, 0, 0.8}, Vector3d::UnitZ(), -1).mean, on_desk, 0.02 * on_desk);
 }
 
+// What a wall sees that a picture hides, none of the sky, tells nothing of the picture's face.
+TEST(SkyLight, APictureIsKnownAsTheWallBehindItIs) {
+  Scene scene = room_with_window();
+  const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+  constexpr double face = -2.98;
+  test::add_polygon(scene, "picture", black,
+                    {{face, -1, 0.1}, {face, 1, 0.1}, {face, 1, 0.9}, {face, -1, 0.9}});
+  const UnderSky room{scene};
+  const int picture = room.mesh.facet.back();
+  for (const double y : {-0.7, 0.0, 0.5}) {
+    const Vector3d point(face, y, 0.5);  // the whole window is above its horizon
+    const double expected = pi * window_form_factor(point, Vector3d::UnitX());
+    const Spread found = spread(room, point, Vector3d::UnitX(), picture);
+    std::printf("%g m from the middle: %.4f, exact %.4f, noise %.4f\n", y, found.mean, expected,
+                found.deviation / expected);
+    EXPECT_NEAR(found.mean, expected, 0.02 * expected);  // as on the wall
+    EXPECT_LT(found.deviation, 0.08 * expected);
+  }
+}
+
 TEST(SkyLight, PanePassesWhatItsOpticsSay) {
   const UnderSky bare{room_with_window()}, glazed{room_with_window(true)};
   const Vector3d point(-2.9, 0.0, 1.5);  // the window is nearly straight ahead: within 12 degrees
