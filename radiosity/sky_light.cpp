@@ -293,8 +293,9 @@ void SkyLight::learn(const ElementCaster& caster) {
         Eigen::Vector3d position = point.position;
         position[side / 2] += side % 2 == 0 ? cube_ : -cube_;
         const auto found = site_of_.find(site_key(position, point.normal, cube_));
-        if (found != site_of_.end())
+        if (found != site_of_.end()) {
           beside.push_back(&looks[static_cast<std::size_t>(found->second)]);
+        }
       }
       sites_[i] = site_of(looks[i], beside);
     }

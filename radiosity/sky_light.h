@@ -35,9 +35,9 @@ struct SkyGlow {
 /// spent evenly: *sites*, cubes of space by the side that surfaces in them face, learn beforehand
 /// through which cells rays get out, and a point sends its rays there, by what each would give it
 /// and how likely it is open. Some go elsewhere, weighted for it, so that what no ray of the site
-/// had found is right in the mean. Of the cells that are open the result is their unobstructed
-/// irradiance times the visible share of what the rays stand for: with nothing in the way there is
-/// no noise.
+/// had found is right in the mean. Of the cells that are open the result is what the rays see, less
+/// what they make too much of the known irradiance, times the share that is seen: with nothing in
+/// the way there is no noise.
 ///
 /// Within cells directions follow the sky's luminance on a grid of 0.7 degrees, on which maps are
 /// averaged.
