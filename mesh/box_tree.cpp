@@ -88,6 +88,17 @@ void BoxTree::find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>
   find(meets, found);
 }
 
+bool BoxTree::find_before(std::span<const Eigen::Hyperplane<double, 3>> planes, double least,
+                          std::int64_t& visits, std::vector<int>& found) const {
+  const auto meets = [&](const Box& box) {
+    const Eigen::Vector3d center = box.center(), half = 0.5 * box.sizes();
+    return std::ranges::all_of(planes, [&](const Eigen::Hyperplane<double, 3>& plane) {
+      return plane.signedDistance(center) + half.dot(plane.normal().cwiseAbs()) > least;
+    });
+  };
+  return collect(meets, visits, found);
+}
+
 bool BoxTree::find_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double reach,
                          std::int64_t& visits, std::vector<int>& found) const {
   const Eigen::Vector3d d = b - a, grown = Eigen::Vector3d::Constant(reach);

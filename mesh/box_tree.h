@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lightwell {
@@ -18,6 +19,10 @@ class BoxTree {
   /// Of those the ones that the plane (of unit normal) meets as well.
   void find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
                      std::vector<int>& found) const;
+  /// Fills `found` with the boxes that reach further than `least` before every one of the planes
+  /// (of unit normals), in no order; `visits` and the result as for find_along.
+  bool find_before(std::span<const Eigen::Hyperplane<double, 3>> planes, double least,
+                   std::int64_t& visits, std::vector<int>& found) const;
   /// Fills `found` with the boxes that come within `reach` of the segment a-b, in no order; a few
   /// that do not may be among them. `visits` is how many nodes may be looked at, and after the call
   /// how many are left; false, and nothing found, if they were not enough.

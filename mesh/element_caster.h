@@ -39,6 +39,8 @@ class ElementCaster {
 
   /// The same at a time, s.
   ElementCaster at(double time) const;
+  /// Whether anything does.
+  bool moves() const { return bodies_ != nullptr; }
   /// From where a facet that moves rests to where it is; null: it stands still.
   const Eigen::Isometry3d* pose_of(int facet) const;
 

@@ -18,6 +18,8 @@
 
 namespace lightwell {
 
+class ExactShadows;
+
 /// An emitting facet whose light is computed by closed form times visibility, never left to chance.
 struct Emitter {
   int facet = 0;        ///< scene-wide facet number
@@ -36,18 +38,19 @@ constexpr int most_shadow_rays = 256;
 
 /// Shadow rays from a point to an emitter that would give all of its direct light: `min_rays`
 /// stratified ones first; where they disagree, `max_rays`. Emitters that would give less get fewer.
+/// Where ExactShadows tells without rays, in about the time of as many, none are cast.
 struct ShadowOptions {
   int min_rays = 16;
   int max_rays = 64;  ///< 1 to most_shadow_rays
 };
 
-/// What a point sees of the lights, by the shadow rays of its irradiance.
+/// What a point sees of the lights, by the shadows of its irradiance.
 struct EmitterSight {
-  /// sum M F with nothing in the way, mean of the bands, W/m^2; of emitters that are wholly behind
-  /// clear panes, what those pass.
-  double unshadowed = 0.0;
-  std::uint64_t whole = 0;   ///< bit i: every ray reached light i, of the first 64
-  std::uint64_t hidden = 0;  ///< bit i: none did
+  /// sum M F with nothing in the way, mean of the bands, W/m^2, of lights whose shadow rays
+  /// disagreed: what their noise is a share of.
+  double noisy = 0.0;
+  std::uint64_t whole = 0;   ///< bit i: all of light i is seen, of the first 64
+  std::uint64_t hidden = 0;  ///< bit i: nothing is
 };
 
 /// Whose light is asked for: everything's, that of free sources, or that of the sky and the sun.
@@ -68,8 +71,8 @@ enum class Lights { all, free, distant };
 /// c * bands on.
 class DirectLight {
  public:
-  /// `like`: another of the same scene and mesh, whose knowledge of the sky is shared instead of
-  /// learnt again.
+  /// `like`: another of the same scene and mesh, whose knowledge of the sky and of what casts
+  /// shadows is shared instead of learnt again.
   DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels = {},
               const DirectLight* like = nullptr);
 
@@ -131,6 +134,7 @@ class DirectLight {
   std::vector<Emitter> emitters_;
   std::vector<FreeSource> free_sources_;
   std::shared_ptr<const SkyLight> sky_{};  // null: there is no dome
+  std::shared_ptr<const ExactShadows> exact_{};
   enum class Owned : char { nothing, front, whole };
   std::vector<Owned> owned_;
   std::vector<int> first_column_;

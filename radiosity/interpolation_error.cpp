@@ -425,9 +425,7 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
   double shadow_noise = 0.0;
   const double of_one = mixed_shadow_noise(options_.shadows.max_rays);
   const auto add_shadow_noise = [&](int v, double weight) {
-    const double unshadowed = sight_[v].unshadowed, E = direct_.row(v).mean();
-    const bool is_mixed = E > 0.0 && E < (1.0 - 1e-5) * unshadowed;
-    if (is_mixed) shadow_noise += weight * std::pow(of_one * unshadowed, 2);
+    shadow_noise += weight * std::pow(of_one * sight_[v].noisy, 2);
   };
   Spectrum direct = Spectrum::Zero(scene_.bands.count()), first = direct, second = direct;
   for (int i = 0; i < n; ++i) {

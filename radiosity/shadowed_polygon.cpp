@@ -42,21 +42,37 @@ void add_parting_planes(std::span<const Vector3d> edges, std::span<const Vector3
   }
 }
 
-}  // namespace
-
-bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, const ShaftEnd& target,
-                  double tolerance, Blocker& blocker) {
-  blocker = {};
+// What lies behind either end is not between them.
+bool cut_to_ends(const Occluder& occluder, int side, const HalfSpace& from, const HalfSpace& target,
+                 Blocker& blocker) {
   blocker.polygon = occluder.polygon;
   blocker.plane = {side * occluder.plane.normal, side * occluder.plane.offset};
-  const HalfSpace beyond = blocker.plane.opposite();
-  if (!any_above(from.corners, blocker.plane, tolerance)) return false;
-  // What lies behind either end is not between them.
-  if (!clip(blocker.polygon, from.plane) || !clip(blocker.polygon, target.plane)) return false;
+  blocker.cuts_target = false;
+  blocker.reach.clear();
+  if (!clip(blocker.polygon, from) || !clip(blocker.polygon, target)) return false;
   if (side > 0) {
     std::reverse(blocker.polygon.corner.begin(),
                  blocker.polygon.corner.begin() + blocker.polygon.count);
   }
+  return true;
+}
+
+}  // namespace
+
+bool make_point_blocker(const Occluder& occluder, int side, const HalfSpace& from,
+                        const HalfSpace& target, std::span<const Vector3d> corners,
+                        double tolerance, Blocker& blocker) {
+  if (!cut_to_ends(occluder, side, from, target, blocker)) return false;
+  if (!any_below(corners, blocker.plane, -tolerance)) return false;
+  blocker.cuts_target = any_above(corners, blocker.plane, 0.0);
+  return true;
+}
+
+bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, const ShaftEnd& target,
+                  double tolerance, Blocker& blocker) {
+  if (!cut_to_ends(occluder, side, from.plane, target.plane, blocker)) return false;
+  if (!any_above(from.corners, blocker.plane, tolerance)) return false;
+  const HalfSpace beyond = blocker.plane.opposite();
   std::vector<ConvexPolygon> far_parts;
   std::vector<Vector3d> far_corners;
   for (const ConvexPolygon& part : target.parts) {
@@ -102,7 +118,7 @@ double ShadowedPolygon::take_away(const Blocker& blocker, const Vector3d& point,
   }
   double hidden = 0.0;
   left_.clear();
-  ConvexPolygon inside, outside;
+  ConvexPolygon rest, inside, outside;
   for (const ConvexPolygon& fragment : fragments_) {
     const bool is_missed =
         std::any_of(pyramid.begin(), pyramid.begin() + planes, [&](const HalfSpace& plane) {
@@ -114,22 +130,23 @@ double ShadowedPolygon::take_away(const Blocker& blocker, const Vector3d& point,
       left_.push_back(fragment);
       continue;
     }
-    ConvexPolygon rest = fragment;
+    // Cut for good only where something is hidden: pieces that nothing hides would stay cut.
+    rest = fragment;
     bool is_any_hidden = true;
     for (int k = 0; k < planes && is_any_hidden; ++k) {
       // A polygon of too many corners stays whole: what is hidden of it then counts as seen.
-      if (rest.count >= ConvexPolygon::most_corners) is_any_hidden = false;
-      const Cut cut = is_any_hidden ? split(rest, pyramid[k], inside, outside) : Cut::none_inside;
-      if (cut == Cut::none_inside) is_any_hidden = false;
-      if (cut == Cut::both) {
-        left_.push_back(outside);
-        rest = inside;
-      }
+      is_any_hidden = rest.count < ConvexPolygon::most_corners && clip(rest, pyramid[k]);
     }
-    if (is_any_hidden) {
-      hidden += point_to_polygon(point, normal, rest.corners());
-    } else {
-      left_.push_back(rest);
+    if (!is_any_hidden) {
+      left_.push_back(fragment);
+      continue;
+    }
+    hidden += point_to_polygon(point, normal, rest.corners());
+    rest = fragment;
+    for (int k = 0; k < planes; ++k) {
+      if (split(rest, pyramid[k], inside, outside) != Cut::both) continue;
+      left_.push_back(outside);
+      rest = inside;
     }
   }
   fragments_.swap(left_);

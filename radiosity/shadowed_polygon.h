@@ -31,6 +31,13 @@ struct Blocker {
 bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, const ShaftEnd& target,
                   double tolerance, Blocker& blocker);
 
+/// The same as seen from a single point of known height over the occluder's plane: without `reach`.
+/// `from` is what the point can see, `target` what the target's plane can, `corners` all of the
+/// target's.
+bool make_point_blocker(const Occluder& occluder, int side, const HalfSpace& from,
+                        const HalfSpace& target, std::span<const Eigen::Vector3d> corners,
+                        double tolerance, Blocker& blocker);
+
 /// Leaves of the polygon what the blocker reaches; false if that is nothing.
 bool clip_to_reach(ConvexPolygon& polygon, const Blocker& blocker);
 
@@ -41,9 +48,15 @@ class ShadowedPolygon {
  public:
   static constexpr int most_blockers = 32;
 
+  ShadowedPolygon() = default;  ///< nothing, until set() says what
   /// `parts` tile the polygon, counter-clockwise seen from the points. Both are kept by reference.
   ShadowedPolygon(std::span<const ConvexPolygon> parts, std::span<const Blocker> blockers)
       : parts_(parts), blockers_(blockers) {}
+  /// Another polygon, or other blockers: the same memory serves.
+  void set(std::span<const ConvexPolygon> parts, std::span<const Blocker> blockers) {
+    parts_ = parts;
+    blockers_ = blockers;
+  }
 
   struct View {
     double all = 0.0;       ///< form factor from the point to the polygon

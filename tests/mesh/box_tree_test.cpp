@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "scene/sampling.h"
 
@@ -48,6 +49,40 @@ TEST(BoxTree, FindsWhatLookingAtEveryBoxFinds) {
       });
       ASSERT_EQ(found, expected);
     }
+  }
+}
+
+TEST(BoxTree, FindsWhatReachesBeforeAllPlanes) {
+  std::vector<BoxTree::Box> boxes;
+  for (int i = 0; i < 500; ++i) boxes.push_back(random_box(i, 0.1));
+  const BoxTree tree(boxes);
+  std::vector<int> found;
+  for (int q = 0; q < 100; ++q) {
+    std::vector<Eigen::Hyperplane<double, 3>> planes;
+    for (int k = 0; k < 4; ++k) {
+      const BoxTree::Box at = random_box(random_key(q, k), 0.3);
+      planes.emplace_back((at.sizes() - Vector3d::Constant(0.15)).normalized(), at.min());
+    }
+    constexpr double least = 0.01;
+    std::vector<int> expected;
+    for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
+      const bool is_before = std::ranges::all_of(planes, [&](const auto& plane) {
+        double highest = -1.0;
+        for (int c = 0; c < 8; ++c) {
+          const auto corner = static_cast<BoxTree::Box::CornerType>(c);
+          highest = std::max(highest, plane.signedDistance(boxes[i].corner(corner)));
+        }
+        return highest > least;
+      });
+      if (is_before) expected.push_back(i);
+    }
+    std::int64_t visits = 1 << 20;
+    ASSERT_TRUE(tree.find_before(planes, least, visits, found));
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, expected);
+    visits = 1;
+    EXPECT_FALSE(tree.find_before(planes, least, visits, found));
+    EXPECT_TRUE(found.empty());
   }
 }
 
