@@ -17,6 +17,23 @@ namespace lightwell {
 namespace fs = std::filesystem;
 namespace {
 
+// What to do where refinement ended before elements were as small as an accuracy takes.
+std::string way_to_smaller_elements(RefineOutcome outcome) {
+  constexpr const char* smaller = "make elements smaller with --max-patch-size";
+  switch (outcome) {
+    case RefineOutcome::off:
+      return fmt::format("Leave out '--refine off', or {}", smaller);
+    case RefineOutcome::memory_limit_reached:
+      return fmt::format("Allow more --memory, or {}", smaller);
+    case RefineOutcome::max_elements_reached:
+      return "Allow more --max-elements";
+    case RefineOutcome::smallest_size_reached:
+    case RefineOutcome::tolerance_reached:
+      break;
+  }
+  return "Make elements smaller with --max-patch-size";
+}
+
 // What no light reaches on either side: a room without a lamp, or what is walled in.
 Json unlit_json(const Scene& scene, const SolvedScene& solved) {
   const PatchMesh& mesh = solved.mesh;
@@ -122,11 +139,9 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   if (solved.solution.outcome == Outcome::accuracy_missed) {
     console.say(fmt::format(
         "warning: an error of {:.3g} % was asked for, and {:.3g} % is left by estimate; what there "
-        "is is written. {}, or make elements smaller with --max-patch-size",
+        "is is written. {}",
         100.0 * solve_report.accuracy, 100.0 * solved.solution.error_estimate,
-        refined == RefineOutcome::off                    ? "Leave out '--refine off'"
-        : refined == RefineOutcome::memory_limit_reached ? "Allow more --memory"
-                                                         : "Allow more --max-elements"));
+        way_to_smaller_elements(refined)));
   }
   if (solved.solution.outcome == Outcome::max_sweeps_reached) {
     console.say(
