@@ -294,6 +294,55 @@ std::vector<ToldVertex> InterpolationError::told(const std::vector<int>& vertice
   return told;
 }
 
+std::vector<BetweenVertex> InterpolationError::between(const std::vector<int>& vertices,
+                                                       std::span<const ToldVertex> told) {
+  // The worst of what the cells say that a vertex is inside of.
+  struct Said {
+    double spread = 0.0, noise = 0.0;
+    bool any = false;
+  };
+  std::vector<Said> said(elements_.vertex_count());
+  for (int cell = 0; cell < elements_.cell_count(); ++cell) {
+    if (!elements_.is_split(cell)) continue;
+    for (int side = 0; side < elements_.side_count(cell); ++side) {
+      CellSide known;
+      if (static_cast<std::size_t>(cell) < sides_.size()) known = sides_[cell][side];
+      const double unit = std::pow(reference(cell, side), 2);
+      for_each_inner_vertex(cell, side, [&](int v) {
+        if (said.size() <= static_cast<std::size_t>(v)) said.resize(elements_.vertex_count());
+        said[v].spread = std::max(said[v].spread, unit * known.indirect);
+        said[v].noise = std::max(said[v].noise, unit * known.noise);
+        said[v].any = true;
+      });
+    }
+  }
+  make_room();
+  said.resize(elements_.vertex_count());
+  std::vector<int> number(elements_.vertex_count(), -1);  // in `vertices`
+  for (std::size_t i = 0; i < vertices.size(); ++i) number[vertices[i]] = static_cast<int>(i);
+  std::vector<char> is_told(vertices.size(), 0);
+  for (const ToldVertex& t : told) is_told[t.vertex] = 1;
+  std::vector<BetweenVertex> between;
+  for (int v = 0; v < elements_.vertex_count(); ++v) {  // ends have lower numbers
+    if (number[v] < 0 || elements_.ends(v)[0] < 0) continue;
+    BetweenVertex b{.at = {.vertex = number[v]}, .is_told = is_told[number[v]] != 0};
+    bool has_ends = true;
+    for (int i = 0; i < 4; ++i) {
+      const int end = elements_.ends(v)[i];
+      if (end < 0) continue;
+      b.at.ends[i] = number[end];
+      has_ends = has_ends && number[end] >= 0;
+    }
+    if (!has_ends) continue;
+    if (said[v].any && indirect_[v] == Indirect::gathered) {
+      b.spread = static_cast<float>(said[v].spread);
+      b.noise = static_cast<float>(said[v].noise);
+    }
+    between.push_back(b);
+  }
+  return between;
+}
+
 namespace {
 
 // The places in a list of `count` that are not told by others.
@@ -457,7 +506,8 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
   return {.error = shadow_counts ? error - shadow_noise : 0.0,
           .hidden = (indirect_counts ? 0.0 : differences.noise) +
                     (shadow_counts ? 0.0 : std::clamp(error, 0.0, shadow_noise)),
-          .indirect = std::max(differences.indirect, 0.0) + share_of_noise * differences.noise};
+          .indirect = std::max(differences.indirect, 0.0) + share_of_noise * differences.noise,
+          .noise = differences.noise};
 }
 
 double InterpolationError::probed_error(int cell, int side) {
@@ -554,7 +604,9 @@ void InterpolationError::measure(int cell, int side, Measured& measured) {
   const Squares lattice = lattice_error(cell, side);
   measured.error[side] = lattice.error / (E * E) + known.probed;
   measured.hidden[side] = lattice.hidden / (E * E);
-  if (!known.was_told) known.indirect = lattice.indirect / (E * E);
+  if (known.was_told) return;
+  known.indirect = lattice.indirect / (E * E);
+  known.noise = lattice.noise / (E * E);
 }
 
 }  // namespace lightwell

@@ -81,6 +81,9 @@ class InterpolationError {
   /// Those of a mesh's vertices whose indirect light is told by others of them; numbers are places
   /// in the list.
   std::vector<ToldVertex> told(const std::vector<int>& vertices);
+  /// Of the same list, those that have all of their ends in it; `told` as told() has it.
+  std::vector<BetweenVertex> between(const std::vector<int>& vertices,
+                                     std::span<const ToldVertex> told);
   /// Gathers where nobody has yet, but for indirect light where it is told.
   void gather(const std::vector<int>& vertices, std::span<const ToldVertex> told);
   /// What was gathered at vertices, in their order.
@@ -110,6 +113,7 @@ class InterpolationError {
   struct Squares {
     double error = 0.0, hidden = 0.0;
     double indirect = 0.0;  // of indirect light alone, with a share of its noise
+    double noise = 0.0;     // of that
   };
   Squares lattice_error(int cell, int side);
   double probed_error(int cell, int side);
@@ -126,11 +130,11 @@ class InterpolationError {
   std::vector<char> matters_;
   double area_ = 0.0, mean_ = 0.0;
   double even_ = 0.0;  // of squared errors of indirect light, relative: told by corners if below
-  // Per cell and side: the squared error of indirect light, or how large it may be; that of direct
-  // light between vertices, below 0 if nobody looked for it; whether indirect light was told when
-  // the cell was measured.
+  // Per cell and side: the squared error of indirect light, or how large it may be; the squared
+  // noise in what says so; that of direct light between vertices, below 0 if nobody looked for it;
+  // whether indirect light was told when the cell was measured.
   struct CellSide {
-    double indirect = std::numeric_limits<double>::infinity(), probed = -1.0;
+    double indirect = std::numeric_limits<double>::infinity(), noise = indirect, probed = -1.0;
     bool was_told = false;
   };
   std::vector<std::array<CellSide, 2>> sides_;

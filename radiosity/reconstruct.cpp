@@ -160,8 +160,31 @@ GatherOptions gather_options(const SolveOptions& options) {
   return gather;
 }
 
+std::vector<int> vertex_patches(const PatchMesh& mesh) {
+  std::vector<int> patch(mesh.vertex_count(), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
+  }
+  return patch;
+}
+
+// At each vertex the mean over all of its patch: of one vertex, noise is little more than a guess.
+Eigen::ArrayXf mean_of_patches(std::span<const int> patch, const Eigen::ArrayXf& at_vertices) {
+  const int patches = *std::max_element(patch.begin(), patch.end()) + 1;
+  Eigen::ArrayXf sum = Eigen::ArrayXf::Zero(patches), count = sum, mean = at_vertices;
+  for (std::size_t v = 0; v < patch.size(); ++v) {
+    sum[patch[v]] += at_vertices[static_cast<Eigen::Index>(v)];
+    count[patch[v]] += 1.0f;
+  }
+  for (std::size_t v = 0; v < patch.size(); ++v) {
+    mean[static_cast<Eigen::Index>(v)] = sum[patch[v]] / count[patch[v]];
+  }
+  return mean;
+}
+
 // What gather_indirect() finds at vertices that are not told, and the variance of one of its rays;
-// told ones have the means of their ends. `rays` gets how many each vertex stands for.
+// told ones have the means of their ends. `rays` gets how many each vertex stands for, with what
+// the draft adds to its own.
 GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
                                const DirectLight& direct_light, const BandArray& radiosity,
                                const GatherOptions& gather, std::span<const GatherPoint> points,
@@ -225,6 +248,14 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
     rays[t.vertex] = ends / inverse;
     result.variance[t.vertex] = variance / ends;
   }
+  // Two halves of a stratified set are off by more than the whole, see estimate_error().
+  constexpr float of_whole_set = 0.5f;
+  const std::vector<int> patch = vertex_patches(caster.mesh());
+  const Eigen::ArrayXf before = of_whole_set * mean_of_patches(patch, result.variance) / rays;
+  Eigen::ArrayXf after = before;
+  join_with_draft(draft.between, draft.indirect, patch, scene.bands.count(), result.indirect,
+                  after);
+  rays *= (after > 0.0f).select(before / after.max(1e-30f), 1.0f);
   return result;
 }
 
@@ -321,6 +352,7 @@ Draft Drafting::Impl::refined(const SolveOptions& options) {
           .interpolation_error = std::move(found.error),
           .refinement = found.report,
           .told = std::move(found.told),
+          .between = std::move(found.between),
           .number = std::move(found.refined.vertex),
           .gather_rays = found.gather_rays};
 }

@@ -330,6 +330,7 @@ RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
     // Some were gathered before others told of them: as with channels, those have the last word.
     tell(result.told, result.draft.indirect);
   }
+  result.between = error.between(result.refined.vertex, result.told);
   const PatchMesh& mesh = result.refined.mesh;
   result.error = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {

@@ -61,6 +61,7 @@ struct RefinedSolution {
   RefinedMesh refined{};
   GatheredIrradiance draft{};      ///< vertices x bands; the direct light is as good as it gets
   std::vector<ToldVertex> told{};  ///< where the final gather of indirect light may be left out
+  std::vector<BetweenVertex> between{};  ///< what the draft says of the others, and of these
   /// Per element: estimated relative RMS error of interpolation over it, with what noise may hide.
   Eigen::ArrayXf error{};
   RefineReport report{};

@@ -15,6 +15,82 @@ void tell(std::span<const ToldVertex> told, BandArray& values) {
   }
 }
 
+namespace {
+
+Eigen::RowVectorXf mean_of_ends(const ToldVertex& at, const BandArray& of) {
+  Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(of.cols());
+  for (int i = 0; i < at.end_count(); ++i) sum += of.row(at.ends[i]).matrix();
+  return sum / static_cast<float>(at.end_count());
+}
+
+struct Prediction {
+  Eigen::RowVectorXf value;
+  float variance = 0.0f;  // beside that of the ends
+};
+
+// Of a vertex that is not told.
+Prediction predict(const BetweenVertex& b, const BandArray& draft, const BandArray& values) {
+  const float both = b.spread + b.noise;
+  const float trusted = both > 0.0f ? b.spread / both : 0.0f;  // of the difference (Wiener 1949)
+  return {mean_of_ends(b.at, values) +
+              trusted * (draft.row(b.at.vertex).matrix() - mean_of_ends(b.at, draft)),
+          trusted * b.noise};
+}
+
+bool is_predicted(const BetweenVertex& b) {
+  return !b.is_told && std::isfinite(b.spread) && std::isfinite(b.noise);
+}
+
+// Per group: how much further predictions are off, in the mean square, than noise explains. (The
+// draft read light as it was before refinement.)
+Eigen::ArrayXd unexplained(std::span<const BetweenVertex> between, const BandArray& draft,
+                           const BandArray& values, const Eigen::ArrayXf& variance,
+                           std::span<const int> group, int bands) {
+  const int groups = group.empty() ? 0 : *std::max_element(group.begin(), group.end()) + 1;
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(groups), count = sum;
+  for (const BetweenVertex& b : between) {
+    if (!is_predicted(b)) continue;
+    const int v = b.at.vertex;
+    const Prediction predicted = predict(b, draft, values);
+    Eigen::ArrayXf off = Eigen::ArrayXf::Zero(bands);
+    for (Eigen::Index k = 0; k < values.cols(); k += bands) {
+      off += (values.row(v).matrix() - predicted.value).segment(k, bands).transpose().array();
+    }
+    double explained = variance[v] + predicted.variance;
+    for (int i = 0; i < b.at.end_count(); ++i) {
+      explained += variance[b.at.ends[i]] / std::pow(b.at.end_count(), 2);
+    }
+    sum[group[v]] += double{off.square().mean()} - explained;
+    count[group[v]] += 1.0;
+  }
+  return (sum / count.max(1.0)).max(0.0);
+}
+
+}  // namespace
+
+void join_with_draft(std::span<const BetweenVertex> between, const BandArray& draft,
+                     std::span<const int> group, int bands, BandArray& values,
+                     Eigen::ArrayXf& variance) {
+  const Eigen::ArrayXd more = unexplained(between, draft, values, variance, group, bands);
+  for (const BetweenVertex& b : between) {
+    const int v = b.at.vertex;
+    float of_ends = 0.0f;  // as if their noise were all alike: some of it is
+    for (int i = 0; i < b.at.end_count(); ++i) of_ends += variance[b.at.ends[i]];
+    of_ends /= static_cast<float>(b.at.end_count());
+    if (b.is_told) {
+      values.row(v) = mean_of_ends(b.at, values);
+      variance[v] = of_ends;
+    }
+    if (!is_predicted(b) || !(variance[v] > 0.0f)) continue;
+    const Prediction predicted = predict(b, draft, values);
+    const float of_predicted = of_ends + predicted.variance + static_cast<float>(more[group[v]]);
+    const float share = variance[v] / (variance[v] + of_predicted);
+    values.row(v) =
+        ((1.0f - share) * values.row(v).matrix() + share * predicted.value).array().max(0.0f);
+    variance[v] *= 1.0f - share;
+  }
+}
+
 std::vector<double> vertex_areas(const PatchMesh& mesh) {
   std::vector<double> area(mesh.vertex_count(), 0.0);
   for (int e = 0; e < mesh.element_count(); ++e) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,26 @@ struct ToldVertex {
 
   int end_count() const { return ends[2] < 0 ? 2 : 4; }
 };
+
+/// A vertex that a split made, and what a draft says of its indirect light against the mean of its
+/// ends; (W/m^2)^2, mean of the bands, channels added.
+struct BetweenVertex {
+  ToldVertex at{};
+  bool is_told = false;                                   ///< taken for the mean
+  float spread = std::numeric_limits<float>::infinity();  ///< mean square of the difference
+  float noise = std::numeric_limits<float>::infinity();   ///< of the draft, left in the difference
+};
+
+/// Puts what was gathered at vertices (rows of `values`, of variance `variance`, which becomes what
+/// is left of it) together with what the draft predicts from their ends, each by how sure it is;
+/// told ones have their ends' mean. The draft's rays go the same ways from neighbours, so that
+/// little noise is in differences between them: small elements take their light from many rays at
+/// large ones, and keep what sets them apart. Where predictions of a `group` of vertices (such as a
+/// patch's) turn out worse than noise explains, they count for less. Entries come after all of
+/// their ends. Columns of `bands` for each channel; none falls below 0.
+void join_with_draft(std::span<const BetweenVertex> between, const BandArray& draft,
+                     std::span<const int> group, int bands, BandArray& values,
+                     Eigen::ArrayXf& variance);
 
 /// Sets the rows of told vertices, which come after all of their ends in the list.
 void tell(std::span<const ToldVertex> told, BandArray& values);

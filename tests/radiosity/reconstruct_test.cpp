@@ -43,6 +43,56 @@ TEST(ToldVertices, AreMeansOfTheirEnds) {
   EXPECT_FLOAT_EQ(values(4, 0), 2.75f);
 }
 
+// Two ends of 2 and 4, and between them a vertex whose rays said 9 with a variance of 8; the draft
+// had 10, 12 and between them 13, two above their mean.
+class BetweenTwo : public testing::Test {
+ protected:
+  void join(float spread, float noise, bool is_told = false) {
+    values.resize(3, 1);
+    values << 2.0f, 4.0f, 9.0f;
+    variance.resize(3);
+    variance << 1.0f, 1.0f, 8.0f;
+    BandArray draft(3, 1);
+    draft << 10.0f, 12.0f, 13.0f;
+    const std::vector<BetweenVertex> between{{.at = {.vertex = 2, .ends = {0, 1, -1, -1}},
+                                              .is_told = is_told,
+                                              .spread = spread,
+                                              .noise = noise}};
+    join_with_draft(between, draft, group, 1, values, variance);
+    EXPECT_EQ(values(0, 0), 2.0f);
+    EXPECT_EQ(values(1, 0), 4.0f);
+  }
+
+  std::vector<int> group{0, 0, 0};
+  BandArray values;
+  Eigen::ArrayXf variance;
+};
+
+TEST_F(BetweenTwo, WhatADraftKnowsWellCountsByHowSureItIs) {
+  // A difference known exactly predicts 3 + 2 with the ends' variance of 1. It is off by 4 where
+  // 8 + 2/4 are explained: by 7.5 more in the mean square.
+  join(4.0f, 0.0f);
+  const float predicted = 1.0f + 7.5f, share = 8.0f / (8.0f + predicted);
+  EXPECT_FLOAT_EQ(values(2, 0), 9.0f + share * (5.0f - 9.0f));
+  EXPECT_FLOAT_EQ(variance[2], 8.0f * (1.0f - share));
+}
+
+TEST_F(BetweenTwo, ADifferenceLostInNoiseIsShrunk) {
+  // Half of the difference is believed: 3 + 1, with 1 + 0.5 * 4 and what is unexplained:
+  // 25 - (8 + 0.5 + 2).
+  join(4.0f, 4.0f);
+  const float predicted = 1.0f + 2.0f + 14.5f, share = 8.0f / (8.0f + predicted);
+  EXPECT_FLOAT_EQ(values(2, 0), 9.0f + share * (4.0f - 9.0f));
+}
+
+TEST_F(BetweenTwo, WhatNobodyMeasuredIsLeftAndWhatIsToldIsTheMean) {
+  join(std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
+  EXPECT_EQ(values(2, 0), 9.0f);
+  EXPECT_EQ(variance[2], 8.0f);
+  join(1.0f, 1.0f, true);
+  EXPECT_EQ(values(2, 0), 3.0f);
+}
+
 TEST(ToldVertices, GiveTheirAreaToTheirEnds) {
   Scene scene;
   const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
