@@ -12,6 +12,7 @@
 #include "radiosity/bright_patches.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"
+#include "radiosity/patch_power.h"
 #include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -236,14 +237,6 @@ void for_each_point(std::span<const GatherPoint> points, const GatherOptions& op
     }
   });
   report(options.progress, "gather", 1.0);
-}
-
-std::vector<int> vertex_patches(const PatchMesh& mesh) {
-  std::vector<int> patch(mesh.vertex_count(), 0);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
-  }
-  return patch;
 }
 
 }  // namespace

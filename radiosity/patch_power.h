@@ -1,8 +1,13 @@
 #pragma once
 
+#include <vector>
+
 #include "mesh/patch_mesh.h"
 
 namespace lightwell {
+
+/// Of each vertex, a patch that it is of: all are of one but where patches go on smoothly.
+std::vector<int> vertex_patches(const PatchMesh& mesh);
 
 /// Integral over each patch, m^2, of what is interpolated between vertices: patches x columns. Of
 /// radiosity that is power, W.

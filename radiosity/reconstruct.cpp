@@ -160,28 +160,6 @@ GatherOptions gather_options(const SolveOptions& options) {
   return gather;
 }
 
-std::vector<int> vertex_patches(const PatchMesh& mesh) {
-  std::vector<int> patch(mesh.vertex_count(), 0);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
-  }
-  return patch;
-}
-
-// At each vertex the mean over all of its patch: of one vertex, noise is little more than a guess.
-Eigen::ArrayXf mean_of_patches(std::span<const int> patch, const Eigen::ArrayXf& at_vertices) {
-  const int patches = *std::max_element(patch.begin(), patch.end()) + 1;
-  Eigen::ArrayXf sum = Eigen::ArrayXf::Zero(patches), count = sum, mean = at_vertices;
-  for (std::size_t v = 0; v < patch.size(); ++v) {
-    sum[patch[v]] += at_vertices[static_cast<Eigen::Index>(v)];
-    count[patch[v]] += 1.0f;
-  }
-  for (std::size_t v = 0; v < patch.size(); ++v) {
-    mean[static_cast<Eigen::Index>(v)] = sum[patch[v]] / count[patch[v]];
-  }
-  return mean;
-}
-
 // What gather_indirect() finds at vertices that are not told, and the variance of one of its rays;
 // told ones have the means of their ends. `rays` gets how many each vertex stands for, with what
 // the draft adds to its own.
@@ -248,10 +226,18 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
     rays[t.vertex] = ends / inverse;
     result.variance[t.vertex] = variance / ends;
   }
-  // Two halves of a stratified set are off by more than the whole, see estimate_error().
-  constexpr float of_whole_set = 0.5f;
-  const std::vector<int> patch = vertex_patches(caster.mesh());
-  const Eigen::ArrayXf before = of_whole_set * mean_of_patches(patch, result.variance) / rays;
+  // Two halves of a stratified set are off by more than the whole, see estimate_error(). Of one
+  // vertex they tell little more than a guess: a patch's tell it together.
+  constexpr double of_whole_set = 0.5;
+  const PatchMesh& mesh = caster.mesh();
+  const std::vector<int> patch = vertex_patches(mesh);
+  const Eigen::ArrayXd of_patch = patch_integral(mesh, result.variance).col(0);
+  Eigen::ArrayXf before(count);
+  for (int v = 0; v < count; ++v) {
+    const double area = mesh.area[patch[v]],
+                 of_a_ray = area > 0.0 ? of_patch[patch[v]] / area : 0.0;
+    before[v] = static_cast<float>(of_whole_set * of_a_ray / double{rays[v]});
+  }
   Eigen::ArrayXf after = before;
   join_with_draft(draft.between, draft.indirect, patch, scene.bands.count(), result.indirect,
                   after);

@@ -7,14 +7,6 @@
 
 namespace lightwell {
 
-void tell(std::span<const ToldVertex> told, BandArray& values) {
-  for (const ToldVertex& t : told) {
-    values.row(t.vertex).setZero();
-    for (int i = 0; i < t.end_count(); ++i) values.row(t.vertex) += values.row(t.ends[i]);
-    values.row(t.vertex) /= static_cast<float>(t.end_count());
-  }
-}
-
 namespace {
 
 Eigen::RowVectorXf mean_of_ends(const ToldVertex& at, const BandArray& of) {
@@ -22,6 +14,14 @@ Eigen::RowVectorXf mean_of_ends(const ToldVertex& at, const BandArray& of) {
   for (int i = 0; i < at.end_count(); ++i) sum += of.row(at.ends[i]).matrix();
   return sum / static_cast<float>(at.end_count());
 }
+
+}  // namespace
+
+void tell(std::span<const ToldVertex> told, BandArray& values) {
+  for (const ToldVertex& t : told) values.row(t.vertex) = mean_of_ends(t, values);
+}
+
+namespace {
 
 struct Prediction {
   Eigen::RowVectorXf value;
