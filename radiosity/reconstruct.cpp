@@ -241,7 +241,8 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
   Eigen::ArrayXf after = before;
   join_with_draft(draft.between, draft.indirect, patch, scene.bands.count(), result.indirect,
                   after);
-  rays *= (after > 0.0f).select(before / after.max(1e-30f), 1.0f);
+  // Where there is none there is nothing to compare.
+  rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
   return result;
 }
 

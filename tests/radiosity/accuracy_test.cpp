@@ -111,6 +111,7 @@ TEST(Accuracy, IsKept) {
     options.accuracy = Accuracy{.share = share};
     SolveReport report;
     const SolvedScene solved = solve_scene(scene, options, &report);
+    EXPECT_TRUE(solved.solution.gather_noise.isFinite().all());
     const BandArray off = irradiance_at_places(solved, truth.mesh, places) - E;
     const double error = std::sqrt(off.cast<double>().square().mean()) / E.cast<double>().mean();
     std::printf("asked for %.3f: estimated %.4f, off by %.4f; %d elements, %d rays\n", share,
