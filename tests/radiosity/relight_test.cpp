@@ -27,9 +27,11 @@ Spectrum even(float factor) {
 // some ten roundings follow each other, of values that are no larger than the largest; caustics add
 // up some hundred floats at a vertex, with ten times the rounding of one. Twice that.
 constexpr double rounding = 1.2e-6;
-// Where elements were refined, gathers are joined with a draft's predictions, some percent off, by
-// weights that go by their variances. Those are squares of differences of percents, good to 2e-5
-// each, and of differences between them: to 1e-4.
+// Where elements were refined, gathers are joined with a draft's predictions by weights that go by
+// their variances. Those are squares of differences of a percent or two, in which some four
+// roundings of 6e-8 are 1e-5 or 2e-5, and twice that when squared; what predictions are off beyond
+// them is the small difference of several, good to 1e-4. A weight off by that moves a value by as
+// much of what gather and prediction are apart: a tenth of the light at most.
 constexpr double weighted = 1e-5;
 
 void expect_same_light(const BandArray& a, const BandArray& b, const char* what,
