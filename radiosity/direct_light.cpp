@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -195,6 +196,16 @@ int pieces_worth(int rays) {
   return rays < rays_with_none ? -1 : std::min(rays / rays_of_a_piece, most);
 }
 
+// What of the light's emitter is seen, if that is told without rays; else what rays need.
+void find_share(const ExactShadows& exact, const ElementCaster& caster,
+                const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
+                LightShadow& shadow) {
+  if (!caster.moves()) {
+    shadow.share = exact.share(shadow.index, point, normal, facet, pieces_worth(shadow.most));
+  }
+  if (!shadow.share) shadow.near = NearEmitter(*shadow.emitter, point);
+}
+
 // A patch of each facet's front; -1 where the mesh has none.
 std::vector<int> front_patches(const PatchMesh& mesh, std::size_t facet_count) {
   std::vector<int> front(facet_count, -1);
@@ -313,11 +324,9 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
   if (!(shadow.F > 0.0)) return 0.0;
   set_effort({&shadow, 1}, 1, options);
   const auto known = std::ranges::find(emitters_, emitter.facet, &Emitter::facet);
-  if (known != emitters_.end() && !caster.moves()) {
-    shadow.share = exact_->share(static_cast<int>(known - emitters_.begin()), point, normal, facet,
-                                 pieces_worth(shadow.most));
-  }
-  if (!shadow.share) shadow.near = NearEmitter(emitter, point);
+  assert(known != emitters_.end());
+  shadow.index = static_cast<int>(known - emitters_.begin());
+  find_share(*exact_, caster, point, normal, facet, shadow);
   return shadow.F *
          cast_shadows({&shadow, 1}, caster, samples_, point, normal, facet, nullptr)[0].share();
 }
@@ -377,11 +386,7 @@ void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
   }
   set_effort(shadows, channel_count_, options);
   for (LightShadow& shadow : shadows) {
-    if (!shadow.emitter) continue;
-    if (!caster.moves()) {
-      shadow.share = exact_->share(shadow.index, point, normal, facet, pieces_worth(shadow.most));
-    }
-    if (!shadow.share) shadow.near = NearEmitter(*shadow.emitter, point);
+    if (shadow.emitter) find_share(*exact_, caster, point, normal, facet, shadow);
   }
   const std::vector<ShadowTally> tallies = cast_shadows(shadows, caster, samples_, point, normal,
                                                         facet, panes_.empty() ? nullptr : &panes_);
