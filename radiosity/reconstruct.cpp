@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t draft_replica = 1000, later_replicas = 2000;
+constexpr std::uint64_t draft_replica = 1000, later_replicas = 2000, first_replicas = 3000;
 
 // Patch radiosities less what DirectLight accounts for, patches x columns of its channels.
 BandArray without_owned_emission(const PatchMesh& mesh, const DirectLight& direct_light,
@@ -166,7 +166,7 @@ GatherOptions gather_options(const SolveOptions& options) {
 GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
                                const DirectLight& direct_light, const BandArray& radiosity,
                                const GatherOptions& gather, std::span<const GatherPoint> points,
-                               const Draft& draft, KeptGathers& kept, Eigen::ArrayXf& rays) {
+                               const Draft& draft, KeptGather& kept, Eigen::ArrayXf& rays) {
   const int count = static_cast<int>(points.size());
   const auto numbers =
       static_cast<std::size_t>(*std::max_element(draft.number.begin(), draft.number.end()) + 1);
@@ -244,6 +244,15 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
   // Where there is none there is nothing to compare.
   rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
   return result;
+}
+
+// Enough to read light from, where rays of all around meet it.
+std::vector<GatherPoint> with_fewer_rays(std::vector<GatherPoint> points) {
+  constexpr int share = 8;
+  for (GatherPoint& point : points) {
+    if (point.rays > 0) point.rays = std::max(1, point.rays / share);
+  }
+  return points;
 }
 
 }  // namespace
@@ -349,24 +358,37 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
                  KeptGathers* kept) {
   const PatchMesh& mesh = caster.mesh();
   const bool has_caustics = draft.caustic.size() > 0;
-  BandArray irradiance = draft.direct + draft.indirect;
-  if (has_caustics) irradiance += draft.caustic;
-  BandArray radiosity = gatherable_radiosity(mesh, direct_light, irradiance);
-  if (draft.refined) keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
+  const auto with_indirect = [&](const BandArray& indirect) -> BandArray {
+    BandArray irradiance = draft.direct + indirect;
+    if (has_caustics) irradiance += draft.caustic;
+    return irradiance;
+  };
   const GatherOptions gather = gather_options(options);
   std::vector<GatherPoint> points = vertex_gather_points(mesh);
   share_rays(mesh, draft.told, gather.rays, points);
+  BandArray irradiance = with_indirect(draft.indirect);
   Eigen::ArrayXf variance, rays;
   if (draft.refined) {
-    solution.direct_irradiance = std::move(draft.direct);
+    const auto gather_in = [&](const BandArray& of, std::span<const GatherPoint> at,
+                               const GatherOptions& with, KeptGather& so_far) {
+      BandArray radiosity = gatherable_radiosity(mesh, direct_light, of);
+      keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
+      return gather_once(scene, caster, direct_light, radiosity, with, at, draft, so_far, rays);
+    };
     KeptGathers none;
-    GatheredIrradiance gathered = gather_once(scene, caster, direct_light, radiosity, gather,
-                                              points, draft, kept ? *kept : none, rays);
-    solution.indirect_irradiance = std::move(gathered.indirect);
+    KeptGathers& so_far = kept ? *kept : none;
+    GatherOptions first = gather;
+    first.replica += first_replicas;
+    irradiance = with_indirect(
+        gather_in(irradiance, with_fewer_rays(points), first, so_far.of_draft).indirect);
+    GatheredIrradiance gathered = gather_in(irradiance, points, gather, so_far.last);
+    solution.direct_irradiance = std::move(draft.direct);
+    solution.indirect_irradiance = gathered.indirect.max(0.0f);
     variance = std::move(gathered.variance);
   } else {
     GatheredIrradiance gathered =
-        gather_irradiance(scene, caster, direct_light, radiosity, points, gather);
+        gather_irradiance(scene, caster, direct_light,
+                          gatherable_radiosity(mesh, direct_light, irradiance), points, gather);
     solution.direct_irradiance = std::move(gathered.direct);
     solution.indirect_irradiance = std::move(gathered.indirect);
     rays.resize(mesh.vertex_count());

@@ -49,17 +49,24 @@ class Drafting {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What second gathers have found so far, by Draft::number: more is added to it. Of indirect light,
-/// W/m^2, columns of every channel.
-struct KeptGathers {
+/// What gathers have found so far, by Draft::number: more is added to it. Of indirect light, W/m^2,
+/// columns of every channel.
+struct KeptGather {
   std::vector<int> rays{};  ///< 0: none there
   BandArray indirect{};
   Eigen::ArrayXf variance{};  ///< of it
   std::uint64_t count = 0;    ///< of gathers
 };
 
+/// Of those that read the draft, and of the final ones.
+struct KeptGathers {
+  KeptGather of_draft{}, last{};
+};
+
 /// The final gather; `caster` is of the mesh whose vertices the draft is for. The direct light of
-/// a refined mesh has been gathered for good. With channels it is theirs that is filled in; their
+/// a refined mesh has been gathered for good; its indirect light was found in that of unrefined
+/// elements, and in the same few directions all over a surface. A gather with an eighth of the rays
+/// makes that good, and the final one reads it. With channels it is theirs that is filled in; their
 /// sum is left to relight(). What `kept` has of refined elements is not gathered again.
 void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
                  const SolveOptions& options, Draft draft, RadiositySolution& solution,

@@ -85,8 +85,7 @@ void join_with_draft(std::span<const BetweenVertex> between, const BandArray& dr
     const Prediction predicted = predict(b, draft, values);
     const float of_predicted = of_ends + predicted.variance + static_cast<float>(more[group[v]]);
     const float share = variance[v] / (variance[v] + of_predicted);
-    values.row(v) =
-        ((1.0f - share) * values.row(v).matrix() + share * predicted.value).array().max(0.0f);
+    values.row(v) = (1.0f - share) * values.row(v).matrix() + share * predicted.value;
     variance[v] *= 1.0f - share;
   }
 }

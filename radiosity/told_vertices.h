@@ -35,7 +35,8 @@ struct BetweenVertex {
 /// little noise is in differences between them: small elements take their light from many rays at
 /// large ones, and keep what sets them apart. Where predictions of a `group` of vertices (such as a
 /// patch's) turn out worse than noise explains, they count for less. Entries come after all of
-/// their ends. Columns of `bands` for each channel; none falls below 0.
+/// their ends. Columns of `bands` for each channel; each is a sum of gathers, some of them less
+/// others, and may fall below 0 by their noise.
 void join_with_draft(std::span<const BetweenVertex> between, const BandArray& draft,
                      std::span<const int> group, int bands, BandArray& values,
                      Eigen::ArrayXf& variance);

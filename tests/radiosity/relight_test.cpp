@@ -33,13 +33,29 @@ constexpr double rounding = 1.2e-6;
 // them is the small difference of several, good to 1e-4. A weight off by that moves a value by as
 // much of what gather and prediction are apart: a tenth of the light at most.
 constexpr double weighted = 1e-5;
+// What is joined so is read by the final gather, which aims some of its rays at bright patches:
+// which of them is drawn from running sums of their light. One of 1e5 draws goes elsewhere for a
+// sum that is off by 1e-5. 5000 vertices have 64 to 512 rays each, an eighth of them aimed, which
+// makes some ten; twice that are allowed. Such a ray is a 64th of the light at a vertex at most,
+// and may be twice as bright as the rest.
+constexpr double redrawn = 0.004, one_ray = 0.03;
 
-void expect_same_light(const BandArray& a, const BandArray& b, const char* what,
-                       double share = rounding) {
+void expect_same_light(const BandArray& a, const BandArray& b, const char* what) {
   ASSERT_EQ(a.rows(), b.rows()) << what;
   ASSERT_EQ(a.cols(), b.cols()) << what;
   if (a.size() == 0) return;
-  EXPECT_LE((a - b).abs().maxCoeff(), share * b.abs().maxCoeff()) << what;
+  EXPECT_LE((a - b).abs().maxCoeff(), rounding * b.abs().maxCoeff()) << what;
+}
+
+void expect_same_but_for_rays(const BandArray& a, const BandArray& b, const char* what) {
+  ASSERT_EQ(a.rows(), b.rows()) << what;
+  ASSERT_EQ(a.cols(), b.cols()) << what;
+  const Eigen::ArrayXf off = (a - b).abs().rowwise().maxCoeff() / b.abs().maxCoeff();
+  const auto count = (off > static_cast<float>(weighted)).count();
+  std::printf("%s: %ld of %ld vertices differ, by up to %.2g\n", what, static_cast<long>(count),
+              static_cast<long>(off.size()), double{off.maxCoeff()});
+  EXPECT_LE(static_cast<double>(count), redrawn * static_cast<double>(off.size())) << what;
+  EXPECT_LE(off.maxCoeff(), one_ray) << what;
 }
 
 void expect_same_light(const SolvedScene& a, const SolvedScene& b) {
@@ -49,8 +65,11 @@ void expect_same_light(const SolvedScene& a, const SolvedScene& b) {
   expect_same_light(a.mesh.emission, b.mesh.emission, "emission");
   expect_same_light(s.patch_radiosity, t.patch_radiosity, "patch radiosity");
   expect_same_light(s.direct_irradiance, t.direct_irradiance, "direct");
-  expect_same_light(s.indirect_irradiance, t.indirect_irradiance, "indirect",
-                    t.provenance.refinement.empty() ? rounding : weighted);
+  if (t.provenance.refinement.empty()) {
+    expect_same_light(s.indirect_irradiance, t.indirect_irradiance, "indirect");
+  } else {
+    expect_same_but_for_rays(s.indirect_irradiance, t.indirect_irradiance, "indirect");
+  }
   expect_same_light(s.caustic_irradiance, t.caustic_irradiance, "caustic");
   EXPECT_NEAR(s.energy.emitted / t.energy.emitted, 1.0, rounding);
   EXPECT_NEAR(s.energy.absorbed / t.energy.absorbed, 1.0, rounding);
