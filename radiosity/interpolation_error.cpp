@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -14,16 +15,24 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t probe_key = 30;  // purpose of random keys
+constexpr std::uint64_t probe_key = 30, parts_key = 31;  // purposes of random keys
 constexpr std::uint64_t draft_replica = 1000;
 constexpr int probe_count = 16;
-constexpr int share_of_rays = 8;
 // Of it, what may hide in an indirect light that is taken for even: the product of two gathers has
 // none in the mean, and most of what it hides is nothing.
 constexpr double share_of_noise = 0.25;
 
 // Vertices lie this far inside the elements of the deepest level (see vertex_gather_points).
 constexpr double finest_inset = 0.02;
+
+// A squared difference counts from this multiple of its noise on.
+constexpr double beyond_doubt = 2.0;
+
+// Of each of two gathers, for a final one of `rays`.
+int draft_rays(int rays) {
+  constexpr int share = 16;
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(1, rays / share))));
+}
 
 // A straight shadow edge crosses at most 2 sqrt(n) of n stratified rays' cells, each of which is
 // off by 0.3 in the mean square.
@@ -88,7 +97,7 @@ void InterpolationError::go_on(double tolerance) {
 
 // Crumbs take fewer, but none so few that noise hides what there is to be seen.
 void InterpolationError::share_draft_rays() {
-  const int rays = std::max(1, options_.rays / share_of_rays);
+  const int rays = draft_rays(options_.rays);
   std::vector<GatherPoint> points(static_cast<std::size_t>(elements_.base().vertex_count()));
   share_rays(elements_.base(), {}, rays, points);
   rays_.clear();
@@ -175,7 +184,7 @@ GatheredIrradiance InterpolationError::indirect_at(const std::vector<int>& verti
     point.rays = rays_[static_cast<std::size_t>(v)];
   }
   GatherOptions options = options_;
-  options.rays = std::max(1, options_.rays / share_of_rays);
+  options.rays = draft_rays(options_.rays);
   options.replica = options_.replica + draft_replica + replica;
   return gather_indirect(scene_, caster_, direct_light_, radiosity, points, options);
 }
@@ -196,7 +205,7 @@ void InterpolationError::sharpen_radiosity(const BandArray& caustic, double nois
       Eigen::Map<const Eigen::ArrayXi>(rays_.data(), mesh.vertex_count()).cast<float>();
   const double found =
       rms_noise(mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays));
-  options_.rays = rays_for_noise(std::max(1, options_.rays / share_of_rays), found, noise);
+  options_.rays = rays_for_noise(draft_rays(options_.rays), found, noise);
   share_draft_rays();
 }
 
@@ -259,6 +268,24 @@ void InterpolationError::for_each_inner_vertex(int cell, int side, Visit&& visit
   const int n = elements_.corner_count(cell);
   for (int i = 0; i < n; ++i) visit(elements_.edge_vertex(cell, side, i));
   if (n == 4) visit(elements_.center_vertex(cell, side));
+}
+
+template <class Visit>
+void InterpolationError::for_each_vertex(int cell, int side, Visit&& visit) const {
+  for (int i = 0; i < elements_.corner_count(cell); ++i) {
+    visit(elements_.corner_vertex(cell, side, i));
+  }
+  for_each_inner_vertex(cell, side, visit);
+}
+
+double InterpolationError::direct_range(int cell, int side) const {
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (int i = 0; i < elements_.corner_count(cell); ++i) {
+    const double E = direct_.row(elements_.corner_vertex(cell, side, i)).mean();
+    low = std::min(low, E);
+    high = std::max(high, E);
+  }
+  return high - low;
 }
 
 std::vector<ToldVertex> InterpolationError::told(const std::vector<int>& vertices) {
@@ -499,29 +526,71 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
     add_shadow_noise(v, at_center);
   }
   // Of two independent gathers alone, the product over a cell would be off by about the noise.
-  constexpr double beyond_doubt = 2.0;
   const bool indirect_counts = differences.indirect > beyond_doubt * differences.noise;
   const double error = indirect_counts ? differences.both : differences.direct;
   const bool shadow_counts = error > beyond_doubt * shadow_noise;
   return {.error = shadow_counts ? error - shadow_noise : 0.0,
           .hidden = (indirect_counts ? 0.0 : differences.noise) +
                     (shadow_counts ? 0.0 : std::clamp(error, 0.0, shadow_noise)),
+          .direct = differences.direct,
+          .shadow_noise = shadow_noise,
           .indirect = std::max(differences.indirect, 0.0) + share_of_noise * differences.noise,
           .noise = differences.noise};
 }
 
-double InterpolationError::probed_error(int cell, int side) {
-  const int n = elements_.corner_count(cell), element = elements_.element(cell, side);
+bool InterpolationError::has_edge(int cell, int side) const {
+  EmitterSight some, all{.whole = ~std::uint64_t{0}, .hidden = ~std::uint64_t{0}};
+  for_each_vertex(cell, side, [&](int v) {
+    some.whole |= sight_[v].whole;
+    some.hidden |= sight_[v].hidden;
+    all.whole &= sight_[v].whole;
+    all.hidden &= sight_[v].hidden;
+  });
+  return some.whole != all.whole || some.hidden != all.hidden;
+}
+
+InterpolationError::CellPlace InterpolationError::place_in(int cell, int side, double u,
+                                                           double v) const {
+  const int n = elements_.corner_count(cell);
+  Eigen::Vector4d weights;
+  if (n == 4) {
+    weights = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+  } else {
+    weights << triangle_point(u, v), 0.0;
+  }
+  CellPlace place{.direct = Spectrum::Zero(scene_.bands.count())};
+  for (int i = 0; i < n; ++i) {
+    const int corner = elements_.corner_vertex(cell, side, i);
+    place.position += weights[i] * elements_.position(corner);
+    place.direct += static_cast<float>(weights[i]) * direct_.row(corner).transpose();
+  }
+  return place;
+}
+
+// In the middles of the four parts.
+double InterpolationError::parts_error(int cell, int side) const {
+  const int element = elements_.element(cell, side);
+  const int facet = elements_.base().facet[element];
+  const Eigen::Vector3d normal = element_center(elements_.base(), element).normal;
+  const std::uint64_t key = random_key(static_cast<std::uint64_t>(2 * cell + side), parts_key);
+  double error = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const CellPlace at = place_in(cell, side, k % 2 == 0 ? 0.25 : 0.75, k < 2 ? 0.25 : 0.75);
+    const Spectrum E =
+        direct_light_.irradiance(caster_, at.position, normal, facet,
+                                 random_key(key, static_cast<std::uint64_t>(k)), options_.shadows);
+    error += mean_square(E - at.direct) / 4.0;
+  }
+  return error;
+}
+
+double InterpolationError::probed_error(int cell, int side) const {
+  const int element = elements_.element(cell, side);
   std::uint64_t whole = ~std::uint64_t{0}, hidden = whole;
-  const auto look = [&](int v) {
+  for_each_vertex(cell, side, [&](int v) {
     whole &= sight_[v].whole;
     hidden &= sight_[v].hidden;
-  };
-  for (int i = 0; i < n; ++i) {
-    look(elements_.corner_vertex(cell, side, i));
-    look(elements_.edge_vertex(cell, side, i));
-  }
-  if (n == 4) look(elements_.center_vertex(cell, side));
+  });
   const int facet = elements_.base().facet[element];
   const Eigen::Vector3d normal = element_center(elements_.base(), element).normal;
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(2 * cell + side), probe_key);
@@ -533,26 +602,14 @@ double InterpolationError::probed_error(int cell, int side) {
     if (!all_see && (hidden >> e & 1U) == 0) continue;
     for (int k = 0; k < probe_count; ++k) {
       const Eigen::Array4f u = probes_.point(k, random_key(key, e));
-      Eigen::Vector4d weights;
-      if (n == 4) {
-        weights = {(1 - u[0]) * (1 - u[1]), u[0] * (1 - u[1]), u[0] * u[1], (1 - u[0]) * u[1]};
-      } else {
-        weights << triangle_point(u[0], u[1]), 0.0;
-      }
-      Eigen::Vector3d at = Eigen::Vector3d::Zero();
-      Spectrum interpolated = Spectrum::Zero(scene_.bands.count());
-      for (int i = 0; i < n; ++i) {
-        const int v = elements_.corner_vertex(cell, side, i);
-        at += weights[i] * elements_.position(v);
-        interpolated += static_cast<float>(weights[i]) * direct_.row(v).transpose();
-      }
+      const CellPlace at = place_in(cell, side, u[0], u[1]);
       const auto sees =
-          direct_light_.sees(static_cast<int>(e), caster_, at, normal, facet, u[2], u[3]);
+          direct_light_.sees(static_cast<int>(e), caster_, at.position, normal, facet, u[2], u[3]);
       if (!sees || *sees == all_see) continue;
-      const Spectrum E = direct_light_.irradiance(caster_, at, normal, facet,
+      const Spectrum E = direct_light_.irradiance(caster_, at.position, normal, facet,
                                                   random_key(key, e, static_cast<std::uint64_t>(k)),
                                                   options_.shadows);
-      error += mean_square(E - interpolated) / probe_count;
+      error += mean_square(E - at.direct) / probe_count;
     }
   }
   return error;
@@ -600,8 +657,18 @@ void InterpolationError::measure(int cell, int side, Measured& measured) {
   if (!(E > 0.0)) return;
   CellSide& known = sides_[cell][side];
   known.was_told = is_told(cell, side);
-  if (known.probed < 0.0) known.probed = probed_error(cell, side) / (E * E);
   const Squares lattice = lattice_error(cell, side);
+  if (known.probed < 0.0) {
+    double probed = probed_error(cell, side);
+    // Where the edge of a shadow runs through the very middle, that is what the corners tell there.
+    constexpr double by_chance = 0.1;
+    const double range = direct_range(cell, side);
+    if (lattice.direct < std::pow(by_chance * range, 2) && has_edge(cell, side)) {
+      const double of_parts = parts_error(cell, side);
+      if (of_parts > beyond_doubt * lattice.shadow_noise) probed += of_parts - lattice.shadow_noise;
+    }
+    known.probed = probed / (E * E);
+  }
   measured.error[side] = lattice.error / (E * E) + known.probed;
   measured.hidden[side] = lattice.hidden / (E * E);
   if (known.was_told) return;

@@ -29,14 +29,16 @@ Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradian
 /// A cell is compared at the middles of its edges and in its centre (weights of Simpson's rule; in
 /// triangles at the middles alone), and those gathers are kept as the values of the vertices that
 /// a split makes there. Direct light is gathered as for the final solution; indirect light twice,
-/// with an eighth of the rays each, down to a quarter of that at the start's smallest elements, the
-/// same directions all over a side of a surface, so that most of the noise is alike at neighbours
-/// and not in what they differ by. The product of both differences is what counts, without the
-/// noise that is left, and only where it is more than that.
+/// with a sixteenth of the rays each, down to a quarter of that at the start's smallest elements,
+/// the same directions all over a side of a surface, so that most of the noise is alike at
+/// neighbours and not in what they differ by. The product of both differences is what counts,
+/// without the noise that is left, and only where it is more than that.
 ///
 /// What lies between these places is looked for with shadow rays from 16 more to each emitter that
 /// all of them see whole, or that none of them sees: where one says otherwise, a shadow or a beam
 /// narrower than half the cell runs through it, and direct light gathered there is compared too.
+/// The edge of a shadow that runs through the middle is found in four places more: there the
+/// corners' mean is right by chance.
 ///
 /// Where indirect light was found to be what the corners of a cell tell, to three tenths of
 /// the tolerance, with a quarter of the noise's square, nothing is gathered of it any more in what
@@ -110,13 +112,28 @@ class InterpolationError {
   template <class Visit>
   void for_each_inner_vertex(int cell, int side, Visit&& visit) const;
   void measure(int cell, int side, Measured& measured);
+  template <class Visit>
+  void for_each_vertex(int cell, int side, Visit&& visit) const;
   struct Squares {
     double error = 0.0, hidden = 0.0;
+    double direct = 0.0;    // of direct light alone, with its noise
+    double shadow_noise = 0.0;
     double indirect = 0.0;  // of indirect light alone, with a share of its noise
     double noise = 0.0;     // of that
   };
   Squares lattice_error(int cell, int side);
-  double probed_error(int cell, int side);
+  // W/m^2, between the corners.
+  double direct_range(int cell, int side) const;
+  // Whether one of its vertices sees all of a light, or nothing, and another does not.
+  bool has_edge(int cell, int side) const;
+  // u and v in [0, 1], and direct light interpolated there.
+  struct CellPlace {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Spectrum direct{};
+  };
+  CellPlace place_in(int cell, int side, double u, double v) const;
+  double parts_error(int cell, int side) const;
+  double probed_error(int cell, int side) const;
   Spectrum total(int vertex) const;
   double reference(int cell, int side) const;
 
