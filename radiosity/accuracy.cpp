@@ -11,7 +11,7 @@ namespace {
 // Both are independent, and what is compared with is noisy as well. Interpolation leaves between
 // half of the tolerance and all of it; where that turns out too much, a later attempt adds to what
 // the first has found.
-constexpr double share_of_interpolation = 0.85, share_of_noise = 0.55;
+constexpr double share_of_interpolation = 0.95, share_of_noise = 0.55;
 constexpr int most_attempts = 6;
 
 }  // namespace

@@ -30,7 +30,7 @@ int rays_for_noise(int rays, double found, double target) {
 }
 
 int estimate_places(int asked, std::int64_t vertices) {
-  constexpr std::int64_t share = 32, most_times = 4;
+  constexpr std::int64_t share = 32, most_times = 8;
   std::int64_t places = asked;
   while (places > 0 && places < most_times * asked && 2 * places * share <= vertices) places *= 2;
   return static_cast<int>(places);

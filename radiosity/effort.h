@@ -21,8 +21,8 @@ int patch_count_for(double target, int most);
 int rays_for_noise(int rays, double found, double target);
 
 /// Places that an error estimate looks at, for a solution that gathers at `vertices`: those `asked`
-/// for, or twice or four times as many where that is a 32nd of the vertices at most. An estimate
-/// from more of them is surer by the square root.
+/// for, or twice, four or eight times as many where that is a 32nd of the vertices at most. An
+/// estimate from more of them is surer by the square root.
 int estimate_places(int asked, std::int64_t vertices);
 
 /// Rays of each of `places`, beside a solution of `rays` a vertex: twice as many, or four times

@@ -110,6 +110,24 @@ std::vector<ErrorPlace> open_places(const ElementCaster& caster, double width,
   return open;
 }
 
+// How much too much light is in what is reflected, of each band, if what is found at places is that
+// much off the light that its own reflections and the lamps make there. With e = E - E*, and T E
+// what is reflected of E, E - (M + T E) is e - T e: all over a scene T leaves the share of light
+// that is reflected, and the rest comes back in e.
+Spectrum excess_of_reflected(const Eigen::ArrayXd& weight, const BandArray& found,
+                             const BandArray& direct, const BandArray& own) {
+  constexpr double least = 0.02;  // of all light: else who has none but reflected could not tell
+  Spectrum excess(found.cols());
+  for (Eigen::Index k = 0; k < found.cols(); ++k) {
+    const auto mean = [&](const BandArray& of) {
+      return (weight * of.col(k).cast<double>()).mean();
+    };
+    const double all = mean(own), from_lamps = std::max(mean(direct), least * all);
+    excess[k] = all > 0.0 ? static_cast<float>((mean(found) - all) / from_lamps) : 0.0f;
+  }
+  return excess;
+}
+
 }  // namespace
 
 ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
@@ -159,7 +177,10 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
   const GatheredIrradiance independent = gather_irradiance(
       scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
       gather_options);
-  const BandArray truth = independent.direct + independent.indirect + caustic;
+  const BandArray not_reflected = independent.direct + caustic;
+  BandArray truth = not_reflected + independent.indirect;
+  truth -= independent.indirect.rowwise() *
+           excess_of_reflected(weight, interpolated, not_reflected, truth).transpose();
   const Eigen::ArrayXd own = truth.cast<double>().rowwise().mean();
   const double mean = (weight * own).mean();
   if (!(mean > 0.0)) return {};

@@ -46,7 +46,7 @@ TEST(Effort, EstimateTakesMorePlacesAndRaysWhereTheyAreCheap) {
   EXPECT_EQ(estimate_places(asked, 6000), 512);
   EXPECT_EQ(estimate_places(asked, 32768), 1024);  // a 32nd
   EXPECT_EQ(estimate_places(asked, 32767), 512);
-  EXPECT_EQ(estimate_places(asked, 1000000), 2048);  // enough
+  EXPECT_EQ(estimate_places(asked, 1000000), 4096);  // enough
   EXPECT_EQ(estimate_places(0, 1000000), 0);         // nobody looks
   EXPECT_EQ(estimate_rays(1024, 6000, asked), 2048);
   EXPECT_EQ(estimate_rays(1024, 16384, asked), 4096);  // 4 x 512 are an eighth of the places
