@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "mesh/patch_sampler.h"
+#include "radiosity/error_estimate.h"
+#include "radiosity/interpolation_error.h"
 #include "radiosity/solve.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
@@ -215,6 +217,42 @@ TEST(Accuracy, RaysAreNotCastWhereElementsAreTooLarge) {
   const auto noisy = next_effort(first, 0.03, 0.045, 0.042, RefineReport{}, 0);
   ASSERT_TRUE(noisy);
   EXPECT_GT(noisy->gather_rays, first.gather_rays);
+}
+
+// All light a few percent too dim, as if interpolation had cut peaks off: what is gathered in that
+// light for comparison is too dim as well, but for what comes straight from the lamps.
+TEST(ErrorEstimate, SeesWhatReflectionsHide) {
+  const Scene scene = test::two_lamps({.reflectance = 0.9f});
+  SolveOptions options;
+  options.error_points = 2048;
+  SolvedScene solved = solve_scene(scene, options);
+  const ElementCaster caster(solved.mesh);
+  const DirectLight direct_light(scene, solved.mesh);
+  const auto estimate = [&] {
+    return estimate_error(scene, caster, direct_light, options, solved.solution).error;
+  };
+  const double before = estimate();
+  const PatchMesh& mesh = solved.mesh;
+  const BandArray E = element_mean(mesh, solved.solution.irradiance());
+  const Eigen::ArrayXd reference = error_references(mesh, solved.solution.irradiance());
+  const auto rms = [&](const BandArray& of) {
+    double square = 0.0, area = 0.0;
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
+      const double share = of.row(e).cast<double>().square().mean() / std::pow(reference[e], 2);
+      square += mesh.element_area[e] * share;
+      area += mesh.element_area[e];
+    }
+    return std::sqrt(square / area);
+  };
+  constexpr float missing = 0.05f;
+  const double off = missing * rms(E);
+  const double seen = missing * rms(element_mean(mesh, solved.solution.direct_irradiance));
+  solved.solution.direct_irradiance *= 1.0f - missing;
+  solved.solution.indirect_irradiance *= 1.0f - missing;
+  const double after = std::sqrt(std::pow(estimate(), 2) - std::pow(before, 2));
+  std::printf("light %.4f off, %.4f of it not hidden: %.4f estimated\n", off, seen, after);
+  EXPECT_NEAR(after, off, 0.05 * off);  // as 2048 places tell
 }
 
 }  // namespace

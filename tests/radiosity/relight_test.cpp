@@ -33,11 +33,11 @@ constexpr double rounding = 1.2e-6;
 // them is the small difference of several, good to 1e-4. A weight off by that moves a value by as
 // much of what gather and prediction are apart: a tenth of the light at most.
 constexpr double weighted = 1e-5;
-// What is joined so is read by the final gather, which aims some of its rays at bright patches:
-// which of them is drawn from running sums of their light. One of 1e5 draws goes elsewhere for a
-// sum that is off by 1e-5. 5000 vertices have 64 to 512 rays each, an eighth of them aimed, which
-// makes some ten; twice that are allowed. Such a ray is a 64th of the light at a vertex at most,
-// and may be twice as bright as the rest.
+// What is joined so is read by the final gather, which aims a quarter as many rays more at bright
+// patches: which of them is drawn from running sums of their light. One of 1e5 draws goes elsewhere
+// for a sum that is off by 1e-5. 5000 vertices draw 16 to 128 times each, so that some five see
+// another place; four times that are allowed, since it is chance. Such a ray is a 64th of the light
+// at a vertex at most, and may be twice as bright as the rest.
 constexpr double redrawn = 0.004, one_ray = 0.03;
 
 void expect_same_light(const BandArray& a, const BandArray& b, const char* what) {
