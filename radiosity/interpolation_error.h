@@ -116,7 +116,7 @@ class InterpolationError {
   void for_each_vertex(int cell, int side, Visit&& visit) const;
   struct Squares {
     double error = 0.0, hidden = 0.0;
-    double direct = 0.0;    // of direct light alone, with its noise
+    double direct = 0.0;  // of direct light alone, with its noise
     double shadow_noise = 0.0;
     double indirect = 0.0;  // of indirect light alone, with a share of its noise
     double noise = 0.0;     // of that
