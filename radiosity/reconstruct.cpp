@@ -160,13 +160,14 @@ GatherOptions gather_options(const SolveOptions& options) {
   return gather;
 }
 
-// What gather_indirect() finds at vertices that are not told, and the variance of one of its rays;
-// told ones have the means of their ends. `rays` gets how many each vertex stands for, with what
-// the draft adds to its own.
+// What gather_indirect() finds at vertices that are not told, with one in `one_in` of their points'
+// rays, and the variance of one of its rays; told ones have the means of their ends. `rays` gets
+// how many each vertex stands for, with what the draft adds to its own.
 GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
                                const DirectLight& direct_light, const BandArray& radiosity,
                                const GatherOptions& gather, std::span<const GatherPoint> points,
-                               const Draft& draft, KeptGather& kept, Eigen::ArrayXf& rays) {
+                               int one_in, const Draft& draft, KeptGather& kept,
+                               Eigen::ArrayXf& rays) {
   const int count = static_cast<int>(points.size());
   const auto numbers =
       static_cast<std::size_t>(*std::max_element(draft.number.begin(), draft.number.end()) + 1);
@@ -182,7 +183,8 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
   std::vector<int> where;
   std::vector<GatherPoint> fresh;
   for (int v = 0; v < count; ++v) {
-    const int missing = points[v].rays - kept.rays[draft.number[v]];
+    const int wanted = points[v].rays > 0 ? std::max(1, points[v].rays / one_in) : 0;
+    const int missing = wanted - kept.rays[draft.number[v]];
     if (missing <= 0) continue;
     where.push_back(v);
     fresh.push_back(points[v]);
@@ -244,15 +246,6 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
   // Where there is none there is nothing to compare.
   rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
   return result;
-}
-
-// Enough to read light from, where rays of all around meet it.
-std::vector<GatherPoint> with_fewer_rays(std::vector<GatherPoint> points) {
-  constexpr int share = 8;
-  for (GatherPoint& point : points) {
-    if (point.rays > 0) point.rays = std::max(1, point.rays / share);
-  }
-  return points;
 }
 
 }  // namespace
@@ -354,7 +347,7 @@ Draft Drafting::Impl::refined(const SolveOptions& options) {
 }
 
 void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, Draft draft, RadiositySolution& solution,
+                 const SolveOptions& options, const Draft& draft, RadiositySolution& solution,
                  KeptGathers* kept) {
   const PatchMesh& mesh = caster.mesh();
   const bool has_caustics = draft.caustic.size() > 0;
@@ -369,20 +362,21 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   BandArray irradiance = with_indirect(draft.indirect);
   Eigen::ArrayXf variance, rays;
   if (draft.refined) {
-    const auto gather_in = [&](const BandArray& of, std::span<const GatherPoint> at,
-                               const GatherOptions& with, KeptGather& so_far) {
+    const auto gather_in = [&](const BandArray& of, int one_in, const GatherOptions& with,
+                               KeptGather& so_far) {
       BandArray radiosity = gatherable_radiosity(mesh, direct_light, of);
       keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
-      return gather_once(scene, caster, direct_light, radiosity, with, at, draft, so_far, rays);
+      return gather_once(scene, caster, direct_light, radiosity, with, points, one_in, draft,
+                         so_far, rays);
     };
     KeptGathers none;
     KeptGathers& so_far = kept ? *kept : none;
     GatherOptions first = gather;
     first.replica += first_replicas;
-    irradiance = with_indirect(
-        gather_in(irradiance, with_fewer_rays(points), first, so_far.of_draft).indirect);
-    GatheredIrradiance gathered = gather_in(irradiance, points, gather, so_far.last);
-    solution.direct_irradiance = std::move(draft.direct);
+    constexpr int few = 8;  // enough to read light from, where rays of all around meet it
+    irradiance = with_indirect(gather_in(irradiance, few, first, so_far.of_draft).indirect);
+    GatheredIrradiance gathered = gather_in(irradiance, 1, gather, so_far.last);
+    solution.direct_irradiance = draft.direct;
     solution.indirect_irradiance = gathered.indirect.max(0.0f);
     variance = std::move(gathered.variance);
   } else {
@@ -398,8 +392,8 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   solution.gather_noise =
       gather_noise(mesh, channel_sum(irradiance, scene.bands.count()), variance, rays);
   if (has_caustics) solution.indirect_irradiance += draft.caustic;
-  solution.caustic_irradiance = std::move(draft.caustic);
-  solution.interpolation_error = std::move(draft.interpolation_error);
+  solution.caustic_irradiance = draft.caustic;
+  solution.interpolation_error = draft.interpolation_error;
   if (solution.channels.empty()) return;
   split_columns(solution.direct_irradiance, &LightChannel::direct_irradiance, solution.channels);
   split_columns(solution.indirect_irradiance, &LightChannel::indirect_irradiance,

@@ -69,7 +69,7 @@ struct KeptGathers {
 /// makes that good, and the final one reads it. With channels it is theirs that is filled in; their
 /// sum is left to relight(). What `kept` has of refined elements is not gathered again.
 void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, Draft draft, RadiositySolution& solution,
+                 const SolveOptions& options, const Draft& draft, RadiositySolution& solution,
                  KeptGathers* kept = nullptr);
 
 }  // namespace lightwell

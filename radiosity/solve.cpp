@@ -221,14 +221,17 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
         effort.gather_rays = draft->gather_rays;
         take(effort);
       }
-      PatchMesh& lit = draft->refined ? *draft->refined : drafting->base();
-      solved.mesh = may_try_again ? lit : std::move(lit);
+      if (draft->refined) {
+        solved.mesh = std::move(*draft->refined);
+      } else {
+        solved.mesh = may_try_again ? drafting->base() : std::move(drafting->base());
+      }
       if (!may_try_again) drafting.reset();
       caster.emplace(solved.mesh);
       if (draft->refined) spent["refine"] += watch.lap();
     }
-    reconstruct(scene, *caster, kept_apart, in_force, may_try_again ? *draft : std::move(*draft),
-                solution, may_try_again ? &kept : nullptr);
+    reconstruct(scene, *caster, kept_apart, in_force, *draft, solution,
+                may_try_again ? &kept : nullptr);
     relight(solved, scales_in_force(solution));
     spent["gather"] += watch.lap();
     Eigen::ArrayXf& of_elements = solution.interpolation_error;
