@@ -28,9 +28,10 @@ constexpr double finest_inset = 0.02;
 // A squared difference counts from this multiple of its noise on.
 constexpr double beyond_doubt = 2.0;
 
-// Of each of two gathers, for a final one of `rays`.
-int draft_rays(int rays) {
-  constexpr int share = 16;
+// Of each of two gathers, for a final one of `rays`. Where that is as exact as is asked for, fewer
+// do; else predictions made of them show.
+int draft_rays(int rays, bool has_noise_goal) {
+  const int share = has_noise_goal ? 16 : 8;
   return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(1, rays / share))));
 }
 
@@ -74,6 +75,7 @@ InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& 
       radiosity_(radiosity),
       elements_(elements),
       options_(options),
+      has_noise_goal_(noise > 0.0),
       inset_(std::ldexp(finest_inset, -refine.max_level)),
       probes_(probe_count) {
   if (options.progress) {
@@ -97,7 +99,7 @@ void InterpolationError::go_on(double tolerance) {
 
 // Crumbs take fewer, but none so few that noise hides what there is to be seen.
 void InterpolationError::share_draft_rays() {
-  const int rays = draft_rays(options_.rays);
+  const int rays = draft_rays(options_.rays, has_noise_goal_);
   std::vector<GatherPoint> points(static_cast<std::size_t>(elements_.base().vertex_count()));
   share_rays(elements_.base(), {}, rays, points);
   rays_.clear();
@@ -184,7 +186,7 @@ GatheredIrradiance InterpolationError::indirect_at(const std::vector<int>& verti
     point.rays = rays_[static_cast<std::size_t>(v)];
   }
   GatherOptions options = options_;
-  options.rays = draft_rays(options_.rays);
+  options.rays = draft_rays(options_.rays, has_noise_goal_);
   options.replica = options_.replica + draft_replica + replica;
   return gather_indirect(scene_, caster_, direct_light_, radiosity, points, options);
 }
@@ -205,7 +207,7 @@ void InterpolationError::sharpen_radiosity(const BandArray& caustic, double nois
       Eigen::Map<const Eigen::ArrayXi>(rays_.data(), mesh.vertex_count()).cast<float>();
   const double found =
       rms_noise(mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays));
-  options_.rays = rays_for_noise(draft_rays(options_.rays), found, noise);
+  options_.rays = rays_for_noise(draft_rays(options_.rays, has_noise_goal_), found, noise);
   share_draft_rays();
 }
 

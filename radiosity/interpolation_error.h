@@ -29,10 +29,11 @@ Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradian
 /// A cell is compared at the middles of its edges and in its centre (weights of Simpson's rule; in
 /// triangles at the middles alone), and those gathers are kept as the values of the vertices that
 /// a split makes there. Direct light is gathered as for the final solution; indirect light twice,
-/// with a sixteenth of the rays each, down to a quarter of that at the start's smallest elements,
-/// the same directions all over a side of a surface, so that most of the noise is alike at
-/// neighbours and not in what they differ by. The product of both differences is what counts,
-/// without the noise that is left, and only where it is more than that.
+/// with an eighth of the rays each (a sixteenth where the final gather's noise has a goal), down to
+/// a quarter of that at the start's smallest elements, the same directions all over a side of a
+/// surface, so that most of the noise is alike at neighbours and not in what they differ by. The
+/// product of both differences is what counts, without the noise that is left, and only where it is
+/// more than that.
 ///
 /// What lies between these places is looked for with shadow rays from 16 more to each emitter that
 /// all of them see whole, or that none of them sees: where one says otherwise, a shadow or a beam
@@ -143,6 +144,7 @@ class InterpolationError {
   BandArray radiosity_;
   RefinedElements& elements_;
   GatherOptions options_;
+  bool has_noise_goal_;
   double inset_;
   std::vector<char> matters_;
   double area_ = 0.0, mean_ = 0.0;
