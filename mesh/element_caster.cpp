@@ -5,7 +5,10 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 
+#include "mesh/quad_weights.h"
 #include "mesh/sphere_grid.h"
 #include "scene/facet_textures.h"
 
@@ -20,53 +23,11 @@ bool is_front_polygon(const PatchMesh& mesh, int patch) {
   return mesh.is_back[patch] == 0 && sphere_grid_of(mesh, facet) == nullptr;
 }
 
-// (a, b) for which a x + b y is nearest to d.
-Eigen::Vector2d in_terms_of(const Vector3d& x, const Vector3d& y, const Vector3d& d) {
-  const double xx = x.squaredNorm(), xy = x.dot(y), yy = y.squaredNorm();
-  const double determinant = xx * yy - xy * xy;
-  return {(yy * d.dot(x) - xy * d.dot(y)) / determinant,
-          (xx * d.dot(y) - xy * d.dot(x)) / determinant};
-}
-
 // (alpha, beta) of QuadShape.
 Eigen::Vector2d shape_of_quad(const PatchMesh& mesh, const std::array<int, 4>& c) {
   const Vector3d p0 = mesh.position(c[0]);
-  return in_terms_of(mesh.position(c[1]) - p0, mesh.position(c[3]) - p0, mesh.position(c[2]) - p0);
-}
-
-// Of the point v0 + a (v1 - v0) + b (v3 - v0), whose bilinear (s, t) solves
-//   a = s + (alpha - 1) s t,  b = t + (beta - 1) s t,   v2 - v0 = alpha (v1-v0) + beta (v3-v0),
-// by Newton from a first guess; a convex quad has one root in the unit square.
-Array4f bilinear_weights(double alpha, double beta, double a, double b, double s, double t) {
-  constexpr int most_steps = 8;
-  constexpr double converged = 1e-7;  // of the element; the next step would square it
-  for (int step = 0; step < most_steps; ++step) {
-    const double fs = s + (alpha - 1.0) * s * t - a, ft = t + (beta - 1.0) * s * t - b;
-    if (std::abs(fs) + std::abs(ft) < converged) break;
-    const double ss = 1.0 + (alpha - 1.0) * t, st = (alpha - 1.0) * s;
-    const double ts = (beta - 1.0) * t, tt = 1.0 + (beta - 1.0) * s;
-    const double det = ss * tt - st * ts;
-    s -= (tt * fs - st * ft) / det;
-    t -= (ss * ft - ts * fs) / det;
-  }
-  s = std::clamp(s, 0.0, 1.0);
-  t = std::clamp(t, 0.0, 1.0);
-  return Eigen::Array4d((1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t).cast<float>();
-}
-
-// The ray caster meets a quad as the triangles (0,1,3) and (2,3,1), with u and v linear in each.
-Array4f quad_weights(double alpha, double beta, double u, double v) {
-  constexpr double parallelogram = 1e-6;
-  if (std::abs(alpha - 1.0) + std::abs(beta - 1.0) < parallelogram) {
-    return Eigen::Array4d((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v).cast<float>();
-  }
-  double a = u, b = v;
-  if (u + v > 1.0) {
-    const double w1 = 1.0 - v, w3 = 1.0 - u, w2 = 1.0 - w1 - w3;
-    a = w1 + alpha * w2;
-    b = w3 + beta * w2;
-  }
-  return bilinear_weights(alpha, beta, a, b, u, v);  // from the parallelogram's answer
+  return in_terms_of<Vector3d>(mesh.position(c[1]) - p0, mesh.position(c[3]) - p0,
+                               mesh.position(c[2]) - p0);
 }
 
 // The same place seen from the other side, whose corners run (0, 3, 2, 1) or (0, 2, 1).
@@ -85,11 +46,6 @@ void find_on_sphere(const PatchMesh& mesh, const SphereGrid& grid, const Vector3
   const bool is_triangle = place.ring == 0 || place.ring == grid.rings - 1;
   hit.weights = hit.element < 0 ? Array4f(Array4f::Zero()) : turned(hit.weights, is_triangle);
 }
-
-// v2 - v0 = alpha (v1 - v0) + beta (v3 - v0); both 1 in a parallelogram.
-struct QuadShape {
-  float alpha = 1.0f, beta = 1.0f;
-};
 
 // What a ray caster's primitives are, in its order: triangles, quads, spheres.
 struct Primitives {
@@ -143,15 +99,14 @@ CastGeometry cast_geometry(const PatchMesh& mesh, const GroupOf& group_of, Primi
 }  // namespace
 
 struct ElementCaster::Part {
-  const PatchMesh& mesh;
   std::vector<int> facets{};  // by group; empty: groups are the scene's facets
   Primitives primitives{};
   std::optional<RayCaster> caster{};  // none where there is nothing
   int triangles = 0, polygons = 0;    // the first of the primitives
 
   template <class GroupOf>
-  Part(const PatchMesh& of, std::vector<int> facets_of_groups, const GroupOf& group_of)
-      : mesh(of), facets(std::move(facets_of_groups)) {
+  Part(const PatchMesh& mesh, std::vector<int> facets_of_groups, const GroupOf& group_of)
+      : facets(std::move(facets_of_groups)) {
     CastGeometry geometry = cast_geometry(mesh, group_of, primitives);
     if (mesh.textures && mesh.textures->has_holes()) {
       geometry.is_hole = [textures = mesh.textures, own = facets](int group,
@@ -165,8 +120,10 @@ struct ElementCaster::Part {
     polygons = triangles + caster->quad_count();
   }
 
+  // Elements are those of `mesh`: the one that this was built over, or one that it was refined to.
   template <bool with_weights>
-  ElementHit element_hit(const Ray& ray, const Hit& hit) const {
+  ElementHit element_hit(const PatchMesh& mesh, const ElementTree* tree, const Ray& ray,
+                         const Hit& hit) const {
     if (hit.primitive < 0) return {};
     ElementHit result{.facet = facets.empty() ? hit.group : facets[hit.group],
                       .element = primitives.element[hit.primitive],
@@ -177,17 +134,15 @@ struct ElementCaster::Part {
       find_on_sphere(mesh, grid, ray.origin + hit.t * ray.direction - grid.sphere.center, result);
       return result;
     }
-    const bool is_triangle = hit.primitive < triangles;
-    if (!with_weights) {
-      // Nothing more to find out.
-    } else if (is_triangle) {
-      result.weights = {1.0f - hit.u - hit.v, hit.u, hit.v, 0.0f};
-    } else {
-      const QuadShape& shape =
-          primitives.quad_shape[static_cast<std::size_t>(hit.primitive - triangles)];
-      result.weights = quad_weights(shape.alpha, shape.beta, hit.u, hit.v);
+    if (tree || with_weights) {
+      if (hit.primitive < triangles) {
+        find_in_triangle(tree, hit, result);
+      } else {
+        find_in_quad(tree, hit, result);
+      }
     }
     if (!hit.from_back) return result;
+    const bool is_triangle = mesh.corner_count(result.element) == 3;
     result.element = mesh.twin[result.element];
     if (!with_weights) return result;
     result.weights =
@@ -195,8 +150,32 @@ struct ElementCaster::Part {
     return result;
   }
 
+  static void find_in_triangle(const ElementTree* tree, const Hit& hit, ElementHit& result) {
+    if (!tree) {
+      result.weights = {1.0f - hit.u - hit.v, hit.u, hit.v, 0.0f};
+      return;
+    }
+    const ElementTree::Place place = tree->in_triangle(result.element, hit.u, hit.v);
+    result.element = place.element;
+    result.weights = place.weights;
+  }
+
+  void find_in_quad(const ElementTree* tree, const Hit& hit, ElementHit& result) const {
+    const QuadShape& shape =
+        primitives.quad_shape[static_cast<std::size_t>(hit.primitive - triangles)];
+    const Eigen::Vector2d at = bilinear_place(shape, hit.u, hit.v);
+    if (!tree) {
+      result.weights = bilinear_weights(at);
+      return;
+    }
+    const ElementTree::Place place = tree->in_quad(result.element, shape, at);
+    result.element = place.element;
+    result.weights = place.weights;
+  }
+
   template <bool with_weights>
-  void cast(std::span<const Ray> rays, std::span<ElementHit> hits) const {
+  void cast(const PatchMesh& mesh, const ElementTree* tree, std::span<const Ray> rays,
+            std::span<ElementHit> hits) const {
     constexpr std::size_t batch = 64;  // fits the stack and the first-level cache
     if (!caster) {
       std::ranges::fill(hits, ElementHit{});
@@ -205,7 +184,7 @@ struct ElementCaster::Part {
     if (rays.size() == 1) {  // as ray trees ask: a whole buffer would cost a third of the ray
       Hit hit;
       caster->closest_hits(rays, {&hit, 1});
-      hits[0] = element_hit<with_weights>(rays[0], hit);
+      hits[0] = element_hit<with_weights>(mesh, tree, rays[0], hit);
       return;
     }
     std::array<Hit, batch> buffer;
@@ -213,7 +192,7 @@ struct ElementCaster::Part {
       const std::size_t count = std::min(batch, rays.size() - begin);
       caster->closest_hits(rays.subspan(begin, count), std::span(buffer).first(count));
       for (std::size_t i = 0; i < count; ++i) {
-        hits[begin + i] = element_hit<with_weights>(rays[begin + i], buffer[i]);
+        hits[begin + i] = element_hit<with_weights>(mesh, tree, rays[begin + i], buffer[i]);
       }
     }
   }
@@ -268,6 +247,20 @@ ElementCaster::ElementCaster(const PatchMesh& mesh, const Scene& scene) : mesh_(
   poses_.resize(bodies->parts.size());
   if (!bodies->parts.empty()) bodies_ = std::move(bodies);
   find_hidden();
+}
+
+ElementCaster::ElementCaster(const PatchMesh& mesh, const ElementCaster& base,
+                             std::shared_ptr<const ElementTree> tree)
+    : mesh_(mesh), still_(base.still_), tree_(std::move(tree)), hidden_(base.hidden_) {
+  if (base.moves() || base.tree_)
+    throw std::invalid_argument("a caster of elements that are split");
+  if (!tree_) return;
+  std::vector<std::uint8_t> hidden(static_cast<std::size_t>(mesh_.element_count()), 0);
+  for (std::size_t e = 0; e + 1 < tree_->first_element.size(); ++e) {
+    std::fill(hidden.begin() + tree_->first_element[e],
+              hidden.begin() + tree_->first_element[e + 1], (*base.hidden_)[e]);
+  }
+  hidden_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(hidden));
 }
 
 ElementCaster ElementCaster::at(double time) const {
@@ -341,7 +334,7 @@ void ElementCaster::cast_at_bodies(std::span<const Ray> rays, std::span<ElementH
         if (body >= 0 && hits[begin + i].facet >= 0) own[i].t_max = hits[begin + i].t;
       }
       const Part& part = body < 0 ? *still_ : bodies_->parts[static_cast<std::size_t>(body)];
-      part.cast<with_weights>({own.data(), count}, {met.data(), count});
+      part.cast<with_weights>(mesh_, nullptr, {own.data(), count}, {met.data(), count});
       for (std::size_t i = 0; i < count; ++i) {
         if (body < 0 || met[i].facet >= 0) hits[begin + i] = met[i];
       }
@@ -353,7 +346,7 @@ template <bool with_weights>
 void ElementCaster::cast(std::span<const Ray> rays, std::span<ElementHit> hits) const {
   assert(rays.size() == hits.size());
   if (bodies_) return cast_at_bodies<with_weights>(rays, hits);
-  still_->cast<with_weights>(rays, hits);
+  still_->cast<with_weights>(mesh_, tree_.get(), rays, hits);
 }
 
 void ElementCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
@@ -399,13 +392,13 @@ ElementHit place_on_element(const PatchMesh& mesh, const PatchPoint& point) {
   const auto& c = mesh.corners[point.element];
   const bool is_triangle = mesh.corner_count(point.element) == 3;
   const Vector3d p0 = mesh.position(c[0]);
-  const Eigen::Vector2d at = in_terms_of(
+  const Eigen::Vector2d at = in_terms_of<Vector3d>(
       mesh.position(c[1]) - p0, mesh.position(c[is_triangle ? 2 : 3]) - p0, point.position - p0);
   if (is_triangle) {
     result.weights = Eigen::Array4d(1.0 - at[0] - at[1], at[0], at[1], 0.0).cast<float>();
   } else {
     const Eigen::Vector2d shape = shape_of_quad(mesh, c);
-    result.weights = bilinear_weights(shape[0], shape[1], at[0], at[1], at[0], at[1]);
+    result.weights = bilinear_weights(bilinear_place(shape[0], shape[1], at[0], at[1], at));
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "mesh/element_tree.h"
 #include "mesh/patch_mesh.h"
 #include "scene/ray_caster.h"
 
@@ -36,6 +37,11 @@ class ElementCaster {
   /// Of a scene whose mesh that is, with surfaces that move: all of one motion are one body. They
   /// rest until at() says when.
   ElementCaster(const PatchMesh& mesh, const Scene& scene);
+  /// Of the mesh that the elements of `base` were split into, as `tree` says; null: of a mesh like
+  /// the base's. Rays go through the base's elements, which are fewer, and nothing is built. Throws
+  /// std::invalid_argument if `base` is itself of split elements, or has surfaces that move.
+  ElementCaster(const PatchMesh& mesh, const ElementCaster& base,
+                std::shared_ptr<const ElementTree> tree);
 
   /// The same at a time, s.
   ElementCaster at(double time) const;
@@ -74,6 +80,7 @@ class ElementCaster {
 
   const PatchMesh& mesh_;
   std::shared_ptr<const Part> still_;
+  std::shared_ptr<const ElementTree> tree_{};                  // null: elements are the primitives
   std::shared_ptr<const Bodies> bodies_{};                     // null: nothing moves
   std::vector<Pose> poses_{};                                  // of each body
   std::shared_ptr<const std::vector<std::uint8_t>> hidden_{};  // per element, a bit per side

@@ -241,6 +241,47 @@ std::array<int, 4> RefinedElements::piece_vertices(int cell, int side,
                   : std::array<int, 4>{c[0], c[3], c[2], c[1]};
 }
 
+void RefinedElements::shrink_to_fit() {
+  vertices_.shrink_to_fit();
+  edges_.shrink_to_fit();
+  middles_.shrink_to_fit();
+  cells_.shrink_to_fit();
+}
+
+// Elements are numbered as mesh() does, leaf by leaf.
+ElementTree RefinedElements::tree(std::vector<int> first_element) const {
+  ElementTree tree;
+  tree.root.assign(cell_of_.size(), -1);
+  struct Open {
+    int node, cell;
+  };
+  std::vector<Open> open;
+  for (std::size_t e = 0; e < cell_of_.size(); ++e) {
+    if (cell_of_[e] < 0) continue;
+    int element = first_element[e];
+    tree.root[e] = static_cast<int>(tree.nodes.size());
+    tree.nodes.emplace_back();
+    open.push_back({tree.root[e], cell_of_[e]});
+    while (!open.empty()) {
+      const auto [node, number] = open.back();
+      open.pop_back();
+      const Cell& cell = cells_[number];
+      if (cell.is_split) {
+        const int first = static_cast<int>(tree.nodes.size());
+        tree.nodes[node] = {.first = first, .split_edges = ElementTree::is_split};
+        tree.nodes.resize(tree.nodes.size() + 4);
+        for (int i = 3; i >= 0; --i) open.push_back({first + i, cell.first_child + i});
+        continue;
+      }
+      const unsigned edges = split_edges(cell);
+      tree.nodes[node] = {.first = element, .split_edges = static_cast<std::int8_t>(edges)};
+      element += static_cast<int>(closure_pieces(cell.corner_count, edges).size());
+    }
+  }
+  tree.first_element = std::move(first_element);
+  return tree;
+}
+
 RefinedMesh RefinedElements::mesh() {
   RefinedMesh refined;
   PatchMesh& out = refined.mesh;
@@ -248,6 +289,13 @@ RefinedMesh RefinedElements::mesh() {
   std::vector<Vector3d> positions;
   std::vector<int> number;  // in the mesh, by vertex here
   std::vector<int> first(base_->element_count() + 1, 0);
+  const auto count = static_cast<std::size_t>(element_count());
+  areas.reserve(count);
+  out.corners.reserve(count);
+  out.patch.reserve(count);
+  out.facet.reserve(count);
+  out.twin.reserve(count);
+  refined.cell.reserve(count);
   const auto mesh_vertex = [&](int v) {
     if (v >= static_cast<int>(number.size())) number.resize(vertices_.size(), -1);
     if (number[v] < 0) {
@@ -311,6 +359,7 @@ RefinedMesh RefinedElements::mesh() {
   out.textures = base_->textures;
   out.notes = base_->notes;
   build_topology(out, positions);
+  refined.tree = std::make_shared<const ElementTree>(tree(std::move(first)));
   return refined;
 }
 

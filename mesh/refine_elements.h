@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "mesh/element_tree.h"
 #include "mesh/patch_mesh.h"
 
 namespace lightwell {
@@ -13,6 +15,7 @@ struct RefinedMesh {
   PatchMesh mesh{};
   std::vector<int> cell{};    ///< per element; -1 on spheres
   std::vector<int> vertex{};  ///< per vertex, its number in RefinedElements
+  std::shared_ptr<const ElementTree> tree{};
 };
 
 /// Elements of a base mesh, split where asked for: a tree over each. *Cells* are the elements and
@@ -56,7 +59,8 @@ class RefinedElements {
   int first_child(int cell) const { return cells_[cell].first_child; }
 
   /// Splits leaves, and coarser neighbours as balance demands; what is split already is left out.
-  void split(std::span<const int> cells);
+  /// Returns all that were split, in an order whose reverse undoes it in merge().
+  std::vector<int> split(std::span<const int> cells);
   /// Undoes the split of each cell that has only leaves below, where balance allows it. Returns how
   /// many were.
   int merge(std::span<const int> cells);
@@ -64,6 +68,8 @@ class RefinedElements {
   /// Of mesh(), both sides, without making it.
   std::int64_t element_count() const;
   RefinedMesh mesh();
+  /// Gives back memory for what was expected to be split further.
+  void shrink_to_fit();
 
   /// Numbers of vertices, by corner, edge (from corner i to the next), or in the middle. The latter
   /// two are made when first asked for; they are in mesh() only once something is split there.
@@ -123,6 +129,7 @@ class RefinedElements {
   int add_vertex(const Vertex& vertex);
   template <class Visit>
   void for_each_leaf(int root, Visit&& visit) const;
+  ElementTree tree(std::vector<int> first_element) const;
   std::array<int, 4> piece_vertices(int cell, int side, const std::array<int, 4>& piece);
 
   const PatchMesh* base_;

@@ -89,8 +89,8 @@ void RefinedElements::split_alone(int number) {
   for (int i = 0; i < 4; ++i) cells_[cell.first_child + i].is_active = true;
 }
 
-void RefinedElements::split(std::span<const int> cells) {
-  std::vector<int> open;
+std::vector<int> RefinedElements::split(std::span<const int> cells) {
+  std::vector<int> open, done;
   for (const int marked : cells) {
     open.push_back(marked);
     while (!open.empty()) {
@@ -114,8 +114,10 @@ void RefinedElements::split(std::span<const int> cells) {
       if (open.size() > before) continue;
       open.pop_back();
       split_alone(number);
+      done.push_back(number);
     }
   }
+  return done;
 }
 
 bool RefinedElements::may_merge(const Cell& cell) const {

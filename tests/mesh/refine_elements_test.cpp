@@ -128,6 +128,25 @@ TEST_P(Refined, BoxesThatTouchAndCrossStayAMeshWhateverIsSplitAndMerged) {
   }
 }
 
+TEST_P(Refined, WhatWasSplitIsMergedAgainInReverse) {
+  const std::uint32_t seed = GetParam();
+  Numbers numbers(seed + 1);
+  const PatchMesh base = build_patches(boxes_under_a_lamp(seed), {.max_patch_size = 0.25});
+  RefinedElements refined(base);
+  for (int round = 0; round < 3; ++round) {
+    const std::vector<int> before = refined.leaves();
+    const std::vector<int> marks = some(before, numbers, 4);
+    std::vector<int> done = refined.split(marks);
+    ASSERT_GE(done.size(), marks.size());
+    const std::vector<int> after = refined.leaves();
+    std::ranges::reverse(done);
+    ASSERT_EQ(refined.merge(done), static_cast<int>(done.size()));
+    ASSERT_EQ(refined.leaves(), before);
+    refined.split(marks);
+    ASSERT_EQ(refined.leaves(), after);
+  }
+}
+
 TEST_P(Refined, SameCellsSplitAlikeInAnyUnit) {
   const std::uint32_t seed = GetParam();
   struct Made {
