@@ -25,11 +25,15 @@ int rays_for_noise(int rays, double found, double target) {
   const double wanted = rays * std::pow(found / target, 1.0 / order);
   const double enough = std::clamp(wanted, fewest, most);
   const auto whole = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(enough))));
-  const int less = 3 * (whole / 4);
-  return less >= enough ? less : whole;
+  for (const int eighths : {5, 6, 7}) {
+    const int less = eighths * (whole / 8);
+    if (less >= enough) return less;
+  }
+  return whole;
 }
 
 int estimate_places(int asked, std::int64_t vertices) {
+  // 512 places tell an error to some 10 %, eight times as many to less than 4.
   constexpr std::int64_t share = 32, most_times = 8;
   std::int64_t places = asked;
   while (places > 0 && places < most_times * asked && 2 * places * share <= vertices) places *= 2;

@@ -16,8 +16,8 @@ int form_factor_rays(double target, int most);
 int patch_count_for(double target, int most);
 
 /// Rays of a gather that leave the share `target` of noise, where `rays` of them left `found`: a
-/// power of two, or three quarters of one. Stratified rays' error in a room falls with about the
-/// power 2/3 of their number.
+/// power of two, or five to seven eighths of one. Stratified rays' error in a room falls with about
+/// the power 2/3 of their number.
 int rays_for_noise(int rays, double found, double target);
 
 /// Places that an error estimate looks at, for a solution that gathers at `vertices`: those `asked`

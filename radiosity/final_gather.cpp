@@ -90,8 +90,7 @@ class HemisphereGather {
         const double share = view.is_empty() ? 1.0
                                              : bright_.share(view, at.normal.dot(ray[r].direction),
                                                              count, ray[r], hit[r]);
-        add(ray[r], hit[r], random_key(key, gather_branches, index), share,
-            sum[place < count / 2 ? 0 : 1]);
+        add(ray[r], hit[r], key, index, share, sum[place < count / 2 ? 0 : 1]);
       }
     }
     if (!view.is_empty()) aim(at, view, key, sum);
@@ -130,15 +129,15 @@ class HemisphereGather {
   }
 
   // `share` is of the light that comes straight from the place of the hit.
-  void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, double share,
-           Eigen::ArrayXd& sum) const {
+  void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, std::uint64_t index,
+           double share, Eigen::ArrayXd& sum) const {
     if (hit.facet < 0) return;
     if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, share, sum);
     if (!paths_.is_specular(hit.facet)) return;
-    const PathLosses losses =
-        paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
-          add_throughput(end, throughput, sum);
-        });
+    const PathLosses losses = paths_.follow(ray, hit, random_key(key, gather_branches, index),
+                                            [&](const ElementHit& end, const Spectrum& throughput) {
+                                              add_throughput(end, throughput, sum);
+                                            });
     if (losses.sky.size() == 0 || dome_.size() == 0) return;
     sum.segment(dome_column_, bands_) += (pi * dome_ * losses.sky).cast<double>();
   }

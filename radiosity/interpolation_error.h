@@ -96,6 +96,8 @@ class InterpolationError {
   GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
                                        std::span<const ToldVertex> told, const ChannelLight& light);
   std::int64_t gathers() const { return gathers_; }
+  /// Gives back memory for what was expected to be gathered.
+  void shrink_to_fit();
 
  private:
   void share_draft_rays();
@@ -110,6 +112,10 @@ class InterpolationError {
                                  const BandArray& radiosity) const;
   bool is_even(int cell, int side) const;
   bool is_told(int cell, int side) const;
+  // Of those in a list whose ends all are in it, after their ends: what they are here, and by their
+  // places in the list.
+  template <class Visit>
+  void for_each_with_ends(const std::vector<int>& vertices, Visit&& visit) const;
   template <class Visit>
   void for_each_inner_vertex(int cell, int side, Visit&& visit) const;
   void measure(int cell, int side, Measured& measured);
@@ -153,7 +159,7 @@ class InterpolationError {
   // noise in what says so; that of direct light between vertices, below 0 if nobody looked for it;
   // whether indirect light was told when the cell was measured.
   struct CellSide {
-    double indirect = std::numeric_limits<double>::infinity(), noise = indirect, probed = -1.0;
+    float indirect = std::numeric_limits<float>::infinity(), noise = indirect, probed = -1.0f;
     bool was_told = false;
   };
   std::vector<std::array<CellSide, 2>> sides_;

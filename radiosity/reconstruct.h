@@ -10,19 +10,21 @@
 namespace lightwell {
 
 /// What a first, cheap gather finds at vertices. It sharpens what patches hold as one value each
-/// (the dark foot of a block): the second gather reads it.
+/// (the dark foot of a block): later gathers read it.
 struct Draft {
-  std::optional<PatchMesh> refined{};    ///< whose vertices are meant, if not the caster's
+  std::optional<PatchMesh> refined{};  ///< whose vertices are meant, if not the base's
+  /// Where its elements are in the base's, wherever it is moved to; null: nothing was refined.
+  std::shared_ptr<const ElementTree> tree{};
   BandArray direct{}, indirect{};        ///< W/m^2, vertices x bands
   BandArray caustic{};                   ///< the same; empty if the scene has no mirrors or glass
   Eigen::ArrayXf interpolation_error{};  ///< see RadiositySolution; empty without refinement
   RefineReport refinement{};
-  std::vector<ToldVertex> told{};        ///< where the second gather leaves indirect light out
-  std::vector<BetweenVertex> between{};  ///< what `indirect` is good for beside the second gather
+  std::vector<ToldVertex> told{};        ///< where later gathers leave indirect light out
+  std::vector<BetweenVertex> between{};  ///< what `indirect` is good for beside the final gather
   /// Per vertex, what it is called in later drafts of the same elements too; empty without
   /// refinement.
   std::vector<int> number{};
-  int gather_rays = 0;  ///< that the second gather is to take
+  int gather_rays = 0;  ///< that the final gather is to take
 };
 
 /// First gathers at the vertices of elements that are refined ever further.
@@ -31,7 +33,7 @@ class Drafting {
   /// Over patches whose radiosities `solution` has; `direct_light` keeps apart its channels, if
   /// there are any, and what is gathered has columns for each. Elements are split as all light
   /// together asks for. With `noise` above 0 drafts of refined elements say how many rays the
-  /// second gather takes to leave no larger a share of the mean irradiance. Keeps references to
+  /// final gather takes to leave no larger a share of the mean irradiance. Keeps references to
   /// `scene` and `direct_light`.
   Drafting(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
            const RadiositySolution& solution, double noise = 0.0);
@@ -43,6 +45,8 @@ class Drafting {
 
   /// The mesh that drafts without refinement are of; may be moved from after the last draft.
   PatchMesh& base();
+  /// Of the mesh that a draft is of, wherever that was moved to.
+  ElementCaster caster(const PatchMesh& mesh, const Draft& draft) const;
 
  private:
   struct Impl;

@@ -146,8 +146,10 @@ class Refinement {
     double last = 0.0;
     const double all = rest, fixed = sum_ - all;
     for (const auto& [minus_square, cell] : by_error) {
-      // In the last round no more than it takes, as far as that can be foreseen.
-      const bool will_do = fixed + rest + of_children_ * (all - rest) <= 0.8 * allowed_;
+      // In the last round no more than it takes, as far as that can be foreseen; what falls short
+      // takes one more, which is less than to split everywhere to be sure.
+      constexpr double nearly = 0.95;
+      const bool will_do = fixed + rest + of_children_ * (all - rest) <= nearly * allowed_;
       const bool is_enough = rest <= 0.5 * allowed_ || will_do;
       if (is_enough && (marks.empty() || -minus_square < about_equal * last)) break;
       rest += minus_square;
@@ -204,22 +206,24 @@ class Refinement {
   }
 
   // Splits them all, or as many of the first as there may be elements for.
-  bool split(std::vector<int> marks) {
-    const auto fits = [&](std::size_t count) {
-      RefinedElements trial = elements_;
-      trial.split({marks.data(), count});
-      return trial.element_count() <= max_elements_;
-    };
-    const bool all = fits(marks.size());
+  bool split(const std::vector<int>& marks) {
+    std::vector<int> done = elements_.split(marks);
+    const bool all = elements_.element_count() <= max_elements_;
     if (!all) {
+      const auto undo = [&] {
+        std::ranges::reverse(done);
+        elements_.merge(done);
+      };
+      undo();
       std::size_t low = 0, high = marks.size();  // low fits, high does not
       while (high - low > 1) {
         const std::size_t middle = low + (high - low) / 2;
-        (fits(middle) ? low : high) = middle;
+        done = elements_.split({marks.data(), middle});
+        (elements_.element_count() <= max_elements_ ? low : high) = middle;
+        undo();
       }
-      marks.resize(low);
+      elements_.split({marks.data(), low});
     }
-    elements_.split(marks);
     resize();
     // What children are expected to be until they are measured. (Their numbers may be old: what was
     // merged is split into the same again.)
@@ -339,6 +343,8 @@ RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
     const bool is_back_of_two = elements.side_count(cell) == 2 && mesh.twin[e] < e;
     result.error[e] = refinement.relative_error(cell, is_back_of_two ? 1 : 0);
   }
+  elements.shrink_to_fit();
+  error.shrink_to_fit();
   result.report.gathers = error.gathers();
   result.gather_rays = error.rays();
   return result;

@@ -223,12 +223,13 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
       }
       if (draft->refined) {
         solved.mesh = std::move(*draft->refined);
+        draft->refined.reset();  // OpenMesh copies what is moved
       } else {
         solved.mesh = may_try_again ? drafting->base() : std::move(drafting->base());
       }
+      caster.emplace(drafting->caster(solved.mesh, *draft));
       if (!may_try_again) drafting.reset();
-      caster.emplace(solved.mesh);
-      if (draft->refined) spent["refine"] += watch.lap();
+      if (draft->tree) spent["refine"] += watch.lap();
     }
     reconstruct(scene, *caster, kept_apart, in_force, *draft, solution,
                 may_try_again ? &kept : nullptr);
@@ -251,7 +252,7 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
     take(effort);
   }
   require_finite(scene, solution);
-  if (draft->refined) solution.provenance.refinement = sentence(draft->refinement);
+  if (draft->tree) solution.provenance.refinement = sentence(draft->refinement);
   for (const char* phase : {"refine", "gather", "error_estimate"}) {
     if (spent[phase] > 0.0) seconds.push_back({phase, spent[phase]});
   }
