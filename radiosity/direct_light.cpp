@@ -2,10 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <stdexcept>
 
 #include "radiosity/emitter_point.h"
 #include "radiosity/exact_shadows.h"
@@ -324,7 +324,7 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
   if (!(shadow.F > 0.0)) return 0.0;
   set_effort({&shadow, 1}, 1, options);
   const auto known = std::ranges::find(emitters_, emitter.facet, &Emitter::facet);
-  assert(known != emitters_.end());
+  if (known == emitters_.end()) throw std::invalid_argument("an emitter of another DirectLight");
   shadow.index = static_cast<int>(known - emitters_.begin());
   find_share(*exact_, caster, point, normal, facet, shadow);
   return shadow.F *

@@ -92,10 +92,12 @@ class DirectLight {
   /// The first column of what a facet emits; 0 if it does not.
   int first_column(int facet) const { return first_column_[facet]; }
 
-  /// Form factor from a differential element to one emitter: the unoccluded closed form times the
-  /// visible share. The share is the ratio of the cosine kernel over samples that see the point to
-  /// that over all samples, so without an occluder the result is exact. `facet` is where the point
-  /// lies (-1: in free space); `key` decides where the samples fall.
+  /// Form factor from a differential element to one of emitters(): the unoccluded closed form times
+  /// the visible share. That is exact where few polygons are in the way (see ExactShadows); else it
+  /// is the ratio of the cosine kernel over samples that see the point to that over all samples, so
+  /// that without an occluder, too, the result is exact. `facet` is where the point lies (-1: in
+  /// free space); `key` decides where the samples fall. Throws std::invalid_argument for an emitter
+  /// that is not one of emitters().
   double form_factor(const Emitter& emitter, const ElementCaster& caster,
                      const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
                      std::uint64_t key, const ShadowOptions& options = {}) const;

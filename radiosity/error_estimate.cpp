@@ -115,14 +115,14 @@ std::vector<ErrorPlace> open_places(const ElementCaster& caster, double width,
 // what is reflected of E, E - (M + T E) is e - T e: all over a scene T leaves the share of light
 // that is reflected, and the rest comes back in e.
 Spectrum excess_of_reflected(const Eigen::ArrayXd& weight, const BandArray& found,
-                             const BandArray& direct, const BandArray& own) {
-  constexpr double least = 0.02;  // of all light: else who has none but reflected could not tell
+                             const BandArray& not_reflected, const BandArray& own) {
+  constexpr double least = 0.02;  // of all light: noise would be taken more than fifty times
   Spectrum excess(found.cols());
   for (Eigen::Index k = 0; k < found.cols(); ++k) {
     const auto mean = [&](const BandArray& of) {
       return (weight * of.col(k).cast<double>()).mean();
     };
-    const double all = mean(own), from_lamps = std::max(mean(direct), least * all);
+    const double all = mean(own), from_lamps = std::max(mean(not_reflected), least * all);
     excess[k] = all > 0.0 ? static_cast<float>((mean(found) - all) / from_lamps) : 0.0f;
   }
   return excess;

@@ -15,13 +15,13 @@ struct ErrorEstimate {
 /// `options.error_points` or more (see estimate_places), against gathers with twice the rays of
 /// the solution's or more (see estimate_rays) and other random numbers. Those read the solution's
 /// own light: what is too much or too little of it in all, such as power that interpolation cuts
-/// off, comes back in them, by as much as reflections are of all light, and is reckoned with. What
-/// is given holds the noise of both, which makes up for the rest of what both have in common. Half
-/// of the places are spread evenly, half go by the squared error that refinement says is left in
-/// elements, or where nothing was refined by the range of their corners (importance sampling: few
-/// places tell of errors that sit in few). What is given is the upper end of what is known: the
-/// mean square and its standard error. What it is relative to, error_reference() says. `caster` is
-/// of the solution's mesh.
+/// off, comes back in them, by as much as reflections are of all light, and is reckoned with. The
+/// noise of both is left in, which makes up for the rest of what both have in common. Half of the
+/// places are spread evenly, half go by the squared error that refinement says is left in elements,
+/// or where nothing was refined by the range of their corners (importance sampling: few places tell
+/// of errors that sit in few). What is given is the upper end of what is known: the mean square and
+/// its standard error. What it is relative to, error_reference() says. `caster` is of the
+/// solution's mesh.
 ///
 /// `of_elements`, if given, gets the estimated RMS error of interpolation over each element, for
 /// solutions of which refinement tells none: it is in proportion to the range of the corners'
