@@ -66,21 +66,25 @@ void RefinedElements::add_base_cells(const std::vector<int>& places) {
     if (is_sphere || (twin >= 0 && twin < e)) continue;
     const int number = static_cast<int>(cells_.size());
     cell_of_[e] = number;
-    Cell cell{.base = e, .corner_count = base_->corner_count(e)};
-    for (int i = 0; i < cell.corner_count; ++i) {
-      cell.vertex[0][i] = base_->corners[e][i];
-      cell.place[i] = places[base_->corners[e][i]];
+    add_cell({.base = e,
+              .corner_count = static_cast<std::int8_t>(base_->corner_count(e)),
+              .is_two_sided = twin >= 0});
+    Side& front = side_of(number, 0);
+    const int n = corner_count(number);
+    std::array<int, 4> place{-1, -1, -1, -1};
+    for (int i = 0; i < n; ++i) {
+      front.vertex[i] = base_->corners[e][i];
+      place[i] = places[front.vertex[i]];
     }
-    for (int i = 0; i < cell.corner_count && twin >= 0; ++i) {
+    for (int i = 0; i < n && twin >= 0; ++i) {
       const int at = base_->corners[twin][i];
-      const auto same = std::find(cell.place.begin(), cell.place.end(), places[at]);
-      cell.vertex[1][same - cell.place.begin()] = at;
+      const auto same = std::find(place.begin(), place.end(), places[at]);
+      side_of(number, 1).vertex[same - place.begin()] = at;
     }
-    for (int i = 0; i < cell.corner_count; ++i) {
-      const auto [low, high] = std::minmax(cell.place[i], cell.place[(i + 1) % cell.corner_count]);
+    for (int i = 0; i < n; ++i) {
+      const auto [low, high] = std::minmax(place[i], place[(i + 1) % n]);
       sides.emplace_back(low, high, 4 * number + i);
     }
-    cells_.push_back(cell);
   }
   std::sort(sides.begin(), sides.end());
   for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -88,8 +92,7 @@ void RefinedElements::add_base_cells(const std::vector<int>& places) {
     const bool is_new =
         i == 0 || std::get<0>(sides[i - 1]) != low || std::get<1>(sides[i - 1]) != high;
     const int edge = is_new ? add_edge(low, high) : static_cast<int>(edges_.size()) - 1;
-    cells_[user / 4].edge[user % 4] = edge;
-    use_edge(user / 4, user % 4);
+    set_edge(user / 4, user % 4, edge, places[corner_vertex(user / 4, 0, user % 4)]);
   }
 }
 
@@ -123,10 +126,6 @@ void RefinedElements::find_reflex_corners(const std::vector<int>& places) {
   for (int v = 0; v < base_->vertex_count(); ++v) reflex_[v] = root(v);
 }
 
-int RefinedElements::side_count(int cell) const {
-  return base_->twin[cells_[cell].base] >= 0 ? 2 : 1;
-}
-
 int RefinedElements::element(int cell, int side) const {
   const int e = cells_[cell].base;
   return side == 0 ? e : base_->twin[e];
@@ -136,7 +135,7 @@ double RefinedElements::area(int cell) const {
   const Cell& c = cells_[cell];
   std::array<int, 4> corners{0, 1, 2, c.corner_count == 4 ? 3 : -1};
   std::vector<Vector3d> positions;
-  for (int i = 0; i < c.corner_count; ++i) positions.push_back(position(c.vertex[0][i]));
+  for (int i = 0; i < c.corner_count; ++i) positions.push_back(position(corner_vertex(cell, 0, i)));
   return fan_area(corners, positions);
 }
 
@@ -187,7 +186,8 @@ int RefinedElements::add_vertex(const Vertex& vertex) {
 int RefinedElements::edge_vertex(int number, int side, int i) {
   const Cell& cell = cells_[number];
   Edge& edge = edges_[cell.edge[i]];
-  const int a = cell.vertex[side][i], b = cell.vertex[side][(i + 1) % cell.corner_count];
+  const int a = corner_vertex(number, side, i);
+  const int b = corner_vertex(number, side, (i + 1) % cell.corner_count);
   const auto representative = [this](int v) {
     return v < static_cast<int>(reflex_.size()) ? reflex_[v] : v;
   };
@@ -198,22 +198,29 @@ int RefinedElements::edge_vertex(int number, int side, int i) {
   }
   const int vertex = add_vertex({.position = 0.5 * (position(a) + position(b)),
                                  .element = element(number, side),
-                                 .ends = {a, b, -1, -1}});
+                                 .from = a,
+                                 .to = b});
   middles_.push_back({from, to, vertex, edge.first_middle});
   edge.first_middle = static_cast<int>(middles_.size()) - 1;
   return vertex;
 }
 
 int RefinedElements::center_vertex(int number, int side) {
-  Cell& cell = cells_[number];
-  if (cell.center[side] >= 0) return cell.center[side];
+  Side& at = side_of(number, side);
+  if (at.center >= 0) return at.center;
+  const int n = corner_count(number);
   Vector3d sum = Vector3d::Zero();
-  for (int i = 0; i < cell.corner_count; ++i) sum += position(cell.vertex[0][i]);
-  std::array<int, 4> ends{-1, -1, -1, -1};
-  std::copy_n(cell.vertex[side].begin(), cell.corner_count, ends.begin());
-  cell.center[side] = add_vertex(
-      {.position = sum / cell.corner_count, .element = element(number, side), .ends = ends});
-  return cell.center[side];
+  for (int i = 0; i < n; ++i) sum += position(corner_vertex(number, 0, i));
+  at.center = add_vertex({.position = sum / n,
+                          .element = element(number, side),
+                          .from = -2 - side_number(number, side)});
+  return at.center;
+}
+
+std::array<int, 4> RefinedElements::ends(int vertex) const {
+  const Vertex& v = vertices_[vertex];
+  if (v.from >= -1) return {v.from, v.to, -1, -1};
+  return sides_[-2 - v.from].vertex;
 }
 
 PatchPoint RefinedElements::inside(int vertex, double inset) const {
@@ -246,6 +253,7 @@ void RefinedElements::shrink_to_fit() {
   edges_.shrink_to_fit();
   middles_.shrink_to_fit();
   cells_.shrink_to_fit();
+  sides_.shrink_to_fit();
 }
 
 // Elements are numbered as mesh() does, leaf by leaf.

@@ -50,7 +50,10 @@ class RefinedElements {
   int parent(int cell) const { return cells_[cell].parent; }
   bool is_split(int cell) const { return cells_[cell].is_split; }
   int corner_count(int cell) const { return cells_[cell].corner_count; }
-  int side_count(int cell) const;
+  int side_count(int cell) const { return cells_[cell].is_two_sided ? 2 : 1; }
+  /// Sides of all cells, those of a cell in a row: 0, 1, ... side_total() - 1.
+  int side_number(int cell, int side) const { return cells_[cell].first_side + side; }
+  int side_total() const { return static_cast<int>(sides_.size()); }
   /// The base's element on a side of the cell (0: front).
   int element(int cell, int side) const;
   double area(int cell) const;  ///< m^2, one side
@@ -74,7 +77,7 @@ class RefinedElements {
   /// Numbers of vertices, by corner, edge (from corner i to the next), or in the middle. The latter
   /// two are made when first asked for; they are in mesh() only once something is split there.
   int corner_vertex(int cell, int side, int corner) const {
-    return cells_[cell].vertex[side][corner];
+    return side_of(cell, side).vertex[corner];
   }
   int edge_vertex(int cell, int side, int edge);
   int center_vertex(int cell, int side);
@@ -83,16 +86,19 @@ class RefinedElements {
   Eigen::Vector3d position(int vertex) const { return vertices_[vertex].position; }
   /// The vertices that this one was made half-way between (2 or 4, the rest -1): lower numbers.
   /// None for the base's own.
-  const std::array<int, 4>& ends(int vertex) const { return vertices_[vertex].ends; }
+  std::array<int, 4> ends(int vertex) const;
   /// A place next to a vertex, `inset` of the way to the middle of a base element that has it, and
   /// that element and its normal; on spheres the vertex itself.
   PatchPoint inside(int vertex, double inset) const;
 
  private:
+  // There are as many as elements, or several times as many: what one could do without is derived.
   struct Vertex {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     int element = -1;  // of the base
-    std::array<int, 4> ends{-1, -1, -1, -1};
+    // The ends of the edge that it is the middle of; or a side's number, from -2 downwards, whose
+    // centre it is; or none.
+    int from = -1, to = -1;
   };
   // The middle of an edge, for those whose vertices at its ends are these.
   struct Middle {
@@ -100,27 +106,37 @@ class RefinedElements {
   };
   struct Edge {
     std::array<int, 2> place{};
-    int middle_place = -1;
-    std::array<int, 2> half{-1, -1};  // half[i] ends at place[i]
+    int first_half = -1;  // two in a row, from place[0] and from place[1] to the middle
     int parent = -1;
     int splits = 0;       // split cells that it bounds
     int first_user = -1;  // 4 cell + corner, and so on by Cell::next_user
     int first_middle = -1;
   };
+  struct Side {
+    std::array<int, 4> vertex{-1, -1, -1, -1};
+    int center = -1;
+  };
   struct Cell {
-    int base = 0, parent = -1, first_child = -1;
-    int level = 0, corner_count = 4;
-    bool is_split = false, is_active = true;
-    std::array<int, 4> place{-1, -1, -1, -1};  // geometric points: of several vertices at one place
+    int base = 0, parent = -1, first_child = -1, first_side = -1;
+    std::int8_t level = 0, corner_count = 4;
+    bool is_two_sided : 1 = false, is_split : 1 = false, is_active : 1 = true;
+    // Bit i: edge i goes from corner i + 1 to corner i.
+    std::uint8_t backwards = 0;
     std::array<int, 4> edge{-1, -1, -1, -1}, next_user{-1, -1, -1, -1};
-    std::array<std::array<int, 4>, 2> vertex{};
-    std::array<int, 2> center{-1, -1};
   };
 
   void add_base_cells(const std::vector<int>& places);
   void find_reflex_corners(const std::vector<int>& places);
+  const Side& side_of(int cell, int side) const { return sides_[side_number(cell, side)]; }
+  Side& side_of(int cell, int side) { return sides_[side_number(cell, side)]; }
+  // Geometric points: of several vertices at one place.
+  int place(const Cell& cell, int corner) const {
+    return edges_[cell.edge[corner]].place[cell.backwards >> corner & 1];
+  }
+  int middle_place(const Edge& edge) const { return edges_[edge.first_half].place[1]; }
+  int add_cell(const Cell& cell);
+  void set_edge(int cell, int corner, int edge, int from);
   int add_edge(int from, int to);
-  void use_edge(int cell, int corner);
   void split_edge(int edge);
   void make_children(int cell);
   void split_alone(int cell);
@@ -138,6 +154,7 @@ class RefinedElements {
   std::vector<Edge> edges_;
   std::vector<Middle> middles_;
   std::vector<Cell> cells_;
+  std::vector<Side> sides_;
   std::vector<int> cell_of_;  // per base element, fronts only; else -1
   int place_count_ = 0;
 };

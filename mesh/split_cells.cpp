@@ -11,51 +11,62 @@ int RefinedElements::add_edge(int from, int to) {
   return static_cast<int>(edges_.size()) - 1;
 }
 
-void RefinedElements::use_edge(int cell, int corner) {
-  Edge& edge = edges_[cells_[cell].edge[corner]];
-  cells_[cell].next_user[corner] = edge.first_user;
-  edge.first_user = 4 * cell + corner;
+int RefinedElements::add_cell(const Cell& cell) {
+  const int number = static_cast<int>(cells_.size());
+  cells_.push_back(cell);
+  cells_.back().first_side = side_total();
+  sides_.resize(sides_.size() + static_cast<std::size_t>(side_count(number)));
+  return number;
+}
+
+// From the corner that lies at `from` on.
+void RefinedElements::set_edge(int number, int corner, int edge_number, int from) {
+  Cell& cell = cells_[number];
+  Edge& edge = edges_[edge_number];
+  cell.edge[corner] = edge_number;
+  if (edge.place[0] != from) cell.backwards |= 1U << corner;
+  cell.next_user[corner] = edge.first_user;
+  edge.first_user = 4 * number + corner;
 }
 
 void RefinedElements::split_edge(int number) {
-  if (edges_[number].middle_place >= 0) return;
+  if (edges_[number].first_half >= 0) return;
   const int middle = place_count_++;
-  edges_[number].middle_place = middle;
   for (int end = 0; end < 2; ++end) {
     const int half = add_edge(edges_[number].place[end], middle);
     edges_[half].parent = number;
-    edges_[number].half[end] = half;
+    if (end == 0) edges_[number].first_half = half;
   }
 }
 
 void RefinedElements::make_children(int number) {
-  const int n = cells_[number].corner_count;
   const Cell parent = cells_[number];
+  const int n = parent.corner_count;
   // By node of closure_pieces.
-  std::array<int, 9> place{};
+  std::array<int, 9> places{};
   std::array<std::array<int, 9>, 2> vertex{};
   for (int i = 0; i < n; ++i) {
     split_edge(parent.edge[i]);
-    place[i] = parent.place[i];
-    place[middle_node + i] = edges_[parent.edge[i]].middle_place;
+    places[i] = place(parent, i);
+    places[middle_node + i] = middle_place(edges_[parent.edge[i]]);
   }
-  place[center_node] = n == 4 ? place_count_++ : -1;
+  places[center_node] = n == 4 ? place_count_++ : -1;
   for (int side = 0; side < side_count(number); ++side) {
     for (int i = 0; i < n; ++i) {
-      vertex[side][i] = parent.vertex[side][i];
+      vertex[side][i] = corner_vertex(number, side, i);
       vertex[side][middle_node + i] = edge_vertex(number, side, i);
     }
     if (n == 4) vertex[side][center_node] = center_vertex(number, side);
   }
   const auto half = [&](int edge, int end) {
     const Edge& whole = edges_[parent.edge[edge]];
-    return whole.half[whole.place[0] == place[end] ? 0 : 1];
+    return whole.first_half + (whole.place[0] == places[end] ? 0 : 1);
   };
   // The edges inside: between middles in a triangle, from each middle to the centre in others.
   std::array<int, 4> inner{-1, -1, -1, -1};
   for (int i = 0; i < n; ++i) {
     const int to = n == 4 ? center_node : middle_node + (i + 1) % n;
-    inner[i] = add_edge(place[middle_node + i], place[to]);
+    inner[i] = add_edge(places[middle_node + i], places[to]);
   }
   const auto edge_between = [&](int a, int b) {
     if (a < middle_node) std::swap(a, b);
@@ -66,18 +77,18 @@ void RefinedElements::make_children(int number) {
   };
   cells_[number].first_child = static_cast<int>(cells_.size());
   for (const ElementPiece& piece : closure_pieces(n, (1U << n) - 1)) {
-    Cell child{.base = parent.base,
-               .parent = number,
-               .level = parent.level + 1,
-               .corner_count = n,
-               .is_active = false};
+    const int child = add_cell({.base = parent.base,
+                                .parent = number,
+                                .level = static_cast<std::int8_t>(parent.level + 1),
+                                .corner_count = parent.corner_count,
+                                .is_two_sided = parent.is_two_sided,
+                                .is_active = false});
     for (int i = 0; i < n; ++i) {
-      child.place[i] = place[piece[i]];
-      for (int side = 0; side < 2; ++side) child.vertex[side][i] = vertex[side][piece[i]];
-      child.edge[i] = edge_between(piece[i], piece[(i + 1) % n]);
+      for (int side = 0; side < side_count(child); ++side) {
+        side_of(child, side).vertex[i] = vertex[side][piece[i]];
+      }
+      set_edge(child, i, edge_between(piece[i], piece[(i + 1) % n]), places[piece[i]]);
     }
-    cells_.push_back(child);
-    for (int i = 0; i < n; ++i) use_edge(static_cast<int>(cells_.size()) - 1, i);
   }
 }
 
@@ -127,8 +138,8 @@ bool RefinedElements::may_merge(const Cell& cell) const {
   }
   for (int i = 0; i < cell.corner_count; ++i) {
     const Edge& edge = edges_[cell.edge[i]];
-    for (const int half : edge.half) {
-      if (edges_[half].splits > 0) return false;
+    for (int half = 0; half < 2; ++half) {
+      if (edges_[edge.first_half + half].splits > 0) return false;
     }
   }
   return true;

@@ -38,7 +38,7 @@ class HemisphereGather {
  public:
   HemisphereGather(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
                    const BandArray& radiosity, const GatherOptions& options,
-                   std::span<const GatherPoint> points)
+                   const GatherPoints& points)
       : mesh_(caster.mesh()),
         caster_(caster),
         radiosity_(radiosity),
@@ -50,8 +50,8 @@ class HemisphereGather {
       dome_ = dome->light;
       if (direct_light.column_count() == radiosity.cols()) dome_column_ = dome->channel * bands_;
     }
-    for (const GatherPoint& at : points) {
-      const int rays = ray_count(at, options);
+    for (int i = 0; i < points.size(); ++i) {
+      const int rays = ray_count(points[i], options);
       if (!sets_.contains(rays)) sets_.emplace(rays, HemisphereSets(rays));
       if (!bright_.is_empty() && !aims_.contains(rays)) {
         aims_.emplace(rays, SobolPoints(bright_.aimed(rays)));
@@ -193,10 +193,11 @@ class HemisphereGather {
 };
 
 // All that decides what is gathered, but for the scene.
-void add_inputs(Fingerprint& print, const PatchMesh& mesh, std::span<const GatherPoint> points,
+void add_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPoints& points,
                 const GatherOptions& options) {
   print.add(mesh);
-  for (const GatherPoint& point : points) {
+  for (int i = 0; i < points.size(); ++i) {
+    const GatherPoint point = points[i];
     print.add(Eigen::Vector3d(point.position));
     print.add(Eigen::Vector3d(point.normal));
     print.add(point.facet);
@@ -216,13 +217,13 @@ std::span<float> rows_of(BandArray& values, int begin, int size) {
   return {values.data() + begin * values.cols(), static_cast<std::size_t>(size * values.cols())};
 }
 
-// Calls body(i, key) for every point, with the key of its random numbers, unless `phase` holds the
-// `values(begin, size)` of its slice. Slices keep progress and interruption on this thread: each a
-// fraction of a second of rays.
+// Calls body(i, point, key) for every point, with the key of its random numbers, unless `phase`
+// holds the `values(begin, size)` of its slice. Slices keep progress and interruption on this
+// thread: each a fraction of a second of rays.
 template <class Values, class Body>
-void for_each_point(std::span<const GatherPoint> points, const GatherOptions& options,
+void for_each_point(const GatherPoints& points, const GatherOptions& options,
                     const JournalPhase& phase, Values values, Body&& body) {
-  const int count = static_cast<int>(points.size());
+  const int count = points.size();
   constexpr int rays_per_slice = 1 << 20;
   const int slice =
       std::clamp(rays_per_slice / std::max(options.rays, 1), 2, std::max(64, count / 100));
@@ -232,7 +233,8 @@ void for_each_point(std::span<const GatherPoint> points, const GatherOptions& op
   };
   for_each_slice(phase, count, slice, grain, values, look, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      body(i, random_key(points[i].key.value_or(static_cast<std::uint64_t>(i)), options.replica));
+      const GatherPoint at = points[i];
+      body(i, at, random_key(at.key.value_or(static_cast<std::uint64_t>(i)), options.replica));
     }
   });
   report(options.progress, "gather", 1.0);
@@ -242,9 +244,8 @@ void for_each_point(std::span<const GatherPoint> points, const GatherOptions& op
 
 GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& caster,
                                      const DirectLight& direct_light, const BandArray& radiosity,
-                                     std::span<const GatherPoint> points,
-                                     const GatherOptions& options) {
-  const int count = static_cast<int>(points.size());
+                                     const GatherPoints& points, const GatherOptions& options) {
+  const int count = points.size();
   const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
   GatheredIrradiance result{.direct = BandArray::Zero(count, direct_light.column_count()),
                             .indirect = BandArray::Zero(count, radiosity.cols()),
@@ -258,22 +259,22 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
     return std::tuple(rows_of(result.direct, begin, size), rows_of(result.indirect, begin, size),
                       std::span(result.variance.data() + begin, static_cast<std::size_t>(size)));
   };
-  for_each_point(points, options, phase, values, [&](int i, std::uint64_t key) {
-    const GatherPoint& at = points[i];
-    direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
-                                random_key(key, gather_shadows), options.shadows,
-                                result.direct.row(i).data());
-    hemisphere.gather(at, key, result.indirect.row(i).data(), result.variance[i]);
-  });
+  for_each_point(points, options, phase, values,
+                 [&](int i, const GatherPoint& at, std::uint64_t key) {
+                   direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
+                                               random_key(key, gather_shadows), options.shadows,
+                                               result.direct.row(i).data());
+                   hemisphere.gather(at, key, result.indirect.row(i).data(), result.variance[i]);
+                 });
   return result;
 }
 
 BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
-                        const DirectLight& direct_light, std::span<const GatherPoint> points,
+                        const DirectLight& direct_light, const GatherPoints& points,
                         const GatherOptions& options, std::vector<EmitterSight>* sights) {
-  BandArray direct = BandArray::Zero(static_cast<Eigen::Index>(points.size()),
-                                     direct_light.channel_count() * scene.bands.count());
-  if (sights) sights->assign(points.size(), {});
+  BandArray direct =
+      BandArray::Zero(points.size(), direct_light.channel_count() * scene.bands.count());
+  if (sights) sights->assign(static_cast<std::size_t>(points.size()), {});
   const JournalPhase phase(options.journal, sights ? "sights" : "direct", [&](Fingerprint& print) {
     add_inputs(print, caster.mesh(), points, options);
     print.add(direct_light.column_count());
@@ -283,21 +284,20 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
     if (sights) seen = std::span(*sights).subspan(begin, size);
     return std::tuple(rows_of(direct, begin, size), seen);
   };
-  for_each_point(points, options, phase, values, [&](int i, std::uint64_t key) {
-    const GatherPoint& at = points[i];
-    direct_light.add_irradiance(
-        caster, at.position, at.normal, at.facet, random_key(key, gather_shadows), options.shadows,
-        direct.row(i).data(), Lights::all, sights ? &(*sights)[i] : nullptr);
-  });
+  for_each_point(
+      points, options, phase, values, [&](int i, const GatherPoint& at, std::uint64_t key) {
+        direct_light.add_irradiance(
+            caster, at.position, at.normal, at.facet, random_key(key, gather_shadows),
+            options.shadows, direct.row(i).data(), Lights::all, sights ? &(*sights)[i] : nullptr);
+      });
   return direct;
 }
 
 GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
                                    const DirectLight& direct_light, const BandArray& radiosity,
-                                   std::span<const GatherPoint> points,
-                                   const GatherOptions& options) {
+                                   const GatherPoints& points, const GatherOptions& options) {
   const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
-  const auto count = static_cast<Eigen::Index>(points.size());
+  const int count = points.size();
   GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf(count)};
   const JournalPhase phase(options.journal, "indirect", [&](Fingerprint& print) {
@@ -309,9 +309,10 @@ GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& cast
     return std::tuple(rows_of(result.indirect, begin, size),
                       std::span(result.variance.data() + begin, static_cast<std::size_t>(size)));
   };
-  for_each_point(points, options, phase, values, [&](int i, std::uint64_t key) {
-    hemisphere.gather(points[i], key, result.indirect.row(i).data(), result.variance[i]);
-  });
+  for_each_point(points, options, phase, values,
+                 [&](int i, const GatherPoint& at, std::uint64_t key) {
+                   hemisphere.gather(at, key, result.indirect.row(i).data(), result.variance[i]);
+                 });
   return result;
 }
 
@@ -437,51 +438,45 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
   return vertex_power.colwise() / vertex_area.max(1e-30f);
 }
 
-std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
+VertexGatherPoints::VertexGatherPoints(const PatchMesh& mesh)
+    : mesh_(mesh), element_(mesh.vertex_count(), -1) {
+  for (int e = mesh.element_count() - 1; e >= 0; --e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) element_[mesh.corners[e][c]] = e;
+  }
+}
+
+GatherPoint VertexGatherPoints::operator[](int vertex) const {
   // Far enough in to clear the float rounding of a room-sized scene, near enough to stand for the
   // vertex.
   constexpr double inset = 0.02;
-  std::vector<GatherPoint> points(mesh.vertex_count());
-  std::vector<char> done(mesh.vertex_count(), 0);
+  const int e = element_[vertex];
+  if (e < 0) return {};
+  const PatchPoint center = element_center(mesh_, e);
+  const Eigen::Vector3d p = mesh_.position(vertex), inwards = inset * (center.position - p);
+  // On a sphere the chord lies inside the ball: go back out to the surface, with the sphere's own
+  // normal.
+  if (const SphereGrid* grid = sphere_grid_of(mesh_, mesh_.facet[e])) {
+    const Eigen::Vector3d out = (p + inwards - grid->sphere.center).normalized();
+    return {.position = grid->sphere.center + grid->sphere.radius * out,
+            .normal = mesh_.is_back[mesh_.patch[e]] ? Eigen::Vector3d(-out) : out,
+            .facet = mesh_.facet[e]};
+  }
   // Where facets meet smoothly, light is measured about the normal of them all, from a point so far
   // above them that none is in the way of what arrives from above its horizon. Lamps stay flat: a
   // point before one would receive its light.
   constexpr double flat = 1.0 - 4e-6;  // cosine of 0.16 degrees
-  const auto is_rounded = [&](int e, int v, const Eigen::Vector3d& normal) {
-    return !(mesh.vertex_normal[v].dot(normal) >= flat) &&
-           !(mesh.emission.row(mesh.patch[e]) > 0.0f).any() && !sphere_grid_of(mesh, mesh.facet[e]);
-  };
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const PatchPoint center = element_center(mesh, e);
-    for (int c = 0; c < mesh.corner_count(e); ++c) {
-      const int v = mesh.corners[e][c];
-      if (done[v]) continue;
-      done[v] = 1;
-      const Eigen::Vector3d p = mesh.position(v);
-      if (is_rounded(e, v, center.normal)) {
-        const Eigen::Vector3d inwards = inset * (center.position - p);
-        points[v] = {.position = p + inwards + inwards.norm() * mesh.vertex_normal[v],
-                     .normal = mesh.vertex_normal[v]};
-        continue;
-      }
-      points[v] = {.position = p + inset * (center.position - p),
-                   .normal = center.normal,
-                   .facet = mesh.facet[e]};
-    }
+  const Eigen::Vector3d& of_all = mesh_.vertex_normal[vertex];
+  if (!(of_all.dot(center.normal) >= flat) && !(mesh_.emission.row(mesh_.patch[e]) > 0.0f).any()) {
+    return {.position = p + inwards + inwards.norm() * of_all, .normal = of_all};
   }
-  // On a sphere the chord lies inside the ball: go back out to the surface, with the sphere's own
-  // normal.
-  for (const SphereGrid& grid : mesh.sphere_grids) {
-    for (int e = 0; e < mesh.element_count(); ++e) {
-      if (mesh.facet[e] != grid.facet) continue;
-      for (int c = 0; c < mesh.corner_count(e); ++c) {
-        GatherPoint& at = points[mesh.corners[e][c]];
-        const Eigen::Vector3d out = (at.position - grid.sphere.center).normalized();
-        at.position = grid.sphere.center + grid.sphere.radius * out;
-        at.normal = mesh.is_back[mesh.patch[e]] ? Eigen::Vector3d(-out) : out;
-      }
-    }
-  }
+  return {.position = p + inwards, .normal = center.normal, .facet = mesh_.facet[e]};
+}
+
+std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
+  const VertexGatherPoints at(mesh);
+  std::vector<GatherPoint> points;
+  points.reserve(static_cast<std::size_t>(mesh.vertex_count()));
+  for (int v = 0; v < mesh.vertex_count(); ++v) points.push_back(at[v]);
   return points;
 }
 

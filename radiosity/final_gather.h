@@ -1,8 +1,11 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mesh/element_caster.h"
@@ -24,6 +27,25 @@ struct GatherPoint {
   /// light from afar, has the same noise in all of them: it is not in their differences.
   std::optional<std::uint64_t> key{};
   int rays = 0;  ///< hemisphere rays, if not as many as GatherOptions say
+};
+
+/// A list of them, which is kept a reference to; or each made when it is asked for, from many
+/// threads: to keep all vertices' takes several times the memory of what is gathered there.
+class GatherPoints {
+ public:
+  template <class List>
+  requires std::convertible_to<const List&, std::span<const GatherPoint>> GatherPoints(
+      const List& list)
+      : GatherPoints(static_cast<int>(std::size(list)),
+                     [list = std::span<const GatherPoint>(list)](int i) { return list[i]; }) {}
+  GatherPoints(int count, std::function<GatherPoint(int)> at) : count_(count), at_(std::move(at)) {}
+
+  int size() const { return count_; }
+  GatherPoint operator[](int i) const { return at_(i); }
+
+ private:
+  int count_;
+  std::function<GatherPoint(int)> at_;
 };
 
 struct GatherOptions {
@@ -55,19 +77,17 @@ struct GatheredIrradiance {
 /// vertices x bands, as gatherable_radiosity makes it.
 GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& caster,
                                      const DirectLight& direct_light, const BandArray& radiosity,
-                                     std::span<const GatherPoint> points,
-                                     const GatherOptions& options = {});
+                                     const GatherPoints& points, const GatherOptions& options = {});
 
 /// Only the direct light; `sights`, if given, gets one entry a point.
 BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
-                        const DirectLight& direct_light, std::span<const GatherPoint> points,
+                        const DirectLight& direct_light, const GatherPoints& points,
                         const GatherOptions& options, std::vector<EmitterSight>* sights = nullptr);
 
 /// Only the indirect light; `direct` is left empty.
 GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
                                    const DirectLight& direct_light, const BandArray& radiosity,
-                                   std::span<const GatherPoint> points,
-                                   const GatherOptions& options);
+                                   const GatherPoints& points, const GatherOptions& options);
 
 /// rho E, plus the emission of patches that `direct_light` does not own: what gather_irradiance
 /// reads. `irradiance` is vertices x bands.
@@ -87,5 +107,16 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
 /// that element's facet and normal; where facets that meet smoothly share it, a hair above them
 /// too, with the normal of them all, on no facet.
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
+
+/// The same, each made when it is asked for. Keeps a reference to the mesh.
+class VertexGatherPoints {
+ public:
+  explicit VertexGatherPoints(const PatchMesh& mesh);
+  GatherPoint operator[](int vertex) const;
+
+ private:
+  const PatchMesh& mesh_;
+  std::vector<int> element_;  // per vertex, the first that has it
+};
 
 }  // namespace lightwell

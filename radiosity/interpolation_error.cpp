@@ -100,10 +100,8 @@ void InterpolationError::go_on(double tolerance) {
 // Crumbs take fewer, but none so few that noise hides what there is to be seen.
 void InterpolationError::share_draft_rays() {
   const int rays = draft_rays(options_.rays, has_noise_goal_);
-  std::vector<GatherPoint> points(static_cast<std::size_t>(elements_.base().vertex_count()));
-  share_rays(elements_.base(), {}, rays, points);
-  rays_.clear();
-  for (const GatherPoint& point : points) rays_.push_back(std::min(2 * point.rays, rays));
+  rays_ = share_rays(elements_.base(), {}, rays);
+  for (int& share : rays_) share = std::min(2 * share, rays);
 }
 
 GatherPoint InterpolationError::gather_point(int vertex) const {
@@ -151,7 +149,7 @@ void InterpolationError::make_room() {
     rays_.push_back(most);
   }
   sight_.resize(count);
-  sides_.resize(elements_.cell_count());
+  sides_.resize(elements_.side_total());
 }
 
 void InterpolationError::shrink_to_fit() {
@@ -254,11 +252,17 @@ void InterpolationError::tell_indirect(int vertex) {
   second_.row(vertex) = second.array() / static_cast<float>(count);
 }
 
+// Null: of a cell that was made since.
+const InterpolationError::CellSide* InterpolationError::known_of(int cell, int side) const {
+  const auto number = static_cast<std::size_t>(elements_.side_number(cell, side));
+  return number < sides_.size() ? &sides_[number] : nullptr;
+}
+
 // Whether corners tell the indirect light in a cell, or in one that it is part of.
 bool InterpolationError::is_even(int cell, int side) const {
   for (int c = cell; c >= 0; c = elements_.parent(c)) {
-    const auto known = static_cast<std::size_t>(c) < sides_.size();
-    if (known && sides_[c][side].indirect <= even_) return true;
+    const CellSide* known = known_of(c, side);
+    if (known && known->indirect <= even_) return true;
   }
   return false;
 }
@@ -269,8 +273,8 @@ bool InterpolationError::is_told(int cell, int side) const {
 
 bool InterpolationError::is_stale(int cell) const {
   for (int side = 0; side < elements_.side_count(cell); ++side) {
-    const bool known = static_cast<std::size_t>(cell) < sides_.size();
-    if (known && sides_[cell][side].was_told && !is_told(cell, side)) return true;
+    const CellSide* known = known_of(cell, side);
+    if (known && known->was_told && !is_told(cell, side)) return true;
   }
   return false;
 }
@@ -352,8 +356,8 @@ std::vector<BetweenVertex> InterpolationError::between(const std::vector<int>& v
   for (int cell = 0; cell < elements_.cell_count(); ++cell) {
     if (!elements_.is_split(cell)) continue;
     for (int side = 0; side < elements_.side_count(cell); ++side) {
-      CellSide known;
-      if (static_cast<std::size_t>(cell) < sides_.size()) known = sides_[cell][side];
+      const CellSide* found = known_of(cell, side);
+      const CellSide known = found ? *found : CellSide{};
       const double unit = std::pow(reference(cell, side), 2);
       for_each_inner_vertex(cell, side, [&](int v) {
         if (said.size() <= static_cast<std::size_t>(v)) said.resize(elements_.vertex_count());
@@ -665,7 +669,7 @@ void InterpolationError::measure(int cell, int side, Measured& measured) {
   if (!matters(elements_.element(cell, side))) return;
   const double E = reference(cell, side);
   if (!(E > 0.0)) return;
-  CellSide& known = sides_[cell][side];
+  CellSide& known = sides_[elements_.side_number(cell, side)];
   known.was_told = is_told(cell, side);
   const Squares lattice = lattice_error(cell, side);
   if (known.probed < 0.0f) {

@@ -155,14 +155,15 @@ class InterpolationError {
   std::vector<char> matters_;
   double area_ = 0.0, mean_ = 0.0;
   double even_ = 0.0;  // of squared errors of indirect light, relative: told by corners if below
-  // Per cell and side: the squared error of indirect light, or how large it may be; the squared
+  // Of a cell's side: the squared error of indirect light, or how large it may be; the squared
   // noise in what says so; that of direct light between vertices, below 0 if nobody looked for it;
   // whether indirect light was told when the cell was measured.
   struct CellSide {
     float indirect = std::numeric_limits<float>::infinity(), noise = indirect, probed = -1.0f;
     bool was_told = false;
   };
-  std::vector<std::array<CellSide, 2>> sides_;
+  const CellSide* known_of(int cell, int side) const;
+  std::vector<CellSide> sides_;  // by RefinedElements::side_number()
   // Per vertex.
   std::vector<char> has_direct_;
   enum class Indirect : char { unknown, told, gathered };

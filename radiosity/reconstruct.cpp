@@ -160,13 +160,6 @@ GatherOptions gather_options(const SolveOptions& options) {
   return gather;
 }
 
-std::vector<GatherPoint> points_with_rays(const PatchMesh& mesh, std::span<const ToldVertex> told,
-                                          int rays) {
-  std::vector<GatherPoint> points = vertex_gather_points(mesh);
-  share_rays(mesh, told, rays, points);
-  return points;
-}
-
 // What gather_indirect() finds at vertices that are not told, with one in `one_in` of the rays that
 // are theirs, and the variance of one of its rays; told ones have the means of their ends. `rays`
 // gets how many each vertex stands for, with what the draft adds to its own.
@@ -187,18 +180,22 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
     kept.indirect.bottomRows(rows - before).setZero();
     kept.variance.tail(rows - before).setZero();
   }
-  std::vector<int> where;
-  std::vector<GatherPoint> fresh = points_with_rays(mesh, draft.told, gather.rays);
+  std::vector<int> where, missing;
+  const std::vector<int> share_of = share_rays(mesh, draft.told, gather.rays);
   for (int v = 0; v < count; ++v) {
-    const int wanted = fresh[v].rays > 0 ? std::max(1, fresh[v].rays / one_in) : 0;
-    const int missing = wanted - kept.rays[draft.number[v]];
-    if (missing <= 0) continue;
-    GatherPoint& point = fresh[where.size()] = fresh[v];
-    point.rays = missing;
-    point.key = static_cast<std::uint64_t>(v);
+    const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / one_in) : 0;
+    const int more = wanted - kept.rays[draft.number[v]];
+    if (more <= 0) continue;
     where.push_back(v);
+    missing.push_back(more);
   }
-  fresh.resize(where.size());
+  const VertexGatherPoints all(mesh);
+  const GatherPoints fresh(static_cast<int>(where.size()), [&](int i) {
+    GatherPoint at = all[where[i]];
+    at.key = static_cast<std::uint64_t>(where[i]);
+    at.rays = missing[i];
+    return at;
+  });
   GatherOptions options = gather;
   if (kept.count > 0) options.replica += later_replicas + kept.count;
   ++kept.count;
@@ -207,8 +204,8 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
   for (std::size_t i = 0; i < where.size(); ++i) {
     const auto n = static_cast<std::size_t>(draft.number[where[i]]);
     const auto row = static_cast<Eigen::Index>(n), of_found = static_cast<Eigen::Index>(i);
-    const int sum = kept.rays[n] + fresh[i].rays;
-    const float share = static_cast<float>(fresh[i].rays) / static_cast<float>(sum);
+    const int sum = kept.rays[n] + missing[i];
+    const float share = static_cast<float>(missing[i]) / static_cast<float>(sum);
     kept.indirect.row(row) =
         (1.0f - share) * kept.indirect.row(row) + share * found.indirect.row(of_found);
     kept.variance[row] = (1.0f - share) * (1.0f - share) * kept.variance[row] +
@@ -386,14 +383,19 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
     solution.indirect_irradiance = gathered.indirect.max(0.0f);
     variance = std::move(gathered.variance);
   } else {
-    const std::vector<GatherPoint> points = points_with_rays(mesh, draft.told, gather.rays);
+    const std::vector<int> rays_of = share_rays(mesh, draft.told, gather.rays);
+    const VertexGatherPoints all(mesh);
+    const GatherPoints points(mesh.vertex_count(), [&](int v) {
+      GatherPoint at = all[v];
+      at.rays = rays_of[v];
+      return at;
+    });
     GatheredIrradiance gathered =
         gather_irradiance(scene, caster, direct_light,
                           gatherable_radiosity(mesh, direct_light, irradiance), points, gather);
     solution.direct_irradiance = std::move(gathered.direct);
     solution.indirect_irradiance = std::move(gathered.indirect);
-    rays.resize(mesh.vertex_count());
-    for (int v = 0; v < mesh.vertex_count(); ++v) rays[v] = static_cast<float>(points[v].rays);
+    rays = Eigen::Map<const Eigen::ArrayXi>(rays_of.data(), mesh.vertex_count()).cast<float>();
     variance = gathered.variance * rays;
   }
   solution.gather_noise =

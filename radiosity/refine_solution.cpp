@@ -65,7 +65,7 @@ class Refinement {
       for (int side = 0; side < elements.side_count(cell); ++side) {
         expected[side] = error.expected(cell, side);
       }
-      set(cell, expected);
+      set(cell, {.error = expected});
     }
   }
 
@@ -109,21 +109,20 @@ class Refinement {
 
   /// With what noise may hide.
   float relative_error(int cell, int side) const {
-    return static_cast<float>(
-        std::sqrt(share_left(cell) * (squares_[cell][side] + hidden_[cell][side])));
+    const Square& square = squares_[elements_.side_number(cell, side)];
+    return static_cast<float>(std::sqrt(share_left(cell) * (square.known + square.hidden)));
   }
 
  private:
   void resize() {
-    squares_.resize(elements_.cell_count(), {0.0, 0.0});
-    hidden_.resize(elements_.cell_count(), {0.0, 0.0});
+    squares_.resize(elements_.side_total());
     is_known_.resize(elements_.cell_count(), 0);
     measured_.resize(elements_.cell_count(), 0);
   }
-  void set(int cell, const std::array<double, 2>& squares,
-           const std::array<double, 2>& hidden = {0.0, 0.0}) {
-    squares_[cell] = squares;
-    hidden_[cell] = hidden;
+  void set(int cell, const InterpolationError::Measured& squares) {
+    for (int side = 0; side < elements_.side_count(cell); ++side) {
+      squares_[elements_.side_number(cell, side)] = {squares.error[side], squares.hidden[side]};
+    }
     is_known_[cell] = 1;
   }
 
@@ -164,8 +163,13 @@ class Refinement {
   // nearer by.
   double counted(int cell) const {
     constexpr double notable = 0.01;
-    const double known = elements_.area(cell) * (squares_[cell][0] + squares_[cell][1]);
-    const double hidden = elements_.area(cell) * (hidden_[cell][0] + hidden_[cell][1]);
+    Square both;
+    for (int side = 0; side < elements_.side_count(cell); ++side) {
+      both.known += squares_[elements_.side_number(cell, side)].known;
+      both.hidden += squares_[elements_.side_number(cell, side)].hidden;
+    }
+    const double known = elements_.area(cell) * both.known;
+    const double hidden = elements_.area(cell) * both.hidden;
     return hidden > notable * allowed_ ? known + hidden : known;
   }
 
@@ -199,7 +203,7 @@ class Refinement {
     }
     const std::vector<InterpolationError::Measured> measured = error_.measure(fresh);
     for (std::size_t i = 0; i < fresh.size(); ++i) {
-      set(fresh[i], measured[i].error, measured[i].hidden);
+      set(fresh[i], measured[i]);
       measured_[fresh[i]] = 1;
     }
     return !fresh.empty();
@@ -229,13 +233,12 @@ class Refinement {
     // merged is split into the same again.)
     for (const int cell : elements_.leaves()) {
       if (is_known_[cell]) continue;
-      std::array<double, 2> squares = squares_[elements_.parent(cell)],
-                            hidden = hidden_[elements_.parent(cell)];
-      for (int side = 0; side < 2; ++side) {
-        squares[side] *= of_children_;
-        hidden[side] *= of_children_;
+      for (int side = 0; side < elements_.side_count(cell); ++side) {
+        const Square& whole = squares_[elements_.side_number(elements_.parent(cell), side)];
+        squares_[elements_.side_number(cell, side)] = {whole.known * of_children_,
+                                                       whole.hidden * of_children_};
       }
-      set(cell, squares, hidden);
+      is_known_[cell] = 1;
     }
     return all;
   }
@@ -250,9 +253,11 @@ class Refinement {
   RefineReport report_;
   double allowed_ = 0.0;
   double sum_ = 0.0;  // squared error times area, over all leaves
-  // Per cell and side, measured or expected.
-  std::vector<std::array<double, 2>> squares_, hidden_;
-  std::vector<char> is_known_, measured_;
+  struct Square {
+    double known = 0.0, hidden = 0.0;
+  };
+  std::vector<Square> squares_;            // per side, measured or expected
+  std::vector<char> is_known_, measured_;  // per cell
 };
 
 }  // namespace

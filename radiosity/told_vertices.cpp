@@ -99,7 +99,7 @@ std::vector<double> vertex_areas(const PatchMesh& mesh) {
   return area;
 }
 
-void share_rays(std::span<const double> area, int rays, std::span<GatherPoint> points) {
+std::vector<int> share_rays(std::span<const double> area, int rays) {
   std::vector<double> sorted(area.begin(), area.end());
   std::sort(sorted.begin(), sorted.end(), std::greater<>());
   const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
@@ -109,27 +109,28 @@ void share_rays(std::span<const double> area, int rays, std::span<GatherPoint> p
     typical = sorted[i];
     larger += sorted[i];
   }
-  for (GatherPoint& point : points) point.rays = rays;
-  if (!(typical > 0.0)) return;
-  for (std::size_t v = 0; v < points.size(); ++v) {
+  std::vector<int> shares(area.size(), rays);
+  if (!(typical > 0.0)) return shares;
+  for (std::size_t v = 0; v < shares.size(); ++v) {
     // sqrt(area / typical), to a power of two. It changes between the areas that a grid's vertices
     // have, halves and quarters, so that rounding does not decide.
     constexpr double between = 0.45;
     const double halvings = -0.5 * std::log2(std::max(area[v] / typical, 1e-6));
     const int shift = std::clamp(static_cast<int>(std::floor(halvings + between)), -1, 3);
-    points[v].rays = shift < 0 ? 2 * rays : std::max(1, rays >> shift);
+    shares[v] = shift < 0 ? 2 * rays : std::max(1, rays >> shift);
   }
+  return shares;
 }
 
-void share_rays(const PatchMesh& mesh, std::span<const ToldVertex> told, int rays,
-                std::span<GatherPoint> points) {
+std::vector<int> share_rays(const PatchMesh& mesh, std::span<const ToldVertex> told, int rays) {
   std::vector<double> area = vertex_areas(mesh);
   for (auto t = told.rbegin(); t != told.rend(); ++t) {
     for (int i = 0; i < t->end_count(); ++i) area[t->ends[i]] += area[t->vertex] / t->end_count();
     area[t->vertex] = 0.0;
   }
-  share_rays(area, rays, points);
-  for (const ToldVertex& t : told) points[t.vertex].rays = 0;
+  std::vector<int> shares = share_rays(area, rays);
+  for (const ToldVertex& t : told) shares[t.vertex] = 0;
+  return shares;
 }
 
 }  // namespace lightwell

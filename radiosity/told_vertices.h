@@ -48,14 +48,13 @@ void tell(std::span<const ToldVertex> told, BandArray& values);
 /// corners.
 std::vector<double> vertex_areas(const PatchMesh& mesh);
 
-/// Gives each point a share of the rays that falls with the square root of the area it stands for,
-/// which makes the mean noise over all area least for the work: `rays` where those are that make up
-/// half of all area, at most twice as many on still larger ones, at least an eighth anywhere;
-/// powers of two.
-void share_rays(std::span<const double> area, int rays, std::span<GatherPoint> points);
+/// What rays each vertex takes, by the area it stands for. They fall with its square root, which
+/// makes the mean noise over all area least for the work: `rays` where those are that make up half
+/// of all area, at most twice as many on still larger ones, at least an eighth anywhere; powers of
+/// two times that.
+std::vector<int> share_rays(std::span<const double> area, int rays);
 
 /// The same, with the areas of told vertices added to their ends'; they themselves get 0 rays.
-void share_rays(const PatchMesh& mesh, std::span<const ToldVertex> told, int rays,
-                std::span<GatherPoint> points);
+std::vector<int> share_rays(const PatchMesh& mesh, std::span<const ToldVertex> told, int rays);
 
 }  // namespace lightwell

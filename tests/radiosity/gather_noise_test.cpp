@@ -1,6 +1,7 @@
 // What rays leave uncertain, as the solution tells it.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "radiosity/gather_noise.h"
@@ -34,7 +35,7 @@ struct Room {
   }
   GatheredIrradiance gather(const BandArray& B, int rays, std::uint64_t replica) const {
     const GatherPoint point{.position = {0.7, 0.9, 0.0}, .normal = {0, 0, 1}, .facet = 4};
-    return gather_irradiance(scene, caster, direct_light, B, {{point}},
+    return gather_irradiance(scene, caster, direct_light, B, std::array{point},
                              {.rays = rays, .replica = replica});
   }
 };

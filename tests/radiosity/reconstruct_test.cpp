@@ -103,12 +103,11 @@ TEST(ToldVertices, GiveTheirAreaToTheirEnds) {
   double sum = 0.0;
   for (const double a : area) sum += a;
   EXPECT_NEAR(sum, 6.0, 1e-12);  // a few roundings of each of 24 elements
-  std::vector<GatherPoint> points(area.size());
   std::vector<ToldVertex> told;
   for (int v = 1; v < mesh.vertex_count(); ++v) told.push_back({v, {0, 0, -1, -1}});
-  share_rays(mesh, told, 64, points);
-  EXPECT_EQ(points[0].rays, 64);  // all of the area is as large as the typical one
-  for (std::size_t v = 1; v < points.size(); ++v) EXPECT_EQ(points[v].rays, 0);
+  const std::vector<int> rays = share_rays(mesh, told, 64);
+  EXPECT_EQ(rays[0], 64);  // all of the area is as large as the typical one
+  for (std::size_t v = 1; v < rays.size(); ++v) EXPECT_EQ(rays[v], 0);
 }
 
 // A finer draft has the coarser one's vertices, by the same numbers and with the same light, and
