@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "scene/facet_textures.h"
 #include "scene/parallel.h"
@@ -141,24 +142,20 @@ BandArray vertex_reflectance(const PatchMesh& mesh) {
       differs[v] |= (mesh.reflectance.row(first) != mesh.reflectance.row(mesh.patch[e])).any();
     }
   }
-  std::vector<double> area(patch.size(), 0.0);
-  BandArray sum = BandArray::Zero(rho.rows(), bands);
+  // Of what meets at a vertex, the mean by area: few do, so that there is no list for all.
+  std::map<int, double> area;
   for (int e = 0; e < mesh.element_count(); ++e) {
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       const int v = mesh.corners[e][c];
       if (!differs[static_cast<std::size_t>(v)]) continue;
-      area[static_cast<std::size_t>(v)] += mesh.element_area[e];
-      sum.row(v) += static_cast<float>(mesh.element_area[e]) * mesh.reflectance.row(mesh.patch[e]);
+      area[v] += mesh.element_area[e];
+      rho.row(v) += static_cast<float>(mesh.element_area[e]) * mesh.reflectance.row(mesh.patch[e]);
     }
   }
+  for (const auto& [v, sum] : area) rho.row(v) /= static_cast<float>(sum);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const auto at = static_cast<std::size_t>(v);
-    if (patch[at] < 0) continue;
-    if (differs[at]) {
-      rho.row(v) = sum.row(v) / static_cast<float>(area[at]);
-    } else {
-      rho.row(v) = mesh.reflectance.row(patch[at]);
-    }
+    if (patch[at] >= 0 && !differs[at]) rho.row(v) = mesh.reflectance.row(patch[at]);
   }
   return rho;
 }

@@ -52,7 +52,6 @@ RefinedElements::RefinedElements(const PatchMesh& base) : base_(&base) {
     for (int i = 0; i < base_->corner_count(e); ++i) vertices_[base_->corners[e][i]].element = e;
   }
   const std::vector<int> places = vertex_places(*base_);
-  for (const int place : places) place_count_ = std::max(place_count_, place + 1);
   add_base_cells(places);
   find_reflex_corners(places);
 }
@@ -68,7 +67,7 @@ void RefinedElements::add_base_cells(const std::vector<int>& places) {
     cell_of_[e] = number;
     add_cell({.base = e,
               .corner_count = static_cast<std::int8_t>(base_->corner_count(e)),
-              .is_two_sided = twin >= 0});
+              .side_count = static_cast<std::int8_t>(twin >= 0 ? 2 : 1)});
     Side& front = side_of(number, 0);
     const int n = corner_count(number);
     std::array<int, 4> place{-1, -1, -1, -1};
@@ -91,8 +90,9 @@ void RefinedElements::add_base_cells(const std::vector<int>& places) {
     const auto& [low, high, user] = sides[i];
     const bool is_new =
         i == 0 || std::get<0>(sides[i - 1]) != low || std::get<1>(sides[i - 1]) != high;
-    const int edge = is_new ? add_edge(low, high) : static_cast<int>(edges_.size()) - 1;
-    set_edge(user / 4, user % 4, edge, places[corner_vertex(user / 4, 0, user % 4)]);
+    const int edge = is_new ? add_edge() : static_cast<int>(edges_.size()) - 1;
+    const bool is_backwards = places[corner_vertex(user / 4, 0, user % 4)] != low;
+    set_edge(user / 4, user % 4, {edge, is_backwards});
   }
 }
 
@@ -191,18 +191,18 @@ int RefinedElements::edge_vertex(int number, int side, int i) {
   const auto representative = [this](int v) {
     return v < static_cast<int>(reflex_.size()) ? reflex_[v] : v;
   };
-  int from = representative(a), to = representative(b);
-  if (from > to) std::swap(from, to);
-  for (int m = edge.first_middle; m >= 0; m = middles_[m].next) {
-    if (middles_[m].from == from && middles_[m].to == to) return middles_[m].vertex;
+  const auto between = [&](int from, int to) {
+    return std::minmax({representative(from), representative(to)});
+  };
+  for (int m = edge.first_middle; m >= 0; m = vertices_[m].next_middle) {
+    if (between(vertices_[m].from, vertices_[m].to) == between(a, b)) return m;
   }
-  const int vertex = add_vertex({.position = 0.5 * (position(a) + position(b)),
-                                 .element = element(number, side),
-                                 .from = a,
-                                 .to = b});
-  middles_.push_back({from, to, vertex, edge.first_middle});
-  edge.first_middle = static_cast<int>(middles_.size()) - 1;
-  return vertex;
+  edge.first_middle = add_vertex({.position = 0.5 * (position(a) + position(b)),
+                                  .element = element(number, side),
+                                  .from = a,
+                                  .to = b,
+                                  .next_middle = edge.first_middle});
+  return edge.first_middle;
 }
 
 int RefinedElements::center_vertex(int number, int side) {
@@ -251,7 +251,6 @@ std::array<int, 4> RefinedElements::piece_vertices(int cell, int side,
 void RefinedElements::shrink_to_fit() {
   vertices_.shrink_to_fit();
   edges_.shrink_to_fit();
-  middles_.shrink_to_fit();
   cells_.shrink_to_fit();
   sides_.shrink_to_fit();
 }

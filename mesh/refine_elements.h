@@ -50,7 +50,7 @@ class RefinedElements {
   int parent(int cell) const { return cells_[cell].parent; }
   bool is_split(int cell) const { return cells_[cell].is_split; }
   int corner_count(int cell) const { return cells_[cell].corner_count; }
-  int side_count(int cell) const { return cells_[cell].is_two_sided ? 2 : 1; }
+  int side_count(int cell) const { return cells_[cell].side_count; }
   /// Sides of all cells, those of a cell in a row: 0, 1, ... side_total() - 1.
   int side_number(int cell, int side) const { return cells_[cell].first_side + side; }
   int side_total() const { return static_cast<int>(sides_.size()); }
@@ -99,18 +99,14 @@ class RefinedElements {
     // The ends of the edge that it is the middle of; or a side's number, from -2 downwards, whose
     // centre it is; or none.
     int from = -1, to = -1;
-  };
-  // The middle of an edge, for those whose vertices at its ends are these.
-  struct Middle {
-    int from = 0, to = 0, vertex = 0, next = -1;
+    int next_middle = -1;  // of that edge, on other sides and sheets
   };
   struct Edge {
-    std::array<int, 2> place{};
-    int first_half = -1;  // two in a row, from place[0] and from place[1] to the middle
+    int first_half = -1;  // two in a row, from its start and from its end to the middle
     int parent = -1;
-    int splits = 0;       // split cells that it bounds
-    int first_user = -1;  // 4 cell + corner, and so on by Cell::next_user
-    int first_middle = -1;
+    int splits = 0;         // split cells that it bounds
+    int first_user = -1;    // 4 cell + corner, and so on by Cell::next_user
+    int first_middle = -1;  // vertex, and so on by Vertex::next_middle
   };
   struct Side {
     std::array<int, 4> vertex{-1, -1, -1, -1};
@@ -118,10 +114,9 @@ class RefinedElements {
   };
   struct Cell {
     int base = 0, parent = -1, first_child = -1, first_side = -1;
-    std::int8_t level = 0, corner_count = 4;
-    bool is_two_sided : 1 = false, is_split : 1 = false, is_active : 1 = true;
-    // Bit i: edge i goes from corner i + 1 to corner i.
-    std::uint8_t backwards = 0;
+    std::int8_t level = 0, corner_count = 4, side_count = 1;
+    bool is_split : 1 = false, is_active : 1 = true;
+    unsigned char backwards : 4 = 0;  // bit i: edge i goes from corner i + 1 to corner i
     std::array<int, 4> edge{-1, -1, -1, -1}, next_user{-1, -1, -1, -1};
   };
 
@@ -129,14 +124,14 @@ class RefinedElements {
   void find_reflex_corners(const std::vector<int>& places);
   const Side& side_of(int cell, int side) const { return sides_[side_number(cell, side)]; }
   Side& side_of(int cell, int side) { return sides_[side_number(cell, side)]; }
-  // Geometric points: of several vertices at one place.
-  int place(const Cell& cell, int corner) const {
-    return edges_[cell.edge[corner]].place[cell.backwards >> corner & 1];
-  }
-  int middle_place(const Edge& edge) const { return edges_[edge.first_half].place[1]; }
   int add_cell(const Cell& cell);
-  void set_edge(int cell, int corner, int edge, int from);
-  int add_edge(int from, int to);
+  struct EdgeUse {
+    int edge = -1;
+    bool is_backwards = false;  // from its end to its start
+  };
+  void set_edge(int cell, int corner, EdgeUse use);
+  EdgeUse half(int cell, int edge, int end) const;
+  int add_edge();
   void split_edge(int edge);
   void make_children(int cell);
   void split_alone(int cell);
@@ -152,11 +147,9 @@ class RefinedElements {
   std::vector<Vertex> vertices_;
   std::vector<int> reflex_;  // per base vertex, the lowest vertex of its reflex corner, or itself
   std::vector<Edge> edges_;
-  std::vector<Middle> middles_;
   std::vector<Cell> cells_;
   std::vector<Side> sides_;
   std::vector<int> cell_of_;  // per base element, fronts only; else -1
-  int place_count_ = 0;
 };
 
 }  // namespace lightwell

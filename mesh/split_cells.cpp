@@ -6,8 +6,8 @@
 
 namespace lightwell {
 
-int RefinedElements::add_edge(int from, int to) {
-  edges_.push_back({.place = {from, to}});
+int RefinedElements::add_edge() {
+  edges_.emplace_back();
   return static_cast<int>(edges_.size()) - 1;
 }
 
@@ -19,38 +19,36 @@ int RefinedElements::add_cell(const Cell& cell) {
   return number;
 }
 
-// From the corner that lies at `from` on.
-void RefinedElements::set_edge(int number, int corner, int edge_number, int from) {
+void RefinedElements::set_edge(int number, int corner, EdgeUse use) {
   Cell& cell = cells_[number];
-  Edge& edge = edges_[edge_number];
-  cell.edge[corner] = edge_number;
-  if (edge.place[0] != from) cell.backwards |= 1U << corner;
+  Edge& edge = edges_[use.edge];
+  cell.edge[corner] = use.edge;
+  if (use.is_backwards) cell.backwards |= static_cast<unsigned char>(1U << corner);
   cell.next_user[corner] = edge.first_user;
   edge.first_user = 4 * number + corner;
 }
 
 void RefinedElements::split_edge(int number) {
   if (edges_[number].first_half >= 0) return;
-  const int middle = place_count_++;
-  for (int end = 0; end < 2; ++end) {
-    const int half = add_edge(edges_[number].place[end], middle);
-    edges_[half].parent = number;
-    if (end == 0) edges_[number].first_half = half;
-  }
+  const int first = add_edge();
+  add_edge();
+  edges_[number].first_half = first;
+  edges_[first].parent = edges_[first + 1].parent = number;
+}
+
+// Of an edge of a cell, from the corner `end` to the middle.
+RefinedElements::EdgeUse RefinedElements::half(int number, int edge, int end) const {
+  const Cell& cell = cells_[number];
+  const bool is_backwards = (cell.backwards >> edge & 1) != 0;
+  const bool is_first = (end == edge) != is_backwards;
+  return {edges_[cell.edge[edge]].first_half + (is_first ? 0 : 1)};
 }
 
 void RefinedElements::make_children(int number) {
   const Cell parent = cells_[number];
   const int n = parent.corner_count;
-  // By node of closure_pieces.
-  std::array<int, 9> places{};
-  std::array<std::array<int, 9>, 2> vertex{};
-  for (int i = 0; i < n; ++i) {
-    split_edge(parent.edge[i]);
-    places[i] = place(parent, i);
-    places[middle_node + i] = middle_place(edges_[parent.edge[i]]);
-  }
-  places[center_node] = n == 4 ? place_count_++ : -1;
+  for (int i = 0; i < n; ++i) split_edge(parent.edge[i]);
+  std::array<std::array<int, 9>, 2> vertex{};  // by node of closure_pieces
   for (int side = 0; side < side_count(number); ++side) {
     for (int i = 0; i < n; ++i) {
       vertex[side][i] = corner_vertex(number, side, i);
@@ -58,22 +56,15 @@ void RefinedElements::make_children(int number) {
     }
     if (n == 4) vertex[side][center_node] = center_vertex(number, side);
   }
-  const auto half = [&](int edge, int end) {
-    const Edge& whole = edges_[parent.edge[edge]];
-    return whole.first_half + (whole.place[0] == places[end] ? 0 : 1);
-  };
   // The edges inside: between middles in a triangle, from each middle to the centre in others.
   std::array<int, 4> inner{-1, -1, -1, -1};
-  for (int i = 0; i < n; ++i) {
-    const int to = n == 4 ? center_node : middle_node + (i + 1) % n;
-    inner[i] = add_edge(places[middle_node + i], places[to]);
-  }
-  const auto edge_between = [&](int a, int b) {
-    if (a < middle_node) std::swap(a, b);
-    if (b < middle_node) return half(a - middle_node, b);
-    if (n == 4) return inner[std::min(a, b) - middle_node];
+  for (int i = 0; i < n; ++i) inner[i] = add_edge();
+  const auto edge_between = [&](int a, int b) -> EdgeUse {
+    if (a < middle_node) return half(number, b - middle_node, a);
+    if (b < middle_node) return {half(number, a - middle_node, b).edge, true};
+    if (n == 4) return {inner[std::min(a, b) - middle_node], a > b};
     const int i = a - middle_node, k = b - middle_node;
-    return inner[(i + 1) % n == k ? i : k];
+    return (i + 1) % n == k ? EdgeUse{inner[i]} : EdgeUse{inner[k], true};
   };
   cells_[number].first_child = static_cast<int>(cells_.size());
   for (const ElementPiece& piece : closure_pieces(n, (1U << n) - 1)) {
@@ -81,13 +72,13 @@ void RefinedElements::make_children(int number) {
                                 .parent = number,
                                 .level = static_cast<std::int8_t>(parent.level + 1),
                                 .corner_count = parent.corner_count,
-                                .is_two_sided = parent.is_two_sided,
+                                .side_count = parent.side_count,
                                 .is_active = false});
     for (int i = 0; i < n; ++i) {
       for (int side = 0; side < side_count(child); ++side) {
         side_of(child, side).vertex[i] = vertex[side][piece[i]];
       }
-      set_edge(child, i, edge_between(piece[i], piece[(i + 1) % n]), places[piece[i]]);
+      set_edge(child, i, edge_between(piece[i], piece[(i + 1) % n]));
     }
   }
 }

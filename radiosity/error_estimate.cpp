@@ -51,19 +51,18 @@ struct ErrorPlace {
 class ErrorPlaces {
  public:
   ErrorPlaces(const ElementCaster& caster, const Eigen::ArrayXd& told)
-      : mesh_(caster.mesh()), area_(mesh_.element_count(), 0.0), error_(area_) {
+      : mesh_(caster.mesh()), told_(told), counts_(mesh_.patch_count(), 0) {
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       // Nobody sees what another surface lies on.
       const bool is_seen = caster.hidden_elements(p) == 0;
       if (!is_seen || !(mesh_.reflectance.row(p) > 0.0f).any()) continue;
+      counts_[p] = 1;
       for (int e = mesh_.first_element[p]; e < mesh_.first_element[p + 1]; ++e) {
-        area_[e] = mesh_.element_area[e];
-        total_area_ += area_[e];
-        error_[e] = area_[e] * std::pow(told[e], 2);
-        total_error_ += error_[e];
+        total_area_ += area(e);
+        total_error_ += error(e);
       }
     }
-    up_to_.reserve(area_.size());
+    up_to_.reserve(mesh_.element_count());
     double sum = 0.0;
     for (int e = 0; e < mesh_.element_count(); ++e) up_to_.push_back(sum += density(e));
   }
@@ -74,18 +73,23 @@ class ErrorPlaces {
     const auto at = std::upper_bound(up_to_.begin(), up_to_.end() - 1, u[0] * up_to_.back());
     const auto e = static_cast<int>(at - up_to_.begin());
     return {PatchSampler(mesh_, mesh_.patch[e], e).point(u[1], u[2]),
-            area_[e] / total_area_ / density(e)};
+            area(e) / total_area_ / density(e)};
   }
 
  private:
+  // Of elements that count, m^2; and that times what is told, squared.
+  double area(int e) const { return counts_[mesh_.patch[e]] ? mesh_.element_area[e] : 0.0; }
+  double error(int e) const { return area(e) * std::pow(told_[e], 2); }
+
   // Share of the places on an element.
   double density(int e) const {
-    const double even = area_[e] / total_area_;
-    return total_error_ > 0.0 ? 0.5 * (even + error_[e] / total_error_) : even;
+    const double even = area(e) / total_area_;
+    return total_error_ > 0.0 ? 0.5 * (even + error(e) / total_error_) : even;
   }
 
   const PatchMesh& mesh_;
-  std::vector<double> area_, error_;  // of elements that count, m^2; the latter times its square
+  const Eigen::ArrayXd& told_;
+  std::vector<char> counts_;  // per patch
   double total_area_ = 0.0, total_error_ = 0.0;
   std::vector<double> up_to_{};  // densities of an element and all before
 };

@@ -77,6 +77,7 @@ InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& 
       options_(options),
       has_noise_goal_(noise > 0.0),
       inset_(std::ldexp(finest_inset, -refine.max_level)),
+      sight_(direct_light.light_count()),
       probes_(probe_count) {
   if (options.progress) {
     options_.progress = [progress = options.progress](std::string_view, double share) {
@@ -177,7 +178,7 @@ void InterpolationError::gather_direct_at(const std::vector<int>& vertices) {
   const BandArray direct = gather_direct(scene_, caster_, direct_light_, points, options_, &sights);
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     direct_.row(fresh[i]) = direct.row(static_cast<Eigen::Index>(i));
-    sight_[fresh[i]] = sights[i];
+    sight_.set(fresh[i], sights[i]);
   }
   gathers_ += static_cast<std::int64_t>(points.size());
 }
@@ -555,10 +556,11 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
 bool InterpolationError::has_edge(int cell, int side) const {
   EmitterSight some, all{.whole = ~std::uint64_t{0}, .hidden = ~std::uint64_t{0}};
   for_each_vertex(cell, side, [&](int v) {
-    some.whole |= sight_[v].whole;
-    some.hidden |= sight_[v].hidden;
-    all.whole &= sight_[v].whole;
-    all.hidden &= sight_[v].hidden;
+    const EmitterSight sight = sight_[v];
+    some.whole |= sight.whole;
+    some.hidden |= sight.hidden;
+    all.whole &= sight.whole;
+    all.hidden &= sight.hidden;
   });
   return some.whole != all.whole || some.hidden != all.hidden;
 }
@@ -602,8 +604,9 @@ double InterpolationError::probed_error(int cell, int side) const {
   const int element = elements_.element(cell, side);
   std::uint64_t whole = ~std::uint64_t{0}, hidden = whole;
   for_each_vertex(cell, side, [&](int v) {
-    whole &= sight_[v].whole;
-    hidden &= sight_[v].hidden;
+    const EmitterSight sight = sight_[v];
+    whole &= sight.whole;
+    hidden &= sight.hidden;
   });
   const int facet = elements_.base().facet[element];
   const Eigen::Vector3d normal = element_center(elements_.base(), element).normal;

@@ -7,6 +7,7 @@
 
 #include "mesh/refine_elements.h"
 #include "radiosity/final_gather.h"
+#include "radiosity/sight_list.h"
 #include "radiosity/told_vertices.h"
 
 namespace lightwell {
@@ -170,7 +171,7 @@ class InterpolationError {
   std::vector<Indirect> indirect_;
   std::vector<int> rays_;  // of each of the two gathers of indirect light
   BandArray direct_, first_, second_;
-  std::vector<EmitterSight> sight_;
+  SightList sight_;
   std::int64_t gathers_ = 0;
   SobolPoints probes_;
 };

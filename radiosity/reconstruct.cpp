@@ -160,6 +160,36 @@ GatherOptions gather_options(const SolveOptions& options) {
   return gather;
 }
 
+// What is kept, in the rows given (-1: nothing).
+void take_rows(const std::vector<int>& row, KeptGather& kept) {
+  if (kept.rays.empty()) return;
+  const auto count = static_cast<Eigen::Index>(row.size());
+  KeptGather taken{.rays = std::vector<int>(row.size(), 0),
+                   .indirect = BandArray::Zero(count, kept.indirect.cols()),
+                   .variance = Eigen::ArrayXf::Zero(count),
+                   .count = kept.count};
+  for (Eigen::Index v = 0; v < count; ++v) {
+    if (row[v] < 0) continue;
+    taken.rays[v] = kept.rays[row[v]];
+    taken.indirect.row(v) = kept.indirect.row(row[v]);
+    taken.variance[v] = kept.variance[row[v]];
+  }
+  kept = std::move(taken);
+}
+
+// Goes on to the vertices of another draft.
+void go_on(const std::vector<int>& number, KeptGathers& kept) {
+  if (kept.number == number) return;
+  int numbers = 0;
+  for (const int n : kept.number) numbers = std::max(numbers, n + 1);
+  std::vector<int> row_of(numbers, -1), row;
+  for (std::size_t v = 0; v < kept.number.size(); ++v) row_of[kept.number[v]] = static_cast<int>(v);
+  for (const int n : number) row.push_back(n < numbers ? row_of[n] : -1);
+  take_rows(row, kept.of_draft);
+  take_rows(row, kept.last);
+  kept.number = number;
+}
+
 // What gather_indirect() finds at vertices that are not told, with one in `one_in` of the rays that
 // are theirs, and the variance of one of its rays; told ones have the means of their ends. `rays`
 // gets how many each vertex stands for, with what the draft adds to its own.
@@ -169,22 +199,11 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
                                KeptGather& kept, Eigen::ArrayXf& rays) {
   const PatchMesh& mesh = caster.mesh();
   const int count = mesh.vertex_count();
-  const auto numbers =
-      static_cast<std::size_t>(*std::max_element(draft.number.begin(), draft.number.end()) + 1);
-  if (kept.rays.size() < numbers) {
-    const auto rows = static_cast<Eigen::Index>(numbers);
-    const Eigen::Index before = kept.indirect.rows();
-    kept.rays.resize(numbers, 0);
-    kept.indirect.conservativeResize(rows, radiosity.cols());
-    kept.variance.conservativeResize(rows);
-    kept.indirect.bottomRows(rows - before).setZero();
-    kept.variance.tail(rows - before).setZero();
-  }
   std::vector<int> where, missing;
   const std::vector<int> share_of = share_rays(mesh, draft.told, gather.rays);
   for (int v = 0; v < count; ++v) {
     const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / one_in) : 0;
-    const int more = wanted - kept.rays[draft.number[v]];
+    const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
     if (more <= 0) continue;
     where.push_back(v);
     missing.push_back(more);
@@ -201,27 +220,25 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
   ++kept.count;
   const GatheredIrradiance found =
       gather_indirect(scene, caster, direct_light, radiosity, fresh, options);
+  if (kept.rays.empty()) {
+    kept.rays.assign(count, 0);
+    kept.indirect.setZero(count, radiosity.cols());
+    kept.variance.setZero(count);
+  }
   for (std::size_t i = 0; i < where.size(); ++i) {
-    const auto n = static_cast<std::size_t>(draft.number[where[i]]);
-    const auto row = static_cast<Eigen::Index>(n), of_found = static_cast<Eigen::Index>(i);
-    const int sum = kept.rays[n] + missing[i];
+    const int row = where[i];
+    const auto of_found = static_cast<Eigen::Index>(i);
+    const int sum = kept.rays[row] + missing[i];
     const float share = static_cast<float>(missing[i]) / static_cast<float>(sum);
     kept.indirect.row(row) =
         (1.0f - share) * kept.indirect.row(row) + share * found.indirect.row(of_found);
     kept.variance[row] = (1.0f - share) * (1.0f - share) * kept.variance[row] +
                          share * share * found.variance[of_found];
-    kept.rays[n] = sum;
+    kept.rays[row] = sum;
   }
-  GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
-                            .variance = Eigen::ArrayXf::Zero(count)};
-  rays = Eigen::ArrayXf::Zero(count);
-  for (int v = 0; v < count; ++v) {
-    const int n = draft.number[v];
-    if (kept.rays[n] == 0) continue;
-    result.indirect.row(v) = kept.indirect.row(n);
-    rays[v] = static_cast<float>(kept.rays[n]);
-    result.variance[v] = rays[v] * kept.variance[n];
-  }
+  GatheredIrradiance result{.indirect = kept.indirect, .variance = kept.variance};
+  rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>();
+  result.variance *= rays;
   tell(draft.told, result.indirect);
   for (const ToldVertex& t : draft.told) {
     float inverse = 0.0f, variance = 0.0f;
@@ -371,6 +388,7 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
     };
     KeptGathers none;
     KeptGathers& so_far = kept ? *kept : none;
+    go_on(draft.number, so_far);
     GatherOptions first = gather;
     first.replica += first_replicas;
     // Rays of all around meet what it finds, so that its noise goes down in their mean: with a

@@ -53,8 +53,8 @@ class Drafting {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What gathers have found so far, by Draft::number: more is added to it. Of indirect light, W/m^2,
-/// columns of every channel.
+/// What gathers have found so far at the vertices of a draft, or nothing: more is added to it. Of
+/// indirect light, W/m^2, columns of every channel.
 struct KeptGather {
   std::vector<int> rays{};  ///< 0: none there
   BandArray indirect{};
@@ -64,6 +64,7 @@ struct KeptGather {
 
 /// Of those that read the draft, and of the final ones.
 struct KeptGathers {
+  std::vector<int> number{};  ///< the draft's
   KeptGather of_draft{}, last{};
 };
 

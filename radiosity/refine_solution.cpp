@@ -110,7 +110,7 @@ class Refinement {
   /// With what noise may hide.
   float relative_error(int cell, int side) const {
     const Square& square = squares_[elements_.side_number(cell, side)];
-    return static_cast<float>(std::sqrt(share_left(cell) * (square.known + square.hidden)));
+    return static_cast<float>(std::sqrt(share_left(cell) * double{square.known + square.hidden}));
   }
 
  private:
@@ -121,7 +121,8 @@ class Refinement {
   }
   void set(int cell, const InterpolationError::Measured& squares) {
     for (int side = 0; side < elements_.side_count(cell); ++side) {
-      squares_[elements_.side_number(cell, side)] = {squares.error[side], squares.hidden[side]};
+      squares_[elements_.side_number(cell, side)] = {static_cast<float>(squares.error[side]),
+                                                     static_cast<float>(squares.hidden[side])};
     }
     is_known_[cell] = 1;
   }
@@ -163,13 +164,14 @@ class Refinement {
   // nearer by.
   double counted(int cell) const {
     constexpr double notable = 0.01;
-    Square both;
+    double known = 0.0, hidden = 0.0;
     for (int side = 0; side < elements_.side_count(cell); ++side) {
-      both.known += squares_[elements_.side_number(cell, side)].known;
-      both.hidden += squares_[elements_.side_number(cell, side)].hidden;
+      const Square& square = squares_[elements_.side_number(cell, side)];
+      known += double{square.known};
+      hidden += double{square.hidden};
     }
-    const double known = elements_.area(cell) * both.known;
-    const double hidden = elements_.area(cell) * both.hidden;
+    known *= elements_.area(cell);
+    hidden *= elements_.area(cell);
     return hidden > notable * allowed_ ? known + hidden : known;
   }
 
@@ -235,8 +237,9 @@ class Refinement {
       if (is_known_[cell]) continue;
       for (int side = 0; side < elements_.side_count(cell); ++side) {
         const Square& whole = squares_[elements_.side_number(elements_.parent(cell), side)];
-        squares_[elements_.side_number(cell, side)] = {whole.known * of_children_,
-                                                       whole.hidden * of_children_};
+        squares_[elements_.side_number(cell, side)] = {
+            static_cast<float>(whole.known * of_children_),
+            static_cast<float>(whole.hidden * of_children_)};
       }
       is_known_[cell] = 1;
     }
@@ -254,7 +257,7 @@ class Refinement {
   double allowed_ = 0.0;
   double sum_ = 0.0;  // squared error times area, over all leaves
   struct Square {
-    double known = 0.0, hidden = 0.0;
+    float known = 0.0f, hidden = 0.0f;
   };
   std::vector<Square> squares_;            // per side, measured or expected
   std::vector<char> is_known_, measured_;  // per cell
