@@ -85,10 +85,10 @@ PatchPoint element_center(const PatchMesh& mesh, int element) {
 
 void build_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
   using Vertex = HalfedgeMesh::VertexHandle;
-  mesh.elements.clear();
-  mesh.elements.reserve(positions.size(), 2 * mesh.corners.size() + positions.size(),
+  mesh.elements->clear();
+  mesh.elements->reserve(positions.size(), 2 * mesh.corners.size() + positions.size(),
                         mesh.corners.size());
-  for (const Vector3d& p : positions) mesh.elements.add_vertex({p.x(), p.y(), p.z()});
+  for (const Vector3d& p : positions) mesh.elements->add_vertex({p.x(), p.y(), p.z()});
   const int vertex_count = static_cast<int>(positions.size());
   for (std::size_t e = 0; e < mesh.corners.size(); ++e) {
     std::array<Vertex, 4> face;
@@ -102,7 +102,7 @@ void build_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
       }
       face[n++] = Vertex(v);
     }
-    if (!fits(mesh.elements, face, n) || !mesh.elements.add_face(face.data(), n).is_valid()) {
+    if (!fits(*mesh.elements, face, n) || !mesh.elements->add_face(face.data(), n).is_valid()) {
       throw std::runtime_error("element " + std::to_string(e) +
                                " of the mesh does not fit its neighbours: more than two elements "
                                "share an edge, or two run along it in one direction");

@@ -22,6 +22,31 @@ struct ElementMeshTraits : OpenMesh::DefaultTraits {
 /// A face is an element, a vertex is a point where radiosity is reconstructed.
 using HalfedgeMesh = OpenMesh::PolyMesh_ArrayKernelT<ElementMeshTraits>;
 
+/// One that is handed on when it is moved, where OpenMesh would copy it; what it was moved from is
+/// empty.
+class MovableHalfedgeMesh {
+ public:
+  MovableHalfedgeMesh() : mesh_(std::make_unique<HalfedgeMesh>()) {}
+  MovableHalfedgeMesh(const MovableHalfedgeMesh& other)
+      : mesh_(std::make_unique<HalfedgeMesh>(*other.mesh_)) {}
+  MovableHalfedgeMesh(MovableHalfedgeMesh&& other) : MovableHalfedgeMesh() {
+    mesh_.swap(other.mesh_);
+  }
+  MovableHalfedgeMesh& operator=(MovableHalfedgeMesh other) noexcept {
+    mesh_.swap(other.mesh_);
+    return *this;
+  }
+  ~MovableHalfedgeMesh() = default;
+
+  HalfedgeMesh* operator->() { return mesh_.get(); }
+  const HalfedgeMesh* operator->() const { return mesh_.get(); }
+  HalfedgeMesh& operator*() { return *mesh_; }
+  const HalfedgeMesh& operator*() const { return *mesh_; }
+
+ private:
+  std::unique_ptr<HalfedgeMesh> mesh_;
+};
+
 /// The elements of one sphere's outside (or inside): a latitude-longitude grid about +z, so that a
 /// point of the exact sphere finds its element. Ring 0 touches the +z pole; sector 0 starts at
 /// longitude 0 (+x), turning towards +y.
@@ -43,7 +68,7 @@ struct SphereGrid {
 /// by less than MeshOptions::smooth_angle_degrees; never across contact lines (D0; across D1 and D2
 /// lines they are), and not at reflex corners, where each element has a vertex of its own.
 struct PatchMesh {
-  HalfedgeMesh elements{};
+  MovableHalfedgeMesh elements{};
 
   // Per element. The elements of patch i are first_element[i] .. first_element[i+1] - 1.
   std::vector<int> patch{};
@@ -90,7 +115,7 @@ struct PatchMesh {
   }
   int corner_count(int element) const { return corners[element][3] < 0 ? 3 : 4; }
   Eigen::Vector3d position(int vertex) const {
-    const auto& p = elements.point(HalfedgeMesh::VertexHandle(vertex));
+    const auto& p = elements->point(HalfedgeMesh::VertexHandle(vertex));
     return {p[0], p[1], p[2]};
   }
 };

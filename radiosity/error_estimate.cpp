@@ -21,9 +21,9 @@ constexpr double of_whole_set = 0.5;
 
 // Per element: what interpolation may miss there, up to a factor that all share. (Range of the
 // corners' irradiance over its reference, or what a shadow that no corner tells of may be.)
-Eigen::ArrayXd indicators(const PatchMesh& mesh, const BandArray& irradiance) {
+Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance) {
   const Eigen::ArrayXd reference = error_references(mesh, irradiance);
-  Eigen::ArrayXd indicator = Eigen::ArrayXd::Zero(mesh.element_count());
+  Eigen::ArrayXf indicator = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any() || !(reference[e] > 0.0)) continue;
     Spectrum low = irradiance.row(mesh.corners[e][0]).transpose(), high = low;
@@ -34,7 +34,8 @@ Eigen::ArrayXd indicators(const PatchMesh& mesh, const BandArray& irradiance) {
     }
     constexpr double unseen = 0.05;
     const double square = (high - low).cast<double>().square().mean();
-    indicator[e] = std::sqrt(square / (reference[e] * reference[e]) + unseen * unseen);
+    indicator[e] =
+        static_cast<float>(std::sqrt(square / (reference[e] * reference[e]) + unseen * unseen));
   }
   return indicator;
 }
@@ -50,7 +51,7 @@ struct ErrorPlace {
 // meet.
 class ErrorPlaces {
  public:
-  ErrorPlaces(const ElementCaster& caster, const Eigen::ArrayXd& told)
+  ErrorPlaces(const ElementCaster& caster, const Eigen::ArrayXf& told)
       : mesh_(caster.mesh()), told_(told), counts_(mesh_.patch_count(), 0) {
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       // Nobody sees what another surface lies on.
@@ -79,7 +80,7 @@ class ErrorPlaces {
  private:
   // Of elements that count, m^2; and that times what is told, squared.
   double area(int e) const { return counts_[mesh_.patch[e]] ? mesh_.element_area[e] : 0.0; }
-  double error(int e) const { return area(e) * std::pow(told_[e], 2); }
+  double error(int e) const { return area(e) * std::pow(double{told_[e]}, 2); }
 
   // Share of the places on an element.
   double density(int e) const {
@@ -88,7 +89,7 @@ class ErrorPlaces {
   }
 
   const PatchMesh& mesh_;
-  const Eigen::ArrayXd& told_;
+  const Eigen::ArrayXf& told_;
   std::vector<char> counts_;  // per patch
   double total_area_ = 0.0, total_error_ = 0.0;
   std::vector<double> up_to_{};  // densities of an element and all before
@@ -112,6 +113,17 @@ std::vector<ErrorPlace> open_places(const ElementCaster& caster, double width,
     if (blocked[i] == 0) open.push_back(places[i]);
   }
   return open;
+}
+
+std::vector<ErrorPlace> draw_places(const Scene& scene, const ElementCaster& caster,
+                                    const Eigen::ArrayXf& told, int wanted) {
+  const ErrorPlaces places(caster, told);
+  if (places.is_empty() || wanted < 1) return {};
+  const SobolPoints sobol(wanted);
+  std::vector<ErrorPlace> drawn;
+  for (int i = 0; i < wanted; ++i) drawn.push_back(places.place(sobol.point(i, error_point_key)));
+  constexpr double crack = 1e-4;  // of the scene
+  return open_places(caster, crack * scene_bounds(scene).diagonal(), drawn);
 }
 
 // How much too much light is in what is reflected, of each band, if what is found at places is that
@@ -138,18 +150,12 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const SolveOptions& options,
                              const RadiositySolution& solution, Eigen::ArrayXf* of_elements) {
   const PatchMesh& mesh = caster.mesh();
-  const BandArray irradiance = solution.irradiance();
-  const Eigen::ArrayXd told = solution.interpolation_error.size() > 0
-                                  ? Eigen::ArrayXd(solution.interpolation_error.cast<double>())
-                                  : indicators(mesh, irradiance);
-  const ErrorPlaces places(caster, told);
+  BandArray irradiance = solution.irradiance();
+  const bool is_told = solution.interpolation_error.size() > 0;
+  const Eigen::ArrayXf guessed = is_told ? Eigen::ArrayXf() : indicators(mesh, irradiance);
+  const Eigen::ArrayXf& told = is_told ? solution.interpolation_error : guessed;
   const int wanted = estimate_places(options.error_points, mesh.vertex_count());
-  if (places.is_empty() || wanted < 1) return {};
-  const SobolPoints sobol(wanted);
-  std::vector<ErrorPlace> drawn;
-  for (int i = 0; i < wanted; ++i) drawn.push_back(places.place(sobol.point(i, error_point_key)));
-  constexpr double crack = 1e-4;  // of the scene
-  drawn = open_places(caster, crack * scene_bounds(scene).diagonal(), drawn);
+  const std::vector<ErrorPlace> drawn = draw_places(scene, caster, told, wanted);
   if (drawn.empty()) return {};
 
   const auto count = static_cast<Eigen::Index>(drawn.size());
@@ -178,9 +184,10 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
   gather_options.replica = options.gather.replica + 1;
   gather_options.progress = options.progress;
   gather_options.journal = options.journal;
-  const GatheredIrradiance independent = gather_irradiance(
-      scene, caster, direct_light, gatherable_radiosity(mesh, direct_light, irradiance), points,
-      gather_options);
+  const BandArray radiosity = gatherable_radiosity(mesh, direct_light, irradiance);
+  irradiance.resize(0, 0);
+  const GatheredIrradiance independent =
+      gather_irradiance(scene, caster, direct_light, radiosity, points, gather_options);
   const BandArray not_reflected = independent.direct + caustic;
   BandArray truth = not_reflected + independent.indirect;
   truth -= independent.indirect.rowwise() *
@@ -200,11 +207,11 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
   if (of_elements) {
     double square = 0.0;
     for (Eigen::Index i = 0; i < count; ++i) {
-      square += weight[i] * std::pow(told[element[static_cast<std::size_t>(i)]], 2);
+      square += weight[i] * std::pow(double{told[element[static_cast<std::size_t>(i)]]}, 2);
     }
     const double excess = (weight * (relative - noise)).sum();
     if (square > 0.0) {
-      *of_elements = (std::sqrt(std::max(excess, 0.0) / square) * told).cast<float>();
+      *of_elements = static_cast<float>(std::sqrt(std::max(excess, 0.0) / square)) * told;
     }
   }
   const Eigen::ArrayXd squared = weight * relative;

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <algorithm>
 #include <fstream>
@@ -42,6 +45,12 @@ ResidentMemory resident_memory() {
     memory.now = memory.most = usage.ru_maxrss;
   }
   return {.now = memory.now * kibibyte, .most = memory.most * kibibyte};
+}
+
+void give_back_free_pages() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 std::int64_t usable_memory() {

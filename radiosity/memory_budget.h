@@ -75,6 +75,9 @@ struct ResidentMemory {
 };
 ResidentMemory resident_memory();
 
+/// Gives back pages in which nothing is kept any more, if the C library has them still.
+void give_back_free_pages();
+
 /// Bytes of memory that the machine has or that the process's control group may use.
 std::int64_t usable_memory();
 

@@ -200,13 +200,15 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
   const PatchMesh& mesh = caster.mesh();
   const int count = mesh.vertex_count();
   std::vector<int> where, missing;
-  const std::vector<int> share_of = share_rays(mesh, draft.told, gather.rays);
-  for (int v = 0; v < count; ++v) {
-    const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / one_in) : 0;
-    const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
-    if (more <= 0) continue;
-    where.push_back(v);
-    missing.push_back(more);
+  {
+    const std::vector<int> share_of = share_rays(mesh, draft.told, gather.rays);
+    for (int v = 0; v < count; ++v) {
+      const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / one_in) : 0;
+      const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
+      if (more <= 0) continue;
+      where.push_back(v);
+      missing.push_back(more);
+    }
   }
   const VertexGatherPoints all(mesh);
   const GatherPoints fresh(static_cast<int>(where.size()), [&](int i) {

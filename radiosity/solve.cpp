@@ -15,6 +15,7 @@
 #include "radiosity/in_force.h"
 #include "radiosity/journal.h"
 #include "radiosity/journal_phase.h"
+#include "radiosity/memory_budget.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/relight.h"
 #include "radiosity/solve_channels.h"
@@ -223,17 +224,18 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
       }
       if (draft->refined) {
         solved.mesh = std::move(*draft->refined);
-        draft->refined.reset();  // OpenMesh copies what is moved
       } else {
         solved.mesh = may_try_again ? drafting->base() : std::move(drafting->base());
       }
       caster.emplace(drafting->caster(solved.mesh, *draft));
       if (!may_try_again) drafting.reset();
+      give_back_free_pages();  // splitting leaves many
       if (draft->tree) spent["refine"] += watch.lap();
     }
     reconstruct(scene, *caster, kept_apart, in_force, *draft, solution,
                 may_try_again ? &kept : nullptr);
     relight(solved, scales_in_force(solution));
+    give_back_free_pages();
     spent["gather"] += watch.lap();
     Eigen::ArrayXf& of_elements = solution.interpolation_error;
     const ErrorEstimate estimate = estimate_error(scene, *caster, direct_light, in_force, solution,

@@ -284,8 +284,8 @@ void expect_consistent(const PatchMesh& mesh) {
   ASSERT_EQ(static_cast<int>(mesh.first_element.size()), patches + 1);
   ASSERT_EQ(mesh.first_element.front(), 0);
   ASSERT_EQ(mesh.first_element.back(), elements);
-  ASSERT_EQ(static_cast<int>(mesh.elements.n_faces()), elements);
-  ASSERT_EQ(static_cast<int>(mesh.elements.n_vertices()), mesh.vertex_count());
+  ASSERT_EQ(static_cast<int>(mesh.elements->n_faces()), elements);
+  ASSERT_EQ(static_cast<int>(mesh.elements->n_vertices()), mesh.vertex_count());
   ASSERT_EQ(mesh.element_area.size(), elements);
   ASSERT_TRUE((mesh.element_area > 0.0).all());
   ASSERT_TRUE((mesh.area > 0.0).all());
@@ -299,7 +299,7 @@ void expect_consistent(const PatchMesh& mesh) {
   }
   std::vector<char> used(mesh.vertex_count(), 0);
   for (int e = 0; e < elements; ++e) {
-    auto it = mesh.elements.cfv_iter(HalfedgeMesh::FaceHandle(e));
+    auto it = mesh.elements->cfv_iter(HalfedgeMesh::FaceHandle(e));
     std::vector<int> of_face;
     for (; it.is_valid(); ++it) of_face.push_back(it->idx());
     std::vector<int> flat(mesh.corners[e].begin(), mesh.corners[e].begin() + mesh.corner_count(e));
@@ -349,25 +349,25 @@ int hanging_vertices(const PatchMesh& mesh) {
     return Place{p.x(), p.y(), p.z()};
   };
   std::map<std::pair<Place, Place>, std::vector<HalfedgeMesh::HalfedgeHandle>> edges_at;
-  for (auto h : mesh.elements.halfedges()) {
-    if (!mesh.elements.face_handle(h).is_valid()) continue;
-    const Place a = place(mesh.elements.from_vertex_handle(h).idx());
-    const Place b = place(mesh.elements.to_vertex_handle(h).idx());
+  for (auto h : mesh.elements->halfedges()) {
+    if (!mesh.elements->face_handle(h).is_valid()) continue;
+    const Place a = place(mesh.elements->from_vertex_handle(h).idx());
+    const Place b = place(mesh.elements->to_vertex_handle(h).idx());
     edges_at[std::minmax(a, b)].push_back(h);
   }
   const auto patch_of = [&](HalfedgeMesh::HalfedgeHandle h) {
-    return mesh.patch[mesh.elements.face_handle(h).idx()];
+    return mesh.patch[mesh.elements->face_handle(h).idx()];
   };
   const auto facet_of = [&](HalfedgeMesh::HalfedgeHandle h) {
-    return mesh.facet[mesh.elements.face_handle(h).idx()];
+    return mesh.facet[mesh.elements->face_handle(h).idx()];
   };
   const auto is_inner_edge = [&](HalfedgeMesh::HalfedgeHandle h) {
-    const auto from = mesh.elements.from_vertex_handle(h), to = mesh.elements.to_vertex_handle(h);
+    const auto from = mesh.elements->from_vertex_handle(h), to = mesh.elements->to_vertex_handle(h);
     const auto& there = edges_at[std::minmax(place(from.idx()), place(to.idx()))];
     return std::any_of(there.begin(), there.end(), [&](auto other) {
       if (other == h || facet_of(other) != facet_of(h)) return false;
-      return patch_of(other) == patch_of(h) || mesh.elements.to_vertex_handle(other) == from ||
-             mesh.elements.from_vertex_handle(other) == to;
+      return patch_of(other) == patch_of(h) || mesh.elements->to_vertex_handle(other) == from ||
+             mesh.elements->from_vertex_handle(other) == to;
     });
   };
   std::vector<std::set<int>> facets_of(mesh.vertex_count());
@@ -377,13 +377,13 @@ int hanging_vertices(const PatchMesh& mesh) {
     }
   }
   std::set<std::array<double, 3>> hanging;
-  for (auto h : mesh.elements.halfedges()) {
-    const auto face = mesh.elements.face_handle(h);
+  for (auto h : mesh.elements->halfedges()) {
+    const auto face = mesh.elements->face_handle(h);
     if (!face.is_valid()) continue;
     const int facet = mesh.facet[face.idx()];
     const bool is_inner = is_inner_edge(h);
-    const Vector3d a = mesh.position(mesh.elements.from_vertex_handle(h).idx());
-    const Vector3d d = mesh.position(mesh.elements.to_vertex_handle(h).idx()) - a;
+    const Vector3d a = mesh.position(mesh.elements->from_vertex_handle(h).idx());
+    const Vector3d d = mesh.position(mesh.elements->to_vertex_handle(h).idx()) - a;
     const Cell home = cell_of(a + 0.5 * d);
     for (long x = home[0] - 1; x <= home[0] + 1; ++x) {
       for (long y = home[1] - 1; y <= home[1] + 1; ++y) {

@@ -133,12 +133,12 @@ TEST(BuildTopology, RestoresAMeshFromItsArrays) {
   std::vector<Vector3d> positions;
   for (int v = 0; v < mesh.vertex_count(); ++v) positions.push_back(mesh.position(v));
   PatchMesh copy = mesh;
-  copy.elements = HalfedgeMesh();
+  copy.elements = {};
   copy.vertex_normal.clear();
   build_topology(copy, positions);
   expect_consistent(copy);
   EXPECT_EQ(copy.vertex_normal, mesh.vertex_normal);
-  EXPECT_EQ(copy.elements.n_edges(), mesh.elements.n_edges());
+  EXPECT_EQ(copy.elements->n_edges(), mesh.elements->n_edges());
 }
 
 TEST(BuildTopology, RefusesElementsThatDoNotFit) {

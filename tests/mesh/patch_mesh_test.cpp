@@ -143,9 +143,9 @@ TEST(PatchMesh, BoxOfSixFacetsMeetsPointByPoint) {
     expect_consistent(mesh);
     EXPECT_EQ(hanging_vertices(mesh), 0);
     // Faces meet at 90 degrees: no vertex is shared, so each side of each face is its own disk.
-    EXPECT_EQ(static_cast<int>(mesh.elements.n_vertices()) -
-                  static_cast<int>(mesh.elements.n_edges()) +
-                  static_cast<int>(mesh.elements.n_faces()),
+    EXPECT_EQ(static_cast<int>(mesh.elements->n_vertices()) -
+                  static_cast<int>(mesh.elements->n_edges()) +
+                  static_cast<int>(mesh.elements->n_faces()),
               12);
   }
 }
@@ -354,7 +354,7 @@ TEST(PatchMesh, MeshOfManyTrianglesIsSmoothAndOnePatchEachWhereNoneAreJoined) {
   std::printf("%d triangles meshed in %.2f s\n", 2 * n * n, seconds);
   EXPECT_EQ(mesh.element_count(), 2 * 2 * n * n);  // both sides
   EXPECT_EQ(mesh.patch_count(), mesh.element_count());
-  ASSERT_EQ(static_cast<int>(mesh.elements.n_faces()), mesh.element_count());
+  ASSERT_EQ(static_cast<int>(mesh.elements->n_faces()), mesh.element_count());
   EXPECT_TRUE((mesh.area > 0.0).all());
 }
 
@@ -422,7 +422,7 @@ TEST(PatchMesh, NeedlesOfInputSurvive) {
   add_polygon(scene, "needle", {{0.2, 0.2, 0.1}, {0.8, 0.2, 0.1}, {0.5, 0.2 + 1e-10, 0.1}});
   add_polygon(scene, "speck", {{0.5, 0.5, 0.3}, {0.5 + 1e-9, 0.5, 0.3}, {0.5, 0.5 + 1e-9, 0.3}});
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.1});
-  ASSERT_EQ(static_cast<int>(mesh.elements.n_faces()), mesh.element_count());
+  ASSERT_EQ(static_cast<int>(mesh.elements->n_faces()), mesh.element_count());
   EXPECT_TRUE((mesh.element_area > 0.0).all());
   for (int f = 0; f < 3; ++f) EXPECT_GT(side_area(mesh, f, false), 0.0);
 }

@@ -38,8 +38,8 @@ double least_triangle_angle(const PatchMesh& mesh) {
 }
 
 int euler_characteristic(const PatchMesh& mesh) {
-  return static_cast<int>(mesh.elements.n_vertices()) - static_cast<int>(mesh.elements.n_edges()) +
-         static_cast<int>(mesh.elements.n_faces());
+  return static_cast<int>(mesh.elements->n_vertices()) - static_cast<int>(mesh.elements->n_edges()) +
+         static_cast<int>(mesh.elements->n_faces());
 }
 
 std::vector<int> some(const std::vector<int>& of, Numbers& numbers, int one_in) {
@@ -277,8 +277,8 @@ TEST(SmoothSurface, StaysOfOnePieceWhereItsFacetsMeet) {
     EXPECT_EQ(hanging_vertices(mesh), 0);
     // Two closed surfaces, the outside and the inside.
     EXPECT_EQ(euler_characteristic(mesh), 4);
-    for (const auto edge : mesh.elements.edges()) {
-      ASSERT_FALSE(mesh.elements.is_boundary(edge));
+    for (const auto edge : mesh.elements->edges()) {
+      ASSERT_FALSE(mesh.elements->is_boundary(edge));
     }
   }
 }

@@ -36,11 +36,11 @@ TEST(SphereGrid, OutsideAndInsideAreClosedSurfaces) {
   for (const int k : {1, 2, 5}) {
     const PatchMesh mesh = sphere_mesh(1.0, 0.5, k);
     // Two closed spheres: V - E + F = 2 each, and no edge has only one element.
-    EXPECT_EQ(static_cast<int>(mesh.elements.n_vertices()) -
-                  static_cast<int>(mesh.elements.n_edges()) +
-                  static_cast<int>(mesh.elements.n_faces()),
+    EXPECT_EQ(static_cast<int>(mesh.elements->n_vertices()) -
+                  static_cast<int>(mesh.elements->n_edges()) +
+                  static_cast<int>(mesh.elements->n_faces()),
               4);
-    for (auto edge : mesh.elements.edges()) ASSERT_FALSE(mesh.elements.is_boundary(edge));
+    for (auto edge : mesh.elements->edges()) ASSERT_FALSE(mesh.elements->is_boundary(edge));
   }
 }
 

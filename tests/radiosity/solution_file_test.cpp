@@ -28,8 +28,8 @@ void expect_same_bits(const A& a, const A& b, const char* what) {
 
 void expect_same_mesh(const PatchMesh& a, const PatchMesh& b) {
   ASSERT_EQ(a.vertex_count(), b.vertex_count());
-  ASSERT_EQ(a.elements.n_vertices(), b.elements.n_vertices());
-  ASSERT_EQ(a.elements.n_faces(), b.elements.n_faces());
+  ASSERT_EQ(a.elements->n_vertices(), b.elements->n_vertices());
+  ASSERT_EQ(a.elements->n_faces(), b.elements->n_faces());
   for (int v = 0; v < a.vertex_count(); ++v) {
     EXPECT_EQ(a.position(v), b.position(v));
     EXPECT_EQ(a.vertex_normal[v], b.vertex_normal[v]);

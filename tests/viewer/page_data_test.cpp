@@ -26,7 +26,7 @@ SolvedScene far_box() {
   SolvedScene box = solved_box();
   for (int v = 0; v < box.mesh.vertex_count(); ++v) {
     const Eigen::Vector3d p = box.mesh.position(v) + Eigen::Vector3d(4e5, 7e6, -30.0);
-    box.mesh.elements.set_point(HalfedgeMesh::VertexHandle(v), {p.x(), p.y(), p.z()});
+    box.mesh.elements->set_point(HalfedgeMesh::VertexHandle(v), {p.x(), p.y(), p.z()});
   }
   box.solution.direct_irradiance(3, 0) = 1e4f;
   box.solution.direct_irradiance(5, 2) = 1e-3f;
