@@ -86,8 +86,9 @@ PatchPoint element_center(const PatchMesh& mesh, int element) {
 void build_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
   using Vertex = HalfedgeMesh::VertexHandle;
   mesh.elements->clear();
-  mesh.elements->reserve(positions.size(), 2 * mesh.corners.size() + positions.size(),
-                        mesh.corners.size());
+  // Edges are as many as vertices and faces, less one for each part; one more for every hole.
+  const std::size_t count = positions.size() + mesh.corners.size();
+  mesh.elements->reserve(positions.size(), count + count / 16, mesh.corners.size());
   for (const Vector3d& p : positions) mesh.elements->add_vertex({p.x(), p.y(), p.z()});
   const int vertex_count = static_cast<int>(positions.size());
   for (std::size_t e = 0; e < mesh.corners.size(); ++e) {

@@ -53,15 +53,21 @@ double error_reference(double mean_irradiance, double own_irradiance) {
 }
 
 Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradiance) {
-  const Eigen::ArrayXd own = element_mean(mesh, irradiance).cast<double>().rowwise().mean();
+  Eigen::ArrayXd own(mesh.element_count());
   double sum = 0.0, area = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
+    const int n = mesh.corner_count(e);
+    own[e] = 0.0;
+    for (int c = 0; c < n; ++c) {
+      own[e] += irradiance.row(mesh.corners[e][c]).cast<double>().mean() / n;
+    }
     if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
     sum += mesh.element_area[e] * own[e];
     area += mesh.element_area[e];
   }
   const double mean = area > 0.0 ? sum / area : 0.0;
-  return own.unaryExpr([mean](double E) { return error_reference(mean, E); });
+  own = own.unaryExpr([mean](double E) { return error_reference(mean, E); });
+  return own;
 }
 
 InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& caster,
@@ -350,8 +356,7 @@ std::vector<BetweenVertex> InterpolationError::between(const std::vector<int>& v
                                                        std::span<const ToldVertex> told) {
   // The worst of what the cells say that a vertex is inside of.
   struct Said {
-    double spread = 0.0, noise = 0.0;
-    bool any = false;
+    float spread = -1.0f, noise = 0.0f;  // spread below 0: none is
   };
   std::vector<Said> said(elements_.vertex_count());
   for (int cell = 0; cell < elements_.cell_count(); ++cell) {
@@ -359,12 +364,11 @@ std::vector<BetweenVertex> InterpolationError::between(const std::vector<int>& v
     for (int side = 0; side < elements_.side_count(cell); ++side) {
       const CellSide* found = known_of(cell, side);
       const CellSide known = found ? *found : CellSide{};
-      const double unit = std::pow(reference(cell, side), 2);
+      const auto unit = static_cast<float>(std::pow(reference(cell, side), 2));
       for_each_inner_vertex(cell, side, [&](int v) {
         if (said.size() <= static_cast<std::size_t>(v)) said.resize(elements_.vertex_count());
         said[v].spread = std::max(said[v].spread, unit * known.indirect);
         said[v].noise = std::max(said[v].noise, unit * known.noise);
-        said[v].any = true;
       });
     }
   }
@@ -373,15 +377,15 @@ std::vector<BetweenVertex> InterpolationError::between(const std::vector<int>& v
   std::vector<char> is_told(vertices.size(), 0);
   for (const ToldVertex& t : told) is_told[t.vertex] = 1;
   std::vector<BetweenVertex> between;
+  between.reserve(vertices.size());
   for_each_with_ends(vertices, [&](int v, const ToldVertex& at) {
     BetweenVertex b{.at = at, .is_told = is_told[at.vertex] != 0};
-    if (said[v].any && indirect_[v] == Indirect::gathered) {
-      b.spread = static_cast<float>(said[v].spread);
-      b.noise = static_cast<float>(said[v].noise);
+    if (said[v].spread >= 0.0f && indirect_[v] == Indirect::gathered) {
+      b.spread = said[v].spread;
+      b.noise = said[v].noise;
     }
     between.push_back(b);
   });
-  between.shrink_to_fit();
   return between;
 }
 

@@ -24,8 +24,8 @@ void split_columns(const BandArray& columns, BandArray LightChannel::*quantity,
   }
 }
 
-BandArray channel_sum(const BandArray& columns, int bands) {
-  if (columns.size() == 0) return {};
+BandArray channel_sum(BandArray columns, int bands) {
+  if (columns.size() == 0 || columns.cols() == bands) return columns;
   BandArray sum = columns.leftCols(bands);
   for (Eigen::Index c = bands; c < columns.cols(); c += bands) sum += columns.middleCols(c, bands);
   return sum;

@@ -38,6 +38,6 @@ void split_columns(const BandArray& columns, BandArray LightChannel::*quantity,
                    std::vector<LightChannel>& channels);
 
 /// Columns of all channels added: `rows` x bands.
-BandArray channel_sum(const BandArray& columns, int bands);
+BandArray channel_sum(BandArray columns, int bands);
 
 }  // namespace lightwell

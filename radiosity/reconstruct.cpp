@@ -190,18 +190,16 @@ void go_on(const std::vector<int>& number, KeptGathers& kept) {
   kept.number = number;
 }
 
-// What gather_indirect() finds at vertices that are not told, with one in `one_in` of the rays that
-// are theirs, and the variance of one of its rays; told ones have the means of their ends. `rays`
-// gets how many each vertex stands for, with what the draft adds to its own.
-GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
-                               const DirectLight& direct_light, const BandArray& radiosity,
-                               const GatherOptions& gather, int one_in, const Draft& draft,
-                               KeptGather& kept, Eigen::ArrayXf& rays) {
+// Has gather_indirect() look, at vertices that are not told, for what one in `one_in` of the rays
+// that are theirs would find, less those that are kept.
+void gather_more(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                 const BandArray& radiosity, GatherOptions options, int one_in, const Draft& draft,
+                 KeptGather& kept) {
   const PatchMesh& mesh = caster.mesh();
   const int count = mesh.vertex_count();
   std::vector<int> where, missing;
   {
-    const std::vector<int> share_of = share_rays(mesh, draft.told, gather.rays);
+    const std::vector<int> share_of = share_rays(mesh, draft.told, options.rays);
     for (int v = 0; v < count; ++v) {
       const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / one_in) : 0;
       const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
@@ -217,7 +215,6 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
     at.rays = missing[i];
     return at;
   });
-  GatherOptions options = gather;
   if (kept.count > 0) options.replica += later_replicas + kept.count;
   ++kept.count;
   const GatheredIrradiance found =
@@ -238,6 +235,18 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
                          share * share * found.variance[of_found];
     kept.rays[row] = sum;
   }
+}
+
+// What gathers find at vertices, and the variance of one of a vertex's rays; told ones have the
+// means of their ends. `rays` gets how many each vertex stands for, with what the draft adds to its
+// own.
+GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
+                               const DirectLight& direct_light, const BandArray& radiosity,
+                               const GatherOptions& gather, int one_in, const Draft& draft,
+                               KeptGather& kept, Eigen::ArrayXf& rays) {
+  const PatchMesh& mesh = caster.mesh();
+  const int count = mesh.vertex_count();
+  gather_more(scene, caster, direct_light, radiosity, gather, one_in, draft, kept);
   GatheredIrradiance result{.indirect = kept.indirect, .variance = kept.variance};
   rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>();
   result.variance *= rays;
@@ -378,6 +387,9 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
     if (has_caustics) irradiance += draft.caustic;
     return irradiance;
   };
+  for (BandArray* before : {&solution.direct_irradiance, &solution.indirect_irradiance}) {
+    before->resize(0, before->cols());
+  }
   const GatherOptions gather = gather_options(options);
   BandArray irradiance = with_indirect(draft.indirect);
   Eigen::ArrayXf variance, rays;
@@ -400,7 +412,8 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
     irradiance = with_indirect(gather_in(irradiance, few, first, so_far.of_draft).indirect);
     GatheredIrradiance gathered = gather_in(irradiance, 1, gather, so_far.last);
     solution.direct_irradiance = draft.direct;
-    solution.indirect_irradiance = gathered.indirect.max(0.0f);
+    solution.indirect_irradiance = std::move(gathered.indirect);
+    solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
     variance = std::move(gathered.variance);
   } else {
     const std::vector<int> rays_of = share_rays(mesh, draft.told, gather.rays);
@@ -419,7 +432,7 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
     variance = gathered.variance * rays;
   }
   solution.gather_noise =
-      gather_noise(mesh, channel_sum(irradiance, scene.bands.count()), variance, rays);
+      gather_noise(mesh, channel_sum(std::move(irradiance), scene.bands.count()), variance, rays);
   if (has_caustics) solution.indirect_irradiance += draft.caustic;
   solution.caustic_irradiance = draft.caustic;
   solution.interpolation_error = draft.interpolation_error;

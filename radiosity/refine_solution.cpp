@@ -335,16 +335,16 @@ RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
   result.refined = elements.mesh();
   elements.shrink_to_fit();
   result.told = error.told(result.refined.vertex);
+  if (!by_channel) error.gather(result.refined.vertex, result.told);
+  error.shrink_to_fit();
+  result.between = error.between(result.refined.vertex, result.told);
   if (by_channel) {
     result.draft = error.values_by_channel(result.refined.vertex, result.told, *by_channel);
   } else {
-    error.gather(result.refined.vertex, result.told);
-    error.shrink_to_fit();
     result.draft = error.values(result.refined.vertex);
     // Some were gathered before others told of them: as with channels, those have the last word.
     tell(result.told, result.draft.indirect);
   }
-  result.between = error.between(result.refined.vertex, result.told);
   const PatchMesh& mesh = result.refined.mesh;
   result.error = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -353,7 +353,6 @@ RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
     const bool is_back_of_two = elements.side_count(cell) == 2 && mesh.twin[e] < e;
     result.error[e] = refinement.relative_error(cell, is_back_of_two ? 1 : 0);
   }
-  error.shrink_to_fit();
   result.report.gathers = error.gathers();
   result.gather_rays = error.rays();
   return result;
