@@ -36,10 +36,11 @@ class PatchRays {
     draw_ = draw;
     if (sampler_.is_flat()) frame_ = draw.frame(sampler_.point(0.5, 0.5).normal);
   }
-  void aim(std::span<const HemispherePoint> points, std::span<Ray> rays) {
+  // Of the block that begins at `first`.
+  void aim(int first, std::span<const HemispherePoint> points, std::span<Ray> rays) {
     for (std::size_t r = 0; r < points.size(); ++r) {
       const HemispherePoint& point = points[r];
-      const Eigen::Vector2d place = draw_.place(point);
+      const Eigen::Vector2d place = draw_.place(first, point);
       int element = first_element_;
       if (sampler_.is_flat()) {
         rays[r].origin = sampler_.position(place.x(), place.y());
@@ -78,7 +79,7 @@ void RowCaster::Scratch::take(int rays, bool with_hidden, EstimatedRow& row) {
 }
 
 RowCaster::RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays)
-    : caster_(caster), paths_(paths), sets_(set_size(most_rays)) {}
+    : caster_(caster), paths_(paths), sets_(set_size(most_rays), true) {}
 
 EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind) const {
   const PatchMesh& mesh = caster_.mesh();
@@ -101,7 +102,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
     const auto points = from.draw().points(in_set, size, scratch.points_);
     for (std::size_t first = 0; first < points.size(); first += batch) {
       const std::size_t n = std::min<std::size_t>(batch, points.size() - first);
-      from.aim(points.subspan(first, n), ray);
+      from.aim(in_set, points.subspan(first, n), ray);
       caster_.closest_elements({ray.data(), n}, {hit.data(), n});
       for (std::size_t r = 0; r < n; ++r) {
         const ElementHit& h = hit[r];

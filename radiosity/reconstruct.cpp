@@ -394,9 +394,10 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   BandArray irradiance = with_indirect(draft.indirect);
   Eigen::ArrayXf variance, rays;
   if (draft.tree) {
-    const auto gather_in = [&](const BandArray& of, int one_in, const GatherOptions& with,
+    const auto gather_in = [&](BandArray of, int one_in, const GatherOptions& with,
                                KeptGather& so_far) {
       BandArray radiosity = gatherable_radiosity(mesh, direct_light, of);
+      of.resize(0, 0);
       keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
       return gather_once(scene, caster, direct_light, radiosity, with, one_in, draft, so_far, rays);
     };
@@ -409,8 +410,10 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
     // sixteenth to a half of the rays indirect light in the hall of docs/solvers.md is 0.67 to
     // 0.65 % off, and 0.85 % where the draft is read.
     constexpr int few = 8;
-    irradiance = with_indirect(gather_in(irradiance, few, first, so_far.of_draft).indirect);
-    GatheredIrradiance gathered = gather_in(irradiance, 1, gather, so_far.last);
+    irradiance =
+        with_indirect(gather_in(std::move(irradiance), few, first, so_far.of_draft).indirect);
+    GatheredIrradiance gathered = gather_in(std::move(irradiance), 1, gather, so_far.last);
+    irradiance = with_indirect(gathered.indirect);
     solution.direct_irradiance = draft.direct;
     solution.indirect_irradiance = std::move(gathered.indirect);
     solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);

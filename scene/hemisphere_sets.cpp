@@ -42,21 +42,24 @@ void sort_by_direction(std::span<HemispherePoint> points) {
 
 }  // namespace
 
-HemisphereSets::HemisphereSets(int count)
+HemisphereSets::HemisphereSets(int count, bool with_places)
     : count_(count), sets_(std::clamp(points_in_cache / count, fewest_sets, most_sets)) {
   const SobolPoints sobol(count);
   const auto size = static_cast<std::size_t>(count);
   points_.resize(size * static_cast<std::size_t>(sets_));
+  if (with_places) places_.resize(points_.size());
   parallel_for(sets_, 1, [&](int begin, int end) {
     std::vector<Eigen::Array4f> points(size);
     for (int set = begin; set < end; ++set) {
       sobol.points(0, random_key(static_cast<std::uint64_t>(set), set_key), points);
-      const auto made = std::span(points_).subspan(static_cast<std::size_t>(set) * size, size);
+      const std::size_t begin_of_set = static_cast<std::size_t>(set) * size;
+      const auto made = std::span(points_).subspan(begin_of_set, size);
       for (std::size_t i = 0; i < size; ++i) {
         const Eigen::Array4f& p = points[i];
         // The first two dimensions are stratified best; directions gain most by it.
         const Eigen::Vector3f d = cosine_direction(p[0], p[1]).cast<float>();
-        made[i] = {p[2], p[3], d.x(), d.y(), d.z(), static_cast<int>(i % block)};
+        made[i] = {d.x(), d.y(), d.z(), static_cast<int>(i % block)};
+        if (with_places) places_[begin_of_set + i] = {p[2], p[3]};
       }
       for (std::size_t first = 0; first < size; first += block) {
         sort_by_direction(made.subspan(first, std::min<std::size_t>(block, size - first)));
@@ -68,9 +71,10 @@ HemisphereSets::HemisphereSets(int count)
 HemisphereSets::Draw HemisphereSets::draw(std::uint64_t key) const {
   const auto set = std::min(static_cast<int>(random_uniform(key) * sets_), sets_ - 1);
   const double turn = 2.0 * std::numbers::pi * random_uniform(key + 1);
+  const auto size = static_cast<std::size_t>(count_), first = static_cast<std::size_t>(set) * size;
   Draw draw;
-  draw.points_ = {points_.data() + static_cast<std::ptrdiff_t>(set) * count_,
-                  static_cast<std::size_t>(count_)};
+  draw.points_ = std::span(points_).subspan(first, size);
+  if (!places_.empty()) draw.places_ = std::span(places_).subspan(first, size);
   draw.shift_ = {random_uniform(key + 2), random_uniform(key + 3)};
   draw.cosine_ = std::cos(turn);
   draw.sine_ = std::sin(turn);

@@ -7,14 +7,14 @@
 
 namespace lightwell {
 
-/// A place on a patch and a direction from it.
+/// A direction, and which point of a sequence it is of.
 struct HemispherePoint {
-  float u, v;     ///< in [0,1)^2
   float x, y, z;  ///< unit, about +z with density cos(theta)/pi
   int rank;       ///< its place in the sequence, counted from the beginning of its block
 };
 
-/// Ready-made sets of places and directions, each an Owen-scrambled 4-D Sobol sequence of its own.
+/// Ready-made sets of directions and of places on a patch that they leave from, each an
+/// Owen-scrambled 4-D Sobol sequence of its own.
 /// Whoever casts from very many patches draws one for each and makes it its own by a shift of the
 /// places (Cranley & Patterson 1976) and a turn of the directions about the normal, which costs a
 /// fraction of making the points.
@@ -23,8 +23,8 @@ struct HemispherePoint {
 class HemisphereSets {
  public:
   static constexpr int block = 1024;
-  /// Sets of `count` >= 1 points.
-  explicit HemisphereSets(int count);
+  /// Sets of `count` >= 1 points; without places for who casts from points.
+  explicit HemisphereSets(int count, bool with_places = false);
   int count() const { return count_; }
 
   class Draw {
@@ -34,9 +34,10 @@ class HemisphereSets {
     /// most `block`. `some` keeps them where they are not all of a block.
     std::span<const HemispherePoint> points(int first, int size,
                                             std::vector<HemispherePoint>& some) const;
-    /// The place of a point, shifted; in [0,1)^2.
-    Eigen::Vector2d place(const HemispherePoint& point) const {
-      return {wrapped(point.u + shift_.x()), wrapped(point.v + shift_.y())};
+    /// The place of a point of the block that begins at `first`, shifted; in [0,1)^2.
+    Eigen::Vector2d place(int first, const HemispherePoint& point) const {
+      const Eigen::Vector2f& place = places_[static_cast<std::size_t>(first + point.rank)];
+      return {wrapped(place.x() + shift_.x()), wrapped(place.y() + shift_.y())};
     }
     /// Columns: the frame about the unit vector `normal` in which the points' directions are meant.
     Eigen::Matrix3d frame(const Eigen::Vector3d& normal) const;
@@ -46,6 +47,7 @@ class HemisphereSets {
     // Half of all sums pass 1, and no processor foresees which: no branch.
     static double wrapped(double x) { return x - static_cast<int>(x); }
     std::span<const HemispherePoint> points_{};
+    std::span<const Eigen::Vector2f> places_{};  // in the sequence's order
     Eigen::Vector2d shift_ = Eigen::Vector2d::Zero();
     double cosine_ = 1.0, sine_ = 0.0;  // of the turn
   };
@@ -56,6 +58,7 @@ class HemisphereSets {
   int count_;
   int sets_;
   std::vector<HemispherePoint> points_;  // set by set
+  std::vector<Eigen::Vector2f> places_;  // the same, or none
 };
 
 }  // namespace lightwell

@@ -12,7 +12,7 @@ namespace {
 constexpr int count = 1024;
 
 TEST(HemisphereSets, DrawsHaveTheMomentsOfLambertsLaw) {
-  const HemisphereSets sets(count);
+  const HemisphereSets sets(count, true);
   const Eigen::Vector3d normal = Eigen::Vector3d(1.0, -2.0, 0.5).normalized();
   for (std::uint64_t key = 0; key < 50; ++key) {
     const auto draw = sets.draw(key);
@@ -23,7 +23,7 @@ TEST(HemisphereSets, DrawsHaveTheMomentsOfLambertsLaw) {
     Eigen::Vector2d mean_place = Eigen::Vector2d::Zero();
     for (const HemispherePoint& point : draw.all()) {
       const Eigen::Vector3d d = frame * Eigen::Vector3d(point.x, point.y, point.z);
-      const Eigen::Vector2d place = draw.place(point);
+      const Eigen::Vector2d place = draw.place(0, point);
       ASSERT_NEAR(d.norm(), 1.0, 1e-6);
       ASSERT_TRUE((place.array() >= 0.0).all() && (place.array() < 1.0).all());
       mean_direction += d / count;
@@ -36,13 +36,13 @@ TEST(HemisphereSets, DrawsHaveTheMomentsOfLambertsLaw) {
 }
 
 TEST(HemisphereSets, KeysGiveDifferentDrawsAndOneKeyTheSame) {
-  const HemisphereSets sets(16);
+  const HemisphereSets sets(16, true);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   EXPECT_EQ(sets.draw(7).all().data(), sets.draw(7).all().data());
   EXPECT_EQ(sets.draw(7).frame(up), sets.draw(7).frame(up));
   EXPECT_NE(sets.draw(7).frame(up), sets.draw(8).frame(up));
   const HemispherePoint& point = sets.draw(7).all()[0];
-  EXPECT_NE(sets.draw(7).place(point), sets.draw(8).place(point));
+  EXPECT_NE(sets.draw(7).place(0, point), sets.draw(8).place(0, point));
 }
 
 TEST(HemisphereSets, OnePointIsASet) {
