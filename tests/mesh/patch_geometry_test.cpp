@@ -141,6 +141,22 @@ TEST(BuildTopology, RestoresAMeshFromItsArrays) {
   EXPECT_EQ(copy.elements->n_edges(), mesh.elements->n_edges());
 }
 
+// Moving hands the half-edge mesh on, and leaves an empty one that can be used again.
+TEST(PatchMesh, IsMovedWithoutACopy) {
+  const Scene scene = cornell_box();
+  PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.2});
+  const PatchMesh copy = mesh;
+  EXPECT_NE(&*copy.elements, &*mesh.elements);
+  const HalfedgeMesh* const before = &*mesh.elements;
+  PatchMesh moved = std::move(mesh);
+  EXPECT_EQ(&*moved.elements, before);
+  expect_consistent(moved);
+  EXPECT_EQ(mesh.elements->n_faces(), 0u);  // NOLINT(bugprone-use-after-move)
+  mesh = std::move(moved);
+  EXPECT_EQ(&*mesh.elements, before);
+  EXPECT_EQ(mesh.elements->n_edges(), copy.elements->n_edges());
+}
+
 TEST(BuildTopology, RefusesElementsThatDoNotFit) {
   Scene scene = empty_scene();
   add_polygon(scene, "plate", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {}, 1);

@@ -38,8 +38,8 @@ double least_triangle_angle(const PatchMesh& mesh) {
 }
 
 int euler_characteristic(const PatchMesh& mesh) {
-  return static_cast<int>(mesh.elements->n_vertices()) - static_cast<int>(mesh.elements->n_edges()) +
-         static_cast<int>(mesh.elements->n_faces());
+  return static_cast<int>(mesh.elements->n_vertices()) -
+         static_cast<int>(mesh.elements->n_edges()) + static_cast<int>(mesh.elements->n_faces());
 }
 
 std::vector<int> some(const std::vector<int>& of, Numbers& numbers, int one_in) {
