@@ -103,7 +103,7 @@ std::int64_t bytes_to_gather(const PatchMesh& mesh) {
 }
 
 std::int64_t elements_in(std::int64_t bytes, std::int64_t columns) {
-  constexpr std::int64_t per_element = 600, per_column = 50;
+  constexpr std::int64_t per_element = 650, per_column = 50;
   const std::int64_t count =
       std::max<std::int64_t>(bytes, 0) / (per_element + per_column * columns);
   const std::int64_t step = std::max<std::int64_t>(

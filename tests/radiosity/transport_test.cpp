@@ -102,12 +102,12 @@ TEST(Transport, ASolveThatCannotKeepRowsShoots) {
 }
 
 TEST(Transport, ElementsGoByWhatIsLeft) {
-  // 600 bytes and 50 a column each; down to a whole sixteenth of a power of two.
-  EXPECT_EQ(elements_in(750 * 16384, 3), 16384);
-  EXPECT_EQ(elements_in(750 * 16384 + 750 * 1023, 3), 16384);
-  EXPECT_EQ(elements_in(750 * 16384 + 750 * 1024, 3), 17408);
-  EXPECT_EQ(elements_in(750 * 16384 - 1, 3), 15872);
-  EXPECT_EQ(elements_in(3600 * 5, 60), 5);
+  // 650 bytes and 50 a column each; down to a whole sixteenth of a power of two.
+  EXPECT_EQ(elements_in(800 * 16384, 3), 16384);
+  EXPECT_EQ(elements_in(800 * 16384 + 800 * 1023, 3), 16384);
+  EXPECT_EQ(elements_in(800 * 16384 + 800 * 1024, 3), 17408);
+  EXPECT_EQ(elements_in(800 * 16384 - 1, 3), 15872);
+  EXPECT_EQ(elements_in(3650 * 5, 60), 5);
   EXPECT_EQ(elements_in(0, 3), 0);
   EXPECT_EQ(elements_in(-megabyte, 3), 0);
 }
