@@ -8,12 +8,13 @@
 // generation", whose hall took five hours), here a room of 100 boxes. The error is that of
 // irradiance interpolated at 2000 random points, against gathers of 8192 rays each in a solution
 // made last, many times as exact as the others (of whose light only what is reflected again
-// counts); peak memory is the process's up to then.
+// counts); peak memory is the process's while a solve ran, or where the system cannot forget what
+// came before (Linux can), up to then.
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <cmath>
 #include <ctime>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "bench/stopwatch.h"
 #include "mesh/patch_sampler.h"
 #include "mesh/planar_regions.h"
+#include "radiosity/memory_budget.h"
 #include "radiosity/solve.h"
 #include "raytrace/probe.h"
 #include "scene/parallel.h"
@@ -43,11 +45,14 @@ struct Result {
   BandArray irradiance{};
 };
 
+void forget_peak_memory() {
+  give_back_free_pages();
+  std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): sets VmHWM to VmRSS
+}
+
 double peak_megabytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  constexpr double kilobytes = 1024.0;
-  return static_cast<double>(usage.ru_maxrss) / kilobytes;
+  constexpr double megabyte = 1 << 20;  // as the command line counts
+  return static_cast<double>(resident_memory().most) / megabyte;
 }
 
 // On all that reflects and can be seen, as likely on any area as on any other.
@@ -76,6 +81,7 @@ std::vector<Probe> random_places(const Scene& scene, int count) {
 // The whole of a solve, from polygons as they arrive.
 Result measure(const Scene& scene, const Case& what, const std::vector<Probe>& places) {
   Result result{.name = what.name};
+  forget_peak_memory();
   const std::clock_t start = std::clock();
   SolvedScene solved;
   result.seconds =
