@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "scene/facet_textures.h"
 #include "scene/parallel.h"
@@ -142,20 +141,24 @@ BandArray vertex_reflectance(const PatchMesh& mesh) {
       differs[v] |= (mesh.reflectance.row(first) != mesh.reflectance.row(mesh.patch[e])).any();
     }
   }
-  // Of what meets at a vertex, the mean by area: few do, so that there is no list for all.
-  std::map<int, double> area;
-  for (int e = 0; e < mesh.element_count(); ++e) {
+  std::vector<double> area;
+  if (std::ranges::find(differs, 1) != differs.end()) area.resize(patch.size(), 0.0);
+  for (int e = 0; e < mesh.element_count() && !area.empty(); ++e) {
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       const int v = mesh.corners[e][c];
       if (!differs[static_cast<std::size_t>(v)]) continue;
-      area[v] += mesh.element_area[e];
+      area[static_cast<std::size_t>(v)] += mesh.element_area[e];
       rho.row(v) += static_cast<float>(mesh.element_area[e]) * mesh.reflectance.row(mesh.patch[e]);
     }
   }
-  for (const auto& [v, sum] : area) rho.row(v) /= static_cast<float>(sum);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const auto at = static_cast<std::size_t>(v);
-    if (patch[at] >= 0 && !differs[at]) rho.row(v) = mesh.reflectance.row(patch[at]);
+    if (patch[at] < 0) continue;
+    if (differs[at]) {
+      rho.row(v) /= static_cast<float>(area[at]);
+    } else {
+      rho.row(v) = mesh.reflectance.row(patch[at]);
+    }
   }
   return rho;
 }

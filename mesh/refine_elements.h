@@ -114,6 +114,7 @@ class RefinedElements {
   };
   struct Cell {
     int base = 0, parent = -1, first_child = -1, first_side = -1;
+    // The number of sides itself: loops to a bit's `? 2 : 1` GCC 12.2 (-O3) ran past the end of.
     std::int8_t level = 0, corner_count = 4, side_count = 1;
     bool is_split : 1 = false, is_active : 1 = true;
     unsigned char backwards : 4 = 0;  // bit i: edge i goes from corner i + 1 to corner i
