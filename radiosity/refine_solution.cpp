@@ -107,10 +107,12 @@ class Refinement {
     return report_;
   }
 
-  /// With what noise may hide.
+  /// With half of what noise may hide: where it hides anything, that is something between nothing
+  /// and all of its square.
   float relative_error(int cell, int side) const {
     const Square& square = squares_[elements_.side_number(cell, side)];
-    return static_cast<float>(std::sqrt(share_left(cell) * double{square.known + square.hidden}));
+    const double expected = double{square.known} + 0.5 * double{square.hidden};
+    return static_cast<float>(std::sqrt(share_left(cell) * expected));
   }
 
  private:

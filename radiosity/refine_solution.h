@@ -62,7 +62,8 @@ struct RefinedSolution {
   GatheredIrradiance draft{};      ///< vertices x bands; the direct light is as good as it gets
   std::vector<ToldVertex> told{};  ///< where the final gather of indirect light may be left out
   std::vector<BetweenVertex> between{};  ///< what the draft says of the others, and of these
-  /// Per element: estimated relative RMS error of interpolation over it, with what noise may hide.
+  /// Per element: estimated relative RMS error of interpolation over it, with half of what noise
+  /// may hide, in the square.
   Eigen::ArrayXf error{};
   RefineReport report{};
   int gather_rays = 0;  ///< that the final gather is to take

@@ -62,9 +62,9 @@ struct RadiositySolution {
   /// The part of indirect_irradiance that DirectLight's lights send by way of mirrors and glass.
   BandArray caustic_irradiance{};
 
-  /// Per element: estimated RMS error of interpolated irradiance over it, with what the noise of
-  /// its estimate may hide, of the mean irradiance or a quarter of the element's own, whichever is
-  /// more. Empty if nobody estimated it.
+  /// Per element: estimated RMS error of interpolated irradiance over it, with half of what the
+  /// noise of its estimate may hide (in the square), of the mean irradiance or a quarter of the
+  /// element's own, whichever is more. Empty if nobody estimated it.
   Eigen::ArrayXf interpolation_error{};
   /// Per element: estimated RMS error that the rays of the final gather leave in it, relative to
   /// the same. Empty in files of earlier versions.
