@@ -125,7 +125,7 @@ SolveOptions to(double accuracy) {
 
 // As few patches as the room's light bounces between, and elements along the bounds of shadows.
 SolveOptions coarse_room() {
-  return {.mesh = {.max_patch_size = 0.15, .elements_per_patch_edge = 3, .discontinuity = true},
+  return {.mesh = {.max_patch_size = 0.14, .elements_per_patch_edge = 3, .discontinuity = true},
           .form_factors = {.rays_per_patch = 32},
           .gather = {.rays = 128},
           .refine = {.tolerance = 0.0}};

@@ -329,17 +329,18 @@ ElementCaster Drafting::caster(const PatchMesh& mesh, const Draft& draft) const 
 }
 
 Draft Drafting::Impl::unrefined(const SolveOptions& options) {
+  const VertexGatherPoints all(base);
+  const GatherPoints points(base.vertex_count(), [&](int v) { return all[v]; });
   GatherOptions gather = gather_options(options);
-  gather.rays = std::max(1, gather.rays / 4);
+  Draft draft{.direct = gather_direct(scene, caster, direct_light, points, gather),
+              .shadows = gather.shadows,
+              .gather_rays = gather.rays};
+  // Its noise goes down in the mean over all that a ray of the final gather may meet.
+  gather.rays = std::max(1, gather.rays / 8);
   gather.replica += draft_replica;
-  gather.shadows = {.min_rays = std::max(1, gather.shadows.min_rays / 2),
-                    .max_rays = std::max(1, gather.shadows.max_rays / 4)};
-  GatheredIrradiance draft =
-      gather_irradiance(scene, caster, direct_light, radiosity, vertex_gather_points(base), gather);
-  return {.direct = std::move(draft.direct),
-          .indirect = std::move(draft.indirect),
-          .caustic = caustics(scene, caster, direct_light, options),
-          .gather_rays = options.gather.rays};
+  draft.indirect = gather_indirect(scene, caster, direct_light, radiosity, points, gather).indirect;
+  draft.caustic = caustics(scene, caster, direct_light, options);
+  return draft;
 }
 
 void Drafting::Impl::prepare(const SolveOptions& options) {
@@ -427,9 +428,12 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
       return at;
     });
     GatheredIrradiance gathered =
-        gather_irradiance(scene, caster, direct_light,
-                          gatherable_radiosity(mesh, direct_light, irradiance), points, gather);
-    solution.direct_irradiance = std::move(gathered.direct);
+        gather_indirect(scene, caster, direct_light,
+                        gatherable_radiosity(mesh, direct_light, irradiance), points, gather);
+    const bool is_direct_found = draft.shadows.min_rays >= gather.shadows.min_rays &&
+                                 draft.shadows.max_rays >= gather.shadows.max_rays;
+    solution.direct_irradiance =
+        is_direct_found ? draft.direct : gather_direct(scene, caster, direct_light, points, gather);
     solution.indirect_irradiance = std::move(gathered.indirect);
     rays = Eigen::Map<const Eigen::ArrayXi>(rays_of.data(), mesh.vertex_count()).cast<float>();
     variance = gathered.variance * rays;

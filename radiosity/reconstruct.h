@@ -16,6 +16,7 @@ struct Draft {
   /// Where its elements are in the base's, wherever it is moved to; null: nothing was refined.
   std::shared_ptr<const ElementTree> tree{};
   BandArray direct{}, indirect{};        ///< W/m^2, vertices x bands
+  ShadowOptions shadows{};               ///< that `direct` was gathered with
   BandArray caustic{};                   ///< the same; empty if the scene has no mirrors or glass
   Eigen::ArrayXf interpolation_error{};  ///< see RadiositySolution; empty without refinement
   RefineReport refinement{};
