@@ -335,8 +335,7 @@ Draft Drafting::Impl::unrefined(const SolveOptions& options) {
   Draft draft{.direct = gather_direct(scene, caster, direct_light, points, gather),
               .shadows = gather.shadows,
               .gather_rays = gather.rays};
-  // Its noise goes down in the mean over all that a ray of the final gather may meet.
-  gather.rays = std::max(1, gather.rays / 8);
+  gather.rays = std::max(1, gather.rays / 4);
   gather.replica += draft_replica;
   draft.indirect = gather_indirect(scene, caster, direct_light, radiosity, points, gather).indirect;
   draft.caustic = caustics(scene, caster, direct_light, options);
