@@ -42,13 +42,14 @@ Row measure(const Scene& scene, double element_size) {
   SolveOptions options{.mesh = {.max_element_size = element_size},
                        .refine = {.tolerance = 0.0},
                        .accuracy = Accuracy{.share = 0.03}};
-  const SolvedScene solved = solve_scene(scene, options);
+  SolveReport report;
+  const SolvedScene solved = solve_scene(scene, options, &report);
   const Row row{.elements = solved.mesh.element_count(),
                 .seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC,
                 .megabytes = peak_megabytes()};
-  fmt::print("{:8} elements {:7} patches {:8.2f} s {:7.0f} MB  error {:.2f} %  (", row.elements,
-             solved.mesh.patch_count(), row.seconds, row.megabytes,
-             100.0 * solved.solution.error_estimate);
+  fmt::print("{:8} elements {:7} patches {:4} rays {:8.2f} s {:7.0f} MB  error {:.2f} %  (",
+             row.elements, solved.mesh.patch_count(), report.gather_rays, row.seconds,
+             row.megabytes, 100.0 * solved.solution.error_estimate);
   for (const PhaseSeconds& phase : solved.solution.seconds) {
     fmt::print(" {} {:.1f}", phase.phase, phase.seconds);
   }

@@ -392,18 +392,21 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   }
   const GatherOptions gather = gather_options(options);
   BandArray irradiance = with_indirect(draft.indirect);
-  Eigen::ArrayXf variance, rays;
-  if (draft.tree) {
-    const auto gather_in = [&](BandArray of, int one_in, const GatherOptions& with,
-                               KeptGather& so_far) {
-      BandArray radiosity = gatherable_radiosity(mesh, direct_light, of);
-      of.resize(0, 0);
+  Eigen::ArrayXf rays;
+  const auto gather_in = [&](BandArray of, int one_in, const GatherOptions& with,
+                             KeptGather& so_far) {
+    BandArray radiosity = gatherable_radiosity(mesh, direct_light, of);
+    of.resize(0, 0);
+    if (draft.tree) {
       keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
-      return gather_once(scene, caster, direct_light, radiosity, with, one_in, draft, so_far, rays);
-    };
-    KeptGathers none;
-    KeptGathers& so_far = kept ? *kept : none;
-    go_on(draft.number, so_far);
+    }
+    return gather_once(scene, caster, direct_light, radiosity, with, one_in, draft, so_far, rays);
+  };
+  KeptGathers none;
+  KeptGathers& so_far = kept ? *kept : none;
+  go_on(draft.number, so_far);
+  solution.direct_irradiance = draft.direct;
+  if (draft.tree) {
     GatherOptions first = gather;
     first.replica += first_replicas;
     // Rays of all around meet what it finds, so that its noise goes down in their mean: with a
@@ -412,33 +415,18 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
     constexpr int few = 8;
     irradiance =
         with_indirect(gather_in(std::move(irradiance), few, first, so_far.of_draft).indirect);
-    GatheredIrradiance gathered = gather_in(std::move(irradiance), 1, gather, so_far.last);
-    irradiance = with_indirect(gathered.indirect);
-    solution.direct_irradiance = draft.direct;
-    solution.indirect_irradiance = std::move(gathered.indirect);
-    solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
-    variance = std::move(gathered.variance);
-  } else {
-    const std::vector<int> rays_of = share_rays(mesh, draft.told, gather.rays);
+  } else if (draft.shadows.min_rays < gather.shadows.min_rays ||
+             draft.shadows.max_rays < gather.shadows.max_rays) {
     const VertexGatherPoints all(mesh);
-    const GatherPoints points(mesh.vertex_count(), [&](int v) {
-      GatherPoint at = all[v];
-      at.rays = rays_of[v];
-      return at;
-    });
-    GatheredIrradiance gathered =
-        gather_indirect(scene, caster, direct_light,
-                        gatherable_radiosity(mesh, direct_light, irradiance), points, gather);
-    const bool is_direct_found = draft.shadows.min_rays >= gather.shadows.min_rays &&
-                                 draft.shadows.max_rays >= gather.shadows.max_rays;
-    solution.direct_irradiance =
-        is_direct_found ? draft.direct : gather_direct(scene, caster, direct_light, points, gather);
-    solution.indirect_irradiance = std::move(gathered.indirect);
-    rays = Eigen::Map<const Eigen::ArrayXi>(rays_of.data(), mesh.vertex_count()).cast<float>();
-    variance = gathered.variance * rays;
+    const GatherPoints points(mesh.vertex_count(), [&](int v) { return all[v]; });
+    solution.direct_irradiance = gather_direct(scene, caster, direct_light, points, gather);
   }
-  solution.gather_noise =
-      gather_noise(mesh, channel_sum(std::move(irradiance), scene.bands.count()), variance, rays);
+  GatheredIrradiance gathered = gather_in(std::move(irradiance), 1, gather, so_far.last);
+  irradiance = with_indirect(gathered.indirect);
+  solution.indirect_irradiance = std::move(gathered.indirect);
+  solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
+  solution.gather_noise = gather_noise(
+      mesh, channel_sum(std::move(irradiance), scene.bands.count()), gathered.variance, rays);
   if (has_caustics) solution.indirect_irradiance += draft.caustic;
   solution.caustic_irradiance = draft.caustic;
   solution.interpolation_error = draft.interpolation_error;

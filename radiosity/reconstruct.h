@@ -73,7 +73,7 @@ struct KeptGathers {
 /// a refined mesh has been gathered for good; its indirect light was found in that of unrefined
 /// elements, and in the same few directions all over a surface. A gather with an eighth of the rays
 /// makes that good, and the final one reads it. With channels it is theirs that is filled in; their
-/// sum is left to relight(). What `kept` has of refined elements is not gathered again.
+/// sum is left to relight(). What `kept` has is not gathered again.
 void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
                  const SolveOptions& options, const Draft& draft, RadiositySolution& solution,
                  KeptGathers* kept = nullptr);
