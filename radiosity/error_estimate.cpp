@@ -12,6 +12,7 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
+constexpr std::uint64_t batch_keys = 5000;     // apart from those of other gathers
 // As usual where no accuracy is asked for.
 constexpr ShadowOptions fewest_shadow_rays{.min_rays = 32, .max_rays = 256};
 // Half of the difference between a stratified set's two halves is more than the whole set is off
@@ -116,12 +117,13 @@ std::vector<ErrorPlace> open_places(const ElementCaster& caster, double width,
 }
 
 std::vector<ErrorPlace> draw_places(const Scene& scene, const ElementCaster& caster,
-                                    const Eigen::ArrayXf& told, int wanted) {
+                                    const Eigen::ArrayXf& told, int wanted, int batch) {
   const ErrorPlaces places(caster, told);
   if (places.is_empty() || wanted < 1) return {};
   const SobolPoints sobol(wanted);
   std::vector<ErrorPlace> drawn;
-  for (int i = 0; i < wanted; ++i) drawn.push_back(places.place(sobol.point(i, error_point_key)));
+  const std::uint64_t key = error_point_key + batch_keys * static_cast<std::uint64_t>(batch);
+  for (int i = 0; i < wanted; ++i) drawn.push_back(places.place(sobol.point(i, key)));
   constexpr double crack = 1e-4;  // of the scene
   return open_places(caster, crack * scene_bounds(scene).diagonal(), drawn);
 }
@@ -148,14 +150,15 @@ Spectrum excess_of_reflected(const Eigen::ArrayXd& weight, const BandArray& foun
 
 ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const SolveOptions& options,
-                             const RadiositySolution& solution, Eigen::ArrayXf* of_elements) {
+                             const RadiositySolution& solution, Eigen::ArrayXf* of_elements,
+                             int batch) {
   const PatchMesh& mesh = caster.mesh();
   BandArray irradiance = solution.irradiance();
   const bool is_told = solution.interpolation_error.size() > 0;
   const Eigen::ArrayXf guessed = is_told ? Eigen::ArrayXf() : indicators(mesh, irradiance);
   const Eigen::ArrayXf& told = is_told ? solution.interpolation_error : guessed;
   const int wanted = estimate_places(options.error_points, mesh.vertex_count());
-  const std::vector<ErrorPlace> drawn = draw_places(scene, caster, told, wanted);
+  const std::vector<ErrorPlace> drawn = draw_places(scene, caster, told, wanted, batch);
   if (drawn.empty()) return {};
 
   const auto count = static_cast<Eigen::Index>(drawn.size());
@@ -181,7 +184,8 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
   shadows.min_rays = std::max(shadows.min_rays, fewest_shadow_rays.min_rays);
   shadows.max_rays = std::max(shadows.max_rays, fewest_shadow_rays.max_rays);
   gather_options.rays = estimate_rays(options.gather.rays, mesh.vertex_count(), wanted);
-  gather_options.replica = options.gather.replica + 1;
+  gather_options.replica =
+      options.gather.replica + 1 + batch_keys * static_cast<std::uint64_t>(batch);
   gather_options.progress = options.progress;
   gather_options.journal = options.journal;
   const BandArray radiosity = gatherable_radiosity(mesh, direct_light, irradiance);
@@ -218,8 +222,29 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
   const double standard_error =
       std::sqrt((squared - squared.mean() * weight).square().mean() /
                 static_cast<double>(std::max<Eigen::Index>(count - 1, 1)));
-  return {.error = std::sqrt(squared.mean() + standard_error),
+  return {.square = squared.mean(),
+          .deviation = standard_error,
           .noise = std::sqrt(of_whole_set * (weight * noise).mean())};
+}
+
+double ErrorEstimate::error() const {
+  return std::sqrt(square + deviation);
+}
+
+double ErrorEstimate::least() const {
+  return std::sqrt(std::max(square - deviation, 0.0));
+}
+
+ErrorEstimate joined(const ErrorEstimate& a, const ErrorEstimate& b) {
+  const int batches = a.batches + b.batches;
+  const double share = static_cast<double>(b.batches) / batches;
+  const auto mean = [share](double of_a, double of_b) {
+    return (1.0 - share) * of_a + share * of_b;
+  };
+  return {.square = mean(a.square, b.square),
+          .deviation = std::hypot((1.0 - share) * a.deviation, share * b.deviation),
+          .noise = std::sqrt(mean(a.noise * a.noise, b.noise * b.noise)),
+          .batches = batches};
 }
 
 }  // namespace lightwell

@@ -7,8 +7,14 @@
 namespace lightwell {
 
 struct ErrorEstimate {
-  double error = 0.0;  ///< one standard error up
-  double noise = 0.0;  ///< in it: what the rays of both gathers leave, as they tell themselves
+  double square = 0.0;     ///< mean of the squared error over the places
+  double deviation = 0.0;  ///< that one's standard error
+  double noise =
+      0.0;          ///< in the error: what the rays of both gathers leave, as they tell themselves
+  int batches = 1;  ///< of places
+
+  double error() const;  ///< one standard error up
+  double least() const;  ///< and one down
 };
 
 /// Relative RMS error of interpolated irradiance over the area that reflects: at random places,
@@ -27,9 +33,14 @@ struct ErrorEstimate {
 /// solutions of which refinement tells none: it is in proportion to the range of the corners'
 /// irradiance, no less than 5 %, and in the mean square over the places what is off there beyond
 /// the noise of both gathers. (Unchanged if there is nothing to go by.)
+///
+/// Each `batch` is of other places and rays.
 ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const SolveOptions& options,
                              const RadiositySolution& solution,
-                             Eigen::ArrayXf* of_elements = nullptr);
+                             Eigen::ArrayXf* of_elements = nullptr, int batch = 0);
+
+/// Of the places of both, batches being of as many each.
+ErrorEstimate joined(const ErrorEstimate& a, const ErrorEstimate& b);
 
 }  // namespace lightwell

@@ -238,13 +238,22 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
     give_back_free_pages();
     spent["gather"] += watch.lap();
     Eigen::ArrayXf& of_elements = solution.interpolation_error;
-    const ErrorEstimate estimate = estimate_error(scene, *caster, direct_light, in_force, solution,
-                                                  of_elements.size() == 0 ? &of_elements : nullptr);
-    solution.error_estimate = estimate.error;
+    const auto look = [&](int batch, Eigen::ArrayXf* elements) {
+      return estimate_error(scene, *caster, direct_light, in_force, solution, elements, batch);
+    };
+    ErrorEstimate estimate = look(0, of_elements.size() == 0 ? &of_elements : nullptr);
+    // Where the places leave open whether that is what was asked for, more of them cost less than
+    // another attempt: single ones may hold a fifth of the squared error.
+    constexpr int most_batches = 4;
+    for (int batch = 1;
+         batch < most_batches && estimate.least() < target && target < estimate.error(); ++batch) {
+      estimate = joined(estimate, look(batch, nullptr));
+    }
+    solution.error_estimate = estimate.error();
     spent["error_estimate"] += watch.lap();
     if (!may_try_again || solution.error_estimate <= target) break;
     const auto next =
-        next_effort(effort, target, estimate.error, estimate.noise, draft->refinement, attempt);
+        next_effort(effort, target, estimate.error(), estimate.noise, draft->refinement, attempt);
     if (!next) {
       if (solution.outcome == Outcome::converged) solution.outcome = Outcome::accuracy_missed;
       break;

@@ -11,6 +11,15 @@
 #include "scene/parallel.h"
 
 namespace lightwell {
+namespace {
+
+Eigen::Vector3d middle(const CastGeometry& source, std::span<const int> polygon) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const int v : polygon) mean += source.vertices[v] / static_cast<double>(polygon.size());
+  return mean;
+}
+
+}  // namespace
 
 EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
   triangles = static_cast<int>(geometry.triangles.size());
@@ -86,43 +95,72 @@ void EmbreeScene::attach(RTCGeometry geometry, GeometryId id) {
 // there are quads, triangles are quads that end in their last corner twice; u and v remain the
 // same.
 RTCGeometry EmbreeScene::polygon_geometry(const CastGeometry& source,
-                                          std::span<const int> primitives) const {
+                                          std::span<const int> primitives,
+                                          std::span<const CellSheet> with) const {
   const bool as_quads = quads > 0;
   const std::size_t corners = as_quads ? 4 : 3;
-  const RTCGeometry geometry =
-      rtcNewGeometry(device, as_quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                        RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                        source.vertices.size()));
-  auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, as_quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
-      corners * sizeof(unsigned), primitives.size()));
-  check();
-  for (const Eigen::Vector3d& vertex : source.vertices) {
-    for (int c = 0; c < 3; ++c) *v++ = static_cast<float>(vertex[c] - center[c]);
-  }
+  std::vector<unsigned> index;
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<int> number(source.vertices.size(), -1);
   for (const int p : primitives) {
     for (std::size_t c = 0; c < corners; ++c) {
-      const int corner = p < triangles ? source.triangles[p][std::min<std::size_t>(c, 2)]
-                                       : source.quads[p - triangles][c];
-      *index++ = static_cast<unsigned>(corner);
+      const int v = p < triangles ? source.triangles[p][std::min<std::size_t>(c, 2)]
+                                  : source.quads[p - triangles][c];
+      if (number[v] < 0) {
+        number[v] = static_cast<int>(vertices.size());
+        vertices.push_back(source.vertices[v]);
+      }
+      index.push_back(static_cast<unsigned>(number[v]));
     }
   }
+  for (const CellSheet& sheet : with) {
+    for (const Eigen::Vector3d& corner : sheet.corners) {
+      index.push_back(static_cast<unsigned>(vertices.size()));
+      vertices.push_back(corner);
+    }
+  }
+
+  const RTCGeometry geometry =
+      rtcNewGeometry(device, as_quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* to = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
+  auto* to_index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, as_quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
+      corners * sizeof(unsigned), index.size() / corners));
+  check();
+  for (const Eigen::Vector3d& vertex : vertices) {
+    for (int c = 0; c < 3; ++c) *to++ = static_cast<float>(vertex[c] - center[c]);
+  }
+  std::ranges::copy(index, to_index);
   return geometry;
 }
 
+// What lies on a cell may hide it, and no other.
+bool EmbreeScene::may_join(const CastGeometry& source, int quad) const {
+  const auto p = static_cast<std::size_t>(triangles + quad);
+  if (!source.has_holes.empty() && source.has_holes[p] != 0) return false;
+  if (!planes->has_overlaps(group[p])) return true;
+  return !planes->may_be_covered(group[p], middle(source, source.quads[quad]));
+}
+
 void EmbreeScene::add_polygons(const CastGeometry& source) {
-  for (int p = 0; p < triangles + quads; ++p) {
+  sheets = join_cells(source, rounding, [&](int quad) { return may_join(source, quad); });
+  const auto add = [&](int p) {
     const bool has_holes = !source.has_holes.empty() && source.has_holes[p] != 0;
     (has_holes ? porous : solid).push_back(p);
+  };
+  for (int p = 0; p < triangles; ++p) add(p);
+  for (const int quad : sheets.single) add(triangles + quad);
+  sheets.single = {};
+  if (!solid.empty() || !sheets.sheets.empty()) {
+    attach(polygon_geometry(source, solid, sheets.sheets), polygons_id);
   }
-  if (!solid.empty()) attach(polygon_geometry(source, solid), polygons_id);
-  if (porous.empty()) {
-    solid = {};
-    return;
+  for (const CellSheet& sheet : sheets.sheets) {
+    solid.push_back(triangles + sheets.cells[static_cast<std::size_t>(sheet.first)]);
   }
+  if (porous.empty()) return;
   is_hole = source.is_hole;
-  const RTCGeometry geometry = polygon_geometry(source, porous);
+  const RTCGeometry geometry = polygon_geometry(source, porous, {});
   rtcSetGeometryUserData(geometry, this);
   rtcSetGeometryIntersectFilterFunction(geometry, skip_holes);
   rtcSetGeometryOccludedFilterFunction(geometry, skip_holes);
@@ -195,8 +233,7 @@ void EmbreeScene::find_hidden(const CastGeometry& source) {
   const auto look_at = [&](int p, std::span<const int> polygon) {
     const int g = group[p];
     if (!planes->has_overlaps(g)) return;
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const int v : polygon) mean += source.vertices[v] / static_cast<double>(polygon.size());
+    const Eigen::Vector3d mean = middle(source, polygon);
     if (!planes->may_be_covered(g, mean)) return;
     const Eigen::Vector3d front =
         (source.vertices[polygon[1]] - source.vertices[polygon[0]])

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/cast_spheres.h"
+#include "scene/cell_sheets.h"
 #include "scene/coplanar_groups.h"
 #include "scene/embree_queries.h"
 
@@ -33,14 +34,22 @@ struct EmbreeScene {
   SphereSet sphere_set;
   int triangles = 0, quads = 0;
   // Polygons with holes are a geometry of their own, with a filter that the others do not pay for.
-  // Primitives of Embree's two geometries; empty: none has holes, and the numbers are the same.
+  // Primitives of Embree's two geometries.
   std::vector<int> solid, porous;
+  CellSheets sheets;  // the last of the solid ones, each known by its first cell there
   std::function<bool(int group, const Eigen::Vector3d& point)> is_hole;
 
+  // Of a sheet any cell, since all are of one group, and nothing lies on them.
   int primitive(const RTCHit& hit) const {
     if (hit.geomID == spheres_id) return static_cast<int>(hit.primID) + triangles + quads;
-    if (porous.empty()) return static_cast<int>(hit.primID);
     return (hit.geomID == porous_id ? porous : solid)[hit.primID];
+  }
+
+  // Null: what was met is a primitive itself.
+  const CellSheet* sheet(const RTCHit& hit) const {
+    const std::size_t alone = solid.size() - sheets.sheets.size();
+    if (hit.geomID != polygons_id || hit.primID < alone) return nullptr;
+    return &sheets.sheets[hit.primID - alone];
   }
 
   static void clear(RTCHit& hit) {
@@ -53,7 +62,9 @@ struct EmbreeScene {
   void check() const;
   void attach(RTCGeometry geometry, GeometryId id);
   void add_polygons(const CastGeometry& source);
-  RTCGeometry polygon_geometry(const CastGeometry& source, std::span<const int> primitives) const;
+  bool may_join(const CastGeometry& source, int quad) const;
+  RTCGeometry polygon_geometry(const CastGeometry& source, std::span<const int> primitives,
+                               std::span<const CellSheet> with) const;
   static void skip_holes(const RTCFilterFunctionNArguments* args);
   void add_spheres(const CastGeometry& source);
   void find_hidden(const CastGeometry& source);

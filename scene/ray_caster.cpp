@@ -316,6 +316,12 @@ struct RayCaster::Impl : EmbreeScene {
     hit.group = group[p];
     hit.u = query.hit.u;
     hit.v = query.hit.v;
+    if (const CellSheet* met = sheet(query.hit)) {
+      const CellSheets::Place place = sheets.place(*met, hit.u, hit.v);
+      hit.primitive = triangles + place.quad;
+      hit.u = place.u;
+      hit.v = place.v;
+    }
     if (query.hit.geomID == spheres_id) {
       const Sphere& sphere = sphere_set.spheres[query.hit.primID];
       hit.t = sphere_root(sphere, ray, group[p] == ray.origin_group);

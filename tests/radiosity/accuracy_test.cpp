@@ -219,6 +219,38 @@ TEST(Accuracy, RaysAreNotCastWhereElementsAreTooLarge) {
   EXPECT_GT(noisy->gather_rays, first.gather_rays);
 }
 
+// Each batch is of places of its own, and what several say together is surer.
+TEST(ErrorEstimate, BatchesJoin) {
+  const Scene scene = test::two_lamps({.reflectance = 0.5f});
+  const SolvedScene solved = solve_scene(scene);
+  const ElementCaster caster(solved.mesh);
+  const DirectLight direct_light(scene, solved.mesh);
+  constexpr int batches = 8;
+  std::vector<double> squares;
+  ErrorEstimate all;
+  double deviation = 0.0;
+  for (int batch = 0; batch < batches; ++batch) {
+    const ErrorEstimate one =
+        estimate_error(scene, caster, direct_light, {}, solved.solution, nullptr, batch);
+    all = batch == 0 ? one : joined(all, one);
+    squares.push_back(one.square);
+    deviation += one.deviation / batches;
+  }
+  EXPECT_EQ(all.batches, batches);
+  double mean = 0.0, spread = 0.0;
+  for (const double square : squares) mean += square / batches;
+  for (const double square : squares) spread += std::pow(square - mean, 2) / (batches - 1);
+  EXPECT_NEAR(all.square, mean, 1e-12);
+  EXPECT_NEAR(all.deviation, deviation / std::sqrt(batches), 0.2 * all.deviation);
+  EXPECT_LT(all.least(), std::sqrt(mean));
+  EXPECT_GT(all.error(), std::sqrt(mean));
+  // Batches spread by what they say of themselves, or less, since places are stratified. Squares of
+  // seven free differences exceed their mean three times once in 400.
+  std::printf("%.2e spread, %.2e told\n", std::sqrt(spread), deviation);
+  EXPECT_LT(spread, 3.0 * deviation * deviation);
+  EXPECT_GT(spread, 0.0);
+}
+
 // All light a few percent too dim, as if interpolation had cut peaks off: what is gathered in that
 // light for comparison is too dim as well, but for what comes straight from the lamps.
 TEST(ErrorEstimate, SeesWhatReflectionsHide) {
@@ -229,7 +261,7 @@ TEST(ErrorEstimate, SeesWhatReflectionsHide) {
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
   const auto estimate = [&] {
-    return estimate_error(scene, caster, direct_light, options, solved.solution).error;
+    return estimate_error(scene, caster, direct_light, options, solved.solution).error();
   };
   const double before = estimate();
   const PatchMesh& mesh = solved.mesh;
