@@ -35,8 +35,9 @@ class Neighbours {
 
 class Joining {
  public:
-  Joining(const CastGeometry& geometry, std::span<const int> quads, double margin)
+  Joining(const CastGeometry& geometry, std::span<const int> quads, double longest, double margin)
       : geometry_(geometry),
+        longest_(longest),
         margin_(margin),
         quads_(quads),
         lefts_(geometry, quads, 0, 3),
@@ -102,6 +103,12 @@ class Joining {
     return q;
   }
 
+  // How many cells along one edge of this one a sheet may have.
+  int most(int q, int corner) const {
+    const double times = longest_ / (position(q, corner) - position(q, 0)).norm();
+    return static_cast<int>(std::min(times, static_cast<double>(quads_.size())));
+  }
+
   void add_sheet(int origin, CellSheets& result) {
     std::vector<int> cells{origin};
     if (!is_in_lattice(origin, origin, 0, 0)) {  // not a parallelogram
@@ -109,13 +116,16 @@ class Joining {
       result.single.push_back(origin);
       return;
     }
+    const int most_columns = most(origin, 1), most_rows = most(origin, 3);
     for (int next = right_of(origin);
-         is_in_lattice(next, origin, static_cast<int>(cells.size()), 0); next = right_of(next)) {
+         static_cast<int>(cells.size()) < most_columns &&
+         is_in_lattice(next, origin, static_cast<int>(cells.size()), 0);
+         next = right_of(next)) {
       cells.push_back(next);
     }
     const auto columns = static_cast<int>(cells.size());
     int rows = 1;
-    for (bool is_whole = true; is_whole; rows += is_whole ? 1 : 0) {
+    for (bool is_whole = true; is_whole && rows < most_rows; rows += is_whole ? 1 : 0) {
       const std::size_t last = cells.size() - static_cast<std::size_t>(columns);
       for (int column = 0; column < columns && is_whole; ++column) {
         const int next = above(cells[last + static_cast<std::size_t>(column)]);
@@ -149,7 +159,7 @@ class Joining {
   }
 
   const CastGeometry& geometry_;
-  double margin_;
+  double longest_, margin_;
   std::span<const int> quads_;
   Neighbours lefts_, rights_, lows_, highs_;  // by their left edges, and so on
   std::vector<char> is_joined_;
@@ -170,13 +180,13 @@ CellSheets::Place CellSheets::place(const CellSheet& sheet, float u, float v) co
           .v = std::clamp(up - static_cast<float>(row), 0.0f, 1.0f)};
 }
 
-CellSheets join_cells(const CastGeometry& geometry, double margin,
+CellSheets join_cells(const CastGeometry& geometry, double longest, double margin,
                       const std::function<bool(int quad)>& may_join) {
   std::vector<int> candidates, others;
   for (int q = 0; q < static_cast<int>(geometry.quads.size()); ++q) {
     (may_join(q) ? candidates : others).push_back(q);
   }
-  CellSheets result = Joining(geometry, candidates, margin).join();
+  CellSheets result = Joining(geometry, candidates, longest, margin).join();
   result.single.insert(result.single.end(), others.begin(), others.end());
   std::ranges::sort(result.single);
   return result;

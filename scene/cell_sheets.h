@@ -34,7 +34,7 @@ struct CellSheets {
 /// two or more, or single. Cells differ from even ones by less than a millionth of their edges.
 /// Sheets reach past their cells by `margin`, metres: beside them may lie smaller ones, and along
 /// an edge that is one's whole and another's part rays would slip through where rounding bends it.
-CellSheets join_cells(const CastGeometry& geometry, double margin,
+CellSheets join_cells(const CastGeometry& geometry, double longest, double margin,
                       const std::function<bool(int quad)>& may_join);
 
 }  // namespace lightwell

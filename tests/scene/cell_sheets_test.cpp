@@ -42,8 +42,10 @@ std::vector<double> even(int cells) {
   return lines;
 }
 
+constexpr double any_length = 1e3;
+
 CellSheets join_all(const CastGeometry& g, double margin = 0.0) {
-  return join_cells(g, margin, [](int) { return true; });
+  return join_cells(g, any_length, margin, [](int) { return true; });
 }
 
 Vector3d corner(const CastGeometry& g, int quad, int c) {
@@ -96,13 +98,27 @@ TEST(CellSheets, EvenCellsAreOneAndToldApart) {
 TEST(CellSheets, WhatMayNotJoinIsLeftOut) {
   const CastGeometry g = grid(even(8), even(8));
   const std::set<int> covered{18, 19, 26, 27, 63, 9};
-  const CellSheets sheets = join_cells(g, 0.0, [&](int q) { return !covered.contains(q); });
+  const CellSheets sheets =
+      join_cells(g, any_length, 0.0, [&](int q) { return !covered.contains(q); });
   expect_all_once(g, sheets);
   expect_places(g, sheets);
   for (const int q : covered) {
     EXPECT_NE(std::ranges::find(sheets.single, q), sheets.single.end());
   }
   EXPECT_LT(sheets.sheets.size(), 16u);
+}
+
+TEST(CellSheets, NoneIsLongerThanAllowed) {
+  const CastGeometry g = grid(even(20), even(10));
+  constexpr double longest = 0.55;
+  const CellSheets sheets = join_cells(g, longest, 0.0, [](int) { return true; });
+  expect_all_once(g, sheets);
+  expect_places(g, sheets);
+  EXPECT_EQ(sheets.sheets.size(), 4u * 4u);
+  for (const CellSheet& sheet : sheets.sheets) {
+    EXPECT_LE((sheet.corners[1] - sheet.corners[0]).norm(), longest);
+    EXPECT_LE((sheet.corners[3] - sheet.corners[0]).norm(), longest);
+  }
 }
 
 TEST(CellSheets, UnequalCellsAndOtherGroupsStayApart) {
