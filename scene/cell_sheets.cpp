@@ -80,6 +80,7 @@ class Joining {
     const Vector3d &begin = position(origin, 0), along = position(origin, 1) - begin,
                    up = position(origin, 3) - begin;
     const double nearest = tolerance * std::min(along.norm(), up.norm());
+    if (!(nearest > 0.0)) return false;
     constexpr std::array<std::array<int, 2>, 4> corner{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
     for (int c = 0; c < 4; ++c) {
       const Vector3d even = begin + (column + corner[c][0]) * along + (row + corner[c][1]) * up;
@@ -111,7 +112,7 @@ class Joining {
 
   void add_sheet(int origin, CellSheets& result) {
     std::vector<int> cells{origin};
-    if (!is_in_lattice(origin, origin, 0, 0)) {  // not a parallelogram
+    if (!is_in_lattice(origin, origin, 0, 0)) {  // no parallelogram, or of no width
       is_joined_[static_cast<std::size_t>(origin)] = 1;
       result.single.push_back(origin);
       return;

@@ -32,8 +32,10 @@ struct CellSheets {
 
 /// Joins quads of a group where `may_join` allows; each of a geometry's quads is in one sheet of
 /// two or more, or single. Cells differ from even ones by less than a millionth of their edges.
-/// Sheets reach past their cells by `margin`, metres: beside them may lie smaller ones, and along
-/// an edge that is one's whole and another's part rays would slip through where rounding bends it.
+/// No sheet is longer than `longest`, metres, either way: boxes around large ones that lie askew
+/// would be full of nothing. Sheets reach past their cells by `margin`, metres: beside them may lie
+/// smaller ones, and along an edge that is one's whole and another's part rays would slip through
+/// where rounding bends it.
 CellSheets join_cells(const CastGeometry& geometry, double longest, double margin,
                       const std::function<bool(int quad)>& may_join);
 

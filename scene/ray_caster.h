@@ -53,7 +53,8 @@ struct Hit {
 /// to use from many threads. Coordinates are recentred before they become float, so a room far from
 /// the origin loses no digits. Triangles and quads are watertight along shared edges (Embree's
 /// robust mode); of rays aimed at a vertex itself, to the last float digit, one in 1e4 slips
-/// through. Spheres are intersected in double precision.
+/// through. Small quads in even rows and columns of a group are cast as one (see CellSheet).
+/// Spheres are intersected in double precision.
 class RayCaster {
  public:
   /// Throws std::invalid_argument if `group` does not match the primitives, std::runtime_error if

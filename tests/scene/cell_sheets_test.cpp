@@ -140,6 +140,15 @@ TEST(CellSheets, UnequalCellsAndOtherGroupsStayApart) {
   EXPECT_EQ(join_all(trapezoids).sheets.size(), 1u);
 }
 
+TEST(CellSheets, CellsOfNoWidthAreSingle) {
+  const CastGeometry g = grid({0.0, 0.0, 0.0, 0.5, 1.0}, even(2));
+  const CellSheets sheets = join_all(g, 1e-6);
+  expect_all_once(g, sheets);
+  EXPECT_EQ(sheets.sheets.size(), 1u);
+  EXPECT_EQ(sheets.single.size(), 4u);
+  expect_places(g, sheets, 0.99);
+}
+
 TEST(CellSheets, AMarginMovesNoPlace) {
   const CastGeometry g = grid(even(7), even(4));
   const CellSheets bare = join_all(g), wide = join_all(g, 0.01);
