@@ -12,7 +12,8 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
-constexpr std::uint64_t batch_keys = 5000;     // apart from those of other gathers
+// Between batches: more than the replicas that the gathers of one solution take (see reconstruct).
+constexpr std::uint64_t batch_keys = 10000;
 // As usual where no accuracy is asked for.
 constexpr ShadowOptions fewest_shadow_rays{.min_rays = 32, .max_rays = 256};
 // Half of the difference between a stratified set's two halves is more than the whole set is off

@@ -7,7 +7,7 @@
 namespace lightwell {
 
 struct ErrorEstimate {
-  double square = 0.0;     ///< mean of the squared error over the places
+  double square = 0.0;     ///< mean of the squared relative error over the places
   double deviation = 0.0;  ///< that one's standard error
   double noise =
       0.0;          ///< in the error: what the rays of both gathers leave, as they tell themselves
@@ -34,7 +34,7 @@ struct ErrorEstimate {
 /// irradiance, no less than 5 %, and in the mean square over the places what is off there beyond
 /// the noise of both gathers. (Unchanged if there is nothing to go by.)
 ///
-/// Each `batch` is of other places and rays.
+/// Each `batch`, from 0, is of other places and rays.
 ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const SolveOptions& options,
                              const RadiositySolution& solution,

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <set>
@@ -79,6 +81,7 @@ void expect_places(const CastGeometry& g, const CellSheets& sheets, double inner
       const Vector3d in_cell = at({corner(g, place.quad, 0), corner(g, place.quad, 1),
                                    corner(g, place.quad, 2), corner(g, place.quad, 3)},
                                   place.u, place.v);
+      // Floats tell u and v of 2 m to 2e-7, times and less up to 20 cells by a rounding each.
       ASSERT_LT((in_cell - at(sheet.corners, u, v)).norm(), 1e-5);
     }
   }
@@ -153,7 +156,11 @@ TEST(CellSheets, AMarginMovesNoPlace) {
   const CastGeometry g = grid(even(7), even(4));
   const CellSheets bare = join_all(g), wide = join_all(g, 0.01);
   const CellSheet &a = bare.sheets.at(0), &b = wide.sheets.at(0);
-  EXPECT_NEAR((a.corners[0] - b.corners[0]).norm(), 0.01 * std::hypot(1.0, 1.0), 0.01);
+  // Along both edges; coordinates up to 8 are kept to a rounding, and twice subtracted.
+  const Vector3d way = (corner(g, 0, 1) - corner(g, 0, 0)).normalized() +
+                       (corner(g, 0, 3) - corner(g, 0, 0)).normalized();
+  const double roundings = 4.0 * 8.0 * std::numeric_limits<double>::epsilon();
+  EXPECT_LT((a.corners[0] - 0.01 * way - b.corners[0]).norm(), roundings);
   expect_places(g, wide, 0.98);
   const auto edge = wide.place(b, 0.0f, 1.0f);  // past the cells
   EXPECT_EQ(edge.quad, bare.place(a, 0.0f, 1.0f).quad);
@@ -171,6 +178,15 @@ TEST(CellSheets, RaysMeetTheCellsThatTheyMetApart) {
   const Vector3d normal = (corner(together, 0, 1) - corner(together, 0, 0))
                               .cross(corner(together, 0, 3) - corner(together, 0, 0))
                               .normalized();
+  // Floats move no point further than this, as EmbreeScene reckons: four roundings of half the
+  // diagonal. (Both casters have the same middle, and round rays alike.)
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& v : together.vertices) box.extend(v);
+  const double rounding =
+      4.0 * 0.5 * box.diagonal().norm() * double{std::numeric_limits<float>::epsilon()};
+  const Vector3d along = corner(together, 0, 1) - corner(together, 0, 0),
+                 up = corner(together, 0, 3) - corner(together, 0, 0);
+  const double width = along.cross(up).norm() / std::max(along.norm(), up.norm());
   constexpr int count = 100'000;
   int met = 0, elsewhere = 0;
   for (int i = 0; i < count; ++i) {
@@ -185,16 +201,19 @@ TEST(CellSheets, RaysMeetTheCellsThatTheyMetApart) {
     if (a.primitive < 0) continue;
     ++met;
     const double facing = std::abs(ray.direction.dot(normal));
-    EXPECT_NEAR(a.t * facing, b.t * facing, 1e-6);
+    // What that moves along the plane, and what it moves off it, seen aslant.
+    const double in_plane = rounding * (1.0 + 1.0 / facing);
+    EXPECT_NEAR(a.t * facing, b.t * facing, rounding);
     EXPECT_EQ(a.from_back, b.from_back);
     if (a.primitive != b.primitive) {
       ++elsewhere;  // within rounding of an edge
       continue;
     }
-    EXPECT_NEAR(a.u, b.u, 1e-4f);
-    EXPECT_NEAR(a.v, b.v, 1e-4f);
+    EXPECT_NEAR(a.u, b.u, in_plane / width);
+    EXPECT_NEAR(a.v, b.v, in_plane / width);
   }
   EXPECT_GT(met, count / 10);
+  // Lines are a quarter of a metre apart, and some 1e-6 m wide for rays that do not graze.
   EXPECT_LE(elsewhere, met / 10'000);
 }
 
