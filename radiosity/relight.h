@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "radiosity/solve.h"
+#include "radiosity/solution.h"
 
 namespace lightwell {
 

@@ -92,6 +92,12 @@ struct RadiositySolution {
   BandArray irradiance() const { return direct_irradiance + indirect_irradiance; }
 };
 
+/// A mesh and the light on it.
+struct SolvedScene {
+  PatchMesh mesh{};
+  RadiositySolution solution{};
+};
+
 /// Per element: what irradiance anywhere in it is off by at most, with odds of about 19 to 1, mean
 /// of the bands, relative as interpolation_error is: twice the root of both errors' squares. Empty
 /// unless both are known.

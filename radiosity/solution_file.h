@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "radiosity/solve.h"
+#include "radiosity/solution.h"
 
 namespace lightwell {
 

@@ -14,8 +14,6 @@
 
 namespace lightwell {
 
-struct SolvedScene;
-
 struct SolveOptions {
   MeshOptions mesh{};
   FormFactorOptions form_factors{};
@@ -44,12 +42,6 @@ struct SolveOptions {
   /// with the same bits. Of this scene. Null: none. (That of another solve, whose form factors
   /// serve where only reflectances or emission have changed, belongs into `form_factors`.)
   Journal* journal = nullptr;
-};
-
-/// A mesh and the light on it.
-struct SolvedScene {
-  PatchMesh mesh{};
-  RadiositySolution solution{};
 };
 
 /// What the first pass found out besides the solution.

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/io/default_material.h"
 #include "scene/io/glossy.h"
-#include "scene/io/obj_materials.h"
 
 namespace lightwell {
 namespace {

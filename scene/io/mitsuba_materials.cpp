@@ -6,10 +6,10 @@
 #include <memory>
 #include <numbers>
 
+#include "scene/io/default_material.h"
 #include "scene/io/glossy.h"
 #include "scene/io/mitsuba_presets.h"
 #include "scene/io/nearest_name.h"
-#include "scene/io/obj_materials.h"
 
 namespace lightwell {
 namespace {

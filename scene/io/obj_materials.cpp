@@ -295,12 +295,4 @@ std::vector<Material> read_obj_materials(const std::filesystem::path& path,
   return materials;
 }
 
-Material default_material(const Bands& bands) {
-  const Spectrum zero = constant_spectrum(bands, 0.0f);
-  return {.name = "default",
-          .reflectance = constant_spectrum(bands, 0.5f),
-          .specular = zero,
-          .emission = zero};
-}
-
 }  // namespace lightwell

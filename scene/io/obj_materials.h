@@ -13,7 +13,4 @@ namespace lightwell {
 std::vector<Material> read_obj_materials(const std::filesystem::path& path,
                                          std::vector<std::string>& notes);
 
-/// Diffuse, reflectance 0.5 in all of `bands`: for geometry that names no material.
-Material default_material(const Bands& bands);
-
 }  // namespace lightwell

@@ -10,8 +10,8 @@
 
 #include "scene/errors.h"
 #include "scene/io/convex_cut.h"
+#include "scene/io/default_material.h"
 #include "scene/io/mesh_file.h"
-#include "scene/io/obj_materials.h"
 #include "scene/io/polygon.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"

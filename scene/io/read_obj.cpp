@@ -6,6 +6,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/convex_cut.h"
+#include "scene/io/default_material.h"
 #include "scene/io/mesh_file.h"
 #include "scene/io/obj_file.h"
 #include "scene/io/obj_materials.h"
