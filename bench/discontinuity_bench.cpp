@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "bench/grey_scene.h"
+#include "mesh/build_patches.h"
 #include "mesh/element_caster.h"
 #include "mesh/element_quality.h"
 #include "radiosity/point_form_factor.h"

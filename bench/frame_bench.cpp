@@ -27,6 +27,7 @@
 #include <string>
 
 #include "bench/stopwatch.h"
+#include "mesh/build_patches.h"
 #include "radiosity/relight.h"
 #include "viewer/appearance.h"
 #include "viewer/walk_window.h"

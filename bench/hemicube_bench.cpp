@@ -19,6 +19,7 @@
 
 #include "bench/raw_embree.h"
 #include "bench/stopwatch.h"
+#include "mesh/build_patches.h"
 #include "radiosity/hemicube.h"
 #include "radiosity/hemicube_view.h"
 #include "radiosity/polygon_form_factor.h"

@@ -11,6 +11,7 @@
 #include <functional>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "mesh/patch_mesh.h"
 #include "mesh/planar_regions.h"
 #include "scene/errors.h"

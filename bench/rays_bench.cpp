@@ -14,6 +14,7 @@
 
 #include "bench/raw_embree.h"
 #include "bench/stopwatch.h"
+#include "mesh/build_patches.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/emitter_point.h"
 #include "raytrace/camera_ray.h"

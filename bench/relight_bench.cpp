@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "bench/stopwatch.h"
+#include "mesh/build_patches.h"
 #include "radiosity/relight.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"

@@ -20,6 +20,7 @@
 
 #include "bench/rooms.h"
 #include "bench/stopwatch.h"
+#include "mesh/build_patches.h"
 #include "mesh/patch_sampler.h"
 #include "mesh/planar_regions.h"
 #include "radiosity/memory_budget.h"

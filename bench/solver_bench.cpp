@@ -16,6 +16,7 @@
 
 #include "bench/grey_scene.h"
 #include "bench/stopwatch.h"
+#include "mesh/build_patches.h"
 #include "mesh/planar_regions.h"
 #include "radiosity/radiosity_system.h"
 #include "radiosity/solve_radiosity.h"

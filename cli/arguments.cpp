@@ -9,6 +9,7 @@
 
 #include "cli/memory_size.h"
 #include "cli/refinement.h"
+#include "mesh/build_patches.h"
 #include "radiosity/caustic_photons.h"
 #include "radiosity/in_force.h"
 #include "scene/errors.h"

@@ -9,6 +9,7 @@
 
 #include "cli/channels.h"
 #include "cli/film.h"
+#include "mesh/build_patches.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"
 

@@ -13,6 +13,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/view_factor_rows.h"
+#include "mesh/build_patches.h"
 #include "radiosity/form_factor_file.h"
 #include "radiosity/view_factor_scene.h"
 #include "scene/errors.h"

@@ -9,6 +9,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "mesh/build_patches.h"
 #include "mesh/element_quality.h"
 #include "mesh/joined_surfaces.h"
 #include "radiosity/mesh_file.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/contact_graph.h"
+#include "mesh/cut_size.h"
 #include "mesh/patch_mesh.h"
 
 namespace lightwell {

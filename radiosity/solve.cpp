@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mesh/build_patches.h"
 #include "radiosity/effort.h"
 #include "radiosity/error_estimate.h"
 #include "radiosity/in_force.h"

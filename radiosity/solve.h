@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "mesh/build_patches.h"
 #include "radiosity/accuracy.h"
 #include "radiosity/emitter_channels.h"
 #include "radiosity/final_gather.h"

@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "mesh/build_patches.h"
 #include "radiosity/relight.h"
 #include "radiosity/vertex_light.h"
 #include "scene/errors.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "mesh/build_patches.h"
 #include "mesh/cross.h"
 #include "mesh_scenes.h"
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "mesh/build_patches.h"
 #include "mesh_scenes.h"
 
 namespace lightwell {

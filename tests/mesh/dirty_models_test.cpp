@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "mesh/build_patches.h"
 #include "mesh/element_quality.h"
 #include "mesh/patch_mesh.h"
 #include "mesh/planar_regions.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "mesh/patch_sampler.h"
 #include "mesh_scenes.h"
 #include "scene/sampling.h"

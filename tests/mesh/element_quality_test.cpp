@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "mesh_scenes.h"
 
 namespace lightwell {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <set>
 
+#include "mesh/build_patches.h"
 #include "mesh/element_caster.h"
 #include "mesh/patch_sampler.h"
 #include "mesh/refine_elements.h"

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "mesh/build_patches.h"
 #include "mesh/patch_mesh.h"
 #include "mesh/patch_outline.h"
 #include "mesh/patch_sampler.h"

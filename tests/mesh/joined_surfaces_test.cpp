@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "mesh/build_patches.h"
 #include "mesh/element_quality.h"
 #include "mesh/planar_regions.h"
 #include "mesh_scenes.h"

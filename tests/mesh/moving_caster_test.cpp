@@ -1,6 +1,7 @@
 // Rays at what moves: the same as at a mesh that was made where it is.
 #include <gtest/gtest.h>
 
+#include "mesh/build_patches.h"
 #include "mesh/element_caster.h"
 #include "scene/place_at_rest.h"
 #include "tests/mesh/mesh_scenes.h"

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "mesh/build_patches.h"
 #include "mesh_scenes.h"
 
 namespace lightwell {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "mesh/patch_mesh.h"
 #include "mesh/patch_sampler.h"
 #include "mesh_scenes.h"

@@ -1,4 +1,5 @@
 #include "mesh/patch_mesh.h"
+#include "mesh/build_patches.h"
 
 #include <gtest/gtest.h>
 

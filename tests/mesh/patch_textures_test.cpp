@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/build_patches.h"
 #include "mesh/element_caster.h"
 #include "mesh/patch_sampler.h"
 #include "mesh/planar_regions.h"

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "mesh/build_patches.h"
 #include "mesh/patch_mesh.h"
 #include "mesh_scenes.h"
 

@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "mesh/build_patches.h"
 #include "mesh_scenes.h"
 
 namespace lightwell::testing {

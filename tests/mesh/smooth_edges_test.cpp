@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "mesh/build_patches.h"
 #include "mesh/patch_mesh.h"
 #include "mesh/planar_regions.h"
 #include "scene/facet_normals.h"

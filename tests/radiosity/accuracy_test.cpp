@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "mesh/build_patches.h"
 #include "mesh/patch_sampler.h"
 #include "radiosity/error_estimate.h"
 #include "radiosity/interpolation_error.h"

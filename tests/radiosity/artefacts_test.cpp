@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "lit_places.h"
+#include "mesh/build_patches.h"
 #include "radiosity/direct_light.h"
 
 namespace lightwell {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/polygon_form_factor.h"
 #include "scene/sampling.h"

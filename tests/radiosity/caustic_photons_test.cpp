@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mesh/build_patches.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/specular_targets.h"
 #include "tests/radiosity/test_scenes.h"

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "mesh/build_patches.h"
 #include "radiosity/caustic_photons.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/final_gather.h"

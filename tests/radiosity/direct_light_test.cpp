@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "mesh/build_patches.h"
 #include "test_scenes.h"
 
 namespace lightwell {

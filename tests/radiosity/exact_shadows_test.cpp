@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/build_patches.h"
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 

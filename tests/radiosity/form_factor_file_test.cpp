@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "mesh/build_patches.h"
 #include "scene/errors.h"
 #include "tests/temporary_folder.h"
 

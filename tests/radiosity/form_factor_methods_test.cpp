@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "radiosity/form_factors.h"
 #include "scene/parallel.h"
 #include "tests/radiosity/named_methods.h"

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "mesh/build_patches.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/solve.h"
 #include "radiosity/view_factors.h"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mesh/build_patches.h"
 #include "radiosity/form_factors.h"
 #include "test_scenes.h"
 

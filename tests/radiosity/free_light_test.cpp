@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "radiosity/caustic_photons.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/relight.h"

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "mesh/build_patches.h"
 #include "radiosity/gather_noise.h"
 #include "radiosity/solve.h"
 #include "test_scenes.h"

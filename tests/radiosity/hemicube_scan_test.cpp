@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "mesh/build_patches.h"
 #include "mesh/element_caster.h"
 #include "radiosity/hemicube_view.h"
 #include "radiosity/polygon_form_factor.h"

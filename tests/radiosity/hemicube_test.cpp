@@ -11,6 +11,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "mesh/build_patches.h"
 #include "radiosity/hemicube_view.h"
 #include "radiosity/polygon_form_factor.h"
 #include "scene/parallel.h"

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "mesh/build_patches.h"
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 

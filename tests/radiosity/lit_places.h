@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <stdexcept>
 
+#include "mesh/build_patches.h"
 #include "radiosity/polygon_form_factor.h"
 #include "radiosity/solve.h"
 #include "tests/radiosity/test_scenes.h"

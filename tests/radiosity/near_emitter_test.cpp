@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "test_scenes.h"
 
 namespace lightwell {

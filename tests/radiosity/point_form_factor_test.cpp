@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "scene/parallel.h"
 #include "tests/radiosity/polygons.h"
 

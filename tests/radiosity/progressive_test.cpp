@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/build_patches.h"
 #include "radiosity/solve.h"
 #include "radiosity/solve_channels.h"
 #include "radiosity/solve_radiosity.h"

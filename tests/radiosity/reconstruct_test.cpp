@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "mesh/build_patches.h"
 #include "radiosity/gather_noise.h"
 #include "two_lamps.h"
 

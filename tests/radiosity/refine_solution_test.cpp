@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "lit_places.h"
+#include "mesh/build_patches.h"
 #include "scene/parallel.h"
 #include "tests/temporary_folder.h"
 

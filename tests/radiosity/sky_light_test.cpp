@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "radiosity/polygon_form_factor.h"
 #include "scene/optics.h"
 #include "scene/parallel.h"

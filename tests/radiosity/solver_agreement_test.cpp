@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "mesh/build_patches.h"
 #include "radiosity/solve.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"

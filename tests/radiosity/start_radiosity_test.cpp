@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/build_patches.h"
 #include "scene/errors.h"
 #include "two_lamps.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/solve.h"
 #include "scene/parallel.h"

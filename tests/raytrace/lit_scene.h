@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/build_patches.h"
 #include "mesh/element_caster.h"
 #include "mesh/patch_mesh.h"
 #include "radiosity/direct_light.h"

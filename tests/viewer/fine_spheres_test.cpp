@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/build_patches.h"
 #include "mesh/element_caster.h"
 #include "viewer/solution_view.h"
 #include "viewer/x_display.h"

@@ -1,4 +1,4 @@
-#include "mesh/patch_mesh.h"
+#include "mesh/build_patches.h"
 
 #include <fmt/format.h>
 
