@@ -18,8 +18,8 @@
 #include "radiosity/direct_light.h"
 #include "radiosity/emitter_point.h"
 #include "raytrace/camera_ray.h"
-#include "scene/embree_queries.h"
 #include "scene/io/read_scene.h"
+#include "scene/rays/embree_queries.h"
 #include "scene/sampling.h"
 
 namespace {

@@ -17,7 +17,7 @@
 #include "raytrace/image.h"
 #include "raytrace/ugr_table.h"
 #include "scene/errors.h"
-#include "scene/io/luminaire_file.h"
+#include "scene/io/luminaires/luminaire_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
 

@@ -8,7 +8,7 @@
 
 #include "mesh/element_tree.h"
 #include "mesh/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 namespace lightwell {
 

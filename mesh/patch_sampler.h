@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/element_grid.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 namespace lightwell {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "scene/scene.h"
 
 namespace lightwell {

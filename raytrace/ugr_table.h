@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "scene/io/luminaire_file.h"
+#include "scene/io/luminaires/luminaire_file.h"
 
 namespace lightwell {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "scene/parallel.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 namespace lightwell {
 namespace {

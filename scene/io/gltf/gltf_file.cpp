@@ -1,0 +1,298 @@
+#include "scene/io/gltf/gltf_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "scene/errors.h"
+#include "scene/io/gltf/gltf_uri.h"
+#include "scene/io/text_file.h"
+
+namespace lightwell {
+namespace {
+
+// Sizes of the header and of the head of a chunk of a .glb (glTF 2.0, 4.4).
+constexpr std::size_t glb_header = 12, chunk_head = 8;
+constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
+
+std::uint32_t word_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+struct Chunks {
+  std::string_view json{}, binary{};
+};
+
+Chunks split_glb(const std::filesystem::path& path, std::string_view bytes) {
+  const auto fail = [&](std::size_t at, const char* problem) {
+    throw InputError(fmt::format("{}: byte {}: {}", path.string(), at, problem));
+  };
+  if (bytes.size() < glb_header + chunk_head) fail(bytes.size(), "the file was cut off");
+  if (word_at(bytes, 4) != 2) fail(4, "this is no binary glTF of version 2");
+  Chunks chunks;
+  for (std::size_t at = glb_header; at + chunk_head <= bytes.size();) {
+    const std::size_t length = word_at(bytes, at);
+    const std::uint32_t kind = word_at(bytes, at + 4);
+    if (length > bytes.size() - at - chunk_head) {
+      fail(at, "a chunk is longer than the rest of the file, which was damaged or cut off");
+    }
+    const std::string_view content = bytes.substr(at + chunk_head, length);
+    if (kind == json_chunk && at == glb_header) chunks.json = content;
+    if (kind == binary_chunk && chunks.binary.empty()) chunks.binary = content;
+    at += chunk_head + length;
+  }
+  if (chunks.json.empty()) fail(glb_header, "the first chunk is no JSON");
+  return chunks;
+}
+
+struct Component {
+  std::size_t size = 0;
+  double largest = 0.0;  // that stands for 1 where integers are normalised; 0 for floats
+  double (*read)(const char*) = nullptr;
+};
+
+template <typename T>
+double read_as(const char* at) {
+  T value{};
+  std::memcpy(&value, at, sizeof value);
+  return static_cast<double>(value);
+}
+
+Component component_of(std::size_t type) {
+  switch (type) {
+    case 5120:
+      return {1, 127.0, &read_as<std::int8_t>};
+    case 5121:
+      return {1, 255.0, &read_as<std::uint8_t>};
+    case 5122:
+      return {2, 32767.0, &read_as<std::int16_t>};
+    case 5123:
+      return {2, 65535.0, &read_as<std::uint16_t>};
+    case 5125:
+      return {4, 4294967295.0, &read_as<std::uint32_t>};
+    case 5126:
+      return {4, 0.0, &read_as<float>};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+struct GltfFile::Content {
+  explicit Content(const std::filesystem::path& path) : file(path) {}
+  TextFile file;
+  nlohmann::json json{};
+  std::map<std::string, std::vector<GltfObject>, std::less<>> lists{};
+  std::vector<std::string> loaded{};        // buffers of their own
+  std::vector<std::string_view> buffers{};  // views of these, or of the file
+};
+
+// Where an accessor's elements lie; element i begins at data + i * stride.
+struct GltfFile::Elements {
+  const char* data = nullptr;
+  std::size_t count = 0, stride = 0;
+  Component component{};
+  bool normalized = false;
+};
+
+GltfFile::GltfFile(const std::filesystem::path& path)
+    : path_(path), content_(std::make_unique<Content>(path)) {
+  const std::string_view bytes = content_->file.text();
+  Chunks chunks{.json = bytes};
+  if (bytes.starts_with("glTF")) chunks = split_glb(path, bytes);
+  read_json(chunks.json);
+  const auto asset = root_->object("asset");
+  const std::string version = asset ? asset->string_or("version", "") : "";
+  if (!version.starts_with("2.")) {
+    root_->fail(fmt::format("this is glTF of version '{}'; version 2.0 is read", version));
+  }
+  for (const char* list : {"accessors", "buffers", "bufferViews", "cameras", "images", "materials",
+                           "meshes", "nodes", "samplers", "scenes", "textures"}) {
+    content_->lists.emplace(list, root_->objects(list));
+  }
+  read_buffers(chunks.binary);
+}
+
+GltfFile::~GltfFile() = default;
+
+void GltfFile::read_json(std::string_view json) {
+  try {
+    content_->json = nlohmann::json::parse(json);
+  } catch (const nlohmann::json::exception& error) {
+    std::string_view what = error.what();
+    // "[json.exception.parse_error.101] parse error at line 3, column 7: syntax error ..."
+    what.remove_prefix(std::min(what.size(), what.find("] ") + 2));
+    std::string line;
+    if (const auto at = what.find("line "); at != std::string_view::npos) {
+      const std::string_view digits = what.substr(at + 5);
+      line = fmt::format("{}:", digits.substr(0, digits.find_first_not_of("0123456789")));
+    }
+    throw InputError(
+        fmt::format("{}:{} this is no well-formed JSON: {}", path_.string(), line, what));
+  }
+  root_.emplace(path_, content_->json, "");
+}
+
+void GltfFile::read_buffers(std::string_view binary) {
+  const auto& buffers = content_->lists.at("buffers");
+  content_->loaded.resize(buffers.size());
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const std::string uri = buffers[i].string_or("uri", "");
+    const bool is_within = uri.empty() && i == 0;
+    if (!uri.empty()) content_->loaded[i] = resource(buffers[i], uri);
+    const std::string_view bytes = is_within ? binary : content_->loaded[i];
+    const std::size_t length = buffers[i].index_or("byteLength", 0);
+    if (length > bytes.size()) {
+      buffers[i].fail(fmt::format("needs {} bytes, but there are {}", length, bytes.size()));
+    }
+    content_->buffers.push_back(bytes.substr(0, length));
+  }
+}
+
+std::string GltfFile::resource(const GltfObject& owner, const std::string& uri) const {
+  if (uri.starts_with("data:")) {
+    auto bytes = decode_data_uri(uri);
+    if (!bytes) owner.fail("has data that is not encoded in base64");
+    return std::move(*bytes);
+  }
+  const auto path = (path_.parent_path() / decode_percent(uri)).lexically_normal();
+  try {
+    return TextFile(path).text();
+  } catch (const InputError& error) {
+    owner.fail(fmt::format("names a file that cannot be used: {}", error.what()));
+  }
+}
+
+std::size_t GltfFile::count(const char* list) const {
+  return content_->lists.at(list).size();
+}
+
+const GltfObject& GltfFile::at(const char* list, std::size_t index,
+                               const GltfObject& asking) const {
+  const auto& members = content_->lists.at(list);
+  if (index < members.size()) return members[index];
+  asking.fail(fmt::format("names {}[{}], but there are only {}, counted from 0", list, index,
+                          members.size()));
+}
+
+std::string_view GltfFile::view(std::size_t buffer_view, const GltfObject& asking) const {
+  const GltfObject& view = at("bufferViews", buffer_view, asking);
+  const std::size_t number = view.index_or("buffer", 0);
+  at("buffers", number, view);
+  const std::string_view bytes = content_->buffers[number];
+  const std::size_t offset = view.index_or("byteOffset", 0);
+  const std::size_t length = view.index_or("byteLength", 0);
+  if (offset > bytes.size() || length > bytes.size() - offset) {
+    view.fail(
+        fmt::format("ends at byte {} of a buffer of {} bytes", offset + length, bytes.size()));
+  }
+  return bytes.substr(offset, length);
+}
+
+GltfFile::Elements GltfFile::elements(std::size_t accessor, std::string_view type,
+                                      const GltfObject& asking) const {
+  const GltfObject& a = at("accessors", accessor, asking);
+  if (a.has("sparse")) a.fail("is sparse, which is not read; export plain accessors");
+  if (a.string_or("type", "") != type) a.fail(fmt::format("must be of type {}", type));
+  const Component component = component_of(a.index_or("componentType", 0));
+  if (component.size == 0) a.fail("has a componentType that does not exist");
+  const auto number = a.index("bufferView");
+  if (!number) a.fail("has no bufferView, so it has no data");
+  const std::string_view bytes = view(*number, a);
+  const std::size_t offset = a.index_or("byteOffset", 0), count = a.index_or("count", 0);
+  const std::size_t size = component.size * (type == "VEC3" ? 3 : type == "VEC2" ? 2 : 1);
+  const std::size_t stride = at("bufferViews", *number, a).index_or("byteStride", size);
+  const bool fits =
+      count == 0 || (stride >= size && offset <= bytes.size() && size <= bytes.size() - offset &&
+                     count - 1 <= (bytes.size() - offset - size) / stride);
+  if (!fits) {
+    a.fail(fmt::format("has {} elements, which do not fit into the {} bytes of its bufferView",
+                       count, bytes.size()));
+  }
+  return {.data = bytes.data() + offset,
+          .count = count,
+          .stride = stride,
+          .component = component,
+          .normalized = a.boolean_or("normalized", false) && component.largest > 0.0};
+}
+
+template <int size>
+std::vector<Eigen::Matrix<double, size, 1>> GltfFile::tuples(std::size_t accessor,
+                                                             const GltfObject& asking) const {
+  const Elements from = elements(accessor, size == 3 ? "VEC3" : "VEC2", asking);
+  std::vector<Eigen::Matrix<double, size, 1>> result(from.count);
+  for (std::size_t i = 0; i < from.count; ++i) {
+    for (std::size_t c = 0; c < size; ++c) {
+      const double x = from.component.read(from.data + i * from.stride + c * from.component.size);
+      result[i][static_cast<int>(c)] =
+          from.normalized ? std::max(x / from.component.largest, -1.0) : x;
+    }
+    if (!result[i].allFinite()) {
+      at("accessors", accessor, asking)
+          .fail(fmt::format("vector {} has a coordinate that is not a finite number", i));
+    }
+  }
+  return result;
+}
+
+std::vector<Eigen::Vector3d> GltfFile::vectors(std::size_t accessor,
+                                               const GltfObject& asking) const {
+  return tuples<3>(accessor, asking);
+}
+
+std::vector<Eigen::Vector2d> GltfFile::pairs(std::size_t accessor, const GltfObject& asking) const {
+  return tuples<2>(accessor, asking);
+}
+
+std::vector<int> GltfFile::indices(std::size_t accessor, std::size_t limit,
+                                   const GltfObject& asking) const {
+  const Elements from = elements(accessor, "SCALAR", asking);
+  std::vector<int> result(from.count);
+  for (std::size_t i = 0; i < from.count; ++i) {
+    const double index = from.component.read(from.data + i * from.stride);
+    if (!(index >= 0.0 && index < static_cast<double>(limit) && index == std::floor(index))) {
+      at("accessors", accessor, asking)
+          .fail(fmt::format("index {} is {}, but there are {} vertices", i, index, limit));
+    }
+    result[i] = static_cast<int>(index);
+  }
+  return result;
+}
+
+template <class Read>
+auto GltfFile::read_texture(std::size_t texture, const GltfObject& asking, Read read) const
+    -> decltype(read(std::string_view(), std::string())) {
+  const auto source = at("textures", texture, asking).index("source");
+  if (!source) return std::nullopt;  // by an extension, in a format of its own
+  const GltfObject& image = at("images", *source, asking);
+  const std::string called = fmt::format("{}: {}", path_.string(), image.place());
+  if (const auto number = image.index("bufferView")) return read(view(*number, image), called);
+  const std::string uri = image.string_or("uri", "");
+  if (uri.empty()) image.fail("has neither a uri nor a bufferView");
+  return read(resource(image, uri), called);
+}
+
+std::optional<PictureMean> GltfFile::texture_mean(std::size_t texture, PictureCode code,
+                                                  const GltfObject& asking) const {
+  return read_texture(texture, asking, [&](std::string_view bytes, const std::string& called) {
+    return picture_mean(bytes, code, called);
+  });
+}
+
+std::optional<Picture> GltfFile::texture_picture(std::size_t texture, PictureCode code,
+                                                 const GltfObject& asking) const {
+  return read_texture(texture, asking, [&](std::string_view bytes, const std::string& called) {
+    return read_picture(bytes, code, called);
+  });
+}
+
+}  // namespace lightwell

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/io/gltf/gltf_object.h"
+#include "scene/io/pictures/picture_mean.h"
+
+namespace lightwell {
+
+/// A glTF 2.0 file, text or binary, and its buffers. Whatever names a part of it by number is
+/// checked when it is asked for.
+class GltfFile {
+ public:
+  /// Throws InputError naming the file and, for torn JSON, the line.
+  explicit GltfFile(const std::filesystem::path& path);
+  ~GltfFile();
+  GltfFile(const GltfFile&) = delete;
+  GltfFile& operator=(const GltfFile&) = delete;
+
+  const GltfObject& root() const { return *root_; }
+  std::size_t count(const char* list) const;
+  /// Member `index` of a list ("nodes"). Throws InputError naming `asking` if there is none.
+  const GltfObject& at(const char* list, std::size_t index, const GltfObject& asking) const;
+
+  /// The vectors of an accessor (VEC3 of floats or integers), all finite.
+  std::vector<Eigen::Vector3d> vectors(std::size_t accessor, const GltfObject& asking) const;
+  /// The same of VEC2: texture coordinates.
+  std::vector<Eigen::Vector2d> pairs(std::size_t accessor, const GltfObject& asking) const;
+  /// The whole numbers of an accessor (SCALAR), all below `limit`.
+  std::vector<int> indices(std::size_t accessor, std::size_t limit, const GltfObject& asking) const;
+  /// Mean of a texture's picture; empty if its format is not read.
+  std::optional<PictureMean> texture_mean(std::size_t texture, PictureCode code,
+                                          const GltfObject& asking) const;
+  /// The same with all of its pixels.
+  std::optional<Picture> texture_picture(std::size_t texture, PictureCode code,
+                                         const GltfObject& asking) const;
+
+ private:
+  struct Elements;
+  struct Content;
+  void read_json(std::string_view json);
+  void read_buffers(std::string_view binary_chunk);
+  // `read` of the bytes of a texture's picture and of what that is called.
+  template <class Read>
+  auto read_texture(std::size_t texture, const GltfObject& asking, Read read) const
+      -> decltype(read(std::string_view(), std::string()));
+  template <int size>
+  std::vector<Eigen::Matrix<double, size, 1>> tuples(std::size_t accessor,
+                                                     const GltfObject& asking) const;
+  std::string resource(const GltfObject& owner, const std::string& uri) const;
+  std::string_view view(std::size_t buffer_view, const GltfObject& asking) const;
+  Elements elements(std::size_t accessor, std::string_view type, const GltfObject& asking) const;
+
+  std::filesystem::path path_;
+  std::unique_ptr<Content> content_;
+  std::optional<GltfObject> root_;
+};
+
+}  // namespace lightwell

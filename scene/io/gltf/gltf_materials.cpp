@@ -1,0 +1,340 @@
+#include "scene/io/gltf/gltf_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/io/default_material.h"
+#include "scene/io/glossy.h"
+
+namespace lightwell {
+namespace {
+
+// Factors of a colour; white where they are missing.
+Spectrum color(const std::optional<GltfObject>& owner, const char* key, std::size_t count) {
+  Spectrum result = Spectrum::Ones(3);
+  if (!owner) return result;
+  const std::vector<double> factors = owner->numbers(key, count);
+  for (std::size_t c = 0; c < std::min<std::size_t>(3, factors.size()); ++c) {
+    result[static_cast<int>(c)] = static_cast<float>(factors[c]);
+  }
+  return result;
+}
+
+double number_or(const std::optional<GltfObject>& owner, const char* key, double otherwise) {
+  return owner ? owner->number_or(key, otherwise) : otherwise;
+}
+
+double share_or(const std::optional<GltfObject>& owner, const char* key, double otherwise) {
+  return std::clamp(number_or(owner, key, otherwise), 0.0, 1.0);
+}
+
+// What passes KHR_materials_volume's attenuationDistance; nothing where it does not absorb.
+std::optional<Spectrum> attenuation(const std::optional<GltfObject>& volume) {
+  if (!(number_or(volume, "attenuationDistance", 0.0) > 0.0)) return std::nullopt;
+  return color(volume, "attenuationColor", 3).max(0.0f).min(1.0f);
+}
+
+// 1/m: exp(-absorption distance) is the attenuation colour.
+Spectrum absorption(const std::optional<GltfObject>& volume) {
+  const auto passed = attenuation(volume);
+  if (!passed) return {};
+  constexpr double shortest = 1e-6;  // m
+  const auto distance =
+      static_cast<float>(std::max(shortest, number_or(volume, "attenuationDistance", 0.0)));
+  constexpr float black = 1e-6f;  // a colour of 0 would absorb without bound
+  return (-passed->max(black).log() / distance).min(highest_absorption);
+}
+
+// Share that a body passes on a straight way through it, for each of the two crossings of its
+// surface.
+Spectrum passed_by_each_face(const std::optional<GltfObject>& volume, double thickness) {
+  const auto passed = attenuation(volume);
+  if (!passed) return Spectrum::Ones(3);
+  const double distance = number_or(volume, "attenuationDistance", 0.0);
+  return passed->pow(static_cast<float>(0.5 * thickness / distance));
+}
+
+// What a base colour is told in: a picture and a factor, and who names the picture how.
+struct BaseColor {
+  std::optional<GltfObject> owner{};
+  const char* factor = "baseColorFactor";
+  const char* texture = "baseColorTexture";
+
+  explicit BaseColor(const GltfObject& from)
+      : owner(from.extension("KHR_materials_pbrSpecularGlossiness")) {
+    if (owner) {
+      factor = "diffuseFactor";
+      texture = "diffuseTexture";
+    } else {
+      owner = from.object("pbrMetallicRoughness");
+    }
+  }
+  std::optional<GltfObject> info() const { return owner ? owner->object(texture) : std::nullopt; }
+};
+
+TextureWrap wrap_of(const GltfObject& sampler, const char* key) {
+  constexpr std::size_t repeat = 10497, clamp = 33071, mirror = 33648;
+  const std::size_t mode = sampler.index_or(key, repeat);
+  if (mode != repeat && mode != clamp && mode != mirror) {
+    sampler.fail(fmt::format("has the {} {}, which is none", key, mode));
+  }
+  return mode == clamp    ? TextureWrap::clamp
+         : mode == mirror ? TextureWrap::mirror
+                          : TextureWrap::repeat;
+}
+
+// KHR_texture_transform: scaled, turned, then moved. A turn is counter-clockwise as seen with v
+// pointing down.
+Eigen::Matrix<double, 2, 3> placement_of(const GltfObject& info) {
+  Eigen::Matrix<double, 2, 3> placement = Eigen::Matrix<double, 2, 3>::Identity();
+  const auto transform = info.extension("KHR_texture_transform");
+  if (!transform) return placement;
+  const auto offset = transform->numbers("offset", 2), scale = transform->numbers("scale", 2);
+  const double turn = transform->number_or("rotation", 0.0);
+  Eigen::Matrix2d linear;
+  linear << std::cos(turn), std::sin(turn), -std::sin(turn), std::cos(turn);
+  if (!scale.empty()) linear = linear * Eigen::Vector2d(scale[0], scale[1]).asDiagonal();
+  placement.leftCols<2>() = linear;
+  if (!offset.empty()) placement.col(2) = Eigen::Vector2d(offset[0], offset[1]);
+  return placement;
+}
+
+bool is_cut_by_alpha(const GltfObject& from) {
+  const std::string mode = from.string_or("alphaMode", "OPAQUE");
+  return mode == "MASK" || mode == "BLEND";
+}
+
+}  // namespace
+
+int GltfMaterials::of_primitive(const GltfObject& primitive, bool is_closed) {
+  const auto index = primitive.index("material");
+  const auto [entry, is_new] =
+      index_of_.emplace(std::pair(index, is_closed), static_cast<int>(scene_.materials.size()));
+  if (!is_new) return entry->second;
+  Material material = default_material(scene_.bands);
+  if (index) {
+    material = read(file_.at("materials", *index, primitive), is_closed);
+  } else {
+    remarks_.add("Surfaces without a material got a diffuse reflectance of 0.5", primitive.place());
+  }
+  // Closed or not is often the same: one material is enough then.
+  const auto other = index_of_.find({index, !is_closed});
+  if (other != index_of_.end()) {
+    const Material& known = scene_.materials[static_cast<std::size_t>(other->second)];
+    if (!material.dielectric && material.emits_both_sides == known.emits_both_sides) {
+      return entry->second = other->second;
+    }
+  }
+  scene_.materials.push_back(std::move(material));
+  return entry->second;
+}
+
+Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
+  Material material = default_material(scene_.bands);
+  material.name = from.name();
+  const bool is_double_sided = from.boolean_or("doubleSided", false);
+  material.one_sided = !is_double_sided;
+  set_surface(from, is_closed, material);
+  material.emission = emission(from);
+  material.emits_both_sides = material.is_emitter() && is_double_sided && !is_closed;
+  if (material.dielectric && material.is_emitter()) {
+    remarks_.add("Clear materials that shine were read as black ones that shine", material.name);
+    material.dielectric.reset();
+  }
+  if (material.mask && material.is_emitter()) {
+    remarks_.add("Lamps have no holes, so their transparency by alpha was left out", material.name);
+    material.mask.reset();
+  }
+  if (from.has("normalTexture")) remarks_.add("Normal maps were left out", material.name);
+  return material;
+}
+
+std::string GltfMaterials::texture_coordinates(const GltfObject& primitive) const {
+  const auto index = primitive.index("material");
+  if (!index) return {};
+  const auto info = BaseColor(file_.at("materials", *index, primitive)).info();
+  if (!info) return {};
+  const auto transform = info->extension("KHR_texture_transform");
+  const std::size_t set = info->index_or("texCoord", 0);
+  return fmt::format("TEXCOORD_{}", transform ? transform->index_or("texCoord", set) : set);
+}
+
+std::optional<Picture> GltfMaterials::base_picture(const GltfObject& from) {
+  const auto info = BaseColor(from).info();
+  if (!info) return std::nullopt;
+  const auto texture = info->index("index");
+  if (!texture) info->fail("lacks the index of a texture");
+  auto known = base_pictures_.find(*texture);
+  if (known == base_pictures_.end()) {
+    auto picture = file_.texture_picture(*texture, PictureCode::srgb, *info);
+    known = base_pictures_.emplace(*texture, std::move(picture)).first;
+  }
+  return known->second;
+}
+
+SurfaceTexture GltfMaterials::laid_on(const GltfObject& info,
+                                      std::shared_ptr<const Texture> picture) const {
+  SurfaceTexture image{.picture = std::move(picture), .placement = placement_of(info)};
+  const GltfObject& texture = file_.at("textures", info.index_or("index", 0), info);
+  if (const auto number = texture.index("sampler")) {
+    const GltfObject& sampler = file_.at("samplers", *number, texture);
+    image.wrap = {wrap_of(sampler, "wrapS"), wrap_of(sampler, "wrapT")};
+    constexpr std::size_t nearest = 9728, linear = 9729;
+    image.is_smooth = sampler.index_or("magFilter", linear) != nearest;
+  }
+  return image;
+}
+
+// `material` is what a surface of the even colour `base` is.
+void GltfMaterials::lay_on_picture(const GltfObject& from, const Spectrum& base,
+                                   Material& material) {
+  const BaseColor color_from(from);
+  const auto picture = base_picture(from);
+  if (picture && (material.reflectance > 0.0f).any()) {
+    const Spectrum factor = color(color_from.owner, color_from.factor, 4).max(0.0f).min(1.0f);
+    const Spectrum diffuse = (base > 0.0f).select(material.reflectance / base, 0.0f);
+    material.texture = {.image = laid_on(*color_from.info(), picture->color),
+                        .factor = factor * diffuse.min(1.0f)};
+  } else if (picture) {
+    remarks_.add("Textures were read as their mean colour", material.name);
+  }
+  if (!is_cut_by_alpha(from)) return;
+  const auto factors =
+      color_from.owner ? color_from.owner->numbers(color_from.factor, 4) : std::vector<double>();
+  const double alpha = factors.empty() ? 1.0 : factors[3];
+  const double cutoff = from.number_or("alphaCutoff", 0.5) / alpha;
+  if (from.string_or("alphaMode", "OPAQUE") != "MASK" || !(cutoff <= 1.0)) {
+    remarks_.add("Transparency by alpha was left out, so the whole surface is opaque",
+                 material.name);
+  } else if (picture && picture->alpha && cutoff > 0.0) {
+    material.mask = Mask{.image = laid_on(*color_from.info(), picture->alpha),
+                         .cutoff = static_cast<float>(cutoff)};
+  }
+}
+
+PictureMean GltfMaterials::texture_mean(const std::optional<GltfObject>& owner, const char* key,
+                                        PictureCode code, const GltfObject& from) {
+  PictureMean white;
+  white.color.setOnes();
+  white.covered_color.setOnes();
+  const auto info = owner ? owner->object(key) : std::nullopt;
+  if (!info) return white;
+  const auto texture = info->index("index");
+  if (!texture) info->fail("lacks the index of a texture");
+  auto known = textures_.find({*texture, code});
+  if (known == textures_.end()) {
+    const auto mean = file_.texture_mean(*texture, code, *info);
+    known = textures_.emplace(std::pair(*texture, code), mean).first;
+  }
+  if (known->second) {
+    remarks_.add("Textures were read as their mean colour", from.name());
+    return *known->second;
+  }
+  remarks_.add("Textures of a format that is not read became a grey of 0.5", from.name());
+  white.color.setConstant(0.5);
+  white.covered_color.setConstant(0.5);
+  return white;
+}
+
+Spectrum GltfMaterials::base_color(const GltfObject& from) {
+  const BaseColor color_from(from);
+  Spectrum result = color(color_from.owner, color_from.factor, 4);
+  if (const auto picture = base_picture(from)) {
+    result *=
+        (is_cut_by_alpha(from) ? picture->mean.covered_color : picture->mean.color).cast<float>();
+  } else if (color_from.info()) {
+    remarks_.add("Textures of a format that is not read became a grey of 0.5", from.name());
+    result *= 0.5f;
+  }
+  if (!((result >= 0.0f).all() && (result <= 1.0f).all())) {
+    remarks_.add("Colours outside [0, 1] were cut off there", from.name());
+    result = result.max(0.0f).min(1.0f);
+  }
+  return result;
+}
+
+void GltfMaterials::set_surface(const GltfObject& from, bool is_closed, Material& material) {
+  const Spectrum base = base_color(from);
+  set_shaded(from, base, is_closed, material);
+  lay_on_picture(from, base, material);
+}
+
+void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, bool is_closed,
+                               Material& material) {
+  if (from.extension("KHR_materials_pbrSpecularGlossiness") ||
+      from.extension("KHR_materials_unlit")) {
+    remarks_.add("Unlit and specular-glossy materials were read as diffuse, of their base colour",
+                 material.name);
+    return set_metallic(material, base, 0.0, 1.0);
+  }
+  const auto pbr = from.object("pbrMetallicRoughness");
+  const auto transmission = from.extension("KHR_materials_transmission");
+  // A metal passes no light; but who asks for transmission and leaves metallic at its default of 1
+  // means glass.
+  const double otherwise = transmission && !(pbr && pbr->has("metallicFactor")) ? 0.0 : 1.0;
+  const auto mean = texture_mean(pbr, "metallicRoughnessTexture", PictureCode::linear, from).color;
+  const double roughness = share_or(pbr, "roughnessFactor", 1.0) * mean[1];
+  const double metallic = share_or(pbr, "metallicFactor", otherwise) * mean[2];
+  const double alpha = roughness * roughness;
+  double passed = (1.0 - metallic) * share_or(transmission, "transmissionFactor", 0.0);
+  if (passed > 0.0) {
+    passed *= texture_mean(transmission, "transmissionTexture", PictureCode::linear, from).color[0];
+  }
+  if (passed >= mostly_clear) {
+    if (passed < 1.0) {
+      remarks_.add("Materials at least half clear were read as wholly clear", material.name);
+    }
+    return set_clear(from, base, alpha, is_closed, material);
+  }
+  if (passed > 0.0) {
+    remarks_.add("Materials less than half clear were read as opaque", material.name);
+  }
+  if (metallic > 0.0 && alpha > glossy_alpha) {
+    remarks_.add("Metals of roughness above 0.7 were read as diffuse", material.name);
+  }
+  set_metallic(material, base, metallic, alpha);
+}
+
+void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, double alpha,
+                              bool is_closed, Material& material) {
+  double index = number_or(from.extension("KHR_materials_ior"), "ior", 1.5);
+  if (index == 0.0) index = 1.5;  // a mode of old, without an index
+  if (!(index >= 1.0 && index <= highest_index))
+    from.fail("has an index of refraction below 1 or beyond all");
+  const auto volume = from.extension("KHR_materials_volume");
+  const double thickness = number_or(volume, "thicknessFactor", 0.0);
+  Dielectric glass = thin_pane(index, base, alpha);
+  if (is_closed || thickness > 0.0) {
+    glass.thin = false;
+    // A body is as thick as it is; only where it is none does the file's thickness matter.
+    if (is_closed) {
+      glass.absorption = absorption(volume);
+    } else {
+      glass.tint *= passed_by_each_face(volume, thickness);
+    }
+  }
+  material.dielectric = glass;
+  material.reflectance.setZero();
+  material.specular.setZero();
+  material.one_sided = false;
+}
+
+Spectrum GltfMaterials::emission(const GltfObject& from) {
+  if (!from.has("emissiveFactor")) return Spectrum::Zero(3);
+  Spectrum radiance = color(from, "emissiveFactor", 3);
+  radiance *= static_cast<float>(
+      number_or(from.extension("KHR_materials_emissive_strength"), "emissiveStrength", 1.0));
+  if ((radiance > 0.0f).any()) {
+    radiance *= texture_mean(from, "emissiveTexture", PictureCode::srgb, from).color.cast<float>();
+  }
+  const Spectrum M = static_cast<float>(std::numbers::pi) * radiance;
+  if (!((M >= 0.0f).all() && M.isFinite().all())) {
+    from.fail("has an emission that is negative or too large");
+  }
+  return M;
+}
+
+}  // namespace lightwell

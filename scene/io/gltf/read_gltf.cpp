@@ -1,0 +1,317 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "scene/io/gltf/gltf_camera.h"
+#include "scene/io/gltf/gltf_file.h"
+#include "scene/io/gltf/gltf_light.h"
+#include "scene/io/gltf/gltf_materials.h"
+#include "scene/io/numbered_names.h"
+#include "scene/io/placed_mesh.h"
+#include "scene/io/polygon.h"
+#include "scene/io/read_scene.h"
+#include "scene/io/remarks.h"
+
+namespace lightwell {
+namespace {
+
+// Extensions that are read, or that change nothing about the light where they are passed over.
+constexpr std::array known_extensions = {"KHR_materials_emissive_strength",
+                                         "KHR_materials_transmission",
+                                         "KHR_materials_ior",
+                                         "KHR_materials_volume",
+                                         "KHR_materials_pbrSpecularGlossiness",
+                                         "KHR_materials_unlit",
+                                         "KHR_lights_punctual",
+                                         "KHR_mesh_quantization",
+                                         "KHR_texture_transform"};
+constexpr std::array hidden_geometry = {"KHR_draco_mesh_compression", "EXT_meshopt_compression"};
+
+// Modes of primitives (glTF 2.0, 3.7.2.1).
+constexpr std::size_t triangle_list = 4, triangle_strip = 5, triangle_fan = 6;
+
+Eigen::Affine3d local_transform(const GltfObject& node) {
+  Eigen::Affine3d result = Eigen::Affine3d::Identity();
+  if (const auto matrix = node.numbers("matrix", 16); !matrix.empty()) {
+    result.matrix() = Eigen::Map<const Eigen::Matrix4d>(matrix.data());  // by columns, as there
+  } else {
+    const auto t = node.numbers("translation", 3);
+    const auto r = node.numbers("rotation", 4);
+    const auto s = node.numbers("scale", 3);
+    if (!t.empty()) result.translate(Eigen::Vector3d(t[0], t[1], t[2]));
+    if (!r.empty()) {
+      const Eigen::Quaterniond turn(r[3], r[0], r[1], r[2]);
+      if (!(turn.norm() > 0.0)) node.fail("has a rotation without length");
+      result.rotate(turn.normalized());
+    }
+    if (!s.empty()) result.scale(Eigen::Vector3d(s[0], s[1], s[2]));
+  }
+  if (!result.matrix().allFinite() || result.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    node.fail("has a matrix that is not finite and affine");
+  }
+  return result;
+}
+
+// Corners of triangle `i` in a list, a strip or a fan.
+std::array<std::size_t, 3> corners_of(std::size_t mode, std::size_t i) {
+  if (mode == triangle_strip) return {i, i + 1 + i % 2, i + 2 - i % 2};
+  if (mode == triangle_fan) return {i + 1, i + 2, 0};
+  return {3 * i, 3 * i + 1, 3 * i + 2};
+}
+
+// Whether every edge is run along once each way.
+bool is_closed(const PolygonMesh& mesh) {
+  std::vector<std::pair<int, int>> forwards, backwards;
+  for (const Facet& facet : mesh.facets) {
+    for (std::size_t i = 0; i < facet.boundary.size(); ++i) {
+      const int a = facet.boundary[i], b = facet.boundary[(i + 1) % facet.boundary.size()];
+      forwards.emplace_back(a, b);
+      backwards.emplace_back(b, a);
+    }
+  }
+  std::ranges::sort(forwards);
+  std::ranges::sort(backwards);
+  return forwards == backwards && std::ranges::adjacent_find(forwards) == forwards.end();
+}
+
+class GltfReader {
+ public:
+  GltfReader(const GltfFile& file, Scene& scene)
+      : file_(file), scene_(scene), materials_(file, scene, remarks_) {}
+
+  void read() {
+    check_extensions();
+    if (const auto punctual = file_.root().extension("KHR_lights_punctual")) {
+      lights_ = punctual->objects("lights");
+    }
+    for (const std::size_t root : roots()) visit(root);
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+      if (placed_lights_.contains(i)) continue;
+      remarks_.add("Lights that no node places (KHR_lights_punctual) are not used",
+                   lights_[i].name());
+    }
+    for (const GltfObject& animation : file_.root().objects("animations")) {
+      remarks_.add("Animations were left out; all stands where the file's nodes put it",
+                   animation.name());
+    }
+    drop_unused_uv(scene_);
+    remark_pictures_without_uv(scene_, remarks_);
+    for (const std::string& note : remarks_.sentences()) scene_.notes.push_back(note);
+    for (const std::string& note : repairs_.notes()) scene_.notes.push_back(note + ".");
+    scene_.dropped_polygons = repairs_.dropped();
+  }
+
+ private:
+  struct Placed {
+    std::size_t node = 0;
+    Eigen::Affine3d parent = Eigen::Affine3d::Identity();
+  };
+
+  void check_extensions() {
+    for (const std::string& name : file_.root().strings("extensionsUsed")) {
+      if (std::ranges::find(hidden_geometry, name) != hidden_geometry.end()) {
+        file_.root().fail(
+            fmt::format("the geometry is compressed with {}; export it without", name));
+      }
+      if (std::ranges::find(known_extensions, name) == known_extensions.end()) {
+        remarks_.add("Extensions that have no effect", name);
+      }
+    }
+  }
+
+  // Of the scene to show; without scenes, the nodes that are nobody's children.
+  std::vector<std::size_t> roots() const {
+    const GltfObject& root = file_.root();
+    if (file_.count("scenes") > 0) {
+      return file_.at("scenes", root.index_or("scene", 0), root).indices("nodes");
+    }
+    std::vector<char> is_child(file_.count("nodes"), 0);
+    for (std::size_t i = 0; i < is_child.size(); ++i) {
+      const GltfObject& node = file_.at("nodes", i, root);
+      for (const std::size_t child : node.indices("children")) {
+        file_.at("nodes", child, node);
+        is_child[child] = 1;
+      }
+    }
+    std::vector<std::size_t> result;
+    for (std::size_t i = 0; i < is_child.size(); ++i) {
+      if (!is_child[i]) result.push_back(i);
+    }
+    return result;
+  }
+
+  void visit(std::size_t root) {
+    std::vector<Placed> open = {{.node = root}};
+    while (!open.empty()) {
+      const Placed placed = open.back();
+      open.pop_back();
+      const GltfObject& node = file_.at("nodes", placed.node, file_.root());
+      if (!seen_.insert(placed.node).second) {
+        node.fail("has two parents or is its own descendant; nodes must form a tree");
+      }
+      const Eigen::Affine3d to_world = placed.parent * local_transform(node);
+      if (!to_world.matrix().allFinite()) node.fail("lies beyond all measure");
+      add_mesh(node, to_world);
+      if (const auto camera = node.index("camera")) {
+        add_gltf_camera(file_.at("cameras", *camera, node), node, to_world, scene_, remarks_);
+      }
+      add_light(node, to_world);
+      // Backwards, because the last one in is the first one out.
+      const auto children = node.indices("children");
+      for (auto child = children.rbegin(); child != children.rend(); ++child) {
+        open.push_back({.node = *child, .parent = to_world});
+      }
+    }
+  }
+
+  void add_light(const GltfObject& node, const Eigen::Affine3d& to_world) {
+    const auto punctual = node.extension("KHR_lights_punctual");
+    if (!punctual) return;
+    const auto light = punctual->index("light");
+    if (!light || *light >= lights_.size()) {
+      node.fail(fmt::format("names a light that is none of the file's {}", lights_.size()));
+    }
+    placed_lights_.insert(*light);
+    add_gltf_light(lights_[*light], node, to_world, scene_, remarks_);
+  }
+
+  void add_mesh(const GltfObject& node, const Eigen::Affine3d& to_world) {
+    const auto index = node.index("mesh");
+    if (!index) return;
+    const GltfObject& mesh = file_.at("meshes", *index, node);
+    const std::string name = node.has("name") ? node.name() : mesh.name();
+    if (node.has("skin")) remarks_.add("Skins were left out; meshes keep their own shape", name);
+    const auto primitives = mesh.objects("primitives");
+    for (const GltfObject& primitive : primitives) {
+      if (primitive.has("targets")) remarks_.add("Morph targets were left out", name);
+      add_primitive(primitive, to_world, name, primitives.size() > 1);
+    }
+  }
+
+  void add_primitive(const GltfObject& primitive, const Eigen::Affine3d& to_world,
+                     const std::string& name, bool is_one_of_many) {
+    if (primitive.index_or("mode", triangle_list) < triangle_list) {
+      remarks_.add("Points and lines were left out", name);
+      return;
+    }
+    const auto attributes = primitive.object("attributes");
+    if (!attributes) primitive.fail("lacks 'attributes'");
+    if (attributes->has("COLOR_0")) remarks_.add("Colours at vertices were left out", name);
+    PolygonMesh mesh = read_triangles(primitive, *attributes, to_world);
+    if (mesh.facets.empty()) {
+      remarks_.add("Meshes without area were left out", name);
+      return;
+    }
+    const int material = materials_.of_primitive(primitive, is_closed(mesh));
+    const std::string& of = scene_.materials[static_cast<std::size_t>(material)].name;
+    scene_.surfaces.push_back(
+        {.name = names_.unique(is_one_of_many ? fmt::format("{} ({})", name, of) : name),
+         .material = material,
+         .shape = std::move(mesh)});
+  }
+
+  PolygonMesh read_triangles(const GltfObject& primitive, const GltfObject& attributes,
+                             const Eigen::Affine3d& to_world) {
+    const auto position = attributes.index("POSITION");
+    if (!position) attributes.fail("lacks 'POSITION'");
+    auto vertices = file_.vectors(*position, attributes);
+    for (Eigen::Vector3d& p : vertices) p = to_world * p;
+    const auto accessor = primitive.index("indices");
+    std::vector<int> indices;
+    if (accessor) indices = file_.indices(*accessor, vertices.size(), primitive);
+    const std::size_t corners = accessor ? indices.size() : vertices.size();
+    const std::size_t mode = primitive.index_or("mode", triangle_list);
+    if (mode > triangle_fan) primitive.fail(fmt::format("has the mode {}, which is none", mode));
+    if (mode == triangle_list && corners % 3 != 0) {
+      primitive.fail(fmt::format("has {} corners, which is no multiple of three", corners));
+    }
+    const std::vector<Eigen::Vector2d> uv = texture_coordinates(primitive, attributes, vertices);
+    const NormalLoop normals = vertex_normals(attributes, to_world, vertices.size());
+    const std::size_t count = mode == triangle_list ? corners / 3 : corners < 3 ? 0 : corners - 2;
+    triangles_ += static_cast<std::int64_t>(count);
+    if (triangles_ > most_facets) {
+      primitive.fail(fmt::format("brings the scene to more than {} triangles", most_facets));
+    }
+    const bool is_mirrored = to_world.linear().determinant() < 0.0;
+    MeshBuilder mesh;
+    for (std::size_t i = 0; i < count; ++i) {
+      Loop loop;
+      UvLoop of_loop;
+      NormalLoop normals_there;
+      for (const std::size_t corner : corners_of(mode, i)) {
+        const std::size_t vertex = accessor ? static_cast<std::size_t>(indices[corner]) : corner;
+        loop.push_back(vertices[vertex]);
+        if (!uv.empty()) of_loop.push_back(uv[vertex]);
+        if (!normals.empty()) normals_there.push_back(normals[vertex]);
+      }
+      if (is_mirrored) {  // the front stays the front
+        std::swap(loop[1], loop[2]);
+        if (!uv.empty()) std::swap(of_loop[1], of_loop[2]);
+        if (!normals.empty()) std::swap(normals_there[1], normals_there[2]);
+      }
+      add_repaired(mesh, std::move(loop), repairs_, std::move(of_loop), std::move(normals_there));
+    }
+    return mesh.mesh();
+  }
+
+  // By vertex, in the world; empty if the mesh has none.
+  NormalLoop vertex_normals(const GltfObject& attributes, const Eigen::Affine3d& to_world,
+                            std::size_t vertex_count) const {
+    const auto accessor = attributes.index("NORMAL");
+    if (!accessor) return {};
+    NormalLoop normals = file_.vectors(*accessor, attributes);
+    if (normals.size() != vertex_count) {
+      attributes.fail(fmt::format("has {} normals for {} vertices", normals.size(), vertex_count));
+    }
+    const Eigen::Matrix3d turn = normal_transform(to_world);
+    for (Eigen::Vector3d& n : normals) n = turn * n;
+    return normals;
+  }
+
+  // By vertex; empty if the material shows no picture, or the mesh does not say where.
+  std::vector<Eigen::Vector2d> texture_coordinates(
+      const GltfObject& primitive, const GltfObject& attributes,
+      const std::vector<Eigen::Vector3d>& vertices) const {
+    const std::string set = materials_.texture_coordinates(primitive);
+    if (set.empty()) return {};
+    const auto accessor = attributes.index(set.c_str());
+    if (!accessor) return {};
+    auto uv = file_.pairs(*accessor, attributes);
+    if (uv.size() != vertices.size()) {
+      attributes.fail(
+          fmt::format("has {} texture coordinates for {} vertices", uv.size(), vertices.size()));
+    }
+    return uv;
+  }
+
+  const GltfFile& file_;
+  Scene& scene_;
+  Remarks remarks_;
+  GltfMaterials materials_;
+  Repairs repairs_;
+  std::vector<GltfObject> lights_{};
+  std::set<std::size_t> placed_lights_{};
+  std::set<std::size_t> seen_;
+  NumberedNames names_;
+  std::int64_t triangles_ = 0;
+};
+
+}  // namespace
+
+Scene read_gltf(const std::filesystem::path& path) {
+  const GltfFile file(path);
+  Scene scene{.file = path, .title = path.stem().string(), .relative_units = true};
+  scene.notes.emplace_back(
+      "Emission was read as relative: glTF files seldom mean a unit of light.");
+  GltfReader(file, scene).read();
+  if (scene.surfaces.empty()) file.root().fail("the scene has no triangles with an area");
+  note_if_dark(scene);
+  validate(scene);
+  return scene;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,144 @@
+#include "scene/io/luminaires/luminaire_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+// Bytes of the UTF-8 character that begins at `at`; 0 if none does.
+std::size_t utf8_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(at);
+  const std::size_t length = lead < 0x80u                    ? 1
+                             : lead >= 0xc2u && lead < 0xe0u ? 2
+                             : lead >= 0xe0u && lead < 0xf0u ? 3
+                                                             : 0;
+  if (length == 0 || at + length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xc0u) != 0x80u) return 0;
+  }
+  return length;
+}
+
+}  // namespace
+
+std::string as_utf8(std::string_view text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    const auto byte = static_cast<unsigned char>(text[at]);
+    if (length > 0) {
+      if (byte >= 0x20u) result += text.substr(at, length);
+      at += length;
+      continue;
+    }
+    result += static_cast<char>(0xc0u | (byte >> 6u));
+    result += static_cast<char>(0x80u | (byte & 0x3fu));
+    ++at;
+  }
+  return result;
+}
+
+bool is_luminaire_file(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".ies" || extension == ".ldt";
+}
+
+LuminaireFile read_luminaire(const std::filesystem::path& path, int lamp_set) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".ies") {
+    if (lamp_set != 1) {
+      throw InputError(fmt::format(
+          "{}: an IES file has one set of lamps, and set {} is asked for; leave that out",
+          path.string(), lamp_set));
+    }
+    return read_ies(path);
+  }
+  if (extension == ".ldt") return read_eulumdat(path, lamp_set);
+  throw InputError(
+      fmt::format("{}: the extension '{}' is of no known photometric format; readable are IES "
+                  "LM-63 (.ies) and EULUMDAT (.ldt)",
+                  path.string(), extension));
+}
+
+void place_luminaire(const LuminaireFile& luminaire, const Bands& bands, const Spectrum& colour,
+                     Lamp& lamp) {
+  if (!(luminaire.flux() > 0.0)) {
+    throw InputError(fmt::format("{}: all of its intensities are 0, so it gives no light",
+                                 luminaire.file.string()));
+  }
+  lamp.shape = luminaire.web;
+  lamp.opening = luminaire.opening;
+  lamp.intensity = luminaire.is_radiometric
+                       ? constant_spectrum(bands, 1.0f)
+                       : Spectrum(colour / static_cast<float>(luminous(bands, colour)));
+}
+
+std::vector<std::string> luminaire_notes(const LuminaireFile& luminaire) {
+  std::vector<std::string> notes;
+  const std::string file = luminaire.file.filename().string();
+  if (luminaire.is_radiometric) {
+    notes.push_back(fmt::format(
+        "{}: Its intensities are radiant, in W/sr, and not candela: figures of light are relative, "
+        "1 for 1 W/m2, and none is lux.",
+        file));
+  }
+  for (const std::string& note : luminaire.notes)
+    notes.push_back(fmt::format("{}: {}", file, note));
+  return notes;
+}
+
+PlaneTable sorted_planes(const std::vector<std::pair<double, Eigen::Index>>& planes,
+                         const Eigen::ArrayXXd& rows) {
+  constexpr double turn = 360.0, rounding = 1e-6;
+  std::vector<std::pair<double, Eigen::Index>> sorted;
+  for (const auto& [angle, row] : planes) {
+    double at = std::fmod(std::fmod(angle, turn) + turn, turn);
+    if (at > turn - rounding) at = 0.0;
+    const auto same = [&, at = at](const auto& other) {
+      return std::abs(other.first - at) < rounding;
+    };
+    if (std::ranges::none_of(sorted, same)) sorted.emplace_back(at, row);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  PlaneTable table{.values =
+                       Eigen::ArrayXXd(static_cast<Eigen::Index>(sorted.size()), rows.cols())};
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    table.planes.push_back(sorted[i].first);
+    table.values.row(static_cast<Eigen::Index>(i)) = rows.row(sorted[i].second);
+  }
+  if (!table.planes.empty() && table.planes.front() < rounding) table.planes.front() = 0.0;
+  return table;
+}
+
+double beam_angle(const PhotometricWeb& web, double plane, double share) {
+  constexpr double step = 0.1, degree = std::numbers::pi / 180.0;
+  constexpr int steps = 1800;
+  // Along the half-planes C (positive) and C + 180 (negative).
+  const auto value = [&](int i) {
+    const double gamma = std::abs(i) * step * degree;
+    const double turn = (i < 0 ? plane + 180.0 : plane) * degree;
+    return web.at(
+        {std::sin(gamma) * std::cos(turn), std::sin(gamma) * std::sin(turn), -std::cos(gamma)});
+  };
+  double most = 0.0;
+  for (int i = -steps; i <= steps; ++i) most = std::max(most, value(i));
+  if (!(most > 0.0)) return 0.0;
+  int first = 0, last = 0;
+  bool any = false;
+  for (int i = -steps; i <= steps; ++i) {
+    if (!(value(i) >= share * most)) continue;
+    if (!any) first = i;
+    last = i;
+    any = true;
+  }
+  return (last - first) * step;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,99 @@
+#include "scene/io/mitsuba/mitsuba_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "scene/io/camera_name.h"
+#include "scene/io/mitsuba/mitsuba_transform.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+// Tangent of half the angle across the picture's width.
+double half_width(const MitsubaNode& sensor, double width, double height) {
+  double fov = 0.0;
+  std::string axis = sensor.string_or("fov_axis", "x");
+  if (const auto given = sensor.number("fov")) {
+    fov = *given;
+  } else {
+    // Of a 35 mm film, 36 mm x 24 mm: "50mm".
+    const std::string text = sensor.string_or("focal_length", "50mm");
+    const MitsubaNode* node = sensor.property("focal_length");
+    const auto millimetres = parse_numbers(node ? *node : sensor, text.substr(0, text.find("mm")));
+    if (millimetres.size() != 1 || !(millimetres[0] > 0.0)) {
+      sensor.fail(fmt::format("has the focal length '{}'; write '50mm'", text));
+    }
+    fov = 2.0 * std::atan(0.5 * std::hypot(36.0, 24.0) / millimetres[0]) / degree;
+    axis = "diagonal";
+  }
+  if (!(fov > 0.0 && fov < 180.0)) {
+    sensor.fail(
+        fmt::format("has a field of view of {} degrees; it must lie between 0 and 180", fov));
+  }
+  const double tangent = std::tan(0.5 * fov * degree);
+  if (axis == "smaller") axis = width < height ? "x" : "y";
+  if (axis == "larger") axis = width < height ? "y" : "x";
+  if (axis == "x") return tangent;
+  if (axis == "y") return tangent * width / height;
+  if (axis == "diagonal") return tangent * width / std::hypot(width, height);
+  sensor.fail(
+      fmt::format("has the fov axis '{}'; known are x, y, diagonal, smaller and larger", axis));
+}
+
+int pixels(const MitsubaNode* film, const char* property, int otherwise) {
+  if (!film) return otherwise;
+  const double count = film->number_or(property, otherwise);
+  constexpr double most = 32768.0;
+  if (!(count >= 1.0 && count <= most && count == std::floor(count))) {
+    film->fail(
+        fmt::format("has the {} {}; give a whole number from 1 to {}", property, count, most));
+  }
+  return static_cast<int>(count);
+}
+
+// Scene units are metres there; without an aperture Mitsuba refuses the file.
+void read_lens(const MitsubaNode& sensor, Camera& camera) {
+  camera.lens_radius = sensor.number_or("aperture_radius", 0.0);
+  camera.focus_distance = sensor.number_or("focus_distance", 1.0);
+  if (!(camera.lens_radius >= 0.0 && std::isfinite(camera.lens_radius))) {
+    sensor.fail(
+        fmt::format("has an aperture radius of {}; it must not be negative", camera.lens_radius));
+  }
+  if (!(camera.focus_distance > 0.0 && std::isfinite(camera.focus_distance))) {
+    sensor.fail(
+        fmt::format("is focused at a distance of {}; it must be above 0", camera.focus_distance));
+  }
+}
+
+}  // namespace
+
+void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scene& scene,
+                        Remarks& remarks) {
+  if (sensor.type != "perspective" && sensor.type != "thinlens") {
+    remarks.add(fmt::format("Cameras of the plugin '{}' were left out", sensor.type),
+                sensor.label());
+    return;
+  }
+  Camera camera{.name = camera_name(sensor.id, scene)};
+  const auto films = tree.children(sensor, "film");
+  const MitsubaNode* film = films.empty() ? nullptr : films.front();
+  camera.width = pixels(film, "width", 768);  // Mitsuba's own default
+  camera.height = pixels(film, "height", 576);
+  if (film && film->property("crop_width")) {
+    remarks.add("Crop windows have no effect", camera.name);
+  }
+  camera.fov_degrees = 2.0 * std::atan(half_width(sensor, camera.width, camera.height)) / degree;
+  if (!place_camera(read_to_world(sensor), Eigen::Vector3d::UnitZ(), camera, remarks)) {
+    sensor.fail("has a transformation that leaves it no direction or no upright");
+  }
+  if (sensor.type == "thinlens") read_lens(sensor, camera);
+  scene.cameras.push_back(camera);
+}
+
+}  // namespace lightwell

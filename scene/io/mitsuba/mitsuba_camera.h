@@ -1,0 +1,14 @@
+#pragma once
+
+#include "scene/io/mitsuba/mitsuba_tree.h"
+#include "scene/io/remarks.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Adds the camera of a <sensor> (perspective or thinlens, its lens a point); other kinds and what
+/// has no meaning here are remarked upon. Throws InputError naming file and line.
+void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scene& scene,
+                        Remarks& remarks);
+
+}  // namespace lightwell

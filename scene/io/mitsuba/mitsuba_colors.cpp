@@ -1,0 +1,370 @@
+#include "scene/io/mitsuba/mitsuba_colors.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "scene/io/mitsuba/mitsuba_transform.h"
+#include "scene/io/spectrum_samples.h"
+#include "scene/io/text_file.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int deepest = 32;  // textures of textures
+const BandEdges rgb_edges = {{600.0, 700.0}, {500.0, 600.0}, {400.0, 500.0}};
+
+Spectrum grey(double value) {
+  return Spectrum::Constant(3, static_cast<float>(value));
+}
+
+Spectrum spectrum_of(const Eigen::Array3d& rgb) {
+  return rgb.cast<float>();
+}
+
+// Samples hold their end values beyond their ends.
+Spectrum band_means(const MitsubaNode& node, SpectrumSamples samples) {
+  for (std::size_t i = 1; i < samples.values.size(); ++i) {
+    if (!(samples.wavelengths_nm[i] > samples.wavelengths_nm[i - 1])) {
+      node.fail(fmt::format("has the wavelength {} after {}; wavelengths must rise",
+                            samples.wavelengths_nm[i], samples.wavelengths_nm[i - 1]));
+    }
+  }
+  if (samples.values.empty()) node.fail("has no samples");
+  if (samples.wavelengths_nm.front() > rgb_edges.back()[0]) {
+    samples.wavelengths_nm.insert(samples.wavelengths_nm.begin(), rgb_edges.back()[0]);
+    samples.values.insert(samples.values.begin(), samples.values.front());
+  }
+  if (samples.wavelengths_nm.back() < rgb_edges.front()[1]) {
+    samples.wavelengths_nm.push_back(rgb_edges.front()[1]);
+    samples.values.push_back(samples.values.back());
+  }
+  Spectrum result(3);
+  for (int k = 0; k < 3; ++k) {
+    const auto [low, high] = rgb_edges[static_cast<std::size_t>(k)];
+    result[k] = static_cast<float>(mean(samples, low, high));
+  }
+  return result;
+}
+
+// "400:0.1, 500:0.2"
+SpectrumSamples samples_in_place(const MitsubaNode& node, std::string text) {
+  for (char& c : text) {
+    if (c == ':') c = ' ';
+  }
+  const auto numbers = parse_numbers(node, text);
+  if (numbers.size() % 2 != 0) node.fail("has a wavelength without a value");
+  SpectrumSamples samples;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) {
+    samples.wavelengths_nm.push_back(numbers[i]);
+    samples.values.push_back(numbers[i + 1]);
+  }
+  return samples;
+}
+
+// Lines of a wavelength (nm) and a value; # begins a comment.
+SpectrumSamples samples_of_file(const std::filesystem::path& path) {
+  const TextFile file(path);
+  SpectrumSamples samples;
+  file.for_each_line([&](int line, std::string_view text) {
+    text = text.substr(0, text.find('#'));
+    const std::string_view first = next_word(text);
+    if (first.empty()) return;
+    const auto wavelength = parse_finite(first), value = parse_finite(next_word(text));
+    if (!wavelength || !value) file.fail(line, "this is no wavelength (nm) followed by a value");
+    samples.wavelengths_nm.push_back(*wavelength);
+    samples.values.push_back(*value);
+  });
+  return samples;
+}
+
+// Planck's law, W/(m^2 sr nm).
+double planck(double nm, double kelvin) {
+  constexpr double h = 6.62607015e-34, c = 299792458.0, k = 1.380649e-23;
+  const double metres = 1e-9 * nm;
+  return 1e-9 * 2.0 * h * c * c / std::pow(metres, 5.0) / std::expm1(h * c / (metres * k * kelvin));
+}
+
+// 0.5 and 0.6 say "gamma", 2 and 3 "raw".
+PictureCode code_of(const MitsubaNode& bitmap) {
+  const bool is_linear = bitmap.boolean_or("raw", false) || bitmap.number_or("gamma", 0.0) == 1.0;
+  return is_linear ? PictureCode::linear : PictureCode::srgb;
+}
+
+}  // namespace
+
+Spectrum MitsubaColors::share_or(const MitsubaNode& owner, std::string_view property,
+                                 float otherwise, Pixels pixels) {
+  const Spectrum values = positive(owner, property, pixels).value_or(grey(otherwise));
+  if ((values > 1.0f).any()) {
+    remarks_.add(fmt::format("'{}' exceeds 1 and was cut off there in", property), owner.label());
+  }
+  return values.min(1.0f);
+}
+
+Spectrum MitsubaColors::positive_or(const MitsubaNode& owner, std::string_view property,
+                                    float otherwise) {
+  return positive(owner, property).value_or(grey(otherwise));
+}
+
+std::optional<Spectrum> MitsubaColors::positive(const MitsubaNode& owner, std::string_view property,
+                                                Pixels pixels) {
+  const MitsubaNode* node = owner.property(property);
+  if (!node) return std::nullopt;
+  const Spectrum values = read(*node, pixels, 0);
+  if (!values.isFinite().all()) node->fail("is too large a number");
+  if (!(values >= 0.0f).all()) {
+    node->fail(fmt::format("is {}; it must be at least 0", values.minCoeff()));
+  }
+  return values;
+}
+
+// The texture that a property is, or that its scaling texture scales.
+const MitsubaNode* MitsubaColors::texture_node(const MitsubaNode& owner,
+                                               std::string_view property) const {
+  const MitsubaNode* given = owner.property(property);
+  if (!given) return nullptr;
+  const MitsubaNode* node = &tree_.resolved(*given);
+  for (int depth = 0; node->type == "scale" && depth < deepest; ++depth) {
+    const auto inner = tree_.children(*node, "texture");
+    if (inner.empty()) return nullptr;
+    node = inner.front();
+  }
+  const bool is_texture = node->tag == "texture" || node->tag == "spectrum";
+  return is_texture && (node->type == "bitmap" || node->type == "checkerboard") ? node : nullptr;
+}
+
+std::optional<MitsubaTexture> MitsubaColors::texture(const MitsubaNode& owner,
+                                                     std::string_view property, Pixels pixels) {
+  const MitsubaNode* node = texture_node(owner, property);
+  if (!node) return std::nullopt;
+  auto result = node->type == "bitmap" ? bitmap(*node, pixels) : checkerboard(*node, pixels);
+  if (!result) return std::nullopt;
+  const MitsubaNode* scale = &tree_.resolved(*owner.property(property));
+  Spectrum factor = Spectrum::Ones(3);
+  for (; scale != node; scale = tree_.children(*scale, "texture").front()) {
+    factor *= part_or(*scale, "scale", 1.0f, pixels, 0) * part_or(*scale, "value", 1.0f, pixels, 0);
+  }
+  if (!(factor >= 0.0f).all()) owner.fail(fmt::format("has a negative scale of '{}'", property));
+  if ((factor > 1.0f).any()) {
+    // Only texels that it brings above 1 are cut off.
+    const Texture& picture = *result->texture.image.picture;
+    if ((factor * picture.largest() > 1.0f).any()) {
+      remarks_.add(fmt::format("'{}' exceeds 1 and was cut off there in", property), owner.label());
+    }
+    result->texture.image.picture = std::make_shared<const Texture>(picture.mapped(
+        [&](const Eigen::Array3f& texel) -> Eigen::Array3f { return (factor * texel).min(1.0f); }));
+    result->texture.factor = Spectrum::Ones(3);
+    result->mean = (factor * result->mean).min(1.0f);
+  } else {
+    result->texture.factor = factor;
+    result->mean *= factor;
+  }
+  return result;
+}
+
+std::optional<Mask> MitsubaColors::mask(const MitsubaNode& owner, std::string_view property) {
+  const MitsubaNode* node = texture_node(owner, property);
+  if (!node || node->type != "bitmap") return std::nullopt;
+  const auto path = tree_.file_named(*node, node->string_or("filename", ""));
+  const auto picture = pictures_.picture(path, PictureCode::linear);
+  if (!picture) return std::nullopt;
+  return Mask{.image = laid_on(*node, picture->alpha ? picture->alpha : picture->color)};
+}
+
+SurfaceTexture MitsubaColors::laid_on(const MitsubaNode& node,
+                                      std::shared_ptr<const Texture> picture) {
+  SurfaceTexture image{.picture = std::move(picture)};
+  const auto wrap = [&](const char* property, const std::string& otherwise) {
+    return node.string_or(property, otherwise);
+  };
+  const std::string both = wrap("wrap_mode", "repeat");
+  for (const int axis : {0, 1}) {
+    const std::string mode = wrap(axis == 0 ? "wrap_mode_u" : "wrap_mode_v", both);
+    image.wrap[static_cast<std::size_t>(axis)] = mode == "mirror"  ? TextureWrap::mirror
+                                                 : mode == "clamp" ? TextureWrap::clamp
+                                                                   : TextureWrap::repeat;
+  }
+  image.is_smooth = node.string_or("filter_type", "bilinear") != "nearest";
+  if (const MitsubaNode* to_uv = node.property("to_uv")) {
+    const Eigen::Matrix4d m = read_mitsuba_transform(*to_uv).matrix();
+    image.placement << m(0, 0), m(0, 1), m(0, 3), m(1, 0), m(1, 1), m(1, 3);
+  }
+  const double scale = node.number_or("uvscale", 1.0);
+  Eigen::Matrix<double, 2, 3> scaled;
+  scaled << node.number_or("uscale", scale), 0.0, node.number_or("uoffset", 0.0), 0.0,
+      node.number_or("vscale", scale), node.number_or("voffset", 0.0);
+  const Eigen::Vector2d offset = image.placement.leftCols<2>() * scaled.col(2);
+  const Eigen::Matrix2d linear = image.placement.leftCols<2>() * scaled.leftCols<2>();
+  image.placement.leftCols<2>() = linear;
+  image.placement.col(2) += offset;
+  return image;
+}
+
+std::optional<MitsubaTexture> MitsubaColors::bitmap(const MitsubaNode& node, Pixels pixels) {
+  const auto path = tree_.file_named(node, node.string_or("filename", ""));
+  const auto picture = pictures_.picture(path, code_of(node));
+  if (!picture) return std::nullopt;
+  const auto& mean =
+      pixels == Pixels::by_opacity ? picture->mean.covered_color : picture->mean.color;
+  return MitsubaTexture{.texture = {.image = laid_on(node, picture->color), .factor = grey(1.0)},
+                        .mean = spectrum_of(mean)};
+}
+
+// Two colours in two by two squares.
+MitsubaTexture MitsubaColors::checkerboard(const MitsubaNode& node, Pixels pixels) {
+  const Spectrum colors[] = {part_or(node, "color0", 0.4f, pixels, 0),
+                             part_or(node, "color1", 0.2f, pixels, 0)};
+  std::vector<Texture::Code> texels;
+  for (const int square : {0, 1, 1, 0}) {
+    for (int c = 0; c < 3; ++c) texels.push_back(Texture::encode(colors[square][c]));
+  }
+  SurfaceTexture image = laid_on(node, std::make_shared<const Texture>(2, 2, 3, std::move(texels)));
+  image.is_smooth = false;
+  const Spectrum mean = 0.5f * (colors[0].min(1.0f) + colors[1].min(1.0f));
+  return {.texture = {.image = std::move(image), .factor = grey(1.0)}, .mean = mean};
+}
+
+double MitsubaColors::number_or(const MitsubaNode& owner, std::string_view property,
+                                double otherwise) {
+  const MitsubaNode* node = owner.property(property);
+  if (!node) return otherwise;
+  if (node->tag == "float" || node->tag == "integer") return *owner.number(property);
+  const double mean = read(*node, Pixels::all, 0).cast<double>().mean();
+  if (!std::isfinite(mean)) node->fail("is too large a number");
+  return mean;
+}
+
+Spectrum MitsubaColors::read(const MitsubaNode& given, Pixels pixels, int depth) {
+  const MitsubaNode& node = tree_.resolved(given);
+  if (depth > deepest) node.fail("refers to itself, or is nested beyond all measure");
+  const auto known = known_.find({&node, pixels});
+  if (known != known_.end()) return known->second;
+  const Spectrum values = read_new(node, pixels, depth);
+  return known_.emplace(std::pair(&node, pixels), values).first->second;
+}
+
+Spectrum MitsubaColors::read_new(const MitsubaNode& node, Pixels pixels, int depth) {
+  if (node.tag == "rgb" || node.tag == "color") return read_rgb(node);
+  if (node.tag == "srgb") return read_srgb(node);
+  if (node.tag == "float" || node.tag == "integer") return grey(node.number_attribute("value"));
+  if (node.tag == "spectrum") return read_spectrum(node, pixels, depth);
+  if (node.tag == "blackbody") return read_blackbody(node);
+  if (node.tag == "texture") return read_texture(node, pixels, depth);
+  node.fail("is no number, colour, spectrum or texture");
+}
+
+Spectrum MitsubaColors::read_rgb(const MitsubaNode& node) const {
+  const std::string* value = node.attribute("value");
+  if (!value) node.fail("lacks the attribute 'value'");
+  if (value->starts_with('#')) return read_srgb(node);
+  const auto numbers = parse_numbers(node, *value);
+  if (numbers.size() == 1) return grey(numbers[0]);
+  if (numbers.size() != 3) node.fail(fmt::format("has {} numbers; give three", numbers.size()));
+  return spectrum_of({numbers[0], numbers[1], numbers[2]});
+}
+
+// "#rrggbb", or three numbers in [0,1], with the sRGB curve.
+Spectrum MitsubaColors::read_srgb(const MitsubaNode& node) const {
+  const std::string* value = node.attribute("value");
+  if (!value) node.fail("lacks the attribute 'value'");
+  Eigen::Array3d code;
+  if (value->starts_with('#')) {
+    unsigned hex = 0;
+    const auto [end, error] =
+        std::from_chars(value->data() + 1, value->data() + value->size(), hex, 16);
+    if (value->size() != 7 || error != std::errc() || end != value->data() + value->size()) {
+      node.fail(fmt::format("has '{}', which is no colour; write #rrggbb", *value));
+    }
+    code = Eigen::Array3d(hex >> 16, hex >> 8 & 255, hex & 255) / 255.0;
+  } else {
+    const auto numbers = parse_numbers(node, *value);
+    if (numbers.size() != 3) node.fail(fmt::format("has {} numbers; give three", numbers.size()));
+    code = {numbers[0], numbers[1], numbers[2]};
+  }
+  return spectrum_of(code.unaryExpr(&linear_from_srgb));
+}
+
+Spectrum MitsubaColors::read_spectrum(const MitsubaNode& node, Pixels pixels, int depth) {
+  if (const std::string* name = node.attribute("filename")) {
+    return band_means(node, samples_of_file(tree_.file_named(node, *name)));
+  }
+  if (const std::string* value = node.attribute("value")) {
+    if (value->find(':') != std::string::npos) {
+      return band_means(node, samples_in_place(node, *value));
+    }
+    const auto numbers = parse_numbers(node, *value);
+    if (numbers.size() == 1) return grey(numbers[0]);
+    if (numbers.size() == 3) return spectrum_of({numbers[0], numbers[1], numbers[2]});
+    node.fail(fmt::format("has {} numbers; give one, or wavelength:value pairs", numbers.size()));
+  }
+  if (node.type == "d65")
+    return part_or(node, "color", 1.0f, pixels, depth) *
+           part_or(node, "scale", 1.0f, pixels, depth);
+  if (node.type == "uniform") return part_or(node, "value", 1.0f, pixels, depth);
+  if (node.type == "blackbody") return read_blackbody(node);
+  if (node.type == "irregular" || node.type == "regular") {
+    node.fail("gives its samples in a way that is not read; write value=\"400:0.1, 500:0.2, ...\"");
+  }
+  return read_texture(node, pixels, depth);
+}
+
+Spectrum MitsubaColors::read_blackbody(const MitsubaNode& node) const {
+  const std::string* temperature = node.attribute("temperature");
+  double kelvin = node.number_or("temperature", 6500.0);
+  if (temperature) {
+    std::string_view text = trimmed(*temperature);
+    if (text.ends_with('K')) text.remove_suffix(1);
+    const auto numbers = parse_numbers(node, text);
+    if (numbers.size() != 1) node.fail("has a temperature that is no number of kelvins");
+    kelvin = numbers[0];
+  }
+  if (!(kelvin >= 1.0 && kelvin <= 1e6)) node.fail(fmt::format("has {} K; give 1 to 1e6", kelvin));
+  const double scale =
+      node.attribute("scale") ? node.number_attribute("scale") : node.number_or("scale", 1.0);
+  SpectrumSamples samples;
+  for (double nm = 400.0; nm <= 700.0; nm += 5.0) {
+    samples.wavelengths_nm.push_back(nm);
+    samples.values.push_back(scale * planck(nm, kelvin));
+  }
+  return band_means(node, std::move(samples));
+}
+
+Spectrum MitsubaColors::part_or(const MitsubaNode& texture, std::string_view property,
+                                float otherwise, Pixels pixels, int depth) {
+  const MitsubaNode* node = texture.property(property);
+  return node ? read(*node, pixels, depth + 1) : grey(otherwise);
+}
+
+Spectrum MitsubaColors::read_texture(const MitsubaNode& node, Pixels pixels, int depth) {
+  if (node.type == "bitmap") return read_bitmap(node, pixels);
+  if (node.type == "checkerboard") {
+    remarks_.add("Checkerboards were read as the mean of their colours", node.label());
+    return 0.5f * (part_or(node, "color0", 0.4f, pixels, depth) +
+                   part_or(node, "color1", 0.2f, pixels, depth));
+  }
+  if (node.type == "scale") {
+    const auto inner = tree_.children(node, "texture");
+    const Spectrum base = inner.empty() ? grey(1.0) : read(*inner.front(), pixels, depth + 1);
+    return base * part_or(node, "scale", 1.0f, pixels, depth) *
+           part_or(node, "value", 1.0f, pixels, depth);
+  }
+  remarks_.add(fmt::format("Textures of the plugin '{}' were read as a grey of 0.5", node.type),
+               node.label());
+  return grey(0.5);
+}
+
+Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node, Pixels pixels) {
+  const std::string name = node.string_or("filename", "");
+  const auto path = tree_.file_named(node, name);
+  const auto mean = pictures_.mean(path, code_of(node));
+  if (!mean) {
+    remarks_.add("Pictures of a format that is not read became a grey of 0.5", name);
+    return grey(0.5);
+  }
+  remarks_.add("Pictures on surfaces were read as their mean colour", name);
+  return spectrum_of(pixels == Pixels::by_opacity ? mean->covered_color : mean->color);
+}
+
+}  // namespace lightwell

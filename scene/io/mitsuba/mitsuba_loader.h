@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/io/mitsuba/mitsuba_tree.h"
+
+namespace pugi {
+class xml_node;
+}
+
+namespace lightwell {
+
+/// Fills a MitsubaTree from XML: replaces `$name`s by their <default>s, in the order of the file,
+/// and puts included files where they are included.
+class MitsubaLoader {
+ public:
+  explicit MitsubaLoader(MitsubaTree& tree) : tree_(tree) {}
+  void load(const std::filesystem::path& path);
+
+ private:
+  struct Source;
+  MitsubaNode load_file(const std::filesystem::path& path, const MitsubaNode* including);
+  MitsubaNode convert(const Source& source, const pugi::xml_node& from, int depth);
+  void include(const MitsubaNode& node, MitsubaNode& parent);
+  std::string substituted(const MitsubaNode& node, std::string_view text) const;
+
+  MitsubaTree& tree_;
+  std::map<std::string, std::string, std::less<>> defaults_;
+  std::vector<std::filesystem::path> open_;  // the files that include the current one, and it
+  int files_ = 0;
+};
+
+}  // namespace lightwell

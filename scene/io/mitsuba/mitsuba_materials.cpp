@@ -1,0 +1,323 @@
+#include "scene/io/mitsuba/mitsuba_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <numbers>
+
+#include "scene/io/default_material.h"
+#include "scene/io/glossy.h"
+#include "scene/io/mitsuba/mitsuba_presets.h"
+#include "scene/io/nearest_name.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double bk7 = 1.5046, polypropylene = 1.49, air = 1.000277;  // Mitsuba's defaults
+
+Spectrum zero() {
+  return Spectrum::Zero(3);
+}
+
+Material opaque(const Spectrum& reflectance) {
+  return {.reflectance = reflectance, .specular = zero(), .emission = zero(), .one_sided = true};
+}
+
+Material clear(double index, const Spectrum& tint) {
+  Material material = opaque(zero());
+  material.one_sided = false;
+  material.dielectric = Dielectric{.index_of_refraction = static_cast<float>(index), .tint = tint};
+  return material;
+}
+
+Material pane(double index, const Spectrum& tint, double alpha) {
+  Material material = clear(index, tint);
+  material.dielectric = thin_pane(index, tint, alpha);
+  return material;
+}
+
+const char* const rough_metal = "Metals of alpha above 0.5 were read as diffuse";
+
+}  // namespace
+
+int MitsubaMaterials::of_shape(const MitsubaNode& shape, const std::string& shape_name) {
+  const auto bsdfs = tree_.children(shape, "bsdf");
+  const MitsubaNode* bsdf = bsdfs.empty() ? nullptr : bsdfs.front();
+  const MitsubaNode* emitter = nullptr;
+  for (const char* tag : {"emitter", "luminaire"}) {
+    for (const MitsubaNode* node : tree_.children(shape, tag)) {
+      if (node->type == "area") {
+        emitter = node;
+      } else {
+        remarks_.add(fmt::format("Emitters of the plugin '{}' give no light here", node->type),
+                     shape_name);
+      }
+    }
+  }
+  const auto [entry, is_new] =
+      index_of_.emplace(std::pair(bsdf, emitter), static_cast<int>(scene_.materials.size()));
+  if (!is_new) return entry->second;
+  Material material = default_material(scene_.bands);
+  if (bsdf) {
+    material = read(*bsdf, Pixels::all);
+    material.name = bsdf->id.empty() ? fmt::format("material of {}", shape_name) : bsdf->id;
+  } else {
+    remarks_.add("Shapes without a BSDF got a diffuse reflectance of 0.5", shape_name);
+    material.name = emitter ? fmt::format("material of {}", shape_name) : "default";
+  }
+  if (emitter) {
+    if (bsdf && !bsdf->id.empty()) material.name = fmt::format("{} ({})", bsdf->id, shape_name);
+    add_emission(*emitter, shape_name, material);
+  }
+  scene_.materials.push_back(std::move(material));
+  return entry->second;
+}
+
+void MitsubaMaterials::add_emission(const MitsubaNode& emitter, const std::string& name,
+                                    Material& material) {
+  const auto intensity = colors_.positive(emitter, "intensity");  // its name in Mitsuba 0.3
+  const Spectrum radiance = intensity ? *intensity : colors_.positive_or(emitter, "radiance", 1.0f);
+  material.emission = static_cast<float>(std::numbers::pi) * radiance;
+  if (!material.emission.isFinite().all()) emitter.fail("has a radiance that is too large");
+  if (material.dielectric && material.is_emitter()) {
+    remarks_.add("Clear materials that shine were read as black ones that shine", name);
+    material.dielectric.reset();
+  }
+  if (material.mask && material.is_emitter()) {
+    remarks_.add("Lamps have no holes, so their masks were left out", name);
+    material.mask.reset();
+  }
+}
+
+Material MitsubaMaterials::read(const MitsubaNode& bsdf, Pixels pixels) {
+  const auto known = known_.find({&bsdf, pixels});
+  if (known != known_.end()) return known->second;
+  if (!open_.insert(&bsdf).second) bsdf.fail("refers to itself");
+  constexpr std::size_t deepest = 64;
+  if (open_.size() > deepest) bsdf.fail("is nested beyond all measure");
+  const Material material = read_new(bsdf, pixels);
+  open_.erase(&bsdf);
+  return known_.emplace(std::pair(&bsdf, pixels), material).first->second;
+}
+
+Material MitsubaMaterials::read_new(const MitsubaNode& bsdf, Pixels pixels) {
+  const std::string& type = bsdf.type;
+  const auto is = [&](std::initializer_list<const char*> types) {
+    return std::ranges::find(types, type) != types.end();
+  };
+  if (is({"diffuse", "lambertian", "roughdiffuse"})) return diffuse(bsdf, "reflectance", pixels);
+  if (is({"conductor", "roughconductor", "mirror"})) return conductor(bsdf, pixels);
+  if (is({"dielectric", "roughdielectric", "thindielectric"})) return dielectric(bsdf, pixels);
+  if (is({"plastic", "roughplastic"})) return plastic(bsdf, pixels);
+  if (is({"principled", "principledthin", "disney"})) return principled(bsdf, pixels);
+  if (type == "twosided") return two_sided(bsdf, pixels);
+  if (is({"mask", "bumpmap", "bump", "normalmap", "coating", "roughcoating"}))
+    return wrapped(bsdf, pixels);
+  if (is({"blendbsdf", "mixturebsdf"})) return blend(bsdf, pixels);
+  if (type == "null") return clear(1.0, Spectrum::Ones(3));
+  if (is({"phong", "ward", "modified_phong"})) {
+    remarks_.add(fmt::format("BSDF '{}': its highlight was left out in", type), bsdf.label());
+    return diffuse(bsdf, "diffuse_reflectance", pixels);
+  }
+  remarks_.add(
+      fmt::format("BSDF plugin '{}' is not known and got a diffuse reflectance of 0.5", type),
+      bsdf.label());
+  Material material = opaque(Spectrum::Constant(3, 0.5f));
+  material.one_sided = false;
+  return material;
+}
+
+Material MitsubaMaterials::diffuse(const MitsubaNode& bsdf, std::string_view property,
+                                   Pixels pixels) {
+  if (const auto picture = colors_.texture(bsdf, property, pixels)) {
+    Material material = opaque(picture->mean);
+    material.texture = picture->texture;
+    return material;
+  }
+  return opaque(colors_.share_or(bsdf, property, 0.5f, pixels));
+}
+
+Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
+  Spectrum reflectance = Spectrum::Ones(3);
+  const auto eta = colors_.positive(bsdf, "eta"), k = colors_.positive(bsdf, "k");
+  if (eta && k) {
+    reflectance = diffuse_metal_reflectance(*eta, *k);
+  } else if (bsdf.type != "mirror") {
+    const std::string name = bsdf.string_or("material", eta || k ? "none" : "Cu");
+    if (const auto known = metal_preset(name)) {
+      reflectance = *known;
+    } else {
+      // Iron, nickel, platinum and titanium reflect 0.5 to 0.65.
+      remarks_.add(fmt::format("Metal '{}' is not known and got a reflectance of 0.6", name),
+                   bsdf.label());
+      reflectance.setConstant(0.6f);
+    }
+  }
+  reflectance *= colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
+  const double alpha = bsdf.type == "roughconductor" ? roughness(bsdf) : 0.0;
+  if (bsdf.type == "roughconductor") {
+    if (alpha > glossy_alpha) remarks_.add(rough_metal, bsdf.label());
+  }
+  Material material = opaque(zero());
+  set_metallic(material, reflectance, 1.0, alpha);
+  return material;
+}
+
+// GGX's alpha, also of Beckmann's distribution, whose middle is alike; the larger one of two.
+double MitsubaMaterials::roughness(const MitsubaNode& bsdf) {
+  const double alpha =
+      std::max(colors_.number_or(bsdf, "alpha_u", 0.0), colors_.number_or(bsdf, "alpha_v", 0.0));
+  return colors_.number_or(bsdf, "alpha", alpha > 0.0 ? alpha : 0.1);
+}
+
+// A number, or the name of a material.
+double MitsubaMaterials::index(const MitsubaNode& bsdf, std::string_view property,
+                               double otherwise) {
+  const MitsubaNode* node = bsdf.property(property);
+  if (!node || node->tag != "string") return bsdf.number_or(property, otherwise);
+  const std::string name = bsdf.string_or(property, "");
+  if (const auto known = index_preset(name)) return *known;
+  node->fail(
+      fmt::format("is '{}', a material whose index of refraction is not known; give a "
+                  "number.{}",
+                  name, did_you_mean(name, index_preset_names())));
+}
+
+// Of the inside over the outside.
+double MitsubaMaterials::index_ratio(const MitsubaNode& bsdf, double inside) {
+  const double ratio = index(bsdf, "int_ior", inside) / index(bsdf, "ext_ior", air);
+  if (!(ratio >= lowest_index && ratio <= highest_index)) {
+    bsdf.fail(fmt::format("has a ratio of refractive indices of {}; glass has 1.5", ratio));
+  }
+  return ratio;
+}
+
+Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf, Pixels pixels) {
+  const double ratio = index_ratio(bsdf, bk7);
+  const Spectrum tint = colors_.share_or(bsdf, "specular_transmittance", 1.0f, pixels);
+  if (bsdf.type == "thindielectric") {
+    return pane(ratio, tint, 0.0);
+  }
+  Material glass = clear(ratio, tint);
+  if (bsdf.type == "roughdielectric") glass.dielectric->roughness = roughness_of(roughness(bsdf));
+  return glass;
+}
+
+Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
+  const auto picture = colors_.texture(bsdf, "diffuse_reflectance", pixels);
+  const Spectrum rho =
+      picture ? picture->mean : colors_.share_or(bsdf, "diffuse_reflectance", 0.5f, pixels);
+  const Spectrum specular = colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
+  remarks_.add("Plastics were read as diffuse, with what their gloss reflects in the mean",
+               bsdf.label());
+  const Coat coat(index_ratio(bsdf, polypropylene), bsdf.boolean_or("nonlinear", false), specular);
+  Material material = opaque(coat(rho));
+  if (!picture) return material;
+  material.texture = picture->texture;
+  SurfaceTexture& image = material.texture->image;
+  image.picture = std::make_shared<const Texture>(
+      image.picture->mapped([&](const Eigen::Array3f& texel) -> Eigen::Array3f {
+        const Spectrum base = picture->texture.factor * texel;
+        return coat(base);
+      }));
+  material.texture->factor.setOnes();
+  return material;
+}
+
+Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
+  const auto picture = colors_.texture(bsdf, "base_color", pixels);
+  const Spectrum color =
+      picture ? picture->mean : colors_.share_or(bsdf, "base_color", 0.5f, pixels);
+  const auto share = [&](const char* property, double otherwise) {
+    return std::clamp(colors_.number_or(bsdf, property, otherwise), 0.0, 1.0);
+  };
+  const double alpha = share("roughness", 0.5) * share("roughness", 0.5);
+  if (share("spec_trans", 0.0) >= mostly_clear) {
+    const double eta = index(bsdf, "eta", 1.5);
+    if (!(eta >= lowest_index && eta <= highest_index))
+      bsdf.fail("has no index of refraction that glass has");
+    if (bsdf.type == "principledthin") return pane(eta, color, alpha);
+    remarks_.add("Principled BSDFs that are mostly clear were read as glass", bsdf.label());
+    Material glass = clear(eta, color);
+    glass.dielectric->roughness = roughness_of(alpha);
+    return glass;
+  }
+  remarks_.add("Principled BSDFs were read by their base colour, metallic and roughness",
+               bsdf.label());
+  Material material = opaque(zero());
+  set_metallic(material, color, share("metallic", 0.0), alpha);
+  if (picture && (material.reflectance > 0.0f).any()) {
+    material.texture = picture->texture;
+    material.texture->factor *= (color > 0.0f).select(material.reflectance / color, 0.0f);
+  }
+  return material;
+}
+
+Material MitsubaMaterials::wrapped(const MitsubaNode& bsdf, Pixels pixels) {
+  const auto inner = tree_.children(bsdf, "bsdf");
+  if (inner.empty()) bsdf.fail("holds no BSDF");
+  if (bsdf.type != "mask") {
+    remarks_.add(fmt::format("BSDF '{}' was read as what it covers", bsdf.type), bsdf.label());
+    return read(*inner.front(), pixels);
+  }
+  Material material = read(*inner.front(), Pixels::by_opacity);
+  material.mask = colors_.mask(bsdf, "opacity");
+  if (!material.mask) {
+    remarks_.add("Masks that are no bitmap were left out, so the whole surface is opaque",
+                 bsdf.label());
+  }
+  return material;
+}
+
+Material MitsubaMaterials::two_sided(const MitsubaNode& bsdf, Pixels pixels) {
+  const auto inner = tree_.children(bsdf, "bsdf");
+  if (inner.empty()) bsdf.fail("holds no BSDF");
+  if (inner.size() > 1) {
+    remarks_.add("Surfaces whose sides differ got the front's BSDF on both", bsdf.label());
+  }
+  Material material = read(*inner.front(), pixels);
+  material.one_sided = false;
+  return material;
+}
+
+Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
+  const auto inner = tree_.children(bsdf, "bsdf");
+  if (inner.empty()) bsdf.fail("holds no BSDF");
+  std::vector<float> weights;
+  if (bsdf.type == "blendbsdf" && inner.size() == 2) {
+    const float second = colors_.share_or(bsdf, "weight", 0.5f, pixels).mean();
+    weights = {1.0f - second, second};
+  } else if (const MitsubaNode* given = bsdf.property("weights")) {
+    for (const double weight : parse_numbers(*given, bsdf.string_or("weights", ""))) {
+      if (!(weight >= 0.0 && weight <= 1.0)) given->fail("has a weight outside [0, 1]");
+      weights.push_back(static_cast<float>(weight));
+    }
+  }
+  if (weights.size() != inner.size()) bsdf.fail("needs one weight for each BSDF it blends");
+  remarks_.add("Blended BSDFs were read as the mean of their parts", bsdf.label());
+  if (std::ranges::any_of(inner,
+                          [&](const auto* b) { return read(*b, pixels).texture.has_value(); })) {
+    remarks_.add("Pictures in blended BSDFs were read as their mean colour", bsdf.label());
+  }
+  Material sum = opaque(zero());
+  sum.one_sided =
+      std::ranges::all_of(inner, [&](const auto* b) { return read(*b, pixels).one_sided; });
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    const Material part = read(*inner[i], pixels);
+    if (part.dielectric) {
+      if (weights[i] >= 0.5f) return part;
+      continue;
+    }
+    sum.reflectance += weights[i] * part.reflectance;
+    sum.specular += weights[i] * part.specular;
+    sum.specular_roughness = std::max(sum.specular_roughness, part.specular_roughness);
+  }
+  // Weights of a mixture may add up to more than 1; light must not.
+  const Spectrum excess = (sum.reflectance + sum.specular).max(1.0f);
+  sum.reflectance /= excess;
+  sum.specular /= excess;
+  return sum;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "scene/io/mitsuba/mitsuba_colors.h"
+#include "scene/io/mitsuba/mitsuba_tree.h"
+#include "scene/io/remarks.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// BSDFs and area emitters of a Mitsuba scene as materials; docs/scene-format.md says which become
+/// what. One material for every pair of a BSDF and an emitter that occurs.
+class MitsubaMaterials {
+ public:
+  MitsubaMaterials(const MitsubaTree& tree, Scene& scene, Remarks& remarks)
+      : tree_(tree), scene_(scene), remarks_(remarks), colors_(tree, remarks) {}
+
+  /// Index of the material of a shape, which is added to the scene where it is new.
+  int of_shape(const MitsubaNode& shape, const std::string& shape_name);
+
+ private:
+  Material read(const MitsubaNode& bsdf, Pixels pixels);
+  Material read_new(const MitsubaNode& bsdf, Pixels pixels);
+  Material diffuse(const MitsubaNode& bsdf, std::string_view property, Pixels pixels);
+  Material conductor(const MitsubaNode& bsdf, Pixels pixels);
+  Material dielectric(const MitsubaNode& bsdf, Pixels pixels);
+  Material plastic(const MitsubaNode& bsdf, Pixels pixels);
+  Material principled(const MitsubaNode& bsdf, Pixels pixels);
+  Material wrapped(const MitsubaNode& bsdf, Pixels pixels);
+  Material two_sided(const MitsubaNode& bsdf, Pixels pixels);
+  Material blend(const MitsubaNode& bsdf, Pixels pixels);
+  double roughness(const MitsubaNode& bsdf);
+  static double index(const MitsubaNode& bsdf, std::string_view property, double otherwise);
+  static double index_ratio(const MitsubaNode& bsdf, double inside);
+  void add_emission(const MitsubaNode& emitter, const std::string& name, Material& material);
+
+  const MitsubaTree& tree_;
+  Scene& scene_;
+  Remarks& remarks_;
+  MitsubaColors colors_;
+  std::map<std::pair<const MitsubaNode*, Pixels>, Material> known_;
+  std::set<const MitsubaNode*> open_;  // being read: what finds itself here refers to itself
+  std::map<std::pair<const MitsubaNode*, const MitsubaNode*>, int> index_of_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "scene/io/mesh_file.h"
+#include "scene/io/mitsuba/mitsuba_materials.h"
+#include "scene/io/mitsuba/mitsuba_tree.h"
+#include "scene/io/numbered_names.h"
+#include "scene/io/remarks.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Shapes of a Mitsuba scene as surfaces; docs/scene-format.md says which become what.
+class MitsubaShapes {
+ public:
+  MitsubaShapes(const MitsubaTree& tree, Scene& scene, Remarks& remarks)
+      : tree_(tree), scene_(scene), remarks_(remarks), materials_(tree, scene, remarks) {}
+
+  /// Adds the surface of a <shape>, or those of the group it is an instance of. Throws InputError
+  /// naming file, line and what is wrong.
+  void add(const MitsubaNode& shape);
+  /// What had to be done to the polygons so far.
+  const Repairs& repairs() const { return repairs_; }
+
+ private:
+  // A mesh file as it was read: instances and repeated shapes use it again.
+  struct MeshFile {
+    PolygonMesh mesh{};
+    Repairs repairs{};
+    bool has_normals = false;
+  };
+  void add_placed(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
+                  const std::string& prefix);
+  void add_instance(const MitsubaNode& instance);
+  void add_surface(const MitsubaNode& shape, const std::string& name,
+                   std::variant<PolygonMesh, Sphere> placed);
+  std::variant<PolygonMesh, Sphere> sphere(const MitsubaNode& shape,
+                                           const Eigen::Affine3d& to_world,
+                                           const std::string& name);
+  PolygonMesh cylinder(const MitsubaNode& shape, const Eigen::Affine3d& to_world);
+  PolygonMesh mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
+                   const std::string& name);
+  const MeshFile& mesh_file(const MitsubaNode& shape, bool with_uv, MeshFronts fronts);
+  std::string unique_name(const MitsubaNode& shape, const std::string& prefix);
+
+  const MitsubaTree& tree_;
+  Scene& scene_;
+  Remarks& remarks_;
+  MitsubaMaterials materials_;
+  Repairs repairs_;
+  std::map<std::tuple<std::filesystem::path, bool, MeshFronts>, MeshFile> files_;
+  NumberedNames names_;
+  std::int64_t facets_ = 0;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,92 @@
+#include "scene/io/mitsuba/mitsuba_sky.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "scene/errors.h"
+#include "scene/io/mitsuba/mitsuba_transform.h"
+#include "scene/io/pictures/environment_file.h"
+
+namespace lightwell {
+namespace {
+
+// Black, for whichever of sky and sun comes first.
+Sky& sky_of(Scene& scene) {
+  if (!scene.sky) {
+    scene.sky = Sky{.name = "dark",
+                    .scale = constant_spectrum(scene.bands, 0.0f),
+                    .ground = constant_spectrum(scene.bands, 0.0f)};
+  }
+  return *scene.sky;
+}
+
+bool has_dome(const Scene& scene) {
+  return scene.sky && (scene.sky->kind == SkyKind::map || (scene.sky->scale > 0.0f).any());
+}
+
+void add_map(const MitsubaNode& emitter, const MitsubaTree& tree, Sky& sky) {
+  const std::string name = emitter.string_or("filename", "");
+  if (name.empty()) emitter.fail("names no file; give a <string name=\"filename\">");
+  const auto path = tree.file_named(emitter, name);
+  try {
+    sky.map = read_environment_map(path);
+  } catch (const InputError& error) {
+    emitter.fail(fmt::format("cannot be used: {}", error.what()));
+  }
+  Eigen::Matrix3d turn = read_to_world(emitter).linear();
+  const double size = std::cbrt(std::abs(turn.determinant()));
+  turn /= size;
+  constexpr double rounding = 1e-4;
+  if (!(size > 0.0) || !(turn * turn.transpose()).isIdentity(rounding)) {
+    emitter.fail("has a transformation that is no rotation; an environment map can only be turned");
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  sky.to_map = (svd.matrixU() * svd.matrixV().transpose()).transpose();
+  sky.kind = SkyKind::map;
+  sky.name = fmt::format("map '{}', {} x {}", path.filename().string(), sky.map->width(),
+                         sky.map->height());
+  sky.scale.setConstant(static_cast<float>(emitter.number_or("scale", 1.0)));
+  if (!(sky.scale >= 0.0f).all()) emitter.fail("has a scale below 0");
+}
+
+void add_directional(const MitsubaNode& emitter, MitsubaColors& colors, Scene& scene) {
+  const MitsubaNode* along = emitter.property("direction");
+  const Eigen::Affine3d to_world = read_to_world(emitter);
+  const Eigen::Vector3d way =
+      to_world.linear() * (along ? read_mitsuba_point(*along) : Eigen::Vector3d::UnitZ());
+  if (!(way.stableNorm() > 0.0)) emitter.fail("has a direction without length");
+  sky_of(scene).sun = Sun{.direction = -way.stableNormalized(),
+                          .irradiance = colors.positive_or(emitter, "irradiance", 1.0f)};
+}
+
+}  // namespace
+
+bool add_mitsuba_sky(const MitsubaNode& emitter, const MitsubaTree& tree, Scene& scene,
+                     Remarks& remarks) {
+  const bool is_dome = emitter.type == "constant" || emitter.type == "envmap";
+  if (!is_dome && emitter.type != "directional") return false;
+  if (is_dome ? has_dome(scene) : scene.sky && scene.sky->sun) {
+    remarks.add(
+        fmt::format("A scene has one {} here; further ones were left out", is_dome ? "sky" : "sun"),
+        emitter.label());
+    return true;
+  }
+  MitsubaColors colors(tree, remarks);
+  if (emitter.type == "directional") {
+    add_directional(emitter, colors, scene);
+    remarks.add("Directional emitters became a sun, a disc 0.53 degrees across", emitter.label());
+    return true;
+  }
+  Sky& sky = sky_of(scene);
+  if (emitter.type == "envmap") {
+    add_map(emitter, tree, sky);
+  } else {
+    sky.name = "uniform all around";
+    sky.scale = sky.ground = colors.positive_or(emitter, "radiance", 1.0f);
+  }
+  return true;
+}
+
+}  // namespace lightwell

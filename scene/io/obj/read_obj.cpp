@@ -1,0 +1,211 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "scene/errors.h"
+#include "scene/io/convex_cut.h"
+#include "scene/io/default_material.h"
+#include "scene/io/mesh_file.h"
+#include "scene/io/obj/obj_file.h"
+#include "scene/io/obj/obj_materials.h"
+#include "scene/io/polygon.h"
+#include "scene/io/read_scene.h"
+#include "scene/io/remarks.h"
+#include "scene/io/text_file.h"
+
+namespace lightwell {
+namespace {
+
+// "mtllib a.mtl b.mtl" names two files, "mtllib my room.mtl" usually one.
+std::vector<std::filesystem::path> files_named(const std::filesystem::path& folder,
+                                               std::string names) {
+  std::replace(names.begin(), names.end(), '\\', '/');
+  std::error_code error;
+  if (std::filesystem::is_regular_file(folder / names, error)) return {folder / names};
+  std::vector<std::filesystem::path> files;
+  std::string_view rest = names;
+  for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) {
+    files.push_back(folder / word);
+  }
+  return files;
+}
+
+std::vector<Material> read_materials(const std::filesystem::path& path, const ObjContent& content,
+                                     std::vector<std::string>& notes) {
+  std::vector<Material> materials;
+  for (const std::string& names : content.material_files) {
+    for (const auto& file : files_named(path.parent_path(), names)) {
+      std::error_code error;
+      if (!std::filesystem::is_regular_file(file, error)) {
+        notes.push_back(fmt::format(
+            "Material file '{}' is missing; its materials get a diffuse reflectance of 0.5.",
+            file.string()));
+        continue;
+      }
+      auto read = read_obj_materials(file, notes);
+      materials.insert(materials.end(), std::make_move_iterator(read.begin()),
+                       std::make_move_iterator(read.end()));
+    }
+  }
+  return materials;
+}
+
+// The file's materials in the order of their first use; -1, the faces without one, maps to the
+// default.
+std::map<int, int> take_materials(const ObjContent& content, std::vector<Material> available,
+                                  Scene& scene) {
+  std::map<int, int> taken;
+  std::size_t faces_without = 0;
+  for (const ObjFace& face : content.faces) {
+    faces_without += face.material < 0;
+    const auto [entry, is_new] =
+        taken.emplace(face.material, static_cast<int>(scene.materials.size()));
+    if (!is_new) continue;
+    Material material = default_material(scene.bands);
+    if (face.material >= 0) {
+      const auto& name = content.material_names[static_cast<std::size_t>(face.material)];
+      const auto found = std::find_if(available.begin(), available.end(),
+                                      [&](const Material& m) { return m.name == name; });
+      if (found != available.end()) {
+        material = *found;
+      } else {
+        material.name = name;
+        scene.notes.push_back(fmt::format(
+            "Material '{}' is not defined; it gets a diffuse reflectance of 0.5.", name));
+      }
+    }
+    scene.materials.push_back(std::move(material));
+  }
+  if (faces_without > 0) {
+    scene.notes.push_back(fmt::format("{} {} no material and got a diffuse reflectance of 0.5.",
+                                      faces_without,
+                                      faces_without == 1 ? "polygon names" : "polygons name"));
+  }
+  return taken;
+}
+
+// At the corners of a face; none unless all have some.
+UvLoop uv_of(const ObjContent& content, const ObjFace& face) {
+  UvLoop uv;
+  for (std::size_t i = face.first; i < face.first + face.count; ++i) {
+    const int at = i < content.corner_uv.size() ? content.corner_uv[i] : -1;
+    if (at < 0) return {};
+    uv.push_back(content.uv[static_cast<std::size_t>(at)]);
+    if (!uv.back().allFinite()) return {};
+  }
+  return uv;
+}
+
+// Of a face's corners; none if one has none.
+NormalLoop normals_of(const ObjContent& content, const ObjFace& face) {
+  NormalLoop normals;
+  for (std::size_t i = face.first; i < face.first + face.count; ++i) {
+    const int normal = i < content.corner_normals.size() ? content.corner_normals[i] : -1;
+    if (normal < 0) return {};
+    normals.push_back(content.normals[static_cast<std::size_t>(normal)]);
+  }
+  return normals;
+}
+
+// Whether the normals at the corners lie on the other side than the order of the corners says.
+bool turned_by_normals(const ObjContent& content, const ObjFace& face, const Loop& loop) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = face.first; i < face.first + face.count; ++i) {
+    const int normal = i < content.corner_normals.size() ? content.corner_normals[i] : -1;
+    if (normal >= 0) sum += content.normals[static_cast<std::size_t>(normal)];
+  }
+  return loop.size() >= 3 && area_vector(loop).dot(sum) < 0.0;
+}
+
+void build_surfaces(const ObjContent& content, const std::map<int, int>& materials,
+                    MeshMaterials wanted, MeshFronts fronts, Scene& scene, FilePolygons& polygons) {
+  // Of a material that comes from elsewhere it is not known here whether it shows a picture.
+  const auto keeps_uv = [&](int material) {
+    const Material& m = scene.materials[static_cast<std::size_t>(material)];
+    return wanted == MeshMaterials::with_uv || m.texture || m.mask;
+  };
+  std::map<std::pair<int, int>, std::size_t> surface_of;  // (group, material)
+  std::vector<std::pair<int, int>> keys;
+  std::vector<MeshBuilder> meshes;
+  std::vector<std::vector<int>> polygons_of;  // by mesh, then facet
+  std::map<int, std::set<int>> materials_of_group;
+  const bool by_normals = fronts == MeshFronts::from_normals;
+  polygons.has_normals = by_normals && !content.normals.empty();
+  for (const ObjFace& face : content.faces) {
+    const std::pair key(face.group, materials.at(face.material));
+    const auto [entry, is_new] = surface_of.emplace(key, meshes.size());
+    if (is_new) {
+      keys.push_back(key);
+      meshes.emplace_back();
+      polygons_of.emplace_back();
+      materials_of_group[key.first].insert(key.second);
+    }
+    Loop loop;
+    for (std::size_t i = 0; i < face.count; ++i) {
+      loop.push_back(content.vertices[static_cast<std::size_t>(content.corners[face.first + i])]);
+    }
+    UvLoop uv = keeps_uv(key.second) ? uv_of(content, face) : UvLoop{};
+    NormalLoop normals = normals_of(content, face);
+    if (by_normals && turned_by_normals(content, face, loop)) {
+      std::reverse(loop.begin(), loop.end());
+      std::reverse(uv.begin(), uv.end());
+      std::reverse(normals.begin(), normals.end());
+    }
+    MeshBuilder& mesh = meshes[entry->second];
+    add_repaired(mesh, std::move(loop), polygons.repairs, std::move(uv), std::move(normals));
+    polygons_of[entry->second].resize(mesh.mesh().facets.size(), polygons.count);
+    ++polygons.count;
+  }
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (meshes[i].empty()) continue;
+    const auto [group, material] = keys[i];
+    const std::string& name = content.groups[static_cast<std::size_t>(group)];
+    const bool alone = materials_of_group[group].size() == 1;
+    const std::string& of = scene.materials[static_cast<std::size_t>(material)].name;
+    scene.surfaces.push_back({.name = alone ? name : fmt::format("{} ({})", name, of),
+                              .material = material,
+                              .shape = meshes[i].mesh()});
+    polygons.of_facet.insert(polygons.of_facet.end(), polygons_of[i].begin(), polygons_of[i].end());
+  }
+  for (const std::string& note : polygons.repairs.notes()) scene.notes.push_back(note + ".");
+}
+
+}  // namespace
+
+Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, MeshMaterials wanted,
+                    FilePolygons* polygons, MeshFronts fronts) {
+  const TextFile file(path);
+  ObjContent content = read_obj_content(file, metres_per_unit);
+  Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
+  if (content.free_form > 0) {
+    scene.notes.push_back(fmt::format(
+        "{} free-form curves and surfaces were left out; export polygons.", content.free_form));
+  }
+  std::map<int, int> materials = {{-1, 0}};
+  if (wanted == MeshMaterials::from_file) {
+    materials = take_materials(content, read_materials(path, content, scene.notes), scene);
+  } else {
+    for (ObjFace& face : content.faces) face.material = -1;
+    scene.materials.push_back(default_material(scene.bands));
+  }
+  FilePolygons found;
+  build_surfaces(content, materials, wanted, fronts, scene, found);
+  Remarks remarks;
+  remark_pictures_without_uv(scene, remarks);
+  for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);
+  scene.dropped_polygons = found.repairs.dropped();
+  if (polygons) *polygons = std::move(found);
+  if (scene.surfaces.empty()) {
+    throw InputError(fmt::format("{}: the file has no polygons with an area", path.string()));
+  }
+  validate(scene);
+  return scene;
+}
+
+Scene read_obj(const std::filesystem::path& path, double metres_per_unit) {
+  return read_obj_file(path, metres_per_unit, MeshMaterials::from_file);
+}
+
+}  // namespace lightwell

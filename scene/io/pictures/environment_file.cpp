@@ -1,0 +1,225 @@
+#include "scene/io/pictures/environment_file.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/errors.h"
+#include "scene/io/text_file.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
+
+struct Pixels {
+  int width = 0, height = 0;
+  BandArray rgb{};
+};
+
+[[noreturn]] void fail(const std::filesystem::path& path, std::string_view problem) {
+  throw InputError(fmt::format("{}: {}", path.string(), problem));
+}
+
+void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
+  if (width < 1 || height < 1 || width > most_pixels || height > most_pixels / width) {
+    fail(path, fmt::format("has {} x {} pixels; an environment map has at most {}", width, height,
+                           most_pixels));
+  }
+}
+
+Pixels read_exr_pixels(const std::filesystem::path& path) {
+  try {
+    Imf::InputFile file(path.string().c_str());
+    const auto window = file.header().dataWindow();
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+    check_size(path, width, height);
+    Pixels pixels{.width = static_cast<int>(width),
+                  .height = static_cast<int>(height),
+                  .rgb = BandArray::Zero(width * height, 3)};
+    Imf::FrameBuffer buffer;
+    constexpr std::array names = {"R", "G", "B"};
+    constexpr std::ptrdiff_t pixel = 3 * sizeof(float);
+    // The frame buffer counts pixels from the file's own origin.
+    const std::ptrdiff_t origin = window.min.x + window.min.y * std::ptrdiff_t{width};
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const Imf::Channel* channel = file.header().channels().findChannel(names[k]);
+      if (!channel || channel->xSampling != 1 || channel->ySampling != 1) {
+        fail(path, fmt::format("has no channel '{}' at full resolution; save it as RGB", names[k]));
+      }
+      auto* first = reinterpret_cast<char*>(pixels.rgb.data() + k);
+      buffer.insert(names[k], Imf::Slice(Imf::FLOAT, first - pixel * origin, pixel,
+                                         static_cast<std::size_t>(pixel * width)));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    return pixels;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail(path, fmt::format("cannot be read as OpenEXR: {}", error.what()));
+  }
+}
+
+// A picture of RADIANCE (Ward 1991, "Real pixels"): lines of text, an empty one, the resolution,
+// and rows of shared-exponent pixels, packed by runs or not.
+class RgbeFile {
+ public:
+  explicit RgbeFile(const std::filesystem::path& path) : path_(path), file_(path) {
+    rest_ = file_.text();
+  }
+
+  Pixels read() {
+    if (!rest_.starts_with("#?"))
+      fail(path_, "is no RADIANCE picture: it does not begin with '#?'");
+    double exposure = 1.0;
+    for (std::string_view text = line(); !text.empty(); text = line()) {
+      if (text.starts_with("FORMAT=") && text != "FORMAT=32-bit_rle_rgbe") {
+        fail(path_, fmt::format("is in the {}; only FORMAT=32-bit_rle_rgbe is read", text));
+      }
+      constexpr std::string_view key = "EXPOSURE=";
+      if (text.starts_with(key)) exposure *= number(text.substr(key.size()));
+    }
+    const auto [width, height] = resolution(line());
+    Pixels pixels{.width = width, .height = height};
+    pixels.rgb = BandArray::Zero(std::int64_t{width} * height, 3);
+    std::vector<std::uint8_t> row(4 * static_cast<std::size_t>(width));
+    for (int y = 0; y < height; ++y) {
+      read_row(row);
+      for (int x = 0; x < width; ++x) {
+        const std::uint8_t* p = row.data() + 4 * x;
+        if (p[3] == 0) continue;
+        constexpr int bias = 128 + 8;
+        for (int k = 0; k < 3; ++k) {
+          pixels.rgb(std::int64_t{y} * width + x, k) =
+              static_cast<float>(std::ldexp(p[k] + 0.5, p[3] - bias) / exposure);
+        }
+      }
+    }
+    return pixels;
+  }
+
+ private:
+  std::string_view line() {
+    const auto end = rest_.find('\n');
+    if (end == std::string_view::npos) fail(path_, "ends within its header");
+    std::string_view text = rest_.substr(0, end);
+    rest_.remove_prefix(end + 1);
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    return text;
+  }
+
+  double number(std::string_view text) const {
+    const auto value = parse_finite(trimmed(text));
+    if (!value || !(*value > 0.0)) {
+      fail(path_, fmt::format("has an EXPOSURE of '{}', which is no number above 0", text));
+    }
+    return *value;
+  }
+
+  std::pair<int, int> resolution(std::string_view text) const {
+    std::string_view rest = text;
+    std::array<std::int64_t, 2> size{};
+    bool is_sound = true;
+    for (std::size_t i = 0; i < 2; ++i) {
+      is_sound = is_sound && next_word(rest) == (i == 0 ? "-Y" : "+X");
+      const std::string_view word = next_word(rest);
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), size[i]);
+      is_sound = is_sound && error == std::errc() && end == word.data() + word.size();
+    }
+    if (!is_sound || !trimmed(rest).empty()) {
+      fail(path_, fmt::format("has the resolution '{}'; only '-Y height +X width' is read", text));
+    }
+    check_size(path_, size[1], size[0]);
+    return {static_cast<int>(size[1]), static_cast<int>(size[0])};
+  }
+
+  std::uint8_t byte() {
+    if (rest_.empty()) fail(path_, "ends before its last pixel");
+    const auto value = static_cast<std::uint8_t>(rest_.front());
+    rest_.remove_prefix(1);
+    return value;
+  }
+
+  void read_row(std::span<std::uint8_t> row) {
+    const std::size_t width = row.size() / 4;
+    constexpr std::size_t shortest_packed = 8, longest_packed = 32767;
+    const bool may_be_packed = width >= shortest_packed && width <= longest_packed;
+    if (may_be_packed && rest_.size() >= 4 && rest_[0] == 2 && rest_[1] == 2 &&
+        (static_cast<std::uint8_t>(rest_[2]) & 0x80) == 0) {
+      rest_.remove_prefix(4);
+      for (std::size_t k = 0; k < 4; ++k) read_component(row, k, width);
+      return;
+    }
+    std::size_t x = 0;
+    int shift = 0;
+    while (x < width) {
+      std::array<std::uint8_t, 4> p{};
+      for (std::uint8_t& value : p) value = byte();
+      if (p[0] == 1 && p[1] == 1 && p[2] == 1 && x > 0) {  // the last pixel again
+        const std::size_t count = std::size_t{p[3]} << shift;
+        if (shift > 16 || count > width - x) fail(path_, "has a run beyond the end of its row");
+        for (std::size_t i = 0; i < 4 * count; ++i) row[4 * x + i] = row[4 * x - 4 + i % 4];
+        x += count;
+        shift += 8;
+        continue;
+      }
+      std::copy(p.begin(), p.end(), row.begin() + static_cast<std::ptrdiff_t>(4 * x));
+      ++x;
+      shift = 0;
+    }
+  }
+
+  void read_component(std::span<std::uint8_t> row, std::size_t k, std::size_t width) {
+    for (std::size_t x = 0; x < width;) {
+      const std::uint8_t code = byte();
+      constexpr std::uint8_t longest = 128;
+      const bool is_run = code > longest;
+      const std::size_t count = is_run ? code - longest : code;
+      if (count == 0 || count > width - x) fail(path_, "has a run beyond the end of its row");
+      const std::uint8_t same = is_run ? byte() : std::uint8_t{0};
+      for (std::size_t i = 0; i < count; ++i) row[4 * x++ + k] = is_run ? same : byte();
+    }
+  }
+
+  const std::filesystem::path& path_;
+  TextFile file_;
+  std::string_view rest_;
+};
+
+}  // namespace
+
+std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) fail(path, "there is no such file");
+  const std::string extension = lower_extension(path);
+  Pixels pixels;
+  if (extension == ".exr") {
+    pixels = read_exr_pixels(path);
+  } else if (extension == ".hdr" || extension == ".pic" || extension == ".rgbe") {
+    pixels = RgbeFile(path).read();
+  } else {
+    fail(path, "is no environment map that is read: give an .exr or .hdr");
+  }
+  try {
+    return std::make_shared<const EnvironmentMap>(pixels.width, pixels.height,
+                                                  std::move(pixels.rgb));
+  } catch (const std::invalid_argument& error) {
+    fail(path, error.what());
+  }
+}
+
+}  // namespace lightwell

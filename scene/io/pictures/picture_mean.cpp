@@ -1,0 +1,219 @@
+#include "scene/io/pictures/picture_mean.h"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <array>
+#include <cmath>
+#include <csetjmp>
+#include <cstdio>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+// After <cstdio>, which it needs but does not include.
+#include <jpeglib.h>
+
+#include "scene/errors.h"
+#include "scene/io/text_file.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double most_pixels = 1e8;  // 10 000 x 10 000: more takes seconds and gigabytes
+
+// Eight bits for each of r, g, b and alpha, rows from the top.
+struct Pixels {
+  std::size_t width = 0, height = 0, count = 0;
+  std::vector<unsigned char> bytes{};
+};
+
+void check_size(double width, double height, const std::string& called) {
+  if (width * height <= most_pixels) return;
+  throw InputError(fmt::format("{} has {} x {} pixels; at most {:g} are read", called, width,
+                               height, most_pixels));
+}
+
+[[noreturn]] void fail_damaged(const std::string& called, const char* why) {
+  throw InputError(fmt::format("{} is no picture that can be decoded: {}", called, why));
+}
+
+Pixels decode_png(std::string_view bytes, const std::string& called) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) {
+    fail_damaged(called, image.message);
+  }
+  struct Guard {
+    png_image& image;
+    ~Guard() { png_image_free(&image); }
+  } const guard{image};
+  check_size(image.width, image.height, called);
+  image.format = PNG_FORMAT_RGBA;
+  image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // as the 8-bit ones, where the file does not say
+  Pixels pixels{.width = image.width,
+                .height = image.height,
+                .count = std::size_t{image.width} * image.height};
+  pixels.bytes.resize(PNG_IMAGE_SIZE(image));
+  if (!png_image_finish_read(&image, nullptr, pixels.bytes.data(), 0, nullptr)) {
+    fail_damaged(called, image.message);
+  }
+  return pixels;
+}
+
+struct JpegError {
+  jpeg_error_mgr base{};  // first, so that libjpeg's pointer to it is a pointer to this
+  std::jmp_buf jump{};
+  std::array<char, JMSG_LENGTH_MAX> message{};
+};
+
+void leave(j_common_ptr decoder) {
+  auto* error = reinterpret_cast<JpegError*>(decoder->err);
+  decoder->err->format_message(decoder, error->message.data());
+  std::longjmp(error->jump, 1);
+}
+
+// Between setjmp and longjmp nothing with a destructor is made: `row` and `rgb` are the caller's.
+bool read_jpeg(std::string_view bytes, JpegError& error, jpeg_decompress_struct& decoder,
+               std::vector<unsigned char>& rgb) {
+  if (setjmp(error.jump)) return false;
+  jpeg_mem_src(&decoder, reinterpret_cast<const unsigned char*>(bytes.data()),
+               static_cast<unsigned long>(bytes.size()));
+  jpeg_read_header(&decoder, TRUE);
+  if (static_cast<double>(decoder.image_width) * decoder.image_height > most_pixels) return true;
+  decoder.out_color_space = JCS_RGB;
+  jpeg_start_decompress(&decoder);
+  const std::size_t width = std::size_t{3} * decoder.output_width;
+  rgb.resize(width * decoder.output_height);
+  while (decoder.output_scanline < decoder.output_height) {
+    unsigned char* row = rgb.data() + width * decoder.output_scanline;
+    jpeg_read_scanlines(&decoder, &row, 1);
+  }
+  return true;
+}
+
+Pixels decode_jpeg(std::string_view bytes, const std::string& called) {
+  JpegError error;
+  jpeg_decompress_struct decoder{};
+  decoder.err = jpeg_std_error(&error.base);
+  error.base.error_exit = &leave;
+  error.base.emit_message = [](j_common_ptr, int) {};  // warnings: a little of it is missing
+  jpeg_create_decompress(&decoder);
+  std::vector<unsigned char> rgb;
+  const bool is_read = read_jpeg(bytes, error, decoder, rgb);
+  const double width = decoder.image_width, height = decoder.image_height;
+  jpeg_destroy_decompress(&decoder);
+  if (!is_read) fail_damaged(called, error.message.data());
+  check_size(width, height, called);
+  Pixels pixels{.width = static_cast<std::size_t>(width),
+                .height = static_cast<std::size_t>(height),
+                .count = rgb.size() / 3};
+  pixels.bytes.reserve(4 * pixels.count);
+  for (std::size_t p = 0; p < pixels.count; ++p) {
+    pixels.bytes.insert(pixels.bytes.end(), {rgb[3 * p], rgb[3 * p + 1], rgb[3 * p + 2], 255});
+  }
+  return pixels;
+}
+
+// What each of the 256 codes stands for.
+std::array<double, 256> linear_values(PictureCode code) {
+  std::array<double, 256> linear{};
+  for (std::size_t i = 0; i < linear.size(); ++i) {
+    const double value = static_cast<double>(i) / 255.0;
+    linear[i] = code == PictureCode::srgb ? linear_from_srgb(value) : value;
+  }
+  return linear;
+}
+
+PictureMean mean_of(const Pixels& pixels, PictureCode code) {
+  const std::array<double, 256> linear = linear_values(code);
+  PictureMean mean{.alpha = 0.0};
+  for (std::size_t p = 0; p < pixels.count; ++p) {
+    const unsigned char* at = &pixels.bytes[4 * p];
+    const double alpha = at[3] / 255.0;
+    const Eigen::Array3d color(linear[at[0]], linear[at[1]], linear[at[2]]);
+    mean.color += color;
+    mean.covered_color += alpha * color;
+    mean.alpha += alpha;
+  }
+  const auto count = static_cast<double>(pixels.count);
+  mean.color /= count;
+  mean.covered_color =
+      mean.alpha > 0.0 ? Eigen::Array3d(mean.covered_color / mean.alpha) : mean.color;
+  mean.alpha /= count;
+  return mean;
+}
+
+std::shared_ptr<const Texture> texture_of(const Pixels& pixels, std::size_t first_channel,
+                                          std::size_t channels, PictureCode code) {
+  std::array<Texture::Code, 256> codes{};
+  const std::array<double, 256> linear = linear_values(code);
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    codes[i] = Texture::encode(static_cast<float>(linear[i]));
+  }
+  std::vector<Texture::Code> texels;
+  texels.reserve(channels * pixels.count);
+  for (std::size_t p = 0; p < pixels.count; ++p) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      texels.push_back(codes[pixels.bytes[4 * p + first_channel + c]]);
+    }
+  }
+  return std::make_shared<const Texture>(static_cast<int>(pixels.width),
+                                         static_cast<int>(pixels.height),
+                                         static_cast<int>(channels), std::move(texels));
+}
+
+Picture picture_of(const Pixels& pixels, PictureCode code) {
+  Picture picture{.color = texture_of(pixels, 0, 3, code), .mean = mean_of(pixels, code)};
+  if (picture.mean.alpha < 1.0) picture.alpha = texture_of(pixels, 3, 1, PictureCode::linear);
+  return picture;
+}
+
+std::optional<Pixels> decode(std::string_view bytes, const std::string& called) {
+  if (bytes.starts_with("\x89PNG")) return decode_png(bytes, called);
+  if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes, called);
+  return std::nullopt;
+}
+
+std::string name_of(const std::filesystem::path& path) {
+  return fmt::format("{}: the file", path.string());
+}
+
+}  // namespace
+
+double linear_from_srgb(double value) {
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+std::optional<PictureMean> picture_mean(std::string_view bytes, PictureCode code,
+                                        const std::string& called) {
+  const auto pixels = decode(bytes, called);
+  if (!pixels) return std::nullopt;
+  return mean_of(*pixels, code);
+}
+
+std::optional<Picture> read_picture(std::string_view bytes, PictureCode code,
+                                    const std::string& called) {
+  const auto pixels = decode(bytes, called);
+  if (!pixels) return std::nullopt;
+  return picture_of(*pixels, code);
+}
+
+std::optional<PictureMean> PictureFiles::mean(const std::filesystem::path& path, PictureCode code) {
+  const auto known = known_.find({path, code});
+  if (known != known_.end()) return known->second;
+  const TextFile file(path);
+  const auto result = picture_mean(file.text(), code, name_of(path));
+  known_.emplace(std::pair(path, code), result);
+  return result;
+}
+
+std::optional<Picture> PictureFiles::picture(const std::filesystem::path& path, PictureCode code) {
+  const auto known = pictures_.find({path, code});
+  if (known != pictures_.end()) return known->second;
+  const TextFile file(path);
+  return pictures_.emplace(std::pair(path, code), read_picture(file.text(), code, name_of(path)))
+      .first->second;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,138 @@
+#include "scene/io/radiance/radiance_expression.h"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace lightwell {
+namespace {
+
+double chosen(double condition, double yes, double no) {
+  return condition > 0.0 ? yes : no;
+}
+
+// Cubic curves over t in [0,1] by their coefficients; Foley et al. 1990, section 11.2.
+double hermite(double p0, double p1, double r0, double r1, double t) {
+  return p0 * ((2 * t - 3) * t * t + 1) + p1 * (3 - 2 * t) * t * t + r0 * ((t - 2) * t + 1) * t +
+         r1 * (t - 1) * t * t;
+}
+
+double bezier(double p1, double p2, double p3, double p4, double t) {
+  const double s = 1 - t;
+  return p1 * s * s * s + 3 * p2 * t * s * s + 3 * p3 * t * t * s + p4 * t * t * t;
+}
+
+double bspline(double p1, double p2, double p3, double p4, double t) {
+  const double s = 1 - t;
+  return (p1 * s * s * s + p2 * ((3 * t - 6) * t * t + 4) + p3 * (((3 - 3 * t) * t + 3) * t + 1) +
+          p4 * t * t * t) /
+         6;
+}
+
+void define_operators(mu::Parser& parser) {
+  parser.EnableBuiltInOprt(false);
+  parser.ClearInfixOprt();
+  parser.ClearPostfixOprt();
+  parser.ClearConst();
+  parser.ClearFun();
+  constexpr int sum = 1, product = 2, power = 3, sign = 4;
+  parser.DefineOprt(
+      "+", [](double a, double b) { return a + b; }, sum);
+  parser.DefineOprt(
+      "-", [](double a, double b) { return a - b; }, sum);
+  parser.DefineOprt(
+      "*", [](double a, double b) { return a * b; }, product);
+  parser.DefineOprt(
+      "/", [](double a, double b) { return a / b; }, product);
+  parser.DefineOprt(
+      "^", [](double a, double b) { return std::pow(a, b); }, power, mu::oaRIGHT);
+  parser.DefineInfixOprt(
+      "-", [](double a) { return -a; }, sign);
+  parser.DefineInfixOprt(
+      "+", [](double a) { return a; }, sign);
+}
+
+void define_functions(mu::Parser& parser) {
+  using One = double (*)(double);
+  const std::initializer_list<std::pair<const char*, One>> functions = {
+      {"sin", std::sin},   {"cos", std::cos},     {"tan", std::tan},     {"asin", std::asin},
+      {"acos", std::acos}, {"atan", std::atan},   {"exp", std::exp},     {"log", std::log},
+      {"sqrt", std::sqrt}, {"log10", std::log10}, {"floor", std::floor}, {"ceil", std::ceil},
+      {"abs", std::abs}};
+  for (const auto& [name, function] : functions) parser.DefineFun(name, function);
+  parser.DefineFun("atan2", [](double y, double x) { return std::atan2(y, x); });
+  parser.DefineFun("min", [](double a, double b) { return std::min(a, b); });
+  parser.DefineFun("max", [](double a, double b) { return std::max(a, b); });
+  parser.DefineFun("sq", [](double x) { return x * x; });
+  parser.DefineFun("if", chosen);
+  parser.DefineFun("hermite", hermite);
+  parser.DefineFun("bezier", bezier);
+  parser.DefineFun("bspline", bspline);
+  parser.DefineConst("PI", std::numbers::pi);
+}
+
+// What of a formula is fit for a message.
+std::string beginning(const std::string& text) {
+  constexpr std::size_t longest = 80;
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
+
+}  // namespace
+
+struct RadianceExpression::Impl {
+  mu::Parser parser;
+  std::vector<double> values;  // where the parser looks for its variables
+  std::string text;
+  RadiancePlace place;
+};
+
+RadianceExpression::RadianceExpression(const std::string& text,
+                                       const std::vector<std::string>& variables,
+                                       const RadiancePlace& place)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->text = text;
+  impl_->place = place;
+  impl_->values.resize(variables.size());
+  try {
+    define_operators(impl_->parser);
+    define_functions(impl_->parser);
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      impl_->parser.DefineVar(variables[i], &impl_->values[i]);
+    }
+    impl_->parser.SetExpr(text);
+    impl_->parser.Eval();  // whatever is wrong with the text shows here
+    if (impl_->parser.GetNumResults() != 1) {
+      place.fail(fmt::format("the formula '{}' gives several values", beginning(text)));
+    }
+  } catch (const mu::Parser::exception_type& error) {
+    place.fail(fmt::format("the formula '{}' cannot be read: {}", beginning(text),
+                           beginning(error.GetMsg())));
+  }
+}
+
+RadianceExpression::~RadianceExpression() = default;
+RadianceExpression::RadianceExpression(RadianceExpression&&) noexcept = default;
+
+double RadianceExpression::value_or_nan(std::span<const double> values) const {
+  std::ranges::copy(values, impl_->values.begin());
+  try {
+    return impl_->parser.Eval();
+  } catch (const mu::Parser::exception_type&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+double RadianceExpression::operator()(std::span<const double> values) const {
+  const double value = value_or_nan(values);
+  if (!std::isfinite(value)) {
+    impl_->place.fail(
+        fmt::format("the formula '{}' has no finite value everywhere", beginning(impl_->text)));
+  }
+  return value;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,286 @@
+// What becomes of each of RADIANCE's material types; Ward & Shakespeare, Rendering with Radiance,
+// 1998, and the reference manual.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+
+#include "scene/io/glossy.h"
+#include "scene/io/radiance/radiance_materials.h"
+#include "scene/optics.h"
+
+namespace lightwell {
+namespace {
+
+using Maybe = std::optional<Material>;
+
+constexpr double window_glass = 1.52;
+
+struct Given {
+  const RadiancePrimitive& p;
+  const RadiancePattern& pattern;
+  Remarks& remarks;
+
+  void remark(const char* what) const { remarks.add(what, p.name); }
+
+  // Three real arguments, at least 0.
+  Spectrum rgb(std::size_t first) const {
+    Spectrum result(3);
+    for (int k = 0; k < 3; ++k) {
+      const double value = p.reals[first + static_cast<std::size_t>(k)];
+      result[k] = static_cast<float>(value);
+      if (!(value >= 0.0 && std::isfinite(result[k]))) {
+        p.fail(fmt::format("has the colour component {}; it must be at least 0", value));
+      }
+    }
+    return result;
+  }
+  // The same, multiplied by the pattern and at most 1.
+  Spectrum color(std::size_t first) const {
+    const Spectrum result = rgb(first) * pattern.factor;
+    if ((result > 1.0f).any()) remark("Colours beyond 1, which would make light, were cut off");
+    return result.min(1.0f);
+  }
+  float share(std::size_t i, const char* what) const {
+    const double value = p.reals[i];
+    if (!(value >= 0.0 && value <= 1.0)) {
+      p.fail(fmt::format("has the {} {}; it must lie in 0 to 1", what, value));
+    }
+    return static_cast<float>(value);
+  }
+  double roughness(std::size_t i) const {
+    const double value = p.reals[i];
+    if (!(value >= 0.0)) p.fail(fmt::format("has the roughness {}; it must be positive", value));
+    return value;
+  }
+};
+
+Spectrum zero() {
+  return Spectrum::Zero(3);
+}
+
+Material opaque(const Spectrum& reflectance) {
+  return {.reflectance = reflectance, .specular = zero(), .emission = zero()};
+}
+
+Material clear(double index, const Spectrum& tint) {
+  Material material = opaque(zero());
+  material.dielectric = Dielectric{.index_of_refraction = static_cast<float>(index), .tint = tint};
+  return material;
+}
+
+// Diffuse light and a highlight. Ward's roughness (1992) is the width of a Gaussian of slopes, and
+// GGX's alpha that of a lobe with the same middle.
+Material glossy(const Given& given, const Spectrum& diffuse, const Spectrum& specular,
+                double roughness) {
+  Material material = opaque(diffuse);
+  if (!(specular > 0.0f).any()) return material;
+  if (roughness > glossy_alpha) {
+    given.remark("Highlights of a roughness above 0.5 were read as diffuse light");
+  }
+  add_highlight(material, specular, roughness);
+  // Rounding alone could make this exceed 1.
+  material.reflectance = material.reflectance.min(1.0f - material.specular);
+  return material;
+}
+
+// plastic and metal: red green blue specularity roughness [roughness of the other direction].
+Material reflecting(const Given& given, bool is_metal, double roughness) {
+  const Spectrum color = given.color(0);
+  const float specular = given.share(3, "specularity");
+  const Spectrum highlight = specular * (is_metal ? color : Spectrum(Spectrum::Ones(3)));
+  return glossy(given, (1.0f - specular) * color, highlight, roughness);
+}
+
+Maybe plastic_or_metal(const Given& given) {
+  const bool is_metal = given.p.type.starts_with("metal");
+  if (!given.p.type.ends_with('2')) {
+    given.p.require_reals(5);
+    return reflecting(given, is_metal, given.roughness(4));
+  }
+  given.p.require_reals(6);
+  return reflecting(given, is_metal, std::max(given.roughness(4), given.roughness(5)));
+}
+
+// plasfunc, metfunc and their like: the highlight is a function that only RADIANCE evaluates.
+Maybe with_function(const Given& given) {
+  if (given.p.reals.size() < 4) given.p.fail("needs a colour and a specularity");
+  constexpr double wide = 1.0;
+  return reflecting(given, given.p.type.starts_with("met"), wide);
+}
+
+// red green blue specularity roughness transmissivity transmitted-specularity.
+Material translucent(const Given& given, std::size_t transmissivity, double roughness) {
+  const Spectrum color = given.color(0);
+  const float specular = given.share(3, "specularity");
+  const float passing = given.share(transmissivity, "transmissivity");
+  const float straight = given.share(transmissivity + 1, "transmitted specularity");
+  const Spectrum through = (1.0f - specular) * passing * straight * color;
+  if ((through[0] + through[1] + through[2]) / 3.0f >= mostly_clear) {
+    given.remark("Translucent materials that are mostly clear were read as panes");
+    return clear(1.0, through);
+  }
+  if (passing > 0.0f) given.remark("What passes through translucent materials was left out");
+  return glossy(given, (1.0f - specular) * (1.0f - passing) * color,
+                Spectrum::Constant(3, specular), roughness);
+}
+
+Maybe trans(const Given& given) {
+  if (given.p.type == "trans") {
+    given.p.require_reals(7);
+    return translucent(given, 5, given.roughness(4));
+  }
+  given.p.require_reals(8);
+  return translucent(given, 6, std::max(given.roughness(4), given.roughness(5)));
+}
+
+Maybe transfunc(const Given& given) {
+  if (given.p.reals.size() < 6) given.p.fail("needs a colour, a specularity and what passes");
+  constexpr double wide = 1.0;
+  return translucent(given, 4, wide);
+}
+
+// Ashikhmin & Shirley 2000: diffuse and specular colours and the exponents of the highlight.
+Maybe ashik2(const Given& given) {
+  given.p.require_reals(8);
+  const double exponent = std::min(given.p.reals[6], given.p.reals[7]);
+  if (!(exponent >= 0.0)) given.p.fail("has a negative exponent");
+  Spectrum diffuse = given.color(0), specular = given.color(3);
+  const Spectrum excess = (diffuse + specular).max(1.0f);
+  return glossy(given, diffuse / excess, specular / excess, std::sqrt(2.0 / (exponent + 2.0)));
+}
+
+double index_of(const Given& given, std::size_t i) {
+  const double index = given.p.reals[i];
+  if (!(index >= lowest_index && index <= highest_index)) {
+    given.p.fail(fmt::format("has the index of refraction {}; glass has 1.52", index));
+  }
+  return index;
+}
+
+// A pane of which the file gives the transmissivity t, the share that crosses it once inside. With
+// its two faces (1-F)^2 t / (1 - F^2 t^2) pass at normal incidence.
+Maybe glass(const Given& given) {
+  if (given.p.reals.size() != 4) given.p.require_reals(3);
+  const double index = given.p.reals.size() == 4 ? index_of(given, 3) : window_glass;
+  const auto F = static_cast<float>(fresnel_reflectance(1.0, index));
+  const Spectrum t = given.color(0);
+  const Spectrum passed = (1.0f - F) * (1.0f - F) * t / (1.0f - F * F * t.square());
+  Material material = opaque(zero());
+  material.dielectric = thin_pane(index, passed / static_cast<float>(pane_transmittance(index)));
+  return material;
+}
+
+Maybe dielectric(const Given& given) {
+  const bool is_interface = given.p.type == "interface";
+  given.p.require_reals(is_interface ? 8 : 5);
+  const double outside = is_interface ? index_of(given, 7) : 1.0;
+  if ((given.rgb(0) != 1.0f).any()) {
+    given.remark("What dielectrics absorb along the way through them was left out");
+  }
+  return clear(index_of(given, 3) / outside, Spectrum::Ones(3));
+}
+
+Maybe mirror(const Given& given) {
+  given.p.require_reals(3);
+  Material material = opaque(zero());
+  material.specular = given.color(0);
+  material.one_sided = true;
+  return material;
+}
+
+Material shining(const Given& given, float scale) {
+  Material material = opaque(zero());
+  material.emission =
+      scale * static_cast<float>(std::numbers::pi) * given.rgb(0) * given.pattern.factor;
+  if (!material.emission.isFinite().all()) given.p.fail("has a radiance that is too large");
+  material.one_sided = true;
+  if (!given.pattern.is_known) {
+    given.remark("Lights whose pattern is not known shine as without it, so their light is wrong");
+  }
+  return material;
+}
+
+Maybe light(const Given& given) {
+  given.p.require_reals(given.p.type == "glow" ? 4 : 3);
+  if (given.p.type == "illum") {
+    given.remark("Illums were read as opaque lights, so what lies behind them is not seen");
+  }
+  return shining(given, 1.0f);
+}
+
+// A Lambertian emitter sends the share sin^2 of its power into the cone of that half angle.
+Maybe spotlight(const Given& given) {
+  given.p.require_reals(7);
+  const double angle = given.p.reals[3];
+  if (!(angle > 0.0)) given.p.fail(fmt::format("has a beam of {} degrees", angle));
+  given.remark("Spotlights shine to all sides, with the power of their beam");
+  const double half = std::min(angle, 180.0) * std::numbers::pi / 360.0;
+  return shining(given, static_cast<float>(std::sin(half) * std::sin(half)));
+}
+
+// The diffuse part of the front.
+Maybe by_diffuse_part(const Given& given) {
+  if (given.p.reals.size() < 3) {
+    given.remark("Materials whose data stand in other files got a diffuse reflectance of 0.5");
+    return opaque(Spectrum::Constant(3, 0.5f));
+  }
+  given.remark("Materials of measured or programmed scattering kept their diffuse part alone");
+  return opaque(given.color(0));
+}
+
+Maybe prism(const Given& given) {
+  given.remark("Prisms let light straight through");
+  return clear(1.0, Spectrum::Ones(3));
+}
+
+Maybe unseen(const Given&) {
+  return std::nullopt;
+}
+
+using Reader = Maybe (*)(const Given&);
+
+const std::map<std::string, Reader>& readers() {
+  static const std::map<std::string, Reader> table = {{"plastic", plastic_or_metal},
+                                                      {"metal", plastic_or_metal},
+                                                      {"plastic2", plastic_or_metal},
+                                                      {"metal2", plastic_or_metal},
+                                                      {"plasfunc", with_function},
+                                                      {"metfunc", with_function},
+                                                      {"plasdata", with_function},
+                                                      {"metdata", with_function},
+                                                      {"trans", trans},
+                                                      {"trans2", trans},
+                                                      {"transfunc", transfunc},
+                                                      {"transdata", transfunc},
+                                                      {"ashik2", ashik2},
+                                                      {"glass", glass},
+                                                      {"dielectric", dielectric},
+                                                      {"interface", dielectric},
+                                                      {"mirror", mirror},
+                                                      {"light", light},
+                                                      {"glow", light},
+                                                      {"illum", light},
+                                                      {"spotlight", spotlight},
+                                                      {"BRTDfunc", by_diffuse_part},
+                                                      {"WGMDfunc", by_diffuse_part},
+                                                      {"BSDF", by_diffuse_part},
+                                                      {"aBSDF", by_diffuse_part},
+                                                      {"prism1", prism},
+                                                      {"prism2", prism},
+                                                      {"mist", unseen},
+                                                      {"antimatter", unseen}};
+  return table;
+}
+
+}  // namespace
+
+std::optional<Material> read_radiance_material(const RadiancePrimitive& material,
+                                               const RadiancePattern& pattern, Remarks& remarks) {
+  return readers().at(material.type)({material, pattern, remarks});
+}
+
+}  // namespace lightwell

@@ -1,0 +1,202 @@
+#include "scene/io/radiance/radiance_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scene/errors.h"
+#include "scene/io/radiance/radiance_expression.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int deepest = 64;  // modifiers of modifiers; real scenes stay below ten
+
+// The value of a function that needs no function file and no place, such as ".5" or "A1/2".
+double constant_value(const std::string& formula, const RadiancePrimitive& of) {
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i <= of.reals.size(); ++i) names.push_back(fmt::format("A{}", i));
+  try {
+    return RadianceExpression(formula, names, of.place).value_or_nan(of.reals);
+  } catch (const InputError&) {
+    return std::nan("");
+  }
+}
+
+bool is_same(const RadiancePrimitive& a, const RadiancePrimitive& b) {
+  return a.type == b.type && a.name == b.name && a.strings == b.strings && a.reals == b.reals;
+}
+
+}  // namespace
+
+int RadianceMaterials::index_of(const std::string& name, const RadiancePrimitive& user) const {
+  if (name == radiance_void) return none;
+  const auto found = latest_.find(name);
+  if (found != latest_.end()) return found->second;
+  user.fail(fmt::format(
+      "has the modifier '{}', which nothing before it defines; if it stands in a file of its own, "
+      "list both files in a .rif: materials = ..., scene = ...",
+      name));
+}
+
+RadianceMaterials::Definition RadianceMaterials::aliased(const RadiancePrimitive& alias) const {
+  const int original = index_of(alias.strings.at(0), alias);
+  if (original == none) alias.fail("stands for 'void'; name a material");
+  Definition result = definitions_[static_cast<std::size_t>(original)];
+  result.index.reset();
+  result.primitive.name = alias.name;
+  if (alias.modifier != "inherit") result.parent = index_of(alias.modifier, alias);
+  return result;
+}
+
+void RadianceMaterials::define(const RadiancePrimitive& primitive) {
+  Definition definition{.primitive = primitive};
+  if (primitive.kind() == RadianceKind::alias) {
+    definition = aliased(primitive);
+  } else {
+    definition.parent = index_of(primitive.modifier, primitive);
+    std::size_t parts = 0;
+    if (primitive.kind() == RadianceKind::mixture) parts = 2;
+    if (primitive.type == "illum") parts = 1;
+    for (std::size_t i = 0; i < std::min(parts, primitive.strings.size()); ++i) {
+      definition.parts.push_back(index_of(primitive.strings[i], primitive));
+    }
+  }
+  const auto [entry, is_new] =
+      latest_.emplace(definition.primitive.name, static_cast<int>(definitions_.size()));
+  if (!is_new) {
+    // A file that is included often defines the same things again and again.
+    const Definition& last = definitions_[static_cast<std::size_t>(entry->second)];
+    if (is_same(last.primitive, definition.primitive) && last.parent == definition.parent &&
+        last.parts == definition.parts) {
+      return;
+    }
+    entry->second = static_cast<int>(definitions_.size());
+  }
+  definitions_.push_back(std::move(definition));
+}
+
+std::optional<int> RadianceMaterials::of_surface(const RadiancePrimitive& surface) {
+  const int modifier = index_of(surface.modifier, surface);
+  if (modifier == none) {
+    remarks_.add("Surfaces of no material (void) cannot be seen and were left out", surface.name);
+    return std::nullopt;
+  }
+  Definition& definition = definitions_[static_cast<std::size_t>(modifier)];
+  if (!definition.index) {
+    auto material = read(modifier, 0);
+    definition.index = none;
+    if (material) {
+      material->name = names_.unique(definition.primitive.name);
+      definition.index = static_cast<int>(scene_.materials.size());
+      scene_.materials.push_back(std::move(*material));
+    }
+  }
+  if (*definition.index != none) return definition.index;
+  remarks_.add("Surfaces of a material that cannot be seen were left out", surface.name);
+  return std::nullopt;
+}
+
+std::optional<Material> RadianceMaterials::read(int index, int depth) {
+  const auto known = known_.find(index);
+  if (known != known_.end()) return known->second;
+  return known_.emplace(index, read_new(index, depth)).first->second;
+}
+
+// A material may hide behind patterns, which have it as their modifier.
+std::optional<Material> RadianceMaterials::read_new(int index, int depth) {
+  for (; index != none; ++depth) {
+    const Definition& definition = definitions_[static_cast<std::size_t>(index)];
+    if (depth > deepest) {
+      definition.primitive.fail(fmt::format("is reached by more than {} modifiers", deepest));
+    }
+    const RadianceKind kind = definition.primitive.kind();
+    if (kind == RadianceKind::mixture) return mixed(definition, depth);
+    if (kind == RadianceKind::material) {
+      const RadiancePattern pattern = pattern_of(definition);
+      // Light by way of a window or a luminaire, of which the file does not say how much.
+      if (definition.primitive.type == "illum" && !pattern.is_known && !definition.parts.empty()) {
+        remarks_.add("Illums with a pattern were read as the material behind them, without light",
+                     definition.primitive.name);
+        return read(definition.parts[0], depth + 1);
+      }
+      return read_radiance_material(definition.primitive, pattern, remarks_);
+    }
+    index = definition.parent;
+  }
+  return std::nullopt;
+}
+
+std::optional<Material> RadianceMaterials::mixed(const Definition& mixture, int depth) {
+  const RadiancePrimitive& p = mixture.primitive;
+  if (mixture.parts.size() < 2) p.fail("needs the names of two materials and a mixing function");
+  // mixtext and mixpict vary from place to place by their nature.
+  double share = std::nan("");
+  if (p.type == "mixfunc" && p.strings.size() > 2) share = constant_value(p.strings[2], p);
+  if (!std::isfinite(share)) {
+    remarks_.add("Mixtures were read as half of either material", p.name);
+    share = 0.5;
+  }
+  share = std::clamp(share, 0.0, 1.0);
+  const auto front = read(mixture.parts[0], depth + 1), back = read(mixture.parts[1], depth + 1);
+  const auto& larger = share >= 0.5 ? front : back;
+  // What is clear, or cannot be seen, has no mean with what is not.
+  if (!front || !back || front->dielectric || back->dielectric) return larger;
+  Material sum = *larger;
+  const auto a = static_cast<float>(share), b = static_cast<float>(1.0 - share);
+  sum.reflectance = a * front->reflectance + b * back->reflectance;
+  sum.specular = a * front->specular + b * back->specular;
+  sum.specular_roughness = std::max(front->specular_roughness, back->specular_roughness);
+  sum.emission = a * front->emission + b * back->emission;
+  sum.one_sided = front->one_sided && back->one_sided;
+  return sum;
+}
+
+RadiancePattern RadianceMaterials::pattern_of(const Definition& definition) {
+  RadiancePattern result;
+  int depth = 0;
+  for (int i = definition.parent; i != none; i = definitions_[static_cast<std::size_t>(i)].parent) {
+    const Definition& modifier = definitions_[static_cast<std::size_t>(i)];
+    if (++depth > deepest) {
+      definition.primitive.fail(fmt::format("has more than {} modifiers", deepest));
+    }
+    const RadianceKind kind = modifier.primitive.kind();
+    if (kind == RadianceKind::pattern) apply(modifier, result);
+    if (kind == RadianceKind::texture) {
+      remarks_.add("Textures (bumps) were left out", modifier.primitive.name);
+    }
+  }
+  return result;
+}
+
+void RadianceMaterials::apply(const Definition& pattern, RadiancePattern& result) {
+  const RadiancePrimitive& p = pattern.primitive;
+  std::size_t functions = 0;
+  if (p.type == "brightfunc") functions = 1;
+  if (p.type == "colorfunc") functions = 3;
+  std::array<double, 3> factor = {};
+  bool is_constant = functions > 0 && p.strings.size() >= functions;
+  for (std::size_t i = 0; is_constant && i < 3; ++i) {
+    factor[i] = constant_value(p.strings[std::min(i, functions - 1)], p);
+    is_constant = factor[i] >= 0.0 && std::isfinite(factor[i]);
+  }
+  if (p.type.ends_with("pict")) {
+    // A picture is its surface's whole colour, on a material of white.
+    remarks_.add("Pictures on surfaces were taken as a medium grey of 0.5", p.name);
+    is_constant = true;
+    factor.fill(0.5);
+    result.is_known = false;
+  }
+  if (!is_constant) {
+    remarks_.add("Patterns that change from place to place were taken as 1", p.name);
+    result.is_known = false;
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    result.factor[k] *= static_cast<float>(factor[static_cast<std::size_t>(k)]);
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,198 @@
+#include "scene/io/radiance/radiance_shapes.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "scene/io/placed_mesh.h"
+#include "scene/io/seams.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::int64_t most_primitives = 2'000'000;
+constexpr std::int64_t most_polygons = 4'000'000;  // some 1 GB
+constexpr std::size_t most_corners = 2000;         // of a polygon: checked in their square
+
+Eigen::Vector3d point(const RadiancePrimitive& p, std::size_t first) {
+  return {p.reals[first], p.reals[first + 1], p.reals[first + 2]};
+}
+
+// "box" of "box.12".
+std::string stem_of(const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos || dot == 0 || dot + 1 == name.size()) return name;
+  const bool is_number = std::all_of(name.begin() + static_cast<std::ptrdiff_t>(dot) + 1,
+                                     name.end(), [](unsigned char c) { return std::isdigit(c); });
+  return is_number ? name.substr(0, dot) : name;
+}
+
+// Numbers within a scene's bounds, so that nothing overflows on the way to Scene's own check.
+void require_moderate(const RadiancePrimitive& p) {
+  constexpr double farthest = 1e9;
+  for (const double value : p.reals) {
+    if (!(std::abs(value) <= farthest)) {
+      p.fail(fmt::format("reaches {:g}; nothing may lie beyond {:g}", value, farthest));
+    }
+  }
+}
+
+Eigen::Affine3d along(const Eigen::Vector3d& from, const Eigen::Vector3d& axis) {
+  return Eigen::Translation3d(from) *
+         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis);
+}
+
+Loop placed(Loop loop, const Eigen::Affine3d& place) {
+  for (Eigen::Vector3d& p : loop) p = place * p;
+  return loop;
+}
+
+}  // namespace
+
+void RadianceShapes::add(const RadiancePrimitive& p) {
+  if (++primitives_ > most_primitives) {
+    p.fail(fmt::format("is primitive {} of the scene; at most {} are read, use fewer copies",
+                       primitives_, most_primitives));
+  }
+  if (p.kind() != RadianceKind::surface) return materials_.define(p);
+  if (p.type == "source") {
+    remarks_.add("Distant sources (sun, sky) give no light here and were left out", p.name);
+    return;
+  }
+  if (p.type == "instance" || p.type == "mesh") {
+    const bool is_octree = p.type == "instance";
+    p.fail(fmt::format("is a compiled {} ('{}'), which cannot be read; {}",
+                       is_octree ? "octree" : "mesh", p.strings.empty() ? "" : p.strings[0],
+                       is_octree
+                           ? "put '!xform FILE' for the file it was made from in its place"
+                           : "read the OBJ file it was made from, or convert that with obj2rad"));
+  }
+  require_moderate(p);
+  const auto material = materials_.of_surface(p);
+  if (!material) return;
+  if (p.type == "polygon") return add_polygon(p, *material);
+  finish();
+  if (p.type == "sphere" || p.type == "bubble") return add_sphere(p, *material);
+  if (p.type == "ring") return add_ring(p, *material);
+  add_cone(p, *material);
+}
+
+void RadianceShapes::finish() {
+  if (!mesh_.empty()) {
+    scene_.surfaces.push_back(
+        {.name = names_.unique(stem_), .material = material_, .shape = mesh_.mesh()});
+  }
+  mesh_ = {};
+  stem_.clear();
+  material_ = -1;
+}
+
+void RadianceShapes::account(const RadiancePrimitive& primitive, std::size_t polygons) {
+  polygons_ += static_cast<std::int64_t>(polygons);
+  if (polygons_ > most_polygons) {
+    primitive.fail(
+        fmt::format("makes more than {} polygons of the scene; use fewer copies", most_polygons));
+  }
+}
+
+void RadianceShapes::add_polygon(const RadiancePrimitive& p, int material) {
+  const std::size_t corners = p.reals.size() / 3;
+  if (p.reals.size() % 3 != 0 || corners < 3) {
+    p.fail(fmt::format("has {} real arguments; x, y and z of at least three corners are needed",
+                       p.reals.size()));
+  }
+  if (corners > most_corners) {
+    p.fail(fmt::format("has {} corners; at most {} are read, split it", corners, most_corners));
+  }
+  account(p, 1);
+  const std::string stem = stem_of(p.name);
+  if (stem != stem_ || material != material_) finish();
+  stem_ = stem;
+  material_ = material;
+  Loop loop;
+  for (std::size_t i = 0; i < corners; ++i) loop.push_back(point(p, 3 * i));
+  loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
+  while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+  if (loop.size() > 4 && !fault({loop}).empty()) {
+    const auto polygon = without_seams(loop);
+    if (polygon && fault(*polygon).empty() && deviation_from_plane(*polygon) <= flatness) {
+      return mesh_.add(*polygon);
+    }
+  }
+  add_repaired(mesh_, std::move(loop), repairs_);
+}
+
+bool RadianceShapes::sides_differ(int material) const {
+  const Material& m = scene_.materials[static_cast<std::size_t>(material)];
+  return m.one_sided || m.dielectric.has_value() || m.is_emitter();
+}
+
+void RadianceShapes::add_surface(const RadiancePrimitive& p, int material,
+                                 std::variant<PolygonMesh, Sphere> shape) {
+  if (const auto* mesh = std::get_if<PolygonMesh>(&shape)) {
+    account(p, mesh->facets.size());
+    if (mesh->facets.empty()) {
+      remarks_.add("Shapes without area were left out", p.name);
+      return;
+    }
+  }
+  scene_.surfaces.push_back(
+      {.name = names_.unique(p.name), .material = material, .shape = std::move(shape)});
+}
+
+// A negative radius turns a shape inside out, as in RADIANCE.
+void RadianceShapes::add_sphere(const RadiancePrimitive& p, int material) {
+  p.require_reals(4);
+  const double radius = std::abs(p.reals[3]);
+  if (!(radius > 0.0)) return remarks_.add("Shapes without area were left out", p.name);
+  const bool inward = (p.type == "bubble") != (p.reals[3] < 0.0);
+  if (!inward || !sides_differ(material)) {
+    return add_surface(p, material, Sphere{.center = point(p, 0), .radius = radius});
+  }
+  remarks_.add("Bubbles whose sides differ became polygons of the same area", p.name);
+  const Eigen::Affine3d place = Eigen::Translation3d(point(p, 0)) * Eigen::Scaling(radius);
+  add_surface(p, material, placed_loops(sphere_loops(), place, true, repairs_));
+}
+
+void RadianceShapes::add_cone(const RadiancePrimitive& p, int material) {
+  const bool is_cylinder = p.type == "cylinder" || p.type == "tube";
+  p.require_reals(is_cylinder ? 7 : 8);
+  const double first = p.reals[6], second = p.reals.back();
+  if (first * second < 0.0) p.fail("has radii of different signs");
+  const Eigen::Vector3d from = point(p, 0), axis = point(p, 3) - from;
+  const double height = axis.stableNorm();
+  if (!(height > 0.0) || !(std::abs(first) + std::abs(second) > 0.0)) {
+    return remarks_.add("Shapes without area were left out", p.name);
+  }
+  const bool is_inner = p.type == "tube" || p.type == "cup";
+  const bool inward = is_inner != (first < 0.0 || second < 0.0);
+  remarks_.add("Cylinders and cones were read as 32 facets of the same area", p.name);
+  add_surface(p, material,
+              placed_loops(cone_loops(std::abs(first), std::abs(second), height), along(from, axis),
+                           inward, repairs_));
+}
+
+void RadianceShapes::add_ring(const RadiancePrimitive& p, int material) {
+  p.require_reals(8);
+  const Eigen::Vector3d normal = point(p, 3);
+  const double inner = std::min(p.reals[6], p.reals[7]), outer = std::max(p.reals[6], p.reals[7]);
+  if (!(inner >= 0.0)) p.fail(fmt::format("has the radius {}; it must not be negative", inner));
+  if (!(normal.stableNorm() > 0.0)) p.fail("has no normal: its fourth to sixth number are 0");
+  // Thinner rings have no area worth the name.
+  if (!(outer - inner > flatness * outer)) {
+    return remarks_.add("Shapes without area were left out", p.name);
+  }
+  remarks_.add("Rings were read as polygons of 32 corners and the same area", p.name);
+  const Eigen::Affine3d place = along(point(p, 0), normal);
+  Polygon ring = ring_polygon(inner, outer);
+  ring.boundary = placed(std::move(ring.boundary), place);
+  for (Loop& hole : ring.holes) hole = placed(std::move(hole), place);
+  MeshBuilder mesh;
+  mesh.add(ring);
+  add_surface(p, material, mesh.mesh());
+}
+
+}  // namespace lightwell

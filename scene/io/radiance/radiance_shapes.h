@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "scene/io/numbered_names.h"
+#include "scene/io/polygon.h"
+#include "scene/io/radiance/radiance_materials.h"
+#include "scene/io/radiance/radiance_primitive.h"
+#include "scene/io/remarks.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Primitives of a RADIANCE scene as surfaces and materials; docs/radiance-scenes.md says which
+/// become what. Polygons of one material that follow each other and are called alike but for a last
+/// number (box.1, box.2) become one surface.
+class RadianceShapes {
+ public:
+  RadianceShapes(Scene& scene, Remarks& remarks)
+      : scene_(scene), remarks_(remarks), materials_(scene, remarks) {}
+
+  /// Adds a primitive of any kind, in the order of the files. Throws InputError naming file, line
+  /// and what is wrong.
+  void add(const RadiancePrimitive& primitive);
+  /// Completes the last surface; to be called once, at the end.
+  void finish();
+  /// What had to be done to the polygons so far.
+  const Repairs& repairs() const { return repairs_; }
+
+ private:
+  void add_polygon(const RadiancePrimitive& polygon, int material);
+  void add_sphere(const RadiancePrimitive& sphere, int material);
+  void add_cone(const RadiancePrimitive& cone, int material);
+  void add_ring(const RadiancePrimitive& ring, int material);
+  void add_surface(const RadiancePrimitive& primitive, int material,
+                   std::variant<PolygonMesh, Sphere> shape);
+  void account(const RadiancePrimitive& primitive, std::size_t polygons);
+  bool sides_differ(int material) const;
+
+  Scene& scene_;
+  Remarks& remarks_;
+  RadianceMaterials materials_;
+  Repairs repairs_;
+  NumberedNames names_;
+  std::int64_t primitives_ = 0, polygons_ = 0;
+  // Polygons that may be continued.
+  std::string stem_;
+  int material_ = -1;
+  MeshBuilder mesh_;
+};
+
+}  // namespace lightwell

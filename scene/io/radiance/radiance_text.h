@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "scene/io/radiance/radiance_primitive.h"
+
+namespace lightwell {
+
+/// A line that begins with an exclamation mark, joined with the lines it goes on in and without the
+/// mark.
+struct RadianceCommand {
+  std::string text{};
+  RadiancePlace place{};
+};
+
+/// Splits the text of a RADIANCE file into primitives and commands. Words are parted by blanks of
+/// any kind and may be quoted; # begins a comment where a word could begin.
+class RadianceText {
+ public:
+  using Item = std::variant<std::monostate, RadiancePrimitive, RadianceCommand>;
+
+  /// Both must outlive what is read from them.
+  RadianceText(std::string_view text, const std::filesystem::path& file)
+      : rest_(text), place_{&file, 1} {}
+
+  /// The next item; std::monostate at the end. Throws InputError naming file and line.
+  Item next();
+  /// The next word, or an empty one at the end of the text.
+  std::string_view next_word();
+  /// Where the last word stands.
+  const RadiancePlace& place() const { return place_; }
+
+ private:
+  bool skip_blanks();
+  RadianceCommand command();
+  RadiancePrimitive primitive();
+  std::string_view word_of(const RadiancePrimitive& of, std::string_view what);
+  std::size_t count(const RadiancePrimitive& of, std::string_view what);
+  void advance(std::size_t length);
+
+  std::string_view rest_;
+  RadiancePlace place_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,216 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include "scene/errors.h"
+#include "scene/io/radiance/radiance_loader.h"
+#include "scene/io/radiance/radiance_project.h"
+#include "scene/io/radiance/radiance_shapes.h"
+#include "scene/io/radiance/radiance_view.h"
+#include "scene/io/read_scene.h"
+#include "scene/io/remarks.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double radiance_lumens_per_watt = 179.0;  // of white; Ward & Shakespeare 1998
+
+class RadianceReader {
+ public:
+  explicit RadianceReader(const std::filesystem::path& path)
+      : path_(path), loader_(path.parent_path(), remarks_), shapes_(scene_, remarks_) {
+    scene_.file = path;
+    scene_.title = path.stem().string();
+    scene_.bands = rgb_bands(radiance_lumens_per_watt);
+    scene_.notes.emplace_back(
+        "RADIANCE files name no unit of length: lengths were read as metres. One watt of white is "
+        "179 lm.");
+  }
+
+  Scene read() {
+    if (lower_extension(path_) == ".rif") {
+      read_project();
+    } else {
+      loader_.read(path_, sink_);
+      finish_shapes();
+      read_views_beside();
+    }
+    for (const std::string& note : remarks_.sentences()) scene_.notes.push_back(note);
+    for (const std::string& note : shapes_.repairs().notes()) scene_.notes.push_back(note + ".");
+    scene_.dropped_polygons = shapes_.repairs().dropped();
+    note_if_dark(scene_);
+    validate(scene_);
+    return std::move(scene_);
+  }
+
+ private:
+  void finish_shapes() {
+    shapes_.finish();
+    if (scene_.surfaces.empty()) {
+      throw InputError(
+          fmt::format("{}: the scene has no surfaces that can be read{}", path_.string(),
+                      remarks_.sentences().empty() ? "" : "; " + remarks_.sentences().front()));
+    }
+  }
+
+  void read_project() {
+    const TextFile file(path_);
+    const RadianceProject project(file);
+    const auto scene_files = project.words("scene");
+    if (scene_files.empty()) {
+      throw InputError(
+          fmt::format("{}: the variable 'scene' names no files{}", path_.string(),
+                      project.values("OCTREE").empty()
+                          ? ""
+                          : "; an octree alone cannot be read, name what it was made from"));
+    }
+    for (const char* variable : {"materials", "scene", "illum"}) {
+      for (const auto& [name, place] : project.words(variable)) {
+        loader_.read_named(name, place, sink_);
+      }
+    }
+    finish_shapes();
+    read_views(project);
+    constexpr std::array used = {"materials", "scene", "illum", "objects",
+                                 "view",      "UP",    "ZONE",  "RESOLUTION"};
+    for (const std::string& variable : project.given()) {
+      if (std::ranges::find(used, variable) != used.end()) continue;
+      remarks_.add("Variables of the .rif that have no effect here", variable);
+    }
+  }
+
+  // A file for one picture of the scene in its .rad: room.vf or room.vp beside room.rad.
+  void read_views_beside() {
+    std::error_code error;
+    for (const char* extension : {".vf", ".vp"}) {
+      auto beside = path_;
+      beside.replace_extension(extension);
+      if (!std::filesystem::is_regular_file(beside, error)) continue;
+      const auto views = read_radiance_views(TextFile(beside), {});
+      for (std::size_t i = 0; i < views.size(); ++i) {
+        const std::string stem = beside.stem().string();
+        const std::string name = i == 0 ? stem : fmt::format("{} {}", stem, i + 1);
+        add_radiance_camera(views[i], name, {&loader_.keep(beside), views[i].line}, scene_,
+                            remarks_);
+      }
+      if (views.empty()) continue;
+      remarks_.add("Views come from the file beside the scene", beside.filename().string());
+    }
+  }
+
+  void read_views(const RadianceProject& project) {
+    RadianceView defaults;
+    for (const auto& [text, place] : project.values("UP")) defaults.up = up_axis(text, place);
+    for (const auto& [text, place] : project.values("RESOLUTION")) {
+      const std::vector<std::string> words = words_of(text);
+      defaults.width = positive(words.front(), place);
+      defaults.height = words.size() > 1 ? positive(words[1], place) : defaults.width;
+    }
+    auto views = project.values("view");
+    // As rad has it.
+    if (views.empty()) views.push_back({"X", {&loader_.keep(path_), 1}});
+    for (const auto& [text, place] : views) add_view(project, defaults, words_of(text), place);
+  }
+
+  static Eigen::Vector3d up_axis(const std::string& text, const RadiancePlace& place) {
+    const bool has_sign = text.starts_with('-') || text.starts_with('+');
+    const std::string axis = text.substr(has_sign ? 1 : 0);
+    const int letter = axis.size() == 1 ? std::toupper(static_cast<unsigned char>(axis[0])) : 0;
+    if (letter < 'X' || letter > 'Z') place.fail(fmt::format("UP is '{}'; write X, Y or Z", text));
+    return (text.starts_with('-') ? -1.0 : 1.0) * Eigen::Vector3d::Unit(letter - 'X');
+  }
+
+  static double positive(const std::string& word, const RadiancePlace& place) {
+    const auto value = parse_finite(word);
+    if (!value || !(*value > 0.0)) {
+      place.fail(fmt::format("RESOLUTION has '{}'; give one or two numbers of pixels", word));
+    }
+    return *value;
+  }
+
+  void add_view(const RadianceProject& project, RadianceView view,
+                const std::vector<std::string>& words, const RadiancePlace& place) {
+    const bool is_named = !words.front().starts_with('-');
+    const std::string name = is_named ? words.front() : "";
+    if (is_named) set_standard_view(project, name, view);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      if (words[i] != "-vf" || i + 1 == words.size()) continue;
+      const std::filesystem::path& file = loader_.keep(loader_.find(words[i + 1], place));
+      const auto views = read_radiance_views(TextFile(file), view);
+      if (views.empty()) {
+        place.fail(fmt::format("the view file '{}' holds no view", file.string()));
+      }
+      view = views.back();  // the program that writes them appends
+    }
+    apply_view_options(words, place, view);
+    add_radiance_camera(view, name, place, scene_, remarks_);
+  }
+
+  // "X", "xYz", "Zl": from the side or corner of the zone that the letters name, small letters for
+  // its lower end, towards its middle; a last letter tells the view's type.
+  void set_standard_view(const RadianceProject& project, const std::string& name,
+                         RadianceView& view) const {
+    Eigen::Vector3d side = Eigen::Vector3d::Zero();
+    std::size_t i = 0;
+    for (int axis = 0; axis < 3 && i < name.size(); ++axis) {
+      if (name[i] == 'X' + axis) side[axis] = 1.0;
+      if (name[i] == 'x' + axis) side[axis] = -1.0;
+      if (side[axis] != 0.0) ++i;
+    }
+    constexpr std::string_view types = "vlahsc";
+    if (i + 1 == name.size() && types.find(name[i]) != std::string_view::npos)
+      view.type = name[i++];
+    if (i < name.size() || side.isZero()) {
+      view.type = 'v';
+      return;  // a name like any other
+    }
+    const auto [zone, is_interior] = zone_of(project);
+    // A scene that is flat is looked at nevertheless.
+    const Eigen::Vector3d size =
+        (zone.high - zone.low).cwiseMax(0.01 * (zone.high - zone.low).norm());
+    const double distance = is_interior ? 0.45 : 2.0;
+    view.point = 0.5 * (zone.low + zone.high) + distance * side.cwiseProduct(size);
+    view.direction = -side.cwiseProduct(size);
+    if (view.direction.cross(view.up).norm() == 0.0) {  // straight up or down
+      view.up = Eigen::Vector3d(view.up.y(), view.up.z(), view.up.x()).cwiseAbs();
+    }
+  }
+
+  std::pair<Bounds, bool> zone_of(const RadianceProject& project) const {
+    const auto values = project.values("ZONE");
+    if (values.empty()) return {scene_bounds(scene_), false};
+    const auto& [text, place] = values.back();
+    const std::vector<std::string> words = words_of(text);
+    Bounds zone{};
+    bool is_sound = words.size() == 7;
+    for (std::size_t axis = 0; is_sound && axis < 3; ++axis) {
+      const auto low = parse_finite(words[1 + 2 * axis]), high = parse_finite(words[2 + 2 * axis]);
+      is_sound = low && high && *low < *high;
+      if (!is_sound) break;
+      zone.low[static_cast<Eigen::Index>(axis)] = *low;
+      zone.high[static_cast<Eigen::Index>(axis)] = *high;
+    }
+    if (!is_sound) place.fail(fmt::format("ZONE is '{}'; write 'I x0 x1 y0 y1 z0 z1'", text));
+    return {zone, words[0].starts_with('I') || words[0].starts_with('i')};
+  }
+
+  const std::filesystem::path& path_;
+  Scene scene_;
+  Remarks remarks_;
+  RadianceLoader loader_;
+  RadianceShapes shapes_;
+  RadianceSink sink_ = [this](const RadiancePrimitive& primitive) { shapes_.add(primitive); };
+};
+
+}  // namespace
+
+Scene read_radiance(const std::filesystem::path& path) {
+  return RadianceReader(path).read();
+}
+
+}  // namespace lightwell

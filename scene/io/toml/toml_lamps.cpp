@@ -1,0 +1,178 @@
+#include "scene/io/toml/toml_lamps.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numbers>
+
+#include "scene/errors.h"
+#include "scene/io/luminaires/luminaire_file.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+Eigen::Vector3d read_direction(const TomlValue& value) {
+  const Eigen::Vector3d direction = value.vector();
+  if (!(direction.stableNorm() > 0.0)) value.fail("has no length; give a direction");
+  return direction.stableNormalized();
+}
+
+// The rotation that 'aim' or 'look_at', and 'c0', ask for.
+Eigen::Matrix3d read_axes(const TomlTable& table, const Eigen::Vector3d& position,
+                          bool has_direction) {
+  const auto given = table.present({"aim", "look_at"});
+  if (!has_direction) {
+    for (const auto& key : table.present({"aim", "look_at", "c0"})) {
+      table.require(key).fail(
+          "turns a lamp that shines alike to all sides; give a 'file' or a 'cone', or remove it");
+    }
+    return Eigen::Matrix3d::Identity();
+  }
+  if (given.size() != 1) {
+    table.fail(
+        "needs exactly one of 'aim' and 'look_at': where gamma = 0 points, for most luminaires "
+        "down");
+  }
+  const TomlValue value = table.require(given[0]);
+  Eigen::Vector3d aim = value.vector();
+  if (given[0] == "look_at") aim -= position;
+  if (!(aim.stableNorm() > 0.0)) {
+    value.fail(given[0] == "look_at" ? "is the lamp's own position; look at another point"
+                                     : "has no length; give a direction");
+  }
+  aim.stableNormalize();
+  const auto c0 = table.find("c0");
+  if (!c0) return lamp_axes(aim);
+  const Eigen::Vector3d direction = read_direction(*c0);
+  constexpr double parallel = 1e-6;
+  if (!(direction.cross(aim).norm() > parallel)) {
+    c0->fail("is parallel to the direction the lamp is aimed in; C0 must point across it");
+  }
+  return lamp_axes(aim, direction);
+}
+
+SpotCone read_cone(const TomlValue& value) {
+  const auto angles = value.elements("angle");
+  if (angles.size() != 2) {
+    value.fail("must be two angles [inner, outer] in degrees from the axis");
+  }
+  constexpr double widest = 180.0;
+  const double inner = angles[0].number_within(0.0, widest);
+  const double outer = angles[1].number_within(0.0, widest);
+  if (!(inner <= outer && outer > 0.0)) {
+    value.fail(fmt::format(
+        "is [{:g}, {:g}]; the outer angle must be above 0, and the inner no wider", inner, outer));
+  }
+  return {.inner = inner * degree, .outer = outer * degree};
+}
+
+void read_opening(const TomlTable& table, double metres_per_unit, Lamp& lamp) {
+  if (const auto opening = table.find("opening")) {
+    const auto sizes = opening->elements("size");
+    if (sizes.size() != 2) opening->fail("must be two sizes [along C0, along C90]");
+    lamp.opening = {.along_c0 = metres_per_unit * sizes[0].number_at_least(0.0),
+                    .along_c90 = metres_per_unit * sizes[1].number_at_least(0.0)};
+  }
+  if (const auto round = table.find("round")) {
+    if (!table.has("opening")) round->fail("is the shape of an 'opening'; give that, or remove it");
+    lamp.opening.is_round = round->boolean();
+  }
+}
+
+Spectrum read_colour(const TomlTable& table, const TomlBands& bands) {
+  const auto colour = table.find("colour");
+  if (!colour) return constant_spectrum(bands.bands, 1.0f);
+  const Spectrum values = read_toml_emission(*colour, bands);
+  if (!(luminous(bands.bands, values) > 0.0)) {
+    colour->fail("is black; give a colour that people see, or remove it");
+  }
+  return values;
+}
+
+// W/sr for each unit of the shape, from one of the ways to say how much.
+void read_strength(const TomlTable& table, const TomlBands& bands, Lamp& lamp) {
+  const auto given = table.present({"intensity", "candela", "power", "lumens"});
+  if (given.size() != 1) {
+    table.fail(
+        "needs exactly one of 'intensity' (W/sr), 'candela', 'power' (W) and 'lumens', or a "
+        "'file'");
+  }
+  const TomlValue value = table.require(given[0]);
+  const bool is_radiometric = given[0] == "intensity" || given[0] == "power";
+  const bool is_flux = given[0] == "power" || given[0] == "lumens";
+  if (is_radiometric) {
+    if (const auto colour = table.find("colour")) {
+      colour->fail(fmt::format("goes with 'candela' or 'lumens'; '{}' has a number for each band",
+                               given[0]));
+    }
+    lamp.intensity = read_toml_emission(value, bands);
+  } else {
+    const Spectrum colour = read_colour(table, bands);
+    lamp.intensity =
+        colour * static_cast<float>(value.number_at_least(0.0) / luminous(bands.bands, colour));
+  }
+  if (is_flux) lamp.intensity /= static_cast<float>(relative_flux(lamp));
+  if (!lamp.intensity.isFinite().all()) value.fail("is too large a number");
+}
+
+// Of a photometric file.
+void read_measured(const TomlTable& table, const TomlBands& bands, Scene& scene, Lamp& lamp) {
+  for (const auto& key : table.present({"intensity", "candela", "power", "cone"})) {
+    table.require(key).fail("is given by the 'file' as well; keep one of them");
+  }
+  const TomlValue file = table.require("file");
+  const auto path = (file.file().parent_path() / file.name()).lexically_normal();
+  int lamp_set = 1;
+  if (const auto set = table.find("lamp_set"))
+    lamp_set = static_cast<int>(set->integer_within(1, 20));
+  try {
+    const LuminaireFile luminaire = read_luminaire(path, lamp_set);
+    place_luminaire(luminaire, bands.bands, read_colour(table, bands), lamp);
+    if (luminaire.is_radiometric) scene.relative_units = true;
+    if (const auto lumens = table.find("lumens")) {
+      if (luminaire.is_radiometric) lumens->fail("is asked of a file that is not in candela");
+      lamp.intensity *= static_cast<float>(lumens->number_at_least(0.0) / luminaire.flux());
+    }
+    for (const std::string& note : luminaire_notes(luminaire)) {
+      if (std::ranges::find(scene.notes, note) == scene.notes.end()) scene.notes.push_back(note);
+    }
+  } catch (const InputError& error) {
+    file.fail(fmt::format("cannot be used: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+void read_toml_lamp(const TomlValue& value, std::size_t number, const TomlBands& bands,
+                    Scene& scene) {
+  const auto given = value.member("name");
+  Lamp lamp{.name = given ? given->name() : fmt::format("lamp{}", number)};
+  const TomlTable table = value.renamed(fmt::format("lamp '{}'", lamp.name))
+                              .table({"name", "position", "aim", "look_at", "c0", "file",
+                                      "lamp_set", "cone", "intensity", "candela", "power", "lumens",
+                                      "colour", "factor", "opening", "round", "watts"});
+  const Eigen::Vector3d position = table.require("position").vector();
+  lamp.position = scene.metres_per_unit * position;
+  const bool is_measured = table.has("file");
+  if (const auto set = table.find("lamp_set"); set && !is_measured) {
+    set->fail("belongs to a 'file'; give one, or remove it");
+  }
+  if (is_measured) {
+    read_measured(table, bands, scene, lamp);
+  } else {
+    if (const auto cone = table.find("cone")) lamp.shape = read_cone(*cone);
+    read_strength(table, bands, lamp);
+  }
+  lamp.axes = read_axes(table, position, is_measured || table.has("cone"));
+  read_opening(table, scene.metres_per_unit, lamp);
+  if (const auto factor = table.find("factor")) {
+    lamp.intensity *= static_cast<float>(factor->number_at_least(0.0));
+  }
+  if (const auto watts = table.find("watts")) watts->positive();  // for read_lighting_design
+  scene.lamps.push_back(std::move(lamp));
+}
+
+}  // namespace lightwell

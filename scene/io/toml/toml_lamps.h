@@ -1,0 +1,14 @@
+#pragma once
+
+#include "scene/io/toml/toml_materials.h"
+#include "scene/io/toml/toml_value.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Adds the lamp of a [[lamps]] table, the `number`th, to the scene. Photometric files are looked
+/// for beside the scene file.
+void read_toml_lamp(const TomlValue& value, std::size_t number, const TomlBands& bands,
+                    Scene& scene);
+
+}  // namespace lightwell

@@ -1,0 +1,290 @@
+#include "scene/io/toml/toml_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/errors.h"
+#include "scene/io/toml/toml_pictures.h"
+
+namespace lightwell {
+namespace {
+
+enum class Quantity { share, emission };
+
+Spectrum constant(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
+  const double x =
+      quantity == Quantity::share ? value.number_within(0.0, 1.0) : value.number_at_least(0.0);
+  return constant_spectrum(bands.bands, static_cast<float>(x));
+}
+
+Spectrum per_band(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
+  const auto elements = value.elements("band");
+  if (static_cast<int>(elements.size()) != bands.bands.count()) {
+    value.fail(fmt::format("has {} numbers, but the scene has {} bands; give one number per band",
+                           elements.size(), bands.bands.count()));
+  }
+  Spectrum result(bands.bands.count());
+  for (int k = 0; k < result.size(); ++k) {
+    const TomlValue& x = elements[static_cast<std::size_t>(k)];
+    result[k] = static_cast<float>(quantity == Quantity::share ? x.number_within(0.0, 1.0)
+                                                               : x.number_at_least(0.0));
+  }
+  return result;
+}
+
+SpectrumSamples inline_samples(const TomlTable& table) {
+  SpectrumSamples samples;
+  for (const auto& nm : table.require("wavelengths").elements("wavelength")) {
+    samples.wavelengths_nm.push_back(nm.positive());
+    const std::size_t n = samples.wavelengths_nm.size();
+    if (n > 1 && !(samples.wavelengths_nm[n - 1] > samples.wavelengths_nm[n - 2])) {
+      nm.fail(fmt::format("is {}, after {}; wavelengths must rise", samples.wavelengths_nm[n - 1],
+                          samples.wavelengths_nm[n - 2]));
+    }
+  }
+  const TomlValue values = table.require("values");
+  for (const auto& value : values.elements("value")) samples.values.push_back(value.number());
+  if (samples.values.size() != samples.wavelengths_nm.size() || samples.values.size() < 2) {
+    values.fail(fmt::format("has {} numbers for {} wavelengths; give one each, at least two",
+                            samples.values.size(), samples.wavelengths_nm.size()));
+  }
+  return samples;
+}
+
+SpectrumSamples read_samples(const TomlTable& table) {
+  if (!table.has("file")) return inline_samples(table);
+  if (table.has("wavelengths") || table.has("values")) {
+    table.fail("has a 'file' and also samples in place; keep one of them");
+  }
+  const std::string column = table.has("column") ? table.require("column").name() : "";
+  const TomlValue file = table.require("file");
+  const auto path = (file.file().parent_path() / file.name()).lexically_normal();
+  try {
+    return read_spectrum_csv(path, column);
+  } catch (const InputError& error) {
+    file.fail(fmt::format("cannot be used: {}", error.what()));
+  }
+}
+
+Spectrum sampled(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
+  const bool emits = quantity == Quantity::emission;
+  const TomlTable table =
+      emits ? value.table({"file", "column", "wavelengths", "values", "scale", "per"})
+            : value.table({"file", "column", "wavelengths", "values", "scale"});
+  const SpectrumSamples samples = read_samples(table);
+  const double scale = table.has("scale") ? table.require("scale").number_at_least(0.0) : 1.0;
+  const bool per_nm = table.has("per") && table.require("per").one_of({"band", "nm"}) == "nm";
+  Spectrum result(bands.bands.count());
+  for (int k = 0; k < result.size(); ++k) {
+    const auto [low, high] = bands.edges[static_cast<std::size_t>(k)];
+    if (!covers(samples, low, high)) {
+      value.fail(
+          fmt::format("covers {}-{} nm, but band {} is {}-{} nm; extend the spectrum or "
+                      "narrow the bands",
+                      samples.wavelengths_nm.front(), samples.wavelengths_nm.back(),
+                      bands.bands.names[static_cast<std::size_t>(k)], low, high));
+    }
+    const double x = mean(samples, low, high) * scale * (per_nm ? high - low : 1.0);
+    if (!(x >= 0.0) || (!emits && !(x <= 1.0))) {
+      value.fail(fmt::format("is {} in band {}; it must {}", x,
+                             bands.bands.names[static_cast<std::size_t>(k)],
+                             emits ? "be at least 0" : "lie between 0 and 1"));
+    }
+    result[k] = static_cast<float>(x);
+  }
+  return result;
+}
+
+Spectrum spectral(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
+  if (!value.is_number() && !value.is_array() && !value.is_table()) {
+    value.fail("must be a number, an array of one number per band, or a spectrum { file = ... }");
+  }
+  const Spectrum result = value.is_array()   ? per_band(value, bands, quantity)
+                          : value.is_table() ? sampled(value, bands, quantity)
+                                             : constant(value, bands, quantity);
+  if (!result.isFinite().all()) value.fail("is too large a number");
+  return result;
+}
+
+Spectrum spectral_or(const TomlTable& table, const char* key, const TomlBands& bands,
+                     float otherwise) {
+  const auto value = table.find(key);
+  return value ? spectral(*value, bands, Quantity::share)
+               : constant_spectrum(bands.bands, otherwise);
+}
+
+float read_roughness(const TomlTable& table) {
+  const auto value = table.find("roughness");
+  return value ? static_cast<float>(value->number_within(0.0, 1.0)) : 0.0f;
+}
+
+void read_glass(const TomlTable& table, const TomlBands& bands, Material& material) {
+  const auto glass = table.find("glass");
+  if (!glass) return;
+  const TomlTable t = glass->table({"ior", "tint", "roughness", "absorption", "thin"});
+  const TomlValue ior = t.require("ior");
+  const auto index = static_cast<float>(ior.positive());
+  if (!(index >= lowest_index && index <= highest_index)) {
+    ior.fail(
+        fmt::format("is {:g}, but the index behind a surface over that before it must lie "
+                    "between {} and {} (glass: 1.5)",
+                    ior.number(), lowest_index, highest_index));
+  }
+  Dielectric dielectric{.index_of_refraction = index, .tint = spectral_or(t, "tint", bands, 1.0f)};
+  dielectric.roughness = read_roughness(t);
+  if (const auto thin = t.find("thin")) dielectric.thin = thin->boolean();
+  if (const auto absorption = t.find("absorption")) {
+    dielectric.absorption = spectral(*absorption, bands, Quantity::emission);
+    if (!(dielectric.absorption <= highest_absorption).all()) {
+      absorption->fail(
+          fmt::format("is above {:g} per metre, which nothing passes", highest_absorption));
+    }
+    if (dielectric.thin) {
+      absorption->fail(
+          "does not go with thin = true: light goes no distance in a thin pane; give it a 'tint'");
+    }
+  }
+  material.dielectric = dielectric;
+  for (const char* other :
+       {"reflectance", "specular", "roughness", "radiance", "exitance", "power"}) {
+    if (const auto value = table.find(other)) {
+      value->fail(
+          "contradicts 'glass': a clear surface reflects by Fresnel's law alone and emits "
+          "nothing (and its roughness is a key of 'glass'); remove one of the two keys");
+    }
+  }
+}
+
+void read_emission(const TomlTable& table, const TomlBands& bands, TomlMaterial& result) {
+  const auto given = table.present({"radiance", "exitance", "power"});
+  if (given.size() > 1) {
+    table.require(given[1]).fail(
+        fmt::format("is a second statement of the emission, after '{}'; keep one", given[0]));
+  }
+  Material& material = result.material;
+  material.emission = constant_spectrum(bands.bands, 0.0f);
+  if (!given.empty()) {
+    const TomlValue emission = table.require(given[0]);
+    const Spectrum x = spectral(emission, bands, Quantity::emission);
+    if (given[0] == "radiance") material.emission = static_cast<float>(std::numbers::pi) * x;
+    if (given[0] == "exitance") material.emission = x;
+    if (given[0] == "power") result.power = x;
+    if (!material.emission.isFinite().all()) emission.fail("is too large a number");
+  }
+  if (const auto emits = table.find("emits")) {
+    material.emits_both_sides = emits->one_of({"front", "both"}) == "both";
+    if (given.empty()) {
+      emits->fail("needs an emission; give 'radiance', 'exitance' or 'power', or remove it");
+    }
+    if (material.emits_both_sides && material.one_sided) {
+      emits->fail("is 'both', but sides is 'one': the back cannot shine and be black");
+    }
+  }
+}
+
+}  // namespace
+
+Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands) {
+  return spectral(value, bands, Quantity::share);
+}
+
+TomlBands read_toml_bands(const TomlValue& value) {
+  const TomlTable table = value.table({"kind", "lumens_per_watt", "from", "to", "count", "step"});
+  const bool spectral_kind =
+      table.has("kind") && table.require("kind").one_of({"rgb", "spectral"}) == "spectral";
+  if (!spectral_kind) {
+    for (const auto& key : table.present({"from", "to", "count", "step"})) {
+      table.require(key).fail("belongs to kind = \"spectral\"; RGB bands have no edges to choose");
+    }
+    TomlBands result;
+    if (const auto efficacy = table.find("lumens_per_watt")) {
+      result.bands = rgb_bands(efficacy->positive());
+    }
+    return result;
+  }
+  if (const auto efficacy = table.find("lumens_per_watt")) {
+    efficacy->fail("belongs to kind = \"rgb\"; wavelengths have theirs from the CIE observer");
+  }
+  const double low = table.has("from") ? table.require("from").number_within(360, 830) : 400.0;
+  const double high = table.has("to") ? table.require("to").number_within(360, 830) : 700.0;
+  if (!(low < high))
+    table.fail(fmt::format("go from {} nm to {} nm; 'to' must be greater", low, high));
+  if (table.has("count") == table.has("step")) table.fail("need exactly one of 'count' and 'step'");
+  int count = 0;
+  if (table.has("count")) {
+    count = static_cast<int>(table.require("count").integer_within(1, max_bands));
+  } else {
+    const TomlValue step = table.require("step");
+    const double exact = (high - low) / step.positive();
+    if (!(exact > 0.5 && exact < max_bands + 0.5)) {
+      step.fail(fmt::format("makes {:.6g} bands; it must make between 1 and {}", exact, max_bands));
+    }
+    if (!(std::abs(exact - std::round(exact)) <= 1e-6)) {
+      step.fail(fmt::format("cuts {}-{} nm into {:.6g} bands; it must make a whole number of them",
+                            low, high, exact));
+    }
+    count = static_cast<int>(std::round(exact));
+  }
+  TomlBands result{.bands = spectral_bands(low, high, count), .edges = {}};
+  const double width = (high - low) / count;
+  for (int k = 0; k < count; ++k) result.edges.push_back({low + k * width, low + (k + 1) * width});
+  return result;
+}
+
+Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands) {
+  return spectral(value, bands, Quantity::emission);
+}
+
+TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
+                                const TomlBands& bands, PictureFiles& pictures) {
+  const TomlTable table =
+      value.table({"reflectance", "specular", "roughness", "glass", "sides", "radiance", "exitance",
+                   "power", "emits", "texture", "mask"});
+  TomlMaterial result{.material = {.name = name}};
+  Material& material = result.material;
+  material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
+  material.specular = spectral_or(table, "specular", bands, 0.0f);
+  for (int k = 0; k < bands.bands.count(); ++k) {
+    constexpr float rounding = 1e-5f;  // decimals that should add up to 1
+    if (material.reflectance[k] + material.specular[k] > 1.0f + rounding) {
+      table.require("specular")
+          .fail(fmt::format(
+              "({}) and reflectance ({}) exceed 1 in band {}; more light would leave than arrives",
+              material.specular[k], material.reflectance[k],
+              bands.bands.names[static_cast<std::size_t>(k)]));
+    }
+  }
+  if (table.has("roughness") && !table.has("specular") && !table.has("glass")) {
+    table.require("roughness").fail("spreads what 'specular' mirrors; give that too, or remove it");
+  }
+  material.specular_roughness = read_roughness(table);
+  if (const auto sides = table.find("sides")) {
+    material.one_sided = sides->one_of({"one", "two"}) == "one";
+  }
+  read_glass(table, bands, material);
+  read_toml_pictures(table, bands, pictures, material);
+  read_emission(table, bands, result);
+  return result;
+}
+
+void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene) {
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    double area = 0.0;
+    bool used = false;
+    for (const Surface& surface : scene.surfaces) {
+      if (surface.material != static_cast<int>(i)) continue;
+      used = true;
+      area += surface_area(surface);
+    }
+    Material& material = scene.materials[i];
+    if (!used) scene.notes.push_back(fmt::format("No surface uses material '{}'.", material.name));
+    if (!used || !materials[i].power) continue;
+    material.emission =
+        *materials[i].power / static_cast<float>(material.emits_both_sides ? 2.0 * area : area);
+  }
+}
+
+}  // namespace lightwell

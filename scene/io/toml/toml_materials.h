@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/io/pictures/picture_mean.h"
+#include "scene/io/spectrum_samples.h"
+#include "scene/io/toml/toml_value.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// The [bands] of a native file and where they lie.
+struct TomlBands {
+  Bands bands = rgb_bands();
+  BandEdges edges = {{600.0, 700.0}, {500.0, 600.0}, {400.0, 500.0}};
+};
+
+TomlBands read_toml_bands(const TomlValue& value);
+
+/// A quantity that is emitted, >= 0: a number, a number for each band, or a spectrum.
+Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands);
+/// A share, in [0,1], in the same ways.
+Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands);
+
+/// A [materials.NAME] table. Its `power` becomes an exitance once the area is known.
+struct TomlMaterial {
+  Material material{};
+  std::optional<Spectrum> power{};  ///< W per band over all surfaces of the material
+};
+
+TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
+                                const TomlBands& bands, PictureFiles& pictures);
+
+/// Sets the emission of every material that was given as a power: M = power / area, both sides
+/// counted where both shine. `materials` are the first of the scene's. Notes those without surface.
+void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene);
+
+}  // namespace lightwell

@@ -1,0 +1,307 @@
+#include "scene/io/toml/toml_sky.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <stdexcept>
+
+#include "scene/errors.h"
+#include "scene/io/pictures/environment_file.h"
+#include "scene/sun_position.h"
+
+namespace lightwell {
+namespace {
+
+// Of daylight, lm/W of its whole spectrum: the mean of what Littlefair 1985 collected for clear and
+// overcast skies. For input in watts of irradiance meters, which count the infrared.
+constexpr double daylight_efficacy = 110.0;
+
+Eigen::Vector3d direction(const TomlValue& value) {
+  const Eigen::Vector3d v = value.vector();
+  if (!(v.stableNorm() > 0.0)) value.fail("has no length; give a direction");
+  return v.stableNormalized();
+}
+
+// Light of a colour that comes to so many lux (or cd/m^2).
+Spectrum photometric(double luminous_value, const Spectrum& colour, const TomlValue& place,
+                     const TomlBands& bands) {
+  const double unit = luminous(bands.bands, colour);
+  if (!(unit > 0.0)) {
+    place.fail(
+        "is a photometric value, but nothing of the light's colour is visible in the "
+        "scene's bands; give it in watts");
+  }
+  return colour * static_cast<float>(luminous_value / unit);
+}
+
+Spectrum colour_of(const TomlTable& table, const TomlBands& bands) {
+  const auto given = table.find("color");
+  return given ? read_toml_emission(*given, bands) : constant_spectrum(bands.bands, 1.0f);
+}
+
+// Which of some keys is given; fails unless it is at most one.
+std::string one_of_present(const TomlTable& table, std::initializer_list<const char*> keys) {
+  const auto given = table.present(keys);
+  if (given.size() > 1) {
+    table.require(given[1]).fail(fmt::format("is a second statement of what '{}' says", given[0]));
+  }
+  return given.empty() ? "" : given[0];
+}
+
+struct When {
+  ClockTime time{};
+  double latitude = 0.0, longitude = 0.0;
+};
+
+When read_when(const TomlTable& table) {
+  When when;
+  const TomlValue date = table.require("date"), time = table.require("time");
+  const std::string day = date.string(), clock = time.string();
+  int end = 0;
+  if (std::sscanf(day.c_str(), "%4d-%2d-%2d%n", &when.time.year, &when.time.month, &when.time.day,
+                  &end) != 3 ||
+      end != static_cast<int>(day.size())) {
+    date.fail(fmt::format("is '{}'; write \"2024-06-21\"", day));
+  }
+  int hour = 0, minute = 0;
+  if (std::sscanf(clock.c_str(), "%2d:%2d%n", &hour, &minute, &end) != 2 ||
+      end != static_cast<int>(clock.size()) || hour < 0 || hour > 23 || minute < 0 || minute > 59) {
+    time.fail(fmt::format("is '{}'; write \"14:30\"", clock));
+  }
+  when.time.hour = hour + minute / 60.0;
+  if (const auto zone = table.find("time_zone")) {
+    when.time.hours_east = zone->number_within(-14.0, 14.0);
+  }
+  when.latitude = table.require("latitude").number_within(-90.0, 90.0);
+  when.longitude = table.require("longitude").number_within(-180.0, 180.0);
+  return when;
+}
+
+// Towards the sun.
+Eigen::Vector3d read_sun_direction(const TomlTable& table, const Sky& sky) {
+  const std::string how = one_of_present(table, {"direction", "altitude", "date"});
+  if (how.empty()) {
+    table.fail(
+        "must say where it stands: with 'direction', with 'azimuth' and 'altitude', or with "
+        "'date', 'time', 'latitude' and 'longitude'");
+  }
+  if (how == "direction") return direction(table.require("direction"));
+  if (how == "altitude") {
+    return sky_direction(sky, table.require("azimuth").number_within(-360.0, 360.0),
+                         table.require("altitude").number_within(-90.0, 90.0));
+  }
+  const When when = read_when(table);
+  try {
+    const SunPosition at = sun_position(when.time, when.latitude, when.longitude);
+    return sky_direction(sky, at.azimuth_degrees, at.altitude_degrees);
+  } catch (const std::invalid_argument& error) {
+    table.fail(fmt::format("stands nowhere: {}", error.what()));
+  }
+}
+
+struct SunTable {
+  Sun sun{};
+  double direct_normal = 0.0;  // W/m^2 of the whole spectrum, where given
+  int day = 172;               // of the year
+};
+
+SunTable read_sun(const TomlValue& value, const Sky& sky, const TomlBands& bands) {
+  const TomlTable table =
+      value.table({"direction", "azimuth", "altitude", "date", "time", "time_zone", "latitude",
+                   "longitude", "illuminance", "irradiance", "direct_normal", "color", "angle"});
+  SunTable result{.sun = {.direction = read_sun_direction(table, sky)}};
+  if (table.has("date")) {
+    const ClockTime time = read_when(table).time;
+    result.day = day_of_year(time.year, time.month, time.day);
+  }
+  const std::string how = one_of_present(table, {"illuminance", "irradiance", "direct_normal"});
+  if (how.empty()) {
+    table.fail(
+        "must say how bright it is across its rays: with 'illuminance' in lux, 'irradiance' "
+        "in W/m2 per band, or 'direct_normal' in W/m2 of all wavelengths");
+  }
+  const TomlValue amount = table.require(how);
+  if (how == "irradiance") {
+    result.sun.irradiance = read_toml_emission(amount, bands);
+  } else {
+    const double given = amount.number_at_least(0.0);
+    if (how == "direct_normal") result.direct_normal = given;
+    result.sun.irradiance = photometric(how == "illuminance" ? given : daylight_efficacy * given,
+                                        colour_of(table, bands), amount, bands);
+  }
+  if (const auto angle = table.find("angle")) {
+    result.sun.angle_degrees = angle->positive();
+    if (!(result.sun.angle_degrees <= 10.0)) angle->fail("is more than 10 degrees; a sun is small");
+  }
+  return result;
+}
+
+void read_gradation(const TomlTable& table, const std::string& kind,
+                    const std::optional<SunTable>& sun, Sky& sky) {
+  const auto require_sun = [&] {
+    if (!sun) table.fail(fmt::format("is of the kind '{}', which needs a [sky.sun]", kind));
+    if (!(sun->sun.direction.dot(sky.up) > 0.0)) {
+      table.fail(fmt::format("is of the kind '{}', which needs a sun above the horizon", kind));
+    }
+    sky.bright = sun->sun.direction;
+  };
+  if (kind == "cie-overcast") {
+    sky.kind = SkyKind::overcast;
+    sky.name = "CIE overcast";
+  } else if (kind == "cie-clear") {
+    sky.gradation = standard_sky(12);
+    sky.name = "CIE clear";
+    require_sun();
+  } else if (kind == "cie") {
+    const auto type = static_cast<int>(table.require("type").integer_within(1, 15));
+    sky.gradation = standard_sky(type);
+    sky.name = fmt::format("CIE standard sky {}", type);
+    if (sky.gradation.c != 0.0) require_sun();
+  } else if (kind == "perez") {
+    require_sun();
+    const double diffuse = table.require("diffuse_horizontal").positive();
+    const double altitude =
+        std::asin(std::min(1.0, sky.bright.dot(sky.up))) * 180.0 / std::numbers::pi;
+    sky.gradation = perez_sky(sun->direct_normal, diffuse, altitude, sun->day);
+    sky.name = fmt::format("Perez, {:g} W/m2 direct and {:g} diffuse", sun->direct_normal, diffuse);
+  } else {
+    sky.name = "uniform";
+  }
+}
+
+void read_map(const TomlTable& table, Sky& sky) {
+  sky.kind = SkyKind::map;
+  const TomlValue file = table.require("file");
+  const auto path = (file.file().parent_path() / file.name()).lexically_normal();
+  try {
+    sky.map = read_environment_map(path);
+  } catch (const InputError& error) {
+    file.fail(fmt::format("cannot be used: {}", error.what()));
+  }
+  sky.name = fmt::format("map '{}', {} x {}", path.filename().string(), sky.map->width(),
+                         sky.map->height());
+  // The middle of the picture is in the north, or so many degrees further clockwise.
+  const double turn = table.has("rotation") ? table.require("rotation").number() : 0.0;
+  const Eigen::Vector3d middle = sky_direction(sky, turn, 0.0);
+  sky.to_map << sky.up.cross(middle).transpose(), sky.up.transpose(), middle.transpose();
+}
+
+// How bright the dome is: exactly one statement.
+void read_scale(const TomlTable& table, const TomlBands& bands, Sky& sky) {
+  const std::string how =
+      one_of_present(table, {"illuminance", "zenith_luminance", "radiance", "diffuse_horizontal"});
+  const bool is_map = sky.kind == SkyKind::map;
+  const Spectrum one = constant_spectrum(bands.bands, 1.0f);
+  if (how.empty()) {
+    if (!is_map) {
+      table.fail(
+          "must say how bright it is: with 'illuminance' in lux on open ground, "
+          "'zenith_luminance' in cd/m2, 'radiance' of the zenith in W/(m2 sr) per band, or "
+          "'diffuse_horizontal' in W/m2 of all wavelengths");
+    }
+    sky.scale = one;
+    return;
+  }
+  const TomlValue amount = table.require(how);
+  if (is_map && how != "illuminance") {
+    amount.fail("has no meaning for a map; give 'illuminance', 'scale' or nothing");
+  }
+  sky.scale = is_map ? one : colour_of(table, bands);
+  if (how == "illuminance" || how == "diffuse_horizontal") {
+    const double lux =
+        amount.number_at_least(0.0) * (how == "illuminance" ? 1.0 : daylight_efficacy);
+    const double unit = luminous(bands.bands, diffuse_horizontal_irradiance(sky));
+    if (!(unit > 0.0)) amount.fail("cannot be reached: the sky has no visible light");
+    sky.scale *= static_cast<float>(lux / unit);
+    return;
+  }
+  const Spectrum zenith = sky_radiance(sky, sky.up);
+  if (how == "radiance") {
+    // Of the zenith, whatever phi and f are there.
+    const float factor = zenith.maxCoeff() / sky.scale.maxCoeff();
+    sky.scale = read_toml_emission(amount, bands) / factor;
+  } else {
+    const double unit = luminous(bands.bands, zenith);
+    if (!(unit > 0.0)) amount.fail("cannot be reached: the sky has no visible light");
+    sky.scale *= static_cast<float>(amount.number_at_least(0.0) / unit);
+  }
+}
+
+}  // namespace
+
+Sky read_toml_sky(const TomlValue& value, const TomlBands& bands) {
+  const TomlTable table =
+      value.table({"kind", "type", "up", "north", "illuminance", "zenith_luminance", "radiance",
+                   "diffuse_horizontal", "color", "ground_reflectance", "ground_radiance", "file",
+                   "rotation", "scale", "sun"});
+  Sky sky;
+  if (const auto up = table.find("up")) sky.up = direction(*up);
+  if (const auto north = table.find("north")) {
+    sky.north = direction(*north);
+  } else if (std::abs(sky.north.dot(sky.up)) > 0.9) {
+    sky.north = Eigen::Vector3d::UnitY();
+  }
+  const Eigen::Vector3d level = sky.north - sky.north.dot(sky.up) * sky.up;
+  constexpr double parallel = 1e-6;
+  if (!(level.norm() > parallel)) table.fail("has a north that points up; give one on the horizon");
+  sky.north = level.normalized();
+  sky.bright = sky.up;
+  sky.scale = sky.ground = constant_spectrum(bands.bands, 0.0f);
+
+  std::optional<SunTable> sun;
+  if (const auto given = table.find("sun")) sun = read_sun(*given, sky, bands);
+  if (sun && sun->sun.direction.dot(sky.up) > 0.0) sky.sun = sun->sun;
+
+  const std::string kind = table.require("kind").one_of(
+      {"uniform", "cie-overcast", "cie-clear", "cie", "perez", "map", "none"});
+  const auto only_for = [&](const char* key, std::initializer_list<std::string_view> kinds) {
+    if (!table.has(key)) return;
+    for (const std::string_view k : kinds) {
+      if (kind == k) return;
+    }
+    table.require(key).fail(fmt::format("has no meaning for a sky of the kind '{}'", kind));
+  };
+  only_for("type", {"cie"});
+  for (const char* key : {"file", "rotation", "scale"}) only_for(key, {"map"});
+  if (kind == "map") {
+    if (bands.bands.count() != 3 || !bands.bands.wavelengths_nm.empty()) {
+      table.require("file").fail(
+          "is in r, g and b, and the scene has other bands; use an analytic "
+          "sky, or RGB bands");
+    }
+    for (const char* key : {"ground_reflectance", "ground_radiance", "color"}) {
+      only_for(key, {});
+    }
+    read_map(table, sky);
+    read_scale(table, bands, sky);
+    if (const auto scale = table.find("scale")) {
+      sky.scale *= static_cast<float>(scale->number_at_least(0.0));
+    }
+    return sky;
+  }
+  if (kind == "none") {
+    for (const char* key : {"illuminance", "zenith_luminance", "radiance", "diffuse_horizontal"}) {
+      only_for(key, {});
+    }
+    sky.name = "dark";
+  } else {
+    read_gradation(table, kind, sun, sky);
+    read_scale(table, bands, sky);
+  }
+  const std::string ground = one_of_present(table, {"ground_reflectance", "ground_radiance"});
+  if (ground == "ground_radiance") {
+    sky.ground = read_toml_emission(table.require(ground), bands);
+  } else {
+    constexpr float of_land = 0.2f;
+    const Spectrum rho = ground.empty() ? constant_spectrum(bands.bands, of_land)
+                                        : read_toml_share(table.require(ground), bands);
+    sky.ground = rho * (diffuse_horizontal_irradiance(sky) + sun_horizontal_irradiance(sky)) *
+                 std::numbers::inv_pi_v<float>;
+  }
+  return sky;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "scene/io/toml/toml_materials.h"
+#include "scene/io/toml/toml_value.h"
+#include "scene/sky.h"
+
+namespace lightwell {
+
+/// The [sky] table of a native file; see docs/daylight.md. Throws InputError naming place and
+/// value.
+Sky read_toml_sky(const TomlValue& value, const TomlBands& bands);
+
+}  // namespace lightwell

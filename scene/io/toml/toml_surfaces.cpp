@@ -1,0 +1,353 @@
+#include "scene/io/toml/toml_surfaces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "scene/errors.h"
+#include "scene/io/mesh_file.h"
+#include "scene/io/nearest_name.h"
+#include "scene/io/placed_mesh.h"
+#include "scene/io/polygon.h"
+#include "scene/io/text_file.h"
+#include "scene/io/toml/toml_motions.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::initializer_list<const char*> shape_keys = {"polygon", "polygons", "box", "sphere",
+                                                           "mesh"};
+
+// Where a shape goes: x -> scale * rotation * x + offset, in metres.
+struct Placement {
+  double scale = 1.0;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
+    return scale * (rotation * p) + offset;
+  }
+  UvMap operator()(const UvMap& map) const {
+    const Eigen::Matrix<double, 2, 3> gradient = map.gradient * rotation.transpose() / scale;
+    return {.gradient = gradient, .offset = map.offset - gradient * offset};
+  }
+  NormalMap operator()(const NormalMap& map) const {
+    const Eigen::Matrix3d gradient = rotation * map.gradient * rotation.transpose() / scale;
+    return {.gradient = gradient, .offset = rotation * map.offset - gradient * offset};
+  }
+};
+
+// Exact for quarter turns, so that a wall turned by 90 degrees stays parallel to the axes.
+Eigen::Vector2d cos_sin(double degrees) {
+  const double quarters = std::remainder(degrees, 360.0) / 90.0;
+  if (quarters == std::round(quarters)) {
+    const int q = (static_cast<int>(quarters) + 4) % 4;
+    return {q == 0 ? 1.0 : q == 2 ? -1.0 : 0.0, q == 1 ? 1.0 : q == 3 ? -1.0 : 0.0};
+  }
+  const double angle = quarters * std::numbers::pi / 2.0;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+Eigen::Matrix3d turn_about(int axis, double degrees) {
+  const Eigen::Vector2d cs = cos_sin(degrees);
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
+  m(u, u) = m(v, v) = cs[0];
+  m(v, u) = cs[1];
+  m(u, v) = -cs[1];
+  return m;
+}
+
+Placement read_placement(const TomlTable& table, double metres_per_unit) {
+  Placement placement;
+  if (const auto scale = table.find("scale")) placement.scale = scale->positive();
+  if (const auto rotate = table.find("rotate")) {
+    const Eigen::Vector3d degrees = rotate->vector();
+    placement.rotation =
+        turn_about(2, degrees[2]) * turn_about(1, degrees[1]) * turn_about(0, degrees[0]);
+  }
+  if (const auto pivot = table.find("pivot")) {
+    const Eigen::Vector3d p = pivot->vector();
+    placement.offset = p - placement(p);
+  }
+  if (const auto translate = table.find("translate")) placement.offset += translate->vector();
+  placement.scale *= metres_per_unit;
+  placement.offset *= metres_per_unit;
+  return placement;
+}
+
+Loop read_loop(const TomlValue& value, const Placement& place) {
+  Loop loop;
+  for (const auto& vertex : value.elements("vertex")) loop.push_back(place(vertex.vector()));
+  return loop;
+}
+
+// A surface that one [[surfaces]] table describes, on its way into the scene.
+class SurfaceReader {
+ public:
+  SurfaceReader(const TomlValue& value, const TomlTable& table, std::string name, Scene& scene)
+      : value_(value),
+        table_(table),
+        name_(std::move(name)),
+        scene_(scene),
+        place_(read_placement(table, scene.metres_per_unit)) {
+    if (const auto motion = table.find("motion")) motion_ = find_toml_motion(*motion, scene);
+  }
+
+  void read() {
+    const auto shapes = table_.present(shape_keys);
+    if (shapes.size() != 1) {
+      table_.fail(
+          shapes.empty()
+              ? "has no shape; give one of " + quoted_list({shape_keys.begin(), shape_keys.end()})
+              : fmt::format("has both '{}' and '{}'; give one shape only", shapes[0], shapes[1]));
+    }
+    const std::string& shape = shapes[0];
+    const TomlValue given = table_.require(shape);
+    if (const auto holes = table_.find("holes"); holes && shape != "polygon") {
+      holes->fail(fmt::format("belongs to 'polygon', but the shape is '{}'", shape));
+    }
+    if (const auto flip = table_.find("flip"); flip && shape != "mesh") {
+      flip->fail(fmt::format("belongs to 'mesh', but the shape is '{}'", shape));
+    }
+    if (const auto smooth = table_.find("smooth"); smooth && shape != "mesh") {
+      smooth->fail(fmt::format("belongs to 'mesh', but the shape is '{}'", shape));
+    }
+    if (const auto uv = table_.find("uv"); uv && shape != "polygon" && shape != "polygons") {
+      uv->fail(fmt::format(
+          "belongs to 'polygon' and 'polygons', but the shape is '{}'; mesh files bring their own",
+          shape));
+    }
+    if (shape == "mesh") return read_mesh(given);
+    const int material = find_material(table_.require("material"));
+    if (shape == "sphere") return add_surface(name_, material, read_sphere(given));
+    MeshBuilder mesh;
+    if (shape == "polygon") add_polygon(given, mesh);
+    if (shape == "polygons") add_polygons(given, mesh);
+    if (shape == "box") add_box(given, mesh);
+    add_surface(name_, material, mesh.mesh());
+  }
+
+ private:
+  int find_material(const TomlValue& value) const {
+    const std::string name = value.name();
+    std::vector<std::string> known;
+    for (const Material& m : scene_.materials) {
+      if (m.name == name) return static_cast<int>(&m - scene_.materials.data());
+      known.push_back(m.name);
+    }
+    value.fail(fmt::format("is '{}', which is not among the materials of this file.{}", name,
+                           did_you_mean(name, known)));
+  }
+
+  bool shows_picture(int material) const {
+    const Material& m = scene_.materials[static_cast<std::size_t>(material)];
+    return m.texture || m.mask;
+  }
+
+  void add_surface(const std::string& name, int material, std::variant<PolygonMesh, Sphere> shape) {
+    const auto same = [&](const Surface& s) { return s.name == name; };
+    if (std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), same)) {
+      value_.fail("has a name that an earlier surface has; give it another");
+    }
+    scene_.surfaces.push_back(
+        {.name = name, .material = material, .shape = std::move(shape), .motion = motion_});
+  }
+
+  Sphere read_sphere(const TomlValue& value) const {
+    const TomlTable t = value.table({"center", "radius"});
+    return {.center = place_(t.require("center").vector()),
+            .radius = place_.scale * t.require("radius").positive()};
+  }
+
+  void add_polygon(const TomlValue& value, MeshBuilder& mesh) {
+    Polygon polygon{.boundary = read_loop(value, place_)};
+    if (const auto holes = table_.find("holes")) {
+      for (const auto& hole : holes->elements("hole")) {
+        polygon.holes.push_back(read_loop(hole, place_));
+      }
+    }
+    const auto uv = table_.find("uv");
+    add_sound(value, polygon, uv ? read_uv(*uv, polygon.boundary.size()) : UvLoop{}, mesh);
+  }
+
+  static UvLoop read_uv(const TomlValue& value, std::size_t corners) {
+    UvLoop uv;
+    for (const auto& corner : value.elements("corner")) {
+      const auto numbers = corner.elements("number");
+      if (numbers.size() != 2) corner.fail("must be two numbers [u, v]");
+      uv.emplace_back(numbers[0].number(), numbers[1].number());
+    }
+    if (uv.size() != corners) {
+      value.fail(fmt::format("has {} places for a polygon of {} vertices; give one each", uv.size(),
+                             corners));
+    }
+    return uv;
+  }
+
+  void add_polygons(const TomlValue& value, MeshBuilder& mesh) {
+    const auto polygons = value.elements("polygon");
+    if (polygons.empty()) value.fail("is empty; give at least one polygon");
+    const auto uv = table_.find("uv");
+    const auto places = uv ? uv->elements("polygon") : std::vector<TomlValue>{};
+    if (uv && places.size() != polygons.size()) {
+      uv->fail(fmt::format("is of {} polygons, but there are {}", places.size(), polygons.size()));
+    }
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+      const Polygon polygon{.boundary = read_loop(polygons[i], place_)};
+      const UvLoop of_loop = uv ? read_uv(places[i], polygon.boundary.size()) : UvLoop{};
+      add_sound(polygons[i], polygon, of_loop, mesh);
+    }
+  }
+
+  void add_sound(const TomlValue& value, const Polygon& polygon, const UvLoop& uv,
+                 MeshBuilder& mesh) {
+    if (const std::string what = fault(polygon); !what.empty()) value.fail(what);
+    const double deviation = deviation_from_plane(polygon);
+    const bool is_planar = deviation <= flatness;
+    const bool is_even = uv.empty() || uv_map_over(polygon.boundary, uv);
+    if (is_planar && is_even) return mesh.add(polygon, uv);
+    if (is_planar && !polygon.holes.empty()) {
+      value.fail(
+          "has holes and texture coordinates that are not linear over it; give a 'uv' that "
+          "is, or cut it into pieces");
+    }
+    const double distance = deviation * size_of(polygon.boundary) / scene_.metres_per_unit;
+    if (!polygon.holes.empty()) {
+      value.fail(
+          fmt::format("is not planar (a vertex is {:.3g} {} off) and has holes; make it "
+                      "planar or cut it into planar pieces",
+                      distance, scene_.unit_name));
+    }
+    const auto triangles = split_into_triangles(polygon.boundary);
+    if (triangles.empty()) value.fail("cannot be split into triangles");
+    for (const auto& t : triangles) {
+      const Polygon corners{
+          .boundary = {polygon.boundary[t[0]], polygon.boundary[t[1]], polygon.boundary[t[2]]}};
+      if (const std::string what = fault(corners); !what.empty()) {
+        value.fail("is not planar, and when split into triangles it has one that " + what);
+      }
+      mesh.add(corners, uv.empty() ? uv : UvLoop{uv[t[0]], uv[t[1]], uv[t[2]]});
+    }
+    if (is_planar) return;
+    scene_.notes.push_back(
+        fmt::format("{} is not planar (a vertex is {:.3g} {} off its plane) and was split into {} "
+                    "triangles.",
+                    value.what(), distance, scene_.unit_name, triangles.size()));
+  }
+
+  void add_box(const TomlValue& value, MeshBuilder& mesh) const {
+    const TomlTable t = value.table({"min", "max", "inward"});
+    const Eigen::Vector3d low = t.require("min").vector(), high = t.require("max").vector();
+    for (int c = 0; c < 3; ++c) {
+      if (!(low[c] < high[c])) {
+        value.fail(fmt::format("has {0} from {1} to {2}; max must be greater than min", "xyz"[c],
+                               low[c], high[c]));
+      }
+    }
+    const auto inward = t.find("inward");
+    const bool turned = inward && inward->boolean();
+    // Corner number bits: x, y, z at max.
+    constexpr std::array<std::array<int, 4>, 6> faces = {
+        {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+    for (const auto& face : faces) {
+      Polygon polygon;
+      for (int corner : face) {
+        polygon.boundary.push_back(
+            place_({(corner & 1 ? high : low).x(), (corner & 2 ? high : low).y(),
+                    (corner & 4 ? high : low).z()}));
+      }
+      if (const std::string what = fault(polygon); !what.empty()) {
+        value.fail("has a face that " + what);
+      }
+      if (turned) std::reverse(polygon.boundary.begin(), polygon.boundary.end());
+      mesh.add(polygon);
+    }
+  }
+
+  void read_mesh(const TomlValue& value) {
+    const std::string name = value.name();
+    const std::string extension = lower_extension(name);
+    if (extension != ".obj" && extension != ".ply" && extension != ".stl") {
+      value.fail(fmt::format("is '{}'; a mesh is an .obj, .ply or .stl file", name));
+    }
+    const auto path = (value.file().parent_path() / name).lexically_normal();
+    const auto material = table_.find("material");
+    if (!material && extension != ".obj") {
+      value.fail(fmt::format("has no materials in '{}'; add a 'material' to the surface", name));
+    }
+    const auto flip = table_.find("flip");
+    const bool turned = flip && flip->boolean();
+    const auto smooth = table_.find("smooth");
+    const bool is_smooth = !smooth || smooth->boolean();
+    Scene mesh;
+    try {
+      const auto wanted = !material                                 ? MeshMaterials::from_file
+                          : shows_picture(find_material(*material)) ? MeshMaterials::with_uv
+                                                                    : MeshMaterials::ignored;
+      mesh = extension == ".obj" ? read_obj_file(path, 1.0, wanted)
+                                 : read_geometry_file(path, 1.0, wanted);
+    } catch (const InputError& error) {
+      value.fail(fmt::format("cannot be used: {}", error.what()));
+    }
+    for (const std::string& note : mesh.notes) {
+      scene_.notes.push_back(fmt::format("{}: {}", name_, note));
+    }
+    scene_.dropped_polygons += mesh.dropped_polygons;
+    for (Surface& surface : mesh.surfaces) {
+      auto& polygons = std::get<PolygonMesh>(surface.shape);
+      for (auto& vertex : polygons.vertices) vertex = place_(vertex);
+      for (auto& map : polygons.uv_maps) map = place_(map);
+      for (auto& map : polygons.normal_maps) map = place_(map);
+      if (!is_smooth) drop_normals(polygons);
+      if (turned) turn_over(polygons);
+      const auto& own = mesh.materials[static_cast<std::size_t>(surface.material)];
+      add_surface(mesh.surfaces.size() == 1 ? name_ : fmt::format("{}/{}", name_, surface.name),
+                  material ? find_material(*material) : import_material(own, name, value),
+                  std::move(surface.shape));
+    }
+  }
+
+  // The scene's own material of that name comes first; two files may use one name for two things.
+  int import_material(Material material, const std::string& file, const TomlValue& value) {
+    const std::string qualified = fmt::format("{} ({})", material.name, file);
+    for (const Material& m : scene_.materials) {
+      if (m.name == material.name || m.name == qualified) {
+        return static_cast<int>(&m - scene_.materials.data());
+      }
+    }
+    if (!scene_.bands.wavelengths_nm.empty()) {
+      value.fail(
+          fmt::format("brings the RGB material '{}' into a scene with {} spectral bands; add "
+                      "[materials.{}] or give the surface a 'material'",
+                      material.name, scene_.bands.count(), material.name));
+    }
+    material.name = qualified;
+    scene_.materials.push_back(std::move(material));
+    return static_cast<int>(scene_.materials.size()) - 1;
+  }
+
+  const TomlValue& value_;
+  const TomlTable& table_;
+  std::string name_;
+  Scene& scene_;
+  Placement place_;
+  int motion_ = -1;
+};
+
+}  // namespace
+
+void read_toml_surface(const TomlValue& value, std::size_t number, Scene& scene) {
+  const auto given = value.member("name");
+  const std::string name = given ? given->name() : fmt::format("surface{}", number);
+  const TomlValue named = value.renamed(fmt::format("surface '{}'", name));
+  const TomlTable table =
+      named.table({"name", "material", "polygon", "holes", "polygons", "box", "sphere", "mesh",
+                   "flip", "smooth", "scale", "rotate", "pivot", "translate", "uv", "motion"});
+  SurfaceReader(named, table, name, scene).read();
+}
+
+}  // namespace lightwell

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "scene/rays/cast_spheres.h"
+#include "scene/rays/cell_sheets.h"
+#include "scene/rays/coplanar_groups.h"
+#include "scene/rays/embree_queries.h"
+
+namespace lightwell {
+
+/// What RayCaster asks: Embree's tree over a CastGeometry, and what is known about its planes.
+struct EmbreeScene {
+  // Embree's numbers of the two geometries.
+  enum GeometryId : unsigned { polygons_id, spheres_id, porous_id };
+  enum Hidden : std::uint8_t { from_front = 1, from_back = 2 };
+
+  explicit EmbreeScene(const CastGeometry& geometry);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // Embree's origin
+  double rounding = 0.0;  // how far float coordinates move a point at most, metres
+  std::vector<int> group;
+  std::unique_ptr<CoplanarGroups> planes;
+  std::vector<std::uint8_t> hidden;  // per triangle and quad: sides that what lies on it hides
+  bool is_any_hidden = false;        // saves rays a look at `hidden`
+  SphereSet sphere_set;
+  int triangles = 0, quads = 0;
+  // Polygons with holes are a geometry of their own, with a filter that the others do not pay for.
+  // Primitives of Embree's two geometries.
+  std::vector<int> solid, porous;
+  CellSheets sheets;  // the last of the solid ones, each known by its first cell there
+  std::function<bool(int group, const Eigen::Vector3d& point)> is_hole;
+
+  // Of a sheet any cell, since all are of one group, and nothing lies on them.
+  int primitive(const RTCHit& hit) const {
+    if (hit.geomID == spheres_id) return static_cast<int>(hit.primID) + triangles + quads;
+    return (hit.geomID == porous_id ? porous : solid)[hit.primID];
+  }
+
+  // Null: what was met is a primitive itself.
+  const CellSheet* sheet(const RTCHit& hit) const {
+    const std::size_t alone = solid.size() - sheets.sheets.size();
+    if (hit.geomID != polygons_id || hit.primID < alone) return nullptr;
+    return &sheets.sheets[hit.primID - alone];
+  }
+
+  static void clear(RTCHit& hit) {
+    hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  }
+
+ private:
+  EmbreeScene() = default;
+  void check() const;
+  void attach(RTCGeometry geometry, GeometryId id);
+  void add_polygons(const CastGeometry& source);
+  bool may_join(const CastGeometry& source, int quad) const;
+  RTCGeometry polygon_geometry(const CastGeometry& source, std::span<const int> primitives,
+                               std::span<const CellSheet> with) const;
+  static void skip_holes(const RTCFilterFunctionNArguments* args);
+  void add_spheres(const CastGeometry& source);
+  void find_hidden(const CastGeometry& source);
+  std::vector<int> groups_at(const Eigen::Vector3d& place, int on) const;
+};
+
+}  // namespace lightwell

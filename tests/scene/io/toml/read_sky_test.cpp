@@ -1,0 +1,258 @@
+// Skies as scene files give them: native, Mitsuba, environment maps.
+#include <ImfArray.h>
+#include <ImfRgbaFile.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <string>
+
+#include "scene/errors.h"
+#include "scene/io/pictures/environment_file.h"
+#include "scene/io/read_scene.h"
+#include "tests/temporary_folder.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+const std::string ground = R"(
+[materials.grey]
+reflectance = 0.5
+[[surfaces]]
+name = "ground"
+material = "grey"
+polygon = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+)";
+
+class NativeSky : public testing::Test {
+ protected:
+  Scene read(const std::string& sky) const {
+    std::ofstream(folder_ / "s.toml") << ground << sky;
+    return read_toml(folder_ / "s.toml");
+  }
+  std::string refusal(const std::string& sky) const {
+    try {
+      read(sky);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  double lux(const Scene& scene) const {
+    return luminous(scene.bands, diffuse_horizontal_irradiance(*scene.sky));
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(NativeSky, OvercastSkyComesToItsIlluminance) {
+  const Scene scene = read("[sky]\nkind = 'cie-overcast'\nilluminance = 10000\nup = [0, 0, 1]\n");
+  ASSERT_TRUE(scene.sky);
+  EXPECT_EQ(scene.sky->kind, SkyKind::overcast);
+  EXPECT_NEAR(lux(scene), 10000.0, 2e-6 * 10000.0);  // summed in floats
+  // The ground reflects 0.2 of it unless something else is said.
+  EXPECT_NEAR(luminous(scene.bands, scene.sky->ground), 0.2 * 10000.0 / pi,
+              2e-6 * 0.2 * 10000.0 / pi);
+  EXPECT_TRUE(scene.sky->up.isApprox(Eigen::Vector3d::UnitZ()));
+  EXPECT_TRUE(gives_light(scene));
+  EXPECT_EQ(free_source_count(scene), 1);
+  EXPECT_EQ(free_source_name(scene, 0), "sky");
+}
+
+TEST_F(NativeSky, BrightnessOfTheZenithAndRadianceAreTaken) {
+  const Scene by_luminance = read("[sky]\nkind = 'uniform'\nzenith_luminance = 1000\n");
+  EXPECT_NEAR(lux(by_luminance), 1000.0 * pi, 2e-6 * 1000.0 * pi);
+  const Scene by_radiance =
+      read("[sky]\nkind = 'cie-overcast'\nradiance = [1, 2, 3]\nground_reflectance = 0\n");
+  const Spectrum zenith = sky_radiance(*by_radiance.sky, by_radiance.sky->up);
+  EXPECT_NEAR(zenith[2], 3.0f, 1e-5f);
+  EXPECT_EQ(by_radiance.sky->ground[0], 0.0f);
+}
+
+TEST_F(NativeSky, SunStandsWhereDateAndPlacePutIt) {
+  const Scene scene = read(R"(
+[sky]
+kind = "cie-clear"
+illuminance = 15000
+up = [0, 0, 1]
+north = [0, 1, 0]
+[sky.sun]
+date = "2003-10-17"
+time = "12:30"
+time_zone = -7
+latitude = 39.742476
+longitude = -105.1786
+illuminance = 90000
+)");
+  ASSERT_TRUE(scene.sky->sun);
+  const Eigen::Vector3d to_sun = scene.sky->sun->direction;
+  EXPECT_NEAR(std::asin(to_sun.z()) * 180.0 / pi, 39.87, 0.1);
+  EXPECT_NEAR(std::atan2(to_sun.x(), to_sun.y()) * 180.0 / pi + 360.0, 194.2, 0.2);
+  EXPECT_NEAR(luminous(scene.bands, scene.sky->sun->irradiance), 90000.0, 2e-6 * 90000.0);
+  EXPECT_NEAR(lux(scene), 15000.0, 2e-6 * 15000.0);
+  EXPECT_EQ(free_source_count(scene), 2);
+  EXPECT_EQ(free_source_name(scene, 1), "sun");
+}
+
+TEST_F(NativeSky, SunAloneIsAllowedAndOneBelowTheHorizonIsNoSun) {
+  const Scene day =
+      read("[sky]\nkind = 'none'\n[sky.sun]\nazimuth = 180\naltitude = 30\nirradiance = 800\n");
+  EXPECT_EQ(free_source_count(day), 2);  // the ground shines
+  const Scene night =
+      read("[sky]\nkind = 'none'\n[sky.sun]\nazimuth = 180\naltitude = -3\nirradiance = 800\n");
+  EXPECT_FALSE(night.sky->sun);
+  EXPECT_FALSE(gives_light(night));
+}
+
+TEST_F(NativeSky, PerezTakesWattsOfAllWavelengths) {
+  const Scene scene = read(R"(
+[sky]
+kind = "perez"
+diffuse_horizontal = 100
+[sky.sun]
+azimuth = 180
+altitude = 45
+direct_normal = 800
+)");
+  EXPECT_NEAR(lux(scene), 110.0 * 100.0, 2e-6 * 110.0 * 100.0);
+  EXPECT_NEAR(luminous(scene.bands, scene.sky->sun->irradiance), 110.0 * 800.0,
+              2e-6 * 110.0 * 800.0);
+}
+
+TEST_F(NativeSky, FaultsAreSentences) {
+  EXPECT_NE(refusal("[sky]\nkind = 'cie-overcast'\n").find("how bright"), std::string::npos);
+  EXPECT_NE(refusal("[sky]\nkind = 'cie-clear'\nilluminance = 1\n").find("[sky.sun]"),
+            std::string::npos);
+  EXPECT_NE(refusal("[sky]\nkind = 'cie'\ntype = 16\nilluminance = 1\n").find("16"),
+            std::string::npos);
+  EXPECT_NE(refusal("[sky]\nkind = 'uniform'\nilluminance = 1\nradiance = 2\n").find("second"),
+            std::string::npos);
+  EXPECT_NE(refusal("[sky]\nkind = 'uniform'\nilluminance = 1\nup = [0, 0, 0]\n").find("length"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal("[sky]\nkind = 'uniform'\nilluminance = 1\nfile = 'x.exr'\n").find("no meaning"),
+      std::string::npos);
+  EXPECT_NE(refusal("[sky]\nkind = 'map'\nfile = 'none.exr'\n").find("no such file"),
+            std::string::npos);
+  EXPECT_NE(refusal("[sky]\nkind='none'\n[sky.sun]\ndate='2024-02-30'\ntime='12:00'\nlatitude=0\n"
+                    "longitude=0\nilluminance=1\n")
+                .find("no date"),
+            std::string::npos);
+}
+
+// 16 x 2 pixels, the upper row packed by runs, the lower flat.
+std::string rgbe_picture() {
+  std::string file = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 16\n";
+  file += std::string("\x02\x02\x00\x10", 4);
+  for (const int value : {128, 64, 32, 130}) {
+    file += static_cast<char>(128 + 16);
+    file += static_cast<char>(value);
+  }
+  for (int x = 0; x < 16; ++x) file += std::string("\x80\x80\x80\x81", 4);
+  return file;
+}
+
+TEST(EnvironmentFile, ReadsPicturesOfRadiance) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "sky.hdr", std::ios::binary) << rgbe_picture();
+  const auto map = read_environment_map(folder / "sky.hdr");
+  EXPECT_EQ(map->width(), 16);
+  const Spectrum up = map->at(Eigen::Vector3d::UnitY());
+  // (m + 1/2) 2^(e - 136) / exposure.
+  EXPECT_NEAR(up[0], 128.5 / 64.0 / 2.0, 1e-5);
+  EXPECT_NEAR(up[2], 32.5 / 64.0 / 2.0, 1e-5);
+  EXPECT_NEAR(map->at(-Eigen::Vector3d::UnitY())[1], 128.5 / 128.0 / 2.0, 1e-5);
+}
+
+TEST(EnvironmentFile, TornAndForeignFilesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string whole = rgbe_picture();
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{8}, std::size_t{40}, std::size_t{60}, whole.size() - 1}) {
+    std::ofstream(folder / "torn.hdr", std::ios::binary) << whole.substr(0, size);
+    EXPECT_THROW(read_environment_map(folder / "torn.hdr"), InputError) << size;
+  }
+  std::ofstream(folder / "huge.hdr") << "#?RADIANCE\n\n-Y 100000 +X 100000\n";
+  EXPECT_THROW(read_environment_map(folder / "huge.hdr"), InputError);
+  std::ofstream(folder / "text.exr") << "no picture";
+  EXPECT_THROW(read_environment_map(folder / "text.exr"), InputError);
+  std::ofstream(folder / "sky.png") << "no map";
+  EXPECT_THROW(read_environment_map(folder / "sky.png"), InputError);
+}
+
+TEST(EnvironmentFile, ReadsOpenExr) {
+  const TemporaryFolder folder;
+  Imf::Array2D<Imf::Rgba> pixels(2, 4);
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 4; ++x) pixels[y][x] = Imf::Rgba(1.0f + y, 2.0f, 3.0f, 1.0f);
+  }
+  {
+    Imf::RgbaOutputFile file((folder / "sky.exr").c_str(), 4, 2, Imf::WRITE_RGB);
+    file.setFrameBuffer(&pixels[0][0], 1, 4);
+    file.writePixels(2);
+  }
+  const auto map = read_environment_map(folder / "sky.exr");
+  EXPECT_EQ(map->height(), 2);
+  EXPECT_NEAR(map->at(-Eigen::Vector3d::UnitY())[0], 2.0f, 1e-3f);
+  EXPECT_NEAR(map->at(Eigen::Vector3d::UnitY())[2], 3.0f, 1e-3f);
+}
+
+class MitsubaSky : public testing::Test {
+ protected:
+  Scene read(const std::string& emitters) const {
+    std::ofstream(folder_ / "s.xml")
+        << "<scene version=\"3.0.0\"><shape type=\"rectangle\"/>" << emitters << "</scene>";
+    return read_mitsuba(folder_ / "s.xml");
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(MitsubaSky, ConstantIsTheSameAllAround) {
+  const Scene scene =
+      read("<emitter type=\"constant\"><rgb name=\"radiance\" value=\"1, 2, 3\"/></emitter>");
+  ASSERT_TRUE(scene.sky);
+  EXPECT_FLOAT_EQ(sky_radiance(*scene.sky, Eigen::Vector3d::UnitY())[1], 2.0f);
+  EXPECT_FLOAT_EQ(sky_radiance(*scene.sky, -Eigen::Vector3d::UnitY())[2], 3.0f);
+}
+
+TEST_F(MitsubaSky, DirectionalIsASun) {
+  const Scene scene = read(
+      "<emitter type=\"directional\"><vector name=\"direction\" x=\"0\" y=\"-2\" z=\"0\"/>"
+      "<rgb name=\"irradiance\" value=\"5, 5, 5\"/></emitter>");
+  ASSERT_TRUE(scene.sky && scene.sky->sun);
+  EXPECT_TRUE(scene.sky->sun->direction.isApprox(Eigen::Vector3d::UnitY()));
+  EXPECT_FLOAT_EQ(scene.sky->sun->irradiance[0], 5.0f);
+  EXPECT_EQ(free_source_count(scene), 1);
+}
+
+TEST_F(MitsubaSky, MapIsTurnedByItsTransform) {
+  std::ofstream(folder_ / "sky.hdr", std::ios::binary) << "#?RADIANCE\n\n-Y 1 +X 4\n"
+                                                       << std::string(
+                                                              "\x80\x80\x80\x81\x40\x40\x40\x81"
+                                                              "\x20\x20\x20\x81\x10\x10\x10\x81",
+                                                              16);
+  // Pixels are about the longitudes of -z, +x, +z and -x, an eighth of a turn further on.
+  const std::string file = "<string name=\"filename\" value=\"sky.hdr\"/>";
+  const Scene plain = read("<emitter type=\"envmap\">" + file + "</emitter>");
+  const Eigen::Vector3d place = Eigen::Vector3d(1, 0, -1).normalized();
+  EXPECT_NEAR(sky_radiance(*plain.sky, place)[0], 128.5 / 128.0, 1e-4);
+  const Scene turned = read("<emitter type=\"envmap\">" + file +
+                            "<float name=\"scale\" value=\"2\"/><transform name=\"to_world\">"
+                            "<rotate y=\"1\" angle=\"90\"/></transform></emitter>");
+  const Eigen::Vector3d moved = Eigen::AngleAxisd(0.5 * pi, Eigen::Vector3d::UnitY()) * place;
+  EXPECT_NEAR(sky_radiance(*turned.sky, moved)[0], 2.0 * 128.5 / 128.0, 1e-4);
+}
+
+TEST_F(MitsubaSky, SecondSkyIsNamed) {
+  const Scene scene =
+      read("<emitter type=\"constant\" id=\"a\"/><emitter type=\"constant\" id=\"b\"/>");
+  bool is_noted = false;
+  for (const std::string& note : scene.notes) is_noted = is_noted || note.find("'b'") < note.size();
+  EXPECT_TRUE(is_noted);
+}
+
+}  // namespace
+}  // namespace lightwell
