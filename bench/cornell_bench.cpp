@@ -14,7 +14,7 @@
 #include "bench/raw_embree.h"
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/memory_budget.h"
 #include "radiosity/ray_cast_rows.h"
 #include "radiosity/solve.h"

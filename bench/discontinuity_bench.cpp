@@ -20,8 +20,8 @@
 
 #include "bench/grey_scene.h"
 #include "mesh/build_patches.h"
-#include "mesh/element_caster.h"
-#include "mesh/element_quality.h"
+#include "mesh/elements/element_caster.h"
+#include "mesh/patches/element_quality.h"
 #include "radiosity/point_form_factor.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"

@@ -18,7 +18,7 @@
 #include "bench/grey_scene.h"
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
-#include "mesh/patch_outline.h"
+#include "mesh/patches/patch_outline.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/memory_budget.h"
 #include "radiosity/pair_exchange.h"

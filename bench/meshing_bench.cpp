@@ -12,8 +12,8 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
-#include "mesh/patch_mesh.h"
-#include "mesh/planar_regions.h"
+#include "mesh/cleaning/planar_regions.h"
+#include "mesh/patches/patch_mesh.h"
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"

@@ -8,7 +8,7 @@
 #include <embree3/rtcore.h>
 #endif
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 
 namespace lightwell {
 

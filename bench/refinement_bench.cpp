@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/solve.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"

@@ -17,7 +17,7 @@
 #include "bench/grey_scene.h"
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
-#include "mesh/planar_regions.h"
+#include "mesh/cleaning/planar_regions.h"
 #include "radiosity/radiosity_system.h"
 #include "radiosity/solve_radiosity.h"
 #include "scene/io/read_scene.h"

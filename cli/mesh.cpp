@@ -10,8 +10,8 @@
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "mesh/build_patches.h"
-#include "mesh/element_quality.h"
-#include "mesh/joined_surfaces.h"
+#include "mesh/cleaning/joined_surfaces.h"
+#include "mesh/patches/element_quality.h"
 #include "radiosity/mesh_file.h"
 
 namespace lightwell {

@@ -10,7 +10,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "scene/errors.h"
 
 namespace lightwell {

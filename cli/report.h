@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/console.h"
-#include "mesh/planar_regions.h"
+#include "mesh/cleaning/planar_regions.h"
 #include "radiosity/solve.h"
 
 namespace lightwell {

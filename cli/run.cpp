@@ -9,7 +9,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
-#include "mesh/patch_textures.h"
+#include "mesh/patches/patch_textures.h"
 #include "raytrace/camera_ray.h"
 
 namespace lightwell {

@@ -8,7 +8,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/refinement.h"
-#include "mesh/patch_textures.h"
+#include "mesh/patches/patch_textures.h"
 #include "radiosity/solution_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/facet_check.h"
+#include "mesh/cleaning/facet_check.h"
 #include "radiosity/view_factor_scene.h"
 #include "scene/io/numbered_scene.h"
 

@@ -15,7 +15,7 @@
 
 #include "cornell/picture_mask.h"
 #include "cornell/sightlines.h"
-#include "mesh/planar_regions.h"
+#include "mesh/cleaning/planar_regions.h"
 #include "radiosity/solution_file.h"
 #include "raytrace/image.h"
 #include "raytrace/probe.h"

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "scene/scene.h"
 
 namespace lightwell {

@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 
-#include "mesh/contact_graph.h"
-#include "mesh/critical_lines.h"
-#include "mesh/facet_plane.h"
+#include "mesh/contacts/contact_graph.h"
+#include "mesh/discontinuity/critical_lines.h"
+#include "mesh/geometry/facet_plane.h"
 #include "mesh/patch_builder.h"
-#include "mesh/patch_textures.h"
+#include "mesh/patches/patch_textures.h"
 #include "scene/parallel.h"
 
 namespace lightwell {

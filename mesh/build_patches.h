@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/cut_size.h"
-#include "mesh/patch_mesh.h"
+#include "mesh/geometry/cut_size.h"
+#include "mesh/patches/patch_mesh.h"
 #include "scene/progress.h"
 
 namespace lightwell {

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "mesh/reflex_corners.h"
+#include "mesh/facets/reflex_corners.h"
 
 namespace lightwell {
 namespace {

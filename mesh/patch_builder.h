@@ -1,9 +1,9 @@
 #pragma once
 
-#include "mesh/facet_mesh.h"
-#include "mesh/group_facets.h"
-#include "mesh/patch_mesh.h"
-#include "mesh/sphere_grid.h"
+#include "mesh/facets/facet_mesh.h"
+#include "mesh/facets/group_facets.h"
+#include "mesh/patches/patch_mesh.h"
+#include "mesh/patches/sphere_grid.h"
 #include "scene/facet_normals.h"
 
 namespace lightwell {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/pair_exchange.h"
 #include "radiosity/pair_shafts.h"
 #include "radiosity/shadow_rays.h"

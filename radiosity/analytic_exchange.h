@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "mesh/patch_outline.h"
+#include "mesh/patches/patch_outline.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/journal_phase.h"
 

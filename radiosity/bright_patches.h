@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "mesh/element_caster.h"
-#include "mesh/patch_mesh.h"
+#include "mesh/elements/element_caster.h"
+#include "mesh/patches/patch_mesh.h"
 
 namespace lightwell {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "mesh/triangulate.h"
+#include "mesh/geometry/triangulate.h"
 #include "scene/sampling.h"
 
 namespace lightwell {

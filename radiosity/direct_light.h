@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/clear_panes.h"
 #include "radiosity/emitter_channels.h"
 #include "radiosity/free_source.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 

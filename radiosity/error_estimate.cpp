@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/effort.h"
 #include "radiosity/interpolation_error.h"
 #include "scene/sampling.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/box_tree.h"
+#include "mesh/geometry/box_tree.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/occluders.h"
 

@@ -6,9 +6,9 @@
 #include <map>
 #include <numbers>
 
-#include "mesh/patch_sampler.h"
-#include "mesh/patch_textures.h"
-#include "mesh/sphere_grid.h"
+#include "mesh/patches/patch_sampler.h"
+#include "mesh/patches/patch_textures.h"
+#include "mesh/patches/sphere_grid.h"
 #include "radiosity/bright_patches.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
 #include "scene/progress.h"

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 #include "scene/facet_textures.h"
 
 namespace lightwell {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/analytic_exchange.h"
 #include "radiosity/emitter_exchange.h"
 #include "radiosity/form_factor_assembly.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/memory_budget.h"
 #include "scene/progress.h"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 

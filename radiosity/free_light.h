@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/light_channel.h"
 #include "radiosity/light_path.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 
 namespace lightwell {
 

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/estimated_row.h"
 #include "radiosity/journal_phase.h"
 #include "radiosity/light_path.h"

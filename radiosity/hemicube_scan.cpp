@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/sphere_grid.h"
+#include "mesh/patches/sphere_grid.h"
 #include "radiosity/hemicube_view.h"
 
 namespace lightwell {

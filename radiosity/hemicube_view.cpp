@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "mesh/sphere_grid.h"
+#include "mesh/patches/sphere_grid.h"
 #include "scene/sampling.h"
 
 namespace lightwell {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/hemicube_cells.h"
 
 namespace lightwell {

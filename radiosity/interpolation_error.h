@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/refine_elements.h"
+#include "mesh/elements/refine_elements.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/sight_list.h"
 #include "radiosity/told_vertices.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "scene/facet_normals.h"
 #include "scene/scene.h"
 #include "scene/specular.h"

@@ -10,8 +10,8 @@
 #include <array>
 #include <stdexcept>
 
-#include "mesh/element_quality.h"
-#include "mesh/patch_colors.h"
+#include "mesh/patches/element_quality.h"
+#include "mesh/patches/patch_colors.h"
 #include "radiosity/vtk_output.h"
 #include "scene/atomic_file.h"
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 #include "radiosity/solution.h"
 
 namespace lightwell {

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <tuple>
 
-#include "mesh/patch_outline.h"
-#include "mesh/sphere_grid.h"
+#include "mesh/patches/patch_outline.h"
+#include "mesh/patches/sphere_grid.h"
 #include "scene/facet_textures.h"
 
 namespace lightwell {

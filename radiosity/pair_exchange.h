@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "mesh/patch_outline.h"
+#include "mesh/patches/patch_outline.h"
 
 namespace lightwell {
 

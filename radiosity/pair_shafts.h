@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "mesh/element_caster.h"
-#include "mesh/patch_outline.h"
+#include "mesh/elements/element_caster.h"
+#include "mesh/patches/patch_outline.h"
 #include "radiosity/visible_exchange.h"
 
 namespace lightwell {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 
 namespace lightwell {
 

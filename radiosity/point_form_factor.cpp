@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/polygon_form_factor.h"
 #include "radiosity/shadow_rays.h"
 #include "radiosity/shadowed_polygon.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/shaft.h"
 
 namespace lightwell {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/patch_outline.h"
+#include "mesh/patches/patch_outline.h"
 
 namespace lightwell {
 

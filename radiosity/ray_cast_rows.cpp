@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/refine_elements.h"
+#include "mesh/elements/refine_elements.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/told_vertices.h"
 

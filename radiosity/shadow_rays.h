@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/clear_panes.h"
 
 namespace lightwell {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "mesh/box_tree.h"
-#include "mesh/patch_outline.h"
+#include "mesh/geometry/box_tree.h"
+#include "mesh/patches/patch_outline.h"
 #include "radiosity/occluders.h"
 
 namespace lightwell {

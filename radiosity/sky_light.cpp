@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
 
 namespace lightwell {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/clear_panes.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"

@@ -1,6 +1,6 @@
 #include "radiosity/solution.h"
 
-#include "mesh/patch_textures.h"
+#include "mesh/patches/patch_textures.h"
 
 namespace lightwell {
 

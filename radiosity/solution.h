@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 #include "radiosity/light_channel.h"
 #include "scene/bands.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 #include "radiosity/final_gather.h"
 
 namespace lightwell {

@@ -7,7 +7,7 @@
 #include <bit>
 #include <cmath>
 
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/journal.h"
 #include "radiosity/pair_shafts.h"
 #include "scene/parallel.h"

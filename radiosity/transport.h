@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 #include "radiosity/form_factors.h"
 
 namespace lightwell {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "mesh/facet_check.h"
-#include "mesh/patch_mesh.h"
+#include "mesh/cleaning/facet_check.h"
+#include "mesh/patches/patch_mesh.h"
 #include "scene/io/numbered_scene.h"
 
 namespace lightwell {

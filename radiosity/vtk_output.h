@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 
 class vtkPolyData;
 class vtkXMLPolyDataWriter;

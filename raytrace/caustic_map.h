@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/caustic_photons.h"
 #include "raytrace/disc_tree.h"
 #include "raytrace/light_regions.h"

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "mesh/patch_textures.h"
+#include "mesh/patches/patch_textures.h"
 
 namespace lightwell {
 namespace {

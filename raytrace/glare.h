@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/final_gather.h"
 #include "radiosity/solution.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light.h"
 
 namespace lightwell {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "raytrace/camera_ray.h"
 #include "raytrace/image.h"
 #include "raytrace/layers.h"

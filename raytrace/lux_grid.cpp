@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-#include "mesh/mesh_bounds.h"
+#include "mesh/patches/mesh_bounds.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 

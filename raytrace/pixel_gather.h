@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/bright_patches.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/light_path.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
 #include "raytrace/image.h"

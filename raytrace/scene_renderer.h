@@ -3,7 +3,7 @@
 #include <memory>
 #include <mutex>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"

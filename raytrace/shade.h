@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/bright_patches.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/solve.h"
 #include "raytrace/image.h"
 #include "scene/sky.h"

@@ -8,9 +8,9 @@
 #include <map>
 #include <utility>
 
-#include "mesh/joined_surfaces.h"
-#include "mesh/mesh_bounds.h"
-#include "mesh/sphere_grid.h"
+#include "mesh/cleaning/joined_surfaces.h"
+#include "mesh/patches/mesh_bounds.h"
+#include "mesh/patches/sphere_grid.h"
 #include "scene/errors.h"
 #include "viewer/appearance.h"
 #include "viewer/baked_channels.h"

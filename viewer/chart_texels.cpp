@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "mesh/sphere_grid.h"
+#include "mesh/patches/sphere_grid.h"
 
 namespace lightwell {
 namespace {

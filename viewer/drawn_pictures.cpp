@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/patch_textures.h"
+#include "mesh/patches/patch_textures.h"
 #include "raytrace/display.h"
 
 namespace lightwell {

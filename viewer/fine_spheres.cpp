@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/sphere_grid.h"
+#include "mesh/patches/sphere_grid.h"
 
 namespace lightwell {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 
 namespace lightwell {
 

@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
-#include "mesh/element_caster.h"
-#include "mesh/sphere_grid.h"
+#include "mesh/elements/element_caster.h"
+#include "mesh/patches/sphere_grid.h"
 #include "scene/sampling.h"
 #include "viewer/chart_neighbours.h"
 #include "viewer/chart_plane.h"

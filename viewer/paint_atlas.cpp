@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "mesh/sphere_grid.h"
+#include "mesh/patches/sphere_grid.h"
 #include "radiosity/final_gather.h"
 #include "scene/parallel.h"
 #include "viewer/baked_channels.h"

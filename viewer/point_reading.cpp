@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/joined_surfaces.h"
+#include "mesh/cleaning/joined_surfaces.h"
 #include "scene/facet_textures.h"
 
 namespace lightwell {

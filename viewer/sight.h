@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "viewer/appearance.h"
 
 namespace lightwell {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 #include "scene/scene.h"
 
 namespace lightwell {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 #include "viewer/appearance.h"
 #include "viewer/drawn_pictures.h"
 #include "viewer/fine_spheres.h"

@@ -18,7 +18,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "mesh/mesh_bounds.h"
+#include "mesh/patches/mesh_bounds.h"
 #include "radiosity/vtk_messages.h"
 #include "raytrace/display.h"
 

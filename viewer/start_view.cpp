@@ -1,5 +1,5 @@
 #include "viewer/start_view.h"
-#include "mesh/mesh_bounds.h"
+#include "mesh/patches/mesh_bounds.h"
 
 #include <Eigen/Geometry>
 #include <array>

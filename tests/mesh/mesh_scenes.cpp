@@ -1,4 +1,4 @@
-#include "mesh_scenes.h"
+#include "tests/mesh/mesh_scenes.h"
 
 #include <gtest/gtest.h>
 

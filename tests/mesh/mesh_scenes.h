@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 #include "scene/scene.h"
 
 namespace lightwell::testing {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mesh/build_patches.h"
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/error_estimate.h"
 #include "radiosity/interpolation_error.h"
 #include "radiosity/solve.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/build_patches.h"
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/hemicube_view.h"
 #include "radiosity/polygon_form_factor.h"
 #include "scene/sampling.h"

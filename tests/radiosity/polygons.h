@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mesh/build_patches.h"
-#include "mesh/patch_mesh.h"
+#include "mesh/patches/patch_mesh.h"
 #include "radiosity/shaft.h"
 #include "tests/radiosity/test_scenes.h"
 

@@ -1,11 +1,11 @@
 #include "radiosity/shaft.h"
-#include "mesh/patch_sampler.h"
+#include "mesh/patches/patch_sampler.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "scene/sampling.h"
 #include "tests/radiosity/polygons.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lit_places.h"
-#include "mesh/planar_regions.h"
+#include "mesh/cleaning/planar_regions.h"
 
 namespace lightwell {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "mesh/build_patches.h"
-#include "mesh/element_caster.h"
-#include "mesh/patch_mesh.h"
+#include "mesh/elements/element_caster.h"
+#include "mesh/patches/patch_mesh.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"

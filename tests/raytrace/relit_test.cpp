@@ -1,7 +1,7 @@
 // A relit solution and the scene file as it was: what is seen and measured is the light in force.
 #include <gtest/gtest.h>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/relight.h"
 #include "raytrace/probe.h"
 #include "raytrace/render.h"

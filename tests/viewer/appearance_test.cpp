@@ -1,5 +1,5 @@
 #include "viewer/appearance.h"
-#include "mesh/mesh_bounds.h"
+#include "mesh/patches/mesh_bounds.h"
 
 #include <gtest/gtest.h>
 

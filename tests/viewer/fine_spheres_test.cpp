@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "viewer/solution_view.h"
 #include "viewer/x_display.h"
 

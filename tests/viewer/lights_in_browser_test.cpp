@@ -5,7 +5,7 @@
 
 #include "channel_room.h"
 #include "in_browser.h"
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "viewer/appearance.h"
 
 namespace lightwell {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "mesh/joined_surfaces.h"
+#include "mesh/cleaning/joined_surfaces.h"
 #include "radiosity/solve.h"
 
 namespace lightwell {

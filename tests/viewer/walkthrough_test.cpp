@@ -8,7 +8,7 @@
 #include "in_browser.h"
 #include "lit_sides.h"
 #include "mesh/build_patches.h"
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "pictured_wall.h"
 #include "raytrace/probe.h"
 #include "viewer/appearance.h"

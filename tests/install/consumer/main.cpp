@@ -1,7 +1,7 @@
 // A user's program: a room made by hand, solved, and asked for its light.
 #include <cstdio>
 
-#include "mesh/element_caster.h"
+#include "mesh/elements/element_caster.h"
 #include "radiosity/solve.h"
 #include "raytrace/probe.h"
 #include "scene/scene.h"

@@ -1,0 +1,111 @@
+// Where the lines of a ContactGraph meet one another.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mesh/contacts/contact_effort.h"
+#include "mesh/contacts/contact_graph.h"
+#include "mesh/geometry/box_tree.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+BoxTree::Box segment_box(const Vector3d& a, const Vector3d& b, double by) {
+  const Vector3d d = Vector3d::Constant(by);
+  return {a.cwiseMin(b) - d, a.cwiseMax(b) + d};
+}
+
+// Parameters of the closest points of the lines p + s u and q + t v; false if they are parallel.
+bool closest_parameters(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v,
+                        double& s, double& t) {
+  const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
+  const double determinant = u.cross(v).squaredNorm();
+  constexpr double parallel = 1e-12;  // sin^2: below, a common part is found by its ends instead
+  if (!(determinant > parallel * uu * vv)) return false;
+  const Vector3d w = q - p;
+  s = (vv * u.dot(w) - uv * v.dot(w)) / determinant;
+  t = (uv * u.dot(w) - uu * v.dot(w)) / determinant;
+  return true;
+}
+
+}  // namespace
+
+void ContactGraph::cut_at_crossings(const Scene& scene) {
+  const double tolerance = welded_.tolerance();
+  const int count = static_cast<int>(segments_.size());
+  std::vector<BoxTree::Box> boxes(count);
+  for (int i = 0; i < count; ++i) {
+    boxes[i] = segment_box(welded_[segments_[i].a], welded_[segments_[i].b], tolerance);
+  }
+  const BoxTree tree(boxes);
+  struct Crossing {
+    int other;
+    double s, t;
+    Vector3d point;
+  };
+  std::vector<std::vector<Crossing>> crossings(count);
+  ContactEffort effort(scene, static_cast<int>(planes_.size()));
+  parallel_for(count, 64, [&](int begin, int end) {
+    std::vector<int> near;
+    for (int i = begin; i < end; ++i) {
+      const Segment& si = segments_[i];
+      const Vector3d p = welded_[si.a], u = welded_[si.b] - p;
+      tree.find_overlaps(boxes[i], near);
+      effort.look_at(near.size());
+      for (int j : near) {
+        if (j <= i) continue;
+        const Segment& sj = segments_[j];
+        if (si.a == sj.a || si.a == sj.b || si.b == sj.a || si.b == sj.b) continue;
+        const Vector3d q = welded_[sj.a], v = welded_[sj.b] - q;
+        double s, t;
+        if (!closest_parameters(p, u, q, v, s, t)) continue;
+        // Near an end the end itself is the cut: cut_at_points finds it.
+        const double end_s = tolerance / u.norm(), end_t = tolerance / v.norm();
+        if (!(s > end_s && s < 1.0 - end_s && t > end_t && t < 1.0 - end_t)) continue;
+        const Vector3d on_i = p + s * u, on_j = q + t * v;
+        if ((on_i - on_j).norm() <= tolerance)
+          crossings[i].push_back({j, s, t, 0.5 * (on_i + on_j)});
+      }
+      if (!crossings[i].empty()) effort.found(crossings[i].size());
+    }
+  });
+  for (int i = 0; i < count; ++i) {
+    for (const Crossing& crossing : crossings[i]) {
+      const int point = welded_.add(crossing.point, tolerance);
+      cuts_[i].emplace_back(crossing.s, point);
+      cuts_[crossing.other].emplace_back(crossing.t, point);
+    }
+  }
+}
+
+void ContactGraph::cut_at_points() {
+  std::vector<BoxTree::Box> boxes;
+  for (const Vector3d& p : welded_.all()) boxes.emplace_back(p, p);
+  const BoxTree tree(std::move(boxes));
+  parallel_for(static_cast<int>(segments_.size()), 64, [&](int begin, int end) {
+    std::vector<int> near;
+    for (int i = begin; i < end; ++i) {
+      const Segment& s = segments_[i];
+      const Vector3d p = welded_[s.a], d = welded_[s.b] - p;
+      const double length = d.norm();
+      constexpr double share_of_length = 1e-3;
+      const double tolerance = std::min(welded_.tolerance(), share_of_length * length);
+      std::int64_t visits = std::numeric_limits<std::int64_t>::max();
+      tree.find_along(p, welded_[s.b], tolerance, visits, near);
+      for (int point : near) {
+        if (point == s.a || point == s.b) continue;
+        // A needle's apex on its own long edge: cutting there would fold the triangle up.
+        if (point == s.triangle_apex[0] || point == s.triangle_apex[1]) continue;
+        const double t = d.dot(welded_[point] - p) / (length * length);
+        if (!(t * length > tolerance && (1.0 - t) * length > tolerance)) continue;
+        if ((welded_[point] - p - t * d).norm() <= tolerance) cuts_[i].emplace_back(t, point);
+      }
+      std::sort(cuts_[i].begin(), cuts_[i].end());
+    }
+  });
+}
+
+}  // namespace lightwell

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "mesh/discontinuity/crease_selection.h"
+#include "mesh/geometry/cut_size.h"
+#include "mesh/geometry/facet_plane.h"
+#include "scene/progress.h"
+
+namespace lightwell {
+
+/// What a facet's triangulation must respect, as numbers of ContactGraph::points.
+struct FacetOutline {
+  std::vector<std::vector<int>> loops{};       ///< boundary, then holes, already divided
+  std::vector<std::array<int, 2>> contacts{};  ///< pieces of contact lines inside the facet
+  std::vector<std::array<int, 2>> creases{};   ///< pieces of other critical lines: D1 and D2
+
+  bool has_lines() const { return !contacts.empty() || !creases.empty(); }
+};
+
+/// All boundary edges and contact lines of a scene, cut at every point where one meets another, and
+/// divided into pieces of element size. A line that several facets share is cut once, for all of
+/// them: that is what makes the mesh conform across facets.
+class ContactGraph {
+ public:
+  /// `points` must hold the planes' corners. `critical` are lines to cut the mesh along as far as
+  /// they add no more than `most_elements` elements. Throws InputError where facets touch and cross
+  /// in more places than there is time for (see ContactEffort).
+  ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes, WeldedPoints points,
+               const CutSize& size, const std::vector<CriticalLine>& critical, double most_elements,
+               const Progress& progress);
+
+  const std::vector<Eigen::Vector3d>& points() const { return points_; }
+  /// `index` is the plane's place in `planes`.
+  FacetOutline outline(int index) const;
+  const CreaseCounts& crease_counts() const { return crease_counts_; }
+
+ private:
+  struct Segment {
+    int a = 0, b = 0;                 ///< points, a < b
+    int triangle_apex[2] = {-1, -1};  ///< third corners of triangles that have this edge
+  };
+  struct Atom {
+    int a = 0, b = 0;  ///< points, a < b
+    int pieces = 1;
+    int first_division = 0;  ///< the pieces - 1 points between a and b, in order
+  };
+
+  int segment(int a, int b);
+  void add_boundaries();
+  void add_contacts(const Scene& scene, const Progress& progress);
+  void add_creases(const Scene& scene, const std::vector<CriticalLine>& critical,
+                   double most_elements);
+  std::vector<FixedPiece> fixed_pieces(int index) const;
+  /// Points along a segment, from a to b.
+  std::vector<int> chain(int segment) const;
+  void cut_at_crossings(const Scene& scene);
+  void cut_at_points();
+  void make_atoms();
+  void count_pieces();
+  void divide();
+  std::vector<int> atoms_of_boundary(int index) const;
+  std::vector<int> contact_atoms(int index) const;
+  std::vector<int> crease_atoms(int index) const;
+  std::vector<int> atoms_of(const std::vector<int>& segments) const;
+
+  const std::vector<FacetPlane>& planes_;
+  CutSize size_;
+  WeldedPoints welded_;
+  std::vector<Segment> segments_;
+  std::unordered_map<std::uint64_t, int> segment_of_ends_;
+  std::vector<int> first_edge_;    ///< of a plane, in edge_segment_
+  std::vector<int> edge_segment_;  ///< segment of every boundary edge of every plane
+  std::vector<std::vector<int>> contact_segments_;  ///< per plane, ascending, unique
+  std::vector<std::vector<int>> crease_segments_;   ///< the same of creases
+  CreaseCounts crease_counts_{};
+  std::vector<std::vector<std::pair<double, int>>> cuts_;  ///< per segment: (parameter, point)
+  std::vector<Atom> atoms_;
+  std::vector<std::vector<int>> atoms_of_segment_;  ///< in order from a to b
+  std::vector<Eigen::Vector3d> points_;
+};
+
+}  // namespace lightwell

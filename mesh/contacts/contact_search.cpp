@@ -1,0 +1,77 @@
+// Which facets of a ContactGraph touch or cross, and along what.
+#include <algorithm>
+
+#include "mesh/contacts/contact_effort.h"
+#include "mesh/contacts/contact_graph.h"
+#include "mesh/contacts/contact_lines.h"
+#include "mesh/geometry/box_tree.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+using Eigen::Vector3d;
+
+void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
+  const double tolerance = welded_.tolerance();
+  std::vector<BoxTree::Box> boxes;
+  for (const FacetPlane& plane : planes_) {
+    const Vector3d d = Vector3d::Constant(tolerance);
+    boxes.emplace_back(plane.box.min() - d, plane.box.max() + d);
+  }
+  std::vector<Sphere> spheres;
+  for (const Surface& surface : scene.surfaces) {
+    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) spheres.push_back(*sphere);
+  }
+  for (const Sphere& s : spheres) {
+    const Vector3d r = Vector3d::Constant(s.radius);
+    boxes.push_back({s.center - r, s.center + r});
+  }
+  const BoxTree tree(boxes);
+
+  const int count = static_cast<int>(planes_.size());
+  ContactEffort effort(scene, count);
+  struct Contact {
+    int other;
+    ContactSegment segment;
+  };
+  constexpr int batch = 4096;  // facets between two looks at the stop request
+  for (int begin = 0; begin < count; begin += batch) {
+    report(progress, "mesh", 0.3 * begin / count);
+    const int end = std::min(count, begin + batch);
+    std::vector<std::vector<Contact>> contacts(end - begin);
+    parallel_for(end - begin, 32, [&](int from, int to) {
+      std::vector<int> near;
+      for (int k = from; k < to; ++k) {
+        const int i = begin + k;
+        tree.find_overlaps(boxes[i], near);
+        effort.look_at(near.size());
+        for (int j : near) {
+          if (j <= i) continue;
+          // A circle much smaller than an element would only make slivers.
+          constexpr double least_circle = 0.05;
+          const auto segments =
+              j < count ? facet_contact(planes_[i], planes_[j], tolerance)
+                        : sphere_contact(planes_[i], spheres[j - count], size_.element_size(),
+                                         least_circle * size_.element_size(), tolerance);
+          if (!segments.empty()) effort.found(segments.size());
+          for (const auto& segment : segments) contacts[k].push_back({j, segment});
+        }
+      }
+    });
+    for (int k = 0; k < end - begin; ++k) {
+      for (const Contact& contact : contacts[k]) {
+        const int a = welded_.add(contact.segment[0], tolerance);
+        const int b = welded_.add(contact.segment[1], tolerance);
+        if (a == b) continue;
+        const int s = segment(a, b);
+        contact_segments_[begin + k].push_back(s);
+        if (contact.other < count) contact_segments_[contact.other].push_back(s);
+      }
+    }
+  }
+  for (auto& list : contact_segments_) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+}
+
+}  // namespace lightwell

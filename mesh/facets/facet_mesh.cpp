@@ -1,0 +1,246 @@
+#include "mesh/facets/facet_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh/contacts/contact_chains.h"
+#include "mesh/facets/free_mesh.h"
+#include "mesh/geometry/cross.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Exact in a coordinate that both share, so that a wall at x = 1.9 has no vertex beyond it.
+Vector3d between(const Vector3d& a, const Vector3d& b, double t) {
+  return a + t * (b - a);
+}
+
+void make_element(const std::vector<int>& loop, const std::vector<Vector3d>& points,
+                  FacetMesh& mesh) {
+  const int n = static_cast<int>(loop.size());
+  mesh.corners.push_back({0, 1, 2, n == 4 ? 3 : -1});
+  mesh.first_element.push_back(1);
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n;
+    mesh.position.push_back(points[loop[i]]);
+    mesh.border.push_back({{i, j}, {loop[i], loop[j]}});
+  }
+}
+
+// A facet no larger than an element.
+bool make_single_element(const FacetPlane& plane, const FacetOutline& outline,
+                         const std::vector<Vector3d>& points, FacetMesh& mesh) {
+  if (outline.loops.size() != 1 || outline.has_lines()) return false;
+  const std::vector<int>& loop = outline.loops.front();
+  const int n = static_cast<int>(loop.size());
+  if (n != 3 && n != 4) return false;
+  std::array<Vector2d, 4> q;
+  for (int i = 0; i < n; ++i) q[i] = plane.project(points[loop[i]]);
+  constexpr double least_sine = 0.2;  // below 12 degrees or above 168 two triangles are better
+  if (n == 3 && !(cross(q[1] - q[0], q[2] - q[0]) > 0.0)) return false;
+  if (n == 4 && !(quad_quality(q[0], q[1], q[2], q[3]) > least_sine)) return false;
+  make_element(loop, points, mesh);
+  return true;
+}
+
+// The boundary of a four-sided facet as four chains of points, each without its last one; empty if
+// it is not four-sided or too oblique for a grid.
+std::vector<std::vector<int>> four_sides(const FacetPlane& plane, const std::vector<int>& loop,
+                                         const std::vector<Vector3d>& points) {
+  const int n = static_cast<int>(loop.size());
+  std::vector<Vector2d> q(n);
+  for (int i = 0; i < n; ++i) q[i] = plane.project(points[loop[i]]);
+  std::vector<int> turns;
+  for (int i = 0; i < n; ++i) {
+    const Vector2d in = (q[i] - q[(i + n - 1) % n]).normalized();
+    const Vector2d out = (q[(i + 1) % n] - q[i]).normalized();
+    constexpr double straight = 0.02, least_sine = 0.5;
+    const double sine = cross(in, out);
+    if (std::abs(sine) < straight && in.dot(out) > 0.0) continue;
+    if (!(sine > least_sine)) return {};  // reflex, or more oblique than 30 degrees
+    turns.push_back(i);
+  }
+  if (turns.size() != 4) return {};
+  std::vector<std::vector<int>> sides(4);
+  for (int s = 0; s < 4; ++s) {
+    double shortest = INFINITY, longest = 0.0;
+    for (int i = turns[s]; i != turns[(s + 1) % 4]; i = (i + 1) % n) {
+      sides[s].push_back(loop[i]);
+      const double length = (q[(i + 1) % n] - q[i]).norm();
+      shortest = std::min(shortest, length);
+      longest = std::max(longest, length);
+    }
+    // One short piece on the boundary would make a row of slivers through the whole facet.
+    constexpr double uneven = 2.5;
+    if (longest > uneven * shortest) return {};
+  }
+  if (sides[0].size() != sides[2].size() || sides[1].size() != sides[3].size()) return {};
+  return sides;
+}
+
+// A grid over the unit square carried to the facet by the Coons map of its four sides (bilinear
+// where the sides are divided evenly).
+bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
+               const std::vector<Vector3d>& points, const CutSize& size, FacetMesh& mesh) {
+  if (outline.loops.size() != 1 || outline.has_lines()) return false;
+  const auto sides = four_sides(plane, outline.loops.front(), points);
+  if (sides.empty()) return false;
+  const int nx = static_cast<int>(sides[0].size()), ny = static_cast<int>(sides[1].size());
+  // Boundary points of column i or row j; sides 2 and 3 run backwards.
+  const auto bottom = [&](int i) { return i < nx ? sides[0][i] : sides[1][0]; };
+  const auto right = [&](int j) { return j < ny ? sides[1][j] : sides[2][0]; };
+  const auto top = [&](int i) { return i > 0 ? sides[2][nx - i] : sides[3][0]; };
+  const auto left = [&](int j) { return j > 0 ? sides[3][ny - j] : sides[0][0]; };
+  const auto node = [&](int i, int j) {
+    return j == 0 ? bottom(i) : j == ny ? top(i) : i == 0 ? left(j) : i == nx ? right(j) : -1;
+  };
+  const auto vertex = [nx](int i, int j) { return j * (nx + 1) + i; };
+  for (int j = 0; j <= ny; ++j) {
+    for (int i = 0; i <= nx; ++i) {
+      if (const int p = node(i, j); p >= 0) {
+        mesh.position.push_back(points[p]);
+        continue;
+      }
+      const double s = static_cast<double>(i) / nx, t = static_cast<double>(j) / ny;
+      mesh.position.push_back(between(points[bottom(i)], points[top(i)], t) +
+                              (between(points[left(j)], points[right(j)], s) -
+                               between(between(points[bottom(0)], points[top(0)], t),
+                                       between(points[bottom(nx)], points[top(nx)], t), s)));
+    }
+  }
+  const int k = size.elements_per_edge;
+  const int columns = (nx + k - 1) / k, rows = (ny + k - 1) / k;
+  // Block c of m covers cells ceil(c n / m) .. ceil((c + 1) n / m) - 1: exactly k where k divides
+  // n.
+  const auto block = [](int c, int m, int n) { return (c * n + m - 1) / m; };
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      for (int j = block(r, rows, ny); j < block(r + 1, rows, ny); ++j) {
+        for (int i = block(c, columns, nx); i < block(c + 1, columns, nx); ++i) {
+          const std::array<int, 4> cell{vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1),
+                                        vertex(i, j + 1)};
+          std::array<Vector2d, 4> q;
+          for (int v = 0; v < 4; ++v) q[v] = plane.project(mesh.position[cell[v]]);
+          constexpr double least_sine = 0.35;
+          if (!(quad_quality(q[0], q[1], q[2], q[3]) > least_sine)) {
+            mesh = {};
+            return false;
+          }
+          mesh.corners.push_back(cell);
+        }
+      }
+      mesh.first_element.push_back(static_cast<int>(mesh.corners.size()));
+    }
+  }
+  const auto add_border = [&](int i, int j, int i2, int j2) {
+    mesh.border.push_back({{vertex(i, j), vertex(i2, j2)}, {node(i, j), node(i2, j2)}});
+  };
+  for (int i = 0; i < nx; ++i) add_border(i, 0, i + 1, 0);
+  for (int j = 0; j < ny; ++j) add_border(nx, j, nx, j + 1);
+  for (int i = nx; i > 0; --i) add_border(i, ny, i - 1, ny);
+  for (int j = ny; j > 0; --j) add_border(0, j, 0, j - 1);
+  return true;
+}
+
+// The elements add up to the polygon and none is folded up by points that lie off the plane by the
+// welding tolerance.
+bool is_sound(const FacetPlane& plane, const FacetMesh& mesh) {
+  double area = 0.0;
+  for (const auto& c : mesh.corners) {
+    const Vector3d& a = mesh.position[c[0]];
+    for (int i = 1; i < (c[3] < 0 ? 2 : 3); ++i) {
+      const Vector3d part = (mesh.position[c[i]] - a).cross(mesh.position[c[i + 1]] - a);
+      const double upright = part.dot(plane.normal);
+      constexpr double least_cosine = 0.5;
+      if (!(upright > least_cosine * part.norm())) return false;
+      area += 0.5 * upright;
+    }
+  }
+  // Points that lie on the boundary to within the tolerance have become part of it.
+  constexpr double rounding = 1e-9;
+  const double moved = plane.weld_tolerance * plane.boundary_length();
+  return std::abs(area - plane.area()) <= moved + rounding * plane.area();
+}
+
+// Smallest sine of an element's angle.
+double least_sine(const FacetPlane& plane, const FacetMesh& mesh) {
+  double least = 1.0;
+  for (const auto& c : mesh.corners) {
+    const int n = c[3] < 0 ? 3 : 4;
+    for (int i = 0; i < n; ++i) {
+      const Vector2d at = plane.project(mesh.position[c[i]]);
+      const Vector2d a = plane.project(mesh.position[c[(i + 1) % n]]) - at,
+                     b = plane.project(mesh.position[c[(i + n - 1) % n]]) - at;
+      least = std::min(least, cross(a, b) / (a.norm() * b.norm()));
+    }
+  }
+  return least;
+}
+
+// With contact lines in fewer pieces, unless they then cross or nearly touch what they did not.
+bool make_joined(const FacetPlane& plane, const FacetOutline& outline,
+                 const std::vector<Vector3d>& points, const CutSize& size, FacetMesh& mesh) {
+  if (outline.contacts.size() < 2) return false;
+  const FacetOutline joined = with_joined_contacts(outline, points, size.element_size());
+  if (joined.contacts.size() == outline.contacts.size()) return false;
+  mesh = free_mesh(plane, joined, points, size);
+  if (!is_sound(plane, mesh) || mesh.has_cut_lines) return false;
+  constexpr double poor = 0.002;  // a tenth of a degree
+  const double least = least_sine(plane, mesh);
+  return least >= poor || least >= least_sine(plane, free_mesh(plane, outline, points, size));
+}
+
+FacetOutline bare_outline(const FacetPlane& plane) {
+  FacetOutline bare;
+  for (int l = 0; l < plane.loop_count(); ++l) {
+    bare.loops.emplace_back(plane.point.begin() + plane.loop_begin[l],
+                            plane.point.begin() + plane.loop_begin[l + 1]);
+  }
+  return bare;
+}
+
+}  // namespace
+
+double quad_quality(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
+  const std::array<Vector2d, 4> q{a, b, c, d};
+  double least = 1.0;
+  for (int i = 0; i < 4; ++i) {
+    const Vector2d out = q[(i + 1) % 4] - q[i], back = q[(i + 3) % 4] - q[i];
+    least = std::min(least, cross(out, back) / std::max(out.norm() * back.norm(), 1e-300));
+  }
+  return least;
+}
+
+FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
+                     const std::vector<Vector3d>& points, const CutSize& size) {
+  FacetMesh mesh;
+  if (make_single_element(plane, outline, points, mesh)) return mesh;
+  if (make_grid(plane, outline, points, size, mesh)) return mesh;
+  if (make_joined(plane, outline, points, size, mesh)) return mesh;
+  mesh = free_mesh(plane, outline, points, size);
+  if (is_sound(plane, mesh)) return mesh;
+  if (!outline.creases.empty()) {
+    FacetOutline less = outline;
+    less.creases.clear();
+    mesh = mesh_facet(plane, less, points, size);
+    mesh.lacks_creases = true;
+    return mesh;
+  }
+  // First give up the contact lines, then the points other facets put on the boundary.
+  const FacetOutline bare = bare_outline(plane);
+  for (const FacetOutline& less : {FacetOutline{.loops = outline.loops}, bare}) {
+    mesh = free_mesh(plane, less, points, size);
+    mesh.is_flawed = true;
+    if (is_sound(plane, mesh)) return mesh;
+  }
+  // A needle of a triangle can only stay what it is.
+  mesh = {};
+  if (plane.is_triangle()) make_element(bare.loops.front(), points, mesh);
+  return mesh;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,164 @@
+#include "mesh/facets/facet_triangulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+#include "mesh/facets/graded_points.h"
+#include "mesh/facets/inner_points.h"
+#include "mesh/geometry/cross.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Pair = std::array<int, 2>;
+
+LocalLines local_lines(const FacetPlane& plane, const FacetOutline& outline,
+                       const std::vector<Vector3d>& points) {
+  LocalLines lines;
+  std::unordered_map<int, int> local;
+  const auto number = [&](int p) {
+    const auto [entry, is_new] = local.try_emplace(p, static_cast<int>(lines.point.size()));
+    if (is_new) {
+      lines.point.push_back(p);
+      lines.xy.push_back(plane.project(points[p]));
+    }
+    return entry->second;
+  };
+  // A boundary that runs along one line forth and back (the bridge to a hole) has nothing outside
+  // there: an even number of passes is no border.
+  std::map<Pair, int> passes;
+  for (const auto& loop : outline.loops) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const int a = number(loop[i]), b = number(loop[(i + 1) % loop.size()]);
+      ++passes[{std::min(a, b), std::max(a, b)}];
+    }
+  }
+  for (const auto& [line, count] : passes) {
+    if (count % 2 == 1) lines.boundary.push_back(line);
+  }
+  for (const Vector2d& q : lines.xy) lines.box.extend(q);
+  lines.all = lines.boundary;
+  for (const auto& [a, b] : outline.contacts) lines.all.push_back({number(a), number(b)});
+  lines.hard_count = static_cast<int>(lines.all.size());
+  for (const auto& [p, q] : outline.creases) {
+    const int a = number(p), b = number(q);
+    lines.all.push_back({a, b});
+    lines.creases.insert({std::min(a, b), std::max(a, b)});
+  }
+  return lines;
+}
+
+CellGrid cell_grid(const Eigen::AlignedBox2d& box, const CutSize& size) {
+  return {box, size.pieces(box.sizes().x()), size.pieces(box.sizes().y())};
+}
+
+// Which triangles lie inside the polygon: every border line crossed on the way in from outside
+// changes sides. Combinatorial, so right even for the slivers that rounding leaves along a divided
+// edge, whose centres no geometric test can place.
+std::vector<char> inside_by_parity(const PlanarTriangulation& t,
+                                   const std::vector<Pair>& boundary) {
+  const std::set<Pair> border(boundary.begin(), boundary.end());
+  const auto crosses_border = [&](int triangle, int i) {
+    if (!t.constrained[triangle][i]) return false;
+    const int a = t.triangles[triangle][(i + 1) % 3], b = t.triangles[triangle][(i + 2) % 3];
+    return border.contains({std::min(a, b), std::max(a, b)});
+  };
+  const int count = static_cast<int>(t.triangles.size());
+  constexpr char unknown = 2;
+  std::vector<char> inside(count, unknown);
+  std::vector<int> open;
+  for (int i = 0; i < count; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      if (t.neighbor[i][c] >= 0 || inside[i] != unknown) continue;
+      inside[i] = crosses_border(i, c) ? 1 : 0;
+      open.push_back(i);
+    }
+  }
+  while (!open.empty()) {
+    const int current = open.back();
+    open.pop_back();
+    for (int c = 0; c < 3; ++c) {
+      const int next = t.neighbor[current][c];
+      if (next < 0 || inside[next] != unknown) continue;
+      inside[next] = static_cast<char>(inside[current] ^ (crosses_border(current, c) ? 1 : 0));
+      open.push_back(next);
+    }
+  }
+  return inside;
+}
+
+// The same by geometry, for the rare case that lines had to be cut where they cross by rounding.
+std::vector<char> inside_by_place(const FacetPlane& plane, const PlanarTriangulation& t) {
+  std::vector<char> inside;
+  for (const auto& [a, b, c] : t.triangles) {
+    const Vector2d center = (t.points[a] + t.points[b] + t.points[c]) / 3.0;
+    inside.push_back(plane.contains(center, 0.0) ? 1 : 0);
+  }
+  return inside;
+}
+
+// Decides the triangles on coordinates rounded to a billionth of an element: the corners of a
+// square then lie on one circle whatever rounding has done to them, so that the mesh is the same in
+// every unit and every place. Where that turns a triangle over, the true places decide.
+PlanarTriangulation triangulate_places(const std::vector<Vector2d>& xy, const LocalLines& lines,
+                                       double element_size) {
+  const double unit = element_size * std::ldexp(1.0, -30);
+  std::vector<Vector2d> rounded;
+  for (const Vector2d& q : xy) {
+    const Eigen::Array2d cells = (q - lines.box.min()).array() / unit;
+    rounded.emplace_back(std::round(cells.x()), std::round(cells.y()));
+  }
+  PlanarTriangulation t = triangulate(rounded, lines.all);
+  if (!t.is_as_given) return triangulate(xy, lines.all);
+  t.points = xy;
+  const std::vector<char> inside = inside_by_parity(t, lines.boundary);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    const auto& [a, b, c] = t.triangles[i];
+    const Vector2d u = xy[b] - xy[a], v = xy[c] - xy[a];
+    if (inside[i] && !(u.x() * v.y() > u.y() * v.x())) return triangulate(xy, lines.all);
+  }
+  return t;
+}
+
+// Each round lets triangles become about twice as large as those of the last.
+void grade(const LocalLines& lines, double element_size, PlanarTriangulation& triangulation,
+           std::vector<char>& inside) {
+  constexpr int most_rounds = 8;
+  std::size_t left = lines.point.size();  // twice the elements at most
+  for (int round = 0; round < most_rounds; ++round) {
+    const auto added = graded_points(triangulation, inside, lines.all, element_size, left);
+    if (added.empty()) return;
+    left -= added.size();
+    std::vector<Vector2d> xy = triangulation.points;
+    xy.insert(xy.end(), added.begin(), added.end());
+    PlanarTriangulation next = triangulate_places(xy, lines, element_size);
+    if (!next.is_as_given) return;
+    triangulation = std::move(next);
+    inside = inside_by_parity(triangulation, lines.boundary);
+  }
+}
+
+}  // namespace
+
+FacetTriangulation triangulate_facet(const FacetPlane& plane, const FacetOutline& outline,
+                                     const std::vector<Vector3d>& points, const CutSize& size) {
+  FacetTriangulation facet{.lines = local_lines(plane, outline, points)};
+  const LocalLines& lines = facet.lines;
+  std::vector<Vector2d> xy = lines.xy;
+  const auto inner = inner_points(cell_grid(lines.box, size), lines.xy, lines.boundary,
+                                  {lines.all.begin(), lines.all.begin() + lines.hard_count},
+                                  {lines.all.begin() + lines.hard_count, lines.all.end()});
+  xy.insert(xy.end(), inner.begin(), inner.end());
+  PlanarTriangulation& t = facet.triangulation;
+  t = triangulate_places(xy, lines, size.element_size());
+  facet.inside = t.is_as_given ? inside_by_parity(t, lines.boundary) : inside_by_place(plane, t);
+  // Creases lie as fine as they should.
+  if (t.is_as_given && lines.creases.empty()) grade(lines, size.element_size(), t, facet.inside);
+  return facet;
+}
+
+}  // namespace lightwell

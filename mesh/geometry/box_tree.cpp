@@ -1,0 +1,122 @@
+#include "mesh/geometry/box_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+
+namespace lightwell {
+
+BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
+  std::iota(order_.begin(), order_.end(), 0);
+  nodes_.reserve(boxes_.size());
+  if (!boxes_.empty()) build(0, static_cast<int>(boxes_.size()));
+}
+
+int BoxTree::build(int begin, int end) {
+  constexpr int leaf_size = 4;
+  const int index = static_cast<int>(nodes_.size());
+  nodes_.push_back({.begin = begin, .end = end});
+  Box box, centers;
+  for (int i = begin; i < end; ++i) {
+    box.extend(boxes_[order_[i]]);
+    centers.extend(boxes_[order_[i]].center());
+  }
+  nodes_[index].box = box;
+  if (end - begin <= leaf_size) return index;
+
+  int axis = 0;
+  centers.sizes().maxCoeff(&axis);
+  const int middle = begin + (end - begin) / 2;
+  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                   [&](int a, int b) {
+                     const double ca = boxes_[a].center()[axis], cb = boxes_[b].center()[axis];
+                     return ca != cb ? ca < cb : a < b;
+                   });
+  build(begin, middle);
+  const int right = build(middle, end);
+  nodes_[index].right = right;
+  return index;
+}
+
+template <class Meets>
+bool BoxTree::collect(const Meets& meets, std::int64_t& visits, std::vector<int>& found) const {
+  found.clear();
+  if (nodes_.empty()) return true;
+  // The tree halves at every level, so its depth stays below 32 for any int count.
+  std::array<int, 64> stack;
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const int index = stack[--depth];
+    const Node& node = nodes_[index];
+    if (visits-- <= 0) {
+      found.clear();
+      return false;
+    }
+    if (!meets(node.box)) continue;
+    if (node.right != 0) {
+      stack[depth++] = node.right;
+      stack[depth++] = index + 1;
+      continue;
+    }
+    for (int i = node.begin; i < node.end; ++i) {
+      if (meets(boxes_[order_[i]])) found.push_back(order_[i]);
+    }
+  }
+  return true;
+}
+
+template <class Meets>
+void BoxTree::find(const Meets& meets, std::vector<int>& found) const {
+  std::int64_t visits = std::numeric_limits<std::int64_t>::max();
+  collect(meets, visits, found);
+  std::sort(found.begin(), found.end());
+}
+
+void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
+  find([&](const Box& box) { return box.intersects(query); }, found);
+}
+
+void BoxTree::find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
+                            std::vector<int>& found) const {
+  const auto meets = [&](const Box& box) {
+    if (!box.intersects(query)) return false;
+    const double reach = 0.5 * box.sizes().dot(plane.normal().cwiseAbs());
+    return plane.absDistance(box.center()) <= reach;
+  };
+  find(meets, found);
+}
+
+bool BoxTree::find_before(std::span<const Eigen::Hyperplane<double, 3>> planes, double least,
+                          std::int64_t& visits, std::vector<int>& found) const {
+  const auto meets = [&](const Box& box) {
+    const Eigen::Vector3d center = box.center(), half = 0.5 * box.sizes();
+    return std::ranges::all_of(planes, [&](const Eigen::Hyperplane<double, 3>& plane) {
+      return plane.signedDistance(center) + half.dot(plane.normal().cwiseAbs()) > least;
+    });
+  };
+  return collect(meets, visits, found);
+}
+
+bool BoxTree::find_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double reach,
+                         std::int64_t& visits, std::vector<int>& found) const {
+  const Eigen::Vector3d d = b - a, grown = Eigen::Vector3d::Constant(reach);
+  const auto meets = [&](const Box& box) {
+    const Eigen::Vector3d low = box.min() - grown - a, high = box.max() + grown - a;
+    double from = 0.0, to = 1.0;
+    for (int c = 0; c < 3; ++c) {
+      if (d[c] == 0.0) {
+        if (low[c] > 0.0 || high[c] < 0.0) return false;
+        continue;
+      }
+      const double at_low = low[c] / d[c], at_high = high[c] / d[c];
+      from = std::max(from, std::min(at_low, at_high));
+      to = std::min(to, std::max(at_low, at_high));
+    }
+    return from <= to;
+  };
+  return collect(meets, visits, found);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "mesh/geometry/welded_points.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// A facet of the scene in its own plane: corners as welded points, and a 2-D frame whose axes
+/// follow as much of the boundary as possible, so that a rectangle is upright in it.
+struct FacetPlane {
+  int facet = 0;  ///< scene-wide number
+  int surface = 0;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis_x = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d axis_y = Eigen::Vector3d::UnitY();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the front
+  Eigen::AlignedBox3d box{};
+  double weld_tolerance = 0.0;  ///< how far points of its boundary may have been moved, metres
+
+  // Corners, one loop after another: the boundary, then the holes.
+  std::vector<int> loop_begin{0};  ///< loop l is [loop_begin[l], loop_begin[l + 1])
+  std::vector<int> point{};        ///< index into the WeldedPoints
+  std::vector<Eigen::Vector3d> corner{};
+  std::vector<Eigen::Vector2d> xy{};  ///< corners in the frame
+
+  Eigen::Vector2d project(const Eigen::Vector3d& p) const {
+    return {axis_x.dot(p - origin), axis_y.dot(p - origin)};
+  }
+  Eigen::Vector3d lift(const Eigen::Vector2d& q) const {
+    return origin + q.x() * axis_x + q.y() * axis_y;
+  }
+  double height(const Eigen::Vector3d& p) const { return normal.dot(p - origin); }
+  int corner_count() const { return static_cast<int>(point.size()); }
+  int loop_count() const { return static_cast<int>(loop_begin.size()) - 1; }
+  bool is_triangle() const { return corner_count() == 3; }
+
+  /// Calls visit(i, j) for every boundary edge from corner i to corner j.
+  template <class Visit>
+  void for_each_edge(Visit&& visit) const {
+    for (int l = 0; l < loop_count(); ++l) {
+      for (int i = loop_begin[l]; i < loop_begin[l + 1]; ++i) {
+        visit(i, i + 1 < loop_begin[l + 1] ? i + 1 : loop_begin[l]);
+      }
+    }
+  }
+
+  /// Area in the frame, m^2.
+  double area() const;
+  /// Length of the boundary and of all holes, metres.
+  double boundary_length() const;
+  /// Whether q lies inside the polygon, or within `tolerance` of its boundary.
+  bool contains(const Eigen::Vector2d& q, double tolerance) const;
+};
+
+/// Distance of q from the segment a-b.
+double segment_distance(const Eigen::Vector2d& q, const Eigen::Vector2d& a,
+                        const Eigen::Vector2d& b);
+
+/// How far each vertex may be moved to become one with another, metres: `tolerance`, but less where
+/// that would join the ends of an edge or the sides of a needle.
+std::vector<double> weld_radii(const PolygonMesh& mesh, double tolerance);
+
+/// The planes of all polygon facets of the scene (spheres have none), in scene-wide order. Their
+/// corners are added to `points`.
+std::vector<FacetPlane> facet_planes(const Scene& scene, WeldedPoints& points);
+
+}  // namespace lightwell

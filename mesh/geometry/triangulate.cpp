@@ -1,0 +1,166 @@
+#include "mesh/geometry/triangulate.h"
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace lightwell {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
+using FaceBase =
+    CGAL::Triangulation_face_base_with_info_2<int, Kernel,
+                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
+using Delaunay =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::Exact_predicates_tag>;
+
+constexpr int unnumbered = -1;
+
+// Four points on one circle have two Delaunay triangulations, and which of them CGAL ends with
+// depends on where in memory its faces lie. The one kept is that whose diagonal ends in the lowest
+// of the four: a fan from the lowest of all points on the circle.
+class CocircularFans {
+ public:
+  explicit CocircularFans(PlanarTriangulation& mesh) : mesh_(mesh) {}
+
+  void settle() {
+    for (bool has_changed = true; has_changed;) {
+      has_changed = false;
+      for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
+        for (int i = 0; i < 3; ++i) {
+          if (!is_wrong(t, i)) continue;
+          flip(t, i);
+          has_changed = true;
+        }
+      }
+    }
+  }
+
+ private:
+  int opposite(int triangle, int neighbor) const {
+    const auto& around = mesh_.neighbor[triangle];
+    return static_cast<int>(std::find(around.begin(), around.end(), neighbor) - around.begin());
+  }
+
+  bool is_wrong(int t, int i) const {
+    const int u = mesh_.neighbor[t][i];
+    if (u < 0 || mesh_.constrained[t][i]) return false;
+    const int a = mesh_.triangles[t][i], b = mesh_.triangles[t][(i + 1) % 3],
+              c = mesh_.triangles[t][(i + 2) % 3], d = mesh_.triangles[u][opposite(u, t)];
+    if (std::min(b, c) < std::min(a, d)) return false;
+    const auto point = [&](int v) {
+      return Kernel::Point_2(mesh_.points[v].x(), mesh_.points[v].y());
+    };
+    return CGAL::side_of_oriented_circle(point(a), point(b), point(c), point(d)) ==
+           CGAL::ON_ORIENTED_BOUNDARY;
+  }
+
+  // (a, b, c) and (d, c, b) become (a, b, d) and (a, d, c).
+  void flip(int t, int i) {
+    const int u = mesh_.neighbor[t][i], k = opposite(u, t);
+    const auto at = [](int corner) { return corner % 3; };
+    const int a = mesh_.triangles[t][i], b = mesh_.triangles[t][at(i + 1)],
+              c = mesh_.triangles[t][at(i + 2)], d = mesh_.triangles[u][k];
+    const int past_ca = mesh_.neighbor[t][at(i + 1)], past_ab = mesh_.neighbor[t][at(i + 2)];
+    const int past_bd = mesh_.neighbor[u][at(k + 1)], past_dc = mesh_.neighbor[u][at(k + 2)];
+    const bool fixed_ca = mesh_.constrained[t][at(i + 1)],
+               fixed_ab = mesh_.constrained[t][at(i + 2)];
+    const bool fixed_bd = mesh_.constrained[u][at(k + 1)],
+               fixed_dc = mesh_.constrained[u][at(k + 2)];
+    if (past_ca >= 0) mesh_.neighbor[past_ca][opposite(past_ca, t)] = u;
+    if (past_bd >= 0) mesh_.neighbor[past_bd][opposite(past_bd, u)] = t;
+    mesh_.triangles[t] = {a, b, d};
+    mesh_.neighbor[t] = {past_bd, u, past_ab};
+    mesh_.constrained[t] = {fixed_bd, false, fixed_ab};
+    mesh_.triangles[u] = {a, d, c};
+    mesh_.neighbor[u] = {past_dc, past_ca, t};
+    mesh_.constrained[u] = {fixed_dc, fixed_ca, false};
+  }
+
+  PlanarTriangulation& mesh_;
+};
+
+// Triangles in the order of their corners, lowest first.
+void put_in_order(PlanarTriangulation& mesh) {
+  const std::size_t n = mesh.triangles.size();
+  for (std::size_t t = 0; t < n; ++t) {
+    auto& corner = mesh.triangles[t];
+    const auto turn = std::min_element(corner.begin(), corner.end()) - corner.begin();
+    std::rotate(corner.begin(), corner.begin() + turn, corner.end());
+    std::rotate(mesh.neighbor[t].begin(), mesh.neighbor[t].begin() + turn, mesh.neighbor[t].end());
+    std::rotate(mesh.constrained[t].begin(), mesh.constrained[t].begin() + turn,
+                mesh.constrained[t].end());
+  }
+  std::vector<int> order(n), number(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return mesh.triangles[a] < mesh.triangles[b]; });
+  for (std::size_t k = 0; k < n; ++k) number[order[k]] = static_cast<int>(k);
+  PlanarTriangulation sorted{.points = std::move(mesh.points), .is_as_given = mesh.is_as_given};
+  for (const int t : order) {
+    sorted.triangles.push_back(mesh.triangles[t]);
+    sorted.constrained.push_back(mesh.constrained[t]);
+    auto& around = sorted.neighbor.emplace_back(mesh.neighbor[t]);
+    for (int& neighbor : around) neighbor = neighbor < 0 ? neighbor : number[neighbor];
+  }
+  mesh = std::move(sorted);
+}
+
+}  // namespace
+
+PlanarTriangulation triangulate(const std::vector<Eigen::Vector2d>& points,
+                                const std::vector<std::array<int, 2>>& constraints) {
+  Delaunay delaunay;
+  std::vector<Delaunay::Vertex_handle> handles;
+  handles.reserve(points.size());
+  Delaunay::Face_handle hint{};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const int before = static_cast<int>(delaunay.number_of_vertices());
+    const auto vertex = delaunay.insert(Kernel::Point_2(points[i].x(), points[i].y()), hint);
+    if (static_cast<int>(delaunay.number_of_vertices()) > before) {
+      vertex->info() = static_cast<int>(i);
+    }
+    hint = vertex->face();
+    handles.push_back(vertex);
+  }
+  const std::size_t given = delaunay.number_of_vertices();
+  for (const auto& [a, b] : constraints) {
+    if (handles[a] != handles[b]) delaunay.insert_constraint(handles[a], handles[b]);
+  }
+
+  PlanarTriangulation result{.points = points};
+  result.is_as_given = delaunay.number_of_vertices() == points.size();
+  if (delaunay.number_of_vertices() > given) {
+    const std::set<Delaunay::Vertex_handle> known(handles.begin(), handles.end());
+    for (const auto& vertex : delaunay.finite_vertex_handles()) {
+      if (known.contains(vertex)) continue;
+      vertex->info() = static_cast<int>(result.points.size());
+      result.points.emplace_back(vertex->point().x(), vertex->point().y());
+    }
+  }
+  int count = 0;
+  for (const auto& face : delaunay.all_face_handles()) face->info() = unnumbered;
+  for (const auto& face : delaunay.finite_face_handles()) face->info() = count++;
+  for (const auto& face : delaunay.finite_face_handles()) {
+    auto& triangle = result.triangles.emplace_back();
+    auto& neighbor = result.neighbor.emplace_back();
+    auto& constrained = result.constrained.emplace_back();
+    for (int i = 0; i < 3; ++i) {
+      triangle[i] = face->vertex(i)->info();
+      neighbor[i] = face->neighbor(i)->info();
+      constrained[i] = face->is_constrained(i);
+    }
+  }
+  CocircularFans(result).settle();
+  put_in_order(result);
+  return result;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "mesh/patches/patch_mesh.h"
+#include "mesh/patches/sphere_grid.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+// Twice the area, along the normal; planar quadrilaterals and triangles.
+Vector3d area_vector(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return (b - a).cross(c - a);
+}
+
+Vector3d element_area_vector(const PatchMesh& mesh, int element) {
+  const auto& c = mesh.corners[element];
+  const Vector3d p0 = mesh.position(c[0]), p1 = mesh.position(c[1]), p2 = mesh.position(c[2]);
+  if (c[3] < 0) return area_vector(p0, p1, p2);
+  return (p2 - p0).cross(mesh.position(c[3]) - p1);
+}
+
+Vector3d mean_of_corners(const PatchMesh& mesh, int element) {
+  Vector3d sum = Vector3d::Zero();
+  const int n = mesh.corner_count(element);
+  for (int i = 0; i < n; ++i) sum += mesh.position(mesh.corners[element][i]);
+  return sum / n;
+}
+
+const SphereGrid* sphere_of_element(const PatchMesh& mesh, int element) {
+  return sphere_grid_of(mesh, mesh.facet[element]);
+}
+
+// Radial on spheres, inwards for inner elements; elsewhere the mean of the faces around.
+void set_vertex_normals(PatchMesh& mesh, int vertex_count) {
+  mesh.vertex_normal.assign(vertex_count, Vector3d::Zero());
+  const int patches = mesh.patch_count();
+  for (int p = 0; p < patches; ++p) {
+    const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[mesh.first_element[p]]);
+    const double towards = mesh.is_back[p] != 0 ? -1.0 : 1.0;
+    for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+      const Vector3d area = element_area_vector(mesh, e);
+      for (int i = 0; i < mesh.corner_count(e); ++i) {
+        const int v = mesh.corners[e][i];
+        if (grid) {
+          mesh.vertex_normal[v] = towards * (mesh.position(v) - grid->sphere.center);
+        } else {
+          mesh.vertex_normal[v] += area;
+        }
+      }
+    }
+  }
+  for (Vector3d& n : mesh.vertex_normal) n.normalize();
+}
+
+// Whether a face can be added: OpenMesh refuses as well, but with a message on standard error.
+bool fits(const HalfedgeMesh& elements, const std::array<HalfedgeMesh::VertexHandle, 4>& face,
+          std::size_t corner_count) {
+  if (corner_count < 3) return false;
+  for (std::size_t i = 0; i < corner_count; ++i) {
+    if (!elements.is_boundary(face[i])) return false;
+    const auto edge = elements.find_halfedge(face[i], face[(i + 1) % corner_count]);
+    if (edge.is_valid() && !elements.is_boundary(edge)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+PatchPoint element_center(const PatchMesh& mesh, int element) {
+  PatchPoint point{.element = element, .position = mean_of_corners(mesh, element)};
+  if (const SphereGrid* grid = sphere_of_element(mesh, element)) {
+    const Vector3d direction = (point.position - grid->sphere.center).normalized();
+    point.position = grid->sphere.center + grid->sphere.radius * direction;
+    point.normal = mesh.is_back[mesh.patch[element]] != 0 ? Vector3d(-direction) : direction;
+  } else {
+    point.normal = element_area_vector(mesh, element).normalized();
+  }
+  return point;
+}
+
+void build_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
+  using Vertex = HalfedgeMesh::VertexHandle;
+  mesh.elements->clear();
+  // Edges are as many as vertices and faces, less one for each part; one more for every hole.
+  const std::size_t count = positions.size() + mesh.corners.size();
+  mesh.elements->reserve(positions.size(), count + count / 16, mesh.corners.size());
+  for (const Vector3d& p : positions) mesh.elements->add_vertex({p.x(), p.y(), p.z()});
+  const int vertex_count = static_cast<int>(positions.size());
+  for (std::size_t e = 0; e < mesh.corners.size(); ++e) {
+    std::array<Vertex, 4> face;
+    std::size_t n = 0;
+    for (int v : mesh.corners[e]) {
+      if (v < 0) break;
+      if (v >= vertex_count) {
+        throw std::runtime_error("element " + std::to_string(e) + " of the mesh names vertex " +
+                                 std::to_string(v) + ", but there are only " +
+                                 std::to_string(vertex_count));
+      }
+      face[n++] = Vertex(v);
+    }
+    if (!fits(*mesh.elements, face, n) || !mesh.elements->add_face(face.data(), n).is_valid()) {
+      throw std::runtime_error("element " + std::to_string(e) +
+                               " of the mesh does not fit its neighbours: more than two elements "
+                               "share an edge, or two run along it in one direction");
+    }
+  }
+  set_vertex_normals(mesh, vertex_count);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,146 @@
+#include "mesh/patches/patch_sampler.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "mesh/patches/sphere_grid.h"
+#include "scene/facet_textures.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+// How far samples stay inside, as a share of the element or grid. A point nearer to a contact line
+// than float can tell lies, for a ray, on either side of what stands there, and would carry light
+// through it.
+constexpr double inset = 1e-4;
+
+// Uniform over a sphere's element: even in longitude and in cos(theta) (Archimedes).
+Vector3d direction_of_sphere(const PatchMesh& mesh, const SphereGrid& grid, int element, double u,
+                             double v) {
+  SpherePlace place =
+      sphere_place(grid, element_center(mesh, element).position - grid.sphere.center);
+  place.u = 0.0;
+  place.v = 0.0;
+  const double south = sphere_direction(grid, place).z();
+  place.v = 1.0;
+  const double north = sphere_direction(grid, place).z();
+  const double z = std::clamp(south + v * (north - south), -1.0, 1.0);
+  place.u = u;
+  const Vector3d around = sphere_direction(grid, {place.ring, place.sector, u, 0.5});
+  const double across = std::hypot(around.x(), around.y()), r = std::sqrt(1.0 - z * z);
+  return {r * around.x() / across, r * around.y() / across, z};
+}
+
+}  // namespace
+
+PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
+    : mesh_(mesh),
+      patch_(patch),
+      sphere_(sphere_grid_of(mesh, mesh.facet[mesh.first_element[patch]])),
+      is_flat_(!sphere_ && mesh.facet_of(patch) >= 0) {
+  if (mesh.textures && mesh.textures->has_holes()) {
+    for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
+      has_holes_ = has_holes_ || mesh.textures->has_holes(mesh.facet[e]);
+    }
+  }
+  if (is_flat_) {
+    normal_ = element_center(mesh, mesh.first_element[patch]).normal;
+    grid_ = element_grid(mesh, patch);
+  }
+  if (!grid_) {
+    add_parts(mesh.first_element[patch], mesh.first_element[patch + 1]);
+    return;
+  }
+  const Vector3d along_row = grid_->columns * grid_->step, across = grid_->rows * grid_->rise;
+  corner_ = grid_->origin + 0.5 * inset * (along_row + across);
+  along_row_ = (1.0 - inset) * along_row;
+  across_ = (1.0 - inset) * across;
+}
+
+PatchSampler::PatchSampler(const PatchMesh& mesh, int patch, int element)
+    : mesh_(mesh),
+      patch_(patch),
+      sphere_(sphere_grid_of(mesh, mesh.facet[element])),
+      is_flat_(!sphere_),
+      has_holes_(mesh.textures && mesh.textures->has_holes(mesh.facet[element])),
+      normal_(element_center(mesh, element).normal) {
+  add_parts(element, element + 1);
+}
+
+void PatchSampler::add_parts(int first_element, int end_element) {
+  for (int e = first_element; e < end_element; ++e) {
+    if (sphere_) {
+      area_ += mesh_.element_area[e];
+      parts_.push_back({.element = e, .area_up_to = area_});
+      continue;
+    }
+    const auto [element, mean, normal] = element_center(mesh_, e);
+    std::array<Vector3d, 4> corner;
+    for (int i = 0; i < mesh_.corner_count(e); ++i) {
+      const Vector3d at = mesh_.position(mesh_.corners[e][i]);
+      corner[i] = at + inset * (mean - at);
+    }
+    for (int i = 2; i < mesh_.corner_count(e); ++i) {
+      area_ += 0.5 * (corner[i - 1] - corner[0]).cross(corner[i] - corner[0]).norm();
+      parts_.push_back({.element = e,
+                        .area_up_to = area_,
+                        .corner = corner[0],
+                        .first_edge = corner[i - 1] - corner[0],
+                        .second_edge = corner[i] - corner[0],
+                        .normal = is_flat_ ? normal_ : normal});
+    }
+  }
+}
+
+PatchPoint PatchSampler::point_beside_holes(double u, double v) const {
+  PatchPoint point = any_point(u, v);
+  const FacetTextures& textures = *mesh_.textures;
+  const auto key = std::pair(std::bit_cast<std::uint64_t>(u), std::bit_cast<std::uint64_t>(v));
+  constexpr std::uint64_t most_tries = 64;  // a patch that has one point in twenty: 4 % miss it
+  for (std::uint64_t i = 0; i < most_tries; ++i) {
+    const int facet = mesh_.facet[point.element];
+    if (!textures.has_holes(facet) || !textures.is_hole(facet, point.position)) break;
+    point = any_point(random_uniform(random_key(key.first, key.second, 2 * i)),
+                      random_uniform(random_key(key.first, key.second, 2 * i + 1)));
+  }
+  return point;
+}
+
+PatchPoint PatchSampler::point_on_part(double u, double v) const {
+  const double area = u * area_;
+  // Parts are mostly of one size, so a guess saves the search.
+  std::size_t i =
+      std::min(static_cast<std::size_t>(u * static_cast<double>(parts_.size())), parts_.size() - 1);
+  while (i > 0 && area < parts_[i - 1].area_up_to) --i;
+  while (i + 1 < parts_.size() && area >= parts_[i].area_up_to) ++i;
+  const Part& part = parts_[i];
+  const double before = i == 0 ? 0.0 : parts_[i - 1].area_up_to;
+  u = std::clamp((area - before) / (part.area_up_to - before), 0.0, 1.0);
+  if (!sphere_) {
+    // The square root keeps density even towards the corner.
+    const double s = std::sqrt(u);
+    return {.element = part.element,
+            .position = part.corner + s * ((1.0 - v) * part.first_edge + v * part.second_edge),
+            .normal = part.normal};
+  }
+  const Vector3d direction = direction_of_sphere(mesh_, *sphere_, part.element, u, v);
+  return {.element = part.element,
+          .position = sphere_->sphere.center + sphere_->sphere.radius * direction,
+          .normal = mesh_.is_back[patch_] != 0 ? Vector3d(-direction) : direction};
+}
+
+Ray cosine_ray(const PatchMesh& mesh, const PatchPoint& from, float u, float v) {
+  Vector3d a, b;
+  tangent_frame(from.normal, a, b);
+  const Vector3d d = cosine_direction(u, v);
+  return {.origin = from.position,
+          .direction = d.x() * a + d.y() * b + d.z() * from.normal,
+          .origin_group = mesh.facet[from.element]};
+}
+
+}  // namespace lightwell

@@ -1,0 +1,309 @@
+// What models from real programs have wrong with them, and what makes them hard.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "mesh/build_patches.h"
+#include "mesh/cleaning/planar_regions.h"
+#include "mesh/patches/element_quality.h"
+#include "mesh/patches/patch_mesh.h"
+#include "scene/errors.h"
+#include "tests/mesh/mesh_scenes.h"
+
+namespace lightwell {
+namespace {
+
+using namespace lightwell::testing;
+using Eigen::Vector3d;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+void add_triangle(PolygonMesh& mesh, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  const int first = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+  mesh.facets.push_back({.boundary = {first, first + 1, first + 2}});
+}
+
+Scene scene_of(PolygonMesh mesh, int material = 1) {
+  Scene scene = empty_scene();
+  scene.surfaces.push_back({.name = "soup", .material = material, .shape = std::move(mesh)});
+  return scene;
+}
+
+const PolygonMesh& mesh_of(const Scene& scene, int surface = 0) {
+  return std::get<PolygonMesh>(scene.surfaces[surface].shape);
+}
+
+void round_to_float(PolygonMesh& mesh) {
+  for (Vector3d& v : mesh.vertices) v = v.cast<float>().cast<double>();
+}
+
+std::string refusal(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A rectangle cut in two, and its parts again: nearly every corner lies inside a neighbour's edge.
+void cut_rectangle(double x0, double y0, double x1, double y1, int depth, Numbers& random,
+                   const Eigen::AngleAxisd& turn, PolygonMesh& mesh) {
+  if (depth > 0) {
+    const double t = random.between(0.2, 0.8);
+    if (x1 - x0 > y1 - y0) {
+      const double x = x0 + t * (x1 - x0);
+      cut_rectangle(x0, y0, x, y1, depth - 1, random, turn, mesh);
+      cut_rectangle(x, y0, x1, y1, depth - 1, random, turn, mesh);
+    } else {
+      const double y = y0 + t * (y1 - y0);
+      cut_rectangle(x0, y0, x1, y, depth - 1, random, turn, mesh);
+      cut_rectangle(x0, y, x1, y1, depth - 1, random, turn, mesh);
+    }
+    return;
+  }
+  const auto at = [&](double x, double y) { return Vector3d(turn * Vector3d(x, y, 0.5)); };
+  add_triangle(mesh, at(x0, y0), at(x1, y0), at(x1, y1));
+  add_triangle(mesh, at(x0, y0), at(x1, y1), at(x0, y1));
+}
+
+// Single precision leaves corners beside the edges they lie in. The clean-up may move them by 1e-7
+// of the diagonal, and so change the area by that times the length of the edges.
+TEST(DirtyModels, RectanglesThatMeetAtPartsOfEdgesBecomeOne) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    Numbers random(seed);
+    const Vector3d axis(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+    const Eigen::AngleAxisd turn(random.between(0, 6), axis.normalized());
+    PolygonMesh mesh;
+    cut_rectangle(0, 0, 1, 1, 2 + random.below(5), random, turn, mesh);
+    round_to_float(mesh);
+    const Scene soup = scene_of(mesh);
+    CleanUpReport report;
+    const Scene scene = merge_planar_regions(soup, &report);
+    ASSERT_EQ(mesh_of(scene).facets.size(), 1u) << "seed " << seed;
+    ASSERT_EQ(mesh_of(scene).facets[0].boundary.size(), 4u) << "seed " << seed;
+    EXPECT_GT(report.hanging, 0);
+    double edges = 0.0;
+    for (const Facet& f : mesh.facets) {
+      for (int i = 0; i < 3; ++i) {
+        edges += (mesh.vertices[f.boundary[i]] - mesh.vertices[f.boundary[(i + 1) % 3]]).norm();
+      }
+    }
+    const double moved = 1e-7 * scene_bounds(soup).diagonal();
+    EXPECT_NEAR(report.area_after, report.area_before, moved * edges);
+  }
+}
+
+// One quadrilateral beside two, bent by 3 degrees: a smooth surface, so one vertex at each place.
+TEST(DirtyModels, VerticesInsideANeighboursEdgeAreSharedWhereTheSurfaceIsSmooth) {
+  const double z = std::tan(3.0 * degree);
+  PolygonMesh mesh = polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  for (const double y : {0.0, 0.4}) {
+    const double next = y > 0.0 ? 1.0 : 0.4;
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (const Vector3d& v :
+         {Vector3d(1, y, 0), Vector3d(2, y, z), Vector3d(2, next, z), Vector3d(1, next, 0)}) {
+      mesh.vertices.push_back(v);
+    }
+    mesh.facets.push_back({.boundary = {first, first + 1, first + 2, first + 3}});
+  }
+  const Scene soup = scene_of(mesh);
+  ASSERT_EQ(mesh_of(merge_planar_regions(soup)).facets.size(), 2u);
+  for (const Scene& s : {soup, merge_planar_regions(soup)}) {
+    const PatchMesh patches = build_patches(s, {.max_patch_size = 0.5});
+    expect_consistent(patches);
+    EXPECT_EQ(hanging_vertices(patches), 0);
+    std::set<double> places;
+    int vertices = 0;
+    for (int v = 0; v < patches.vertex_count(); ++v) {
+      if (std::abs(patches.position(v).x() - 1.0) > 1e-12) continue;
+      places.insert(std::round(1e9 * patches.position(v).y()));
+      ++vertices;
+    }
+    EXPECT_EQ(static_cast<int>(places.size()), vertices);
+  }
+}
+
+// A railing of single precision in a hall of 30 m: its sides are planes to rounding, 1e-6 m, which
+// is far more than 5e-10 of their own area.
+TEST(DirtyModels, ThinBarsFarFromTheOriginHaveSixSides) {
+  const Eigen::AngleAxisd turn(0.7, Vector3d(1, 2, 3).normalized());
+  PolygonMesh bar;
+  const auto add_side = [&](const Vector3d& at, const Vector3d& u, const Vector3d& v) {
+    constexpr int n = 12;
+    for (int i = 0; i < n; ++i) {
+      const auto corner = [&](double s, double t) {
+        return Vector3d(Vector3d(20, 11, -7) + turn * (at + s / n * u + t * v));
+      };
+      add_triangle(bar, corner(i, 0), corner(i + 1, 0), corner(i + 1, 1));
+      add_triangle(bar, corner(i, 0), corner(i + 1, 1), corner(i, 1));
+    }
+  };
+  const Vector3d x(1.2, 0, 0), y(0, 0.008, 0), z(0, 0, 0.01);
+  add_side({0, 0, 0}, x, z);
+  add_side({0, 0, 0}, y, x);
+  add_side({0, 0, 0}, z, y);
+  add_side(y, z, x);
+  add_side(z, x, y);
+  add_side(x, y, z);
+  round_to_float(bar);
+  Scene scene = scene_of(bar);
+  add_polygon(scene, "floor", {{0, 0, -9}, {30, 0, -9}, {30, 20, -9}, {0, 20, -9}});
+  CleanUpReport report;
+  const Scene clean = merge_planar_regions(scene, &report);
+  EXPECT_EQ(mesh_of(clean).facets.size(), 6u);
+  EXPECT_EQ(mesh_of(clean).vertices.size(), 8u);
+  // Corners may move by 1e-7 of the diagonal along the bar's twelve edges, each of two sides; the
+  // floor is whole already.
+  const double edges = 2.0 * 4.0 * (x.norm() + y.norm() + z.norm());
+  EXPECT_NEAR(report.area_after, report.area_before, 1e-7 * scene_bounds(scene).diagonal() * edges);
+}
+
+// Welding moves corners by 1e-7 of the diagonal at most, and puts points of others into edges that
+// lie that near: a facet gains or loses less than that times the length of its boundary.
+TEST(DirtyModels, AreaStaysWithinTheWeldingOfTheBoundary) {
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    Scene scene = boxes_under_a_lamp(seed);
+    for (Surface& surface : scene.surfaces) round_to_float(std::get<PolygonMesh>(surface.shape));
+    const double moved = 1e-7 * scene_bounds(scene).diagonal();
+    const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.3});
+    const auto facets = scene_facets(scene);
+    for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+      const PolygonMesh& polygons = mesh_of(scene, facets[f].surface);
+      const Facet& facet = polygons.facets[facets[f].facet];
+      double boundary = 0.0;
+      for (std::size_t i = 0; i < facet.boundary.size(); ++i) {
+        boundary += (polygons.vertices[facet.boundary[i]] -
+                     polygons.vertices[facet.boundary[(i + 1) % facet.boundary.size()]])
+                        .norm();
+      }
+      const double area = facet_area(polygons, facet);
+      // Sums of elements round: a share of 1e-12 at most.
+      EXPECT_NEAR(side_area(mesh, f, false), area, moved * boundary + 1e-12 * area);
+    }
+  }
+}
+
+Loop circle(int n, double radius, const Vector3d& center) {
+  Loop loop;
+  for (int i = 0; i < n; ++i) {
+    const double a = 2.0 * std::numbers::pi * i / n;
+    loop.push_back(center + radius * Vector3d(std::cos(a), std::sin(a), 0.0));
+  }
+  return loop;
+}
+
+TEST(DirtyModels, RoundFootSendsNoSliversOverTheFloor) {
+  Scene scene = empty_scene();
+  add_polygon(scene, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {}, 1);
+  add_polygon(scene, "foot", circle(64, 0.1, {0.2, 0.1, 0}), {}, 1);
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.4});
+  expect_consistent(mesh);
+  EXPECT_EQ(hanging_vertices(mesh), 0);
+  const ElementQuality quality = element_quality(mesh);
+  // Two rows of about 32 and 16 points on either side of the 64.
+  EXPECT_GT(quality.least_angle_degrees, 10.0);
+  EXPECT_LT(quality.elements, 10 * 10 + 2 * 2 * (64 + 32 + 16));
+}
+
+// A ball of 4000 triangles sunk into a floor whose elements are as large as it is: the line keeps
+// to within 1/200 of an element, so its inside has the ball's area to that times its length.
+TEST(DirtyModels, FinelyDividedLinesAreJoinedInsideCoarseFacets) {
+  Scene scene = triangle_ball(64, 1);
+  add_polygon(scene, "floor", {{-4, -4, 0.01}, {4, -4, 0.01}, {4, 4, 0.01}, {-4, 4, 0.01}}, {}, 1);
+  const int floor = static_cast<int>(scene_facets(scene).size()) - 1;
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 4.0});
+  expect_consistent(mesh);
+  double inside = 0.0;
+  int elements = 0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (mesh.facet[e] != floor) continue;
+    ++elements;
+    const Vector3d at = element_center(mesh, e).position;
+    if (std::hypot(at.x(), at.y()) < 1.0) inside += mesh.element_area[e];
+  }
+  const double moved = 0.005 * 2.0, length = 2.0 * std::numbers::pi;
+  // The ball's own section, a polygon of 64 sides at a height of 0.01, is smaller than the disc.
+  constexpr double sides = 64.0, pi = std::numbers::pi;
+  const double section = (1.0 - 0.01 * 0.01) * 0.5 * sides * std::sin(2.0 * pi / sides);
+  EXPECT_NEAR(inside, section, moved * length);
+  EXPECT_LT(elements, 120);  // 64 cuts on either side would make twice as many
+  // Cuts inside a facet leave its boundary alone: rounding of the sum.
+  EXPECT_NEAR(side_area(mesh, floor, false), 64.0, 64.0 * 1e-12);
+}
+
+TEST(DirtyModels, PolygonsThatCrossThemselvesAreRefusedByName) {
+  Scene bow = empty_scene();
+  add_polygon(bow, "bow", {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1.5, 1, 0}});
+  EXPECT_NE(refusal([&] { build_patches(merge_planar_regions(bow)); }).find("'bow'"),
+            std::string::npos);
+  Scene hole = empty_scene();
+  add_polygon(hole, "wall", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+              {{{2, 2, 0}, {2, 2.5, 0}, {2.5, 2.5, 0}, {2.5, 2, 0}}});
+  EXPECT_NE(refusal([&] { build_patches(merge_planar_regions(hole)); }).find("'wall'"),
+            std::string::npos);
+}
+
+TEST(DirtyModels, DustAndContinentsInOneSceneAreMeshed) {
+  Scene scene = empty_scene();
+  add_polygon(scene, "plain", {{-5e5, -5e5, 0}, {5e5, -5e5, 0}, {5e5, 5e5, 0}, {-5e5, 5e5, 0}});
+  add_box(scene, "hut", {0, 0, 0}, {4, 3, 2});
+  PolygonMesh dust = polygon({{0, 0, 3}, {1, 0, 3}, {0, 1, 3}});
+  for (int i = 0; i < 100; ++i) {
+    const Vector3d at(0.1 * i, 1, 1);
+    add_triangle(dust, at, at + Vector3d(1e-12, 0, 0), at + Vector3d(0, 1e-12, 0));
+  }
+  scene.surfaces.push_back({.name = "dust", .material = 0, .shape = dust});
+  CleanUpReport report;
+  const Scene clean = merge_planar_regions(scene, &report);
+  EXPECT_EQ(report.degenerate, 100);
+  const PatchMesh mesh = build_patches(clean);
+  EXPECT_GE(mesh.patch_count(), 2 * 7);
+  for (int f = 1; f < 7; ++f) EXPECT_GT(side_area(mesh, f, false), 5.9);  // the hut stands
+}
+
+TEST(DirtyModels, HundredCopiesOfEveryFacetAreOne) {
+  Scene box = empty_scene();
+  add_box(box, "box", {0, 0, 0}, {1, 2, 3});
+  const PolygonMesh once = mesh_of(box);
+  PolygonMesh copies;
+  for (int k = 0; k < 100; ++k) {
+    const int first = static_cast<int>(copies.vertices.size());
+    copies.vertices.insert(copies.vertices.end(), once.vertices.begin(), once.vertices.end());
+    for (Facet facet : once.facets) {
+      for (int& v : facet.boundary) v += first;
+      copies.facets.push_back(facet);
+    }
+  }
+  CleanUpReport report;
+  EXPECT_EQ(mesh_of(merge_planar_regions(scene_of(copies), &report)).facets.size(), 6u);
+  EXPECT_EQ(report.duplicates, 6 * 99);
+
+  Scene apart = empty_scene();  // as surfaces of their own they stay
+  for (int k = 0; k < 100; ++k) add_box(apart, "box", {0, 0, 0}, {1, 2, 3});
+  const PatchMesh mesh = build_patches(merge_planar_regions(apart), {.max_patch_size = 1.0});
+  EXPECT_NEAR(mesh.area.sum(), 2 * 100 * 22.0, 1e-6);
+}
+
+// 3000 triangles on one another meet in 10 million places.
+TEST(DirtyModels, HeapsWithTooManyCrossingsAreRefused) {
+  Numbers random(1);
+  PolygonMesh heap;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d at(random.between(-0.1, 0.1), random.between(-0.1, 0.1), 0);
+    const double a = random.between(0, 6);
+    const Vector3d u(std::cos(a), std::sin(a), 0), v(-u.y(), u.x(), 0);
+    add_triangle(heap, at - u - v, at + u - v, at + v);
+  }
+  const std::string why = refusal([&] { build_patches(merge_planar_regions(scene_of(heap))); });
+  EXPECT_NE(why.find("million places"), std::string::npos) << why;
+}
+
+}  // namespace
+}  // namespace lightwell
