@@ -22,7 +22,7 @@
 #include "mesh/build_patches.h"
 #include "mesh/elements/element_caster.h"
 #include "mesh/patches/element_quality.h"
-#include "radiosity/point_form_factor.h"
+#include "radiosity/visibility/point_form_factor.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"
 

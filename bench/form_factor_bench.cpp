@@ -19,9 +19,9 @@
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
 #include "mesh/patches/patch_outline.h"
-#include "radiosity/form_factors.h"
-#include "radiosity/memory_budget.h"
-#include "radiosity/pair_exchange.h"
+#include "radiosity/closed_forms/pair_exchange.h"
+#include "radiosity/form_factors/form_factors.h"
+#include "radiosity/rows/memory_budget.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 

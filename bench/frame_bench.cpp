@@ -28,7 +28,7 @@
 
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
-#include "radiosity/relight.h"
+#include "radiosity/solution/relight.h"
 #include "viewer/appearance.h"
 #include "viewer/walk_window.h"
 #include "viewer/x_display.h"

@@ -23,7 +23,7 @@
 #include "mesh/build_patches.h"
 #include "mesh/cleaning/planar_regions.h"
 #include "mesh/patches/patch_sampler.h"
-#include "radiosity/memory_budget.h"
+#include "radiosity/rows/memory_budget.h"
 #include "radiosity/solve.h"
 #include "raytrace/probe.h"
 #include "scene/parallel.h"

@@ -18,8 +18,8 @@
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
 #include "mesh/cleaning/planar_regions.h"
-#include "radiosity/radiosity_system.h"
-#include "radiosity/solve_radiosity.h"
+#include "radiosity/solvers/radiosity_system.h"
+#include "radiosity/solvers/solve_radiosity.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"
 

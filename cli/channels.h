@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/report.h"
-#include "radiosity/emitter_channels.h"
-#include "radiosity/relight.h"
+#include "radiosity/solution/emitter_channels.h"
+#include "radiosity/solution/relight.h"
 
 namespace lightwell {
 

@@ -10,7 +10,7 @@
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/quoted.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "scene/errors.h"
 
 namespace lightwell {

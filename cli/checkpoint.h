@@ -9,7 +9,7 @@
 
 #include "cli/console.h"
 #include "cli/report.h"
-#include "radiosity/journal.h"
+#include "radiosity/journal/journal.h"
 
 namespace lightwell {
 

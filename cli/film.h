@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/console.h"
-#include "radiosity/solution.h"
+#include "radiosity/solution/solution.h"
 #include "raytrace/image.h"
 #include "raytrace/layers.h"
 #include "scene/scene.h"

@@ -1,4 +1,4 @@
-#include "radiosity/form_factors.h"
+#include "radiosity/form_factors/form_factors.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@
 #include "cli/report.h"
 #include "cli/view_factor_rows.h"
 #include "mesh/build_patches.h"
-#include "radiosity/form_factor_file.h"
-#include "radiosity/view_factor_scene.h"
+#include "radiosity/form_factors/form_factor_file.h"
+#include "radiosity/form_factors/view_factor_scene.h"
 #include "scene/errors.h"
 
 namespace lightwell {

@@ -13,7 +13,7 @@
 #include "cli/report.h"
 #include "mesh/cleaning/mesh_quality.h"
 #include "mesh/cleaning/planar_regions.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "raytrace/image.h"
 #include "raytrace/ugr_table.h"
 #include "scene/errors.h"

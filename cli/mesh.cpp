@@ -12,7 +12,7 @@
 #include "mesh/build_patches.h"
 #include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/patches/element_quality.h"
-#include "radiosity/mesh_file.h"
+#include "radiosity/solution/mesh_file.h"
 
 namespace lightwell {
 namespace {

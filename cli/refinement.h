@@ -6,7 +6,7 @@
 
 #include "cli/report.h"
 #include "radiosity/accuracy.h"
-#include "radiosity/refine_solution.h"
+#include "radiosity/refine/refine_solution.h"
 
 namespace lightwell {
 

@@ -1,4 +1,4 @@
-#include "radiosity/relight.h"
+#include "radiosity/solution/relight.h"
 
 #include <memory>
 
@@ -8,7 +8,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 
 namespace lightwell {
 namespace {

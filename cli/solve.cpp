@@ -8,7 +8,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "scene/io/read_scene.h"
 
 namespace lightwell {

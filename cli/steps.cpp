@@ -9,7 +9,7 @@
 #include "cli/interrupt.h"
 #include "cli/refinement.h"
 #include "mesh/patches/patch_textures.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
 

@@ -13,7 +13,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
-#include "radiosity/relight.h"
+#include "radiosity/solution/relight.h"
 #include "scene/errors.h"
 #ifdef LIGHTWELL_VIEWER
 #include "viewer/camera_path.h"

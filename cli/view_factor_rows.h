@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mesh/cleaning/facet_check.h"
-#include "radiosity/view_factor_scene.h"
+#include "radiosity/form_factors/view_factor_scene.h"
 #include "scene/io/numbered_scene.h"
 
 namespace lightwell {

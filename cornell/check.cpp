@@ -16,7 +16,7 @@
 #include "cornell/picture_mask.h"
 #include "cornell/sightlines.h"
 #include "mesh/cleaning/planar_regions.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "raytrace/image.h"
 #include "raytrace/probe.h"
 #include "scene/errors.h"

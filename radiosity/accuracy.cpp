@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "radiosity/effort.h"
+#include "radiosity/refine/effort.h"
 
 namespace lightwell {
 namespace {

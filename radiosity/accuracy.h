@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "radiosity/refine_solution.h"
-#include "radiosity/solution.h"
+#include "radiosity/refine/refine_solution.h"
+#include "radiosity/solution/solution.h"
 
 namespace lightwell {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "mesh/patches/patch_sampler.h"
-#include "radiosity/effort.h"
-#include "radiosity/interpolation_error.h"
+#include "radiosity/refine/effort.h"
+#include "radiosity/refine/interpolation_error.h"
 #include "scene/sampling.h"
 
 namespace lightwell {

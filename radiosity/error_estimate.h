@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/direct_light.h"
+#include "radiosity/emitters/direct_light.h"
 #include "radiosity/solve.h"
 
 namespace lightwell {

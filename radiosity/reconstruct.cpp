@@ -5,9 +5,9 @@
 #include <numeric>
 #include <utility>
 
-#include "radiosity/gather_noise.h"
-#include "radiosity/light_path.h"
-#include "radiosity/patch_power.h"
+#include "radiosity/gather/patch_power.h"
+#include "radiosity/paths/light_path.h"
+#include "radiosity/refine/gather_noise.h"
 
 namespace lightwell {
 namespace {

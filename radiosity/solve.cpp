@@ -11,18 +11,18 @@
 #include <string>
 
 #include "mesh/build_patches.h"
-#include "radiosity/effort.h"
 #include "radiosity/error_estimate.h"
+#include "radiosity/form_factors/transport.h"
 #include "radiosity/in_force.h"
-#include "radiosity/journal.h"
-#include "radiosity/journal_phase.h"
-#include "radiosity/memory_budget.h"
+#include "radiosity/journal/journal.h"
+#include "radiosity/journal/journal_phase.h"
 #include "radiosity/reconstruct.h"
-#include "radiosity/relight.h"
-#include "radiosity/solve_channels.h"
-#include "radiosity/solve_radiosity.h"
+#include "radiosity/refine/effort.h"
+#include "radiosity/rows/memory_budget.h"
+#include "radiosity/solution/relight.h"
+#include "radiosity/solvers/solve_channels.h"
+#include "radiosity/solvers/solve_radiosity.h"
 #include "radiosity/start_radiosity.h"
-#include "radiosity/transport.h"
 #include "scene/errors.h"
 
 namespace lightwell {

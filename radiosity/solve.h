@@ -4,14 +4,14 @@
 
 #include "mesh/build_patches.h"
 #include "radiosity/accuracy.h"
-#include "radiosity/emitter_channels.h"
-#include "radiosity/final_gather.h"
-#include "radiosity/form_factors.h"
-#include "radiosity/free_light.h"
-#include "radiosity/progressive.h"
-#include "radiosity/refine_solution.h"
-#include "radiosity/solution.h"
-#include "radiosity/solve_radiosity.h"
+#include "radiosity/form_factors/form_factors.h"
+#include "radiosity/gather/final_gather.h"
+#include "radiosity/paths/free_light.h"
+#include "radiosity/refine/refine_solution.h"
+#include "radiosity/solution/emitter_channels.h"
+#include "radiosity/solution/solution.h"
+#include "radiosity/solvers/progressive.h"
+#include "radiosity/solvers/solve_radiosity.h"
 
 namespace lightwell {
 

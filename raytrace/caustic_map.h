@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/caustic_photons.h"
+#include "radiosity/paths/caustic_photons.h"
 #include "raytrace/disc_tree.h"
 #include "raytrace/light_regions.h"
 

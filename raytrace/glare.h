@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/direct_light.h"
-#include "radiosity/final_gather.h"
-#include "radiosity/solution.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/gather/final_gather.h"
+#include "radiosity/solution/solution.h"
 #include "scene/scene.h"
 
 namespace lightwell {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "radiosity/emitter_point.h"
+#include "radiosity/emitters/emitter_point.h"
 #include "scene/sampling.h"
 
 namespace lightwell {

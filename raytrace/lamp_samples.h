@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/direct_light.h"
+#include "radiosity/emitters/direct_light.h"
 
 namespace lightwell {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <span>
 
-#include "radiosity/final_gather.h"
+#include "radiosity/gather/final_gather.h"
 #include "scene/sampling.h"
 
 namespace lightwell {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/bright_patches.h"
-#include "radiosity/direct_light.h"
-#include "radiosity/light_path.h"
-#include "radiosity/solution.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/gather/bright_patches.h"
+#include "radiosity/paths/light_path.h"
+#include "radiosity/solution/solution.h"
 #include "scene/hemisphere_sets.h"
 #include "scene/sampling.h"
 

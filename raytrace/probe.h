@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "radiosity/final_gather.h"
-#include "radiosity/solution.h"
+#include "radiosity/gather/final_gather.h"
+#include "radiosity/solution/solution.h"
 #include "radiosity/solve.h"
 
 namespace lightwell {

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-#include "radiosity/journal_phase.h"
+#include "radiosity/journal/journal_phase.h"
 #include "raytrace/camera_ray.h"
 #include "raytrace/layer_film.h"
 #include "raytrace/pixel_samples.h"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/direct_light.h"
-#include "radiosity/solution.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/solution/solution.h"
 #include "raytrace/image.h"
 #include "raytrace/layers.h"
 #include "scene/progress.h"

@@ -4,8 +4,8 @@
 #include <mutex>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/direct_light.h"
-#include "radiosity/solution.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/solution/solution.h"
 #include "raytrace/render.h"
 
 namespace lightwell {

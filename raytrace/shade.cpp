@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "radiosity/final_gather.h"
+#include "radiosity/gather/final_gather.h"
 #include "scene/optics.h"
 #include "scene/sampling.h"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/bright_patches.h"
-#include "radiosity/direct_light.h"
-#include "radiosity/solution.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/gather/bright_patches.h"
+#include "radiosity/solution/solution.h"
 #include "raytrace/caustic_map.h"
 #include "raytrace/lamp_samples.h"
 #include "raytrace/pixel_gather.h"

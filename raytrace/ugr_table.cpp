@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "radiosity/polygon_exchange.h"
+#include "radiosity/closed_forms/polygon_exchange.h"
 #include "raytrace/glare.h"
 #include "scene/errors.h"
 

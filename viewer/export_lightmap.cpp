@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "radiosity/relight.h"
+#include "radiosity/solution/relight.h"
 #include "raytrace/display.h"
 #include "raytrace/encode_png.h"
 #include "scene/errors.h"

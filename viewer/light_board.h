@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "radiosity/relight.h"
+#include "radiosity/solution/relight.h"
 
 namespace lightwell {
 

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "mesh/build_patches.h"
-#include "radiosity/relight.h"
-#include "radiosity/vertex_light.h"
+#include "radiosity/solution/relight.h"
+#include "radiosity/solvers/vertex_light.h"
 #include "scene/errors.h"
 
 namespace lightwell {

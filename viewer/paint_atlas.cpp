@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "mesh/patches/sphere_grid.h"
-#include "radiosity/final_gather.h"
+#include "radiosity/gather/final_gather.h"
 #include "scene/parallel.h"
 #include "viewer/baked_channels.h"
 #include "viewer/chart_texels.h"

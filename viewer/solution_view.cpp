@@ -19,7 +19,7 @@
 #include <stdexcept>
 
 #include "mesh/patches/mesh_bounds.h"
-#include "radiosity/vtk_messages.h"
+#include "radiosity/solution/vtk_messages.h"
 #include "raytrace/display.h"
 
 namespace lightwell {

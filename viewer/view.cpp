@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "radiosity/relight.h"
-#include "radiosity/vtk_messages.h"
+#include "radiosity/solution/relight.h"
+#include "radiosity/solution/vtk_messages.h"
 #include "raytrace/image.h"
 #include "scene/errors.h"
 #include "viewer/camera_path.h"

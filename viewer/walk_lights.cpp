@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "radiosity/relight.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/relight.h"
+#include "radiosity/solution/solution_file.h"
 #include "viewer/walk_window.h"
 
 namespace lightwell {

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <utility>
 
-#include "radiosity/vtk_messages.h"
+#include "radiosity/solution/vtk_messages.h"
 #include "raytrace/image.h"
 #include "viewer/walk_style.h"
 #include "viewer/x_display.h"

@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "tests/cli/program.h"
 
 namespace lightwell {

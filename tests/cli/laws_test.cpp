@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "tests/cli/program.h"
 
 namespace lightwell {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "raytrace/image.h"
 #include "tests/cli/program.h"
 

@@ -10,11 +10,11 @@
 #include "mesh/build_patches.h"
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/error_estimate.h"
-#include "radiosity/interpolation_error.h"
+#include "radiosity/refine/interpolation_error.h"
 #include "radiosity/solve.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
-#include "two_lamps.h"
+#include "tests/radiosity/two_lamps.h"
 
 namespace lightwell {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "lit_places.h"
 #include "mesh/build_patches.h"
-#include "radiosity/direct_light.h"
+#include "radiosity/emitters/direct_light.h"
+#include "tests/radiosity/lit_places.h"
 
 namespace lightwell {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
-#include "radiosity/final_gather.h"
-#include "radiosity/polygon_form_factor.h"
+#include "radiosity/closed_forms/polygon_form_factor.h"
+#include "radiosity/gather/final_gather.h"
 #include "radiosity/solve.h"
 #include "scene/parallel.h"
 #include "tests/radiosity/test_scenes.h"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "radiosity/form_factors.h"
+#include "radiosity/form_factors/form_factors.h"
 
 namespace lightwell::test {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "radiosity/form_factors.h"
-#include "radiosity/solve_radiosity.h"
+#include "radiosity/form_factors/form_factors.h"
+#include "radiosity/solvers/solve_radiosity.h"
 
 namespace lightwell::test {
 

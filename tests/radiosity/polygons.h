@@ -4,7 +4,7 @@
 
 #include "mesh/build_patches.h"
 #include "mesh/patches/patch_mesh.h"
-#include "radiosity/shaft.h"
+#include "radiosity/visibility/shaft.h"
 #include "tests/radiosity/test_scenes.h"
 
 namespace lightwell::test {

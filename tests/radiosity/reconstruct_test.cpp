@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mesh/build_patches.h"
-#include "radiosity/gather_noise.h"
-#include "two_lamps.h"
+#include "radiosity/refine/gather_noise.h"
+#include "tests/radiosity/two_lamps.h"
 
 namespace lightwell {
 namespace {

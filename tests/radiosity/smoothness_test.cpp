@@ -7,8 +7,8 @@
 #include <map>
 #include <vector>
 
-#include "lit_places.h"
 #include "mesh/cleaning/planar_regions.h"
+#include "tests/radiosity/lit_places.h"
 
 namespace lightwell {
 namespace {

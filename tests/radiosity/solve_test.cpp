@@ -8,7 +8,7 @@
 
 #include "scene/errors.h"
 #include "scene/parallel.h"
-#include "test_scenes.h"
+#include "tests/radiosity/test_scenes.h"
 #include "tests/temporary_folder.h"
 
 namespace lightwell {

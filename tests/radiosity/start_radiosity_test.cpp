@@ -4,7 +4,7 @@
 
 #include "mesh/build_patches.h"
 #include "scene/errors.h"
-#include "two_lamps.h"
+#include "tests/radiosity/two_lamps.h"
 
 namespace lightwell {
 namespace {

@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
-#include "radiosity/form_factors.h"
+#include "radiosity/form_factors/form_factors.h"
 #include "radiosity/solve.h"
 #include "scene/parallel.h"
-#include "test_scenes.h"
 #include "tests/pictures.h"
+#include "tests/radiosity/test_scenes.h"
 
 namespace lightwell {
 namespace {

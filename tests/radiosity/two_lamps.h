@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "radiosity/solve.h"
-#include "test_scenes.h"
+#include "tests/radiosity/test_scenes.h"
 
 namespace lightwell::test {
 

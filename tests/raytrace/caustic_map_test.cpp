@@ -6,8 +6,8 @@
 #include <functional>
 #include <numbers>
 
-#include "radiosity/point_form_factor.h"
-#include "radiosity/polygon_form_factor.h"
+#include "radiosity/closed_forms/polygon_form_factor.h"
+#include "radiosity/visibility/point_form_factor.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 #include "tests/raytrace/lit_scene.h"

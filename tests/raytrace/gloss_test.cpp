@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "radiosity/light_path.h"
+#include "radiosity/paths/light_path.h"
 #include "radiosity/solve.h"
 #include "raytrace/shade.h"
 #include "scene/optics.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
-#include "radiosity/polygon_form_factor.h"
+#include "radiosity/closed_forms/polygon_form_factor.h"
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 

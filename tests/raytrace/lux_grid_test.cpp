@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "radiosity/polygon_form_factor.h"
+#include "radiosity/closed_forms/polygon_form_factor.h"
 #include "scene/errors.h"
 #include "tests/raytrace/lit_scene.h"
 #include "tests/temporary_folder.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/relight.h"
+#include "radiosity/solution/relight.h"
 #include "raytrace/probe.h"
 #include "raytrace/render.h"
 #include "tests/radiosity/two_lamps.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "radiosity/journal.h"
+#include "radiosity/journal/journal.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "tests/raytrace/lit_scene.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "radiosity/caustic_photons.h"
+#include "radiosity/paths/caustic_photons.h"
 #include "radiosity/solve.h"
 #include "raytrace/caustic_map.h"
 #include "scene/facet_normals.h"

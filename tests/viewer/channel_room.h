@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <vector>
 
-#include "radiosity/relight.h"
+#include "radiosity/solution/relight.h"
 #include "tests/radiosity/two_lamps.h"
 
 namespace lightwell {

@@ -4,7 +4,7 @@
 #include <vtkRenderWindowInteractor.h>
 
 #include "channel_room.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "tests/temporary_folder.h"
 #include "viewer/walk_window.h"
 

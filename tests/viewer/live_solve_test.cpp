@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "channel_room.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/solution/solution_file.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "tests/temporary_folder.h"

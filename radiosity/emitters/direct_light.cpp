@@ -1,0 +1,451 @@
+#include "radiosity/emitters/direct_light.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+
+#include "radiosity/emitters/emitter_point.h"
+#include "radiosity/emitters/exact_shadows.h"
+#include "radiosity/emitters/near_emitter.h"
+#include "radiosity/visibility/shadow_rays.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double largest_direct_area = 0.25;  // share of the scene's area that counts as "small"
+
+struct EmittingFacet {
+  int facet = 0;
+  double area = 0.0;
+  float exitance = 0.0f;  // all bands
+};
+
+Loop loop_points(const PolygonMesh& mesh, const std::vector<int>& loop) {
+  Loop points;
+  for (int v : loop) points.push_back(mesh.vertices[v]);
+  return points;
+}
+
+// A convex polygon is a fan, which keeps samples better stratified than the mesh's many elements.
+bool is_convex(const Loop& loop, const Eigen::Vector3d& normal) {
+  const std::size_t n = loop.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d a = loop[(i + 1) % n] - loop[i];
+    const Eigen::Vector3d b = loop[(i + 2) % n] - loop[(i + 1) % n];
+    if (a.cross(b).dot(normal) < 0.0) return false;
+  }
+  return true;
+}
+
+void tile(const PatchMesh& mesh, Emitter& emitter) {
+  if (emitter.loops.size() == 1 && is_convex(emitter.loops[0], emitter.normal)) {
+    const Loop& loop = emitter.loops[0];
+    for (std::size_t i = 2; i < loop.size(); ++i) {
+      emitter.triangles.push_back({loop[0], loop[i - 1], loop[i]});
+    }
+  } else {
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const int p = mesh.patch[e];
+      if (mesh.facet[e] != emitter.facet || mesh.is_back[p]) continue;
+      const auto& c = mesh.corners[e];
+      emitter.triangles.push_back({mesh.position(c[0]), mesh.position(c[1]), mesh.position(c[2])});
+      if (c[3] >= 0) {
+        emitter.triangles.push_back(
+            {mesh.position(c[0]), mesh.position(c[2]), mesh.position(c[3])});
+      }
+    }
+  }
+  double sum = 0.0;
+  for (const auto& t : emitter.triangles) {
+    sum += 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
+    emitter.area_cdf.push_back(sum);
+  }
+  for (double& share : emitter.area_cdf) share /= sum;
+}
+
+// Shadow rays to samples of the emitter, and their shares of the unoccluded kernel.
+ShadowSample polygon_sample(const Emitter& emitter, const Eigen::Vector3d& point,
+                            const Eigen::Vector3d& normal, double u, double v) {
+  const Eigen::Vector3d to = emitter_point(emitter, u, v) - point;
+  const double r2 = to.squaredNorm();
+  const double cos_cos = to.dot(normal) * std::abs(to.dot(emitter.normal));
+  return {.ray = {.origin = point, .direction = to, .t_max = 1.0},
+          .weight = cos_cos > 0.0 ? cos_cos / (r2 * r2) : 0.0};
+}
+
+// Uniform over the cone of directions that the sphere fills, seen from outside.
+ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
+                           const Eigen::Vector3d& normal, double u, double v) {
+  const Eigen::Vector3d to_center = emitter.sphere.center - point;
+  const double distance = to_center.norm();
+  const double sin_alpha = emitter.sphere.radius / distance;
+  const double cos_alpha = std::sqrt(std::max(0.0, 1.0 - sin_alpha * sin_alpha));
+  const double cos_beta = 1.0 - u * (1.0 - cos_alpha);
+  const double sin_beta = std::sqrt(std::max(0.0, 1.0 - cos_beta * cos_beta));
+  const double phi = 2.0 * std::numbers::pi * v;
+  const Eigen::Vector3d axis = to_center / distance;
+  Eigen::Vector3d a, b;
+  tangent_frame(axis, a, b);
+  const Eigen::Vector3d direction =
+      sin_beta * (std::cos(phi) * a + std::sin(phi) * b) + cos_beta * axis;
+  const double reach =
+      distance * cos_beta - std::sqrt(std::max(0.0, emitter.sphere.radius * emitter.sphere.radius -
+                                                        distance * distance * sin_beta * sin_beta));
+  return {.ray = {.origin = point, .direction = direction, .t_max = reach},
+          .weight = std::max(0.0, direction.dot(normal))};
+}
+
+// The same of one that is near.
+ShadowSample near_sample(const NearEmitter& near, const Eigen::Vector3d& point,
+                         const Eigen::Vector3d& normal, double u, double v) {
+  const Eigen::Vector3d to = near.to_place(u, v);
+  return {.ray = {.origin = point, .direction = to, .t_max = 1.0},
+          .weight = std::max(0.0, to.normalized().dot(normal))};
+}
+
+ShadowSample shadow_sample(const Emitter& emitter, const NearEmitter& near,
+                           const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
+                           double u, double v) {
+  ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u, v)
+                        : near.empty()    ? polygon_sample(emitter, point, normal, u, v)
+                                          : near_sample(near, point, normal, u, v);
+  sample.ray.origin_group = facet;
+  sample.ray.target_group = emitter.facet;
+  return sample;
+}
+
+// A light in a point's sky: F with nothing in the way, and the effort to find how much is.
+struct LightShadow {
+  const Emitter* emitter = nullptr;    // or
+  const FreeSource* source = nullptr;  // whose kernel F then is
+  NearEmitter near{};
+  int index = 0;
+  double F = 0.0;
+  int channel = 0;
+  std::uint64_t key = 0;
+  int least = 0, most = 0;        // rays
+  std::optional<double> share{};  // seen, if no ray is needed
+
+  const Spectrum& light() const { return emitter ? emitter->exitance : source->light; }
+};
+
+// The rays of all emitters go together. Where the share is known, the tally says just that.
+std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
+                                      const ElementCaster& caster, const SobolPoints& sobol,
+                                      const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                      int facet, const ClearPanes* panes) {
+  std::vector<ShadowTally> tallies(shadows.size());
+  ShadowBatch batch(caster, tallies, panes);
+  const auto add = [&](std::size_t i, int begin, int end) {
+    for (int s = begin; s < end; ++s) {
+      const Eigen::Array4f u = sobol.point(s, shadows[i].key);
+      const LightShadow& shadow = shadows[i];
+      batch.add(static_cast<int>(i),
+                shadow.emitter
+                    ? shadow_sample(*shadow.emitter, shadow.near, point, normal, facet, u[0], u[1])
+                    : shadow_sample(*shadow.source, point, normal, facet, u[0], u[1]));
+    }
+  };
+  for (std::size_t i = 0; i < shadows.size(); ++i) {
+    if (shadows[i].share) {
+      tallies[i].all = 1.0;
+      tallies[i].seen = *shadows[i].share;
+    } else {
+      add(i, 0, shadows[i].least);
+    }
+  }
+  batch.flush();
+  for (std::size_t i = 0; i < shadows.size(); ++i) {
+    if (!shadows[i].share && tallies[i].is_mixed()) add(i, shadows[i].least, shadows[i].most);
+  }
+  batch.flush();
+  return tallies;
+}
+
+// Stratified rays to a shadow's edge are off by n^(-3/4): the error of the sum over lights that
+// would give shares w of the light is least where each has as w^(4/5). Channels have light of their
+// own, since the others may be dimmed. A first look of fewer than 8 would often miss what hides a
+// part.
+void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOptions& options) {
+  const auto light = [](const LightShadow& s) { return s.F * s.light().mean(); };
+  std::vector<double> most_light(channels, 0.0);
+  for (const LightShadow& s : shadows) most_light[s.channel] += light(s);
+  const int most = std::clamp(options.max_rays, 1, most_shadow_rays);
+  const int least = std::clamp(options.min_rays, 1, most);
+  constexpr int first_look = 8;
+  for (LightShadow& s : shadows) {
+    if (s.source && has_sharp_shadows(*s.source)) {
+      s.least = s.most = 1;
+      continue;
+    }
+    const double all = most_light[s.channel];
+    const double effort = all > 0.0 ? std::pow(light(s) / all, 0.8) : 1.0;
+    s.most = std::clamp(static_cast<int>(std::ceil(effort * most)), 1, most);
+    s.least = std::min(
+        s.most, std::max(std::min(first_look, least), static_cast<int>(std::ceil(effort * least))));
+  }
+}
+
+// Polygons in the way of an exact share that are worth as many rays. One of n polygons takes the
+// time of about 16 + 8 n rays, of more than six polygons less; below 0: rays are better.
+int pieces_worth(int rays) {
+  constexpr int rays_with_none = 16, rays_of_a_piece = 4, most = 24;
+  return rays < rays_with_none ? -1 : std::min(rays / rays_of_a_piece, most);
+}
+
+// What of the light's emitter is seen, if that is told without rays; else what rays need.
+void find_share(const ExactShadows& exact, const ElementCaster& caster,
+                const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
+                LightShadow& shadow) {
+  if (!caster.moves()) {
+    shadow.share = exact.share(shadow.index, point, normal, facet, pieces_worth(shadow.most));
+  }
+  if (!shadow.share) shadow.near = NearEmitter(*shadow.emitter, point);
+}
+
+// A patch of each facet's front; -1 where the mesh has none.
+std::vector<int> front_patches(const PatchMesh& mesh, std::size_t facet_count) {
+  std::vector<int> front(facet_count, -1);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    const auto facet = static_cast<std::size_t>(mesh.facet[e]);
+    if (!mesh.is_back[p] && facet < facet_count) front[facet] = p;
+  }
+  return front;
+}
+
+}  // namespace
+
+Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
+  const auto at = std::upper_bound(emitter.area_cdf.begin(), emitter.area_cdf.end() - 1, u);
+  const auto i = static_cast<std::size_t>(at - emitter.area_cdf.begin());
+  const double low = i == 0 ? 0.0 : emitter.area_cdf[i - 1];
+  const double within = std::clamp((u - low) / (emitter.area_cdf[i] - low), 0.0, 1.0);
+  const Eigen::Vector3d w = triangle_point(static_cast<float>(within), static_cast<float>(v));
+  const auto& t = emitter.triangles[i];
+  return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+}
+
+DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
+                         const DirectLight* like)
+    : free_sources_(lightwell::free_sources(scene, mesh.source_scale, channels.of_source)),
+      bands_(scene.bands.count()),
+      channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
+      samples_(most_shadow_rays),
+      panes_(scene) {
+  if (dome()) sky_ = like ? like->sky_ : std::make_shared<const SkyLight>(scene, mesh);
+  const std::vector<FacetRef> facets = scene_facets(scene);
+  owned_.assign(facets.size(), Owned::nothing);
+  first_column_.assign(facets.size(), 0);
+  for (std::size_t f = 0; f < facets.size() && !channels.empty(); ++f) {
+    first_column_[f] = bands_ * std::max(0, channels.of_surface[facets[f].surface]);
+  }
+  double scene_area = 0.0;
+  std::vector<EmittingFacet> emitting;
+  for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+    const Surface& surface = scene.surfaces[facets[f].surface];
+    const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
+    double area = 0.0;
+    if (polygons) {
+      area = facet_area(*polygons, polygons->facets[facets[f].facet]);
+    } else {
+      const double r = std::get<Sphere>(surface.shape).radius;
+      area = 4.0 * M_PI * r * r;
+    }
+    scene_area += area;
+    const Material& material = scene.materials[surface.material];
+    if (material.is_emitter()) emitting.push_back({f, area, material.emission.sum()});
+  }
+  std::stable_sort(emitting.begin(), emitting.end(),
+                   [](const auto& a, const auto& b) { return a.exitance > b.exitance; });
+
+  const std::vector<int> front = front_patches(mesh, facets.size());
+  double taken = 0.0;
+  for (std::size_t i = 0; i < emitting.size();) {
+    std::size_t end = i;
+    double area = 0.0;
+    while (end < emitting.size() && emitting[end].exitance >= emitting[i].exitance * (1 - 1e-6f)) {
+      area += emitting[end++].area;
+    }
+    if (taken + area > largest_direct_area * scene_area) break;
+    taken += area;
+    for (; i < end; ++i) {
+      const FacetRef& ref = facets[emitting[i].facet];
+      const Surface& surface = scene.surfaces[ref.surface];
+      const Material& material = scene.materials[surface.material];
+      Emitter emitter{.facet = emitting[i].facet,
+                      .exitance = material.emission,
+                      .area = emitting[i].area,
+                      .emits_both_sides = material.emits_both_sides};
+      if (const int p = front[emitter.facet]; p >= 0) {
+        emitter.exitance = mesh.emission.row(p).transpose();
+      }
+      if (const auto* polygons = std::get_if<PolygonMesh>(&surface.shape)) {
+        const Facet& facet = polygons->facets[ref.facet];
+        emitter.normal = facet_normal(*polygons, facet);
+        emitter.loops.push_back(loop_points(*polygons, facet.boundary));
+        for (const auto& hole : facet.holes) emitter.loops.push_back(loop_points(*polygons, hole));
+        tile(mesh, emitter);
+      } else {
+        emitter.is_sphere = true;
+        emitter.sphere = std::get<Sphere>(surface.shape);
+      }
+      owned_[emitter.facet] = emitter.is_sphere ? Owned::front : Owned::whole;
+      emitters_.push_back(std::move(emitter));
+    }
+  }
+  exact_ = like ? like->exact_ : std::make_shared<const ExactShadows>(scene, mesh, emitters_);
+}
+
+double DirectLight::unoccluded_form_factor(const Emitter& emitter, const Eigen::Vector3d& point,
+                                           const Eigen::Vector3d& normal, int facet) const {
+  if (facet == emitter.facet) return 0.0;
+  double F = 0.0;
+  if (emitter.is_sphere) {
+    F = point_to_sphere(point, normal, emitter.sphere.center, emitter.sphere.radius);
+  } else {
+    const double front = (point - emitter.loops[0][0]).dot(emitter.normal);
+    if (!(front > 0.0) && !(emitter.emits_both_sides && front < 0.0)) return 0.0;
+    F = std::abs(point_to_polygon(point, normal, emitter.loops));
+  }
+  // Below this the emitter grazes the horizon or is edge-on: rounding, not light.
+  constexpr double nothing = 1e-12;
+  return F > nothing ? F : 0.0;
+}
+
+double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& caster,
+                                const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                int facet, std::uint64_t key, const ShadowOptions& options) const {
+  LightShadow shadow{
+      .emitter = &emitter, .F = unoccluded_form_factor(emitter, point, normal, facet), .key = key};
+  if (!(shadow.F > 0.0)) return 0.0;
+  set_effort({&shadow, 1}, 1, options);
+  const auto known = std::ranges::find(emitters_, emitter.facet, &Emitter::facet);
+  if (known == emitters_.end()) throw std::invalid_argument("an emitter of another DirectLight");
+  shadow.index = static_cast<int>(known - emitters_.begin());
+  find_share(*exact_, caster, point, normal, facet, shadow);
+  return shadow.F *
+         cast_shadows({&shadow, 1}, caster, samples_, point, normal, facet, nullptr)[0].share();
+}
+
+std::optional<bool> DirectLight::sees(int light, const ElementCaster& caster,
+                                      const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                      int facet, double u, double v) const {
+  const auto emitter_count = static_cast<int>(emitters_.size());
+  const ShadowSample sample =
+      light < emitter_count
+          ? shadow_sample(emitters_[light], NearEmitter(emitters_[light], point), point, normal,
+                          facet, u, v)
+          : shadow_sample(free_sources_[light - emitter_count], point, normal, facet, u, v);
+  if (!(sample.weight > 0.0)) return std::nullopt;
+  return (passed(caster, sample.ray) > 0.0f).any();
+}
+
+Spectrum DirectLight::passed(const ElementCaster& caster, const Ray& ray) const {
+  std::uint8_t blocked = 0;
+  caster.occluded({&ray, 1}, {&blocked, 1});
+  if (blocked == 0) return Spectrum::Ones(bands_);
+  return panes_.empty() ? Spectrum(Spectrum::Zero(bands_)) : panes_.passed(caster, ray);
+}
+
+const FreeSource* DirectLight::dome() const {
+  const auto found = std::find_if(free_sources_.begin(), free_sources_.end(),
+                                  [](const FreeSource& source) { return source.is_dome(); });
+  return found == free_sources_.end() ? nullptr : &*found;
+}
+
+template <class Add>
+void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
+                                 const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                 int facet, std::uint64_t key, const ShadowOptions& options,
+                                 EmitterSight* sight, Add&& add) const {
+  const auto emitter_count = static_cast<int>(emitters_.size());
+  std::vector<LightShadow> shadows;
+  std::optional<LightShadow> dome;
+  for (int i = first_light; i < light_count(); ++i) {
+    LightShadow shadow{.index = i, .key = random_key(key, static_cast<std::uint64_t>(i))};
+    if (i < emitter_count) {
+      shadow.emitter = &emitters_[i];
+      shadow.channel = first_column(shadow.emitter->facet) / bands_;
+    } else {
+      shadow.source = &free_sources_[i - emitter_count];
+      shadow.channel = shadow.source->channel;
+    }
+    if (!(shadow.light() > 0.0f).any()) continue;  // switched off
+    if (shadow.source && shadow.source->is_dome()) {
+      dome = shadow;
+      continue;
+    }
+    shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, point, normal, facet)
+                              : unoccluded_kernel(*shadow.source, point, normal);
+    if (!(shadow.F > 0.0)) continue;
+    shadows.push_back(std::move(shadow));
+  }
+  set_effort(shadows, channel_count_, options);
+  for (LightShadow& shadow : shadows) {
+    if (shadow.emitter) find_share(*exact_, caster, point, normal, facet, shadow);
+  }
+  const std::vector<ShadowTally> tallies = cast_shadows(shadows, caster, samples_, point, normal,
+                                                        facet, panes_.empty() ? nullptr : &panes_);
+  if (sight) *sight = {};
+  if (dome) {
+    const SkyEffort effort{.first = std::clamp(options.min_rays, 8, most_sky_rays),
+                           .most = std::clamp(options.max_rays, 8, most_sky_rays)};
+    const SkyGlow glow = sky_->irradiance(caster, point, normal, facet, dome->key, effort);
+    add(dome->channel, dome->light(), glow.irradiance);
+    // Its penumbra is all that rays see: as if three times as much stood behind it, their noise is
+    // about that of a lamp's.
+    constexpr double as_of_a_lamp = 3.0;
+    if (sight) {
+      sight->noisy += glow.is_mixed ? as_of_a_lamp * (dome->light() * glow.irradiance).mean() : 0.0;
+    }
+  }
+  for (std::size_t i = 0; i < shadows.size(); ++i) {
+    const LightShadow& s = shadows[i];
+    const ShadowTally& tally = tallies[i];
+    const double share = tally.share();
+    const bool is_dimmed = tally.dimmed > 0.0;
+    Spectrum through;
+    if (is_dimmed) through = static_cast<float>(s.F / tally.all) * tally.through;
+    if (share > 0.0) add(s.channel, s.light(), static_cast<float>(s.F * share));
+    if (is_dimmed) add(s.channel, s.light(), through);
+    if (!sight) continue;
+    const bool is_behind_panes = is_dimmed && !tally.is_mixed();
+    if (!s.share && tally.is_mixed()) sight->noisy += s.F * s.light().mean();
+    constexpr int bits = 64;
+    const std::uint64_t bit = s.index < bits ? std::uint64_t{1} << s.index : 0;
+    if (share == 1.0 || is_behind_panes) sight->whole |= bit;
+    if (share == 0.0 && !is_dimmed) sight->hidden |= bit;
+  }
+}
+
+Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                                 const ShadowOptions& options, EmitterSight* sight) const {
+  Spectrum E = Spectrum::Zero(bands_);
+  for_each_light(0, caster, point, normal, facet, key, options, sight,
+                 [&](int, const Spectrum& light, const auto& F) { E += light * F; });
+  return E;
+}
+
+void DirectLight::add_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
+                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+                                 const ShadowOptions& options, float* E, Lights lights,
+                                 EmitterSight* sight) const {
+  // Emitters come first, then lamps, then what is distant.
+  std::size_t first = 0;
+  if (lights != Lights::all) first = emitters_.size();
+  if (lights == Lights::distant) {
+    first += static_cast<std::size_t>(
+        std::ranges::count_if(free_sources_, [](const auto& s) { return !s.is_distant(); }));
+  }
+  for_each_light(static_cast<int>(first), caster, point, normal, facet, key, options, sight,
+                 [&](int channel, const Spectrum& light, const auto& F) {
+                   Eigen::Map<Eigen::ArrayXf>(E + channel * bands_, bands_) += light * F;
+                 });
+}
+
+}  // namespace lightwell

@@ -1,0 +1,166 @@
+#include "radiosity/form_factors/analytic_exchange.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/patches/patch_sampler.h"
+#include "radiosity/closed_forms/pair_exchange.h"
+#include "radiosity/visibility/pair_shafts.h"
+#include "radiosity/visibility/shadow_rays.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t shadow_rays_key = 21;  // purpose of random keys
+// Powers of 4, so that no goal straddles two sets.
+constexpr int few_rays = 16, points_in_set = 1 << 14, most_rays = 1 << 18;
+constexpr double usual_target = 1e-3;
+constexpr double exact_target = 1e-6;  // of F, where visibility is exact
+
+struct Visibility {
+  double share = 1.0;
+  double variance = 0.0;  // of the share
+};
+
+class PairVisibility {
+ public:
+  PairVisibility(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
+                 double target_error)
+      : mesh_(caster.mesh()),
+        caster_(caster),
+        target_(target_error > 0.0 ? target_error : usual_target),
+        sobol_(points_in_set),
+        shafts_(caster, outlines) {
+    samplers_.reserve(outlines.size());
+    for (int i = 0; i < mesh_.patch_count(); ++i) samplers_.emplace_back(mesh_, i);
+  }
+
+  // None needed, exact or sampled: whichever is the first that does. S: unoccluded exchange.
+  Visibility between(int i, int j, double S) const {
+    if (shafts_.is_hidden(i) || shafts_.is_hidden(j)) return {.share = 0.0};
+    const double largest_form_factor = S / std::min(mesh_.area[i], mesh_.area[j]);
+    if (shafts_.is_covered(i) || shafts_.is_covered(j)) return sampled(i, j, largest_form_factor);
+    Between between;
+    shafts_.find(i, j, between);
+    if (between.is_nothing()) return {};
+    const auto exact = shafts_.visible(i, j, between, S, std::min(exact_target, 0.1 * target_));
+    if (exact) return {exact->value / S, exact->error * exact->error / (S * S)};
+    return sampled(i, j, largest_form_factor);
+  }
+
+ private:
+  // Kernel-weighted share of point pairs that see each other; more pairs while they leave F_ij more
+  // uncertain than asked.
+  Visibility sampled(int i, int j, double largest_form_factor) const {
+    ShadowTally tally;
+    ShadowBatch batch(caster_, {&tally, 1});
+    Visibility found;
+    int count = 0;
+    for (int goal = first_count(largest_form_factor); goal <= most_rays; goal *= 4) {
+      for (; count < goal; ++count) batch.add(0, sample(i, j, count));
+      batch.flush();
+      if (!(tally.all > 0.0)) break;
+      // Rays that all agree may all have missed the rest: the spread of a share of which n draws of
+      // n came out alike (Laplace's rule of succession).
+      const double unanimous = 1.0 / (count + 2.0);
+      found = {tally.share(), std::max(tally.variance(), unanimous * unanimous)};
+      if (largest_form_factor * std::sqrt(found.variance) <= target_) break;
+    }
+    return found;
+  }
+
+  // A pair that matters little need not be looked at closely before it is found to be mixed.
+  static int first_count(double largest_form_factor) {
+    constexpr double matters = 0.01;
+    return largest_form_factor > matters ? 4 * few_rays : few_rays;
+  }
+
+  ShadowSample sample(int i, int j, int count) const {
+    const int set = count / sobol_.count();
+    const std::uint64_t key =
+        random_key(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j), shadow_rays_key,
+                   static_cast<std::uint64_t>(set));
+    const Eigen::Array4f u = sobol_.point(count - set * sobol_.count(), key);
+    const PatchPoint a = samplers_[i].point(u[0], u[1]), b = samplers_[j].point(u[2], u[3]);
+    const Vector3d way = b.position - a.position;
+    const double squared = way.squaredNorm();
+    const double cosines = std::max(0.0, a.normal.dot(way)) * std::max(0.0, -b.normal.dot(way));
+    return {.ray = {.origin = a.position,
+                    .direction = way,
+                    .t_max = 1.0,
+                    .origin_group = mesh_.facet[a.element],
+                    .target_group = mesh_.facet[b.element]},
+            .weight = squared > 0.0 ? cosines / (squared * squared) : 0.0};
+  }
+
+  const PatchMesh& mesh_;
+  const ElementCaster& caster_;
+  double target_;
+  SobolPoints sobol_;
+  PairShafts shafts_;
+  std::vector<PatchSampler> samplers_;
+};
+
+}  // namespace
+
+void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
+                       const std::vector<char>& receives, double target_error,
+                       const Progress& progress, std::vector<float>& row_error,
+                       const std::function<void(int, std::vector<FormFactor>&)>& take,
+                       const JournalPhase& phase) {
+  const PatchMesh& mesh = caster.mesh();
+  const int n = mesh.patch_count();
+  const PairVisibility visibility(caster, outlines, target_error);
+  const PairExchange closed_form(outlines);
+  // What visibility's noise does to S, by pair.
+  struct Row {
+    std::vector<FormFactor> entries;
+    std::vector<float> error;
+  };
+  // Rows are as long as there are patches; of many, few are kept at a time.
+  const int slice = std::clamp((1 << 21) / std::max(n, 1), 4, 64);
+  for (int begin = 0; begin < n; begin += slice) {
+    // Row i has n - i pairs.
+    const double left = static_cast<double>(n - begin) / n;
+    report(progress, "form factors", 1.0 - left * left);
+    const int size = std::min(slice, n - begin);
+    std::vector<Row> rows(static_cast<std::size_t>(size));
+    parallel_for(size, 1, [&](int low, int high) {
+      for (int k = low; k < high; ++k) {
+        const int i = begin + k;
+        if (!receives[i] || !outlines[i].is_polygon()) continue;
+        if (phase.recall(i, rows[k].entries, rows[k].error)) continue;
+        rows[k] = {};
+        for (int j = i + 1; j < n; ++j) {
+          if (!receives[j] || !outlines[j].is_polygon()) continue;
+          const double unoccluded = closed_form.between(i, j);
+          if (!(unoccluded > 0.0)) continue;
+          const Visibility seen = visibility.between(i, j, unoccluded);
+          if (!(seen.share > 0.0)) continue;
+          const auto S = static_cast<float>(unoccluded * seen.share);
+          if (!(S > 0.0f)) continue;
+          rows[k].entries.push_back({j, S});
+          rows[k].error.push_back(static_cast<float>(unoccluded * std::sqrt(seen.variance)));
+        }
+        phase.keep(i, rows[k].entries, rows[k].error);
+      }
+    });
+    for (int k = 0; k < size; ++k) {
+      Row& row = rows[k];
+      for (std::size_t e = 0; e < row.entries.size(); ++e) {
+        for (const int end : {begin + k, row.entries[e].patch}) {
+          const float error = row.error[e] / static_cast<float>(mesh.area[end]);
+          row_error[end] = std::max(row_error[end], error);
+        }
+      }
+      take(begin + k, row.entries);
+    }
+  }
+  report(progress, "form factors", 1.0);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,104 @@
+#include "radiosity/form_factors/emitter_exchange.h"
+
+#include <algorithm>
+
+#include "mesh/patches/patch_sampler.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t emitter_points_key = 3;  // purpose of random keys
+
+}  // namespace
+
+EmitterExchange::EmitterExchange(const ElementCaster& caster, const DirectLight& direct_light)
+    : mesh_(caster.mesh()), caster_(caster), direct_light_(direct_light) {
+  const auto& emitters = direct_light.emitters();
+  std::vector<int> emitter_of_facet;
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    const auto facet = static_cast<std::size_t>(emitters[e].facet);
+    if (facet >= emitter_of_facet.size()) emitter_of_facet.resize(facet + 1, -1);
+    emitter_of_facet[facet] = static_cast<int>(e);
+  }
+  emitter_of_.assign(static_cast<std::size_t>(mesh_.patch_count()), -1);
+  for (int i = 0; i < mesh_.patch_count(); ++i) {
+    const auto facet = static_cast<std::size_t>(mesh_.facet[mesh_.first_element[i]]);
+    if (facet >= emitter_of_facet.size() || emitter_of_facet[facet] < 0) continue;
+    const int e = emitter_of_facet[facet];
+    const bool is_back = mesh_.is_back[i] != 0;
+    if (is_back && !emitters[e].emits_both_sides) continue;
+    if (!direct_light.owns(static_cast<int>(facet), is_back)) continue;
+    emitter_of_[i] = e;
+    lit_.push_back(i);
+  }
+}
+
+void EmitterExchange::compute(const std::vector<char>& receives, const FormFactorOptions& options,
+                              const JournalPhase& phase) {
+  const auto emitter_count = static_cast<int>(direct_light_.emitters().size());
+  exchange_.setZero(2 * emitter_count, mesh_.patch_count());
+  const SobolPoints sobol(options.emitter_points);
+  // A fraction of a second each, shadow rays included.
+  constexpr int form_factors_per_slice = 1 << 17;
+  const int each = std::max(1, options.emitter_points * emitter_count);
+  const int slice = std::max(16, form_factors_per_slice / each);
+  const auto columns = [&](int begin, int size) {
+    return std::tuple(std::span(exchange_.data() + begin * exchange_.rows(),
+                                static_cast<std::size_t>(size * exchange_.rows())));
+  };
+  const auto look = [&](int) { report(options.progress, "closed forms", 0.0); };
+  const auto fill = [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      if (!receives[i]) continue;
+      const std::uint64_t key = random_key(static_cast<std::uint64_t>(i), emitter_points_key);
+      const PatchSampler sampler(mesh_, i);
+      for (int s = 0; s < options.emitter_points; ++s) {
+        const Eigen::Array4f u = sobol.point(s, key);
+        const PatchPoint at = sampler.point(u[0], u[1]);
+        for (int e = 0; e < emitter_count; ++e) {
+          const Emitter& emitter = direct_light_.emitters()[e];
+          const bool behind =
+              !emitter.is_sphere && (at.position - emitter.loops[0][0]).dot(emitter.normal) < 0.0;
+          exchange_(2 * e + behind, i) +=
+              mesh_.area[i] / options.emitter_points *
+              direct_light_.form_factor(emitter, caster_, at.position, at.normal,
+                                        mesh_.facet[at.element], random_key(key, s, e),
+                                        options.shadows);
+        }
+      }
+    }
+  };
+  for_each_slice(phase, mesh_.patch_count(), slice, 16, columns, look, fill);
+}
+
+// An emitter's light is even, so its patches share it in proportion to their area.
+double EmitterExchange::share_of_emitter(int patch) const {
+  return mesh_.area[patch] / direct_light_.emitters()[emitter_of_[patch]].area;
+}
+
+// Of patches of which one or both are emitters'.
+double EmitterExchange::between(int i, int j) const {
+  const auto from = [&](int patch, int lit) {
+    return exchange_(2 * emitter_of_[lit] + mesh_.is_back[lit], patch) * share_of_emitter(lit);
+  };
+  if (emitter_of_[i] == emitter_of_[j]) return 0.0;
+  if (emitter_of_[i] < 0) return from(i, j);
+  if (emitter_of_[j] < 0) return from(j, i);
+  return 0.5 * (from(i, j) + from(j, i));  // both ends were computed, keep them equal
+}
+
+void EmitterExchange::add_row(int i, std::vector<FormFactor>& row) const {
+  const auto add = [&](int j) {
+    const auto S = static_cast<float>(between(i, j));
+    if (S > 0.0f) row.push_back({j, S});
+  };
+  if (emitter_of_[i] >= 0) {
+    for (int j = i + 1; j < mesh_.patch_count(); ++j) add(j);
+  } else {
+    for (auto j = std::upper_bound(lit_.begin(), lit_.end(), i); j != lit_.end(); ++j) add(*j);
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,233 @@
+#include "radiosity/form_factors/form_factor_assembly.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "radiosity/form_factors/balance.h"
+#include "radiosity/form_factors/exchange_matrix.h"
+#include "radiosity/form_factors/specular_assembly.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::ArrayXd;
+
+class Assembly {
+ public:
+  Assembly(const PatchMesh& mesh, RowEstimates rows, KnownExchange known, bool enforce_closure,
+           std::shared_ptr<MemoryBudget> budget, const Progress& progress, const PhaseOf& phase_of)
+      : mesh_(mesh),
+        n_(mesh.patch_count()),
+        rows_(std::move(rows)),
+        known_(std::move(known)),
+        enforce_closure_(enforce_closure),
+        budget_(std::move(budget)),
+        progress_(progress),
+        phase_of_(phase_of),
+        S_(budget_, n_),
+        weight_(PerKind::Ones(n_, 2)),
+        target_(ArrayXd::Zero(n_)),
+        open_(target_) {
+    for (int i = 0; i < n_; ++i) {
+      if (!rows_.is_measured(i)) continue;
+      target_[i] = mesh_.area[i] * (1.0 - rows_.specular(i));
+      open_[i] = mesh_.area[i] * rows_.escaped(i);
+    }
+  }
+
+  std::unique_ptr<FormFactors> build(FormFactorReport* report) {
+    auto result = std::make_unique<StoredFormFactors>(budget_, n_, rows_.bands());
+    FormFactorReport found;
+    found.closed_forms = known_.S.record_count();
+    join();
+    note_corrections(found);
+    if (enforce_closure_) {
+      close_whole_rows();
+      close_sampled_rows();
+      close_all_rows();
+    }
+    store(*result, found);
+    if (rows_.has_specular()) {
+      assemble_specular(mesh_, rows_, enforce_closure_, budget_, phase_of_, *result);
+    }
+    result->rows.close();
+    result->specular.close();
+    lightwell::report(progress_, "balance", 1.0);
+    note_rays(found);
+    if (report) *report = std::move(found);
+    return result;
+  }
+
+ private:
+  static constexpr double join_share = 0.3;  // of the time, roughly
+
+  bool is_whole(int i) const { return known_.is_whole[static_cast<std::size_t>(i)] != 0; }
+
+  // Both ends of a pair estimate S; the sum that gives each its trust has the least variance.
+  void join() {
+    const auto weight = [&](int i) { return static_cast<float>(rows_.trust(i) * mesh_.area[i]); };
+    fold_symmetric(
+        rows_.shares(),
+        [&](int i, RecordSpan row, RecordSpan column) {
+          std::vector<Exchange> joined;
+          const auto known = known_.S.row(i);
+          auto next = known.begin();
+          const auto add_known_before = [&](int j) {
+            for (; next != known.end() && next->patch < j; ++next) {
+              joined.push_back(Exchange::of(next->patch, Exchange::known, next->value));
+            }
+          };
+          for_each_pair(i, row, column, [&](int j, const std::byte* own, const std::byte* other) {
+            add_known_before(j);
+            const bool is_known = next != known.end() && next->patch == j;
+            if (is_known || is_whole(i) || is_whole(j)) return;
+            double sum = 0.0;
+            if (own) sum += weight(i) * static_cast<double>(share(own));
+            if (other) sum += weight(j) * static_cast<double>(share(other));
+            joined.push_back(Exchange::of(
+                j, Exchange::sampled, static_cast<float>(sum / (rows_.trust(i) + rows_.trust(j)))));
+          });
+          add_known_before(n_);
+          S_.append(i, joined);
+        },
+        [&](int i) {
+          known_.S.release(i);
+          report(progress_, "balance", join_share * i / n_);
+        });
+    S_.close();
+  }
+  static float share(const std::byte* record) {
+    return reinterpret_cast<const FormFactor*>(record)->value;
+  }
+
+  // Sampled and known exchange of every row, as scaled up to now, with patches that count `x`.
+  PerKind sums(const ArrayXd& x) {
+    constexpr double most = 3 * 200;  // steps that the scalings may take
+    report(progress_, "balance", join_share + (1.0 - join_share) * std::min(1.0, ++steps_ / most));
+    return weight_ * S_.product(weight_.colwise() * x);
+  }
+
+  void note_corrections(FormFactorReport& found) {
+    const ArrayXd sum = open_ + sums(ArrayXd::Ones(n_)).rowwise().sum();
+    double total = 0.0;
+    int counted = 0;
+    for (int i = 0; i < n_; ++i) {
+      if (!(target_[i] > 0.0)) continue;
+      const double correction = std::abs(1.0 - sum[i] / target_[i]);
+      found.max_closure_correction = std::max(found.max_closure_correction, correction);
+      total += correction;
+      ++counted;
+    }
+    found.mean_closure_correction = counted > 0 ? total / counted : 0.0;
+  }
+
+  // A row of closed forms alone; one factor per patch closes it. Patches of that kind that see each
+  // other share the correction.
+  void close_whole_rows() {
+    ArrayXd whole(n_);
+    for (int i = 0; i < n_; ++i) whole[i] = is_whole(i) ? 1.0 : 0.0;
+    if (!(whole > 0.0).any()) return;
+    const ArrayXd fixed = whole * sums(1.0 - whole).col(Exchange::known);
+    const ArrayXd wanted = whole * (target_ - open_);
+    weight_.col(Exchange::known) = symmetric_scaling(
+        [&](const ArrayXd& x) -> Eigen::ArrayXXd {
+          return whole * sums(whole * x).col(Exchange::known);
+        },
+        fixed, wanted, phase_of_("balance of closed forms"));
+  }
+
+  // What closed forms leave of a row is what its samples are scaled to.
+  void close_sampled_rows() {
+    const PerKind sum = sums(ArrayXd::Ones(n_));
+    ArrayXd left = target_ - sum.col(Exchange::known), open = open_;
+    for (int i = 0; i < n_; ++i) {
+      if (is_whole(i)) left[i] = open[i] = 0.0;
+    }
+    // What little was sampled must not be stretched to fill a gap that closed forms left.
+    constexpr double most_stretch = 2.0;
+    const ArrayXd has = open + sum.col(Exchange::sampled);
+    left = left.max(has / most_stretch).min(has * most_stretch);
+    weight_.col(Exchange::sampled) = symmetric_scaling(
+        [&](const ArrayXd& x) -> Eigen::ArrayXXd { return sums(x).col(Exchange::sampled); }, open,
+        left, phase_of_("balance of samples"));
+    for (int i = 0; i < n_; ++i) {
+      if (!is_whole(i)) open_[i] *= weight_(i, Exchange::sampled);
+    }
+  }
+
+  void close_all_rows() {
+    const ArrayXd d = symmetric_scaling(
+        [&](const ArrayXd& x) -> Eigen::ArrayXXd { return sums(x).rowwise().sum(); }, open_,
+        target_, phase_of_("balance"));
+    weight_.colwise() *= d;
+    open_ *= d;
+  }
+
+  void store(StoredFormFactors& result, FormFactorReport& found) {
+    ArrayXd closure_error = ArrayXd::Zero(n_), reciprocity_error = closure_error;
+    S_.consume([&](int i, std::span<const Exchange> row) {
+      std::vector<FormFactor> factors;
+      factors.reserve(row.size());
+      const auto escaped = static_cast<float>(open_[i] / mesh_.area[i]);
+      double sum = rows_.specular(i) + escaped;
+      for (const Exchange& e : row) {
+        const int j = e.patch();
+        const double S = e.value() * (weight_(i, e.kind()) * weight_(j, e.kind()));
+        const auto F = static_cast<float>(S / mesh_.area[i]);
+        if (!(F > 0.0f)) continue;
+        factors.push_back({j, F});
+        sum += F;
+        // Row j computes it from the same S.
+        const auto back = static_cast<float>(S / mesh_.area[j]);
+        const double difference = std::abs(mesh_.area[i] * F - mesh_.area[j] * back);
+        reciprocity_error[i] =
+            std::max(reciprocity_error[i], difference / std::min(mesh_.area[i], mesh_.area[j]));
+      }
+      result.rows.append(i, factors);
+      result.escaped_share.row(i) = escaped;
+      if (rows_.is_measured(i)) closure_error[i] = std::abs(1.0 - sum);
+    });
+    found.max_closure_error = closure_error.maxCoeff();
+    found.max_reciprocity_error = reciprocity_error.maxCoeff();
+  }
+
+  void note_rays(FormFactorReport& found) const {
+    double cut = 0.0;
+    int counted = 0;
+    for (int i = 0; i < n_; ++i) {
+      if (!rows_.is_measured(i)) continue;
+      found.rays += static_cast<std::int64_t>(rows_.rays(i));
+      if (rows_.has_specular()) cut += static_cast<double>(rows_.cut(i).mean());
+      ++counted;
+    }
+    found.depth_cut = counted > 0 ? cut / counted : 0.0;
+  }
+
+  const PatchMesh& mesh_;
+  int n_ = 0;
+  RowEstimates rows_;
+  KnownExchange known_;
+  bool enforce_closure_ = true;
+  std::shared_ptr<MemoryBudget> budget_;
+  const Progress& progress_;
+  const PhaseOf& phase_of_;
+  int steps_ = 0;
+  ExchangeMatrix S_;
+  PerKind weight_;         // S_ij is scaled by those of i and j
+  ArrayXd target_, open_;  // what a row is to add up to; what of it leaves the scene
+};
+
+}  // namespace
+
+std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, RowEstimates rows,
+                                                   KnownExchange known, bool enforce_closure,
+                                                   std::shared_ptr<MemoryBudget> budget,
+                                                   const Progress& progress,
+                                                   const PhaseOf& phase_of,
+                                                   FormFactorReport* report) {
+  return Assembly(mesh, std::move(rows), std::move(known), enforce_closure, std::move(budget),
+                  progress, phase_of)
+      .build(report);
+}
+
+}  // namespace lightwell

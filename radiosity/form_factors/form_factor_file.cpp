@@ -1,0 +1,157 @@
+#include "radiosity/form_factors/form_factor_file.h"
+
+#include <fmt/format.h>
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "radiosity/solution/vtk_output.h"
+#include "scene/atomic_file.h"
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+[[noreturn]] void fail_write(const std::filesystem::path& path, const std::string& reason) {
+  throw std::runtime_error(fmt::format("{}: could not be written: {}", path.string(), reason));
+}
+
+/// Text that goes to a file in large pieces.
+class TextOutput {
+ public:
+  explicit TextOutput(const std::filesystem::path& target)
+      : target_(target), file_(target), stream_(file_.temporary(), std::ios::binary) {
+    check();
+  }
+  template <typename... T>
+  void add(fmt::format_string<T...> format, T&&... values) {
+    fmt::format_to(std::back_inserter(buffer_), format, std::forward<T>(values)...);
+    constexpr std::size_t piece = 1 << 20;
+    if (buffer_.size() >= piece) flush();
+  }
+  void commit() {
+    flush();
+    stream_.close();
+    check();
+    file_.commit();
+  }
+
+ private:
+  void flush() {
+    errno = 0;  // the stream does not say why it fails
+    stream_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    buffer_.clear();
+    check();
+  }
+  void check() {
+    if (!stream_) fail_write(target_, std::strerror(errno != 0 ? errno : EIO));
+  }
+
+  std::filesystem::path target_;
+  AtomicFile file_;
+  std::ofstream stream_;
+  fmt::memory_buffer buffer_;
+};
+
+void add_comment(TextOutput& out, std::string_view comment) {
+  while (!comment.empty()) {
+    const std::size_t end = std::min(comment.find('\n'), comment.size());
+    out.add("% {}\n", comment.substr(0, end));
+    comment.remove_prefix(std::min(end + 1, comment.size()));
+  }
+}
+
+}  // namespace
+
+void write_matrix_market(const std::filesystem::path& path, const ViewFactors& view_factors,
+                         const std::string& comment) {
+  TextOutput out(path);
+  out.add("%%MatrixMarket matrix coordinate real general\n");
+  add_comment(out, comment);
+  const int n = view_factors.row_count();
+  out.add("{} {} {}\n", n, n, view_factors.entry_count());
+  for (int i = 0; i < n; ++i) {
+    for (const auto [j, F] : view_factors.row(i)) out.add("{} {} {:.9g}\n", i + 1, j + 1, F);
+  }
+  out.commit();
+}
+
+void write_view3d(const std::filesystem::path& path, const ViewFactors& view_factors,
+                  const std::vector<double>& emittance, double metres_per_unit,
+                  const View3dHeader& header) {
+  const int n = view_factors.row_count();
+  if (n > most_view3d_rows) {
+    throw InputError(
+        fmt::format("{}: View3D's result format writes out every zero, and {} rows would make "
+                    "{:.1f} GB; at most {} are written. Use the Matrix Market file",
+                    path.string(), n, 9e-9 * n * n, most_view3d_rows));
+  }
+  TextOutput out(path);
+  // Readers of the format take the first 30 characters, whatever they are padded with.
+  const std::string first = fmt::format("{} {} 0 {} 0 {}", header.program, header.version,
+                                        header.is_enclosure ? 1 : 0, n);
+  out.add("{:<30}\n", first);
+  const double unit_area = metres_per_unit * metres_per_unit;
+  for (int i = 0; i < n; ++i) {
+    out.add("{}{:g}", i == 0 ? "" : " ",
+            view_factors.area[static_cast<std::size_t>(i)] / unit_area);
+  }
+  out.add("\n");
+  for (int i = 0; i < n; ++i) {
+    int column = 0;
+    const auto add_zeros_before = [&](int end) {
+      for (; column < end; ++column) out.add("{}0.000000", column == 0 ? "" : " ");
+    };
+    for (const auto [j, F] : view_factors.row(i)) {
+      add_zeros_before(j);
+      out.add("{}{:.6f}", j == 0 ? "" : " ", F);
+      column = j + 1;
+    }
+    add_zeros_before(n);
+    out.add("\n");
+  }
+  for (int i = 0; i < n; ++i) {
+    out.add("{}{:.3f}", i == 0 ? "" : " ", emittance[static_cast<std::size_t>(i)]);
+  }
+  out.add("\n");
+  out.commit();
+}
+
+void write_row(const std::filesystem::path& path, const PatchMesh& mesh,
+               const std::vector<int>& row_of_patch, const ViewFactors& view_factors, int i) {
+  const auto elements = static_cast<std::size_t>(mesh.element_count());
+  std::vector<float> factor(elements, 0.0f);
+  std::vector<int> row(elements, 0), is_row(elements, 0);
+  std::vector<double> area(elements, 0.0);
+  for (std::size_t e = 0; e < elements; ++e) {
+    const int j = row_of_patch[static_cast<std::size_t>(mesh.patch[e])];
+    if (j < 0) continue;
+    factor[e] = view_factors.factor(i, j);
+    row[e] = j + 1;
+    is_row[e] = j == i ? 1 : 0;
+    area[e] = view_factors.area[static_cast<std::size_t>(j)];
+  }
+  vtkNew<vtkPolyData> poly;
+  set_element_polygons(poly, mesh);
+  vtkCellData* cells = poly->GetCellData();
+  add_values(cells, "view_factor", factor.data(), mesh.element_count());
+  add_values(cells, "row", row.data(), mesh.element_count());
+  add_values(cells, "is_row", is_row.data(), mesh.element_count());
+  add_values(cells, "area", area.data(), mesh.element_count());
+  cells->SetActiveScalars("view_factor");
+
+  AtomicFile file(path);
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  const std::string failure = write_appended(writer, poly, file.temporary());
+  if (!failure.empty()) fail_write(path, failure);
+  file.commit();
+}
+
+}  // namespace lightwell

@@ -1,0 +1,310 @@
+#include "radiosity/form_factors/form_factors.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "mesh/patches/patch_sampler.h"
+#include "radiosity/form_factors/analytic_exchange.h"
+#include "radiosity/form_factors/emitter_exchange.h"
+#include "radiosity/form_factors/form_factor_assembly.h"
+#include "radiosity/form_factors/hemicube.h"
+#include "radiosity/form_factors/near_exchange.h"
+#include "radiosity/form_factors/ray_cast_rows.h"
+#include "radiosity/form_factors/row_estimates.h"
+#include "radiosity/form_factors/transport.h"
+#include "radiosity/journal/journal_phase.h"
+#include "radiosity/paths/light_path.h"
+#include "radiosity/visibility/pair_shafts.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+// What a method finds out before the rows are joined.
+struct Estimate {
+  RowEstimates rows;
+  KnownExchange known;
+  std::vector<float> row_error{};
+};
+
+// All that decides what form factors come out: not how much surfaces reflect and emit, as long as
+// it is the same ones that do.
+void add_inputs(Fingerprint& print, const Scene& scene, const DirectLight& direct_light,
+                const PatchMesh& mesh, const FormFactorOptions& options) {
+  print.add_geometry(mesh);
+  // Which of them are found by closed form, and in what order, goes by their brightness.
+  for (const Emitter& emitter : direct_light.emitters()) print.add(emitter.facet);
+  for (const Material& material : scene.materials) {
+    print.add((material.reflectance > 0.0f).any());
+    print.add(material.is_emitter());
+    print.add(material.one_sided);
+    print.add(material.emits_both_sides);
+    print.add(material.specular);
+    print.add(material.specular_roughness);
+    print.add(material.dielectric.has_value());
+    if (!material.dielectric) continue;
+    const Dielectric& glass = *material.dielectric;
+    print.add(glass.index_of_refraction);
+    print.add(glass.tint);
+    print.add(glass.absorption);
+    print.add(glass.roughness);
+    print.add(glass.thin);
+  }
+  print.add(options.method);
+  print.add(options.rays_per_patch);
+  print.add(options.target_error);
+  print.add(options.most_rays_per_patch);
+  print.add(options.rays_per_emitter);
+  print.add(options.max_specular_depth);
+  print.add(options.emitter_points);
+  print.add(options.shadows.min_rays);
+  print.add(options.shadows.max_rays);
+  print.add(options.hemicube_resolution);
+  print.add(options.enforce_closure);
+}
+
+class Estimator {
+ public:
+  Estimator(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+            const FormFactorOptions& options, std::shared_ptr<MemoryBudget> budget)
+      : scene_(scene),
+        mesh_(caster.mesh()),
+        budget_(std::move(budget)),
+        caster_(caster),
+        direct_light_(direct_light),
+        options_(options),
+        paths_(scene, caster, options.max_specular_depth) {
+    for (int i = 0; i < mesh_.patch_count(); ++i) {
+      receives_.push_back(paths_.is_diffuse(mesh_.facet[mesh_.first_element[i]]));
+    }
+  }
+
+  Estimate estimate() const {
+    switch (options_.method) {
+      case FormFactorMethod::ray_cast:
+        return rays_alone();
+      case FormFactorMethod::hemicube:
+        return hemicubes_alone();
+      case FormFactorMethod::analytic:
+        return closed_forms_alone();
+      case FormFactorMethod::automatic:
+        break;
+    }
+    return all_pairs_are_cheap() ? closed_forms_alone() : rays_and_closed_forms();
+  }
+
+ private:
+  // Where an accuracy is asked for, closed forms of all pairs beat rays up to a few thousand
+  // patches.
+  bool all_pairs_are_cheap() const {
+    constexpr double pair_in_rays = 16.0;  // what a pair costs
+    return options_.target_error > 0.0 &&
+           0.5 * pair_in_rays * mesh_.patch_count() < 4.0 * base_rays();
+  }
+
+  // As many as the target takes in rows where nothing is partly hidden.
+  int base_rays() const {
+    const int asked = std::max(1, options_.rays_per_patch);
+    if (!(options_.target_error > 0.0)) return asked;
+    const double needed = NearExchange::worst_count_error / options_.target_error;
+    const double most = std::max(asked, options_.most_rays_per_patch);
+    return std::max(
+        asked,
+        static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(std::min(needed, most))))));
+  }
+  int most_rays(int patch_rays) const {
+    return options_.target_error > 0.0 ? std::max(patch_rays, options_.most_rays_per_patch)
+                                       : patch_rays;
+  }
+
+  // Emitters cast more where mirrors and glass throw what they cast.
+  std::vector<int> rays_of(const EmitterExchange& emitters, int base) const {
+    std::vector<int> counts(static_cast<std::size_t>(mesh_.patch_count()), base);
+    if (!paths_.has_specular()) return counts;
+    for (int i = 0; i < mesh_.patch_count(); ++i) {
+      const int e = emitters.emitter_of(i);
+      if (e < 0) continue;
+      const double share = mesh_.area[i] / direct_light_.emitters()[e].area;
+      const auto wanted = static_cast<unsigned>(std::ceil(share * options_.rays_per_emitter));
+      const auto even = static_cast<int>(std::bit_ceil(std::max(1u, wanted)));
+      counts[i] = std::max(base, even);
+    }
+    return counts;
+  }
+
+  Estimate nothing_yet() const {
+    const int n = mesh_.patch_count();
+    return {.rows = RowEstimates(budget_, n, static_cast<int>(mesh_.reflectance.cols())),
+            .known = KnownExchange(budget_, n)};
+  }
+
+  // Casts each row, with four times the rays while `error_of(i, row)` is above the target.
+  // It may leave pairs, which `done(i, pairs)` gets when there are enough.
+  template <class ErrorOf, class Done>
+  void cast(Estimate& estimate, const std::vector<int>& rays_of, bool look_behind, ErrorOf error_of,
+            Done done) const {
+    estimate.row_error.assign(static_cast<std::size_t>(mesh_.patch_count()), 0.0f);
+    const int longest = *std::max_element(rays_of.begin(), rays_of.end());
+    const RowCaster caster(caster_, paths_, most_rays(longest));
+    const JournalPhase phase = phase_of("rays", &rays_of);
+    for_each_row(mesh_, longest, options_.progress, [&](int i, RowCaster::Scratch& scratch) {
+      std::vector<NearExchange::Pair> pairs;
+      EstimatedRow row;
+      double error = 0.0;
+      if (!phase.recall(i, kept_parts(row), pairs, error)) {
+        for (int rays = rays_of[i];; rays *= 4) {
+          row = caster.cast(i, rays, scratch, look_behind);
+          pairs.clear();
+          error = error_of(i, row, pairs);
+          if (!(error > options_.target_error) || 4 * rays > most_rays(rays_of[i])) break;
+        }
+        phase.keep(i, kept_parts(row), pairs, error);
+      }
+      estimate.row_error[i] = static_cast<float>(error);
+      estimate.rows.add(i, row);
+      done(i, pairs);
+    });
+    estimate.rows.close();
+  }
+  // `is_count(i, j)`: whether F_ij remains what the rays say. Counts are binomial at worst;
+  // stratified points do better.
+  template <class IsCount>
+  void cast_counts(Estimate& estimate, const std::vector<int>& rays_of, IsCount is_count) const {
+    const auto error_of = [&](int i, const EstimatedRow& row, auto&) {
+      double worst = 0.0;
+      for (const FormFactor& f : row.shares) {
+        if (!is_count(i, f.patch)) continue;
+        worst = std::max(worst, static_cast<double>(f.value * (1.0f - f.value)));
+      }
+      return row.rays > 0.0 ? std::sqrt(worst / row.rays) : 0.0;
+    };
+    cast(estimate, rays_of, false, error_of, [](int, auto&) {});
+  }
+
+  Estimate rays_alone() const {
+    const EmitterExchange emitters(caster_, direct_light_);
+    Estimate estimate = nothing_yet();
+    cast_counts(estimate, rays_of(emitters, base_rays()), [](int, int) { return true; });
+    estimate.known.S.close();
+    return estimate;
+  }
+
+  Estimate hemicubes_alone() const {
+    Estimate estimate = nothing_yet();
+    for_each_hemicube_row(
+        caster_, paths_, {.resolution = options_.hemicube_resolution}, options_.progress,
+        [&](int i, const EstimatedRow& row) { estimate.rows.add(i, row); }, phase_of("hemicubes"));
+    estimate.rows.close();
+    estimate.known.S.close();
+    return estimate;
+  }
+
+  Estimate rays_and_closed_forms() const {
+    EmitterExchange emitters(caster_, direct_light_);
+    const NearExchange near(caster_, options_.target_error);
+    Estimate estimate = nothing_yet();
+    const int n = mesh_.patch_count();
+    RecordStore pairs(budget_, n, sizeof(NearExchange::Pair), RecordStore::Count::below_diagonal);
+    cast(
+        estimate, rays_of(emitters, base_rays()), true,
+        [&](int i, const EstimatedRow& row, std::vector<NearExchange::Pair>& found) {
+          return near.look(i, row, found);
+        },
+        [&](int i, std::vector<NearExchange::Pair>& found) {
+          std::erase_if(found, [&](const NearExchange::Pair& pair) {
+            return emitters.emitter_of(i) >= 0 || emitters.emitter_of(pair.patch) >= 0;
+          });
+          pairs.append(i, found.data(), found.size());
+        });
+    pairs.close();
+    KnownExchange& known = estimate.known;
+    for (int i = 0; i < n; ++i) known.is_whole[i] = emitters.emitter_of(i) >= 0 ? 1 : 0;
+    emitters.compute(receives_, options_, phase_of("emitters"));
+    near.exchange(
+        std::move(pairs), options_.progress,
+        [&](int i, std::vector<FormFactor>& row) {
+          const auto near_count = static_cast<std::ptrdiff_t>(row.size());
+          emitters.add_row(i, row);
+          std::inplace_merge(row.begin(), row.begin() + near_count, row.end(), by_patch);
+          known.S.append(i, row);
+        },
+        phase_of("closed forms"));
+    known.S.close();
+    return estimate;
+  }
+  static bool by_patch(const FormFactor& a, const FormFactor& b) { return a.patch < b.patch; }
+
+  // Rays still find what escapes, what goes by way of mirrors and glass, and what curved patches
+  // exchange.
+  Estimate closed_forms_alone() const {
+    const EmitterExchange emitters(caster_, direct_light_);
+    const std::vector<PatchOutline> outlines = patch_outlines(mesh_);
+    const auto is_count = [&](int i, int j) {
+      return !outlines[static_cast<std::size_t>(i)].is_polygon() ||
+             !outlines[static_cast<std::size_t>(j)].is_polygon();
+    };
+    Estimate estimate = nothing_yet();
+    cast_counts(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)), is_count);
+    analytic_exchange(
+        caster_, outlines, receives_, options_.target_error, options_.progress, estimate.row_error,
+        [&](int i, std::vector<FormFactor>& row) { estimate.known.S.append(i, row); },
+        phase_of("all pairs"));
+    estimate.known.S.close();
+    return estimate;
+  }
+
+  JournalPhase phase_of(std::string_view name, const std::vector<int>* rays_of = nullptr) const {
+    return {options_.journal, name, [&](Fingerprint& print) {
+              add_inputs(print, scene_, direct_light_, mesh_, options_);
+              if (rays_of) print.add(*rays_of);
+            }};
+  }
+
+  const Scene& scene_;
+  const PatchMesh& mesh_;
+  std::shared_ptr<MemoryBudget> budget_;
+  const ElementCaster& caster_;
+  const DirectLight& direct_light_;
+  const FormFactorOptions& options_;
+  LightPaths paths_;
+  std::vector<char> receives_;
+};
+
+}  // namespace
+
+FormFactorMethod form_factor_method(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const NamedFormFactorMethod& known : form_factor_methods) {
+    if (known.name == name) return known.method;
+    names.push_back(known.name);
+  }
+  throw std::invalid_argument(fmt::format("there is no form-factor method '{}'; there are {}", name,
+                                          fmt::join(names, ", ")));
+}
+
+std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const ElementCaster& caster,
+                                                  const DirectLight& direct_light,
+                                                  const FormFactorOptions& options,
+                                                  FormFactorReport* report) {
+  const auto budget = options.memory ? options.memory : std::make_shared<MemoryBudget>();
+  const PatchMesh& mesh = caster.mesh();
+  budget->plan(
+      bytes_beside_rows(mesh, static_cast<std::int64_t>(direct_light.emitters().size()), options));
+  Estimate estimate = Estimator(scene, caster, direct_light, options, budget).estimate();
+  const auto phase_of = [&](std::string_view name) -> JournalPhase {
+    return {options.journal, name,
+            [&](Fingerprint& print) { add_inputs(print, scene, direct_light, mesh, options); }};
+  };
+  auto result =
+      assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
+                            options.enforce_closure, budget, options.progress, phase_of, report);
+  if (report) report->row_error = std::move(estimate.row_error);
+  return result;
+}
+
+}  // namespace lightwell

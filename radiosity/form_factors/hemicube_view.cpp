@@ -1,0 +1,156 @@
+#include "radiosity/form_factors/hemicube_view.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mesh/patches/sphere_grid.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t hemicube_turn = 30;  // purpose of random keys
+
+// Area centroid of a flat element, by its triangles.
+Vector3d centroid(const PatchMesh& mesh, int element) {
+  const auto& c = mesh.corners[element];
+  const Vector3d a = mesh.position(c[0]);
+  Vector3d sum = Vector3d::Zero();
+  double area = 0.0;
+  for (int i = 2; i < mesh.corner_count(element); ++i) {
+    const Vector3d b = mesh.position(c[i - 1]), d = mesh.position(c[i]);
+    const double part = (b - a).cross(d - a).norm();
+    area += part;
+    sum += part * (a + b + d) / 3.0;
+  }
+  return area > 0.0 ? Vector3d(sum / area) : a;
+}
+
+bool contains(const PatchMesh& mesh, int element, const Vector3d& normal, const Vector3d& point) {
+  constexpr double rounding = 1e-12;  // of the element's area: a point on an edge is in
+  const int n = mesh.corner_count(element);
+  for (int k = 0; k < n; ++k) {
+    const Vector3d a = mesh.position(mesh.corners[element][k]);
+    const Vector3d b = mesh.position(mesh.corners[element][(k + 1) % n]);
+    if (!(normal.dot((b - a).cross(point - a)) >= -rounding * mesh.element_area[element])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+PatchPoint center_nearest_to(const PatchMesh& mesh, int patch, const Vector3d& point) {
+  PatchPoint nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
+    const PatchPoint center = element_center(mesh, e);
+    const double distance = (center.position - point).squaredNorm();
+    if (distance < least) {
+      least = distance;
+      nearest = center;
+    }
+  }
+  return nearest;
+}
+
+PatchPoint place_on_polygon(const PatchMesh& mesh, int patch) {
+  Vector3d middle = Vector3d::Zero();
+  double area = 0.0;
+  for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
+    middle += mesh.element_area[e] * centroid(mesh, e);
+    area += mesh.element_area[e];
+  }
+  middle /= area;
+  for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
+    PatchPoint place = element_center(mesh, e);
+    if (!contains(mesh, e, place.normal, middle)) continue;
+    // A hair inside the element, as PatchSampler: the centroid of an L may be its inner corner,
+    // where something else may stand.
+    constexpr double inset = 1e-4;
+    place.position = middle + inset * (place.position - middle);
+    return place;
+  }
+  return center_nearest_to(mesh, patch, middle);
+}
+
+PatchPoint place_on_sphere(const PatchMesh& mesh, int patch, const SphereGrid& grid) {
+  Vector3d middle = Vector3d::Zero();
+  for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
+    middle += mesh.element_area[e] * (element_center(mesh, e).position - grid.sphere.center);
+  }
+  if (middle.norm() > 0.0) {
+    middle = grid.sphere.radius * middle.normalized();
+    const SpherePlace place = sphere_place(grid, middle);
+    const int outside = grid.element[place.ring * grid.sectors + place.sector];
+    const int element = mesh.is_back[patch] != 0 ? mesh.twin[outside] : outside;
+    if (element >= 0 && mesh.patch[element] == patch) {
+      const Vector3d normal = (mesh.is_back[patch] != 0 ? -1.0 : 1.0) * middle.normalized();
+      return {.element = element, .position = grid.sphere.center + middle, .normal = normal};
+    }
+  }
+  return center_nearest_to(mesh, patch, grid.sphere.center + middle);
+}
+
+// Down from the exact sphere onto the flat element.
+void drop_onto_element(const PatchMesh& mesh, PatchPoint& place) {
+  const auto& c = mesh.corners[place.element];
+  const int n = mesh.corner_count(place.element);
+  place.position = Vector3d::Zero();
+  for (int i = 0; i < n; ++i) place.position += mesh.position(c[i]) / n;
+  const Vector3d p0 = mesh.position(c[0]);
+  place.normal = (mesh.position(c[1]) - p0).cross(mesh.position(c[2]) - p0).normalized();
+}
+
+}  // namespace
+
+HemicubeEye hemicube_eye(const PatchMesh& mesh, int patch, bool on_elements) {
+  const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[mesh.first_element[patch]]);
+  PatchPoint place = grid ? place_on_sphere(mesh, patch, *grid) : place_on_polygon(mesh, patch);
+  HemicubeEye eye{.element = place.element,
+                  .facet = mesh.facet[place.element],
+                  .inside = grid && mesh.is_back[patch] != 0};
+  if (eye.inside && on_elements) drop_onto_element(mesh, place);
+  eye.position = place.position;
+  Vector3d x, y;
+  tangent_frame(place.normal, x, y);
+  const double turn = 2.0 * std::numbers::pi *
+                      random_uniform(random_key(static_cast<std::uint64_t>(patch), hemicube_turn));
+  eye.frame << std::cos(turn) * x + std::sin(turn) * y, std::cos(turn) * y - std::sin(turn) * x,
+      place.normal;
+  return eye;
+}
+
+void cast_hemicube(const ElementCaster& caster, const HemicubeEye& eye, const HemicubeCells& cells,
+                   std::span<int> items) {
+  constexpr int batch = 64;
+  std::array<Ray, batch> ray;
+  std::array<ElementHit, batch> hit;
+  const int n = cells.resolution();
+  for (int f = 0; f < HemicubeCells::face_count; ++f) {
+    for (int row = 0; row < cells.rows(f); ++row) {
+      for (int begin = 0; begin < n; begin += batch) {
+        const int count = std::min(batch, n - begin);
+        const auto size = static_cast<std::size_t>(count);
+        for (int k = 0; k < count; ++k) {
+          ray[k] = {.origin = eye.position,
+                    .direction = eye.frame * cells.direction(f, row, begin + k),
+                    .origin_group = eye.facet};
+        }
+        caster.closest_hits({ray.data(), size}, {hit.data(), size});
+        int* item = items.data() + cells.first_cell(f) + row * n + begin;
+        for (int k = 0; k < count; ++k) {
+          item[k] = hit[k].facet < 0      ? hemicube_item::nothing
+                    : hit[k].element >= 0 ? hit[k].element
+                                          : hemicube_item::black_back(hit[k].facet);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace lightwell

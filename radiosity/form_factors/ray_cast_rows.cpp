@@ -1,0 +1,221 @@
+#include "radiosity/form_factors/ray_cast_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <memory>
+#include <mutex>
+
+#include "mesh/patches/patch_sampler.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t form_factor_rays = 1;  // purposes of random keys
+constexpr std::uint64_t form_factor_branches = 2;
+constexpr std::size_t batch = 64;
+
+// Longer rows are made of several sets.
+constexpr int longest_set = 1 << 16;
+
+int set_size(int most_rays) {
+  const auto wanted = static_cast<unsigned>(std::max(most_rays, 1));
+  return std::min(static_cast<int>(std::bit_ceil(wanted)), longest_set);
+}
+
+// The rays that leave one patch.
+class PatchRays {
+ public:
+  PatchRays(const PatchMesh& mesh, int patch)
+      : mesh_(mesh), first_element_(mesh.first_element[patch]), sampler_(mesh, patch) {}
+
+  const HemisphereSets::Draw& draw() const { return draw_; }
+  void use(const HemisphereSets::Draw& draw) {
+    draw_ = draw;
+    if (sampler_.is_flat()) frame_ = draw.frame(sampler_.point(0.5, 0.5).normal);
+  }
+  // Of the block that begins at `first`.
+  void aim(int first, std::span<const HemispherePoint> points, std::span<Ray> rays) {
+    for (std::size_t r = 0; r < points.size(); ++r) {
+      const HemispherePoint& point = points[r];
+      const Eigen::Vector2d place = draw_.place(first, point);
+      int element = first_element_;
+      if (sampler_.is_flat()) {
+        rays[r].origin = sampler_.position(place.x(), place.y());
+      } else {
+        const PatchPoint from = sampler_.point(place.x(), place.y());
+        frame_ = draw_.frame(from.normal);
+        rays[r].origin = from.position;
+        element = from.element;
+      }
+      rays[r].origin_group = mesh_.facet[element];
+      rays[r].direction = frame_ * Eigen::Vector3d(point.x, point.y, point.z);
+    }
+  }
+
+ private:
+  const PatchMesh& mesh_;
+  int first_element_;
+  PatchSampler sampler_;
+  HemisphereSets::Draw draw_;
+  Eigen::Matrix3d frame_ = Eigen::Matrix3d::Identity();
+};
+
+}  // namespace
+
+RowCaster::Scratch::Scratch(const PatchMesh& mesh)
+    : first_(static_cast<std::size_t>(mesh.patch_count())), hidden_(first_) {}
+
+// Counts in shares of `rays`; empties the counters.
+void RowCaster::Scratch::take(int rays, bool with_hidden, EstimatedRow& row) {
+  row.shares.reserve(first_.size());
+  first_.take([&](int patch, int count) {
+    row.shares.push_back({patch, static_cast<float>(count) / static_cast<float>(rays)});
+    if (with_hidden) row.hidden.push_back(hidden_.count(patch));
+  });
+  if (with_hidden) hidden_.take([](int, int) {});
+}
+
+RowCaster::RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays)
+    : caster_(caster), paths_(paths), sets_(set_size(most_rays), true) {}
+
+EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind) const {
+  const PatchMesh& mesh = caster_.mesh();
+  if (!paths_.is_diffuse(mesh.facet[mesh.first_element[patch]]) || rays <= 0) return {};
+  const int bands = static_cast<int>(mesh.reflectance.cols());
+  EstimatedRow row{.trust = rays / mesh.area[patch],
+                   .specular_escaped = Spectrum::Zero(bands),
+                   .absorbed = Spectrum::Zero(bands),
+                   .cut = Spectrum::Zero(bands),
+                   .rays = static_cast<double>(rays)};
+  std::map<int, Spectrum> by_way_of_specular;
+  const std::uint64_t key = random_key(static_cast<std::uint64_t>(patch), form_factor_rays);
+  PatchRays from(mesh, patch);
+  std::array<Ray, batch> ray;
+  std::array<ElementHit, batch> hit;
+  for (int begin = 0; begin < rays; begin += HemisphereSets::block) {
+    const int in_set = begin % sets_.count();
+    if (in_set == 0) from.use(sets_.draw(random_key(key, static_cast<std::uint64_t>(begin))));
+    const int size = std::min({HemisphereSets::block, rays - begin, sets_.count() - in_set});
+    const auto points = from.draw().points(in_set, size, scratch.points_);
+    for (std::size_t first = 0; first < points.size(); first += batch) {
+      const std::size_t n = std::min<std::size_t>(batch, points.size() - first);
+      from.aim(in_set, points.subspan(first, n), ray);
+      caster_.closest_elements({ray.data(), n}, {hit.data(), n});
+      for (std::size_t r = 0; r < n; ++r) {
+        const ElementHit& h = hit[r];
+        if (paths_.has_specular() && h.facet >= 0 && paths_.is_specular(h.facet)) {
+          const std::uint64_t index = static_cast<std::uint64_t>(begin) + first + r;
+          pass_on(ray[r], h, random_key(key, form_factor_branches, index), scratch, row,
+                  by_way_of_specular);
+        } else if (h.element >= 0) {
+          scratch.first_.add(mesh.patch[h.element]);
+        } else {
+          ++row.escaped;
+        }
+      }
+      if (behind) look_behind({ray.data(), n}, {hit.data(), n}, scratch);
+    }
+  }
+  scratch.take(rays, behind, row);
+  row.specular_share.resize(static_cast<Eigen::Index>(by_way_of_specular.size()), bands);
+  const auto all = static_cast<float>(rays);
+  for (const auto& [to, weight] : by_way_of_specular) {
+    row.specular_share.row(static_cast<Eigen::Index>(row.specular_patch.size())) =
+        weight.transpose() / all;
+    row.specular_patch.push_back(to);
+  }
+  row.specular_escaped /= all;
+  row.absorbed /= all;
+  row.cut /= all;
+  row.escaped /= rays;
+  row.specular /= rays;
+  return row;
+}
+
+// A ray that met a mirror or glass, which may scatter a share of its own besides.
+void RowCaster::pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch,
+                        Scratch& scratch, EstimatedRow& row,
+                        std::map<int, Spectrum>& by_way_of_specular) const {
+  const PatchMesh& mesh = caster_.mesh();
+  if (paths_.is_diffuse(hit.facet) && hit.element >= 0) {
+    scratch.first_.add(mesh.patch[hit.element]);
+  } else {
+    ++row.specular;
+  }
+  const PathLosses losses =
+      paths_.follow(ray, hit, branch, [&](const ElementHit& end, const Spectrum& throughput) {
+        auto [at, is_new] = by_way_of_specular.try_emplace(mesh.patch[end.element], throughput);
+        if (!is_new) at->second += throughput;
+      });
+  row.specular_escaped += losses.escaped;
+  row.absorbed += losses.absorbed;
+  row.cut += losses.cut;
+}
+
+// Sends the rays on through what they met, again and again, until they leave the scene.
+void RowCaster::look_behind(std::span<Ray> rays, std::span<ElementHit> hits,
+                            Scratch& scratch) const {
+  constexpr int most_layers = 256;
+  const PatchMesh& mesh = caster_.mesh();
+  std::size_t left = rays.size();
+  for (int layer = 0; layer < most_layers && left > 0; ++layer) {
+    std::size_t going_on = 0;
+    for (std::size_t r = 0; r < left; ++r) {
+      const ElementHit& hit = hits[r];
+      if (hit.facet < 0) continue;
+      if (layer > 0 && hit.element >= 0) scratch.hidden_.add(mesh.patch[hit.element]);
+      rays[going_on++] = {.origin = rays[r].origin + hit.t * rays[r].direction,
+                          .direction = rays[r].direction,
+                          .origin_group = hit.facet};
+    }
+    left = going_on;
+    caster_.closest_elements(rays.first(left), hits.first(left));
+  }
+}
+
+void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& progress,
+                  const std::function<void(int, RowCaster::Scratch&)>& work) {
+  const int patches = mesh.patch_count();
+  // Slices keep progress and interruption on this thread: each a fraction of a second of rays. At
+  // the end of each the threads wait for each other, so they should be few.
+  constexpr int rays_per_slice = 1 << 21;
+  const int slice = std::max(2, rays_per_slice / std::max(rays_per_patch, 1));
+  const int grain = std::clamp(slice / 16, 1, 16);
+  // Scratch grows with the mesh, so it is handed on and not made again.
+  std::mutex mutex;
+  std::vector<std::unique_ptr<RowCaster::Scratch>> idle;
+  const auto borrow = [&] {
+    const std::lock_guard lock(mutex);
+    if (idle.empty()) return std::make_unique<RowCaster::Scratch>(mesh);
+    auto scratch = std::move(idle.back());
+    idle.pop_back();
+    return scratch;
+  };
+  for (int begin = 0; begin < patches; begin += slice) {
+    report(progress, "form factors", static_cast<double>(begin) / patches);
+    parallel_for(std::min(slice, patches - begin), grain, [&](int low, int high) {
+      auto scratch = borrow();
+      for (int i = begin + low; i < begin + high; ++i) work(i, *scratch);
+      const std::lock_guard lock(mutex);
+      idle.push_back(std::move(scratch));
+    });
+  }
+  report(progress, "form factors", 1.0);
+}
+
+std::vector<EstimatedRow> cast_rows(const ElementCaster& caster, const LightPaths& paths,
+                                    const std::vector<int>& rays_of, const Progress& progress) {
+  const PatchMesh& mesh = caster.mesh();
+  const int most_rays = *std::max_element(rays_of.begin(), rays_of.end());
+  const RowCaster row_caster(caster, paths, most_rays);
+  std::vector<EstimatedRow> rows(static_cast<std::size_t>(mesh.patch_count()));
+  for_each_row(mesh, most_rays, progress, [&](int i, RowCaster::Scratch& scratch) {
+    rows[i] = row_caster.cast(i, rays_of[i], scratch);
+  });
+  return rows;
+}
+
+}  // namespace lightwell

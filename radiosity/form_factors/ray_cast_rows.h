@@ -1,0 +1,111 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "radiosity/form_factors/estimated_row.h"
+#include "radiosity/paths/light_path.h"
+#include "scene/hemisphere_sets.h"
+
+namespace lightwell {
+
+/// How often each of many patches was met, emptied in the time it took to fill.
+class PatchCounts {
+ public:
+  explicit PatchCounts(std::size_t patches)
+      : count_(patches, 0),
+        words_(patches / word_bits + 1, 0),
+        met_words_(words_.size() / word_bits + 1, 0) {}
+
+  void add(int patch) {
+    const auto p = static_cast<std::size_t>(patch);
+    ++count_[p];
+    words_[p / word_bits] |= bit(p);
+    met_words_[p / word_bits / word_bits] |= bit(p / word_bits);
+  }
+  /// How many patches were met.
+  std::size_t size() const {
+    std::size_t sum = 0;
+    for (const std::uint64_t word : words_) sum += static_cast<std::size_t>(std::popcount(word));
+    return sum;
+  }
+  int count(int patch) const { return count_[static_cast<std::size_t>(patch)]; }
+
+  /// Calls `visit(patch, count)` for those that were met, in order, and forgets them.
+  template <class Visit>
+  void take(Visit visit) {
+    for_each_bit(met_words_, 0, met_words_.size(), [&](std::size_t w) {
+      for_each_bit(words_, w, w + 1, [&](std::size_t p) {
+        visit(static_cast<int>(p), count_[p]);
+        count_[p] = 0;
+      });
+    });
+  }
+
+ private:
+  static constexpr std::size_t word_bits = 64;
+  static std::uint64_t bit(std::size_t i) { return std::uint64_t{1} << (i % word_bits); }
+  template <class Visit>
+  static void for_each_bit(std::vector<std::uint64_t>& words, std::size_t begin, std::size_t end,
+                           Visit visit) {
+    for (std::size_t w = begin; w < end; ++w) {
+      for (std::uint64_t left = std::exchange(words[w], 0); left != 0; left &= left - 1) {
+        visit(w * word_bits + static_cast<std::size_t>(std::countr_zero(left)));
+      }
+    }
+  }
+
+  std::vector<int> count_;
+  std::vector<std::uint64_t> words_;      // a bit per patch: met
+  std::vector<std::uint64_t> met_words_;  // a bit per word: not 0
+};
+
+/// Casts the rays of one row after another.
+class RowCaster {
+ public:
+  /// `most_rays`: what a row will be asked for at most.
+  RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays);
+
+  /// What one thread uses again from row to row.
+  class Scratch {
+   public:
+    explicit Scratch(const PatchMesh& mesh);
+
+   private:
+    friend class RowCaster;
+    void take(int rays, bool with_hidden, EstimatedRow& row);
+
+    PatchCounts first_, hidden_;
+    std::vector<HemispherePoint> points_;
+  };
+
+  /// `rays` cosine-distributed rays from all over the patch. Empty for patches that take no part in
+  /// diffuse exchange. `look_behind`: rays go on through whatever they meet, to fill
+  /// EstimatedRow::hidden.
+  EstimatedRow cast(int patch, int rays, Scratch& scratch, bool look_behind = false) const;
+
+ private:
+  void pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch, Scratch& scratch,
+               EstimatedRow& row, std::map<int, Spectrum>& by_way_of_specular) const;
+  void look_behind(std::span<Ray> rays, std::span<ElementHit> hits, Scratch& scratch) const;
+
+  const ElementCaster& caster_;
+  const LightPaths& paths_;
+  HemisphereSets sets_;
+};
+
+/// Calls `work(i, scratch)` for each patch i, in parallel, with progress between slices.
+/// `rays_per_patch`: about how many rays one call casts.
+void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& progress,
+                  const std::function<void(int, RowCaster::Scratch&)>& work);
+
+/// Casts `rays_of[i]` rays from each patch i.
+std::vector<EstimatedRow> cast_rows(const ElementCaster& caster, const LightPaths& paths,
+                                    const std::vector<int>& rays_of, const Progress& progress);
+
+}  // namespace lightwell

@@ -1,0 +1,132 @@
+#include "radiosity/form_factors/specular_assembly.h"
+
+#include <cstring>
+
+#include "radiosity/form_factors/balance.h"
+#include "radiosity/rows/symmetric_rows.h"
+
+namespace lightwell {
+namespace {
+
+using Values = Eigen::Map<const Eigen::Array<float, 1, Eigen::Dynamic>>;
+
+// What follows a record's patch.
+Values values_of(const std::byte* record, int bands) {
+  return {reinterpret_cast<const float*>(record + sizeof(int)), bands};
+}
+
+// S_ij, j >= i, per band: the sum that gives each end its trust.
+RecordStore joined(const PatchMesh& mesh, RowEstimates& rows,
+                   const std::shared_ptr<MemoryBudget>& budget) {
+  const int bands = rows.bands();
+  const auto weight = [&](int i) { return static_cast<float>(rows.trust(i) * mesh.area[i]); };
+  RecordStore S(budget, rows.patch_count(), rows.specular_shares().record_bytes(),
+                RecordStore::Count::above_diagonal);
+  fold_symmetric(
+      rows.specular_shares(),
+      [&](int i, RecordSpan row, RecordSpan column) {
+        std::vector<std::byte> records;
+        std::size_t count = 0;
+        for_each_pair(i, row, column, [&](int j, const std::byte* own, const std::byte* other) {
+          Spectrum sum = Spectrum::Zero(bands);
+          if (own) sum += values_of(own, bands).transpose() * weight(i);
+          if (other) sum += values_of(other, bands).transpose() * weight(j);
+          sum /= static_cast<float>(rows.trust(i) + rows.trust(j));
+          records.resize(++count * S.record_bytes());
+          std::byte* const to = records.data() + records.size() - S.record_bytes();
+          std::memcpy(to, &j, sizeof j);
+          std::memcpy(to + sizeof j, sum.data(), S.record_bytes() - sizeof j);
+        });
+        S.append(i, records.data(), count);
+      },
+      [](int) {});
+  S.close();
+  return S;
+}
+
+// S x, each band by itself.
+Eigen::ArrayXXd product(const RecordStore& S, const Eigen::ArrayXXd& x) {
+  const int bands = static_cast<int>(x.cols());
+  using RowMajor = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const RowMajor from = x;
+  RowMajor own = RowMajor::Zero(x.rows(), x.cols()), below = own;
+  read_symmetric(
+      S,
+      [&](int i, RecordSpan row) {
+        for (std::size_t k = 0; k < row.size(); ++k) {
+          own.row(i) += values_of(row[k], bands).cast<double>() * from.row(row.patch(k));
+        }
+      },
+      [&](int i, std::size_t k, RecordSpan row) {
+        below.row(row.patch(k)) += values_of(row[k], bands).cast<double>() * from.row(i);
+      });
+  return own + below;
+}
+
+Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const RecordStore& S,
+                        const PhaseOf& phase_of) {
+  Eigen::ArrayXXd target = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
+  for (int i = 0; i < rows.patch_count(); ++i) target.row(i) = mesh.area[i] * rows.specular_sum(i);
+  // A row's few own rays may have found nothing of what others sent it, and some wishes exclude
+  // each other: factors that fulfilled them would grow without bound.
+  constexpr double most_stretch = 2.0, largest_factor = 4.0;
+  constexpr int most_iterations = 50;
+  const Eigen::ArrayXXd has = product(S, Eigen::ArrayXXd::Ones(target.rows(), target.cols()));
+  target = target.max(has / most_stretch).min(has * most_stretch);
+  constexpr double tolerance = 1e-8;
+  return symmetric_scaling([&](const Eigen::ArrayXXd& x) { return product(S, x); },
+                           Eigen::ArrayXXd::Zero(target.rows(), target.cols()), target,
+                           phase_of("balance of mirrors and glass"), tolerance, most_iterations)
+      .max(1.0 / largest_factor)
+      .min(largest_factor);
+}
+
+}  // namespace
+
+void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_closure,
+                       const std::shared_ptr<MemoryBudget>& budget, const PhaseOf& phase_of,
+                       StoredFormFactors& result) {
+  RecordStore S = joined(mesh, rows, budget);
+  Eigen::ArrayXXd d = Eigen::ArrayXXd::Ones(rows.patch_count(), rows.bands());
+  if (enforce_closure) d = balance(mesh, rows, S, phase_of);
+  Eigen::ArrayXXd kept = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
+  unfold_symmetric(S, [&](int i, RecordSpan below, RecordSpan upper) {
+    std::vector<int> patches;
+    std::vector<float> values;
+    for (const RecordSpan part : {below, upper}) {
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        const int j = part.patch(k);
+        const Values S_ij = values_of(part[k], rows.bands());
+        patches.push_back(j);
+        for (int band = 0; band < rows.bands(); ++band) {
+          values.push_back(
+              static_cast<float>(S_ij[band] * (d(i, band) * d(j, band)) / mesh.area[i]));
+        }
+      }
+    }
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      kept(i, static_cast<Eigen::Index>(k) % rows.bands()) += values[k];
+    }
+    result.append_specular(i, patches, values);
+  });
+  for (int i = 0; i < rows.patch_count(); ++i) {
+    if (!rows.is_measured(i)) continue;
+    // What balancing took from a row, or gave it, is set off against its losses: rows add up to 1.
+    const auto as_row = [](const auto& spectrum) {
+      return spectrum.template cast<double>().eval();
+    };
+    const Eigen::Array<double, 1, Eigen::Dynamic> change =
+        enforce_closure
+            ? Eigen::Array<double, 1, Eigen::Dynamic>(as_row(rows.specular_sum(i)) - kept.row(i))
+            : Eigen::Array<double, 1, Eigen::Dynamic>::Zero(rows.bands());
+    const Eigen::Array<double, 1, Eigen::Dynamic> absorbed =
+        as_row(rows.absorbed(i) + rows.cut(i)) + change;
+    result.absorbed_share.row(i) = absorbed.max(0.0).cast<float>();
+    result.escaped_share.row(i) =
+        (as_row(result.escaped_share.row(i)) + as_row(rows.specular_escaped(i)) + absorbed.min(0.0))
+            .max(0.0)
+            .cast<float>();
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,209 @@
+#include "radiosity/gather/bright_patches.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace lightwell {
+namespace {
+
+// Mean radiosity of an element's corners, columns added.
+double brightness(const PatchMesh& mesh, const BandArray& radiosity, int element) {
+  double sum = 0.0;
+  const int corners = mesh.corner_count(element);
+  for (int c = 0; c < corners; ++c) {
+    sum += static_cast<double>(radiosity.row(mesh.corners[element][c]).sum());
+  }
+  return std::max(sum / corners, 0.0);
+}
+
+std::array<double, 2> triangle_areas(const PatchMesh& mesh, int element) {
+  const auto& corners = mesh.corners[element];
+  const Eigen::Vector3d first = mesh.position(corners[0]);
+  std::array<double, 2> area{};
+  for (int i = 2; i < mesh.corner_count(element); ++i) {
+    area[static_cast<std::size_t>(i) - 2] =
+        0.5 *
+        (mesh.position(corners[i - 1]) - first).cross(mesh.position(corners[i]) - first).norm();
+  }
+  return area;
+}
+
+// How bright a patch must be. Backs of walls and rooms behind closed doors are no measure of what
+// is ordinary, so the median is that of the area which is lit; and where half of it is nearly dark,
+// the other half is not what rays miss.
+double least_brightness(const PatchMesh& mesh, const Eigen::ArrayXd& mean) {
+  std::vector<int> lit;
+  double area = 0.0, power = 0.0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (!(mean[p] > 0.0)) continue;
+    lit.push_back(p);
+    area += mesh.area[p];
+    power += mesh.area[p] * mean[p];
+  }
+  std::sort(lit.begin(), lit.end(),
+            [&](int a, int b) { return std::pair(mean[a], a) < std::pair(mean[b], b); });
+  double up_to = 0.0;
+  for (const int p : lit) {
+    up_to += mesh.area[p];
+    if (up_to < 0.5 * area) continue;
+    return std::max(BrightPatches::times_median * mean[p],
+                    BrightPatches::times_mean * power / area);
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+BrightPatches::BrightPatches(const Scene& scene, const PatchMesh& mesh, const BandArray& radiosity)
+    : mesh_(&mesh) {
+  const int count = mesh.patch_count();
+  std::vector<double> of_element(static_cast<std::size_t>(mesh.element_count()));
+  Eigen::ArrayXd mean(count), square(count);
+  for (int p = 0; p < count; ++p) {
+    double sum = 0.0, sum2 = 0.0, area = 0.0;
+    for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+      const double B = brightness(mesh, radiosity, e);
+      of_element[static_cast<std::size_t>(e)] = B;
+      sum += mesh.element_area[e] * B;
+      sum2 += mesh.element_area[e] * B * B;
+      area += mesh.element_area[e];
+    }
+    mean[p] = area > 0.0 ? sum / area : 0.0;
+    square[p] = area > 0.0 ? sum2 / area : 0.0;
+  }
+  const double least = least_brightness(mesh, mean);
+  std::vector<int> bright;
+  for (int p = 0; p < count; ++p) {
+    const Surface& surface = scene.surfaces[static_cast<std::size_t>(mesh.surface[p])];
+    if (std::holds_alternative<Sphere>(surface.shape) || surface.motion >= 0) continue;
+    if (std::sqrt(square[p]) > least) bright.push_back(p);
+  }
+  if (bright.size() > static_cast<std::size_t>(most)) {
+    const auto noisier = [&](int a, int b) {
+      const double of_a = square[a] * mesh.area[a], of_b = square[b] * mesh.area[b];
+      return std::pair(-of_a, a) < std::pair(-of_b, b);
+    };
+    std::nth_element(bright.begin(), bright.begin() + most, bright.end(), noisier);
+    bright.resize(static_cast<std::size_t>(most));
+    std::sort(bright.begin(), bright.end());
+  }
+  if (bright.empty()) return;
+  of_element_.assign(of_element.size(), -1);
+  for (const int p : bright) {
+    Patch patch{.first = static_cast<int>(elements_.size())};
+    const bool is_flat = mesh.facet_of(p) >= 0;
+    if (is_flat) patch.normal = element_center(mesh, mesh.first_element[p]).normal;
+    for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+      const auto [first, second] = triangle_areas(mesh, e);
+      const double area = first + second, power = area * of_element[static_cast<std::size_t>(e)];
+      patch.area += area;
+      patch.center += area * element_center(mesh, e).position;
+      if (!(power > 0.0)) continue;
+      patch.power += power;
+      of_element_[static_cast<std::size_t>(e)] = static_cast<int>(elements_.size());
+      patch_of_.push_back(static_cast<int>(patches_.size()));
+      elements_.push_back({.number = e,
+                           .up_to = patch.power,
+                           .share_per_area = of_element[static_cast<std::size_t>(e)],
+                           .normal = element_center(mesh, e).normal});
+    }
+    patch.center /= patch.area;
+    for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+      for (int c = 0; c < mesh.corner_count(e); ++c) {
+        const Eigen::Vector3d to = mesh.position(mesh.corners[e][c]) - patch.center;
+        patch.radius2 = std::max(patch.radius2, to.squaredNorm());
+      }
+    }
+    patch.end = static_cast<int>(elements_.size());
+    for (int i = patch.first; i < patch.end; ++i) {
+      elements_[static_cast<std::size_t>(i)].up_to /= patch.power;
+      elements_[static_cast<std::size_t>(i)].share_per_area /= patch.power;
+    }
+    patches_.push_back(patch);
+  }
+}
+
+BrightPatches::View BrightPatches::view(const Eigen::Vector3d& from, const Eigen::Vector3d& normal,
+                                        int rays) const {
+  // Of a patch that a few of the rays meet, those leave less noise than a few aimed ones would.
+  constexpr double few = 4.0;
+  // Of a patch's size: nearer to its plane it is seen from the edge.
+  constexpr double least_height = 1e-4;
+  View view;
+  view.from_ = from;
+  view.up_to_.reserve(patches_.size());
+  double sum = 0.0;
+  for (const Patch& patch : patches_) {
+    const Eigen::Vector3d to = patch.center - from;
+    const double distance2 = to.squaredNorm(), distance = std::sqrt(distance2),
+                 radius = std::sqrt(patch.radius2);
+    const double height = patch.normal.isZero() ? distance : -patch.normal.dot(to);
+    const double rise = to.dot(normal) + radius;  // of its highest point, at most
+    if (height > least_height * radius && rise > 0.0) {
+      const double solid = std::min(height + 0.1 * radius, distance + radius) * patch.area /
+                           ((distance2 + patch.radius2) * (distance + radius));
+      const double form_factor =
+          std::min(rise / (distance + radius), 1.0) * solid * std::numbers::inv_pi;
+      sum += patch.power / patch.area * form_factor / (1.0 + rays * form_factor / few);
+    }
+    view.up_to_.push_back(static_cast<float>(sum));
+  }
+  if (!(sum > 0.0)) {
+    view.up_to_.clear();
+    return view;
+  }
+  for (float& up_to : view.up_to_) up_to = static_cast<float>(up_to / sum);
+  view.up_to_.back() = 1.0f;
+  return view;
+}
+
+BrightPatches::Aim BrightPatches::draw(const View& view, double which, double u, double v) const {
+  const auto& up_to = view.up_to_;
+  const auto place =
+      std::min<std::ptrdiff_t>(std::upper_bound(up_to.begin(), up_to.end(), which) - up_to.begin(),
+                               static_cast<std::ptrdiff_t>(up_to.size()) - 1);
+  const auto p = static_cast<std::size_t>(place);
+  const double before = p > 0 ? up_to[p - 1] : 0.0;
+  const double within = std::clamp((which - before) / (up_to[p] - before), 0.0, 1.0);
+  const Patch& patch = patches_[p];
+  const auto begin = elements_.begin() + patch.first, last = elements_.begin() + patch.end - 1;
+  const auto found = std::upper_bound(
+      begin, last, within, [](double x, const Element& element) { return x < element.up_to; });
+  const auto [first, second] = triangle_areas(*mesh_, found->number);
+  double along = v * (first + second);
+  const bool is_second = along >= first;
+  along = is_second ? (along - first) / second : along / first;
+  const auto& corners = mesh_->corners[found->number];
+  const std::size_t i = is_second ? 2 : 1;
+  const Eigen::Vector3d a = mesh_->position(corners[0]), b = mesh_->position(corners[i]),
+                        c = mesh_->position(corners[i + 1]);
+  const double s = std::sqrt(along);  // keeps density even towards the corner
+  const Eigen::Vector3d at = a + s * ((1.0 - u) * (b - a) + u * (c - a));
+  return {.direction = (at - view.from_).normalized(), .element = found->number};
+}
+
+double BrightPatches::density(const View& view, int element, const Eigen::Vector3d& direction,
+                              double distance) const {
+  const int number = of_element_[static_cast<std::size_t>(element)];
+  if (number < 0) return 0.0;
+  const Element& at = elements_[static_cast<std::size_t>(number)];
+  const auto p = static_cast<std::size_t>(patch_of_[static_cast<std::size_t>(number)]);
+  const double chance = view.up_to_[p] - (p > 0 ? view.up_to_[p - 1] : 0.0f);
+  const double cosine = std::abs(direction.dot(at.normal));
+  // Seen from the edge, what is drawn there is spread over no angle at all.
+  constexpr double grazing = 1e-9;
+  return chance * at.share_per_area * distance * distance / std::max(cosine, grazing);
+}
+
+double BrightPatches::share(const View& view, double cosine, int rays, const Ray& ray,
+                            const ElementHit& hit) const {
+  if (hit.element < 0 || of_element_[static_cast<std::size_t>(hit.element)] < 0) return 1.0;
+  const double by_cosine = rays * std::max(cosine, 0.0) * std::numbers::inv_pi;
+  const double all = by_cosine + aimed(rays) * density(view, hit.element, ray.direction, hit.t);
+  return all > 0.0 ? by_cosine / all : 0.0;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,483 @@
+#include "radiosity/gather/final_gather.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "mesh/patches/patch_sampler.h"
+#include "mesh/patches/patch_textures.h"
+#include "mesh/patches/sphere_grid.h"
+#include "radiosity/gather/bright_patches.h"
+#include "radiosity/gather/patch_power.h"
+#include "radiosity/journal/journal_phase.h"
+#include "radiosity/paths/light_path.h"
+#include "scene/hemisphere_sets.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t gather_rays = 10;  // purposes of random keys
+constexpr std::uint64_t gather_branches = 11;
+constexpr std::uint64_t gather_shadows = 12;
+constexpr std::uint64_t aimed_rays = 15;
+constexpr std::uint64_t caustic_rays = 13;
+constexpr std::uint64_t caustic_branches = 14;
+constexpr std::uint64_t caustic_rays_of_lamps = 0xf4ee3;
+constexpr int batch = 128;
+constexpr float pi = std::numbers::pi_v<float>;
+
+int ray_count(const GatherPoint& at, const GatherOptions& options) {
+  return at.rays > 0 ? at.rays : std::max(1, options.rays);
+}
+
+class HemisphereGather {
+ public:
+  HemisphereGather(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                   const BandArray& radiosity, const GatherOptions& options,
+                   const GatherPoints& points)
+      : mesh_(caster.mesh()),
+        caster_(caster),
+        radiosity_(radiosity),
+        paths_(scene, caster, options.max_specular_depth),
+        options_(options),
+        bands_(scene.bands.count()),
+        bright_(scene, mesh_, radiosity) {
+    if (const FreeSource* dome = direct_light.dome()) {
+      dome_ = dome->light;
+      if (direct_light.column_count() == radiosity.cols()) dome_column_ = dome->channel * bands_;
+    }
+    for (int i = 0; i < points.size(); ++i) {
+      const int rays = ray_count(points[i], options);
+      if (!sets_.contains(rays)) sets_.emplace(rays, HemisphereSets(rays));
+      if (!bright_.is_empty() && !aims_.contains(rays)) {
+        aims_.emplace(rays, SobolPoints(bright_.aimed(rays)));
+      }
+    }
+  }
+
+  // E = (1/N) sum B over cosine-distributed rays, columns of `irradiance`, and a share of N more
+  // towards bright patches where there are any. The first half of a sequence and the second are
+  // stratified each.
+  void gather(const GatherPoint& at, std::uint64_t key, float* irradiance, float& variance) const {
+    const Eigen::Index columns = radiosity_.cols();
+    std::array<Eigen::ArrayXd, 2> sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
+    const HemisphereSets& set = sets_.at(ray_count(at, options_));
+    const HemisphereSets::Draw draw = set.draw(random_key(key, gather_rays));
+    const Eigen::Matrix3d frame = draw.frame(at.normal);
+    const int count = set.count();
+    BrightPatches::View view;
+    if (!bright_.is_empty()) view = bright_.view(at.position, at.normal, count);
+    std::array<Ray, batch> ray;
+    std::array<ElementHit, batch> hit;
+    for (int begin = 0; begin < set.count(); begin += batch) {
+      const auto points =
+          draw.all().subspan(static_cast<std::size_t>(begin),
+                             static_cast<std::size_t>(std::min(batch, set.count() - begin)));
+      const std::size_t n = points.size();
+      for (std::size_t r = 0; r < n; ++r) {
+        ray[r] = {.origin = at.position,
+                  .direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z),
+                  .origin_group = at.facet};
+      }
+      caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+      for (std::size_t r = 0; r < n; ++r) {
+        const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;
+        const int place = begin / HemisphereSets::block * HemisphereSets::block + points[r].rank;
+        const double share = view.is_empty() ? 1.0
+                                             : bright_.share(view, at.normal.dot(ray[r].direction),
+                                                             count, ray[r], hit[r]);
+        add(ray[r], hit[r], key, index, share, sum[place < count / 2 ? 0 : 1]);
+      }
+    }
+    if (!view.is_empty()) aim(at, view, key, sum);
+    Eigen::Map<Eigen::ArrayXf>(irradiance, columns) =
+        ((sum[0] + sum[1]) / set.count()).cast<float>();
+    variance = half_difference(sum, set.count());
+  }
+
+ private:
+  // Rays towards bright patches, each for light straight from the one it was drawn for.
+  void aim(const GatherPoint& at, const BrightPatches::View& view, std::uint64_t key,
+           std::array<Eigen::ArrayXd, 2>& sum) const {
+    const int rays = ray_count(at, options_);
+    const SobolPoints& lots = aims_.at(rays);
+    std::array<Ray, batch> ray;
+    std::array<ElementHit, batch> hit;
+    std::array<int, batch> element;
+    for (int begin = 0; begin < lots.count(); begin += batch) {
+      const auto n = static_cast<std::size_t>(std::min(batch, lots.count() - begin));
+      for (std::size_t r = 0; r < n; ++r) {
+        const Eigen::Array4d lot =
+            lots.point(begin + static_cast<int>(r), random_key(key, aimed_rays)).cast<double>();
+        const BrightPatches::Aim aim = bright_.draw(view, lot[0], lot[1], lot[2]);
+        element[r] = aim.element;
+        ray[r] = {.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
+      }
+      caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+      for (std::size_t r = 0; r < n; ++r) {
+        if (hit[r].element != element[r] || !paths_.is_diffuse(hit[r].facet)) continue;
+        const bool is_first = begin + static_cast<int>(r) < lots.count() / 2;
+        add_radiosity(hit[r],
+                      bright_.share(view, at.normal.dot(ray[r].direction), rays, ray[r], hit[r]),
+                      sum[is_first ? 0 : 1]);
+      }
+    }
+  }
+
+  // `share` is of the light that comes straight from the place of the hit.
+  void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, std::uint64_t index,
+           double share, Eigen::ArrayXd& sum) const {
+    if (hit.facet < 0) return;
+    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, share, sum);
+    if (!paths_.is_specular(hit.facet)) return;
+    const PathLosses losses = paths_.follow(ray, hit, random_key(key, gather_branches, index),
+                                            [&](const ElementHit& end, const Spectrum& throughput) {
+                                              add_throughput(end, throughput, sum);
+                                            });
+    if (losses.sky.size() == 0 || dome_.size() == 0) return;
+    sum.segment(dome_column_, bands_) += (pi * dome_ * losses.sky).cast<double>();
+  }
+
+  // Bands go by the columns of one channel after the other.
+  void add_throughput(const ElementHit& hit, const Spectrum& throughput,
+                      Eigen::ArrayXd& sum) const {
+    if (hit.element < 0) return;
+    const Eigen::Index bands = throughput.size();
+    const auto& corners = mesh_.corners[hit.element];
+    for (Eigen::Index k = 0; k < sum.size(); k += bands) {
+      Spectrum B = Spectrum::Zero(bands);
+      for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
+        B += hit.weights[c] * radiosity_.row(corners[c]).segment(k, bands).transpose();
+      }
+      sum.segment(k, bands) += (throughput * B).cast<double>();
+    }
+  }
+
+  void add_radiosity(const ElementHit& hit, double share, Eigen::ArrayXd& sum) const {
+    const auto& corners = mesh_.corners[hit.element];
+    for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
+      const float* B = radiosity_.data() + corners[c] * radiosity_.cols();
+      for (Eigen::Index k = 0; k < sum.size(); ++k) {
+        sum[k] += share * static_cast<double>(hit.weights[c] * B[k]);
+      }
+    }
+  }
+
+  // The square of half the difference between the halves' means.
+  float half_difference(const std::array<Eigen::ArrayXd, 2>& sum, int count) const {
+    const int first = count / 2, second = count - first;
+    const Eigen::ArrayXd by_column =
+        0.5 * (first > 0 ? Eigen::ArrayXd(sum[1] / second - sum[0] / first) : 2.0 * sum[1]);
+    Eigen::ArrayXd difference = Eigen::ArrayXd::Zero(bands_);
+    for (Eigen::Index k = 0; k < by_column.size(); k += bands_) {
+      difference += by_column.segment(k, bands_);
+    }
+    return static_cast<float>(difference.square().mean());
+  }
+
+  const PatchMesh& mesh_;
+  const ElementCaster& caster_;
+  const BandArray& radiosity_;
+  LightPaths paths_;
+  const GatherOptions& options_;
+  Eigen::Index bands_;
+  Spectrum dome_{};  // factor of the sky's light; empty if there is none
+  Eigen::Index dome_column_ = 0;
+  std::map<int, HemisphereSets> sets_;  // by the rays of each
+  BrightPatches bright_;
+  std::map<int, SobolPoints> aims_;  // towards those, by the rays of sets_
+};
+
+// All that decides what is gathered, but for the scene.
+void add_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPoints& points,
+                const GatherOptions& options) {
+  print.add(mesh);
+  for (int i = 0; i < points.size(); ++i) {
+    const GatherPoint point = points[i];
+    print.add(Eigen::Vector3d(point.position));
+    print.add(Eigen::Vector3d(point.normal));
+    print.add(point.facet);
+    print.add(point.key.has_value());
+    print.add(point.key.value_or(0));
+    print.add(point.rays);
+  }
+  print.add(options.rays);
+  print.add(options.max_specular_depth);
+  print.add(options.shadows.min_rays);
+  print.add(options.shadows.max_rays);
+  print.add(options.replica);
+}
+
+// Rows begin, begin + 1, ...
+std::span<float> rows_of(BandArray& values, int begin, int size) {
+  return {values.data() + begin * values.cols(), static_cast<std::size_t>(size * values.cols())};
+}
+
+// Calls body(i, point, key) for every point, with the key of its random numbers, unless `phase`
+// holds the `values(begin, size)` of its slice. Slices keep progress and interruption on this
+// thread: each a fraction of a second of rays.
+template <class Values, class Body>
+void for_each_point(const GatherPoints& points, const GatherOptions& options,
+                    const JournalPhase& phase, Values values, Body&& body) {
+  const int count = points.size();
+  constexpr int rays_per_slice = 1 << 20;
+  const int slice =
+      std::clamp(rays_per_slice / std::max(options.rays, 1), 2, std::max(64, count / 100));
+  const int grain = std::clamp(slice / 8, 1, 8);
+  const auto look = [&](int begin) {
+    report(options.progress, "gather", static_cast<double>(begin) / count);
+  };
+  for_each_slice(phase, count, slice, grain, values, look, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const GatherPoint at = points[i];
+      body(i, at, random_key(at.key.value_or(static_cast<std::uint64_t>(i)), options.replica));
+    }
+  });
+  report(options.progress, "gather", 1.0);
+}
+
+}  // namespace
+
+GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& caster,
+                                     const DirectLight& direct_light, const BandArray& radiosity,
+                                     const GatherPoints& points, const GatherOptions& options) {
+  const int count = points.size();
+  const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
+  GatheredIrradiance result{.direct = BandArray::Zero(count, direct_light.column_count()),
+                            .indirect = BandArray::Zero(count, radiosity.cols()),
+                            .variance = Eigen::ArrayXf::Zero(count)};
+  const JournalPhase phase(options.journal, "gather", [&](Fingerprint& print) {
+    add_inputs(print, caster.mesh(), points, options);
+    print.add(direct_light.column_count());
+    print.add(radiosity);
+  });
+  const auto values = [&](int begin, int size) {
+    return std::tuple(rows_of(result.direct, begin, size), rows_of(result.indirect, begin, size),
+                      std::span(result.variance.data() + begin, static_cast<std::size_t>(size)));
+  };
+  for_each_point(points, options, phase, values,
+                 [&](int i, const GatherPoint& at, std::uint64_t key) {
+                   direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
+                                               random_key(key, gather_shadows), options.shadows,
+                                               result.direct.row(i).data());
+                   hemisphere.gather(at, key, result.indirect.row(i).data(), result.variance[i]);
+                 });
+  return result;
+}
+
+BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
+                        const DirectLight& direct_light, const GatherPoints& points,
+                        const GatherOptions& options, std::vector<EmitterSight>* sights) {
+  BandArray direct =
+      BandArray::Zero(points.size(), direct_light.channel_count() * scene.bands.count());
+  if (sights) sights->assign(static_cast<std::size_t>(points.size()), {});
+  const JournalPhase phase(options.journal, sights ? "sights" : "direct", [&](Fingerprint& print) {
+    add_inputs(print, caster.mesh(), points, options);
+    print.add(direct_light.column_count());
+  });
+  const auto values = [&](int begin, int size) {
+    std::span<EmitterSight> seen;
+    if (sights) seen = std::span(*sights).subspan(begin, size);
+    return std::tuple(rows_of(direct, begin, size), seen);
+  };
+  for_each_point(
+      points, options, phase, values, [&](int i, const GatherPoint& at, std::uint64_t key) {
+        direct_light.add_irradiance(
+            caster, at.position, at.normal, at.facet, random_key(key, gather_shadows),
+            options.shadows, direct.row(i).data(), Lights::all, sights ? &(*sights)[i] : nullptr);
+      });
+  return direct;
+}
+
+GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
+                                   const DirectLight& direct_light, const BandArray& radiosity,
+                                   const GatherPoints& points, const GatherOptions& options) {
+  const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
+  const int count = points.size();
+  GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
+                            .variance = Eigen::ArrayXf(count)};
+  const JournalPhase phase(options.journal, "indirect", [&](Fingerprint& print) {
+    add_inputs(print, caster.mesh(), points, options);
+    print.add(direct_light.column_count());
+    print.add(radiosity);
+  });
+  const auto values = [&](int begin, int size) {
+    return std::tuple(rows_of(result.indirect, begin, size),
+                      std::span(result.variance.data() + begin, static_cast<std::size_t>(size)));
+  };
+  for_each_point(points, options, phase, values,
+                 [&](int i, const GatherPoint& at, std::uint64_t key) {
+                   hemisphere.gather(at, key, result.indirect.row(i).data(), result.variance[i]);
+                 });
+  return result;
+}
+
+BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
+                               const BandArray& irradiance) {
+  const std::vector<int> patch = vertex_patches(mesh);
+  const BandArray rho = vertex_reflectance(mesh);
+  const Eigen::Index bands = mesh.reflectance.cols();
+  BandArray B(irradiance.rows(), irradiance.cols());
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const int p = patch[v], facet = mesh.facet[mesh.first_element[p]];
+    for (Eigen::Index k = 0; k < B.cols(); k += bands) {
+      B.row(v).segment(k, bands) = rho.row(v) * irradiance.row(v).segment(k, bands);
+    }
+    if (direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
+    B.row(v).segment(direct_light.first_column(facet), bands) += mesh.emission.row(p);
+  }
+  return B;
+}
+
+BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
+                             const DirectLight& direct_light, int rays, int max_specular_depth,
+                             const Progress& progress, Journal* journal) {
+  const PatchMesh& mesh = caster.mesh();
+  const LightPaths paths(scene, caster, max_specular_depth);
+  if (!paths.has_specular() || direct_light.light_count() == 0) return {};
+  const int bands = scene.bands.count();
+  BandArray power = BandArray::Zero(mesh.element_count(), direct_light.column_count());
+
+  std::vector<int> emitter_of_facet;
+  for (int e = 0; e < static_cast<int>(direct_light.emitters().size()); ++e) {
+    const int facet = direct_light.emitters()[e].facet;
+    emitter_of_facet.resize(std::max<std::size_t>(emitter_of_facet.size(), facet + 1), -1);
+    emitter_of_facet[facet] = e;
+  }
+  JournalPhase phase(journal, "caustics", [&](Fingerprint& print) {
+    print.add(mesh);
+    print.add(direct_light.column_count());
+    print.add(rays);
+    print.add(max_specular_depth);
+  });
+  // Pieces deposit into lists that are added in order, so that the sum does not depend on threads.
+  struct Deposit {
+    int element;
+    Spectrum power;
+  };
+  // Sends rays first(r) with watts per ray, r in [0, count), which deposit in columns from
+  // `column`.
+  const auto send = [&](int count, std::uint64_t key, int column, auto&& first) {
+    constexpr int piece = 2048;
+    std::vector<std::vector<Deposit>> deposits((count + piece - 1) / piece);
+    parallel_for(count, piece, [&](int begin, int end) {
+      auto& list = deposits[begin / piece];
+      for (int r = begin; r < end; ++r) {
+        const auto [ray, watts] = first(r);
+        ElementHit hit;
+        caster.closest_hits({&ray, 1}, {&hit, 1});
+        if (hit.facet < 0 || !paths.is_specular(hit.facet)) continue;
+        paths.follow(ray, hit, random_key(key, caustic_branches, static_cast<std::uint64_t>(r)),
+                     [&](const LightArrival& at) {
+                       if (at.through_panes_only) return;  // DirectLight has that
+                       list.push_back({at.hit.element, at.throughput * watts});
+                     });
+      }
+    });
+    for (const auto& list : deposits) {
+      for (const Deposit& deposit : list) {
+        power.row(deposit.element).segment(column, bands) += deposit.power.transpose();
+      }
+    }
+  };
+
+  // Every lit patch sends rays in proportion to its area.
+  const SobolPoints sobol(rays);
+  const auto send_patch = [&](int p) {
+    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
+    if (!direct_light.owns(facet, mesh.is_back[p] != 0) || !(mesh.emission.row(p) > 0.0f).any())
+      return;
+    const double share = mesh.area[p] / direct_light.emitters()[emitter_of_facet[facet]].area;
+    const int count = std::clamp(static_cast<int>(std::lround(rays * share)), 1, rays);
+    const Spectrum power_per_ray =
+        mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
+    const std::uint64_t key = random_key(static_cast<std::uint64_t>(p), caustic_rays);
+    const PatchSampler sampler(mesh, p);
+    send(count, key, direct_light.first_column(facet), [&](int r) {
+      const Eigen::Array4f u = sobol.point(r, key);
+      const Ray ray = cosine_ray(mesh, sampler.point(u[0], u[1]), u[2], u[3]);
+      return std::pair(ray, power_per_ray);
+    });
+  };
+  const auto send_source = [&](const FreeSource& source) {
+    if (!source.is_on() || source.is_dome()) return;
+    const std::uint64_t key =
+        random_key(static_cast<std::uint64_t>(source.number), caustic_rays_of_lamps);
+    send(rays, key, source.channel * bands, [&](int r) {
+      const SourceRay sent = source_ray(source, sobol.point(r, key));
+      return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / rays)));
+    });
+  };
+  const auto& sources = direct_light.free_sources();
+  const int patches = mesh.patch_count(), count = patches + static_cast<int>(sources.size());
+  int first = 0;
+  phase.recall_state(first, power);
+  for (int i = first; i < count; ++i) {
+    if (i < patches) {
+      send_patch(i);
+    } else {
+      send_source(sources[static_cast<std::size_t>(i - patches)]);
+    }
+    report(progress, "caustics", static_cast<double>(i) / count);
+    if (phase.is_state_due()) phase.keep_state(i + 1, power);
+  }
+  phase.keep_state(count, power);
+
+  BandArray vertex_power = BandArray::Zero(mesh.vertex_count(), power.cols());
+  Eigen::ArrayXf vertex_area = Eigen::ArrayXf::Zero(mesh.vertex_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      vertex_power.row(mesh.corners[e][c]) += power.row(e);
+      vertex_area[mesh.corners[e][c]] += static_cast<float>(mesh.element_area[e]);
+    }
+  }
+  return vertex_power.colwise() / vertex_area.max(1e-30f);
+}
+
+VertexGatherPoints::VertexGatherPoints(const PatchMesh& mesh)
+    : mesh_(mesh), element_(mesh.vertex_count(), -1) {
+  for (int e = mesh.element_count() - 1; e >= 0; --e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) element_[mesh.corners[e][c]] = e;
+  }
+}
+
+GatherPoint VertexGatherPoints::operator[](int vertex) const {
+  // Far enough in to clear the float rounding of a room-sized scene, near enough to stand for the
+  // vertex.
+  constexpr double inset = 0.02;
+  const int e = element_[vertex];
+  if (e < 0) return {};
+  const PatchPoint center = element_center(mesh_, e);
+  const Eigen::Vector3d p = mesh_.position(vertex), inwards = inset * (center.position - p);
+  // On a sphere the chord lies inside the ball: go back out to the surface, with the sphere's own
+  // normal.
+  if (const SphereGrid* grid = sphere_grid_of(mesh_, mesh_.facet[e])) {
+    const Eigen::Vector3d out = (p + inwards - grid->sphere.center).normalized();
+    return {.position = grid->sphere.center + grid->sphere.radius * out,
+            .normal = mesh_.is_back[mesh_.patch[e]] ? Eigen::Vector3d(-out) : out,
+            .facet = mesh_.facet[e]};
+  }
+  // Where facets meet smoothly, light is measured about the normal of them all, from a point so far
+  // above them that none is in the way of what arrives from above its horizon. Lamps stay flat: a
+  // point before one would receive its light.
+  constexpr double flat = 1.0 - 4e-6;  // cosine of 0.16 degrees
+  const Eigen::Vector3d& of_all = mesh_.vertex_normal[vertex];
+  if (!(of_all.dot(center.normal) >= flat) && !(mesh_.emission.row(mesh_.patch[e]) > 0.0f).any()) {
+    return {.position = p + inwards + inwards.norm() * of_all, .normal = of_all};
+  }
+  return {.position = p + inwards, .normal = center.normal, .facet = mesh_.facet[e]};
+}
+
+std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
+  const VertexGatherPoints at(mesh);
+  std::vector<GatherPoint> points;
+  points.reserve(static_cast<std::size_t>(mesh.vertex_count()));
+  for (int v = 0; v < mesh.vertex_count(); ++v) points.push_back(at[v]);
+  return points;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,298 @@
+#include "radiosity/paths/free_light.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "mesh/patches/patch_sampler.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t ray_purpose = 0xf4ee1, branch_purpose = 0xf4ee2, patch_purpose = 0xf4ee3;
+constexpr int fewest_rays = 1 << 12, most_rays = 1 << 24;
+
+// What some rays of one source did, as weights.
+struct Arrival {
+  int patch = 0;
+  double weight = 0.0;
+};
+struct PassedOn {
+  int patch = 0;
+  Spectrum weight{};
+};
+struct Piece {
+  double sent = 0.0, missed = 0.0, met_black = 0.0;
+  std::vector<Arrival> straight{};
+  std::vector<PassedOn> by_specular{};
+  Eigen::ArrayXd absorbed{}, escaped{};  // by way of mirrors and glass
+};
+
+Piece cast_piece(const FreeSource& source, const ElementCaster& caster, const LightPaths& paths,
+                 const SobolPoints& sobol, std::uint64_t key, int begin, int end) {
+  const PatchMesh& mesh = caster.mesh();
+  const Eigen::Index bands = source.light.size();
+  Piece piece{.absorbed = Eigen::ArrayXd::Zero(bands), .escaped = Eigen::ArrayXd::Zero(bands)};
+  constexpr int batch = 128;
+  std::vector<Ray> rays(batch);
+  std::vector<double> weight(batch);
+  std::vector<ElementHit> hits(batch);
+  for (int first = begin; first < end; first += batch) {
+    const int n = std::min(batch, end - first);
+    for (int r = 0; r < n; ++r) {
+      const SourceRay sent = source_ray(source, sobol.point(first + r, key));
+      rays[r] = sent.ray;
+      weight[r] = sent.weight;
+      piece.sent += sent.weight;
+    }
+    const auto count = static_cast<std::size_t>(n);
+    caster.closest_elements({rays.data(), count}, {hits.data(), count});
+    for (int r = 0; r < n; ++r) {
+      const ElementHit& hit = hits[r];
+      const double w = weight[r];
+      if (!(w > 0.0)) continue;
+      if (hit.facet < 0) {
+        piece.missed += w;
+        continue;
+      }
+      const bool is_specular = paths.is_specular(hit.facet);
+      if (hit.element < 0 && !is_specular) {
+        piece.met_black += w;
+        continue;
+      }
+      if (hit.element >= 0 && paths.is_diffuse(hit.facet) && !source.is_distant()) {
+        piece.straight.push_back({mesh.patch[hit.element], w});
+      }
+      if (!is_specular) continue;
+      const auto branch = random_key(key, branch_purpose, static_cast<std::uint64_t>(first + r));
+      const PathLosses losses =
+          paths.follow(rays[r], hit, branch, [&](const ElementHit& at, const Spectrum& throughput) {
+            piece.by_specular.push_back(
+                {mesh.patch[at.element], throughput * static_cast<float>(w)});
+          });
+      piece.absorbed += w * (losses.absorbed + losses.cut).cast<double>();
+      piece.escaped += w * losses.escaped.cast<double>();
+    }
+  }
+  return piece;
+}
+
+// The same over all rays of a source.
+struct Sums {
+  Sums(const PatchMesh& mesh, Eigen::Index bands)
+      : straight(Eigen::ArrayXd::Zero(mesh.patch_count())),
+        by_specular(Eigen::ArrayXXd::Zero(bands, mesh.patch_count())),
+        absorbed(Eigen::ArrayXd::Zero(bands)),
+        escaped(absorbed) {}
+
+  void add(const Piece& piece) {
+    sent += piece.sent;
+    missed += piece.missed;
+    met_black += piece.met_black;
+    absorbed += piece.absorbed;
+    escaped += piece.escaped;
+    for (const Arrival& at : piece.straight) straight[at.patch] += at.weight;
+    for (const PassedOn& at : piece.by_specular) {
+      by_specular.col(at.patch) += at.weight.cast<double>();
+    }
+  }
+
+  double sent = 0.0, missed = 0.0, met_black = 0.0;
+  Eigen::ArrayXd straight;
+  Eigen::ArrayXXd by_specular;  // bands x patches
+  Eigen::ArrayXd absorbed, escaped;
+};
+
+class Collector {
+ public:
+  Collector(const ElementCaster& caster, const LightPaths& paths, const DirectLight& direct_light)
+      : caster_(caster), paths_(paths), bands_(caster.mesh().emission.cols()) {
+    const Eigen::Index columns = direct_light.column_count();
+    of_lamps_ = from_afar_ = Eigen::ArrayXXd::Zero(columns, caster.mesh().patch_count());
+    light_.emitted = light_.absorbed = light_.escaped = light_.missed =
+        Eigen::ArrayXd::Zero(columns);
+  }
+
+  void cast(const FreeSource& source, int rays) {
+    const SobolPoints sobol(rays);
+    const auto key = random_key(static_cast<std::uint64_t>(source.number), ray_purpose);
+    // Slices of pieces bound what waits to be added.
+    constexpr int piece_rays = 1 << 13, slice = 16;
+    const int count = (rays + piece_rays - 1) / piece_rays;
+    Sums sums(caster_.mesh(), bands_);
+    for (int first = 0; first < count; first += slice) {
+      std::vector<Piece> pieces(static_cast<std::size_t>(std::min(slice, count - first)));
+      parallel_for(static_cast<int>(pieces.size()), 1, [&](int begin, int end) {
+        for (int p = begin; p < end; ++p) {
+          const int from = (first + p) * piece_rays;
+          pieces[static_cast<std::size_t>(p)] = cast_piece(source, caster_, paths_, sobol, key,
+                                                           from, std::min(rays, from + piece_rays));
+        }
+      });
+      for (const Piece& piece : pieces) sums.add(piece);
+    }
+    if (sums.sent > 0.0) add(source, sums);
+  }
+
+  // What comes from afar, at points all over each patch, and what counts as having entered: all
+  // that is not mirrored on, to be found again where it arrives.
+  void receive(const Scene& scene, const DirectLight& direct_light, const Progress& progress) {
+    const PatchMesh& mesh = caster_.mesh();
+    const FreeSource* dome = direct_light.dome();
+    const bool has_specular = paths_.has_specular() && dome && dome->is_on();
+    constexpr int slice = 256, points = 16, rays = 128;
+    const SobolPoints at_points(points), at_rays(rays);
+    BandArray E = BandArray::Zero(mesh.patch_count(), from_afar_.rows());
+    for (int first = 0; first < mesh.patch_count(); first += slice) {
+      report(progress, "daylight", static_cast<double>(first) / mesh.patch_count());
+      const int count = std::min(slice, mesh.patch_count() - first);
+      parallel_for(count, 4, [&](int begin, int end) {
+        for (int i = first + begin; i < first + end; ++i) {
+          const int facet = mesh.facet[mesh.first_element[i]];
+          if (!paths_.is_diffuse(facet)) continue;
+          const PatchSampler sampler(mesh, i);
+          const auto key = random_key(static_cast<std::uint64_t>(i), patch_purpose);
+          for (int p = 0; p < points; ++p) {
+            const Eigen::Array4f u = at_points.point(p, key);
+            const PatchPoint at = sampler.point(u[0], u[1]);
+            direct_light.add_irradiance(caster_, at.position, at.normal, mesh.facet[at.element],
+                                        random_key(key, static_cast<std::uint64_t>(p)),
+                                        {.min_rays = 16, .max_rays = 64}, E.row(i).data(),
+                                        Lights::distant);
+          }
+          E.row(i) /= static_cast<float>(points);
+          if (!has_specular) continue;
+          const Spectrum seen = sky_by_specular(sampler, at_rays, random_key(key, ray_purpose));
+          E.row(i).segment(dome->channel * bands_, bands_) += (dome->light * seen).transpose();
+        }
+      });
+    }
+    for (int i = 0; i < mesh.patch_count(); ++i) {
+      from_afar_.col(i) += mesh.area[i] * E.row(i).transpose().cast<double>();
+      const auto material = static_cast<std::size_t>(mesh.material[static_cast<std::size_t>(i)]);
+      const Eigen::ArrayXd kept = 1.0 - scene.materials[material].specular.cast<double>();
+      for (Eigen::Index k = 0; k < from_afar_.rows(); k += bands_) {
+        light_.emitted.segment(k, bands_) += kept * from_afar_.col(i).segment(k, bands_);
+      }
+    }
+  }
+
+  FreeLight result() {
+    const PatchMesh& mesh = caster_.mesh();
+    light_.irradiance.resize(mesh.patch_count(), of_lamps_.rows());
+    for (int i = 0; i < mesh.patch_count(); ++i) {
+      light_.irradiance.row(i) =
+          ((of_lamps_.col(i) + from_afar_.col(i)) / mesh.area[i]).cast<float>().transpose();
+    }
+    return std::move(light_);
+  }
+
+ private:
+  // What the rays carry is scaled to the flux of the source, no more and no less.
+  void add(const FreeSource& source, const Sums& sums) {
+    const Eigen::Index column = source.channel * bands_;
+    const Eigen::ArrayXd watts = total_weight(source) / sums.sent * source.light.cast<double>();
+    const auto of = [&](Eigen::ArrayXd& sum) { return sum.segment(column, bands_); };
+    Eigen::ArrayXXd& power = source.is_distant() ? from_afar_ : of_lamps_;
+    for (Eigen::Index i = 0; i < power.cols(); ++i) {
+      power.col(i).segment(column, bands_) += watts * (sums.straight[i] + sums.by_specular.col(i));
+    }
+    if (source.is_distant()) return;  // see receive()
+    of(light_.emitted) += watts * sums.sent;
+    of(light_.missed) += watts * sums.missed;
+    of(light_.escaped) += watts * (sums.missed + sums.met_black + sums.escaped);
+    of(light_.absorbed) += watts * sums.absorbed;
+  }
+
+  // Irradiance by the dome, by way of mirrors and glass.
+  Spectrum sky_by_specular(const PatchSampler& sampler, const SobolPoints& sobol,
+                           std::uint64_t key) const {
+    Spectrum sum = Spectrum::Zero(bands_);
+    for (int r = 0; r < sobol.count(); ++r) {
+      const Eigen::Array4f u = sobol.point(r, key);
+      const PatchPoint at = sampler.point(u[0], u[1]);
+      const Ray ray = cosine_ray(caster_.mesh(), at, u[2], u[3]);
+      ElementHit hit;
+      caster_.closest_hits({&ray, 1}, {&hit, 1});
+      if (hit.facet < 0 || !paths_.is_specular(hit.facet)) continue;
+      const PathLosses losses =
+          paths_.follow(ray, hit, random_key(key, branch_purpose, static_cast<std::uint64_t>(r)),
+                        [](const LightArrival&) {});
+      if (losses.sky.size() > 0) sum += losses.sky;
+    }
+    return std::numbers::pi_v<float> / static_cast<float>(sobol.count()) * sum;
+  }
+
+  const ElementCaster& caster_;
+  const LightPaths& paths_;
+  Eigen::Index bands_;
+  Eigen::ArrayXXd of_lamps_, from_afar_;  // power that patches get: columns x patches, W
+  FreeLight light_{};
+};
+
+}  // namespace
+
+FreeLight all_channels(const FreeLight& light, int bands) {
+  if (light.empty()) return {};
+  const auto sum = [&](const Eigen::ArrayXd& columns) {
+    Eigen::ArrayXd all = Eigen::ArrayXd::Zero(bands);
+    for (Eigen::Index k = 0; k < columns.size(); k += bands) all += columns.segment(k, bands);
+    return all;
+  };
+  return {.irradiance = channel_sum(light.irradiance, bands),
+          .emitted = sum(light.emitted),
+          .absorbed = sum(light.absorbed),
+          .escaped = sum(light.escaped),
+          .missed = sum(light.missed)};
+}
+
+FreeLight of_channel(const FreeLight& light, int channel, int bands) {
+  if (light.empty()) return {};
+  const Eigen::Index first = Eigen::Index{channel} * bands;
+  return {.irradiance = light.irradiance.middleCols(first, bands),
+          .emitted = light.emitted.segment(first, bands),
+          .absorbed = light.absorbed.segment(first, bands),
+          .escaped = light.escaped.segment(first, bands),
+          .missed = light.missed.segment(first, bands)};
+}
+
+FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const LightPaths& paths,
+                          const DirectLight& direct_light, int rays, const Progress& progress) {
+  if (rays < 1 || rays > most_rays) {
+    throw std::invalid_argument(
+        fmt::format("{} rays of free sources; there must be between 1 and {}", rays, most_rays));
+  }
+  const std::vector<FreeSource>& sources = direct_light.free_sources();
+  if (sources.empty()) return {};
+  const auto power = [](const FreeSource& source) {
+    return total_weight(source) * static_cast<double>(source.light.sum());
+  };
+  double all = 0.0;
+  for (const FreeSource& source : sources) all += source.is_distant() ? 0.0 : power(source);
+  Collector collector(caster, paths, direct_light);
+  double done = 0.0;
+  for (const FreeSource& source : sources) {
+    if (!source.is_on() || source.is_distant()) continue;
+    report(progress, "lamps", done / all);
+    const double due = rays * (power(source) / all);
+    const auto count = static_cast<unsigned>(std::clamp<double>(due, fewest_rays, most_rays));
+    collector.cast(source, static_cast<int>(std::bit_ceil(count)));
+    done += power(source);
+  }
+  report(progress, "lamps", 1.0);
+  if (!sources.back().is_distant()) return collector.result();
+  const FreeSource& last = sources.back();
+  if (paths.has_specular() && last.is_on() && !last.is_dome()) {
+    collector.cast(last, static_cast<int>(std::bit_ceil(static_cast<unsigned>(rays))));
+  }
+  collector.receive(scene, direct_light, progress);
+  return collector.result();
+}
+
+}  // namespace lightwell

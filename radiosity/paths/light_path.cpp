@@ -1,0 +1,143 @@
+#include "radiosity/paths/light_path.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "scene/optics.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+
+LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
+                       PathNormals normals)
+    : scene_(scene), caster_(caster), max_depth_(max_depth) {
+  if (normals == PathNormals::smooth) smooth_.emplace(scene);
+  for (const FacetRef& ref : scene_facets(scene)) {
+    const Surface& surface = scene.surfaces[ref.surface];
+    const Material& material = scene.materials[surface.material];
+    const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
+    material_.push_back(surface.material);
+    specular_.push_back(material.is_specular());
+    diffuse_.push_back((material.reflectance > 0.0f).any() || material.is_emitter() ||
+                       !material.is_specular());
+    normal_.push_back(polygons ? facet_normal(*polygons, polygons->facets[ref.facet])
+                               : Eigen::Vector3d::Zero());
+    sphere_.push_back(polygons ? nullptr : &std::get<Sphere>(surface.shape));
+    has_specular_ = has_specular_ || material.is_specular();
+    absorbs_ = absorbs_ || (material.dielectric && (material.dielectric->absorption > 0.0f).any());
+  }
+}
+
+bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit,
+                             std::uint64_t key, Media& media, Spectrum& throughput,
+                             bool& through_panes_only, PathLosses& losses) const {
+  const Material& material = scene_.materials[material_[hit.facet]];
+  // The back of a one-sided mirror is black; glass is clear from both sides.
+  if (!material.dielectric && hit.element < 0) {
+    losses.escaped += throughput;
+    return false;
+  }
+  const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
+  const Sphere* sphere = sphere_[hit.facet];
+  const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
+  Eigen::Vector3d normal = normal_[hit.facet];
+  if (sphere) {
+    normal = (point - (pose ? *pose * sphere->center : sphere->center)).normalized();
+  } else if (pose) {
+    normal = pose->linear() * normal;
+  }
+  if (hit.from_back) normal = -normal;
+  const Eigen::Vector3d direction = ray.direction.normalized();
+  const bool is_smooth = smooth_ && smooth_->is_given(hit.facet);
+  Eigen::Vector3d bent = normal;
+  if (is_smooth && !pose) {
+    bent = smooth_->at(hit.facet, point, normal);
+  } else if (is_smooth) {
+    bent = pose->linear() *
+           smooth_->at(hit.facet, pose->inverse() * point, pose->linear().transpose() * normal);
+  }
+  if (is_smooth) bent = visible_normal(direction, normal, bent);
+  OnwardLot lot{.way = random_uniform(key), .key = key};
+  if (material.gloss_roughness() > 0.0f) {
+    constexpr std::uint64_t microfacets = 0x66c3;
+    lot.u = random_uniform(random_key(key, microfacets, 1));
+    lot.v = random_uniform(random_key(key, microfacets, 2));
+  }
+  const Onward way = draw_way(
+      {.material = material, .direction = direction, .normal = bent, .from_back = hit.from_back},
+      lot);
+  media.go_on(material_[hit.facet], material, way, hit.from_back);
+  through_panes_only = through_panes_only && way.crosses && is_clear_pane(material);
+  // What a partly diffuse surface does not mirror was taken up by its diffuse side, where the
+  // caller counts it.
+  if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - way.share);
+  throughput *= way.share;
+  ray = {.origin = point,
+         .direction = is_smooth ? on_its_side(way.direction, normal, way.crosses) : way.direction,
+         .origin_group = hit.facet};
+  return (throughput > 0.0f).any();
+}
+
+void LightPaths::absorb(const Ray& ray, const ElementHit& hit, const Media& media,
+                        Spectrum& throughput, PathLosses& losses) const {
+  if (!absorbs_ || hit.facet < 0) return;
+  const Spectrum passed =
+      media.passed(scene_, material_[hit.facet], hit.from_back, hit.t * ray.direction.norm());
+  losses.absorbed += throughput * (1.0f - passed);
+  throughput *= passed;
+}
+
+PathLosses LightPaths::follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
+                              const std::function<void(const LightArrival&)>& arrive) const {
+  return follow(caster_, ray, hit, key, arrive);
+}
+
+PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
+                              const ElementHit& first_hit, std::uint64_t key,
+                              const std::function<void(const LightArrival&)>& arrive) const {
+  const int bands = scene_.bands.count();
+  PathLosses losses{Spectrum::Zero(bands), Spectrum::Zero(bands), Spectrum::Zero(bands), {}};
+  Spectrum throughput = Spectrum::Ones(bands);
+  Ray ray = first_ray;
+  ElementHit hit = first_hit;
+  Media media;
+  absorb(ray, hit, media, throughput, losses);
+  bool met_rough = false, through_panes_only = true;
+  for (int depth = 0;; ++depth) {
+    met_rough = met_rough || scene_.materials[material_[hit.facet]].gloss_roughness() > 0.0f;
+    if (depth >= deepest_path(max_depth_, met_rough)) {
+      losses.cut += throughput;
+      return losses;
+    }
+    if (!continue_at(caster, ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), media,
+                     throughput, through_panes_only, losses)) {
+      return losses;
+    }
+    caster.closest_hits({&ray, 1}, {&hit, 1});
+    absorb(ray, hit, media, throughput, losses);
+    const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));
+    if (leaves) {
+      losses.escaped += throughput;
+      if (hit.facet < 0 && scene_.sky && !through_panes_only) {
+        losses.sky = throughput * sky_radiance(*scene_.sky, ray.direction.normalized());
+      }
+      return losses;
+    }
+    if (is_diffuse(hit.facet) && hit.element >= 0) {
+      arrive({.hit = hit,
+              .throughput = throughput,
+              .position = ray.origin + hit.t * ray.direction,
+              .through_panes_only = through_panes_only});
+    }
+    if (!is_specular(hit.facet)) return losses;
+  }
+}
+
+PathLosses LightPaths::follow(
+    const Ray& ray, const ElementHit& hit, std::uint64_t key,
+    const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const {
+  const auto without_place = [&](const LightArrival& at) { arrive(at.hit, at.throughput); };
+  return follow(ray, hit, key, std::function<void(const LightArrival&)>(without_place));
+}
+
+}  // namespace lightwell

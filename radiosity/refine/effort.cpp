@@ -1,0 +1,50 @@
+#include "radiosity/refine/effort.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace lightwell {
+
+int form_factor_rays(double target, int most) {
+  if (!(target > 0.0)) return most;
+  constexpr double rays_for_one_percent = 128.0, fewest = 64.0;
+  const double wanted = std::clamp(rays_for_one_percent * 0.01 / target, fewest, 1e6);
+  return std::min(most, static_cast<int>(std::bit_ceil(static_cast<unsigned>(wanted))));
+}
+
+int patch_count_for(double target, int most) {
+  if (!(target > 0.0)) return most;
+  constexpr double patches_for_two_percent = 800.0, fewest = 600.0;
+  const double wanted = std::clamp(patches_for_two_percent * 0.02 / target, fewest, 1e6);
+  return std::min(most, static_cast<int>(std::lround(wanted)));
+}
+
+int rays_for_noise(int rays, double found, double target) {
+  constexpr double order = 2.0 / 3.0, fewest = 128.0, most = 1 << 15;
+  const double wanted = rays * std::pow(found / target, 1.0 / order);
+  const double enough = std::clamp(wanted, fewest, most);
+  const auto whole = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(enough))));
+  for (const int eighths : {5, 6, 7}) {
+    const int less = eighths * (whole / 8);
+    if (less >= enough) return less;
+  }
+  return whole;
+}
+
+int estimate_places(int asked, std::int64_t vertices) {
+  // 512 places tell an error to some 10 %, eight times as many to less than 4.
+  constexpr std::int64_t share = 32, most_times = 8;
+  std::int64_t places = asked;
+  while (places > 0 && places < most_times * asked && 2 * places * share <= vertices) places *= 2;
+  return static_cast<int>(places);
+}
+
+int estimate_rays(int rays, std::int64_t vertices, int places) {
+  constexpr std::int64_t share = 8, often = 4;
+  constexpr int fewest = 256;
+  const bool is_cheap = often * places * share <= vertices;
+  return std::max((is_cheap ? 4 : 2) * rays, fewest);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,39 @@
+#include "radiosity/refine/gather_noise.h"
+
+#include <cmath>
+
+#include "radiosity/gather/patch_power.h"
+#include "radiosity/refine/interpolation_error.h"
+
+namespace lightwell {
+
+Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
+                            const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays) {
+  const Eigen::ArrayXd of_patch = patch_integral(mesh, ray_variance).col(0);
+  const Eigen::ArrayXd reference = error_references(mesh, irradiance);
+  Eigen::ArrayXf noise = Eigen::ArrayXf::Zero(mesh.element_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int n = mesh.corner_count(e), p = mesh.patch[e];
+    if (!(reference[e] > 0.0) || !(mesh.area[p] > 0.0)) continue;
+    double of_corners = 0.0;
+    for (int c = 0; c < n; ++c) of_corners += 1.0 / double{rays[mesh.corners[e][c]]} / n;
+    // What is left of independent errors at the corners, over the element: the mean of the sum of
+    // squared weights.
+    const double interpolated = n == 4 ? 4.0 / 9.0 : 1.0 / 2.0;
+    const double variance = of_patch[p] / mesh.area[p] * of_corners * interpolated;
+    noise[e] = static_cast<float>(std::sqrt(variance) / reference[e]);
+  }
+  return noise;
+}
+
+double rms_noise(const PatchMesh& mesh, const Eigen::ArrayXf& noise) {
+  double sum = 0.0, area = 0.0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
+    sum += mesh.element_area[e] * std::pow(double{noise[e]}, 2);
+    area += mesh.element_area[e];
+  }
+  return area > 0.0 ? std::sqrt(sum / area) : 0.0;
+}
+
+}  // namespace lightwell

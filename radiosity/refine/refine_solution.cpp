@@ -1,0 +1,363 @@
+#include "radiosity/refine/refine_solution.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "radiosity/refine/interpolation_error.h"
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+// A split leaves a sixteenth of the squared error where light is smooth, and half of it along an
+// edge, where it has cells left that the edge runs through: that is what most are split for, not
+// all. Who may go on later ends by what is expected so; else all is measured that counts, or taken
+// to be as bad as what it was split from, and only the report expects something between.
+constexpr double of_a_split = 0.4, of_a_split_in_the_end = 0.25;
+
+// Cells of equal error, by a scene's symmetry, are split together: rounding must not choose.
+constexpr double about_equal = 0.999;
+
+// About as many as elements of a quarter of the edge everywhere would be, both sides; those that
+// are small already, leaves and crumbs, would stay what they are.
+std::int64_t default_room(const RefinedElements& elements) {
+  std::vector<double> areas;
+  double total = 0.0;
+  for (const int cell : elements.leaves()) {
+    areas.push_back(elements.area(cell));
+    total += elements.area(cell);
+  }
+  std::sort(areas.begin(), areas.end(), std::greater<>());
+  double typical = 0.0, larger = 0.0;  // half of all area lies in elements as large
+  for (std::size_t i = 0; i < areas.size() && larger < 0.5 * total; ++i) {
+    typical = areas[i];
+    larger += areas[i];
+  }
+  std::int64_t count = elements.element_count();
+  for (const int cell : elements.leaves()) {
+    if (elements.area(cell) > 0.25 * typical) count += 15 * elements.side_count(cell);
+  }
+  return count;
+}
+
+class Refinement {
+ public:
+  Refinement(RefinedElements& elements, InterpolationError& error, const RefineOptions& options,
+             bool may_go_on)
+      : elements_(elements),
+        error_(error),
+        options_(options),
+        max_elements_(options.max_elements > 0 ? options.max_elements : default_room(elements)),
+        is_memory_short_(options.room >= 0 && options.room < max_elements_),
+        may_go_on_(may_go_on),
+        of_children_(may_go_on ? of_a_split : 1.0),
+        in_the_end_(may_go_on ? 1.0 : of_a_split_in_the_end),
+        report_{.elements_at_first = elements.element_count()} {
+    if (is_memory_short_) max_elements_ = std::max(options.room, report_.elements_at_first);
+    resize();
+    for (const int cell : elements.leaves()) {
+      std::array<double, 2> expected{0.0, 0.0};
+      for (int side = 0; side < elements.side_count(cell); ++side) {
+        expected[side] = error.expected(cell, side);
+      }
+      set(cell, {.error = expected});
+    }
+  }
+
+  // Until the tolerance is reached; goes on from where it ended before.
+  RefineReport run(double tolerance) {
+    options_.tolerance = report_.tolerance = tolerance;
+    allowed_ = std::pow(tolerance, 2) * error_.area();
+    for (const int cell : elements_.leaves()) {
+      if (error_.is_stale(cell)) measured_[cell] = 0;
+    }
+    report_.outcome = RefineOutcome::off;
+    while (report_.outcome == RefineOutcome::off) {
+      std::vector<int> marks = cells_to_split();
+      // No more than there may be elements for, each split making three of them or more. (Bounds
+      // fall when they are measured, and others come to the front.)
+      const std::int64_t room =
+          std::max<std::int64_t>(max_elements_ - elements_.element_count(), 0);
+      constexpr std::size_t at_once = 4096;
+      const std::size_t most = std::max(static_cast<std::size_t>(room / 3 + 1), at_once);
+      if (marks.size() > most) marks.resize(most);
+      if (sum_ <= allowed_) {
+        report_.outcome = RefineOutcome::tolerance_reached;
+      } else if (marks.empty()) {
+        report_.outcome = RefineOutcome::smallest_size_reached;
+      } else if (!measure(marks)) {
+        if (!split(may_wait(marks) ? worst_of(marks) : marks)) {
+          report_.outcome = is_memory_short_ ? RefineOutcome::memory_limit_reached
+                                             : RefineOutcome::max_elements_reached;
+        }
+        ++report_.rounds;
+      }
+    }
+    double left = 0.0;
+    for (const int cell : elements_.leaves()) {
+      left += share_left(cell) * counted(cell);
+    }
+    report_.estimate = error_.area() > 0.0 ? std::sqrt(left / error_.area()) : 0.0;
+    report_.elements = elements_.element_count();
+    return report_;
+  }
+
+  /// With half of what noise may hide: where it hides anything, that is something between nothing
+  /// and all of its square.
+  float relative_error(int cell, int side) const {
+    const Square& square = squares_[elements_.side_number(cell, side)];
+    const double expected = double{square.known} + 0.5 * double{square.hidden};
+    return static_cast<float>(std::sqrt(share_left(cell) * expected));
+  }
+
+ private:
+  void resize() {
+    squares_.resize(elements_.side_total());
+    is_known_.resize(elements_.cell_count(), 0);
+    measured_.resize(elements_.cell_count(), 0);
+  }
+  void set(int cell, const InterpolationError::Measured& squares) {
+    for (int side = 0; side < elements_.side_count(cell); ++side) {
+      squares_[elements_.side_number(cell, side)] = {static_cast<float>(squares.error[side]),
+                                                     static_cast<float>(squares.hidden[side])};
+    }
+    is_known_[cell] = 1;
+  }
+
+  // The leaves with most of the squared error, the others holding at most half of what is allowed
+  // or being as small as may be; also finds the sum over all.
+  std::vector<int> cells_to_split() {
+    std::vector<std::pair<double, int>> by_error;
+    sum_ = 0.0;
+    double rest = 0.0;
+    for (const int cell : elements_.leaves()) {
+      const double square = counted(cell);
+      sum_ += square;
+      if (elements_.level(cell) < options_.max_level && square > 0.0) {
+        by_error.emplace_back(-square, cell);
+        rest += square;
+      }
+    }
+    std::sort(by_error.begin(), by_error.end());
+    std::vector<int> marks;
+    double last = 0.0;
+    const double all = rest, fixed = sum_ - all;
+    for (const auto& [minus_square, cell] : by_error) {
+      // In the last round no more than it takes, as far as that can be foreseen; what falls short
+      // takes one more, which is less than to split everywhere to be sure.
+      constexpr double nearly = 0.95;
+      const bool will_do = fixed + rest + of_children_ * (all - rest) <= nearly * allowed_;
+      const bool is_enough = rest <= 0.5 * allowed_ || will_do;
+      if (is_enough && (marks.empty() || -minus_square < about_equal * last)) break;
+      rest += minus_square;
+      if (!is_enough) last = -minus_square;
+      marks.push_back(cell);
+    }
+    return marks;
+  }
+
+  // Squared error times area. What noise may hide in a cell is nothing for the most part; but where
+  // it could be a notable share of all that is allowed, the cell is split, and looked at again
+  // nearer by.
+  double counted(int cell) const {
+    constexpr double notable = 0.01;
+    double known = 0.0, hidden = 0.0;
+    for (int side = 0; side < elements_.side_count(cell); ++side) {
+      const Square& square = squares_[elements_.side_number(cell, side)];
+      known += double{square.known};
+      hidden += double{square.hidden};
+    }
+    known *= elements_.area(cell);
+    hidden *= elements_.area(cell);
+    return hidden > notable * allowed_ ? known + hidden : known;
+  }
+
+  // Whether it pays to choose anew after the worst are split: where no more elements are wanted
+  // than it takes, or where there may soon be none left. Else all at once are fewer rounds.
+  bool may_wait(const std::vector<int>& marks) const {
+    const auto made = 3 * static_cast<std::int64_t>(marks.size());
+    return may_go_on_ || 2 * (elements_.element_count() + made) > max_elements_;
+  }
+
+  // Of leaves in falling order of squared error, those that are above what the children of the
+  // first will be by expectation: whoever is below can wait for them. So elements go where they
+  // serve most, however few there may be.
+  std::vector<int> worst_of(std::vector<int> marks) const {
+    constexpr double of_a_child = of_a_split / 4.0;
+    const double least = about_equal * of_a_child * counted(marks.front());
+    const auto end = std::ranges::find_if(marks, [&](int cell) { return counted(cell) < least; });
+    marks.erase(end, marks.end());
+    return marks;
+  }
+
+  double share_left(int cell) const {
+    return measured_[cell] || elements_.level(cell) == 0 ? 1.0 : in_the_end_;
+  }
+
+  // Whether any of them had not been measured yet.
+  bool measure(const std::vector<int>& cells) {
+    std::vector<int> fresh;
+    for (const int cell : cells) {
+      if (!measured_[cell]) fresh.push_back(cell);
+    }
+    const std::vector<InterpolationError::Measured> measured = error_.measure(fresh);
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+      set(fresh[i], measured[i]);
+      measured_[fresh[i]] = 1;
+    }
+    return !fresh.empty();
+  }
+
+  // Splits them all, or as many of the first as there may be elements for.
+  bool split(const std::vector<int>& marks) {
+    std::vector<int> done = elements_.split(marks);
+    const bool all = elements_.element_count() <= max_elements_;
+    if (!all) {
+      const auto undo = [&] {
+        std::ranges::reverse(done);
+        elements_.merge(done);
+      };
+      undo();
+      std::size_t low = 0, high = marks.size();  // low fits, high does not
+      while (high - low > 1) {
+        const std::size_t middle = low + (high - low) / 2;
+        done = elements_.split({marks.data(), middle});
+        (elements_.element_count() <= max_elements_ ? low : high) = middle;
+        undo();
+      }
+      elements_.split({marks.data(), low});
+    }
+    resize();
+    // What children are expected to be until they are measured. (Their numbers may be old: what was
+    // merged is split into the same again.)
+    for (const int cell : elements_.leaves()) {
+      if (is_known_[cell]) continue;
+      for (int side = 0; side < elements_.side_count(cell); ++side) {
+        const Square& whole = squares_[elements_.side_number(elements_.parent(cell), side)];
+        squares_[elements_.side_number(cell, side)] = {
+            static_cast<float>(whole.known * of_children_),
+            static_cast<float>(whole.hidden * of_children_)};
+      }
+      is_known_[cell] = 1;
+    }
+    return all;
+  }
+
+  RefinedElements& elements_;
+  InterpolationError& error_;
+  RefineOptions options_;
+  std::int64_t max_elements_;
+  bool is_memory_short_;
+  bool may_go_on_;
+  double of_children_, in_the_end_;
+  RefineReport report_;
+  double allowed_ = 0.0;
+  double sum_ = 0.0;  // squared error times area, over all leaves
+  struct Square {
+    float known = 0.0f, hidden = 0.0f;
+  };
+  std::vector<Square> squares_;            // per side, measured or expected
+  std::vector<char> is_known_, measured_;  // per cell
+};
+
+}  // namespace
+
+void require_room(const PatchMesh& mesh, const RefineOptions& options) {
+  if (options.max_elements == 0 || mesh.element_count() <= options.max_elements) return;
+  throw InputError(fmt::format(
+      "at most {} elements are allowed, but the scene makes {} before any is refined; allow more, "
+      "or use a larger patch size",
+      options.max_elements, mesh.element_count()));
+}
+
+std::string sentence(const RefineReport& report) {
+  const auto percent = [](double share) { return fmt::format("{:.3g} %", 100.0 * share); };
+  std::string end;
+  switch (report.outcome) {
+    case RefineOutcome::off:
+      return "nothing was refined";
+    case RefineOutcome::tolerance_reached:
+      end = fmt::format("the tolerance of {} is reached", percent(report.tolerance));
+      break;
+    case RefineOutcome::max_elements_reached:
+      end = fmt::format("stopped at the most elements allowed, before the tolerance of {}",
+                        percent(report.tolerance));
+      break;
+    case RefineOutcome::memory_limit_reached:
+      end = fmt::format(
+          "stopped at the most elements that '--memory' has room for, before the tolerance of {}",
+          percent(report.tolerance));
+      break;
+    case RefineOutcome::smallest_size_reached:
+      end = fmt::format("stopped at the smallest elements allowed, before the tolerance of {}",
+                        percent(report.tolerance));
+      break;
+  }
+  return fmt::format("{} ({} estimated; {} elements became {} in {} rounds)", end,
+                     percent(report.estimate), report.elements_at_first, report.elements,
+                     report.rounds);
+}
+
+struct SolutionRefinement::Impl {
+  Impl(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+       const BandArray& radiosity, const BandArray& caustic, RefinedElements& all,
+       const GatherOptions& gather, const RefineOptions& options, double noise)
+      : elements(all),
+        error(scene, caster, direct_light, radiosity, caustic, all, gather, options, noise),
+        refinement(all, error, options, noise > 0.0) {}
+
+  RefinedElements& elements;
+  InterpolationError error;
+  Refinement refinement;
+};
+
+SolutionRefinement::SolutionRefinement(const Scene& scene, const ElementCaster& caster,
+                                       const DirectLight& direct_light, const BandArray& radiosity,
+                                       const BandArray& caustic, RefinedElements& elements,
+                                       const GatherOptions& gather, const RefineOptions& options,
+                                       double noise) {
+  require_room(elements.base(), options);
+  impl_ = std::make_unique<Impl>(scene, caster, direct_light, radiosity, caustic, elements, gather,
+                                 options, noise);
+}
+
+SolutionRefinement::~SolutionRefinement() = default;
+
+RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
+                                           const ChannelLight* by_channel) {
+  auto& [elements, error, refinement] = *impl_;
+  error.go_on(options.tolerance);
+  RefinedSolution result;
+  result.report = refinement.run(options.tolerance);
+  result.refined = elements.mesh();
+  elements.shrink_to_fit();
+  result.told = error.told(result.refined.vertex);
+  if (!by_channel) error.gather(result.refined.vertex, result.told);
+  error.shrink_to_fit();
+  result.between = error.between(result.refined.vertex, result.told);
+  if (by_channel) {
+    result.draft = error.values_by_channel(result.refined.vertex, result.told, *by_channel);
+  } else {
+    result.draft = error.values(result.refined.vertex);
+    // Some were gathered before others told of them: as with channels, those have the last word.
+    tell(result.told, result.draft.indirect);
+  }
+  const PatchMesh& mesh = result.refined.mesh;
+  result.error = Eigen::ArrayXf::Zero(mesh.element_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int cell = result.refined.cell[e];
+    if (cell < 0) continue;
+    const bool is_back_of_two = elements.side_count(cell) == 2 && mesh.twin[e] < e;
+    result.error[e] = refinement.relative_error(cell, is_back_of_two ? 1 : 0);
+  }
+  result.report.gathers = error.gathers();
+  result.gather_rays = error.rays();
+  return result;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,136 @@
+#include "radiosity/refine/told_vertices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+namespace lightwell {
+
+namespace {
+
+Eigen::RowVectorXf mean_of_ends(const ToldVertex& at, const BandArray& of) {
+  Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(of.cols());
+  for (int i = 0; i < at.end_count(); ++i) sum += of.row(at.ends[i]).matrix();
+  return sum / static_cast<float>(at.end_count());
+}
+
+}  // namespace
+
+void tell(std::span<const ToldVertex> told, BandArray& values) {
+  for (const ToldVertex& t : told) values.row(t.vertex) = mean_of_ends(t, values);
+}
+
+namespace {
+
+struct Prediction {
+  Eigen::RowVectorXf value;
+  float variance = 0.0f;  // beside that of the ends
+};
+
+// Of a vertex that is not told.
+Prediction predict(const BetweenVertex& b, const BandArray& draft, const BandArray& values) {
+  const float both = b.spread + b.noise;
+  const float trusted = both > 0.0f ? b.spread / both : 0.0f;  // of the difference (Wiener 1949)
+  return {mean_of_ends(b.at, values) +
+              trusted * (draft.row(b.at.vertex).matrix() - mean_of_ends(b.at, draft)),
+          trusted * b.noise};
+}
+
+bool is_predicted(const BetweenVertex& b) {
+  return !b.is_told && std::isfinite(b.spread) && std::isfinite(b.noise);
+}
+
+// Per group: how much further predictions are off, in the mean square, than noise explains. (The
+// draft read light as it was before refinement.)
+Eigen::ArrayXd unexplained(std::span<const BetweenVertex> between, const BandArray& draft,
+                           const BandArray& values, const Eigen::ArrayXf& variance,
+                           std::span<const int> group, int bands) {
+  const int groups = group.empty() ? 0 : *std::max_element(group.begin(), group.end()) + 1;
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(groups), count = sum;
+  for (const BetweenVertex& b : between) {
+    if (!is_predicted(b)) continue;
+    const int v = b.at.vertex;
+    const Prediction predicted = predict(b, draft, values);
+    Eigen::ArrayXf off = Eigen::ArrayXf::Zero(bands);
+    for (Eigen::Index k = 0; k < values.cols(); k += bands) {
+      off += (values.row(v).matrix() - predicted.value).segment(k, bands).transpose().array();
+    }
+    double explained = variance[v] + predicted.variance;
+    for (int i = 0; i < b.at.end_count(); ++i) {
+      explained += variance[b.at.ends[i]] / std::pow(b.at.end_count(), 2);
+    }
+    sum[group[v]] += double{off.square().mean()} - explained;
+    count[group[v]] += 1.0;
+  }
+  return (sum / count.max(1.0)).max(0.0);
+}
+
+}  // namespace
+
+void join_with_draft(std::span<const BetweenVertex> between, const BandArray& draft,
+                     std::span<const int> group, int bands, BandArray& values,
+                     Eigen::ArrayXf& variance) {
+  const Eigen::ArrayXd more = unexplained(between, draft, values, variance, group, bands);
+  for (const BetweenVertex& b : between) {
+    const int v = b.at.vertex;
+    float of_ends = 0.0f;  // as if their noise were all alike: some of it is
+    for (int i = 0; i < b.at.end_count(); ++i) of_ends += variance[b.at.ends[i]];
+    of_ends /= static_cast<float>(b.at.end_count());
+    if (b.is_told) {
+      values.row(v) = mean_of_ends(b.at, values);
+      variance[v] = of_ends;
+    }
+    if (!is_predicted(b) || !(variance[v] > 0.0f)) continue;
+    const Prediction predicted = predict(b, draft, values);
+    const float of_predicted = of_ends + predicted.variance + static_cast<float>(more[group[v]]);
+    const float share = variance[v] / (variance[v] + of_predicted);
+    values.row(v) = (1.0f - share) * values.row(v).matrix() + share * predicted.value;
+    variance[v] *= 1.0f - share;
+  }
+}
+
+std::vector<double> vertex_areas(const PatchMesh& mesh) {
+  std::vector<double> area(mesh.vertex_count(), 0.0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int n = mesh.corner_count(e);
+    for (int c = 0; c < n; ++c) area[mesh.corners[e][c]] += mesh.element_area[e] / n;
+  }
+  return area;
+}
+
+std::vector<int> share_rays(std::span<const double> area, int rays) {
+  std::vector<double> sorted(area.begin(), area.end());
+  std::sort(sorted.begin(), sorted.end(), std::greater<>());
+  const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
+  double typical = 0.0, larger = 0.0;
+  constexpr double about_half = 0.47;  // no share that elements of a grid add up to
+  for (std::size_t i = 0; i < sorted.size() && larger < about_half * total; ++i) {
+    typical = sorted[i];
+    larger += sorted[i];
+  }
+  std::vector<int> shares(area.size(), rays);
+  if (!(typical > 0.0)) return shares;
+  for (std::size_t v = 0; v < shares.size(); ++v) {
+    // sqrt(area / typical), to a power of two. It changes between the areas that a grid's vertices
+    // have, halves and quarters, so that rounding does not decide.
+    constexpr double between = 0.45;
+    const double halvings = -0.5 * std::log2(std::max(area[v] / typical, 1e-6));
+    const int shift = std::clamp(static_cast<int>(std::floor(halvings + between)), -1, 3);
+    shares[v] = shift < 0 ? 2 * rays : std::max(1, rays >> shift);
+  }
+  return shares;
+}
+
+std::vector<int> share_rays(const PatchMesh& mesh, std::span<const ToldVertex> told, int rays) {
+  std::vector<double> area = vertex_areas(mesh);
+  for (auto t = told.rbegin(); t != told.rend(); ++t) {
+    for (int i = 0; i < t->end_count(); ++i) area[t->ends[i]] += area[t->vertex] / t->end_count();
+    area[t->vertex] = 0.0;
+  }
+  std::vector<int> shares = share_rays(area, rays);
+  for (const ToldVertex& t : told) shares[t.vertex] = 0;
+  return shares;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,108 @@
+#include "radiosity/solution/mesh_file.h"
+
+#include <fmt/format.h>
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "mesh/patches/element_quality.h"
+#include "mesh/patches/patch_colors.h"
+#include "radiosity/solution/vtk_output.h"
+#include "scene/atomic_file.h"
+
+namespace lightwell {
+namespace {
+
+std::vector<int> elements_of(const PatchMesh& mesh, MeshSides sides) {
+  std::vector<int> elements;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (sides == MeshSides::both || !mesh.is_back[mesh.patch[e]]) elements.push_back(e);
+  }
+  return elements;
+}
+
+// Adds value(element) for each of them.
+template <class Value>
+void add_column(vtkFieldData* cells, const char* name, const std::vector<int>& elements,
+                Value&& value) {
+  std::vector<decltype(value(0))> values;
+  values.reserve(elements.size());
+  for (const int e : elements) values.push_back(value(e));
+  add_values(cells, name, values.data(), static_cast<std::ptrdiff_t>(values.size()));
+}
+
+// Okabe & Ito 2008, "Color universal design": told apart with any colour vision. What needs more
+// numbers than colours gets them darker.
+std::vector<unsigned char> palette_colors(const std::vector<int>& numbers) {
+  constexpr std::array<std::array<int, 3>, 8> palette = {{{86, 180, 233},
+                                                          {230, 159, 0},
+                                                          {0, 158, 115},
+                                                          {240, 228, 66},
+                                                          {204, 121, 167},
+                                                          {0, 114, 178},
+                                                          {213, 94, 0},
+                                                          {160, 160, 160}}};
+  std::vector<unsigned char> colors;
+  colors.reserve(3 * numbers.size());
+  for (const int number : numbers) {
+    const auto n = static_cast<std::size_t>(number);
+    for (const int channel : palette[n % palette.size()]) {
+      const auto divisor = static_cast<int>(std::min<std::size_t>(1 + n / palette.size(), 8));
+      colors.push_back(static_cast<unsigned char>(channel / divisor));
+    }
+  }
+  return colors;
+}
+
+void add_cells(vtkCellData* cells, const PatchMesh& mesh, const std::vector<int>& elements) {
+  const auto add = [&](const char* name, auto&& value) {
+    add_column(cells, name, elements, value);
+  };
+  const std::vector<int> color = patch_colors(mesh);
+  add("element", [](int e) { return e; });
+  add("patch", [&](int e) { return mesh.patch[e]; });
+  add("facet", [&](int e) { return mesh.facet[e]; });
+  add("surface", [&](int e) { return mesh.surface[mesh.patch[e]]; });
+  add("material", [&](int e) { return mesh.material[mesh.patch[e]]; });
+  add("patch_color", [&](int e) { return color[mesh.patch[e]]; });
+  add("area", [&](int e) { return double{mesh.element_area[e]}; });
+  add("patch_area", [&](int e) { return double{mesh.area[mesh.patch[e]]}; });
+  add("least_angle", [&](int e) { return element_shape(mesh, e).least_angle_degrees; });
+  add("aspect_ratio", [&](int e) { return element_shape(mesh, e).aspect_ratio; });
+  add("is_back", [&](int e) -> unsigned char { return mesh.is_back[mesh.patch[e]] ? 1 : 0; });
+  std::vector<int> number;
+  for (const int e : elements) number.push_back(color[mesh.patch[e]]);
+  add_values(cells, "patch_rgb", palette_colors(number).data(),
+             static_cast<std::ptrdiff_t>(elements.size()), 3);
+  cells->SetActiveScalars("patch_rgb");
+}
+
+}  // namespace
+
+void write_mesh(const std::filesystem::path& path, const PatchMesh& mesh, MeshSides sides,
+                const Provenance& provenance) {
+  const std::vector<int> elements = elements_of(mesh, sides);
+  vtkNew<vtkPolyData> poly;
+  set_element_polygons(poly, mesh, elements);
+  add_cells(poly->GetCellData(), mesh, elements);
+  vtkFieldData* const made = poly->GetFieldData();
+  add_strings(made, "version", {provenance.version});
+  add_strings(made, "scene_file", {provenance.scene_file});
+  add_strings(made, "scene_hash", {fmt::format("{:016x}", provenance.scene_hash)});
+  add_strings(made, "options", {provenance.options});
+
+  AtomicFile file(path);
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  const std::string failure = write_appended(writer, poly, file.temporary());
+  if (!failure.empty()) {
+    throw std::runtime_error(fmt::format("{}: could not be written: {}", path.string(), failure));
+  }
+  file.commit();
+}
+
+}  // namespace lightwell

@@ -1,0 +1,235 @@
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "radiosity/solution/channel_arrays.h"
+#include "radiosity/solution/relight.h"
+#include "radiosity/solution/solution_arrays.h"
+#include "radiosity/solution/solution_file.h"
+#include "radiosity/solution/solution_seal.h"
+#include "radiosity/solution/vtk_messages.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int no_limit = std::numeric_limits<int>::max();
+
+Bands read_bands(const SolutionArrays& in) {
+  Bands bands;
+  bands.names = in.strings("band_names");
+  in.require(1 <= bands.count() && bands.count() <= max_bands,
+             fmt::format("it has {} bands; 1 to {} are possible", bands.count(), max_bands));
+  bands.wavelengths_nm = in.optional<double>(in.field(), "band_wavelengths_nm", 1).to_vector();
+  in.require(bands.wavelengths_nm.empty() || bands.wavelengths_nm.size() == bands.names.size(),
+             "it does not have one wavelength per band");
+  const auto xyz = in.required<float>(in.field(), "band_xyz", bands.count(), 3);
+  bands.xyz = Eigen::Map<const Eigen::Array<float, 3, Eigen::Dynamic>>(xyz.data, 3, xyz.rows);
+  bands.lumens_per_watt = in.number("lumens_per_watt");
+  return bands;
+}
+
+std::vector<Eigen::Vector3d> read_points(const SolutionArrays& in) {
+  const auto* array =
+      in.poly()->GetPoints()
+          ? vtkAOSDataArrayTemplate<double>::FastDownCast(in.poly()->GetPoints()->GetData())
+          : nullptr;
+  in.require(array && array->GetNumberOfTuples() > 0, "it has no points in double precision");
+  in.require(array->GetNumberOfTuples() < no_limit, "it has too many points");
+  std::vector<Eigen::Vector3d> points(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    for (int c = 0; c < 3; ++c) {
+      points[v][c] = array->GetTypedComponent(static_cast<vtkIdType>(v), c);
+    }
+    in.require(points[v].allFinite(), fmt::format("point {} is not finite", v));
+  }
+  return points;
+}
+
+std::vector<std::array<int, 4>> read_corners(const SolutionArrays& in, int vertex_count) {
+  vtkCellArray* polygons = in.poly()->GetPolys();
+  vtkDataArray* offsets = polygons->GetOffsetsArray();
+  vtkDataArray* connectivity = polygons->GetConnectivityArray();
+  const vtkIdType element_count = in.poly()->GetNumberOfPolys();
+  in.require(0 < element_count && element_count < no_limit &&
+                 in.poly()->GetNumberOfCells() == element_count &&
+                 offsets->GetNumberOfTuples() == element_count + 1,
+             "it has no polygons, or other cells beside them");
+  std::vector<std::array<int, 4>> corners(static_cast<std::size_t>(element_count), {0, 0, 0, -1});
+  for (vtkIdType e = 0; e < element_count; ++e) {
+    const auto begin = static_cast<vtkIdType>(offsets->GetComponent(e, 0));
+    const auto end = static_cast<vtkIdType>(offsets->GetComponent(e + 1, 0));
+    in.require(0 <= begin && end <= connectivity->GetNumberOfTuples() &&
+                   (end - begin == 3 || end - begin == 4),
+               fmt::format("polygon {} has neither 3 nor 4 corners", e));
+    for (vtkIdType c = begin; c < end; ++c) {
+      const double vertex = connectivity->GetComponent(c, 0);
+      in.require(0 <= vertex && vertex < vertex_count,
+                 fmt::format("polygon {} names point {} of {}", e, vertex, vertex_count));
+      corners[static_cast<std::size_t>(e)][static_cast<std::size_t>(c - begin)] =
+          static_cast<int>(vertex);
+    }
+    auto sorted = corners[static_cast<std::size_t>(e)];
+    std::sort(sorted.begin(), sorted.end());
+    in.require(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end(),
+               fmt::format("polygon {} names a point twice", e));
+  }
+  return corners;
+}
+
+void read_patches(const SolutionArrays& in, int band_count, PatchMesh& mesh) {
+  const int element_count = static_cast<int>(mesh.corners.size());
+  mesh.first_element = in.optional<int>(in.field(), "patch_first_element", 1).to_vector();
+  const auto& first = mesh.first_element;
+  in.require(first.size() >= 2 && first.front() == 0 && first.back() == element_count &&
+                 std::is_sorted(first.begin(), first.end()),
+             "its array 'patch_first_element' does not divide the elements into patches");
+  const int n = static_cast<int>(first.size()) - 1;
+  mesh.area = in.areas(in.field(), "patch_area", n);
+  mesh.surface = in.integers(in.field(), "patch_surface", n, 0, no_limit);
+  mesh.material = in.integers(in.field(), "patch_material", n, 0, no_limit);
+  const auto is_back = in.required<unsigned char>(in.field(), "patch_is_back", n);
+  mesh.is_back.assign(is_back.data, is_back.data + n);
+  mesh.reflectance = in.bands(in.field(), "patch_reflectance", n, band_count);
+  mesh.emission = in.bands(in.field(), "patch_emission", n, band_count);
+
+  mesh.element_area = in.areas(in.cells(), "area", element_count);
+  mesh.facet = in.integers(in.cells(), "facet", element_count, 0, no_limit);
+  mesh.twin = in.integers(in.cells(), "twin", element_count, -1, element_count);
+  mesh.patch = in.integers(in.cells(), "patch", element_count, 0, n);
+  for (int e = 0; e < element_count; ++e) {
+    const int i = mesh.patch[e];
+    in.require(first[i] <= e && e < first[i + 1],
+               fmt::format("element {} names patch {}, whose elements are others", e, i));
+  }
+}
+
+void read_sphere_grids(const SolutionArrays& in, PatchMesh& mesh) {
+  const auto shape = in.optional<int>(in.field(), "sphere_facet_rings_sectors", 3);
+  if (shape.rows == 0) return;
+  const auto sphere = in.required<double>(in.field(), "sphere_center_radius", shape.rows, 4);
+  std::int64_t cells = 0;
+  for (int g = 0; g < shape.rows; ++g) {
+    const int* row = shape.data + std::ptrdiff_t{3} * g;
+    in.require(row[0] >= 0 && row[1] > 0 && row[2] > 0 && sphere.data[4 * g + 3] > 0.0,
+               fmt::format("sphere grid {} has no rings, sectors or radius", g));
+    cells += std::int64_t{row[1]} * row[2];
+    in.require(cells < no_limit, "its sphere grids are too large");
+  }
+  const auto element =
+      in.integers(in.field(), "sphere_element", static_cast<int>(cells), -1, mesh.element_count());
+  auto next = element.begin();
+  for (int g = 0; g < shape.rows; ++g) {
+    const int* row = shape.data + std::ptrdiff_t{3} * g;
+    const double* ball = sphere.data + std::ptrdiff_t{4} * g;
+    const auto end = next + std::ptrdiff_t{row[1]} * row[2];
+    mesh.sphere_grids.push_back(
+        {.facet = row[0],
+         .sphere = {.center = {ball[0], ball[1], ball[2]}, .radius = ball[3]},
+         .rings = row[1],
+         .sectors = row[2],
+         .element = {next, end}});
+    next = end;
+  }
+}
+
+PatchMesh read_mesh(const SolutionArrays& in, int band_count) {
+  PatchMesh mesh;
+  const auto positions = read_points(in);
+  const int vertex_count = static_cast<int>(positions.size());
+  mesh.corners = read_corners(in, vertex_count);
+  read_patches(in, band_count, mesh);
+  read_sphere_grids(in, mesh);
+  build_topology(mesh, positions);
+  // The stored normals have the last bit right, whatever the rebuilt ones round to.
+  const auto normal = in.required<double>(in.points(), "normal", vertex_count, 3);
+  mesh.vertex_normal.resize(positions.size());
+  for (int v = 0; v < vertex_count; ++v) {
+    mesh.vertex_normal[v] = Eigen::Map<const Eigen::Vector3d>(normal.data + std::ptrdiff_t{3} * v);
+  }
+  return mesh;
+}
+
+void read_light(const SolutionArrays& in, const PatchMesh& mesh, RadiositySolution& s) {
+  const int K = s.bands.count();
+  s.patch_radiosity = in.bands(in.field(), "patch_radiosity", mesh.patch_count(), K);
+  s.direct_irradiance = in.bands(in.points(), "direct_irradiance", mesh.vertex_count(), K);
+  s.indirect_irradiance = in.bands(in.points(), "indirect_irradiance", mesh.vertex_count(), K);
+  if (in.points()->GetAbstractArray("caustic_irradiance")) {  // only where mirrors or glass are
+    s.caustic_irradiance = in.bands(in.points(), "caustic_irradiance", mesh.vertex_count(), K);
+  }
+  const auto of_elements = [&](const char* name, Eigen::ArrayXf& values) {
+    if (!in.cells()->GetAbstractArray(name)) return;
+    const auto read = in.required<float>(in.cells(), name, mesh.element_count());
+    values = Eigen::Map<const Eigen::ArrayXf>(read.data, read.rows);
+  };
+  of_elements("interpolation_error", s.interpolation_error);  // only where elements were refined
+  of_elements("gather_noise", s.gather_noise);
+}
+
+void read_record(const SolutionArrays& in, RadiositySolution& s) {
+  s.metres_per_unit = in.number("metres_per_unit");
+  s.unit_name = in.text("unit_name");
+  const auto light = in.strings("light");  // files of before do not say
+  s.relative_units = !light.empty() && light.front() == "relative";
+  const auto history = in.optional<double>(in.field(), "history_residual_seconds", 2);
+  for (int i = 0; i < history.rows; ++i) {
+    s.history.push_back({history.data[2 * i], history.data[2 * i + 1]});
+  }
+  const auto phases = in.strings("phase_names");
+  const auto seconds = in.optional<double>(in.field(), "phase_seconds", 1);
+  in.require(static_cast<int>(phases.size()) == seconds.rows,
+             "it does not have one time per phase");
+  for (int i = 0; i < seconds.rows; ++i) s.seconds.push_back({phases[i], seconds.data[i]});
+
+  s.outcome = static_cast<Outcome>(
+      in.integers(in.field(), "outcome", 1, 0, static_cast<int>(Outcome::accuracy_missed) + 1)
+          .front());
+  s.residual = in.number("residual");
+  s.error_estimate = in.number("error_estimate");
+  const double* energy =
+      in.required<double>(in.field(), "energy_emitted_absorbed_escaped_unshot", 1, 4).data;
+  s.energy = {energy[0], energy[1], energy[2], energy[3]};
+  const auto of_lamps = in.optional<double>(in.field(), "energy_from_lamps_missed", 2);
+  if (of_lamps.rows > 0) {  // only where lamps are
+    s.energy.from_lamps = of_lamps.data[0];
+    s.energy.missed = of_lamps.data[1];
+  }
+
+  s.provenance = {in.text("version"), in.text("scene_file"), 0, in.text("options")};
+  const auto refinement = in.strings("refinement");
+  if (!refinement.empty()) s.provenance.refinement = refinement.front();
+  const std::string hash = in.text("scene_hash");
+  const auto parsed =
+      std::from_chars(hash.data(), hash.data() + hash.size(), s.provenance.scene_hash, 16);
+  in.require(parsed.ec == std::errc{} && parsed.ptr == hash.data() + hash.size(),
+             fmt::format("its scene hash '{}' is not a hexadecimal number", hash));
+}
+
+}  // namespace
+
+SolvedScene read_solution(const std::filesystem::path& path) {
+  check_seal(path);
+  const VtkMessages messages;
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  const SolutionArrays in(path, reader->GetOutput());
+  in.require(reader->GetErrorCode() == 0 && !messages.any(), "VTK finds an error in its data");
+
+  SolvedScene solved;
+  solved.solution.bands = read_bands(in);
+  solved.mesh = read_mesh(in, solved.solution.bands.count());
+  read_light(in, solved.mesh, solved.solution);
+  read_record(in, solved.solution);
+  read_channels(in, solved.mesh, solved.solution);
+  if (!solved.solution.channels.empty()) scale_sources(solved);
+  return solved;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "radiosity/solvers/kept_passes.h"
+#include "radiosity/solvers/row_gather.h"
+
+namespace lightwell {
+
+/// B = M + rho F B of a mesh with all its bands side by side; where light E0 arrives from
+/// elsewhere, M stands for M + rho E0.
+class RadiositySystem : public RowGather {
+ public:
+  /// Keeps references to mesh and form_factors; `pause` as in RowGather. `arriving` is E0, patches
+  /// x bands, or empty.
+  RadiositySystem(const PatchMesh& mesh, const FormFactors& form_factors,
+                  std::function<void()> pause = {}, const BandArray& arriving = {});
+
+  int patch_count() const { return static_cast<int>(area.size()); }
+
+  const Eigen::ArrayXd& area;  ///< A_i, m^2
+  LightVector M, rho;          ///< emission in W/m^2, reflectance
+
+  /// M + rho F B - B: one pass.
+  LightVector residual(const LightVector& B) const;
+  /// (I - rho F) x: one pass.
+  LightVector product(const LightVector& x) const;
+
+  /// `pass` of a solver over the rows, which fills `results` anew: they are recalled instead, where
+  /// they were kept.
+  template <class Pass, class... Results>
+  void pass(Pass pass, Results&... results) const {
+    if (passes_) {
+      passes_->next(pass, results...);
+    } else {
+      pass();
+    }
+  }
+  /// From now on; keeps the pointer. Null: no more.
+  void keep_passes(KeptPasses* passes) { passes_ = passes; }
+
+  /// How far F is from reciprocal: about the root mean square of A_i F_ij - A_j F_ji over that of
+  /// A_i F_ij, in the worst band. Two passes, with random vectors.
+  double asymmetry() const;
+
+ private:
+  KeptPasses* passes_ = nullptr;
+};
+
+/// sum_i w_i a_i b_i in each lane; added up patch after patch.
+LaneArray weighted_dot(const Eigen::ArrayXd& w, const LightVector& a, const LightVector& b);
+LaneArray weighted_dot(const LightVector& w, const LightVector& a, const LightVector& b);
+
+}  // namespace lightwell

@@ -1,0 +1,147 @@
+#include "radiosity/solvers/row_gather.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int packet = 4;  // lanes that are computed together
+
+// Left to itself a processor waits for each row's start to come from memory; asked for it so much
+// earlier it does a pass in half the time (solver_bench).
+constexpr int bytes_ahead = 4096;
+
+void fetch_ahead(const FormFactor* at) {
+  __builtin_prefetch(reinterpret_cast<const char*>(at) + bytes_ahead);
+}
+
+// As the compiler knows it: one register where the processor has such long ones, else two.
+using Packet [[gnu::vector_size(packet * sizeof(double))]] = double;
+
+template <class Values>
+[[gnu::always_inline]] inline void load(const double* from, Values& values) {
+  std::memcpy(&values, from, sizeof values);
+}
+
+// Terms are added by turns to a few sums, for one addition need not wait for the other then.
+template <class Values, int Sums>
+[[gnu::always_inline]] inline void gather_straight(std::span<const FormFactor> row, const double* B,
+                                                   double* E) {
+  constexpr auto lanes = static_cast<std::ptrdiff_t>(sizeof(Values) / sizeof(double));
+  constexpr std::size_t line = 64 / sizeof(FormFactor);
+  std::array<Values, Sums> sum{};
+  std::size_t k = 0;
+  for (; k + line <= row.size(); k += line) {
+    fetch_ahead(&row[k]);
+    for (std::size_t t = 0; t < line; ++t) {
+      Values values;
+      load(B + lanes * row[k + t].patch, values);
+      sum[t % Sums] += static_cast<double>(row[k + t].value) * values;
+    }
+  }
+  for (; k < row.size(); ++k) {
+    Values values;
+    load(B + lanes * row[k].patch, values);
+    sum[k % Sums] += static_cast<double>(row[k].value) * values;
+  }
+  for (int s = 1; s < Sums; ++s) sum[0] += sum[s];
+  std::memcpy(E, sum.data(), sizeof(Values));
+}
+
+using GatherPacket = void (*)(std::span<const FormFactor>, const double*, double*);
+
+void gather_packet(std::span<const FormFactor> row, const double* B, double* E) {
+  gather_straight<Packet, 2>(row, B, E);
+}
+
+#if defined(__x86_64__)
+// Products and sums are rounded as above: no fused ones, so that all machines find the same bits.
+[[gnu::target("avx2")]] void gather_packet_avx2(std::span<const FormFactor> row, const double* B,
+                                                double* E) {
+  gather_straight<Packet, 2>(row, B, E);
+}
+
+GatherPacket best_gather_packet() {
+  return __builtin_cpu_supports("avx2") ? gather_packet_avx2 : gather_packet;
+}
+#else
+GatherPacket best_gather_packet() {
+  return gather_packet;
+}
+#endif
+
+void gather_straight(std::span<const FormFactor> row, const double* B, int lanes, double* E) {
+  using Map = Eigen::Map<const Eigen::Array<double, packet, 1>>;
+  std::fill_n(E, lanes, 0.0);
+  for (const auto [j, F] : row) {
+    const double* const B_j = B + static_cast<std::ptrdiff_t>(lanes) * j;
+    for (int lane = 0; lane < lanes; lane += packet) {
+      Eigen::Map<Eigen::Array<double, packet, 1>>{E + lane} +=
+          static_cast<double>(F) * Map(B_j + lane);
+    }
+  }
+}
+
+}  // namespace
+
+RowGather::RowGather(const FormFactors& form_factors, int bands, std::function<void()> pause)
+    : form_factors_(form_factors),
+      pause_(std::move(pause)),
+      bands_(bands),
+      lanes_(bands == 1 ? 1 : (bands + packet - 1) / packet * packet),
+      gather_packet_(best_gather_packet()) {
+  for (int i = 0; i < form_factors.patch_count() && !has_specular_; ++i) {
+    has_specular_ = !form_factors.specular_row(i).patch.empty();
+  }
+}
+
+void RowGather::row(int i, const LightVector& B, double* E) const {
+  const std::span<const FormFactor> straight = form_factors_.row(i);
+  switch (lanes()) {
+    case 1:
+      gather_straight<double, packet>(straight, B.data(), E);
+      break;
+    case packet:
+      gather_packet_(straight, B.data(), E);
+      break;
+    default:
+      gather_straight(straight, B.data(), lanes(), E);
+  }
+  if (!has_specular_) return;
+  const SpecularRow specular = form_factors_.specular_row(i);
+  for (std::size_t s = 0; s < specular.patch.size(); ++s) {
+    const float* const F = specular.value.data() + s * static_cast<std::size_t>(bands_);
+    const double* const B_j = B.data() + static_cast<std::ptrdiff_t>(lanes()) * specular.patch[s];
+    for (int k = 0; k < bands_; ++k) E[k] += static_cast<double>(F[k]) * B_j[k];
+  }
+}
+
+LightVector RowGather::all(const LightVector& B) const {
+  LightVector E(B.rows(), B.cols());
+  const auto patch_count = static_cast<int>(B.rows());
+  constexpr int rows_between_pauses = 4096, grain = 64;
+  for (int first = 0; first < patch_count; first += rows_between_pauses) {
+    const int count = std::min(rows_between_pauses, patch_count - first);
+    parallel_for(count, grain, [&](int begin, int end) {
+      for (int i = first + begin; i < first + end; ++i) row(i, B, E.row(i).data());
+    });
+    pause();
+  }
+  return E;
+}
+
+LightVector RowGather::with_lanes(const BandArray& values) const {
+  LightVector padded = LightVector::Zero(values.rows(), lanes_);
+  padded.leftCols(bands_) = values.cast<double>();
+  return padded;
+}
+
+BandArray RowGather::without_lanes(const LightVector& values) const {
+  return values.leftCols(bands_).cast<float>();
+}
+
+}  // namespace lightwell

@@ -1,0 +1,168 @@
+// The solvers that look for B in the span of what bounces make of the first residual. Eigen has
+// them too, but for one right-hand side at a time: each of K bands, whose matrices differ by
+// reflectance and tint, would read all rows by itself. Here every band has its own scalars and all
+// share a pass.
+#include <Eigen/QR>
+#include <cmath>
+#include <vector>
+
+#include "radiosity/solvers/solvers.h"
+#include "radiosity/solvers/uniform_light.h"
+
+namespace lightwell {
+namespace {
+
+// Bands that are solved, or dark, have 0 / 0 and stay as they are.
+LaneArray quotient(const LaneArray& a, const LaneArray& b) {
+  return (b != 0.0).select(a / b, 0.0);
+}
+
+// y += a x, band by band.
+void add(LightVector& y, const LaneArray& a, const LightVector& x) {
+  for (Eigen::Index i = 0; i < y.rows(); ++i) y.row(i) += a * x.row(i);
+}
+
+// y = x + a y.
+void scale_and_add(LightVector& y, const LaneArray& a, const LightVector& x) {
+  for (Eigen::Index i = 0; i < y.rows(); ++i) y.row(i) = x.row(i) + a * y.row(i);
+}
+
+}  // namespace
+
+// In the inner product sum_i (A_i / rho_i) a_i b_i the matrix I - rho F is symmetric, because A_i
+// F_ij is, and positive definite: plain conjugate gradients with it are those on (A / rho) B - A F
+// B, preconditioned by the diagonal A / rho. Where rho_i = 0, B_i = M_i from the start: no residual
+// or direction ever has anything there. Uniform light is deflated (Saad, Yeung, Erhel & Guyomarc'h
+// 2000): it costs a pass and saves a few, and every iterate balances its power.
+LightVector solve_by_conjugate_gradients(SolverRun& run) {
+  const RadiositySystem& system = run.system;
+  LightVector weight = (system.rho > 0.0).select(1.0 / system.rho, 0.0);
+  weight.colwise() *= system.area;
+  const UniformLight uniform(run);
+  LightVector B = run.start(), r = system.residual(B);
+  uniform.correct(r, B);
+  while (run.goes_on(SolverMethod::conjugate_gradients, B, r)) {
+    LightVector p = r;
+    uniform.deflate(weight, r, p);
+    LaneArray rr = weighted_dot(weight, r, r), least = rr;
+    bool goes_on = true, is_astray = false;
+    while (goes_on && !is_astray) {
+      const LightVector q = system.product(p);
+      const LaneArray alpha = quotient(rr, weighted_dot(weight, p, q));
+      add(B, alpha, p);
+      add(r, -alpha, q);
+      const LaneArray before = rr;
+      rr = weighted_dot(weight, r, r);
+      scale_and_add(p, quotient(rr, before), r);
+      uniform.deflate(weight, r, p);
+      // Where a tolerance is asked for that rounding does not allow, directions lose their meaning
+      // and a band's B would run away.
+      constexpr double grown = 1e4;
+      least = least.min(rr);
+      is_astray = (rr > grown * least).any();
+      goes_on = run.goes_on(SolverMethod::conjugate_gradients, B, r);
+    }
+    if (!goes_on && run.outcome() != Outcome::converged) break;
+    r = system.residual(B);  // r was carried along, with rounding
+    uniform.correct(r, B);
+  }
+  return B;
+}
+
+LightVector solve_by_bicgstab(SolverRun& run) {
+  const RadiositySystem& system = run.system;
+  const auto dot = [&](const LightVector& a, const LightVector& b) {
+    return weighted_dot(system.area, a, b);
+  };
+  LightVector B = run.start(), r = system.residual(B);
+  while (run.goes_on(SolverMethod::bicgstab, B, r)) {
+    const LightVector shadow = r;
+    LightVector p = r;
+    LaneArray rho = dot(shadow, r);
+    const LaneArray first = rho;
+    bool goes_on = true, is_stuck = false;
+    while (goes_on && !is_stuck) {
+      const LightVector v = system.product(p);
+      const LaneArray alpha = quotient(rho, dot(shadow, v));
+      add(B, alpha, p);
+      add(r, -alpha, v);
+      goes_on = run.goes_on(SolverMethod::bicgstab, B, r);
+      if (!goes_on) break;
+      const LightVector t = system.product(r);
+      const LaneArray omega = quotient(dot(t, r), dot(t, t));
+      add(B, omega, r);
+      add(p, -omega, v);
+      add(r, -omega, t);
+      goes_on = run.goes_on(SolverMethod::bicgstab, B, r);
+      const LaneArray next = dot(shadow, r);
+      scale_and_add(p, quotient(next, rho) * quotient(alpha, omega), r);
+      // Once the residual is at right angles to the first one there is no way on from here.
+      constexpr double right_angle = 1e-14;
+      is_stuck = (next.square() < right_angle * right_angle * first * dot(r, r)).any();
+      rho = next;
+    }
+    if (run.outcome() != Outcome::converged && !is_stuck) break;
+    r = system.residual(B);
+  }
+  return B;
+}
+
+namespace {
+
+// The least-squares answer to H y = first e_1.
+Eigen::VectorXd shortest_residual(const Eigen::MatrixXd& H, double first) {
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(H.rows());
+  rhs[0] = first;
+  return H.colPivHouseholderQr().solve(rhs);
+}
+
+}  // namespace
+
+LightVector solve_by_gmres(SolverRun& run) {
+  const RadiositySystem& system = run.system;
+  const int most = run.options.gmres_restart, lanes = system.lanes();
+  const auto size = [&](const LightVector& x) -> LaneArray {
+    return weighted_dot(system.area, x, x).sqrt();
+  };
+  LightVector B = run.start(), r = system.residual(B);
+  while (run.goes_on(SolverMethod::gmres, B, r)) {
+    // Arnoldi: A V_m = V_m+1 H, each band with an H of its own.
+    std::vector<Eigen::MatrixXd> H(static_cast<std::size_t>(lanes),
+                                   Eigen::MatrixXd::Zero(most + 1, most));
+    const LaneArray first = size(r);
+    std::vector<LightVector> V{LightVector::Zero(r.rows(), r.cols())};
+    add(V[0], quotient(LaneArray::Ones(lanes), first), r);
+    LightVector better, left;
+    bool goes_on = true;
+    for (int m = 0; m < most && goes_on; ++m) {
+      LightVector w = system.product(V[m]);
+      for (int i = 0; i <= m; ++i) {
+        const LaneArray h = weighted_dot(system.area, w, V[i]);
+        add(w, -h, V[i]);
+        for (int k = 0; k < lanes; ++k) H[k](i, m) = h[k];
+      }
+      const LaneArray length = size(w);
+      for (int k = 0; k < lanes; ++k) H[k](m + 1, m) = length[k];
+      V.emplace_back(LightVector::Zero(w.rows(), w.cols()));
+      add(V.back(), quotient(LaneArray::Ones(lanes), length), w);
+
+      Eigen::ArrayXXd y(m + 1, lanes), Hy(m + 2, lanes);
+      for (int k = 0; k < lanes; ++k) {
+        const Eigen::MatrixXd H_m = H[k].topLeftCorner(m + 2, m + 1);
+        y.col(k) = shortest_residual(H_m, first[k]).array();
+        Hy.col(k) = (H_m * y.col(k).matrix()).array();
+      }
+      better = B;
+      left = r;
+      for (int i = 0; i <= m; ++i) add(better, y.row(i), V[i]);
+      for (int i = 0; i <= m + 1; ++i) add(left, -Hy.row(i), V[i]);
+      goes_on = run.goes_on(SolverMethod::gmres, better, left);
+    }
+    B = better;
+    if (!goes_on && run.outcome() != Outcome::converged) break;
+    r = system.residual(B);
+  }
+  return B;
+}
+
+}  // namespace lightwell

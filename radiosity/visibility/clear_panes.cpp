@@ -1,0 +1,61 @@
+#include "radiosity/visibility/clear_panes.h"
+
+#include <Eigen/Geometry>
+
+#include "scene/specular.h"
+
+namespace lightwell {
+
+ClearPanes::ClearPanes(const Scene& scene) : bands_(scene.bands.count()) {
+  for (const FacetRef& ref : scene_facets(scene)) {
+    const Surface& surface = scene.surfaces[static_cast<std::size_t>(ref.surface)];
+    const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
+    of_facet_.push_back(is_clear_pane(material) ? static_cast<int>(panes_.size()) : -1);
+    if (of_facet_.back() < 0) continue;
+    Pane pane{.material = material};
+    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+      pane.center = sphere->center;
+    } else {
+      const auto& polygons = std::get<PolygonMesh>(surface.shape);
+      const auto facet = static_cast<std::size_t>(ref.facet);
+      pane.normal = facet_normal(polygons, polygons.facets[facet]);
+    }
+    panes_.push_back(std::move(pane));
+  }
+}
+
+Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const {
+  Spectrum share = Spectrum::Ones(bands_);
+  const Eigen::Vector3d direction = first.direction.normalized();
+  Ray ray = first;
+  constexpr int most_panes = 64;  // what is left behind so many is nothing to speak of
+  for (int i = 0; i < most_panes; ++i) {
+    ElementHit hit;
+    caster.closest_elements({&ray, 1}, {&hit, 1});
+    if (hit.facet < 0 || hit.facet == first.target_group) return share;
+    const int number = of_facet_[static_cast<std::size_t>(hit.facet)];
+    if (number < 0) break;
+    const Pane& pane = panes_[static_cast<std::size_t>(number)];
+    const Eigen::Vector3d place = ray.origin + hit.t * ray.direction;
+    Eigen::Vector3d normal = pane.normal;
+    const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
+    if (normal.isZero()) {
+      normal = (place - (pose ? *pose * pane.center : pane.center)).normalized();
+    } else if (pose) {
+      normal = pose->linear() * normal;
+    }
+    if (normal.dot(direction) > 0.0) normal = -normal;
+    const OnwardWays ways = smooth_ways({.material = pane.material,
+                                         .direction = direction,
+                                         .normal = normal,
+                                         .from_back = hit.from_back});
+    if (ways.count < 2) break;
+    share *= ways.way[1].share;
+    ray.origin = place;
+    ray.t_max -= hit.t;
+    ray.origin_group = hit.facet;
+  }
+  return Spectrum::Zero(bands_);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,40 @@
+#include "radiosity/visibility/shadow_rays.h"
+
+namespace lightwell {
+
+void ShadowBatch::add(int tally, const ShadowSample& sample) {
+  if (!(sample.weight > 0.0)) return;
+  rays_[count_] = sample.ray;
+  weights_[count_] = sample.weight;
+  tally_of_[count_] = tally;
+  if (++count_ == size) flush();
+}
+
+void ShadowBatch::flush() {
+  std::array<std::uint8_t, size> blocked;
+  caster_.occluded({rays_.data(), count_}, {blocked.data(), count_});
+  for (std::size_t k = 0; k < count_; ++k) {
+    ShadowTally& tally = tallies_[static_cast<std::size_t>(tally_of_[k])];
+    tally.all += weights_[k];
+    tally.squares += weights_[k] * weights_[k];
+    if (!blocked[k]) {
+      tally.seen += weights_[k];
+    } else if (panes_) {
+      look_through_panes(rays_[k], weights_[k], tally);
+    }
+  }
+  count_ = 0;
+}
+
+void ShadowBatch::look_through_panes(const Ray& ray, double weight, ShadowTally& tally) const {
+  const Spectrum share = panes_->passed(caster_, ray);
+  if (!(share > 0.0f).any()) {
+    tally.blocked = true;
+    return;
+  }
+  tally.dimmed += weight;
+  if (tally.through.size() == 0) tally.through = Spectrum::Zero(share.size());
+  tally.through += static_cast<float>(weight) * share;
+}
+
+}  // namespace lightwell

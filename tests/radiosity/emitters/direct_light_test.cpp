@@ -1,0 +1,143 @@
+#include "radiosity/emitters/direct_light.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "mesh/build_patches.h"
+#include "tests/radiosity/test_scenes.h"
+
+namespace lightwell {
+namespace {
+
+Loop loop(const nlohmann::json& j) {
+  Loop points;
+  for (const auto& p : j)
+    points.emplace_back(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
+  return points;
+}
+
+struct LitFloor {
+  Scene scene;
+  PatchMesh mesh;
+  int floor_facet = 0;
+};
+
+// polygon1 receives, polygon2 emits, blockers are black. A far wall keeps the emitter a small part
+// of the scene.
+LitFloor occluded_case(const nlohmann::json& g) {
+  LitFloor s;
+  const int black = test::add_material(s.scene, test::diffuse(s.scene.bands, 0.0f));
+  const int lamp = test::add_material(s.scene, test::diffuse(s.scene.bands, 0.0f, 1.0f));
+  test::add_polygon(s.scene, "receiver", black, loop(g["polygon1"]));
+  test::add_polygon(s.scene, "emitter", lamp, loop(g["polygon2"]));
+  for (const auto& b : g["blockers"]) {
+    if (b.contains("polygon")) {
+      Material both = test::diffuse(s.scene.bands, 0.0f);
+      both.one_sided = false;
+      test::add_polygon(s.scene, "blocker", test::add_material(s.scene, both), loop(b["polygon"]));
+    } else {
+      const Loop corners = loop(b["box"]);
+      test::add_box(s.scene, corners[0], corners[1], {black, black, black, black, black, black},
+                    false);
+    }
+  }
+  test::add_polygon(s.scene, "far", black, {{-9, -9, -9}, {9, -9, -9}, {9, 9, -9}, {-9, 9, -9}});
+  s.mesh = build_patches(s.scene, {.max_patch_size = 0.5, .elements_per_patch_edge = 1});
+  return s;
+}
+
+TEST(DirectLight, OccludedFormFactorsAreExactInTheMean) {
+  std::ifstream file(LIGHTWELL_TEST_DATA "/analytic/viewfactors.json");
+  int tested = 0;
+  for (const auto& c : nlohmann::json::parse(file)) {
+    if (c["kind"] != "occluded") continue;
+    const LitFloor s = occluded_case(c["geometry"]);
+    const ElementCaster caster(s.mesh);
+    const DirectLight direct_light(s.scene, s.mesh);
+    ASSERT_EQ(direct_light.emitters().size(), 1u);
+
+    const Loop receiver = loop(c["geometry"]["polygon1"]);
+    const Eigen::Vector3d u = receiver[1] - receiver[0], v = receiver.back() - receiver[0];
+    const Eigen::Vector3d n = u.cross(v).normalized();
+    constexpr int points = 4096;
+    const SobolPoints sobol(points);
+    double sum = 0.0, sum2 = 0.0;
+    for (int i = 0; i < points; ++i) {
+      const Eigen::Array4f at = sobol.point(i, 7);
+      const Eigen::Vector3d p = receiver[0] + at[0] * u + at[1] * v;
+      const double F = direct_light.form_factor(direct_light.emitters()[0], caster, p, n, 0,
+                                                random_key(i), {.min_rays = 64, .max_rays = 64});
+      sum += F;
+      sum2 += F * F;
+    }
+    const double mean = sum / points;
+    // As if the points were independent: an upper bound for a scrambled Sobol mean.
+    const double se = std::sqrt(std::max(0.0, sum2 / points - mean * mean) / points);
+    const double exact = c["value"];
+    std::printf("%s: F %.6f exact %.6f difference %.1e (standard error < %.1e)\n",
+                c["id"].get<std::string>().c_str(), mean, exact, mean - exact, se);
+    if (c["id"] == "occ-square-unit-blocker") {
+      EXPECT_EQ(mean,
+                0.0);  // nothing passes beside a blocker of the same size seen from inside its rim
+    } else {
+      EXPECT_NEAR(mean, exact, 4 * se + 1e-9) << c["id"];
+    }
+    ++tested;
+  }
+  EXPECT_GE(tested, 6);
+}
+
+// A lamp in an empty room: E = M F with no noise at all, for any number of shadow rays.
+TEST(DirectLight, UnoccludedIrradianceIsTheClosedForm) {
+  Scene scene;
+  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 3.0f));
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, {wall, wall, wall, wall, wall, wall}, true);
+  const Loop points = {{0.8, 0.8, 1.9}, {0.8, 1.2, 1.9}, {1.2, 1.2, 1.9}, {1.2, 0.8, 1.9}};
+  test::add_polygon(scene, "lamp", lamp, points);
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
+  const ElementCaster caster(mesh);
+  const DirectLight direct_light(scene, mesh);
+  EXPECT_TRUE(direct_light.owns(6, false));
+  EXPECT_FALSE(direct_light.owns(0, false));
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d p(2 * random_uniform(2 * i), 2 * random_uniform(2 * i + 1), 0.0);
+    const Eigen::Vector3d n(0, 0, 1);
+    const double exact = 3.0 * std::abs(point_to_polygon(p, n, {&points, 1}));
+    const Spectrum E = direct_light.irradiance(caster, p, n, 4, random_key(i));
+    EXPECT_NEAR(E[0], exact, 1e-6 * exact);  // float spectrum
+  }
+  // The lamp's back and the ceiling above it get nothing from it.
+  EXPECT_EQ(direct_light.irradiance(caster, {1.0, 1.0, 2.0}, {0, 0, -1}, 5, 1)[0], 0.0f);
+}
+
+TEST(DirectLight, LargeEmittersAreLeftToTheHemisphereOfRays) {
+  const Scene scene = test::furnace(0.5f, 1.0f, false);
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
+  EXPECT_TRUE(DirectLight(scene, mesh).emitters().empty());
+}
+
+TEST(DirectLight, SphereLampObeysTheClosedForm) {
+  Scene scene;
+  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 2.0f));
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, {wall, wall, wall, wall, wall, wall}, true);
+  const Sphere ball{{1.0, 1.1, 1.2}, 0.2};
+  scene.surfaces.push_back({.name = "ball", .material = lamp, .shape = ball});
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
+  const ElementCaster caster(mesh);
+  const DirectLight direct_light(scene, mesh);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d p(2 * random_uniform(2 * i), 0.0, 2 * random_uniform(2 * i + 1));
+    const double exact = 2.0 * point_to_sphere(p, {0, 1, 0}, ball.center, ball.radius);
+    EXPECT_NEAR(direct_light.irradiance(caster, p, {0, 1, 0}, 2, random_key(i))[1], exact,
+                1e-6 * exact);
+  }
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,339 @@
+// A solve that is ended and gone on with gives the bits of one that is not.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "radiosity/journal/journal.h"
+#include "radiosity/solve.h"
+#include "scene/errors.h"
+#include "scene/parallel.h"
+#include "tests/radiosity/test_scenes.h"
+#include "tests/radiosity/two_lamps.h"
+#include "tests/temporary_folder.h"
+
+namespace lightwell {
+namespace {
+namespace fs = std::filesystem;
+
+// A block under a lamp; the room has a mirror, and a glass ball throws a caustic, if asked for.
+Scene room(bool with_specular) {
+  Scene scene;
+  const int white = test::add_material(scene, test::diffuse(scene.bands, 0.7f));
+  Material lamp_material = test::diffuse(scene.bands, 0.1f);
+  lamp_material.emission << 20.0f, 15.0f, 10.0f;
+  const int lamp = test::add_material(scene, lamp_material);
+  int wall = white;
+  if (with_specular) wall = test::add_material(scene, test::tinted_mirror(scene.bands));
+  test::add_box(scene, {0, 0, 0}, {2, 3, 2.5}, {wall, white, white, white, white, white}, true);
+  test::add_polygon(scene, "lamp", lamp,
+                    {{0.8, 1.2, 2.4}, {0.8, 1.8, 2.4}, {1.2, 1.8, 2.4}, {1.2, 1.2, 2.4}});
+  test::add_box(scene, {0.4, 0.5, 0.0}, {0.9, 1.1, 0.8}, {white, white, white, white, white, white},
+                false);
+  if (with_specular) {
+    const int glass = test::add_material(scene, test::clear_glass(scene.bands));
+    scene.surfaces.push_back(
+        {.name = "ball", .material = glass, .shape = Sphere{{1.4, 2.2, 0.6}, 0.3}});
+  }
+  return scene;
+}
+
+SolveOptions quick() {
+  SolveOptions options;
+  options.mesh.max_patch_size = 0.5;
+  options.form_factors.rays_per_patch = 64;
+  options.gather.rays = 32;
+  options.caustic_rays = 1 << 12;
+  options.error_points = 64;
+  options.refine.tolerance = 0.05;
+  return options;
+}
+
+struct Case {
+  const char* name;
+  bool with_specular;
+  void (*set)(SolveOptions&);
+};
+
+const Case cases[] = {
+    {"AsUsual", false, [](SolveOptions&) {}},
+    {"MirrorAndCaustics", true, [](SolveOptions&) {}},
+    {"EvenMesh", true, [](SolveOptions& o) { o.refine.tolerance = 0.0; }},
+    {"RaysGaussSeidel", true,
+     [](SolveOptions& o) {
+       o.form_factors.method = FormFactorMethod::ray_cast;
+       o.solver_method = SolverMethod::gauss_seidel;
+     }},
+    {"HemicubeJacobi", true,
+     [](SolveOptions& o) {
+       o.form_factors.method = FormFactorMethod::hemicube;
+       o.form_factors.hemicube_resolution = 32;
+       o.solver_method = SolverMethod::jacobi;
+     }},
+    {"AnalyticSouthwell", false,
+     [](SolveOptions& o) {
+       o.form_factors.method = FormFactorMethod::analytic;
+       o.solver_method = SolverMethod::southwell;
+     }},
+    {"AccuracyGmres", false,
+     [](SolveOptions& o) {
+       o.form_factors.target_error = 0.02;
+       o.solver_method = SolverMethod::gmres;
+     }},
+    {"Sor", false, [](SolveOptions& o) { o.solver_method = SolverMethod::sor; }},
+    {"Bicgstab", true, [](SolveOptions& o) { o.solver_method = SolverMethod::bicgstab; }},
+    {"Progressive", true,
+     [](SolveOptions& o) {
+       o.progressive = {.tolerance = 0.01, .rays = 1 << 14, .overshooting = Overshooting::ambient};
+     }},
+    {"RowsOnDisk", true, [](SolveOptions& o) {
+       o.form_factors.memory =
+           std::make_shared<MemoryBudget>(MemoryOptions{.rows = 1 << 14, .folder = "."});
+     }}};
+
+void expect_same_bits(const BandArray& a, const BandArray& b, const char* what) {
+  ASSERT_EQ(a.rows(), b.rows()) << what;
+  ASSERT_EQ(a.cols(), b.cols()) << what;
+  if (a.size() == 0) return;
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), sizeof(float) * static_cast<std::size_t>(a.size())), 0)
+      << what;
+}
+
+void expect_same_solve(const SolvedScene& a, const SolvedScene& b) {
+  const RadiositySolution &x = a.solution, &y = b.solution;
+  expect_same_bits(x.patch_radiosity, y.patch_radiosity, "patch radiosity");
+  expect_same_bits(x.direct_irradiance, y.direct_irradiance, "direct");
+  expect_same_bits(x.indirect_irradiance, y.indirect_irradiance, "indirect");
+  expect_same_bits(x.caustic_irradiance, y.caustic_irradiance, "caustic");
+  expect_same_bits(x.interpolation_error, y.interpolation_error, "interpolation error");
+  expect_same_bits(x.gather_noise, y.gather_noise, "gather noise");
+  EXPECT_EQ(a.mesh.corners, b.mesh.corners);
+  EXPECT_EQ(x.solver, y.solver);
+  EXPECT_EQ(x.outcome, y.outcome);
+  EXPECT_EQ(x.residual, y.residual);
+  EXPECT_EQ(x.history.size(), y.history.size());
+  EXPECT_EQ(x.error_estimate, y.error_estimate);
+  EXPECT_EQ(x.provenance.refinement, y.provenance.refinement);
+  EXPECT_EQ(x.energy.emitted, y.energy.emitted);
+  EXPECT_EQ(x.energy.absorbed, y.energy.absorbed);
+  EXPECT_EQ(x.energy.escaped, y.energy.escaped);
+  EXPECT_EQ(x.energy.unshot, y.energy.unshot);
+}
+
+class Resumed : public testing::TestWithParam<std::tuple<Case, double>> {
+ protected:
+  Scene scene = room(std::get<0>(GetParam()).with_specular);
+  SolveOptions options() const {
+    SolveOptions options = quick();
+    std::get<0>(GetParam()).set(options);
+    return options;
+  }
+  Provenance of() const { return {.version = "test", .scene_hash = scene_hash(scene)}; }
+  double every() const { return std::get<1>(GetParam()); }
+  TemporaryFolder folder;
+
+  // Solves until progress has been called `calls` times. Nothing: it was stopped.
+  std::optional<SolvedScene> solve(Journal* journal, int calls, int* called = nullptr) {
+    SolveOptions asked = options();
+    int count = 0;
+    asked.progress = [&](std::string_view, double) { return ++count < calls; };
+    asked.journal = journal;
+    std::optional<SolvedScene> solved;
+    try {
+      solved = solve_scene(scene, asked);
+    } catch (const Interrupted&) {
+    }
+    if (called) *called = count;
+    return solved;
+  }
+};
+
+constexpr int to_the_end = 1 << 30;
+
+TEST_P(Resumed, SolveHasTheBitsOfOneThatWasNotStopped) {
+  std::mt19937 random(12345);
+  int calls = 0;
+  std::optional<SolvedScene> reference;
+  {
+    const ThreadLimit limit(3);
+    reference = solve(nullptr, to_the_end, &calls);
+  }
+  ASSERT_TRUE(reference);
+  ASSERT_GT(calls, 20);
+
+  const fs::path file = folder / "C";
+  int stops = 0;
+  constexpr int rounds = 3;
+  for (int round = 0; round < rounds; ++round) {
+    fs::remove(file);
+    // Each goes a random part of the way; what the first ones did, those that follow recall.
+    std::optional<SolvedScene> solved;
+    for (int attempt = 0; !solved; ++attempt) {
+      const ThreadLimit limit(attempt % 2 == 0 ? 1 : 3);
+      Journal journal(file, of(), every());
+      const int stop = attempt < 4 ? std::uniform_int_distribution(1, calls)(random) : to_the_end;
+      solved = solve(&journal, stop);
+      if (!solved) ++stops;
+      if (round == 0 && attempt == 1) {
+        // And after a kill: the file ends anywhere.
+        journal.close();
+        const auto header = static_cast<std::int64_t>(content_of(file).find("checksum: ") + 27);
+        fs::resize_file(file, static_cast<std::uintmax_t>(
+                                  std::uniform_int_distribution(header, journal.size())(random)));
+      }
+    }
+    expect_same_solve(*solved, *reference);
+  }
+  std::printf("%d progress calls, stopped %d times; the journal has %zu bytes\n", calls, stops,
+              static_cast<std::size_t>(fs::file_size(file)));
+  EXPECT_GT(stops, rounds);
+}
+
+TEST_P(Resumed, AFinishedSolveIsRecalledAsAWhole) {
+  const fs::path file = folder / "C";
+  std::optional<SolvedScene> first, second;
+  std::int64_t size = 0;
+  {
+    Journal journal(file, of(), every());
+    first = solve(&journal, to_the_end);
+    journal.close();
+    size = journal.size();
+  }
+  Journal journal(file, of(), every());
+  second = solve(&journal, to_the_end);
+  journal.close();
+  expect_same_solve(*first, *second);
+  // Marks come with time, states go where the last one was; a block would be more. Passes and
+  // states that depend on the time may be new.
+  constexpr double hour = 3600.0;
+  if (every() < hour) return;
+  EXPECT_LE(journal.size(), size + 200);
+}
+
+// Once with every state and pass kept at once, once with those that never take so long.
+INSTANTIATE_TEST_SUITE_P(Solves, Resumed,
+                         testing::Combine(testing::ValuesIn(cases), testing::Values(1e-9, 1e6)),
+                         [](const auto& each) {
+                           return std::string(std::get<0>(each.param).name) +
+                                  (std::get<1>(each.param) < 1.0 ? "AlwaysKept" : "BlocksKept");
+                         });
+
+TEST(Resume, AJournalOfAnotherSceneIsRefused) {
+  TemporaryFolder folder;
+  const Scene scene = room(false);
+  Journal journal(folder / "C", {.scene_hash = scene_hash(scene) + 1}, 1.0);
+  SolveOptions options = quick();
+  options.journal = &journal;
+  EXPECT_THROW(solve_scene(scene, options), std::invalid_argument);
+}
+
+// Options that a journal's text does not tell are in the fingerprints: nothing is taken for
+// something else.
+TEST(Resume, OtherOptionsTakeNothingFromAJournal) {
+  TemporaryFolder folder;
+  const Scene scene = room(true);
+  const Provenance of = {.scene_hash = scene_hash(scene)};
+  SolveOptions options = quick();
+  {
+    Journal journal(folder / "C", of, 1.0);
+    options.journal = &journal;
+    solve_scene(scene, options);
+  }
+  options.form_factors.emitter_points = 4;
+  options.gather.shadows.max_rays = 64;
+  options.caustic_rays = 1 << 11;
+  Journal journal(folder / "C", of, 1.0);
+  options.journal = &journal;
+  const SolvedScene found = solve_scene(scene, options);
+  options.journal = nullptr;
+  expect_same_solve(found, solve_scene(scene, options));
+}
+
+// Leaves the journal of a whole solve.
+void keep_solve(const std::filesystem::path& file, const Scene& scene, SolveOptions options) {
+  Journal journal(file, {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
+  options.journal = &journal;
+  solve_scene(scene, options);
+}
+
+// Form factors do not depend on how much surfaces reflect and lamps emit.
+TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
+  TemporaryFolder folder;
+  Scene scene = room(true);
+  SolveOptions options = quick();
+  keep_solve(folder / "C", scene, options);
+  for (Material& material : scene.materials) {
+    material.reflectance *= 0.9f;
+    material.emission *= 2.0f;
+  }
+  const auto journal = Journal::of_another_solve(folder / "C", "1");
+  const std::int64_t size = journal->size();
+  options.form_factors.journal = journal.get();
+  const SolvedScene reused = solve_scene(scene, options);
+  EXPECT_GT(journal->recalled(), 0);
+  options.form_factors.journal = nullptr;
+  expect_same_solve(reused, solve_scene(scene, options));
+  EXPECT_EQ(std::filesystem::file_size(folder / "C"), size);  // nothing was written
+
+  // Mirrors are in the form factors.
+  for (Material& material : scene.materials) material.specular *= 0.9f;
+  const auto other = Journal::of_another_solve(folder / "C", "1");
+  options.form_factors.journal = other.get();
+  solve_scene(scene, options);
+  EXPECT_EQ(other->recalled(), 0);
+}
+
+// What a mirror throws is not in form factors alone.
+TEST(Resume, AnotherMirrorTakesNothing) {
+  TemporaryFolder folder;
+  Scene scene = room(true);
+  SolveOptions options = quick();
+  keep_solve(folder / "C", scene, options);
+  for (Material& material : scene.materials) material.specular *= 0.5f;
+  const auto journal = Journal::of_another_solve(folder / "C", "1");
+  options.journal = journal.get();
+  EXPECT_THROW(solve_scene(scene, options), std::invalid_argument);
+  options.journal = nullptr;
+  options.form_factors.journal = journal.get();
+  const SolvedScene found = solve_scene(scene, options);
+  EXPECT_EQ(journal->recalled(), 0);
+  options.form_factors.journal = nullptr;
+  expect_same_solve(found, solve_scene(scene, options));
+}
+
+// Emitters are numbered by their brightness, in the journal as well.
+TEST(Resume, FormFactorsOfLampsAreNotMistakenForThoseOfOthers) {
+  TemporaryFolder folder;
+  Scene scene = test::two_lamps();
+  SolveOptions options = quick();
+  keep_solve(folder / "C", scene, options);
+  // The dimmest lamp becomes the brightest.
+  Material* dimmest = nullptr;
+  for (Material& material : scene.materials) {
+    if (!material.is_emitter()) continue;
+    if (!dimmest || material.emission.sum() < dimmest->emission.sum()) dimmest = &material;
+  }
+  dimmest->emission *= 100.0f;
+  const auto journal = Journal::of_another_solve(folder / "C", "1");
+  options.form_factors.journal = journal.get();
+  const SolvedScene reused = solve_scene(scene, options);
+  options.form_factors.journal = nullptr;
+  expect_same_solve(reused, solve_scene(scene, options));
+}
+
+TEST(Resume, AnotherSolvesJournalMustBeOfThisVersion) {
+  TemporaryFolder folder;
+  EXPECT_THROW(Journal::of_another_solve(folder / "none", "1"), InputError);
+  { Journal journal(folder / "C", {.version = "1"}, 1.0); }
+  EXPECT_THROW(Journal::of_another_solve(folder / "C", "2"), InputError);
+  {
+    Journal in_use(folder / "C", {.version = "1"}, 1.0);
+    EXPECT_THROW(Journal::of_another_solve(folder / "C", "1"), InputError);
+  }
+  const auto first = Journal::of_another_solve(folder / "C", "1");
+  const auto second = Journal::of_another_solve(folder / "C", "1");  // readers do not mind
+  EXPECT_TRUE(first->is_read_only());
+}
+
+}  // namespace
+}  // namespace lightwell

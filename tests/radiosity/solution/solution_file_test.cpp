@@ -1,0 +1,232 @@
+#include "radiosity/solution/solution_file.h"
+
+#include <gtest/gtest.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <bit>
+#include <cstring>
+#include <sstream>
+
+#include "tests/radiosity/small_solution.h"
+
+namespace lightwell {
+namespace {
+
+template <class A>
+void expect_same_bits(const A& a, const A& b, const char* what) {
+  ASSERT_EQ(a.rows(), b.rows()) << what;
+  ASSERT_EQ(a.cols(), b.cols()) << what;
+  EXPECT_EQ(0,
+            std::memcmp(a.data(), b.data(), sizeof(*a.data()) * static_cast<std::size_t>(a.size())))
+      << what;
+}
+
+void expect_same_mesh(const PatchMesh& a, const PatchMesh& b) {
+  ASSERT_EQ(a.vertex_count(), b.vertex_count());
+  ASSERT_EQ(a.elements->n_vertices(), b.elements->n_vertices());
+  ASSERT_EQ(a.elements->n_faces(), b.elements->n_faces());
+  for (int v = 0; v < a.vertex_count(); ++v) {
+    EXPECT_EQ(a.position(v), b.position(v));
+    EXPECT_EQ(a.vertex_normal[v], b.vertex_normal[v]);
+  }
+  EXPECT_EQ(a.corners, b.corners);
+  EXPECT_EQ(a.patch, b.patch);
+  EXPECT_EQ(a.twin, b.twin);
+  EXPECT_EQ(a.first_element, b.first_element);
+  EXPECT_EQ(a.surface, b.surface);
+  EXPECT_EQ(a.material, b.material);
+  EXPECT_EQ(a.facet, b.facet);
+  EXPECT_EQ(a.is_back, b.is_back);
+  expect_same_bits(a.element_area, b.element_area, "element_area");
+  expect_same_bits(a.area, b.area, "area");
+  expect_same_bits(a.reflectance, b.reflectance, "reflectance");
+  expect_same_bits(a.emission, b.emission, "emission");
+  ASSERT_EQ(a.sphere_grids.size(), b.sphere_grids.size());
+  for (std::size_t g = 0; g < a.sphere_grids.size(); ++g) {
+    EXPECT_EQ(a.sphere_grids[g].facet, b.sphere_grids[g].facet);
+    EXPECT_EQ(a.sphere_grids[g].sphere.center, b.sphere_grids[g].sphere.center);
+    EXPECT_EQ(a.sphere_grids[g].sphere.radius, b.sphere_grids[g].sphere.radius);
+    EXPECT_EQ(a.sphere_grids[g].rings, b.sphere_grids[g].rings);
+    EXPECT_EQ(a.sphere_grids[g].sectors, b.sphere_grids[g].sectors);
+    EXPECT_EQ(a.sphere_grids[g].element, b.sphere_grids[g].element);
+  }
+}
+
+void expect_same_solution(const RadiositySolution& a, const RadiositySolution& b) {
+  EXPECT_EQ(a.bands.names, b.bands.names);
+  EXPECT_EQ(a.bands.wavelengths_nm, b.bands.wavelengths_nm);
+  expect_same_bits(a.bands.xyz, b.bands.xyz, "xyz");
+  EXPECT_EQ(a.bands.lumens_per_watt, b.bands.lumens_per_watt);
+  EXPECT_EQ(a.metres_per_unit, b.metres_per_unit);
+  EXPECT_EQ(a.unit_name, b.unit_name);
+  EXPECT_EQ(a.relative_units, b.relative_units);
+  expect_same_bits(a.patch_radiosity, b.patch_radiosity, "patch_radiosity");
+  expect_same_bits(a.direct_irradiance, b.direct_irradiance, "direct_irradiance");
+  expect_same_bits(a.indirect_irradiance, b.indirect_irradiance, "indirect_irradiance");
+  expect_same_bits(a.caustic_irradiance, b.caustic_irradiance, "caustic_irradiance");
+  ASSERT_EQ(a.interpolation_error.size(), b.interpolation_error.size());
+  EXPECT_TRUE((a.interpolation_error == b.interpolation_error).all());
+  ASSERT_EQ(a.history.size(), b.history.size());
+  for (std::size_t i = 0; i < a.history.size(); ++i) {
+    EXPECT_EQ(a.history[i].residual, b.history[i].residual);
+    EXPECT_EQ(a.history[i].seconds, b.history[i].seconds);
+  }
+  EXPECT_EQ(a.outcome, b.outcome);
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(a.residual), std::bit_cast<std::uint64_t>(b.residual));
+  EXPECT_EQ(a.energy.emitted, b.energy.emitted);
+  EXPECT_EQ(a.energy.absorbed, b.energy.absorbed);
+  EXPECT_EQ(a.energy.escaped, b.energy.escaped);
+  EXPECT_EQ(a.energy.unshot, b.energy.unshot);
+  EXPECT_EQ(a.error_estimate, b.error_estimate);
+  ASSERT_EQ(a.seconds.size(), b.seconds.size());
+  for (std::size_t i = 0; i < a.seconds.size(); ++i) {
+    EXPECT_EQ(a.seconds[i].phase, b.seconds[i].phase);
+    EXPECT_EQ(a.seconds[i].seconds, b.seconds[i].seconds);
+  }
+  EXPECT_EQ(a.provenance.version, b.provenance.version);
+  EXPECT_EQ(a.provenance.scene_file, b.provenance.scene_file);
+  EXPECT_EQ(a.provenance.scene_hash, b.provenance.scene_hash);
+  EXPECT_EQ(a.provenance.options, b.provenance.options);
+  EXPECT_EQ(a.provenance.refinement, b.provenance.refinement);
+}
+
+class SolutionFileBands : public SolutionFile, public testing::WithParamInterface<int> {};
+
+TEST_P(SolutionFileBands, RestoresEveryBit) {
+  const SolvedScene solved = small_solution(GetParam());
+  write_solution(folder_ / "s.vtp", solved);
+  const SolvedScene again = read_solution(folder_ / "s.vtp");
+  expect_same_mesh(solved.mesh, again.mesh);
+  expect_same_solution(solved.solution, again.solution);
+  EXPECT_EQ(folder_.file_count(), 1) << "a temporary file was left behind";
+}
+INSTANTIATE_TEST_SUITE_P(Bands, SolutionFileBands, testing::Values(1, 3, 76, max_bands));
+
+TEST_F(SolutionFile, RestoresWhatRefinementFound) {
+  SolvedScene solved = small_solution(3);
+  solved.solution.interpolation_error =
+      Eigen::ArrayXf::LinSpaced(solved.mesh.element_count(), 0.0f, 0.3f);
+  solved.solution.provenance.refinement = "the tolerance is reached";
+  write_solution(folder_ / "s.vtp", solved);
+  expect_same_solution(solved.solution, read_solution(folder_ / "s.vtp").solution);
+}
+
+TEST_F(SolutionFile, RestoresASolutionWithoutHistoryOrSpheres) {
+  SolvedScene solved = small_solution(3);
+  solved.mesh.sphere_grids.clear();
+  solved.solution.history.clear();
+  solved.solution.seconds.clear();
+  solved.solution.provenance = {};
+  solved.solution.residual = std::numeric_limits<double>::quiet_NaN();
+  write_solution(file(), solved);
+  const SolvedScene again = read_solution(file());
+  expect_same_mesh(solved.mesh, again.mesh);
+  expect_same_solution(solved.solution, again.solution);
+}
+
+TEST_F(SolutionFile, IsPolyDataThatAnyVtkReaderOpens) {
+  const SolvedScene solved = small_solution(3);
+  write_solution(file(), solved);
+  vtkNew<vtkXMLPolyDataReader> reader;
+  EXPECT_TRUE(reader->CanReadFile(file().c_str()));
+  reader->SetFileName(file().c_str());
+  reader->Update();
+  vtkPolyData* poly = reader->GetOutput();
+  EXPECT_EQ(poly->GetNumberOfPoints(), 9);
+  EXPECT_EQ(poly->GetNumberOfPolys(), 3);
+  vtkPointData* light = poly->GetPointData();
+  ASSERT_NE(light->GetScalars(), nullptr);
+  EXPECT_STREQ(light->GetScalars()->GetName(), "rgb");
+  EXPECT_EQ(light->GetScalars()->GetDataType(), VTK_UNSIGNED_CHAR);
+  for (const char* name : {"irradiance", "direct_irradiance", "indirect_irradiance", "radiosity"}) {
+    ASSERT_NE(light->GetArray(name), nullptr) << name;
+    EXPECT_EQ(light->GetArray(name)->GetNumberOfComponents(), 3) << name;
+    EXPECT_EQ(light->GetArray(name)->GetComponentName(0), std::string("__a_ _ _b__")) << name;
+    EXPECT_STREQ(light->GetArray(name)->GetComponentName(2), "b") << name;
+  }
+  for (const char* name : {"patch", "twin", "surface", "material", "facet", "area"}) {
+    EXPECT_NE(poly->GetCellData()->GetArray(name), nullptr) << name;
+  }
+}
+
+/// E = 100 W/m^2 in every RGB band is 100 * 683 lx, because the luminance weights sum to 1; and a
+/// grey vertex must look grey.
+TEST_F(SolutionFile, HoldsIlluminanceInLuxAndColorsForDisplay) {
+  SolvedScene solved = small_solution(3);
+  solved.solution.bands = rgb_bands();
+  solved.mesh.emission.setZero();
+  solved.solution.direct_irradiance.setConstant(75.0f);
+  solved.solution.indirect_irradiance.setConstant(25.0f);
+  write_solution(file(), solved);
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file().c_str());
+  reader->Update();
+  vtkPointData* light = reader->GetOutput()->GetPointData();
+  // The three weights are rounded to float, each to half a unit in the last place.
+  EXPECT_NEAR(light->GetArray("illuminance_lux")->GetComponent(0, 0), 68300.0, 68300.0 * 2e-7);
+  // Every surface at the mean: x = 1/2, so x/(1+x) = 1/3, in sRGB 1.055 (1/3)^(1/2.4) - 0.055 =
+  // 0.6125, and that is 156.2 of 255.
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(light->GetScalars()->GetComponent(4, c), 156.0);
+}
+
+TEST_F(SolutionFile, BeginsWithTextForPeople) {
+  write_solution(file(), small_solution(3));
+  std::istringstream start(contents(file()).substr(0, 600));
+  std::string line;
+  std::getline(start, line);
+  EXPECT_EQ(line, "<?lightwell-solution format=\"1\"");
+  EXPECT_NE(start.str().find("2 patches, 3 elements, 9 vertices"), std::string::npos);
+  EXPECT_NE(start.str().find("options: solve --accuracy 1%"), std::string::npos);
+}
+
+TEST_F(SolutionFile, SaysWhetherItsLightIsInWatts) {
+  SolvedScene solved = small_solution(3);
+  for (const bool is_relative : {false, true}) {
+    solved.solution.relative_units = is_relative;
+    write_solution(file(), solved);
+    EXPECT_EQ(read_solution(file()).solution.relative_units, is_relative);
+    const std::string start = contents(file()).substr(0, 800);
+    EXPECT_EQ(start.find("energy: 100 W emitted") == std::string::npos, is_relative) << start;
+    EXPECT_EQ(start.find("energy: 100 (no known unit) emitted") != std::string::npos, is_relative);
+  }
+}
+
+TEST_F(SolutionFile, AFailedWriteNamesTheFileAndKeepsTheOldOne) {
+  const SolvedScene solved = small_solution(3);
+  try {
+    write_solution(folder_ / "absent" / "s.vtp", solved);
+    FAIL() << "wrote into a folder that does not exist";
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("absent/s.vtp'"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find(std::strerror(ENOENT)), std::string::npos) << e.what();
+  }
+  fs::create_directories(file() / "occupied");
+  EXPECT_THROW(write_solution(file(), solved), std::runtime_error);
+  EXPECT_EQ(folder_.file_count(), 1) << "a temporary file was left behind";
+}
+
+TEST_F(SolutionFile, ASolutionOfAnotherSceneIsRefused) {
+  Scene scene;
+  scene.file = "mine.toml";
+  scene.materials.push_back({.name = "m", .reflectance = constant_spectrum(scene.bands, 0.5f)});
+  RadiositySolution s;
+  s.provenance.scene_file = "other.toml";
+  s.provenance.scene_hash = scene_hash(scene);
+  EXPECT_NO_THROW(check_matches(scene, s));
+  scene.materials[0].reflectance[1] = 0.6f;
+  try {
+    check_matches(scene, s);
+    FAIL() << "accepted a solution for other materials";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("other.toml"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("mine.toml"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <functional>
+
+#include "radiosity/solution/solution_file.h"
+#include "radiosity/solution/solution_seal.h"
+#include "tests/radiosity/small_solution.h"
+
+namespace lightwell {
+namespace {
+
+using SolutionSeal = SolutionFile;
+
+void put(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// What read_solution says about a file it must refuse; also checks that it is the only one to
+/// speak.
+std::string refusal(const fs::path& path) {
+  testing::internal::CaptureStderr();
+  std::string message;
+  try {
+    read_solution(path);
+  } catch (const InputError& e) {
+    message = e.what();
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  if (!message.empty()) {
+    EXPECT_NE(message.find(path.string()), std::string::npos) << message;
+  }
+  return message;
+}
+
+void expect_refused(const fs::path& path, const std::string& reason) {
+  const std::string message = refusal(path);
+  EXPECT_NE(message.find(reason), std::string::npos) << "message: '" << message << "'";
+}
+
+TEST_F(SolutionSeal, TornFilesAreRefusedWhereverTheyEnd) {
+  write_solution(file(), small_solution(3));
+  const std::string whole = contents(file());
+  for (std::size_t length = 0; length < whole.size(); length += length < 100 ? 7 : 97) {
+    put(file("torn.vtp"), whole.substr(0, length));
+    const std::string message = refusal(file("torn.vtp"));
+    EXPECT_NE(message, "") << length << " of " << whole.size() << " bytes were accepted";
+  }
+  put(file("torn.vtp"), whole.substr(0, whole.size() / 2));
+  expect_refused(file("torn.vtp"), "torn");
+}
+
+TEST_F(SolutionSeal, OneChangedByteIsNoticedAnywhere) {
+  write_solution(file(), small_solution(3));
+  const std::string whole = contents(file());
+  for (std::size_t at = 0; at < whole.size(); at += 53) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    put(file("changed.vtp"), changed);
+    EXPECT_NE(refusal(file("changed.vtp")), "") << "byte " << at;
+  }
+}
+
+TEST_F(SolutionSeal, ForeignFilesAreRefusedWithTheReason) {
+  expect_refused(file("none.vtp"), "no such file");
+  expect_refused(folder_.path(), "folder");
+  put(file("empty.vtp"), "");
+  expect_refused(file("empty.vtp"), "empty");
+  put(file("scene.toml"), "[camera]\nposition = [0, 0, 0]\n");
+  expect_refused(file("scene.toml"), "not a Lightwell solution");
+  put(file("noise.vtp"), std::string(5000, '\xff'));
+  expect_refused(file("noise.vtp"), "not a Lightwell solution");
+  put(file("other.vtp"), "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\"></VTKFile>\n");
+  expect_refused(file("other.vtp"), "did not write");
+  put(file("newer.vtp"), "<?lightwell-solution format=\"2\"\n?>\n<VTKFile/>\n");
+  expect_refused(file("newer.vtp"), "solution format 2");
+}
+
+/// Someone who knows the format seals a file again after a change: its numbers are still checked.
+class ResealedSolution : public SolutionFile {
+ protected:
+  fs::path changed(const std::function<void(vtkPolyData*)>& change) {
+    write_solution(file(), small_solution(3));
+    vtkNew<vtkXMLPolyDataReader> reader;
+    reader->SetFileName(file().c_str());
+    reader->Update();
+    change(reader->GetOutput());
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    writer->SetInputData(reader->GetOutput());
+    writer->SetFileName(file("changed.vtp").c_str());
+    writer->SetEncodeAppendedData(0);
+    writer->Write();
+    put(file("changed.vtp"), solution_preamble("") + contents(file("changed.vtp")));
+    seal_solution(file("changed.vtp"));
+    return file("changed.vtp");
+  }
+  void expect_refused_after(const std::function<void(vtkPolyData*)>& change,
+                            const std::string& reason) {
+    expect_refused(changed(change), reason);
+  }
+};
+
+TEST_F(ResealedSolution, LightIsInWattsWhereAnOldFileDoesNotSay) {
+  const fs::path old = changed([](vtkPolyData* p) { p->GetFieldData()->RemoveArray("light"); });
+  EXPECT_FALSE(read_solution(old).solution.relative_units);
+}
+
+TEST_F(ResealedSolution, IndicesOutOfRangeAreRefused) {
+  const auto set = [](vtkFieldData* data, const char* name, vtkIdType row, double value) {
+    data->GetArray(name)->SetComponent(row, 0, value);
+  };
+  using Poly = vtkPolyData*;
+  expect_refused_after([&](Poly p) { set(p->GetCellData(), "twin", 0, 3); }, "'twin' holds 3");
+  expect_refused_after([&](Poly p) { set(p->GetCellData(), "patch", 2, -1); }, "'patch' holds -1");
+  expect_refused_after([&](Poly p) { set(p->GetCellData(), "patch", 2, 0); }, "whose elements");
+  expect_refused_after([&](Poly p) { set(p->GetCellData(), "area", 1, 0.0); }, "not positive");
+  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "patch_material", 0, -4); },
+                       "'patch_material' holds -4");
+  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "patch_first_element", 1, 9); },
+                       "does not divide");
+  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "sphere_element", 1, 12); },
+                       "'sphere_element' holds 12");
+  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "sphere_facet_rings_sectors", 1, -5); },
+                       "sphere grid 1");
+  expect_refused_after([&](Poly p) { set(p->GetFieldData(), "outcome", 0, 7); },
+                       "'outcome' holds 7");
+  expect_refused_after(
+      [&](Poly p) { p->GetPolys()->GetConnectivityArray()->SetComponent(2, 0, 9); },
+      "names point 9 of 9");
+  expect_refused_after(
+      [&](Poly p) { p->GetPolys()->GetConnectivityArray()->SetComponent(2, 0, 0); }, "twice");
+  expect_refused_after(
+      [&](Poly p) {
+        vtkNew<vtkCellArray> pentagon_first;
+        pentagon_first->InsertNextCell({0, 1, 4, 2, 3});
+        pentagon_first->InsertNextCell({1, 4, 2});
+        pentagon_first->InsertNextCell({5, 6, 7, 8});
+        p->SetPolys(pentagon_first);
+      },
+      "polygon 0 has neither 3 nor 4");
+}
+
+TEST_F(ResealedSolution, MissingArraysAreNamed) {
+  for (const char* name : {"patch_area", "patch_radiosity", "scene_hash",
+                           "energy_emitted_absorbed_"
+                           "escaped_unshot"}) {
+    expect_refused_after([&](vtkPolyData* p) { p->GetFieldData()->RemoveArray(name); }, name);
+  }
+  for (const char* name : {"direct_irradiance", "normal"}) {
+    expect_refused_after([&](vtkPolyData* p) { p->GetPointData()->RemoveArray(name); }, name);
+  }
+  expect_refused_after([](vtkPolyData* p) { p->Initialize(); }, "cannot read");
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,136 @@
+#include "radiosity/visibility/clear_panes.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "mesh/build_patches.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/gather/final_gather.h"
+#include "radiosity/paths/caustic_photons.h"
+#include "scene/optics.h"
+#include "tests/radiosity/test_scenes.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr float index_of_glass = 1.5f;
+constexpr double half_lamp = 1e-3;
+
+Material pane(const Bands& bands, float roughness = 0.0f) {
+  Material material = test::clear_glass(bands);
+  material.dielectric->thin = true;
+  material.dielectric->roughness = roughness;
+  material.dielectric->tint << 0.9f, 0.5f, 1.0f;
+  return material;
+}
+
+void add_square(Scene& scene, const Material& material, double z, double half, bool down = false) {
+  const double x = down ? -half : half;
+  test::add_polygon(scene, "square " + std::to_string(scene.surfaces.size()),
+                    test::add_material(scene, material),
+                    {{-x, -half, z}, {x, -half, z}, {x, half, z}, {-x, half, z}});
+}
+
+// A small lamp 2 m over a floor.
+Scene lamp_over_floor() {
+  Scene scene;
+  add_square(scene, test::diffuse(scene.bands, 0.5f), 0.0, 4.0);
+  add_square(scene, test::diffuse(scene.bands, 0.0f, 1e6f), 2.0, half_lamp, true);
+  return scene;
+}
+
+struct Lit {
+  Scene scene;
+  PatchMesh mesh = build_patches(scene, {.max_patch_size = 1.0});
+  ElementCaster caster{mesh};
+  DirectLight light{scene, mesh};
+
+  Spectrum at(double x, EmitterSight* sight = nullptr) const {
+    return light.irradiance(caster, {x, 0.0, 0.0}, Vector3d::UnitZ(), 0, 1, {}, sight);
+  }
+};
+
+// What one pane leaves at the angle under which a place x from below sees the lamp.
+double passed(double x) {
+  const double cosine = 2.0 / std::hypot(2.0, x);
+  return 1.0 - pane_reflectance(cosine, double{index_of_glass});
+}
+
+class BehindPanes : public testing::TestWithParam<int> {};
+
+TEST_P(BehindPanes, LightOfALampIsWhatTheyPass) {
+  const Lit bare{lamp_over_floor()};
+  Scene scene = lamp_over_floor();
+  for (int i = 0; i < GetParam(); ++i) add_square(scene, pane(scene.bands), 0.5 + 0.3 * i, 4.0);
+  const Lit lit{scene};
+  for (const double x : {0.0, 1.0, 3.0}) {
+    const Spectrum without = bare.at(x);
+    EmitterSight sight;
+    const Spectrum with = lit.at(x, &sight);
+    for (int k = 0; k < 3; ++k) {
+      const double tint = double{pane(scene.bands).dielectric->tint[k]};
+      const double expected =
+          double{without[k]} * std::pow(passed(x) * tint, static_cast<double>(GetParam()));
+      // The lamp is a millimetre wide: the angle differs by 5e-4 over it. Floats.
+      EXPECT_NEAR(double{with[k]}, expected, 1e-3 * expected);
+    }
+    EXPECT_EQ(sight.whole, 1u);
+    EXPECT_EQ(sight.hidden, 0u);
+    EXPECT_EQ(sight.noisy, 0.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Panes, BehindPanes, testing::Values(1, 2, 5));
+
+TEST(ClearPanes, WhatIsBehindOrBeforeThemStillHidesALamp) {
+  for (const double z : {0.2, 1.5}) {
+    Scene scene = lamp_over_floor();
+    add_square(scene, pane(scene.bands), 1.0, 4.0);
+    add_square(scene, test::diffuse(scene.bands, 0.5f), z, 0.5);
+    const Lit lit{scene};
+    EmitterSight sight;
+    EXPECT_EQ(lit.at(0.0, &sight).maxCoeff(), 0.0f);
+    EXPECT_EQ(sight.hidden, 1u);
+    EXPECT_GT(lit.at(3.0).minCoeff(), 0.0f);
+  }
+}
+
+TEST(ClearPanes, RoughPanesAndBodiesOfGlassAreNone) {
+  Scene scene = lamp_over_floor();
+  add_square(scene, pane(scene.bands, 0.1f), 1.0, 4.0);
+  EXPECT_TRUE(ClearPanes(scene).empty());
+  EXPECT_EQ(Lit{scene}.at(0.0).maxCoeff(), 0.0f);
+  Scene thick = lamp_over_floor();
+  add_square(thick, test::clear_glass(thick.bands), 1.0, 4.0);
+  EXPECT_TRUE(ClearPanes(thick).empty());
+}
+
+// Light that goes straight through is direct light, and is not a caustic as well: below the pane
+// nothing of it is left for photons, or for the solve's rays; above there is what it reflects.
+TEST(ClearPanes, WhatTheyPassIsNoCaustic) {
+  Scene scene = lamp_over_floor();
+  add_square(scene, pane(scene.bands), 1.0, 4.0);
+  add_square(scene, test::diffuse(scene.bands, 0.5f), 3.0, 4.0, true);  // ceiling
+  const Lit lit{scene};
+  const auto photons = shoot_photons(scene, lit.caster, lit.light, 1 << 14, 8);
+  ASSERT_GT(photons.count(), 0u);
+  double reflected = 0.0;
+  for (std::size_t i = 0; i < photons.count(); ++i) {
+    EXPECT_NEAR(photons.position[i].z(), 3.0, 1e-5);
+    reflected += double{photons.power(static_cast<Eigen::Index>(i), 0)};
+  }
+  EXPECT_GT(reflected, 0.0);
+  const BandArray E = caustic_irradiance(scene, lit.caster, lit.light, 1 << 14, 8);
+  for (int v = 0; v < lit.mesh.vertex_count(); ++v) {
+    if (lit.mesh.position(v).z() < 0.5) {
+      EXPECT_EQ(E.row(v).maxCoeff(), 0.0f);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lightwell
