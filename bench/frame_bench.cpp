@@ -29,9 +29,9 @@
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
 #include "radiosity/solution/relight.h"
-#include "viewer/appearance.h"
-#include "viewer/walk_window.h"
-#include "viewer/x_display.h"
+#include "viewer/export/appearance.h"
+#include "viewer/window/walk_window.h"
+#include "viewer/window/x_display.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "viewer/export.h"
+#include "viewer/export/export.h"
 
 #include <fmt/format.h>
 

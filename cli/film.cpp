@@ -14,7 +14,7 @@
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
 #ifdef LIGHTWELL_VIEWER
-#include "viewer/legend.h"
+#include "viewer/window/legend.h"
 #endif
 
 namespace lightwell {

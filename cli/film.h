@@ -11,7 +11,7 @@
 #include "raytrace/image.h"
 #include "raytrace/layers.h"
 #include "scene/scene.h"
-#include "viewer/appearance.h"
+#include "viewer/export/appearance.h"
 
 namespace lightwell {
 

@@ -20,8 +20,8 @@
 #include "scene/io/lighting_design.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
-#include "viewer/start_view.h"
-#include "viewer/write_whole.h"
+#include "viewer/export/start_view.h"
+#include "viewer/export/write_whole.h"
 
 namespace lightwell {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "raytrace/glare.h"
 #include "raytrace/lux_grid.h"
-#include "viewer/appearance.h"
+#include "viewer/export/appearance.h"
 
 namespace lightwell {
 

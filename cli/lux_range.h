@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "viewer/appearance.h"
+#include "viewer/export/appearance.h"
 
 namespace lightwell {
 

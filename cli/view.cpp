@@ -16,8 +16,8 @@
 #include "radiosity/solution/relight.h"
 #include "scene/errors.h"
 #ifdef LIGHTWELL_VIEWER
-#include "viewer/camera_path.h"
-#include "viewer/view.h"
+#include "viewer/window/camera_path.h"
+#include "viewer/window/view.h"
 #endif
 
 namespace lightwell {

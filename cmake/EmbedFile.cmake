@@ -7,7 +7,7 @@ string(REGEX REPLACE "([0-9a-f][0-9a-f])" "\\\\x\\1" bytes "${bytes}")
 file(SIZE ${INPUT} size)
 get_filename_component(file ${INPUT} NAME)
 file(WRITE ${OUTPUT} "// Made from ${file}.
-#include \"viewer/web_files.h\"
+#include \"viewer/export/web_files.h\"
 
 namespace lightwell::web {
 const std::string_view ${NAME}(

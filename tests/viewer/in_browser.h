@@ -12,7 +12,7 @@
 #include <string>
 
 #include "tests/temporary_folder.h"
-#include "viewer/export.h"
+#include "viewer/export/export.h"
 
 namespace lightwell {
 

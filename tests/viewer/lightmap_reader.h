@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "viewer/lightmap.h"
+#include "viewer/export/lightmap.h"
 
 namespace lightwell {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solved_box.h"
+#include "tests/viewer/solved_box.h"
 
 namespace lightwell {
 

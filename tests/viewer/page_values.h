@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "viewer/page_data.h"
+#include "viewer/export/page_data.h"
 
 namespace lightwell {
 

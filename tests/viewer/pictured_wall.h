@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lit_sides.h"
 #include "tests/pictures.h"
+#include "tests/viewer/lit_sides.h"
 
 namespace lightwell {
 

@@ -1,0 +1,201 @@
+// Light channels in baked models and in the data of a walkthrough page.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tests/viewer/channel_room.h"
+#include "tests/viewer/lit_sides.h"
+#include "tests/viewer/page_values.h"
+#include "viewer/export/appearance.h"
+#include "viewer/export/export.h"
+
+namespace lightwell {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A basis as a page unpacks it.
+struct Basis {
+  std::vector<float> radiance, illuminance;
+  std::vector<float> weight;
+  float largest_radiance = 0.0f, largest_illuminance = 0.0f;  // in size
+};
+
+std::vector<float> halves_at(const PageData& page, const Json& place, std::size_t count) {
+  const float scale = place["scale"];
+  std::vector<float> values;
+  for (const std::uint16_t bits : values_at<std::uint16_t>(page, place, count)) {
+    values.push_back(scale * half_to_float(bits));
+  }
+  return values;
+}
+
+std::vector<Basis> bases_of(const PageData& page, std::size_t vertices, std::size_t components) {
+  std::vector<Basis> bases;
+  for (const Json& about : page.about["bases"]) {
+    EXPECT_EQ(about["illuminance"]["components"], components);
+    Basis basis{.radiance = halves_at(page, about["radiance"], 3 * vertices),
+                .illuminance = halves_at(page, about["illuminance"], components * vertices),
+                .weight = about["weight"].get<std::vector<float>>()};
+    for (const float L : basis.radiance) {
+      basis.largest_radiance = std::max(basis.largest_radiance, std::abs(L));
+    }
+    basis.largest_illuminance = *std::ranges::max_element(basis.illuminance);
+    bases.push_back(std::move(basis));
+  }
+  return bases;
+}
+
+/// Half floats keep each value to 2^-11 of itself, or of a 2^-29th of the largest of its array
+/// (2^-14 of the 2^15 that the largest becomes). Where no part is negative sums keep it too;
+/// some ten roundings of floats besides.
+double bound(double sum, double largest) {
+  return sum * (std::exp2(-11.0) + 1e-6) + largest * std::exp2(-40.0);
+}
+
+int mesh_vertex(const BakedModel& model, const PatchMesh& mesh, int face, int vertex) {
+  const int e = model.element[static_cast<std::size_t>(face)];
+  for (int c = 0; c < mesh.corner_count(e); ++c) {
+    const int v = mesh.corners[e][c];
+    if (mesh.position(v) == model.position[static_cast<std::size_t>(vertex)]) return v;
+  }
+  ADD_FAILURE() << "vertex " << vertex << " is no corner of element " << e;
+  return 0;
+}
+
+/// The bases with their weights are the light of `wanted`.
+void expect_sum(const std::vector<Basis>& bases, const BakedModel& model, const SolvedScene& wanted,
+                const std::vector<Material>& materials) {
+  const Bands& bands = wanted.solution.bands;
+  const BandArray radiance = shown_radiance(wanted, materials), E = wanted.solution.irradiance();
+  const auto check = [&](int i, int v) {
+    Eigen::Array3d L = Eigen::Array3d::Zero();
+    double lux = 0.0, brightest = 0.0, brightest_lux = 0.0;
+    for (const Basis& basis : bases) {
+      const std::size_t columns = basis.illuminance.size() / model.position.size();
+      for (int k = 0; k < 3; ++k) L[k] += basis.weight[k] * basis.radiance[3 * i + k];
+      for (std::size_t k = 0; k < columns; ++k) {
+        lux += basis.weight[k] * basis.illuminance[columns * i + k];
+        brightest_lux += basis.weight[k] * basis.largest_illuminance;
+      }
+      brightest += *std::ranges::max_element(basis.weight) * basis.largest_radiance;
+    }
+    const Eigen::Array3f rgb = linear_rgb(bands, radiance.row(v).transpose());
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(L[k], rgb[k], bound(std::abs(rgb[k]), brightest)) << i;
+    }
+    const double expected = luminous(bands, E.row(v).transpose());
+    EXPECT_NEAR(lux, expected, bound(expected, brightest_lux)) << i;
+  };
+  for (int f = 0; f < model.face_count(); ++f) {
+    for (int c = 0; c < model.corner_count(f); ++c) {
+      const int i = model.faces[static_cast<std::size_t>(f)][c];
+      check(i, mesh_vertex(model, wanted.mesh, f, i));
+    }
+  }
+}
+
+const LuxRange any_range{.low = 0.0, .high = 1000.0};
+
+class LightChannels : public testing::Test {
+ protected:
+  SolvedScene relit(const char* desk, const char* panel) const {
+    return lightwell::relit(solved, {desk, panel});
+  }
+  const Scene scene = channel_room();
+  const SolvedScene solved = solve_by_channel(scene);
+};
+
+/// What is embedded adds up to relight()'s light, lamps seen directly and mirrors included.
+TEST_F(LightChannels, AddUpWithTheScalesInForce) {
+  const SolvedScene dim = relit("0.25", "1.5,#ff4020");
+  const BakedModel model = bake_model(dim, scene);
+  const PageData page = page_data(model, any_range);
+  const auto bases = bases_of(page, model.position.size(), 3);
+  ASSERT_EQ(bases.size(), 2u);
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_EQ(page.about["bases"][c]["name"], dim.solution.channels[c].name);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(bases[c].weight[k], dim.solution.channels[c].scale[k]);
+    }
+  }
+  expect_sum(bases, model, dim, scene.materials);
+}
+
+/// Light of a lamp that was off when the file was written is all there.
+TEST_F(LightChannels, AddUpWithOtherWeightsToTheSceneRelit) {
+  const BakedModel model = bake_model(relit("off", "0.1"), scene);
+  auto bases = bases_of(page_data(model, any_range), model.position.size(), 3);
+  const SolvedScene wanted = relit("2,#8080ff", "0.7,#ffe0b0");
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Spectrum& scale = wanted.solution.channels[c].scale;
+    bases[c].weight.assign(scale.begin(), scale.end());
+  }
+  expect_sum(bases, model, wanted, scene.materials);
+}
+
+/// The flux that a colour has to keep: emitted_flux at a scale of 1.
+TEST_F(LightChannels, LumensAreThoseOfTheLamps) {
+  const PageData page = page_data(bake_model(relit("0.3", "off"), scene), any_range);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const auto lumens = page.about["bases"][c]["lumens"].get<std::vector<double>>();
+    ASSERT_EQ(lumens.size(), 3u);
+    const double flux = luminous(rgb_bands(), emitted_flux(solved.solution.channels[c]));
+    EXPECT_NEAR(lumens[0] + lumens[1] + lumens[2], flux, 1e-6 * flux);
+  }
+}
+
+/// Bands of wavelength have one weight. A scale that is uneven between them is kept by the light.
+TEST(SpectralChannels, KeepAnUnevenScale) {
+  Scene scene;
+  scene.bands = spectral_bands(420.0, 680.0, 4);
+  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, {wall, wall, wall, wall, wall, wall}, true);
+  const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.1f, 10.0f));
+  test::add_polygon(scene, "lamp", lamp,
+                    {{0.5, 0.5, 1.9}, {0.5, 1.5, 1.9}, {1.5, 1.5, 1.9}, {1.5, 0.5, 1.9}});
+  SolvedScene solved = solve_by_channel(scene);
+  const Spectrum scale = (Spectrum(4) << 0.4f, 0.2f, 0.0f, 0.1f).finished();
+  relight(solved, {&scale, 1});
+  const BakedModel model = bake_model(solved, scene);
+  const auto bases = bases_of(page_data(model, any_range), model.position.size(), 1);
+  ASSERT_EQ(bases.size(), 1u);
+  EXPECT_EQ(bases[0].weight, (std::vector<float>{0.4f, 0.4f, 0.4f}));
+  expect_sum(bases, model, solved, scene.materials);
+}
+
+/// A side that only an extinguished lamp lights is part of the model, so that it can be lit there.
+TEST(ChannelsThatAreOff, StillCountAsLight) {
+  SolvedScene square = square_of_two_sides(white, dark);
+  RadiositySolution& s = square.solution;
+  s.full_emission = BandArray::Zero(2, 3);
+  s.patch_channel = {-1, -1};
+  EXPECT_EQ(bake_model(square, {}).face_count(), 1);
+  for (int side = 0; side < 2; ++side) {
+    BandArray E = BandArray::Zero(8, 3);
+    E.middleRows(4 * side, 4) = 2.0f;
+    s.channels.push_back({.name = side == 0 ? "before" : "behind",
+                          .scale = Spectrum::Constant(3, side == 0 ? 1.0f : 0.0f),
+                          .patch_radiosity = BandArray::Zero(2, 3),
+                          .direct_irradiance = E,
+                          .indirect_irradiance = BandArray::Zero(8, 3),
+                          .energy = BandEnergy::Ones(4, 3)});
+  }
+  const BakedModel model = bake_model(square, {});
+  EXPECT_EQ(model.face_count(), 2);
+  EXPECT_EQ(model.black_behind, (std::vector<std::uint8_t>{0, 0}));
+  EXPECT_EQ(model.radiance.maxCoeff(), 2.0f / std::numbers::pi_v<float>);  // the sum in force
+}
+
+/// Without channels a page is what it was: one basis, and no weight.
+TEST(ChannelsThatAreNotKept, LeaveOneBasis) {
+  const PageData page = page_data(bake_model(solved_box(), box_scene()), any_range);
+  ASSERT_EQ(page.about["bases"].size(), 1u);
+  EXPECT_FALSE(page.about["bases"][0].contains("weight"));
+  EXPECT_FALSE(page.about["bases"][0]["illuminance"].contains("components"));
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,391 @@
+#include "viewer/export/lightmap.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "raytrace/probe.h"
+#include "scene/errors.h"
+#include "scene/parallel.h"
+#include "tests/raytrace/lit_scene.h"
+#include "tests/temporary_folder.h"
+#include "tests/viewer/lightmap_reader.h"
+#include "tests/viewer/lit_sides.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+SolvedScene solved_of(const LitScene& lit) {
+  return {lit.mesh, lit.solution};
+}
+
+/// A room with a block and a ball in it, and light that varies smoothly from place to place.
+const LitScene& furnished() {
+  static const auto lit = [] {
+    const Paint paint{.reflectance = 0.5f, .one_sided = true};
+    auto scene = std::make_unique<LitScene>(SceneBuilder()
+                                                .box(paint, {0, 0, 0}, {4, 3, 2.5}, true)
+                                                .box(paint, {1, 1, 0}, {1.6, 1.5, 0.7}, false)
+                                                .sphere(paint, {2.8, 1.4, 0.5}, 0.4)
+                                                .build(),
+                                            0.5);
+    scene->set_direct([](const Vector3d& p) {
+      return static_cast<float>(5.0 + std::sin(1.3 * p.x()) + std::cos(1.7 * p.y()) * p.z());
+    });
+    return scene;
+  }();
+  return *lit;
+}
+
+/// Light that is bilinear over each wall of a box: a bilinear filter of samples of it is itself,
+/// on the border too, where what lies beyond goes on as steeply. Beyond a corner the product of
+/// both slopes s t keeps its sign where it should not: two half texels off the corner that is
+/// 2 (d/2)^2 of it, of which a filter in the corner's texel takes at most a quarter.
+TEST(Lightmap, BilinearLightIsReadAsItIs) {
+  SolvedQuads quads;
+  const auto light = [](float a) { return Eigen::Array3f(a, 2.0f * a, 1.0f); };
+  const std::array<Eigen::Array3f, 4> corners = {light(1), light(2), light(5), light(3)};
+  quads.add({{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}}}, corners);
+  quads.add({{{0, 0, 1}, {0, 1, 1}, {3, 1, 1}, {3, 0, 1}}}, corners);
+  const SolvedScene solved = quads.solved();
+  const BakedModel model = bake_model(solved, {});
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = 64});
+  const LightmapReader reader(layout, model, solved);
+  for (int f = 0; f < model.face_count(); ++f) {
+    const ChartPlace& place = layout.place[reader.chart_of(f)];
+    // (1 - 2 + 5 - 3) = 1 is the slopes' product over the whole quad; light(a) doubles it.
+    const double at_corner = 0.25 * 2.0 * 2.0 * 0.25 / (place.width * place.height);
+    for (int i = 0; i < 500; ++i) {
+      const Eigen::Vector2d uv = spread(i);
+      const auto weights = corner_weights(model, f, uv.x(), uv.y());
+      const Eigen::ArrayXf read = reader.irradiance(f, weights);
+      for (int k = 0; k < 3; ++k) {
+        double E = 0.0;
+        for (int c = 0; c < 4; ++c) E += weights[c] * model.irradiance(model.faces[f][c], k);
+        EXPECT_NEAR(read[k], E, at_corner + 1e-5) << uv.transpose();
+      }
+    }
+  }
+}
+
+/// RMS over the room of what a filter reads less what the solution has, relative.
+double reading_error(const LitScene& lit, int size) {
+  const SolvedScene solved = solved_of(lit);
+  const BakedModel model = bake_model(solved, lit.scene);
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = size});
+  const LightmapReader reader(layout, model, solved);
+  std::vector<Probe> probes;
+  std::vector<float> read;
+  for (int f = 0; f < model.face_count(); ++f) {
+    const bool is_ball = layout.charts[reader.chart_of(f)].sphere >= 0;
+    if (is_ball) continue;  // its faces are flat here and round where probes lie
+    const Eigen::Vector2d uv = spread(f);
+    const auto weights = corner_weights(model, f, uv.x(), uv.y());
+    Vector3d at = Vector3d::Zero();
+    for (int c = 0; c < model.corner_count(f); ++c) {
+      at += weights[c] * model.position[model.faces[f][c]];
+    }
+    if (!(model.irradiance(model.faces[f][0], 0) > 0.0f)) continue;
+    probes.push_back({at, element_center(solved.mesh, model.element[f]).normal});
+    read.push_back(reader.irradiance(f, weights)[0]);
+  }
+  const BandArray E = interpolate_irradiance(lit.caster, lit.solution, probes);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const double off = read[i] / E(static_cast<Eigen::Index>(i), 0) - 1.0;
+    sum += off * off;
+  }
+  EXPECT_GT(read.size(), 200u);
+  return std::sqrt(sum / static_cast<double>(read.size()));
+}
+
+/// A filter errs only where elements meet in a kink, by at most an eighth of a texel times what the
+/// slope jumps there. That is light's second derivative, at most 7.2 W/m^4, times an element of
+/// 0.25 m; a texel is about 0.04 m, and light 1.5 to 8.5 W/m^2: 0.6 % at the very most. Half the
+/// texel errs half as much in half as many places: by 2^-1.5 in the mean of squares.
+TEST(Lightmap, ReadsWhatProbesReadAndBetterWithMoreTexels) {
+  const double coarse = reading_error(furnished(), 256), fine = reading_error(furnished(), 512);
+  EXPECT_LT(coarse, 0.006);
+  EXPECT_LT(fine, 0.6 * coarse);
+}
+
+/// Of one chart: E times the area that its texels stand for.
+double power(const LightmapLayout& layout, const LightmapAtlas& atlas, std::size_t c,
+             const SolvedScene& solved) {
+  const LightmapChart& chart = layout.charts[c];
+  const ChartPlace& place = layout.place[c];
+  const double texel = chart.size.x() * chart.size.y() / (place.width * place.height);
+  double sum = 0.0;
+  for (int y = place.y; y < place.y + place.height; ++y) {
+    // On a sphere, rows towards the poles stand for less.
+    double area = texel;
+    if (chart.sphere >= 0) {
+      const double r = solved.mesh.sphere_grids[chart.sphere].sphere.radius;
+      const double theta = (y + 0.5 - place.y) / place.height * std::numbers::pi;
+      area = std::sin(theta) * 2.0 * std::numbers::pi * std::numbers::pi * r * r /
+             (place.width * place.height);
+    }
+    for (int x = place.x; x < place.x + place.width; ++x) {
+      const Eigen::Index i = static_cast<Eigen::Index>(y) * layout.size + x;
+      if (atlas.face[static_cast<std::size_t>(i)] >= 0) sum += area * atlas.irradiance(i, 0);
+    }
+  }
+  return sum;
+}
+
+/// The midpoint rule over texels, against the solution's own mean over its elements: a corner's
+/// mean is exact for parallelograms and triangles, and off by a share of the square of an element's
+/// angle, (0.25 / 0.4)^2 / 24 = 1.6 % of a sphere's ups and downs, on the ball.
+TEST(Lightmap, TexelsTimesAreaAreThePowerOnAllSurfaces) {
+  const SolvedScene solved = solved_of(furnished());
+  const BakedModel model = bake_model(solved, furnished().scene);
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = 512});
+  const LightmapReader reader(layout, model, solved);
+  const BandArray mean = element_mean(solved.mesh, solved.solution.irradiance());
+  double texels = 0.0, elements = 0.0;
+  for (std::size_t c = 0; c < layout.charts.size(); ++c) {
+    texels += power(layout, reader.atlases[0], c, solved);
+  }
+  for (const int e : model.element) elements += mean(e, 0) * solved.mesh.element_area[e];
+  EXPECT_NEAR(texels / elements, 1.0, 0.002);
+}
+
+/// Walls of one light each: every texel of a chart and of its padding has that of its wall, so
+/// nothing bleeds in from a neighbour or from the dark.
+TEST(Lightmap, PaddingHasTheLightOfItsChart) {
+  const SolvedScene solved = solved_box();
+  const BakedModel model = bake_model(solved, box_scene());
+  constexpr int padding = 6;
+  const LightmapLayout layout =
+      lay_out_lightmap(model, solved.mesh, {.size = 128, .padding = padding});
+  ASSERT_EQ(layout.charts.size(), 5u);
+  const LightmapReader reader(layout, model, solved);
+  for (std::size_t c = 0; c < layout.charts.size(); ++c) {
+    const ChartPlace& place = layout.place[c];
+    const auto E = model.irradiance.row(layout.charts[c].vertices.front());
+    for (int y = place.y - padding; y < place.y + place.height + padding; ++y) {
+      for (int x = place.x - padding; x < place.x + place.width + padding; ++x) {
+        const auto i = static_cast<Eigen::Index>(y) * layout.size + x;
+        // Means of equal numbers, which rounding may move.
+        EXPECT_LT((reader.atlases[0].irradiance.row(i) - E).abs().maxCoeff(), 1e-5f);
+      }
+    }
+  }
+  EXPECT_GT(reader.atlases[0].irradiance.minCoeff(), 0.0f);
+}
+
+/// A floor with a partition as thin as paper that ends in its middle. Light rises around the
+/// partition's end from 0 on one side to 1 on the other.
+TEST(Lightmap, NothingLeaksThroughAThinWall) {
+  const Paint paint{.reflectance = 0.5f};
+  LitScene lit(SceneBuilder()
+                   .polygon(paint, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}})
+                   .polygon(paint, {{2, 0, 0}, {2, 2, 0}, {2, 2, 1}, {2, 0, 1}})
+                   .build(),
+               0.5);
+  std::vector<Vector3d> beside(lit.mesh.vertex_count(), Vector3d::Zero());
+  for (int e = 0; e < lit.mesh.element_count(); ++e) {
+    for (int c = 0; c < lit.mesh.corner_count(e); ++c) {
+      beside[lit.mesh.corners[e][c]] += element_center(lit.mesh, e).position - Vector3d(2, 2, 0);
+    }
+  }
+  for (int v = 0; v < lit.mesh.vertex_count(); ++v) {
+    Vector3d p = lit.mesh.position(v) - Vector3d(2, 2, 0);
+    if (std::abs(p.x()) < 1e-9) p.x() = 1e-9 * beside[v].x();
+    const double turn = std::atan2(p.x(), p.y()) / (2.0 * std::numbers::pi);
+    lit.solution.direct_irradiance.row(v) = static_cast<float>(0.5 + turn);
+  }
+  const SolvedScene solved = solved_of(lit);
+  const BakedModel model = bake_model(solved, lit.scene);
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = 256});
+  const LightmapReader reader(layout, model, solved);
+  int beside_wall = 0;
+  for (int f = 0; f < model.face_count(); ++f) {
+    for (int i = 0; i < 50; ++i) {
+      const Eigen::Vector2d uv = spread(i);
+      const auto weights = corner_weights(model, f, uv.x(), uv.y());
+      Vector3d p = Vector3d::Zero();
+      float E = 0.0f;
+      for (int c = 0; c < model.corner_count(f); ++c) {
+        p += weights[c] * model.position[model.faces[f][c]];
+        E += static_cast<float>(weights[c]) * model.irradiance(model.faces[f][c], 0);
+      }
+      // Nearer than a texel to the partition, and not at its end, where light turns quickly.
+      if (std::abs(p.z()) > 0.0 || std::abs(p.x() - 2.0) > 1.0 / layout.texels_per_metre ||
+          p.y() > 1.5) {
+        continue;
+      }
+      ++beside_wall;
+      // Light rises by 1 / (2 pi 0.5 m) at most here; half a texel of it is a kink's error.
+      EXPECT_NEAR(reader.irradiance(f, weights)[0], E, 0.2 / layout.texels_per_metre);
+    }
+  }
+  EXPECT_GT(beside_wall, 20);
+}
+
+/// A block on a lit floor: the floor under it has no light and is laid into the floor's own chart,
+/// whose texels there continue the light around, so that no filter at the foot finds darkness.
+TEST(Lightmap, NothingDarkShowsAtABlocksFoot) {
+  const Paint paint{.reflectance = 0.5f, .one_sided = true};
+  LitScene lit(SceneBuilder()
+                   .polygon(paint, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}})
+                   .box(paint, {1, 1, 0}, {2, 2, 1}, false)
+                   .build(),
+               0.5);
+  for (int e = 0; e < lit.mesh.element_count(); ++e) {
+    const PatchPoint at = element_center(lit.mesh, e);
+    const bool is_under =
+        at.position.z() == 0.0 && (at.position - Vector3d(1.5, 1.5, 0)).cwiseAbs().maxCoeff() < 0.5;
+    for (int c = 0; c < lit.mesh.corner_count(e) && !is_under; ++c) {
+      lit.solution.direct_irradiance.row(lit.mesh.corners[e][c]) = 2.0f;
+    }
+  }
+  const SolvedScene solved = solved_of(lit);
+  const BakedModel model = bake_model(solved, lit.scene);
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = 128});
+  const LightmapReader reader(layout, model, solved);
+  int under = 0;
+  for (int f = 0; f < model.face_count(); ++f) {
+    const LightmapChart& chart = layout.charts[reader.chart_of(f)];
+    const Vector3d normal = element_center(solved.mesh, model.element[f]).normal;
+    if (!chart.is_dark || normal.z() < 0.5) continue;
+    ++under;
+    EXPECT_GE(chart.host, 0);
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector2d uv = spread(i);
+      EXPECT_NEAR(reader.irradiance(f, corner_weights(model, f, uv.x(), uv.y()))[0], 2.0f, 1e-5f);
+    }
+  }
+  EXPECT_GE(under, 4);
+}
+
+/// On a ball, texels hold what is interpolated in angle there; the seam and the poles have no
+/// texel without light.
+TEST(Lightmap, ABallIsRolledOffByLongitudeAndLatitude) {
+  const SolvedScene solved = solved_of(furnished());
+  const BakedModel model = bake_model(solved, furnished().scene);
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = 512});
+  const LightmapReader reader(layout, model, solved);
+  const auto ball =
+      std::ranges::find_if(layout.charts, [](const auto& c) { return c.sphere >= 0; });
+  ASSERT_NE(ball, layout.charts.end());
+  const ChartPlace& place = layout.place[static_cast<std::size_t>(ball - layout.charts.begin())];
+  const Sphere& sphere = solved.mesh.sphere_grids[ball->sphere].sphere;
+  std::vector<Probe> probes;
+  std::vector<float> read;
+  for (int y = 0; y < place.height; ++y) {
+    const double theta = (y + 0.5) / place.height * std::numbers::pi;
+    for (int x = 0; x < place.width; ++x) {
+      const double phi = (x + 0.5) / place.width * 2.0 * std::numbers::pi;
+      const Vector3d n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                       std::cos(theta));
+      probes.push_back({sphere.center + sphere.radius * n, n});
+      read.push_back(reader.atlases[0].irradiance(
+          static_cast<Eigen::Index>(place.y + y) * layout.size + place.x + x, 0));
+    }
+  }
+  const BandArray E = interpolate_irradiance(furnished().caster, furnished().solution, probes);
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    // Where rays in single precision meet the ball, 1e-6 m off, light differs by no more.
+    EXPECT_NEAR(read[i], E(static_cast<Eigen::Index>(i), 0), 1e-3);
+  }
+}
+
+/// Nothing between lamp and floor: direct light at a texel's centre is the closed form's, though
+/// elements are as large as the floor.
+TEST(Lightmap, DirectLightIsTracedAnewAtTexelCentres) {
+  const Paint white{.reflectance = 0.5f, .one_sided = true};
+  const Paint lamp{.exitance = 100.0f, .one_sided = true};
+  LitScene lit(SceneBuilder()
+                   .polygon(white, {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}})
+                   .polygon(lamp, {{0.9, 0.9, 1}, {0.9, 1.1, 1}, {1.1, 1.1, 1}, {1.1, 0.9, 1}})
+                   .build(),
+               2.0);
+  lit.set_direct([](const Vector3d&) { return 1.0f; });
+  lit.set_indirect([](const Vector3d&) { return 0.25f; });
+  const SolvedScene solved = solved_of(lit);
+  const BakedModel model = bake_model(solved, lit.scene);
+  const LightmapOptions options{.size = 64, .pass = Pass::direct};
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, options);
+  const LightmapReader reader(layout, model, solved, lit.scene, options);
+  int floor_texels = 0;
+  for (std::size_t i = 0; i < reader.atlases[0].face.size(); ++i) {
+    const int f = reader.atlases[0].face[i];
+    if (f < 0 || model.position[model.faces[f][0]].z() > 0.5) continue;
+    const LightmapChart& chart = layout.charts[reader.chart_of(f)];
+    const ChartPlace& place = layout.place[reader.chart_of(f)];
+    // The floor is a square of 2 m and so is its chart, turned or not; the lamp is in its middle.
+    const double x = (static_cast<double>(i % 64) + 0.5 - place.x) / place.width * chart.size.x();
+    const double y = (static_cast<double>(i / 64) + 0.5 - place.y) / place.height * chart.size.y();
+    const double F = lit.direct_light.unoccluded_form_factor(lit.direct_light.emitters()[0],
+                                                             {x, y, 0}, {0, 0, 1}, -1);
+    const double E = 100.0 * F + 0.25;
+    // Places are held a thousandth of an element off its edges, over which F changes by 0.4 %.
+    EXPECT_NEAR(reader.atlases[0].irradiance(static_cast<Eigen::Index>(i), 0), E, 0.005 * E);
+    ++floor_texels;
+  }
+  EXPECT_GT(floor_texels, 1000);
+}
+
+/// A hemisphere gather in a closed room where all is alike reads that everywhere.
+TEST(Lightmap, AGatherInAFurnaceIsTheSameEverywhere) {
+  const Paint paint{.reflectance = 0.5f, .exitance = 1.0f, .one_sided = true};
+  LitScene lit(SceneBuilder().box(paint, {0, 0, 0}, {2, 2, 2}, true).build(), 1.0);
+  lit.set_indirect([](const Vector3d&) { return 2.0f; });
+  const SolvedScene solved = solved_of(lit);
+  const BakedModel model = bake_model(solved, lit.scene);
+  const LightmapOptions options{.size = 64, .pass = Pass::gather, .gather_rays = 16};
+  const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, options);
+  const LightmapReader reader(layout, model, solved, lit.scene, options);
+  EXPECT_NEAR(reader.atlases[0].irradiance.minCoeff(), 2.0f, 1e-4f);
+  EXPECT_NEAR(reader.atlases[0].irradiance.maxCoeff(), 2.0f, 1e-4f);
+}
+
+TEST(Lightmap, IsTheSameForAnyNumberOfThreads) {
+  const SolvedScene solved = solved_of(furnished());
+  const BakedModel model = bake_model(solved, furnished().scene);
+  std::vector<BandArray> painted;
+  for (const int threads : {1, 3}) {
+    const ThreadLimit limit(threads);
+    const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = 128});
+    painted.push_back(paint_atlas(layout, 0, model, solved, {}).radiosity);
+  }
+  EXPECT_TRUE((painted[0] == painted[1]).all());
+}
+
+TEST(Lightmap, SaysWhichSizeWouldDo) {
+  const SolvedScene solved = solved_of(furnished());
+  const BakedModel model = bake_model(solved, furnished().scene);
+  const auto refusal = [&](const LightmapOptions& options) {
+    return message_of<InputError>([&] { lay_out_lightmap(model, solved.mesh, options); });
+  };
+  // 13 charts of at least 2 + 2 * 4 texels: nine of ten by ten fit into 32 x 32.
+  EXPECT_TRUE(says(refusal({.size = 32}), "take size 64 or more"));
+  EXPECT_NO_THROW(lay_out_lightmap(model, solved.mesh, {.size = 64}));
+  EXPECT_TRUE(says(refusal({.size = 256, .texels_per_metre = 100}), "4 m long"));
+  EXPECT_TRUE(says(refusal({.size = 256, .texels_per_metre = 100}), "at most 62 texels per metre"));
+  EXPECT_TRUE(says(refusal({.size = 8}), "take 16 to 8192"));
+  EXPECT_TRUE(says(refusal({.texels_per_metre = -1}), "is no density"));
+  EXPECT_TRUE(says(refusal({.texels_per_metre = std::nan("")}), "is no density"));
+  EXPECT_TRUE(says(refusal({.padding = 0}), "take 1 to 64"));
+}
+
+TEST(Lightmap, ADensityAskedForMayTakeSeveralAtlases) {
+  const SolvedScene solved = solved_of(furnished());
+  const BakedModel model = bake_model(solved, furnished().scene);
+  const LightmapLayout layout =
+      lay_out_lightmap(model, solved.mesh, {.size = 256, .texels_per_metre = 50});
+  EXPECT_GT(layout.atlas_count, 1);
+  EXPECT_EQ(layout.texels_per_metre, 50.0);
+  const LightmapReader reader(layout, model, solved);
+  EXPECT_EQ(static_cast<int>(reader.atlases.size()), layout.atlas_count);
+  for (std::size_t c = 0; c < layout.charts.size(); ++c) {
+    if (layout.charts[c].is_dark) continue;
+    EXPECT_EQ(layout.place[c].width, std::ceil(50.0 * layout.charts[c].size.x() - 1e-6));
+  }
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,279 @@
+#include "viewer/export/appearance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "raytrace/camera_ray.h"
+#include "raytrace/display.h"
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int vertex_grain = 4096;
+/// Surfaces a sample looks through before it counts as black; each is a pane or a wall from behind.
+constexpr int max_layers = 16;
+constexpr int metering_width = 160;
+
+const Material* find_material(const PatchMesh& mesh, const std::vector<Material>& materials,
+                              int element) {
+  const auto m = static_cast<std::size_t>(mesh.material[mesh.patch[element]]);
+  return m < materials.size() ? &materials[m] : nullptr;
+}
+
+/// About five even steps, each 1, 2 or 5 times a power of ten.
+std::vector<double> even_steps(double high) {
+  const double power = std::pow(10.0, std::floor(std::log10(high / 5.0)));
+  double step = 10.0 * power;
+  for (const double factor : {5.0, 2.0, 1.0}) {
+    if (factor * power * 4.0 >= 0.999 * high) step = factor * power;
+  }
+  std::vector<double> steps;
+  for (int i = 0; i * step <= 1.001 * high; ++i) steps.push_back(i * step);
+  return steps;
+}
+
+}  // namespace
+
+std::vector<ElementKind> element_kinds(const SolvedScene& solved,
+                                       const std::vector<Material>& materials) {
+  return element_kinds(solved.mesh, solved.solution.irradiance(), materials);
+}
+
+std::vector<ElementKind> element_kinds(const PatchMesh& mesh, const BandArray& E,
+                                       const std::vector<Material>& materials) {
+  std::vector<ElementKind> kinds(static_cast<std::size_t>(mesh.element_count()));
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const Material* material = find_material(mesh, materials, e);
+    bool lit = (mesh.emission.row(mesh.patch[e]) > 0.0f).any();
+    for (int c = 0; c < mesh.corner_count(e); ++c) lit |= (E.row(mesh.corners[e][c]) > 0.0f).any();
+    kinds[e] = material && material->dielectric ? ElementKind::glass
+               : lit                            ? ElementKind::lit
+                                                : ElementKind::unlit;
+  }
+  return kinds;
+}
+
+BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>& materials) {
+  const PatchMesh& mesh = solved.mesh;
+  const BandArray E = solved.solution.irradiance();
+  BandArray B = vertex_radiosity(mesh, solved.solution);
+  std::vector<char> done(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const Material* material = find_material(mesh, materials, e);
+    if (!material || !material->is_specular()) continue;
+    const Spectrum& share = material->dielectric ? material->dielectric->tint : material->specular;
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const int v = mesh.corners[e][c];
+      if (!done[v]) B.row(v) += share.transpose() * E.row(v);
+      done[v] = 1;
+    }
+  }
+  return B / std::numbers::pi_v<float>;
+}
+
+Spectrum shown_reflectance(const PatchMesh& mesh, const std::vector<Material>& materials,
+                           int patch) {
+  Spectrum share = mesh.reflectance.row(patch).transpose();
+  const Material* material = find_material(mesh, materials, mesh.first_element[patch]);
+  if (!material || !material->is_specular()) return share;
+  return share + (material->dielectric ? material->dielectric->tint : material->specular);
+}
+
+int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance) {
+  const auto& corners = mesh.corners[element];
+  if (mesh.corner_count(element) < 4) return 0;
+  const auto difference = [&](int a, int b) {
+    return (radiance.row(corners[a]) - radiance.row(corners[b])).abs().sum();
+  };
+  return difference(1, 3) < difference(0, 2) ? 1 : 0;
+}
+
+std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
+                                         double scale) {
+  const int count = static_cast<int>(radiance.rows());
+  std::vector<std::uint8_t> bytes(std::size_t{3} * radiance.rows());
+  parallel_for(count, vertex_grain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      const Spectrum L = radiance.row(v).transpose();
+      const Eigen::Array3f shown = display_rgb(linear_rgb(bands, L), scale);
+      for (int c = 0; c < 3; ++c) {
+        bytes[std::size_t{3} * v + c] =
+            static_cast<std::uint8_t>(255.0f * srgb_encode(shown[c]) + 0.5f);
+      }
+    }
+  });
+  return bytes;
+}
+
+std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& bands, double scale) {
+  const float floor = std::exp2(-light_code_depth);
+  std::vector<std::uint8_t> codes(std::size_t{3} * radiance.rows());
+  parallel_for(static_cast<int>(radiance.rows()), vertex_grain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      const Eigen::Array3f x =
+          linear_rgb(bands, radiance.row(v).transpose()) * static_cast<float>(scale);
+      for (int c = 0; c < 3; ++c) {
+        const float light = x[c] > 0.0f ? x[c] : 0.0f;  // what is no number is black
+        const float code = (std::log2(light + floor) + light_code_depth) / light_code_stops;
+        codes[std::size_t{3} * v + c] =
+            static_cast<std::uint8_t>(255.0f * std::clamp(code, 0.0f, 1.0f) + 0.5f);
+      }
+    }
+  });
+  return codes;
+}
+
+std::vector<float> vertex_illuminance(const RadiositySolution& solution) {
+  return luminous_rows(solution.irradiance(), solution.bands);
+}
+
+std::vector<float> luminous_rows(const BandArray& values, const Bands& bands) {
+  std::vector<float> result(static_cast<std::size_t>(values.rows()));
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    result[static_cast<std::size_t>(i)] =
+        static_cast<float>(luminous(bands, values.row(i).transpose()));
+  }
+  return result;
+}
+
+LuxRange lux_range(const std::vector<float>& lux) {
+  std::vector<float> lit;
+  for (const float value : lux) {
+    if (value > 0.0f && std::isfinite(value)) lit.push_back(value);
+  }
+  if (lit.empty()) return {};
+  std::sort(lit.begin(), lit.end());
+  const double darkest = lit.front();
+  const double brightest =
+      lit[static_cast<std::size_t>(0.995 * static_cast<double>(lit.size() - 1))];
+  // The nearest 1, 2 or 5 times a power of ten that is not below (above, for the low end).
+  const auto round = [](double value, bool up) {
+    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    double result = up ? 10.0 * power : power;
+    for (const double step : {2.0, 5.0}) {
+      if (up && step * power >= value) return value <= power ? power : step * power;
+      if (!up && step * power <= value) result = step * power;
+    }
+    return result;
+  };
+  LuxRange range;
+  range.high = round(brightest, true);
+  range.low = round(std::max(darkest, range.high / 1000.0), false);
+  if (!(range.low < range.high)) range.low = range.high / 10.0;
+  return range;
+}
+
+std::vector<double> scale_steps(const LuxRange& range) {
+  if (range.is_even()) return even_steps(range.high);
+  std::vector<double> steps;
+  const bool is_long = range.high > 100.0 * range.low;
+  for (double power = std::pow(10.0, std::floor(std::log10(range.low))); power <= range.high;
+       power *= 10.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double value = factor * power;
+      const bool inside = value >= 0.999 * range.low && value <= 1.001 * range.high;
+      const bool is_end = value <= 1.001 * range.low || value >= 0.999 * range.high;
+      if (inside && (factor == 1.0 || is_end || !is_long)) steps.push_back(value);
+    }
+  }
+  return steps;
+}
+
+Eigen::Array3f false_color(float place) {
+  // Lightness rises evenly from stop to stop.
+  static const std::array<Eigen::Array3f, 6> stops = {
+      Eigen::Array3f{0.16f, 0.05f, 0.36f}, Eigen::Array3f{0.16f, 0.29f, 0.60f},
+      Eigen::Array3f{0.08f, 0.49f, 0.58f}, Eigen::Array3f{0.20f, 0.66f, 0.44f},
+      Eigen::Array3f{0.63f, 0.81f, 0.27f}, Eigen::Array3f{1.00f, 0.93f, 0.33f}};
+  const float x = std::clamp(place, 0.0f, 1.0f) * (stops.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(x), stops.size() - 2);
+  return stops[i] + (x - static_cast<float>(i)) * (stops[i + 1] - stops[i]);
+}
+
+std::vector<std::uint8_t> false_colors(const std::vector<float>& lux, const LuxRange& range) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(3 * lux.size());
+  const auto place_of = [&range](double value) {
+    if (range.is_even()) return value / range.high;
+    return value > 0.0 ? std::log(value / range.low) / std::log(range.high / range.low) : 0.0;
+  };
+  for (const float value : lux) {
+    const double place = place_of(value);
+    for (const float c : false_color(static_cast<float>(place))) {
+      bytes.push_back(static_cast<std::uint8_t>(255.0f * c + 0.5f));
+    }
+  }
+  return bytes;
+}
+
+std::vector<std::uint8_t> error_colors(const SolvedScene& solved) {
+  const PatchMesh& mesh = solved.mesh;
+  std::vector<float> error(mesh.vertex_count(), 0.0f);
+  for (int e = 0; e < mesh.element_count() && solved.solution.interpolation_error.size() > 0; ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      float& largest = error[mesh.corners[e][c]];
+      largest = std::max(largest, solved.solution.interpolation_error[e]);
+    }
+  }
+  return false_colors(error, {.low = 1e-3, .high = 0.1});
+}
+
+Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                     const BandArray& radiance, const Camera& camera, int width, const Sky* sky) {
+  Camera coarse = camera;
+  coarse.width = width;
+  coarse.height = std::clamp(
+      static_cast<int>(std::lround(static_cast<double>(width) * camera.height / camera.width)), 1,
+      4 * width);
+  const CameraRays camera_rays(coarse);
+  Image image{coarse.width, coarse.height, {}};
+  image.radiance = BandArray::Zero(image.width * image.height, radiance.cols());
+
+  std::vector<Ray> rays;
+  std::vector<int> pixels;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      rays.push_back(camera_rays.ray(x + 0.5, y + 0.5));
+      pixels.push_back(y * image.width + x);
+    }
+  }
+  for (int layer = 0; layer < max_layers && !rays.empty(); ++layer) {
+    std::vector<ElementHit> hits(rays.size());
+    caster.closest_hits(rays, hits);
+    std::vector<Ray> further;
+    std::vector<int> further_pixels;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (hits[i].facet < 0) {
+        if (!sky) continue;
+        const Spectrum L = radiance_outside(*sky, rays[i].direction.normalized());
+        image.radiance.row(pixels[i]) = L.transpose();
+        continue;
+      }
+      if (hits[i].element >= 0 && kinds[hits[i].element] != ElementKind::glass) {
+        image.radiance.row(pixels[i]) = interpolate(caster.mesh(), radiance, hits[i]).transpose();
+        continue;
+      }
+      Ray ray = rays[i];
+      ray.origin += hits[i].t * ray.direction;
+      ray.origin_group = hits[i].facet;
+      further.push_back(ray);
+      further_pixels.push_back(pixels[i]);
+    }
+    rays = std::move(further);
+    pixels = std::move(further_pixels);
+  }
+  return image;
+}
+
+double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                     const BandArray& radiance, const Bands& bands, const Camera& camera,
+                     const Sky* sky) {
+  const Image seen = coarse_picture(caster, kinds, radiance, camera, metering_width, sky);
+  if ((seen.radiance > 0.0f).any()) return exposure_scale(seen, bands);
+  return exposure_scale({static_cast<int>(radiance.rows()), 1, radiance}, bands);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,152 @@
+#include "viewer/export/baked_channels.h"
+
+#include "viewer/export/appearance.h"
+#include "viewer/export/sky_grid.h"
+
+namespace lightwell {
+namespace {
+
+/// Dark, on the same mesh.
+SolvedScene unlit(const SolvedScene& solved) {
+  SolvedScene result;
+  result.mesh = solved.mesh;
+  result.solution.bands = solved.solution.bands;
+  return result;
+}
+
+/// The light of one channel with every scale at 1 into `alone`, which has the same mesh.
+void light_alone(const RadiositySolution& solution, std::size_t number, SolvedScene& alone) {
+  const LightChannel& channel = solution.channels[number];
+  alone.solution.direct_irradiance = channel.direct_irradiance;
+  alone.solution.indirect_irradiance = channel.indirect_irradiance;
+  BandArray& M = alone.mesh.emission;
+  M = solution.full_emission;
+  for (Eigen::Index i = 0; i < M.rows(); ++i) {
+    const int owner = solution.patch_channel[static_cast<std::size_t>(i)];
+    if (owner != static_cast<int>(number)) M.row(i).setZero();
+  }
+}
+
+/// The weights are RGB. A scale that differs between bands of wavelength is more than three numbers
+/// can say, so what is uneven in it goes into the light: the first number is left as the weight.
+struct Split {
+  Eigen::Array3f weight{};
+  Spectrum within{};
+};
+
+Split split(const Bands& bands, const Spectrum& scale) {
+  if (bands.wavelengths_nm.empty()) return {scale.head<3>(), constant_spectrum(bands, 1.0f)};
+  const float largest = scale.maxCoeff();
+  if (!(largest > 0.0f)) return {Eigen::Array3f::Zero(), constant_spectrum(bands, 1.0f)};
+  return {Eigen::Array3f::Constant(largest), scale / largest};
+}
+
+/// luminous(), apart by red, green and blue; of other bands all in one.
+Spectrum luminous_columns(const Bands& bands, const Spectrum& values) {
+  if (!bands.wavelengths_nm.empty()) {
+    return Spectrum::Constant(1, static_cast<float>(luminous(bands, values)));
+  }
+  return static_cast<float>(bands.lumens_per_watt) * bands.xyz.row(1).transpose() * values;
+}
+
+BakedChannel bake(const SolvedScene& alone, const LightChannel& channel,
+                  const std::vector<Material>& materials, const std::vector<int>& mesh_vertex) {
+  const Bands& bands = alone.solution.bands;
+  const auto [weight, within] = split(bands, channel.scale);
+  const Spectrum flux = channel.energy.row(0).transpose().cast<float>() * within;
+  BakedChannel baked{.name = channel.name,
+                     .radiance = {},
+                     .illuminance = {},
+                     .lumens = luminous_columns(bands, flux),
+                     .weight = weight};
+  const BandArray E = alone.solution.irradiance();
+  const BandArray radiance = shown_radiance(alone, materials);
+  const auto count = static_cast<Eigen::Index>(mesh_vertex.size());
+  baked.radiance.resize(count, 3);
+  baked.illuminance.resize(count, baked.lumens.size());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const int v = mesh_vertex[static_cast<std::size_t>(i)];
+    const Spectrum L = radiance.row(v).transpose() * within, e = E.row(v).transpose() * within;
+    baked.radiance.row(i) = linear_rgb(bands, L).unaryExpr(&finite_or_black).transpose();
+    baked.illuminance.row(i) = luminous_columns(bands, e).unaryExpr(&finite_or_black).transpose();
+  }
+  return baked;
+}
+
+/// Places of azimuth in a page's sky: steps of 1.4 degrees, of a map 0.7.
+constexpr int sky_columns = 257, map_columns = 513;
+
+/// The channel of a free source; -1 where light is not kept apart.
+int channel_of(const RadiositySolution& solution, std::size_t source) {
+  return source < solution.source_channel.size() ? solution.source_channel[source] : -1;
+}
+
+/// What light of a channel is multiplied by before it becomes RGB; see split.
+Spectrum factor_within(const RadiositySolution& solution, int channel) {
+  if (channel < 0) return constant_spectrum(solution.bands, 1.0f);
+  return split(solution.bands, solution.channels[static_cast<std::size_t>(channel)].scale).within;
+}
+
+}  // namespace
+
+std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene) {
+  if (!scene.sky) return {};
+  const RadiositySolution& s = solved.solution;
+  const Sky& sky = *scene.sky;
+  auto source = scene.lamps.size();
+  BakedSky baked;
+  baked.channel = has_dome(sky) ? channel_of(s, source++) : -1;
+  baked.axes.col(0) = sky.north;
+  baked.axes.col(1) = sky_direction(sky, 90.0, 0.0);
+  baked.axes.col(2) = sky.up;
+  const SkyGrid grid = sky_grid(sky, sky.kind == SkyKind::map ? map_columns : sky_columns);
+  baked.columns = grid.columns;
+  baked.rows_above = grid.rows_above;
+  baked.rows_below = grid.rows_below;
+  const auto rgb = [&](const Spectrum& L, int channel) -> Eigen::Array3f {
+    return linear_rgb(s.bands, L * factor_within(s, channel)).unaryExpr(&finite_or_black);
+  };
+  baked.radiance.resize(grid.radiance.rows(), 3);
+  for (Eigen::Index i = 0; i < grid.radiance.rows(); ++i) {
+    baked.radiance.row(i) = rgb(grid.radiance.row(i).transpose(), baked.channel).transpose();
+  }
+  if (!sky.sun) return baked;
+  baked.sun = sky.sun->direction;
+  baked.cosine_of_edge = sky.sun->cosine_of_edge();
+  baked.sun_channel = channel_of(s, source);
+  baked.sun_radiance =
+      rgb(sky.sun->irradiance / static_cast<float>(sky.sun->solid_angle()), baked.sun_channel);
+  return baked;
+}
+
+std::vector<ElementKind> kinds_with_all_on(const SolvedScene& solved,
+                                           const std::vector<Material>& materials) {
+  const RadiositySolution& s = solved.solution;
+  if (s.channels.empty()) return element_kinds(solved, materials);
+  SolvedScene all = unlit(solved);
+  const auto sum = [&](BandArray LightChannel::*quantity) {
+    BandArray light = s.channels.front().*quantity;
+    for (std::size_t c = 1; c < s.channels.size(); ++c) light += s.channels[c].*quantity;
+    return light;
+  };
+  all.solution.direct_irradiance = sum(&LightChannel::direct_irradiance);
+  all.solution.indirect_irradiance = sum(&LightChannel::indirect_irradiance);
+  all.mesh.emission = s.full_emission;
+  return element_kinds(all, materials);
+}
+
+std::vector<BakedChannel> bake_channels(const SolvedScene& solved,
+                                        const std::vector<Material>& materials,
+                                        const std::vector<int>& mesh_vertex) {
+  const RadiositySolution& s = solved.solution;
+  std::vector<BakedChannel> baked;
+  if (s.channels.empty()) return baked;
+  SolvedScene alone = unlit(solved);
+  for (std::size_t c = 0; c < s.channels.size(); ++c) {
+    light_alone(s, c, alone);
+    baked.push_back(bake(alone, s.channels[c], materials, mesh_vertex));
+  }
+  return baked;
+}
+
+}  // namespace lightwell

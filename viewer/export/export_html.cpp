@@ -1,0 +1,91 @@
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "viewer/export/export.h"
+#include "viewer/export/page_data.h"
+#include "viewer/export/web_files.h"
+#include "viewer/export/write_whole.h"
+
+namespace lightwell {
+namespace {
+
+/// Text as the content of an element.
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '<') {
+      result += "&lt;";
+    } else if (c == '&') {
+      result += "&amp;";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+/// JSON within a script element, which ends at the first "</script" whatever stands around it:
+/// names are free to hold that, or "<!--".
+std::string script_json(const nlohmann::ordered_json& json) {
+  std::string result;
+  for (const char c : json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) {
+    if (c == '<') {
+      result += "\\u003c";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+std::string title_of(const BakedModel& model) {
+  if (!model.title.empty()) return model.title;
+  return std::filesystem::path(model.provenance.scene_file).filename().string();
+}
+
+/// Copies page.html, with a piece in place of every "{{name}}".
+class Page {
+ public:
+  void put(std::string_view name, std::string_view piece) {
+    const std::string mark = "{{" + std::string(name) + "}}";
+    const std::size_t at = rest_.find(mark);
+    if (at == std::string_view::npos) throw std::logic_error("page.html lacks " + mark);
+    text_ += rest_.substr(0, at);
+    text_ += piece;
+    rest_.remove_prefix(at + mark.size());
+  }
+  std::string finish() {
+    text_ += rest_;
+    return std::move(text_);
+  }
+
+ private:
+  std::string text_;
+  std::string_view rest_ = web::page_html;
+};
+
+}  // namespace
+
+void write_walkthrough(const std::filesystem::path& path, const BakedModel& model,
+                       const std::optional<LuxRange>& range) {
+  const PageData data = page_data(model, range.value_or(lux_range(model.illuminance)));
+  Page page;
+  page.put("title", escaped(title_of(model)));
+  page.put("style", web::page_css);
+  page.put("about", script_json(data.about));
+  page.put("data", base64(data.bytes));
+  page.put("licenses", web::licenses_txt);
+  page.put("library", web::library_js);
+  page.put("spheres", web::spheres_js);
+  page.put("model", web::model_js);
+  page.put("picture", web::picture_js);
+  page.put("sky", web::sky_js);
+  page.put("probe", web::probe_js);
+  page.put("walk", web::walk_js);
+  page.put("lights", web::lights_js);
+  page.put("page", web::page_js);
+  write_whole(path, {page.finish()});
+}
+
+}  // namespace lightwell

@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "viewer/export/export.h"
+#include "viewer/export/write_whole.h"
+
+namespace lightwell {
+namespace {
+
+/// A name as OBJ can hold it: one word, since some programs end names at a space.
+std::string word(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    result += static_cast<unsigned char>(c) <= 0x20 || c == 0x7f || c == '#' ? '_' : c;
+  }
+  return result.empty() ? "_" : result;
+}
+
+/// Numbered, since two materials may have the same name.
+std::string material_word(const BakedModel& model, int material) {
+  return fmt::format("{}_{}", material, word(model.materials[material].name));
+}
+
+/// White without shading, so that programs which multiply by it show the vertices' colours.
+std::string library(const BakedModel& model) {
+  std::string text = "# Baked by Lightwell: the light is in the colours of the vertices.\n";
+  for (int m = 0; m < static_cast<int>(model.materials.size()); ++m) {
+    text += fmt::format("\nnewmtl {}\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 0\n",
+                        material_word(model, m));
+    if (model.materials[m].is_glass) text += fmt::format("d {:g}\n", glass_opacity);
+  }
+  return text;
+}
+
+}  // namespace
+
+void write_obj(const std::filesystem::path& path, const BakedModel& model) {
+  std::filesystem::path materials = path;
+  materials.replace_extension(".mtl");
+  const std::vector<std::uint8_t> colors = srgb_colors(model);
+  std::string text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "# Lightwell {}: baked radiosity of {}; metres\nmtllib {}\n",
+                 model.provenance.version, one_line(model.provenance.scene_file),
+                 one_line(materials.filename().string()));
+  for (const BakedPart& part : model.parts) {
+    fmt::format_to(out, "o {}{}\nusemtl {}\n", word(part.name), part.is_back ? "_back" : "",
+                   material_word(model, part.material));
+    for (int i = part.first_vertex; i < part.first_vertex + part.vertex_count; ++i) {
+      const Eigen::Vector3d& p = model.position[i];
+      const std::uint8_t* rgb = colors.data() + std::size_t{3} * i;
+      fmt::format_to(out, "v {:.9g} {:.9g} {:.9g} {:.4g} {:.4g} {:.4g}\n", p.x(), p.y(), p.z(),
+                     rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
+    }
+    for (const auto& triangle : triangles_of(model, part.first_face, part.face_count)) {
+      fmt::format_to(out, "f {} {} {}\n", triangle[0] + 1, triangle[1] + 1, triangle[2] + 1);
+    }
+  }
+  // The library first: an OBJ that is there names one that is there.
+  write_whole(materials, {library(model)});
+  write_whole(path, {text});
+}
+
+}  // namespace lightwell

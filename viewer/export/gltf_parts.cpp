@@ -1,0 +1,191 @@
+#include "viewer/export/gltf_parts.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "viewer/export/appearance.h"
+
+namespace lightwell {
+namespace {
+
+/// A node turned so that it looks along -z with y upwards.
+GltfJson camera_node(const BakedModel& model, const Camera& camera, int number) {
+  const Eigen::Vector3d back = -(model.to_y_up * camera.direction);
+  const Eigen::Vector3d up = model.to_y_up * camera.up;
+  const Eigen::Vector3d right = up.cross(back), at = model.to_y_up * camera.position;
+  GltfJson matrix = GltfJson::array();
+  for (const Eigen::Vector3d& column : {right, up, back}) {
+    for (const double x : column) matrix.push_back(x);
+    matrix.push_back(0.0);
+  }
+  for (const double x : at) matrix.push_back(x);
+  matrix.push_back(1.0);
+  return {{"name", camera.name}, {"camera", number}, {"matrix", std::move(matrix)}};
+}
+
+GltfJson camera_lens(const Camera& camera, double scene_size) {
+  const double aspect = static_cast<double>(camera.width) / camera.height;
+  const double half_width = std::tan(camera.fov_degrees * std::numbers::pi / 360.0);
+  return {{"name", camera.name},
+          {"type", "perspective"},
+          {"perspective",
+           {{"aspectRatio", aspect},
+            {"yfov", 2.0 * std::atan(half_width / aspect)},
+            {"znear", 1e-3 * scene_size}}}};
+}
+
+double size_of(const BakedModel& model) {
+  Eigen::Vector3d low = model.position.front(), high = low;
+  for (const Eigen::Vector3d& p : model.position) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return (high - low).norm();
+}
+
+/// Of many bands the colours are weighted sums.
+const char* unit_of_radiosity(const BakedModel& model) {
+  if (model.relative_units) return "relative";
+  return model.bands.wavelengths_nm.empty() ? "W/m^2" : "W/m^2, weighted to linear sRGB";
+}
+
+/// What the colours stand for. A surface of radiance L has radiosity pi L.
+GltfJson meaning(const BakedModel& model) {
+  const double scale = model.cameras.front().scale;
+  const auto clipped = (model.radiance * static_cast<float>(scale) > 1.0f).rowwise().any().count();
+  const double B = std::numbers::pi / scale;
+  return {{"exposure", scale},
+          {"radiosity_of_color_1", B},
+          {"luminance_of_white", model.bands.lumens_per_watt / scale},
+          {"unit_of_radiosity", unit_of_radiosity(model)},
+          {"unit_of_illuminance", model.relative_units ? "relative" : "lx"},
+          {"unit_of_luminance", model.relative_units ? "relative" : "cd/m^2"},
+          {"clipped_vertices", clipped},
+          {"vertices", model.vertex_count()},
+          {"scene", model.provenance.scene_file},
+          {"scene_hash", fmt::format("{:016x}", model.provenance.scene_hash)},
+          {"options", model.provenance.options}};
+}
+
+void append_chunk_head(std::string& head, std::size_t length, const char* kind) {
+  append_bytes(head, static_cast<std::uint32_t>(length));
+  head.append(kind, 4);
+}
+
+Eigen::Vector3f turned(const BakedModel& model, int vertex) {
+  return (model.to_y_up * model.position[vertex]).cast<float>();
+}
+
+}  // namespace
+
+int GltfBuffer::end_view(const char* name, int target, int stride) {
+  GltfJson view = {
+      {"name", name}, {"buffer", 0}, {"byteOffset", begin_}, {"byteLength", pending()}};
+  if (stride > 0) view["byteStride"] = stride;
+  if (target > 0) view["target"] = target;
+  views_.push_back(std::move(view));
+  bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');  // what follows is aligned
+  begin_ = bytes_.size();
+  return static_cast<int>(views_.size()) - 1;
+}
+
+int GltfBuffer::add_accessor(int view, int component, const char* type, std::size_t size,
+                             std::size_t first, std::size_t count) {
+  accessors_.push_back({{"bufferView", view},
+                        {"byteOffset", size * first},
+                        {"componentType", component},
+                        {"count", count},
+                        {"type", type}});
+  return static_cast<int>(accessors_.size()) - 1;
+}
+
+int GltfBuffer::add_positions(int view, const BakedModel& model, std::span<const int> vertices,
+                              std::size_t first) {
+  Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
+  Eigen::Array3f high = -low;
+  for (const int v : vertices) {
+    const Eigen::Array3f p = turned(model, v);
+    low = low.min(p);
+    high = high.max(p);
+  }
+  const int number = add_accessor(view, gltf_float, "VEC3", 12, first, vertices.size());
+  accessors_.back()["min"] = {low[0], low[1], low[2]};
+  accessors_.back()["max"] = {high[0], high[1], high[2]};
+  return number;
+}
+
+void append_position(std::string& bytes, const BakedModel& model, int vertex) {
+  for (const float x : turned(model, vertex)) append_bytes(bytes, x);
+}
+
+GltfJson unlit_material(const BakedMaterial& material) {
+  GltfJson entry = {{"name", material.name},
+                    {"pbrMetallicRoughness",
+                     {{"baseColorFactor", {1.0, 1.0, 1.0, material.is_glass ? glass_opacity : 1.0}},
+                      {"metallicFactor", 0.0},
+                      {"roughnessFactor", 1.0}}}};
+  entry["extensions"]["KHR_materials_unlit"] = GltfJson::object();
+  if (material.is_glass) entry["alphaMode"] = "BLEND";
+  return entry;
+}
+
+GltfJson gltf_asset(const BakedModel& model) {
+  return {{"version", "2.0"},
+          {"generator", fmt::format("Lightwell {}", model.provenance.version)},
+          {"extras", meaning(model)}};
+}
+
+void add_nodes(const BakedModel& model, GltfJson meshes, GltfJson& root) {
+  GltfJson nodes = GltfJson::array(), cameras = GltfJson::array();
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    nodes.push_back({{"name", meshes[m]["name"]}, {"mesh", m}});
+  }
+  const double size = size_of(model);
+  for (const BakedCamera& baked : model.cameras) {
+    if (!model.cameras_are_given) break;
+    nodes.push_back(camera_node(model, baked.camera, static_cast<int>(cameras.size())));
+    cameras.push_back(camera_lens(baked.camera, size));
+  }
+  GltfJson roots = GltfJson::array();
+  for (std::size_t n = 0; n < nodes.size(); ++n) roots.push_back(n);
+  root["scene"] = 0;
+  root["scenes"] = GltfJson::array({{{"nodes", std::move(roots)}}});
+  if (!model.title.empty()) root["scenes"][0]["name"] = model.title;
+  root["nodes"] = std::move(nodes);
+  root["meshes"] = std::move(meshes);
+  if (!cameras.empty()) root["cameras"] = std::move(cameras);
+}
+
+void write_glb(const std::filesystem::path& path, GltfJson root, const GltfBuffer& buffer) {
+  const std::string& bytes = buffer.bytes();
+  root["accessors"] = buffer.accessors();
+  root["bufferViews"] = buffer.views();
+  root["buffers"] = GltfJson::array({{{"byteLength", bytes.size()}}});
+
+  // Names come from anybody's files: what is not UTF-8 is replaced.
+  std::string json = root.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  constexpr std::size_t heads = 12 + 8 + 8;
+  const std::size_t length = heads + json.size() + bytes.size();
+  if (length > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::runtime_error(
+        fmt::format("{}: a .glb holds at most 4 GiB, but this model takes {:.1f}; write .ply",
+                    path.string(), static_cast<double>(length) / (1u << 30)));
+  }
+  std::string head = "glTF";
+  append_bytes(head, std::uint32_t{2});
+  append_bytes(head, static_cast<std::uint32_t>(length));
+  append_chunk_head(head, json.size(), "JSON");
+  std::string binary_head;
+  append_chunk_head(binary_head, bytes.size(), "BIN\0");
+  write_whole(path, {head, json, binary_head, bytes});
+}
+
+}  // namespace lightwell

@@ -1,0 +1,260 @@
+#include "viewer/export/page_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "raytrace/encode_png.h"
+#include "viewer/export/write_whole.h"
+
+namespace lightwell {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// 21 bits a coordinate, three to 8 bytes: half a step is 2.4 micrometres in a room of 10 m.
+constexpr double largest_place = (1 << 21) - 1;
+
+Json vector(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+struct Box {
+  Eigen::Vector3d low, high;
+};
+
+Box turned_bounds(const BakedModel& model) {
+  Box box{model.to_y_up * model.position.front(), model.to_y_up * model.position.front()};
+  for (const Eigen::Vector3d& p : model.position) {
+    const Eigen::Vector3d turned = model.to_y_up * p;
+    box.low = box.low.cwiseMin(turned);
+    box.high = box.high.cwiseMax(turned);
+  }
+  return box;
+}
+
+void append_positions(const BakedModel& model, const Box& box, PageData& page) {
+  const double longest = (box.high - box.low).maxCoeff();
+  const double step = longest > 0.0 ? longest / largest_place : 1.0;
+  page.about["positions"] = {{"offset", page.bytes.size()}, {"step", step}};
+  for (const Eigen::Vector3d& p : model.position) {
+    const Eigen::Vector3d place = (model.to_y_up * p - box.low) / step;
+    std::uint64_t packed = 0;
+    for (int c = 0; c < 3; ++c) {
+      packed |= static_cast<std::uint64_t>(std::llround(place[c])) << (21 * c);
+    }
+    append_bytes(page.bytes, packed);
+  }
+}
+
+void append_faces(const BakedModel& model, PageData& page) {
+  page.about["corners"] = {{"offset", page.bytes.size()}};
+  for (const auto& face : model.faces) {
+    for (const int v : face) append_bytes(page.bytes, static_cast<std::uint32_t>(v));
+  }
+  page.about["black_behind"] = {{"offset", page.bytes.size()}};
+  page.bytes.append(model.black_behind.begin(), model.black_behind.end());
+  page.bytes.resize((page.bytes.size() + 3) / 4 * 4);
+}
+
+/// Half floats times a scale that puts the largest near the top of their range: 11 bits for
+/// everything down to 2e-9 of it.
+template <class Values>
+Json append_halves(const Values& values, std::string& bytes) {
+  float largest = 0.0f;
+  for (const float value : values) largest = std::max(largest, std::abs(value));
+  const float scale = largest > 0.0f ? largest / 32768.0f : 1.0f;
+  const Json place = {{"offset", bytes.size()}, {"scale", scale}};
+  for (const float value : values) append_bytes(bytes, Eigen::half(value / scale).x);
+  bytes.resize((bytes.size() + 3) / 4 * 4);
+  return place;
+}
+
+template <class Array>
+std::span<const float> numbers(const Array& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+Json append_channel(const BakedChannel& channel, std::string& bytes) {
+  Json basis = {{"name", channel.name},
+                {"weight", numbers(channel.weight)},
+                {"lumens", numbers(channel.lumens)}};
+  basis["radiance"] = append_halves(numbers(channel.radiance), bytes);
+  basis["illuminance"] = append_halves(numbers(channel.illuminance), bytes);
+  basis["illuminance"]["components"] = channel.illuminance.cols();
+  return basis;
+}
+
+/// What the light is a sum of: the channels, or one basis for all.
+Json append_bases(const BakedModel& model, std::string& bytes) {
+  Json bases = Json::array();
+  for (const BakedChannel& channel : model.channels) {
+    bases.push_back(append_channel(channel, bytes));
+  }
+  if (!bases.empty()) return bases;
+  Json basis = {{"name", "all light"}};
+  basis["radiance"] = append_halves(numbers(model.radiance), bytes);
+  basis["illuminance"] = append_halves(model.illuminance, bytes);
+  bases.push_back(std::move(basis));
+  return bases;
+}
+
+// Where pictures lie, what of the light their texels are of, and they themselves.
+void append_pictures(const BakedModel& model, PageData& page) {
+  if (model.pictures.empty()) return;
+  page.about["places"] = {{"offset", page.bytes.size()}};
+  for (const Eigen::Vector2f& place : model.place) {
+    for (const float x : place) append_bytes(page.bytes, x);
+  }
+  page.about["picture_gain"] = append_halves(numbers(model.picture_gain), page.bytes);
+  Json pictures = Json::array();
+  for (const DrawnPicture& picture : model.pictures) {
+    const std::string png = encode_png(picture.width, picture.height, picture.rgba);
+    const auto wrap = [](TextureWrap how) {
+      return how == TextureWrap::clamp ? "clamp" : how == TextureWrap::mirror ? "mirror" : "repeat";
+    };
+    pictures.push_back({{"offset", page.bytes.size()},
+                        {"length", png.size()},
+                        {"wrap", {wrap(picture.wrap[0]), wrap(picture.wrap[1])}},
+                        {"is_smooth", picture.is_smooth},
+                        {"has_holes", picture.has_holes}});
+    page.bytes += png;
+    page.bytes.resize((page.bytes.size() + 3) / 4 * 4);
+  }
+  page.about["pictures"] = std::move(pictures);
+}
+
+/// Rows of `axes` are north, east and up in the page's axes.
+void append_sky(const BakedModel& model, PageData& page) {
+  if (!model.sky) return;
+  const BakedSky& sky = *model.sky;
+  const Eigen::Matrix3d axes = model.to_y_up * sky.axes;
+  Json about = {{"columns", sky.columns},
+                {"rows_above", sky.rows_above},
+                {"rows_below", sky.rows_below},
+                {"axes", {vector(axes.col(0)), vector(axes.col(1)), vector(axes.col(2))}},
+                {"basis", sky.channel}};
+  about["radiance"] = append_halves(numbers(sky.radiance), page.bytes);
+  if (sky.sun) {
+    about["sun"] = {{"direction", vector(model.to_y_up * *sky.sun)},
+                    {"cosine_of_edge", sky.cosine_of_edge},
+                    {"radiance", numbers(sky.sun_radiance)},
+                    {"basis", sky.sun_channel}};
+  }
+  page.about["sky"] = std::move(about);
+}
+
+Json parts(const BakedModel& model, const Eigen::Vector3d& low) {
+  Json result = Json::array();
+  for (const BakedPart& part : model.parts) {
+    result.push_back({{"name", part.name},
+                      {"material", part.material},
+                      {"picture", part.picture},
+                      {"is_back", part.is_back},
+                      {"first_face", part.first_face},
+                      {"face_count", part.face_count}});
+    if (!part.sphere) continue;
+    result.back()["sphere"] = {{"center", vector(model.to_y_up * part.sphere->center - low)},
+                               {"radius", part.sphere->radius}};
+  }
+  return result;
+}
+
+Json materials(const BakedModel& model) {
+  Json result = Json::array();
+  for (const BakedMaterial& material : model.materials) {
+    const char* kind = material.is_glass ? "glass" : material.is_mirror ? "mirror" : "matt";
+    result.push_back({{"name", material.name}, {"kind", kind}});
+  }
+  return result;
+}
+
+Json cameras(const BakedModel& model, const Eigen::Vector3d& low) {
+  Json result = Json::array();
+  for (const BakedCamera& baked : model.cameras) {
+    const Camera& camera = baked.camera;
+    result.push_back({{"name", camera.name},
+                      {"position", vector(model.to_y_up * camera.position - low)},
+                      {"direction", vector(model.to_y_up * camera.direction)},
+                      {"up", vector(model.to_y_up * camera.up)},
+                      {"fov_degrees", camera.fov_degrees},
+                      {"aspect", static_cast<double>(camera.width) / camera.height},
+                      {"exposure", baked.scale}});
+  }
+  return result;
+}
+
+Json scale_of(const LuxRange& range) {
+  return {{"low", range.low}, {"high", range.high}, {"steps", scale_steps(range)}};
+}
+
+Json false_colors_of(const BakedModel& model, const LuxRange& range) {
+  constexpr int entries = 256;
+  std::string palette;
+  for (int i = 0; i < entries; ++i) {
+    for (const float c : false_color(static_cast<float>(i) / (entries - 1))) {
+      palette += fmt::format("{:02x}", static_cast<int>(255.0f * c + 0.5f));
+    }
+  }
+  // The page's radiance is linear RGB, of whatever bands the solution has.
+  const auto luminance = luminous_rows(model.radiance, rgb_bands(model.bands.lumens_per_watt));
+  return {{"illuminance", scale_of(range)},
+          {"luminance", scale_of(lux_range(luminance))},
+          {"palette", std::move(palette)}};
+}
+
+}  // namespace
+
+PageData page_data(const BakedModel& model, const LuxRange& range) {
+  const Box box = turned_bounds(model);
+  PageData page;
+  page.about = {{"format", 1},
+                {"title", model.title},
+                {"version", model.provenance.version},
+                {"scene_file", model.provenance.scene_file},
+                {"unit_name", model.unit_name},
+                {"metres_per_unit", model.metres_per_unit},
+                {"relative_units", model.relative_units},
+                {"lumens_per_watt", model.bands.lumens_per_watt},
+                {"is_spectral", !model.bands.wavelengths_nm.empty()}};
+  Json to_scene = Json::array();  // p of the page is here: rotation (p + origin) in the scene
+  for (int c = 0; c < 3; ++c) to_scene.push_back(vector(model.to_y_up.col(c)));
+  page.about["to_scene"] = std::move(to_scene);
+  page.about["origin"] = vector(box.low);
+  page.about["size"] = vector(box.high - box.low);
+  page.about["vertex_count"] = model.vertex_count();
+  page.about["face_count"] = model.face_count();
+  append_positions(model, box, page);
+  append_faces(model, page);
+  page.about["bases"] = append_bases(model, page.bytes);
+  append_pictures(model, page);
+  append_sky(model, page);
+  page.about["parts"] = parts(model, box.low);
+  page.about["materials"] = materials(model);
+  page.about["cameras"] = cameras(model, box.low);
+  page.about["false_colors"] = false_colors_of(model, range);
+  return page;
+}
+
+std::string base64(const std::string& bytes) {
+  static constexpr char digits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+      group = group << 8 | (b < count ? static_cast<unsigned char>(bytes[i + b]) : 0u);
+    }
+    for (std::size_t d = 0; d < 4; ++d) {
+      text += d <= count ? digits[group >> (18 - 6 * d) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vtkSmartPointer.h>
+
+#include <vector>
+
+#include "viewer/window/fine_spheres.h"
+#include "viewer/window/sight.h"
+
+class vtkActor;
+class vtkPolyData;
+class vtkRenderer;
+class vtkTextActor;
+
+namespace lightwell {
+
+/// Lines of equal illuminance on the surfaces, with the number beside some of them. Like the
+/// surfaces themselves they are drawn on the side that faces the eye.
+class IsoluxLines {
+ public:
+  IsoluxLines();
+  ~IsoluxLines();
+
+  void add_to(vtkRenderer* renderer) const;
+  /// At the levels, lx; `lux` is one a vertex, `radiance` splits quads as they are drawn. Lines are
+  /// lifted off the surfaces by `lift`, m.
+  void set(const PatchMesh& mesh, const FineSpheres& spheres, const std::vector<ElementKind>& kinds,
+           const std::vector<float>& lux, const BandArray& radiance,
+           const std::vector<double>& levels, double lift);
+  void show(bool shown);
+  /// Draws what faces the eye, and numbers where they are seen.
+  void look_from(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                 const Camera& camera, const SightOptions& options);
+  int segment_count() const { return static_cast<int>(segments_.size()); }
+
+ private:
+  struct Segment {
+    Eigen::Vector3d from, to, normal;
+    double level = 0.0;
+  };
+  struct Label {
+    Eigen::Vector3d place, normal;
+    double level = 0.0;
+  };
+  void place_labels(double apart);
+
+  bool shown_ = false;
+  std::vector<Segment> segments_{};
+  std::vector<Label> labels_{};  ///< no more than texts_
+  std::vector<vtkSmartPointer<vtkTextActor>> texts_{};
+  vtkSmartPointer<vtkPolyData> data_;
+  vtkSmartPointer<vtkActor> dark_,
+      bright_;  ///< a bright line on a wider dark one reads on any colour
+};
+
+}  // namespace lightwell

@@ -1,0 +1,343 @@
+#include "viewer/window/live_solve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <limits>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "mesh/build_patches.h"
+#include "radiosity/solution/relight.h"
+#include "radiosity/solvers/vertex_light.h"
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The first shots are each worth a look; later ones are many, and found side by side.
+constexpr int single_shots = 100;
+constexpr std::chrono::milliseconds between_lights{50};
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+SolveOptions for_a_window(SolveOptions options, const Scene& scene) {
+  if (!options.progressive) options.progressive.emplace();
+  options.mesh.progress = options.progress;
+  options.journal = nullptr;
+  if (gives_light(scene)) return options;
+  throw InputError(fmt::format(
+      "{}: nothing emits light, so there is nothing to watch arriving; give a material a "
+      "'radiance', 'exitance' or 'power' (in OBJ files: Ke) and use it on a surface, or add a lamp",
+      scene.file.empty() ? "the scene" : scene.file.string()));
+}
+
+}  // namespace
+
+struct LiveSolve::Impl {
+  Impl(const Scene& of, const SolveOptions& asked, const Provenance& from)
+      : scene(of),
+        options(for_a_window(asked, of)),
+        provenance(from),
+        mesh(build_patches(of, options.mesh)),
+        caster(mesh),
+        direct_light(of, mesh, options.channels),
+        paths(of, caster, options.form_factors.max_specular_depth),
+        progressive(
+            of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
+            *options.progressive, options.channels,
+            cast_free_light(of, caster, paths, direct_light, options.free_rays, options.progress)),
+        begun(progressive.solution()),
+        vertex_light(caster, direct_light) {
+    shown.lacks_specular = std::ranges::any_of(of.surfaces, [&](const Surface& surface) {
+      return of.materials[surface.material].is_specular();
+    });
+  }
+
+  // One shot, or one round that ends at `shots` at the latest.
+  bool step(int shots) {
+    const int done = progressive.shots();
+    const int most = done < single_shots ? 1 : shots - done;
+    if (most < 1 || !progressive.step(most)) return false;
+    vertex_light.receive(progressive.last_shots());
+    return true;
+  }
+
+  Eigen::ArrayXf unshot() const {
+    const BandArray& columns = progressive.unshot();
+    const int bands = scene.bands.count();
+    Eigen::ArrayXf result = Eigen::ArrayXf::Zero(columns.rows());
+    for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+      for (Eigen::Index first = 0; first < columns.cols(); first += bands) {
+        const Spectrum dB = columns.row(i).segment(first, bands).transpose().abs();
+        result[i] += static_cast<float>(luminous(scene.bands, dB));
+      }
+    }
+    return result;
+  }
+
+  LiveLight light() const {
+    return {vertex_light.irradiance(), progressive.ambient(), unshot(), progressive.shots(),
+            progressive.unshot_share()};
+  }
+
+  SolvedScene finish(const Progress& progress) const {
+    SolvedScene patches;
+    patches.mesh = mesh;
+    RadiositySolution& s = patches.solution;
+    s = progressive.solution();
+    s.history.push_back({.residual = s.residual, .seconds = shooting_seconds});
+    s.seconds.push_back({"solve", shooting_seconds});
+    SolveOptions gathering = options;
+    gathering.progress = progress;
+    SolvedScene solved = gather_to_elements(scene, std::move(patches), gathering);
+    solved.solution.provenance.version = provenance.version;
+    solved.solution.provenance.options = provenance.options;
+    return solved;
+  }
+
+  void run();
+  void shoot_until_told();
+  int wait_for_leave();
+  void publish(bool always);
+
+  const Scene& scene;
+  SolveOptions options;
+  Provenance provenance;
+  PatchMesh mesh;
+  ElementCaster caster;
+  DirectLight direct_light;
+  LightPaths paths;
+  ProgressiveRadiosity progressive;
+  RadiositySolution begun;  ///< before the first shot
+  VertexLight vertex_light;
+  double shooting_seconds = 0.0;
+
+  // Shared with the thread.
+  mutable std::mutex mutex{};
+  std::condition_variable wake{};
+  std::atomic<bool> ending{false};
+  bool paused = false, enough = false;
+  int single_steps = 0;
+  LiveState shown{};
+  std::optional<LiveLight> fresh{};
+  std::optional<SolvedScene> solution{};
+  Clock::time_point last_published{};
+  std::thread thread{};
+};
+
+// How many may shoot before it is asked again; 0: shooting is to end.
+int LiveSolve::Impl::wait_for_leave() {
+  std::unique_lock lock(mutex);
+  shown.phase = paused && single_steps == 0 ? LivePhase::paused : LivePhase::shooting;
+  wake.wait(lock, [&] { return ending || enough || !paused || single_steps > 0; });
+  if (ending || enough) return 0;
+  shown.phase = LivePhase::shooting;
+  if (!paused) return std::numeric_limits<int>::max();
+  --single_steps;
+  return 1;
+}
+
+void LiveSolve::Impl::publish(bool always) {
+  const Clock::time_point now = Clock::now();
+  const double unshot = progressive.unshot_share();
+  const bool is_due = always || now - last_published >= between_lights;
+  std::optional<LiveLight> copy;
+  if (is_due) copy = light();
+  const std::lock_guard lock(mutex);
+  shown.shots = progressive.shots();
+  shown.unshot_share = unshot;
+  shown.seconds = shooting_seconds;
+  if (!is_due) return;
+  fresh = std::move(copy);
+  last_published = now;
+}
+
+void LiveSolve::Impl::shoot_until_told() {
+  publish(true);
+  while (const int most = wait_for_leave()) {
+    const Clock::time_point start = Clock::now();
+    const int until = options.progressive->max_shots;
+    const bool shot = step(most == 1 ? std::min(progressive.shots() + 1, until) : until);
+    shooting_seconds += seconds_since(start);
+    bool is_last = !shot;
+    {
+      const std::lock_guard lock(mutex);
+      is_last |= paused;
+    }
+    publish(is_last);
+    if (!shot) break;
+  }
+}
+
+void LiveSolve::Impl::run() {
+  try {
+    shoot_until_told();
+    if (ending) return;
+    publish(true);
+    {
+      const std::lock_guard lock(mutex);
+      shown.phase = LivePhase::gathering;
+      shown.converged = progressive.has_converged();
+    }
+    const Clock::time_point start = Clock::now();
+    SolvedScene solved = finish([&](std::string_view phase, double share) {
+      const std::lock_guard lock(mutex);
+      shown.step = phase;
+      shown.step_share = share;
+      shown.seconds = shooting_seconds + seconds_since(start);
+      return !ending;
+    });
+    const std::lock_guard lock(mutex);
+    solution = std::move(solved);
+    shown.phase = LivePhase::done;
+  } catch (const Interrupted&) {
+    // The window was closed.
+  } catch (const std::exception& error) {
+    const std::lock_guard lock(mutex);
+    shown.phase = LivePhase::failed;
+    shown.failure = error.what();
+  }
+}
+
+void show_light(const LiveLight& light, bool with_ambient, SolvedScene& shown) {
+  RadiositySolution& s = shown.solution;
+  BandArray ambient = BandArray::Zero(light.irradiance.rows(), light.irradiance.cols());
+  if (with_ambient) ambient.rowwise() += light.ambient.max(0.0f).transpose();
+  if (s.channels.empty()) {
+    s.direct_irradiance = light.irradiance;
+    s.indirect_irradiance = ambient;
+    return;
+  }
+  split_columns(light.irradiance, &LightChannel::direct_irradiance, s.channels);
+  split_columns(ambient, &LightChannel::indirect_irradiance, s.channels);
+  relight(shown, scales_in_force(s));
+}
+
+std::string text_of(const LiveState& state) {
+  const std::string meter = fmt::format("{} shots, {:.3g} % unshot, {:.1f} s", state.shots,
+                                        100.0 * state.unshot_share, state.seconds);
+  const char* const lacks =
+      state.lacks_specular ? " (light by way of mirrors and glass comes with the solution)" : "";
+  switch (state.phase) {
+    case LivePhase::shooting:
+      return meter + lacks;
+    case LivePhase::paused:
+      return "paused: " + meter + lacks;
+    case LivePhase::gathering:
+      return fmt::format("{}, {} {:.0f} %", meter, state.step.empty() ? "gather" : state.step,
+                         100.0 * state.step_share);
+    case LivePhase::done:
+      return (state.converged ? "solved: " : "solved so far: ") + meter;
+    case LivePhase::failed:
+      break;
+  }
+  return "failed: " + state.failure;
+}
+
+LiveSolve::LiveSolve(const Scene& scene, const SolveOptions& options, const Provenance& provenance)
+    : impl_(std::make_unique<Impl>(scene, options, provenance)) {}
+
+LiveSolve::~LiveSolve() {
+  impl_->ending = true;
+  {
+    const std::lock_guard lock(impl_->mutex);  // so that the thread is not just about to wait
+  }
+  impl_->wake.notify_all();
+  if (impl_->thread.joinable()) impl_->thread.join();
+}
+
+SolvedScene LiveSolve::dark() const {
+  SolvedScene dark;
+  dark.mesh = impl_->mesh;
+  RadiositySolution& s = dark.solution;
+  s.bands = impl_->scene.bands;
+  s.metres_per_unit = impl_->scene.metres_per_unit;
+  s.unit_name = impl_->scene.unit_name;
+  s.relative_units = impl_->scene.relative_units;
+  s.provenance = impl_->provenance;
+  s.patch_radiosity = impl_->begun.patch_radiosity;
+  s.direct_irradiance = BandArray::Zero(dark.mesh.vertex_count(), s.bands.count());
+  s.indirect_irradiance = s.direct_irradiance;
+  s.channels = impl_->begun.channels;
+  s.patch_channel = impl_->begun.patch_channel;
+  s.source_channel = impl_->begun.source_channel;
+  s.full_emission = impl_->begun.full_emission;
+  for (LightChannel& channel : s.channels) {
+    channel.direct_irradiance = s.direct_irradiance;
+    channel.indirect_irradiance = s.direct_irradiance;
+  }
+  return dark;
+}
+
+void LiveSolve::shoot(int shots) {
+  const Clock::time_point start = Clock::now();
+  while (impl_->progressive.shots() < shots && impl_->step(shots)) {
+    const double share = static_cast<double>(impl_->progressive.shots()) / shots;
+    report(impl_->options.progress, "solve", std::max(share, impl_->progressive.done()));
+  }
+  impl_->shooting_seconds += seconds_since(start);
+}
+
+LiveLight LiveSolve::light() const {
+  return impl_->light();
+}
+
+SolvedScene LiveSolve::finish() {
+  return impl_->finish(impl_->options.progress);
+}
+
+void LiveSolve::start() {
+  impl_->thread = std::thread([this] { impl_->run(); });
+}
+
+void LiveSolve::set_paused(bool paused) {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->paused = paused;
+    impl_->single_steps = 0;
+  }
+  impl_->wake.notify_all();
+}
+
+void LiveSolve::step_once() {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->paused = true;
+    ++impl_->single_steps;
+  }
+  impl_->wake.notify_all();
+}
+
+void LiveSolve::stop_shooting() {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->enough = true;
+  }
+  impl_->wake.notify_all();
+}
+
+LiveState LiveSolve::state() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->shown;
+}
+
+std::optional<LiveLight> LiveSolve::take_light() {
+  const std::lock_guard lock(impl_->mutex);
+  return std::exchange(impl_->fresh, std::nullopt);
+}
+
+std::optional<SolvedScene> LiveSolve::take_solution() {
+  const std::lock_guard lock(impl_->mutex);
+  return std::exchange(impl_->solution, std::nullopt);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,297 @@
+#include "viewer/window/solution_actor.h"
+
+#include <fmt/format.h>
+#include <vtkActor.h>
+#include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
+#include <vtkShaderProperty.h>
+#include <vtkTexture.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <string>
+
+namespace lightwell {
+namespace {
+
+constexpr double edge_grey = 0.1;
+
+vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, bool is_glass) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  mapper->SetColorModeToDirectScalars();
+  mapper->SetScalarModeToUsePointData();
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  vtkProperty* property = actor->GetProperty();
+  property->LightingOff();
+  property->BackfaceCullingOn();
+  property->SetEdgeColor(edge_grey, edge_grey, edge_grey);
+  property->SetLineWidth(1.0f);
+  if (is_glass) property->SetOpacity(glass_opacity);
+  return actor;
+}
+
+/// Where a lit wall stands on a floor that is black under it, the edge is the wall's: dots of the
+/// black would else show along it. In pixels of the black face's slope in depth; dots were seen at
+/// 1, none from 2 on.
+void draw_behind(vtkActor* actor) {
+  actor->GetShaderProperty()->AddFragmentShaderReplacement(
+      "//VTK::Light::Impl", true,
+      "//VTK::Light::Impl\n  gl_FragDepth = gl_FragCoord.z + 4.0 * fwidth(gl_FragCoord.z);\n",
+      false);
+}
+
+/// Where the light of an element ends, along the true sphere.
+vtkSmartPointer<vtkActor> make_outlines(vtkPoints* points, int first, const FineSpheres& spheres) {
+  vtkNew<vtkCellArray> lines;
+  for (const auto& [from, to] : spheres.outlines) {
+    const vtkIdType ends[2] = {first + from, first + to};
+    lines->InsertNextCell(2, ends);
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetLines(lines);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  mapper->SetResolveCoincidentTopologyToPolygonOffset();
+  mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, -20.0);
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  actor->GetProperty()->LightingOff();
+  actor->GetProperty()->SetColor(edge_grey, edge_grey, edge_grey);
+  actor->VisibilityOff();
+  return actor;
+}
+
+vtkSmartPointer<vtkTexture> make_texture(const DrawnPicture& picture) {
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(picture.width, picture.height, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 4);
+  std::copy(picture.rgba.begin(), picture.rgba.end(),
+            static_cast<unsigned char*>(image->GetScalarPointer()));
+  auto texture = vtkSmartPointer<vtkTexture>::New();
+  texture->SetInputData(image);
+  texture->SetColorModeToDirectScalars();
+  texture->SetInterpolate(picture.is_smooth);
+  texture->SetMipmap(picture.is_smooth);
+  // VTK has one way for both directions.
+  switch (picture.wrap[0]) {
+    case TextureWrap::repeat:
+      texture->SetWrap(vtkTexture::Repeat);
+      break;
+    case TextureWrap::mirror:
+      texture->SetWrap(vtkTexture::MirroredRepeat);
+      break;
+    case TextureWrap::clamp:
+      texture->SetWrap(vtkTexture::ClampToEdge);
+      break;
+  }
+  return texture;
+}
+
+}  // namespace
+
+SolutionActor::SolutionActor(const PatchMesh& mesh, const FineSpheres& spheres,
+                             const std::vector<ElementKind>& kinds, const BandArray& radiance,
+                             const DrawnPictures& drawn)
+    : spheres_(spheres), colors_(vtkSmartPointer<vtkUnsignedCharArray>::New()) {
+  // The mesh's vertices, and after them the spheres' points.
+  const vtkIdType count = mesh.vertex_count() + static_cast<vtkIdType>(spheres.points.size());
+  colors_->SetNumberOfComponents(3);
+  colors_->SetNumberOfTuples(count);
+  colors_->FillValue(0);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(count);
+  for (int v = 0; v < mesh.vertex_count(); ++v) points->SetPoint(v, mesh.position(v).data());
+  for (std::size_t i = 0; i < spheres.points.size(); ++i) {
+    points->SetPoint(mesh.vertex_count() + static_cast<vtkIdType>(i),
+                     spheres.points[i].position.data());
+  }
+
+  for (const ElementKind kind : {ElementKind::lit, ElementKind::unlit, ElementKind::glass}) {
+    for (const bool is_fine : {false, true}) {
+      if (is_fine && spheres.points.empty()) continue;
+      auto data = vtkSmartPointer<vtkPolyData>::New();
+      data->SetPoints(points);
+      data->GetPointData()->SetScalars(colors_);
+      parts_.push_back({kind, is_fine, data, make_actor(data, kind == ElementKind::glass)});
+      if (kind == ElementKind::unlit) draw_behind(parts_.back().actor);
+    }
+  }
+  outlines_ = make_outlines(points, mesh.vertex_count(), spheres);
+  if (!drawn.all().empty()) add_pictures(mesh, drawn);
+  set_shapes(mesh, kinds, radiance);
+}
+
+SolutionActor::~SolutionActor() = default;
+
+void SolutionActor::add_pictures(const PatchMesh& mesh, const DrawnPictures& drawn) {
+  has_picture_.assign(static_cast<std::size_t>(mesh.element_count()), 0);
+  for (std::size_t p = 0; p < drawn.all().size(); ++p) {
+    PicturedPart pictured{.part = {}, .texture = make_texture(drawn.all()[p]), .colors = {}};
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    vtkNew<vtkFloatArray> places;
+    places->SetNumberOfComponents(2);
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const int facet = mesh.facet[e];
+      if (drawn.of(facet) != static_cast<int>(p)) continue;
+      has_picture_[e] = 1;
+      pictured.element.push_back(e);
+      for (int c = 0; c < mesh.corner_count(e); ++c) {
+        const int v = mesh.corners[e][c];
+        pictured.mesh_vertex.push_back(v);
+        points->InsertNextPoint(mesh.position(v).data());
+        places->InsertNextTuple(drawn.place(facet, mesh.position(v)).data());
+      }
+    }
+    pictured.colors = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    pictured.colors->SetNumberOfComponents(3);
+    pictured.colors->SetNumberOfTuples(points->GetNumberOfPoints());
+    pictured.colors->FillValue(0);
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->GetPointData()->SetScalars(pictured.colors);
+    data->GetPointData()->SetTCoords(places);
+    pictured.part = {ElementKind::lit, false, data, make_actor(data, false)};
+    pictured.has_holes = drawn.all()[p].has_holes;
+    if (pictured.has_holes) pictured.part.actor->ForceOpaqueOn();
+    pictured_.push_back(std::move(pictured));
+  }
+}
+
+/// Elements that show a picture are left to others, where they are lit.
+vtkSmartPointer<vtkCellArray> SolutionActor::polygons_of(const PatchMesh& mesh, const Part& part,
+                                                         const std::vector<ElementKind>& kinds,
+                                                         const BandArray& radiance) const {
+  auto polygons = vtkSmartPointer<vtkCellArray>::New();
+  if (part.is_fine) {
+    for (const FineSpheres::Face& face : spheres_.faces) {
+      if (kinds[face.element] != part.kind) continue;
+      polygons->InsertNextCell(face.corner[3] < 0 ? 3 : 4);
+      for (const int point : face.corner) {
+        if (point >= 0) polygons->InsertCellPoint(mesh.vertex_count() + point);
+      }
+    }
+    return polygons;
+  }
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (kinds[e] != part.kind) continue;
+    if (part.kind == ElementKind::lit && !has_picture_.empty() && has_picture_[e]) continue;
+    if (!spheres_.has_faces.empty() && spheres_.has_faces[e]) continue;
+    const int corner_count = mesh.corner_count(e);
+    // VTK splits a quad along the diagonal from its first corner.
+    const int first = first_corner(mesh, e, radiance);
+    polygons->InsertNextCell(corner_count);
+    for (int c = 0; c < corner_count; ++c) {
+      polygons->InsertCellPoint(mesh.corners[e][(first + c) % corner_count]);
+    }
+  }
+  return polygons;
+}
+
+void SolutionActor::set_shapes(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
+                               const BandArray& radiance) {
+  for (const Part& part : parts_) {
+    part.data->SetPolys(polygons_of(mesh, part, kinds, radiance));
+  }
+  for (const PicturedPart& pictured : pictured_) {
+    auto polygons = vtkSmartPointer<vtkCellArray>::New();
+    int point = 0;
+    for (const int e : pictured.element) {
+      const int count = mesh.corner_count(e), first = first_corner(mesh, e, radiance);
+      if (kinds[e] == ElementKind::lit) {
+        polygons->InsertNextCell(count);
+        for (int c = 0; c < count; ++c) polygons->InsertCellPoint(point + (first + c) % count);
+      }
+      point += count;
+    }
+    pictured.part.data->SetPolys(polygons);
+  }
+}
+
+void SolutionActor::add_to(vtkRenderer* renderer) const {
+  for (const Part& part : parts_) renderer->AddActor(part.actor);
+  renderer->AddActor(outlines_);
+  for (const PicturedPart& pictured : pictured_) renderer->AddActor(pictured.part.actor);
+}
+
+void SolutionActor::set_colors(const std::vector<std::uint8_t>& plain,
+                               const std::vector<std::uint8_t>& codes) {
+  unsigned char* next = std::copy(plain.begin(), plain.end(), colors_->GetPointer(0));
+  for (const FineSpheres::Point& point : spheres_.points) {
+    Eigen::Array3f color = Eigen::Array3f::Constant(0.5f);  // to be rounded
+    for (int c = 0; c < 4; ++c) {
+      if (point.vertex[c] < 0) continue;
+      const auto* const bytes = &plain[3 * static_cast<std::size_t>(point.vertex[c])];
+      color += point.weight[c] * Eigen::Array3f(bytes[0], bytes[1], bytes[2]);
+    }
+    for (const float component : color) *next++ = static_cast<unsigned char>(component);
+  }
+  colors_->Modified();
+  for (const Part& part : parts_) part.data->Modified();
+  const std::vector<std::uint8_t>& of_pictures = codes.empty() ? plain : codes;
+  for (const PicturedPart& pictured : pictured_) {
+    unsigned char* out = pictured.colors->GetPointer(0);
+    for (const int v : pictured.mesh_vertex) {
+      out = std::copy_n(of_pictures.begin() + std::ptrdiff_t{3} * v, 3, out);
+    }
+    pictured.colors->Modified();
+    pictured.part.data->Modified();
+    show_picture(pictured, !codes.empty());
+  }
+}
+
+// Light and picture meet before tone mapping, as in all other pictures: light far above white keeps
+// its colour where a dark texel brings it down. VTK multiplies the vertex colour, here the light's
+// code, with the texel, so the texel is had back by division.
+void SolutionActor::show_picture(const PicturedPart& pictured, bool shown) {
+  vtkShaderProperty* const shaders = pictured.part.actor->GetShaderProperty();
+  if (shown == (pictured.part.actor->GetTexture() != nullptr)) return;
+  pictured.part.actor->SetTexture(shown ? pictured.texture.Get() : nullptr);
+  shaders->ClearAllFragmentShaderReplacements();
+  if (!shown) return;
+  shaders->AddFragmentShaderReplacement(
+      "//VTK::Light::Impl", true, "//VTK::Light::Impl\n  vec3 light_code = gl_FragData[0].rgb;\n",
+      false);
+  std::string program = "//VTK::TCoord::Impl\n";
+  if (pictured.has_holes) program += "  if (gl_FragData[0].a < 0.5) discard;\n";
+  program += fmt::format(R"(
+  vec3 texel = gl_FragData[0].rgb / max(light_code, vec3(1e-3));
+  vec3 x = mix(texel / 12.92, pow((texel + 0.055) / 1.055, vec3(2.4)), step(0.04045, texel));
+  x *= max(exp2({:.1f} * light_code - {:.1f}) - exp2(-{:.1f}), 0.0);
+  x = mix(x, 1.0 - 0.5 * exp(1.0 - 2.0 * x), step(0.5, x));
+  x = mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, x));
+  gl_FragData[0].rgb = x;
+)",
+                         light_code_stops, light_code_depth, light_code_depth);
+  shaders->AddFragmentShaderReplacement("//VTK::TCoord::Impl", true, program, false);
+}
+
+void SolutionActor::show_mesh(bool shown) {
+  for (const Part& part : parts_) {
+    part.actor->GetProperty()->SetEdgeVisibility(shown && !part.is_fine);
+  }
+  outlines_->SetVisibility(shown);
+  for (const PicturedPart& pictured : pictured_) {
+    pictured.part.actor->GetProperty()->SetEdgeVisibility(shown);
+  }
+}
+
+void SolutionActor::show_unlit(bool shown) {
+  for (const Part& part : parts_) {
+    if (part.kind == ElementKind::unlit) part.actor->SetVisibility(shown);
+  }
+}
+
+}  // namespace lightwell

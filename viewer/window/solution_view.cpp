@@ -1,0 +1,383 @@
+#include "viewer/window/solution_view.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkDoubleArray.h>
+#include <vtkLookupTable.h>
+#include <vtkNew.h>
+#include <vtkProperty2D.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkScalarBarActor.h>
+#include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+
+#include "mesh/patches/mesh_bounds.h"
+#include "radiosity/solution/vtk_messages.h"
+#include "raytrace/display.h"
+
+namespace lightwell {
+namespace {
+
+/// Texels along a picture; what a window shows has hardly more pixels.
+constexpr int longest_picture = 2048;
+
+DrawnPictures pictures_of(const ViewOptions& options) {
+  return DrawnPictures(options.scene ? *options.scene : Scene{}, longest_picture);
+}
+
+/// Drawing sixteen times instead of sixteen times as large: text and lines keep their size, and no
+/// driver's largest picture or memory is the limit. The samples are Hammersley's set: sixteen
+/// different places across and up, so that edges along rows and columns, and gaps thinner than a
+/// pixel, are as smooth as slanted ones. A grid makes dotted lines of them.
+constexpr int samples_of_pixel = 16;
+
+/// Of a sample from the pixel's middle, in pixels.
+Eigen::Vector2d sample_offset(int sample) {
+  int turned = 0;  // its four bits in the other order
+  for (int bit = 0; bit < 4; ++bit) turned |= ((sample >> bit) & 1) << (3 - bit);
+  return (Eigen::Vector2d(sample, turned).array() + 0.5) / samples_of_pixel - 0.5;
+}
+
+void set_range(vtkScalarBarActor* legend, const LuxRange& range) {
+  constexpr int entries = 256;
+  vtkNew<vtkLookupTable> table;
+  table->SetNumberOfTableValues(entries);
+  if (!range.is_even()) table->SetScaleToLog10();
+  table->SetTableRange(range.low, range.high);
+  for (int i = 0; i < entries; ++i) {
+    const Eigen::Array3f c = false_color(static_cast<float>(i) / (entries - 1));
+    table->SetTableValue(i, c[0], c[1], c[2]);
+  }
+  legend->SetLookupTable(table);
+  vtkNew<vtkDoubleArray> labels;
+  for (const double value : scale_steps(range)) labels->InsertNextValue(value);
+  legend->SetCustomLabels(labels);
+}
+
+vtkSmartPointer<vtkScalarBarActor> make_legend() {
+  auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
+  legend->UseCustomLabelsOn();
+  legend->SetLabelFormat("%.6g");
+  legend->DrawBackgroundOn();
+  legend->GetBackgroundProperty()->SetColor(0.05, 0.05, 0.05);
+  legend->GetBackgroundProperty()->SetOpacity(0.6);
+  legend->UnconstrainedFontSizeOn();
+  legend->SetMaximumWidthInPixels(80);
+  legend->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+  legend->SetHeight(0.5);
+  legend->SetVerticalTitleSeparation(10);  // pixels; the highest label is as high as the bar
+  for (vtkTextProperty* text : {legend->GetTitleTextProperty(), legend->GetLabelTextProperty()}) {
+    text->SetFontSize(14);
+    text->ItalicOff();
+    text->BoldOff();
+    text->ShadowOn();
+  }
+  legend->VisibilityOff();
+  return legend;
+}
+
+/// Keeps the legend as wide as its text, which does not shrink with the picture, from 256 pixels
+/// on.
+void keep_at_edge(vtkRenderer* renderer, vtkScalarBarActor* legend) {
+  vtkNew<vtkCallbackCommand> before_drawing;
+  before_drawing->SetClientData(legend);
+  before_drawing->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    constexpr double pixels = 92.0, from_edge = 6.0, most = 0.36;
+    const int width = std::max(1, static_cast<vtkRenderer*>(caller)->GetSize()[0]);
+    auto* const kept = static_cast<vtkScalarBarActor*>(data);
+    const double share = std::min(most, pixels / width);
+    kept->SetWidth(share);
+    kept->GetPositionCoordinate()->SetValue(1.0 - share - from_edge / width, 0.25);
+  });
+  renderer->AddObserver(vtkCommand::StartEvent, before_drawing);
+}
+
+/// Linear light of each sRGB byte: the inverse of srgb_encode.
+std::array<float, 256> srgb_table() {
+  std::array<float, 256> table{};
+  for (int i = 0; i < 256; ++i) {
+    const float s = static_cast<float>(i) / 255.0f;
+    table[i] = s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+  }
+  return table;
+}
+
+/// Bytes of the mean of `passes` sums of linear light; turns VTK's rows, which begin at the bottom.
+std::vector<std::uint8_t> encode(const std::vector<float>& sums, int width, int height,
+                                 int passes) {
+  std::vector<std::uint8_t> picture;
+  picture.reserve(sums.size());
+  const std::ptrdiff_t stride = std::ptrdiff_t{3} * width;
+  for (int y = height - 1; y >= 0; --y) {
+    const auto row = sums.begin() + y * stride;
+    std::transform(row, row + stride, std::back_inserter(picture), [&](float sum) {
+      return static_cast<std::uint8_t>(255.0f * srgb_encode(sum / static_cast<float>(passes)) +
+                                       0.5f);
+    });
+  }
+  return picture;
+}
+
+}  // namespace
+
+SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options)
+    : solved_(&solved),
+      scene_(options.scene),
+      materials_(options.materials),
+      given_range_(options.lux_range),
+      given_measure_(options.measure),
+      has_relative_units_(options.relative_units),
+      caster_(solved.mesh),
+      kinds_(element_kinds(solved, options.materials)),
+      irradiance_(solved.solution.irradiance()),
+      radiance_(shown_radiance(solved, options.materials)),
+      drawn_(pictures_of(options)),
+      lux_(vertex_illuminance(solved.solution)),
+      lux_range_(given_measure_ == Measure::illuminance && given_range_ ? *given_range_
+                                                                        : lux_range(lux_)),
+      bounds_(mesh_bounds(solved.mesh)),
+      up_axis_(guess_up_axis(options.cameras, bounds_)),
+      spheres_(fine_spheres(solved.mesh)),
+      actor_(solved.mesh, spheres_, kinds_, radiance_, drawn_),
+      sky_(scene_ ? sky_in_force(*scene_, solved.mesh) : std::nullopt),
+      renderer_(vtkSmartPointer<vtkRenderer>::New()),
+      legend_(make_legend()),
+      isolux_levels_(options.isolux) {
+  if (options.camera) {
+    start_camera_ = *options.camera;
+  } else if (!options.cameras.empty()) {
+    start_camera_ = options.cameras.front();
+  } else {
+    start_camera_ = find_start(caster_, kinds_, radiance_, up_axis_, options.width, options.height);
+  }
+  if (options.from_outside) {
+    start_camera_ =
+        frame_all(bounds_, start_camera_.direction, up_axis_, options.width, options.height);
+  }
+  if (!drawn_.all().empty()) picture_gain_ = picture_gains(solved.mesh, drawn_);
+  actor_.add_to(renderer_);
+  if (sky_) outside_.emplace(*sky_).add_to(renderer_);
+  isolux_.add_to(renderer_);
+  renderer_->AddViewProp(legend_);
+  keep_at_edge(renderer_, legend_);
+  renderer_->SetBackground(0.0, 0.0, 0.0);
+  look_.camera = start_camera_;
+  look_.metered_scale = meter(start_camera_);
+  look_.exposure_ev = options.exposure_ev;
+  look_.mesh = options.mesh;
+  look_.unlit = !options.look_through;
+  look_.illuminance = options.illuminance;
+  look_.measure = options.measure;
+  look_.interpolation_error = options.interpolation_error;
+  look_.isolux = !options.isolux.empty();
+  actor_.show_mesh(look_.mesh);
+  actor_.show_unlit(look_.unlit);
+  apply_legend();
+  apply_camera();
+  apply_colors();
+  apply_isolux();
+}
+
+SolutionView::~SolutionView() = default;
+
+vtkRenderer* SolutionView::renderer() const {
+  return renderer_;
+}
+
+double SolutionView::meter(const Camera& camera) const {
+  return metered_scale(caster_, kinds_, radiance_, solved_->solution.bands, camera, sky());
+}
+
+void SolutionView::set_look(const Look& look) {
+  const bool recolor = look.metered_scale != look_.metered_scale ||
+                       look.exposure_ev != look_.exposure_ev ||
+                       look.illuminance != look_.illuminance || look.measure != look_.measure ||
+                       look.interpolation_error != look_.interpolation_error;
+  look_ = look;
+  actor_.show_mesh(look.mesh);
+  actor_.show_unlit(look.unlit);
+  apply_legend();
+  if (recolor) apply_colors();
+  apply_camera();
+  apply_isolux();
+}
+
+std::vector<double> SolutionView::isolux_levels() const {
+  if (!isolux_levels_.empty()) return isolux_levels_;
+  if (lux_range_.is_even()) {
+    std::vector<double> steps = scale_steps(lux_range_);
+    std::erase(steps, 0.0);
+    return steps;
+  }
+  std::vector<double> levels;
+  for (double power = std::pow(10.0, std::floor(std::log10(lux_range_.low)));
+       power <= lux_range_.high; power *= 10.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double level = factor * power;
+      if (level > lux_range_.low && level < lux_range_.high) levels.push_back(level);
+    }
+  }
+  return levels;
+}
+
+// Found when they are first looked at.
+void SolutionView::apply_isolux() {
+  if (look_.isolux && isolux_is_stale_) {
+    constexpr double lift = 1e-3;  // of the scene, so that no depth buffer mixes them with walls
+    isolux_.set(solved_->mesh, spheres_, kinds_, lux_, radiance_, isolux_levels(),
+                lift * bounds_.diagonal());
+    isolux_is_stale_ = false;
+  }
+  isolux_.show(look_.isolux);
+  isolux_.look_from(caster_, kinds_, look_.camera, {.unlit = look_.unlit});
+}
+
+void SolutionView::light_changed() {
+  irradiance_ = solved_->solution.irradiance();
+  radiance_ = shown_radiance(*solved_, materials_);
+  lux_ = vertex_illuminance(solved_->solution);
+  if (outside_) {
+    sky_ = sky_in_force(*scene_, solved_->mesh);
+    outside_->set_sky(*sky_);
+  }
+  isolux_is_stale_ = true;
+  apply_colors();
+  apply_isolux();
+}
+
+void SolutionView::follow(const SolvedScene& other) {
+  solved_ = &other;
+  light_changed();
+}
+
+void SolutionView::light_arrived() {
+  kinds_ = element_kinds(solved_->mesh, solved_->solution.direct_irradiance, materials_);
+  light_changed();
+  actor_.set_shapes(solved_->mesh, kinds_, radiance_);
+  if (given_range_ && given_measure_ == Measure::illuminance) return;
+  lux_range_ = lux_range(lux_);
+  apply_legend();
+  if (look_.illuminance) apply_colors();
+  isolux_is_stale_ = isolux_levels_.empty();
+  apply_isolux();
+}
+
+void SolutionView::apply_colors() {
+  // No light falls on the sky.
+  if (outside_) outside_->show(!look_.interpolation_error && !look_.illuminance);
+  if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_), {});
+  if (look_.illuminance) return actor_.set_colors(false_colors(measured(), measured_range()), {});
+  const Bands& bands = solved_->solution.bands;
+  const double scale = look_.metered_scale * std::exp2(look_.exposure_ev);
+  if (outside_) outside_->expose(bands, scale);
+  std::vector<std::uint8_t> codes;
+  if (picture_gain_.size() > 0) codes = light_codes(radiance_ * picture_gain_, bands, scale);
+  actor_.set_colors(display_colors(radiance_, bands, scale), codes);
+}
+
+std::vector<float> SolutionView::measured() const {
+  if (look_.measure == Measure::luminance) {
+    return luminous_rows(radiance_, solved_->solution.bands);
+  }
+  if (look_.measure == Measure::illuminance) return lux_;
+  return unshot_.empty() ? std::vector<float>(lux_.size(), 0.0f) : unshot_;
+}
+
+LuxRange SolutionView::measured_range() const {
+  if (given_range_ && look_.measure == given_measure_) return *given_range_;
+  return look_.measure == Measure::illuminance ? lux_range_ : lux_range(measured());
+}
+
+void SolutionView::set_unshot(const Eigen::ArrayXf& unshot) {
+  const PatchMesh& mesh = solved_->mesh;
+  unshot_.assign(static_cast<std::size_t>(mesh.vertex_count()), 0.0f);
+  std::vector<float> patches(unshot_.size(), 0.0f);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const auto v = static_cast<std::size_t>(mesh.corners[e][c]);
+      unshot_[v] += unshot[mesh.patch[e]];
+      patches[v] += 1.0f;
+    }
+  }
+  for (std::size_t v = 0; v < unshot_.size(); ++v) unshot_[v] /= std::max(1.0f, patches[v]);
+  if (look_.illuminance && look_.measure == Measure::unshot) {
+    apply_legend();
+    apply_colors();
+  }
+}
+
+void SolutionView::apply_legend() {
+  legend_->SetVisibility(look_.illuminance || look_.interpolation_error);
+  if (look_.interpolation_error) {
+    legend_->SetTitle("%");
+    return set_range(legend_, {.low = 0.1, .high = 10.0});  // those of error_colors
+  }
+  if (!look_.illuminance) return;
+  const char* const unit = look_.measure == Measure::illuminance ? "lx"
+                           : look_.measure == Measure::luminance ? "cd/m2"
+                                                                 : "lm/m2";
+  legend_->SetTitle(has_relative_units_ ? "relative" : unit);
+  set_range(legend_, measured_range());
+}
+
+void SolutionView::apply_camera() {
+  const Camera& camera = look_.camera;
+  const double size = bounds_.diagonal();
+  vtkCamera* eye = renderer_->GetActiveCamera();
+  eye->SetPosition(camera.position.data());
+  const Eigen::Vector3d target = camera.position + size * camera.direction;
+  eye->SetFocalPoint(target.data());
+  eye->SetViewUp(camera.up.data());
+  eye->SetUseHorizontalViewAngle(true);
+  eye->SetViewAngle(camera.fov_degrees);
+  // All of the bounding sphere; from inside, as near as a depth buffer of 24 bits affords.
+  const double to_center = (0.5 * (bounds_.low + bounds_.high) - camera.position).norm();
+  const double nearest = std::max(to_center - 0.51 * size, 5e-4 * size);
+  const double farthest = std::max(to_center + 0.51 * size, 2.0 * nearest);
+  // How finely a depth buffer tells apart what is near depends on the nearest plane alone, so a far
+  // dome costs nothing: this one is behind all else up to 84 degrees beside the line of sight.
+  constexpr double dome = 10.0;
+  if (outside_) outside_->place(camera.position, dome * farthest);
+  eye->SetClippingRange(nearest, outside_ ? 1.1 * dome * farthest : farthest);
+}
+
+std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, int height) {
+  const VtkMessages messages;
+  vtkNew<vtkRenderWindow> window;
+  window->OffScreenRenderingOn();
+  window->SetMultiSamples(0);
+  window->SetSize(width, height);
+  window->AddRenderer(view.renderer());
+  const std::size_t count = std::size_t{3} * width * height;
+  const std::array<float, 256> linear = srgb_table();
+  std::vector<float> sums(count, 0.0f);
+  vtkNew<vtkUnsignedCharArray> pixels;
+  vtkCamera* eye = view.renderer()->GetActiveCamera();
+  for (int sample = 0; sample < samples_of_pixel; ++sample) {
+    const Eigen::Vector2d offset = sample_offset(sample);
+    eye->SetWindowCenter(2.0 * offset.x() / width, 2.0 * offset.y() / height);  // 2 wide, 2 high
+    window->Render();
+    const int* drawn = window->GetActualSize();
+    if (drawn[0] == width && drawn[1] == height) {
+      window->GetPixelData(0, 0, width - 1, height - 1, 0, pixels);
+    }
+    if (static_cast<std::size_t>(pixels->GetNumberOfValues()) != count) {
+      throw std::runtime_error(
+          "the graphics driver could not draw the picture off screen; try a smaller size");
+    }
+    const unsigned char* bytes = pixels->GetPointer(0);
+    for (std::size_t i = 0; i < count; ++i) sums[i] += linear[bytes[i]];
+  }
+  eye->SetWindowCenter(0.0, 0.0);
+  window->RemoveRenderer(view.renderer());
+  return encode(sums, width, height, samples_of_pixel);
+}
+
+}  // namespace lightwell

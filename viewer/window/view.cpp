@@ -1,0 +1,200 @@
+#include "viewer/window/view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "radiosity/solution/relight.h"
+#include "radiosity/solution/vtk_messages.h"
+#include "raytrace/image.h"
+#include "scene/errors.h"
+#include "viewer/window/camera_path.h"
+#include "viewer/window/live_solve.h"
+#include "viewer/window/marks.h"
+#include "viewer/window/overlay.h"
+#include "viewer/window/pointer_tools.h"
+#include "viewer/window/solution_view.h"
+#include "viewer/window/walk_window.h"
+#include "viewer/window/x_display.h"
+
+namespace lightwell {
+
+void show_window(const SolvedScene& solved, const ViewOptions& options) {
+  const DisplayConnection display;
+  WalkWindow(solved, options).run();
+}
+
+namespace {
+
+void require_size(const ViewOptions& options) {
+  constexpr int largest = 8192;
+  for (const int side : {options.width, options.height}) {
+    if (side < 1 || side > largest) {
+      throw std::invalid_argument(
+          fmt::format("a snapshot of {} x {} pixels is not possible; each side may have 1 to {}",
+                      options.width, options.height, largest));
+    }
+  }
+}
+
+void require_within(const ViewOptions& options, const Eigen::Vector2d& place) {
+  const bool is_within = place.x() >= 0.0 && place.y() >= 0.0 && place.x() < options.width &&
+                         place.y() < options.height;
+  if (is_within) return;
+  throw InputError(fmt::format("pixel {:g},{:g} is outside of the picture, which has {} x {}",
+                               place.x(), place.y(), options.width, options.height));
+}
+
+/// Draws pictures as a window shows them after the keys and clicks of the options' annotations.
+class AnnotatedPictures {
+ public:
+  /// Keeps references to both.
+  AnnotatedPictures(SolutionView& view, const ViewOptions& options)
+      : view_(view), options_(options) {
+    overlay_.add_to(view.renderer());
+    marks_.add_to(view.renderer());
+  }
+
+  /// Of what the view looks at; throws InputError for a place outside of the picture.
+  std::vector<std::uint8_t> draw() {
+    const Annotations& asked = options_.annotations;
+    const int width = options_.width, height = options_.height;
+    Look look = view_.look();
+    std::tie(look.camera.width, look.camera.height) = std::pair(width, height);
+    view_.set_look(look);
+    PointerTools pointer(options_.scene, options_.names);
+    const auto click = [&](const Eigen::Vector2d& place) {
+      require_within(options_, place);
+      pointer.click(view_, place.x(), place.y());
+    };
+    if (asked.click) click(*asked.click);
+    if (asked.measured) {
+      pointer.switch_measuring();
+      for (const Eigen::Vector2d& place : *asked.measured) click(place);
+    }
+    marks_.set(pointer.marks());
+    overlay_.set_panel(pointer.panel(view_));
+    if (asked.pointer) {
+      const double x = asked.pointer->x(), y = asked.pointer->y();
+      require_within(options_, *asked.pointer);
+      pointer.switch_probe();
+      pointer.hover(view_, x, y);
+      overlay_.set_cursor(pointer.beside_pointer(view_), static_cast<int>(x), static_cast<int>(y),
+                          width, height);
+    }
+    if (asked.keys) overlay_.set_help(walk_help(), width, height);
+    const VtkMessages messages;  // text that finds no room in a tiny picture complains
+    return draw_offscreen(view_, width, height);
+  }
+
+ private:
+  SolutionView& view_;
+  const ViewOptions& options_;
+  Overlay overlay_;
+  Marks marks_;
+};
+
+}  // namespace
+
+void write_snapshot(const SolvedScene& solved, const ViewOptions& options,
+                    const std::filesystem::path& png) {
+  require_size(options);
+  const DisplayConnection display;
+  SolutionView view(solved, options);
+  write_png(png, options.width, options.height, AnnotatedPictures(view, options).draw());
+}
+
+std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& options,
+                                              const FilmOptions& film, const std::string& pattern,
+                                              const Progress& progress) {
+  require_size(options);
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < film.frames; ++i) files.push_back(frame_name(pattern, i));
+  CameraPath path;
+  if (!film.path.empty()) {
+    path = read_views(film.path).path;
+    if (path.empty()) {
+      throw InputError(
+          fmt::format("{}: there is no path in it; record one in the window with the key J",
+                      film.path.string()));
+    }
+  }
+  const DisplayConnection display;
+  SolutionView view(solved, options);
+  const Eigen::Vector3d center = 0.5 * (view.bounds().low + view.bounds().high);
+  const std::vector<Camera> cameras =
+      path.empty() ? turntable(view.start_camera(), center, view.up_axis(), film.frames)
+                   : frames_along(path, film.frames);
+  AnnotatedPictures pictures(view, options);
+  Look look = view.look();
+  look.metered_scale = view.meter(cameras.front());
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    report(progress, "draw", static_cast<double>(i) / static_cast<double>(cameras.size()));
+    look.camera =
+        path.empty() ? cameras[i] : fit_to_window(cameras[i], options.width, options.height);
+    view.set_look(look);
+    write_png(files[i], options.width, options.height, pictures.draw());
+  }
+  return files;
+}
+
+namespace {
+
+SolvedScene without_light(const LiveSolve& solve, const LiveViewOptions& live) {
+  SolvedScene dark = solve.dark();
+  if (live.scales) relight(dark, live.scales(dark.solution));
+  return dark;
+}
+
+}  // namespace
+
+void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& options) {
+  const DisplayConnection display;
+  LiveSolve solve(scene, live.solve, live.provenance);
+  WalkWindow window(solve, without_light(solve, live), options);
+  solve.start();
+  window.run();
+}
+
+int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::span<const int> shots,
+                        const ViewOptions& options, const std::filesystem::path& png) {
+  ViewOptions strip = options;
+  strip.width = options.width * static_cast<int>(shots.size());
+  require_size(options);
+  require_size(strip);
+  const DisplayConnection display;
+  LiveSolve solve(scene, live.solve, live.provenance);
+  const SolvedScene dark = without_light(solve, live);
+  std::vector<SolvedScene> stages;
+  std::vector<Eigen::ArrayXf> unshot;
+  int shot = 0;
+  for (const int wanted : shots) {
+    solve.shoot(wanted);
+    const LiveLight light = solve.light();
+    shot = light.shots;
+    unshot.push_back(light.unshot);
+    show_light(light, live.ambient, stages.emplace_back(dark));
+  }
+  const double exposure = SolutionView(stages.back(), options).look().metered_scale;
+  std::vector<std::uint8_t> picture(std::size_t{3} * strip.width * strip.height);
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    SolutionView view(stages[k], options);
+    Look look = view.look();
+    look.metered_scale = exposure;
+    view.set_look(look);
+    view.set_unshot(unshot[k]);
+    const auto drawn = AnnotatedPictures(view, options).draw();
+    const std::size_t row = std::size_t{3} * options.width;
+    for (int y = 0; y < options.height; ++y) {
+      std::copy_n(drawn.begin() + static_cast<std::ptrdiff_t>(row * y), row,
+                  picture.begin() + static_cast<std::ptrdiff_t>(row * (stages.size() * y + k)));
+    }
+  }
+  write_png(png, strip.width, strip.height, picture);
+  return shot;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "radiosity/solution/relight.h"
+#include "radiosity/solution/solution_file.h"
+#include "viewer/window/walk_window.h"
+
+namespace lightwell {
+namespace {
+
+/// So long the picture is exposed anew as light arrives; later it has about its final brightness.
+constexpr int shots_to_meter = 64;
+
+/// The first name that is free, as STEM-1.vtp.
+std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& stem,
+                                const char* extension) {
+  for (int i = 1;; ++i) {
+    std::filesystem::path file = folder / fmt::format("{}-{}{}", stem, i, extension);
+    if (!std::filesystem::exists(file)) return file;
+  }
+}
+
+}  // namespace
+
+void WalkWindow::choose_channel(int step) {
+  if (!lights_.has_channels()) {
+    return say("the light was not kept apart in channels; solve with --channels per-luminaire");
+  }
+  lights_.choose(step);
+  update_text();
+  changed_ = true;
+}
+
+void WalkWindow::switch_channel() {
+  if (!lights_.is_chosen()) return choose_channel(1);
+  lights_.switch_chosen();
+  relight_now();
+}
+
+void WalkWindow::next_colour() {
+  if (!lights_.is_chosen()) return choose_channel(1);
+  say(lights_.next_colour());
+  relight_now();
+}
+
+void WalkWindow::light_up(int steps) {
+  if (!lights_.is_chosen()) return expose(steps / 3.0);
+  lights_.dim(steps);
+  relight_now();
+}
+
+void WalkWindow::relight_now() {
+  still_.discard();
+  if (!own_) {
+    own_ = std::make_unique<SolvedScene>(view_->solved());
+    relight(*own_, lights_.scales());
+    view_->follow(*own_);
+  } else {
+    relight(*own_, lights_.scales());
+    view_->light_changed();
+  }
+  pointer_.light_changed(*view_, true);
+  update_pointer();
+  update_text();
+}
+
+void WalkWindow::save_solution() {
+  if (live_ && live_state_.phase != LivePhase::done) {
+    return say("the light is still arriving; Enter stops, gathers a solution and saves it");
+  }
+  const std::string scene =
+      std::filesystem::path(solved().solution.provenance.scene_file).stem().string();
+  const std::filesystem::path file =
+      options_.solution_file.empty()
+          ? free_name(options_.screenshot_folder, scene.empty() ? "lightwell" : scene, ".vtp")
+          : options_.solution_file;
+  try {
+    write_solution(file, solved());
+    say("saved " + file.string());
+  } catch (const std::exception& error) {
+    say(error.what());
+  }
+}
+
+void WalkWindow::watch() {
+  if (!live_) return;
+  if (auto light = live_->take_light()) {
+    arrived_ = std::move(*light);
+    show_arriving_light();
+    if (arrived_.shots <= shots_to_meter) {
+      Look look = current_look();
+      look.metered_scale = view_->meter(look.camera);
+      change(look);
+    }
+  }
+  const LiveState state = live_->state();
+  if (text_of(state) != text_of(live_state_)) changed_ = true;
+  live_state_ = state;
+  if (auto solution = live_->take_solution()) show_solution(std::move(*solution));
+  update_text();
+}
+
+void WalkWindow::show_arriving_light() {
+  still_.discard();
+  show_light(arrived_, ambient_, *own_);
+  view_->light_arrived();
+  view_->set_unshot(arrived_.unshot);
+  pointer_.light_changed(*view_, true);
+  update_pointer();
+  changed_ = true;
+}
+
+void WalkWindow::show_solution(SolvedScene solved) {
+  auto solution = std::make_unique<SolvedScene>(std::move(solved));
+  if (lights_.has_channels())
+    relight(*solution, lights_.scales());  // as they were dimmed meanwhile
+  replace_view(*solution);
+  own_ = std::move(solution);
+  pointer_.light_changed(*view_, false);
+  expose_for_view();
+  update_pointer();
+  if (std::exchange(save_when_solved_, false)) save_solution();
+}
+
+void WalkWindow::switch_pause() {
+  if (!live_ || live_state_.phase > LivePhase::paused) return say("nothing is being solved");
+  live_->set_paused(live_state_.phase == LivePhase::shooting);
+}
+
+void WalkWindow::shoot_once() {
+  if (!live_ || live_state_.phase > LivePhase::paused) return say("nothing is being solved");
+  live_->step_once();
+}
+
+void WalkWindow::switch_ambient() {
+  if (!live_ || live_state_.phase > LivePhase::gathering) {
+    return say("no light is left unshot");
+  }
+  ambient_ = !ambient_;
+  say(ambient_ ? "with the ambient term" : "without the ambient term");
+  show_arriving_light();
+}
+
+void WalkWindow::stop_shooting() {
+  if (!live_) return say("nothing is being solved");
+  if (live_state_.phase == LivePhase::done) return save_solution();
+  save_when_solved_ = true;
+  live_->stop_shooting();
+}
+
+}  // namespace lightwell

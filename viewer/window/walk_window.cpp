@@ -1,0 +1,357 @@
+#include "viewer/window/walk_window.h"
+
+#include <fmt/format.h>
+#include <vtkInteractorStyle.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "radiosity/solution/vtk_messages.h"
+#include "raytrace/image.h"
+#include "viewer/window/walk_style.h"
+#include "viewer/window/x_display.h"
+
+namespace lightwell {
+namespace {
+
+constexpr unsigned long frame_milliseconds = 15;
+/// A drawing that takes longer slows the walk instead of jumping.
+constexpr double longest_step = 0.25;
+constexpr double message_duration = 4.0;  ///< seconds
+constexpr double drag_degrees = 120.0;    ///< a drag across the whole window
+constexpr double wheel_share = 0.03;      ///< of the scene's diagonal per click
+
+/// What there is to see before the first shot: the emitters, and the ambient term.
+std::unique_ptr<SolvedScene> begin(const LiveSolve& live, SolvedScene dark) {
+  auto begun = std::make_unique<SolvedScene>(std::move(dark));
+  show_light(live.light(), true, *begun);
+  return begun;
+}
+
+}  // namespace
+
+double walking_speed(double scene_diagonal) {
+  constexpr double room = 7.0;  ///< m
+  const double pace = 0.2 * std::min(scene_diagonal, room);
+  return scene_diagonal > room ? pace * std::sqrt(scene_diagonal / room) : pace;
+}
+
+WalkWindow::WalkWindow(const SolvedScene& solved, const ViewOptions& options)
+    : WalkWindow(&solved, nullptr, nullptr, options) {}
+
+WalkWindow::WalkWindow(LiveSolve& live, SolvedScene dark, const ViewOptions& options)
+    : WalkWindow(nullptr, begin(live, std::move(dark)), &live, options) {
+  arrived_ = live.light();
+  show_arriving_light();
+}
+
+WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> own, LiveSolve* live,
+                       const ViewOptions& options)
+    : options_(options),
+      own_(std::move(own)),
+      live_(live),
+      view_(std::make_unique<SolutionView>(own_ ? *own_ : *shown, options_)),
+      walk_(view_->start_camera(), view_->up_axis(), walking_speed(view_->bounds().diagonal())),
+      physics_(walk_body(view_->bounds(), view_->up_axis(), options.eye_height), view_->up_axis()),
+      walking_(options.walk),
+      lights_(view_->solved().solution),
+      pointer_(options.scene, options.names),
+      window_(vtkSmartPointer<vtkRenderWindow>::New()),
+      interactor_(vtkSmartPointer<vtkRenderWindowInteractor>::New()) {
+  still_.add_to(view_->renderer());
+  overlay_.add_to(view_->renderer());
+  marks_.add_to(view_->renderer());
+  say("H shows the keys");
+  try {
+    if (std::filesystem::exists(options_.bookmark_file)) {
+      views_ = read_views(options_.bookmark_file);
+    }
+  } catch (const std::exception& error) {
+    say(error.what());
+  }
+
+  const std::string scene =
+      std::filesystem::path(solved().solution.provenance.scene_file).filename().string();
+  window_->SetWindowName(scene.empty() ? "Lightwell" : ("Lightwell - " + scene).c_str());
+  window_->SetSize(std::max(1, options_.width), std::max(1, options_.height));
+  window_->SetMultiSamples(4);
+  window_->AddRenderer(view_->renderer());
+  interactor_->SetRenderWindow(window_);
+  interactor_->SetInteractorStyle(make_walk_style(this));
+  change(current_look());
+}
+
+// The style points at this object.
+WalkWindow::~WalkWindow() {
+  interactor_->SetInteractorStyle(nullptr);
+}
+
+vtkRenderWindowInteractor* WalkWindow::interactor() const {
+  return interactor_;
+}
+
+void WalkWindow::run() {
+  const VtkMessages messages;
+  window_->Render();
+  // A processor that plays graphics card has no power to spare for four samples a pixel.
+  const std::string driver = window_->ReportCapabilities();
+  for (const char* software : {"llvmpipe", "softpipe", "SWR", "SwiftShader"}) {
+    if (driver.find(software) != std::string::npos) window_->SetMultiSamples(0);
+  }
+  interactor_->Initialize();
+  report_held_keys_once(window_->GetGenericDisplayId());
+  interactor_->CreateRepeatingTimer(frame_milliseconds);
+  interactor_->Start();
+}
+
+void WalkWindow::close() {
+  interactor_->TerminateApp();
+}
+
+std::pair<int, int> WalkWindow::size() const {
+  const int* size = window_->GetSize();
+  return {std::max(1, size[0]), std::max(1, size[1])};
+}
+
+void WalkWindow::drag(int right, int down) {
+  const double per_pixel = drag_degrees * std::numbers::pi / 180.0 / size().first;
+  if (pivot_) {
+    walk_.orbit(*pivot_, 2.0 * right * per_pixel, -2.0 * down * per_pixel);
+  } else {
+    walk_.look(right * per_pixel, -down * per_pixel);
+  }
+  change(current_look());
+}
+
+void WalkWindow::wheel(int clicks) {
+  walk_.dolly(clicks * wheel_share * view_->bounds().diagonal());
+  change(current_look());
+}
+
+void WalkWindow::hover(int x, int y) {
+  pointer_x_ = x;
+  pointer_y_ = size().second - 1 - y;
+  if (pointer_.is_probing()) update_pointer();
+}
+
+void WalkWindow::click(int x, int y) {
+  pointer_.click(*view_, x + 0.5, size().second - 0.5 - y);
+  update_pointer();
+}
+
+void WalkWindow::pointer_left() {
+  pointer_x_ = -1;
+  pointer_.leave();
+  update_pointer();
+}
+
+void WalkWindow::tick(double seconds) {
+  const bool walked = advance(std::min(seconds, longest_step));
+  const auto [width, height] = size();
+  if (walked || width != drawn_width_ || height != drawn_height_) change(current_look());
+  watch();
+  advance_still();
+  if (!message_.empty()) {
+    message_seconds_ -= seconds;
+    if (message_seconds_ <= 0.0) say("");
+  }
+  if (!changed_) return;
+  changed_ = false;
+  drawn_width_ = width;
+  drawn_height_ = height;
+  const VtkMessages messages;  // text that finds no room in a tiny window complains
+  window_->Render();
+}
+
+Look WalkWindow::current_look() const {
+  const auto [width, height] = size();
+  Look look = view_->look();
+  look.camera = fit_to_window(walk_.camera(), width, height);
+  return look;
+}
+
+void WalkWindow::go_to(const Camera& camera) {
+  walk_.place(camera);
+  physics_.stand_still();
+  pivot_.reset();
+  playing_ = false;
+  Look look = current_look();
+  look.metered_scale = view_->meter(camera);
+  change(look);
+}
+
+void WalkWindow::go_to_start() {
+  go_to(view_->start_camera());
+}
+
+void WalkWindow::show_all() {
+  const auto [width, height] = size();
+  walk_.place(
+      frame_all(view_->bounds(), walk_.camera().direction, view_->up_axis(), width, height));
+  change(current_look());
+}
+
+void WalkWindow::expose(double stops) {
+  Look look = current_look();
+  look.exposure_ev += stops;
+  change(look);
+}
+
+void WalkWindow::expose_for_view() {
+  Look look = current_look();
+  look.metered_scale = view_->meter(walk_.camera());
+  look.exposure_ev = options_.exposure_ev;
+  change(look);
+}
+
+void WalkWindow::switch_false_colours() {
+  Look look = current_look();
+  const bool is_shown = look.illuminance && look.measure == Measure::illuminance;
+  look.illuminance = !is_shown && !look.interpolation_error;
+  look.measure = Measure::illuminance;
+  look.interpolation_error = false;
+  change(look);
+}
+
+// Luminance, unshot light while there is any, and back to the picture.
+void WalkWindow::switch_measure() {
+  Look look = current_look();
+  const bool is_solving = live_ && live_state_.phase < LivePhase::done;
+  const bool is_shown = look.illuminance && !look.interpolation_error;
+  if (is_shown && look.measure == Measure::luminance && is_solving) {
+    look.measure = Measure::unshot;
+  } else if (is_shown && look.measure != Measure::illuminance) {
+    look.illuminance = false;
+    look.measure = Measure::illuminance;
+  } else {
+    look.illuminance = true;
+    look.measure = Measure::luminance;
+  }
+  look.interpolation_error = false;
+  change(look);
+}
+
+void WalkWindow::switch_mesh() {
+  Look look = current_look();
+  look.mesh = !look.mesh;
+  change(look);
+}
+
+void WalkWindow::switch_unlit() {
+  Look look = current_look();
+  look.unlit = !look.unlit;
+  change(look);
+}
+
+void WalkWindow::switch_isolux() {
+  Look look = current_look();
+  look.isolux = !look.isolux;
+  change(look);
+}
+
+void WalkWindow::switch_help() {
+  help_ = !help_;
+  const auto [width, height] = size();
+  overlay_.set_help(help_ ? walk_help() : "", width, height);
+  update_pointer();
+}
+
+void WalkWindow::switch_probe() {
+  pointer_.switch_probe();
+  update_pointer();
+  say(pointer_.is_probing() ? "reading under the pointer" : "");
+}
+
+void WalkWindow::switch_measuring() {
+  pointer_.switch_measuring();
+  update_pointer();
+}
+
+void WalkWindow::forget_clicks() {
+  pointer_.clear();
+  update_pointer();
+}
+
+void WalkWindow::update_pointer() {
+  const auto [width, height] = size();
+  pointer_.leave();
+  if (pointer_x_ >= 0) pointer_.hover(*view_, pointer_x_ + 0.5, pointer_y_ + 0.5);
+  overlay_.set_cursor(pointer_.beside_pointer(*view_), pointer_x_, pointer_y_, width, height);
+  overlay_.set_panel(help_ ? "" : pointer_.panel(*view_));
+  marks_.set(pointer_.marks());
+  changed_ = true;
+}
+
+void WalkWindow::change(const Look& look) {
+  still_.discard();
+  view_->set_look(look);
+  if (pointer_.is_probing()) update_pointer();
+  update_text();
+  changed_ = true;
+}
+
+void WalkWindow::say(const std::string& message) {
+  message_ = message;
+  message_seconds_ = message_duration;
+  update_text();
+  changed_ = true;
+}
+
+void WalkWindow::update_text() {
+  const Look& look = view_->look();
+  const char* const measured = look.measure == Measure::illuminance ? "illuminance"
+                               : look.measure == Measure::luminance ? "luminance"
+                                                                    : "unshot light";
+  status_ = look.illuminance ? measured : fmt::format("{:+.1f} EV", look.exposure_ev);
+  if (walking_) status_ += "   on foot";
+  if (pivot_) status_ += "   orbiting";
+  if (recording_) status_ += fmt::format("   recording {:.1f} s", path_seconds_);
+  if (playing_) status_ += fmt::format("   playing {:.1f} s", path_seconds_);
+  if (still_.phase() == StillPhase::rendering) {
+    status_ += fmt::format("   ray-tracing {:.0f} %", 100.0 * still_.progress());
+  }
+  if (live_) status_ += "   " + text_of(live_state_);
+  if (lights_.has_channels()) status_ += "   " + lights_.text();
+  if (!message_.empty()) status_ += "   " + message_;
+  overlay_.set_status(status_);
+}
+
+void WalkWindow::replace_view(const SolvedScene& solved) {
+  Look look = view_->look();
+  if (look.measure == Measure::unshot) {
+    look.illuminance = false;
+    look.measure = Measure::illuminance;
+  }
+  window_->RemoveRenderer(view_->renderer());
+  view_ = std::make_unique<SolutionView>(solved, options_);
+  still_.add_to(view_->renderer());
+  overlay_.add_to(view_->renderer());
+  marks_.add_to(view_->renderer());
+  window_->AddRenderer(view_->renderer());
+  change(look);
+}
+
+void WalkWindow::save_screenshot() {
+  if (save_still()) return;
+  std::filesystem::path file;
+  for (int i = 1; file.empty() || std::filesystem::exists(file); ++i) {
+    file = options_.screenshot_folder / fmt::format("lightwell-{}.png", i);
+  }
+  const auto [width, height] = size();
+  // A renderer belongs to one window; the picture gets one of its own, without the text.
+  try {
+    SolutionView picture(solved(), options_);
+    picture.set_look(view_->look());
+    write_png(file, width, height, draw_offscreen(picture, width, height));
+    say("saved " + file.string());
+  } catch (const std::exception& e) {
+    say(e.what());
+  }
+}
+
+}  // namespace lightwell

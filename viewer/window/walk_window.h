@@ -1,0 +1,185 @@
+#pragma once
+
+#include <vtkSmartPointer.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "viewer/window/camera_path.h"
+#include "viewer/window/light_board.h"
+#include "viewer/window/live_solve.h"
+#include "viewer/window/marks.h"
+#include "viewer/window/overlay.h"
+#include "viewer/window/pointer_tools.h"
+#include "viewer/window/solution_view.h"
+#include "viewer/window/still.h"
+#include "viewer/window/walk_body.h"
+#include "viewer/window/walk_state.h"
+
+class vtkRenderWindow;
+class vtkRenderWindowInteractor;
+
+namespace lightwell {
+
+/// Metres a second for a scene of this diagonal: a fifth of it up to 7 m, a person's 1.4 m/s there,
+/// and growing with the root above, so that a hall is neither tedious nor a blur.
+double walking_speed(double scene_diagonal);
+
+/// The list of keys that the window shows.
+std::string walk_help();
+
+/// The window's behaviour: keys and mouse in, a SolutionView's look out.
+class WalkWindow {
+ public:
+  WalkWindow(const SolvedScene& solved, const ViewOptions& options);
+  /// Shows light as it arrives, and the solution once it is there. Begins with live.dark(), or that
+  /// with its channels dimmed. Keeps a reference; the solving is started by the caller.
+  WalkWindow(LiveSolve& live, SolvedScene dark, const ViewOptions& options);
+  ~WalkWindow();
+  WalkWindow(const WalkWindow&) = delete;
+  WalkWindow& operator=(const WalkWindow&) = delete;
+
+  /// Opens the window and returns when it is closed.
+  void run();
+
+  // What the interactor style reports. `key` is an X key symbol, such as "w", "Left" or "F12".
+  void press(const std::string& key);
+  void release(const std::string& key);
+  void release_all() { held_.clear(); }
+  /// The mouse moved with its button held, pixels, y downwards.
+  void drag(int right, int down);
+  void wheel(int clicks);
+  /// The pointer is, or was clicked without a drag, at a pixel; y upwards, as VTK counts.
+  void hover(int x, int y);
+  void click(int x, int y);
+  void pointer_left();
+  /// `seconds` went by: moves on, and draws if anything changed.
+  void tick(double seconds);
+
+  const Look& look() const { return view_->look(); }
+  const std::string& message() const { return message_; }
+  const std::string& status() const { return status_; }
+  const PointerTools& pointer() const { return pointer_; }
+  bool is_walking() const { return walking_; }
+  const Still& still() const { return still_; }
+  /// What is shown.
+  const SolvedScene& solved() const { return view_->solved(); }
+  vtkRenderWindowInteractor* interactor() const;
+
+ private:
+  /// A key, or a few that do the same, and a line of help.
+  struct Key {
+    const char* shown;
+    const char* does;
+    std::vector<std::string> symbols{};  ///< in lower case; empty: held_keys() looks after it
+    void (WalkWindow::*act)() = nullptr;
+  };
+  static std::span<const Key> keys();
+  friend std::string walk_help();
+
+  WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> own, LiveSolve* live,
+             const ViewOptions& options);
+  WalkKeys held_keys() const;
+  void press_digit(int digit);
+  void keep_bookmark(int digit);
+  /// The look from where the walk is now, in the window as large as it is now.
+  Look current_look() const;
+  void go_to(const Camera& camera);
+  void go_to_start();
+  void show_all();
+  void expose(double stops);
+  void brighter() { light_up(1); }
+  void darker() { light_up(-1); }
+  void expose_for_view();
+  void switch_false_colours();
+  void switch_measure();
+  void switch_mesh();
+  void switch_unlit();
+  void switch_isolux();
+  void switch_help();
+  void switch_probe();
+  void switch_measuring();
+  void forget_clicks();
+  void close();
+  void save_screenshot();
+  void say(const std::string& message);
+  void change(const Look& look);
+  void update_text();
+  void update_pointer();
+  std::pair<int, int> size() const;
+
+  // Ways to move.
+  bool advance(double seconds);
+  bool walk_on_foot(const Eigen::Vector3d& before, double seconds);
+  void switch_walking();
+  void jump();
+  void switch_orbit();
+  void switch_recording();
+  void switch_playing();
+  void record(double seconds);
+  bool play(double seconds);
+  void keep_views();
+
+  // The second pass.
+  void switch_still();
+  void advance_still();
+  bool save_still();
+
+  // Light channels.
+  void next_channel() { choose_channel(1); }
+  void previous_channel() { choose_channel(-1); }
+  void choose_channel(int step);
+  void switch_channel();
+  void next_colour();
+  /// The chosen channel, or without one the exposure.
+  void light_up(int steps);
+  void relight_now();
+  void save_solution();
+
+  // Solving while it is watched.
+  void watch();
+  void show_arriving_light();
+  void show_solution(SolvedScene solved);
+  void switch_pause();
+  void shoot_once();
+  void switch_ambient();
+  void stop_shooting();
+  /// Another solution takes the place of the one that is shown.
+  void replace_view(const SolvedScene& solved);
+
+  ViewOptions options_;
+  std::unique_ptr<SolvedScene> own_;  ///< of which the light changes; null: it does not
+  LiveSolve* live_;
+  std::unique_ptr<SolutionView> view_;
+  WalkState walk_;
+  WalkPhysics physics_;
+  bool walking_ = false, recording_ = false, playing_ = false;
+  std::optional<Eigen::Vector3d> pivot_{};  ///< of orbiting
+  KeptViews views_{};
+  CameraPath recorded_{};
+  double path_seconds_ = 0.0;
+  LightBoard lights_;
+  PointerTools pointer_;
+  LiveLight arrived_{};
+  LiveState live_state_{};
+  bool ambient_ = true, save_when_solved_ = false;
+  std::set<std::string> held_;
+  std::string message_, status_;
+  double message_seconds_ = 0.0;
+  int drawn_width_ = 0, drawn_height_ = 0;
+  int pointer_x_ = -1, pointer_y_ = -1;  ///< from the left and from the top; -1: outside
+  bool help_ = false;
+  bool changed_ = true;
+  Overlay overlay_;
+  Marks marks_;
+  Still still_;
+  vtkSmartPointer<vtkRenderWindow> window_;
+  vtkSmartPointer<vtkRenderWindowInteractor> interactor_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,87 @@
+#include "viewer/window/x_display.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <vtkRenderWindow.h>
+#include <vtkSmartPointer.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+namespace lightwell {
+namespace {
+
+/// How long to go on trying: a server that starts anew is back in a fraction of this.
+constexpr int tries = 10;
+constexpr std::chrono::milliseconds between_tries{50};
+
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(fmt::format(
+      "{}. Run this in a desktop session, or under a virtual display: "
+      "'xvfb-run -a lightwell view --offscreen OUT.png ...' (Debian packages xvfb, xauth and "
+      "libgl1-mesa-dri)",
+      what));
+}
+
+}  // namespace
+
+/// The X library's functions. VTK has loaded it already; asking it by name saves a build
+/// dependency.
+struct DisplayConnection::Impl {
+  Impl() : library(dlopen("libX11.so.6", RTLD_LAZY)) {}
+  ~Impl() {
+    if (display) function<int(void*)>("XCloseDisplay")(display);
+    if (library) dlclose(library);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  template <class F>
+  F* function(const char* name) const {
+    return library ? reinterpret_cast<F*>(dlsym(library, name)) : nullptr;
+  }
+  void open(const char* name) {
+    auto* const open_display = function<void*(const char*)>("XOpenDisplay");
+    for (int i = 0; i < tries && !display; ++i) {
+      if (i > 0) std::this_thread::sleep_for(between_tries);
+      display = open_display(name);
+    }
+  }
+  bool draws_opengl() const {
+    int opcode = 0, event = 0, error = 0;
+    return function<int(void*, const char*, int*, int*, int*)>("XQueryExtension")(
+               display, "GLX", &opcode, &event, &error) != 0;
+  }
+
+  void* library = nullptr;
+  void* display = nullptr;
+};
+
+DisplayConnection::DisplayConnection() : impl_(std::make_unique<Impl>()) {
+  // Making the window object says which back end VTK was built with; it opens nothing yet.
+  if (!vtkSmartPointer<vtkRenderWindow>::New()->IsA("vtkXOpenGLRenderWindow")) return;
+  const char* name = std::getenv("DISPLAY");
+  if (!name || !*name) fail("there is no X display (DISPLAY is not set), and drawing needs one");
+  if (!impl_->library) return;
+  impl_->open(name);
+  if (!impl_->display) fail(fmt::format("the X display '{}' cannot be opened", name));
+  if (!impl_->draws_opengl()) {
+    fail(fmt::format("the X display '{}' cannot draw OpenGL (no GLX)", name));
+  }
+}
+
+DisplayConnection::~DisplayConnection() = default;
+
+void report_held_keys_once(void* display) {
+  void* library = dlopen("libX11.so.6", RTLD_LAZY);
+  if (!library) return;
+  using Set = int (*)(void*, int, int*);
+  const auto set = reinterpret_cast<Set>(dlsym(library, "XkbSetDetectableAutoRepeat"));
+  if (set && display) set(display, 1, nullptr);
+  dlclose(library);
+}
+
+}  // namespace lightwell
