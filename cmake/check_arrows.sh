@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# Holds every #include of the house to the tables of allowed arrows: arrows.txt for rooms, ROOM/arrows.txt for the rooms
+# within one. Each line of a table names a folder and, behind a colon, the folders above it that it may include, so no
+# table can hold a cycle. Prints one sentence for each arrow that is not allowed, for each one allowed that no file
+# needs, and for each folder that no table names; exits with 1 if there is any.
+#   cmake/check_arrows.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+# check TABLE FOLDER: FOLDER is "" for the table of rooms, else "ROOM/".
+check() {
+  local sources
+  if [ -z "$2" ]; then
+    sources=$(sed -n 's/^\([a-z_]*\):.*/\1/p' "$1")
+  else
+    sources=${2%/}
+  fi
+  # shellcheck disable=SC2086
+  find $sources \( -name '*.h' -o -name '*.cpp' \) -print0 | sort -z |
+    xargs -0 awk -v table="$1" -v folder="$2" '
+      # The folder of a path that the table speaks of: the room for the table of rooms, else the folder below the room.
+      function part(path) {
+        if (folder == "") { sub(/\/.*/, "", path); return path }
+        if (index(path, folder) != 1) return ""
+        path = substr(path, length(folder) + 1)
+        if (!sub(/\/[^\/]*$/, "", path)) return "."
+        return path
+      }
+      function complain(sentence) { print sentence; failed = 1 }
+      BEGIN {
+        while ((getline line < table) > 0) {
+          if (line ~ /^#/ || line == "") continue
+          colon = index(line, ":")
+          from = substr(line, 1, colon - 1)
+          n = split(substr(line, colon + 1), to, " ")
+          for (i = 1; i <= n; ++i) {
+            if (!(to[i] in known)) complain(table ": " from " may include " to[i] ", which no line above it names.")
+            allowed[from, to[i]] = 1
+          }
+          known[from] = 1
+        }
+      }
+      FNR == 1 {
+        here = part(FILENAME)
+        if (!(here in known) && !(here in missing)) {
+          complain(table ": " here " is missing (" FILENAME " lies in it).")
+          missing[here] = 1
+        }
+      }
+      /^#include "/ {
+        split($0, piece, "\"")
+        there = part(piece[2])
+        if (there == "" || there == here || (folder == "" && !(there in known))) next
+        if ((here, there) in allowed) used[here, there] = 1
+        else complain(FILENAME ":" FNR ": " here " may not include " there " (" piece[2] "; " table ").")
+      }
+      END {
+        for (arrow in allowed) {
+          split(arrow, end, SUBSEP)
+          if (!(arrow in used)) complain(table ": no file of " end[1] " includes " end[2] "; take the arrow out.")
+        }
+        exit failed
+      }'
+}
+
+status=0
+check arrows.txt "" || status=1
+for table in */arrows.txt; do
+  check "$table" "${table%arrows.txt}" || status=1
+done
+[ $status = 0 ] && echo "Every #include follows the tables of arrows."
+exit $status
