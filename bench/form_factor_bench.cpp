@@ -67,8 +67,9 @@ struct Curve {
 
 Eigen::MatrixXd compute(const Prepared& p, const FormFactorOptions& options, double& seconds) {
   std::unique_ptr<FormFactors> F;
-  seconds =
-      seconds_of([&] { F = compute_form_factors(p.scene, p.caster, p.direct_light, options); });
+  seconds = seconds_of([&] {
+    F = compute_form_factors({p.scene, p.caster, p.direct_light}, options);
+  });
   return dense(*F);
 }
 
@@ -219,7 +220,7 @@ void measure_city(int blocks, double target_error) {
   const Prepared p(city(blocks), 1e4);
   FormFactorReport report;
   const double seconds = seconds_of([&] {
-    compute_form_factors(p.scene, p.caster, p.direct_light, {.target_error = target_error},
+    compute_form_factors({p.scene, p.caster, p.direct_light}, {.target_error = target_error},
                          &report);
   });
   fmt::print(

@@ -56,7 +56,7 @@ Truth truth_of(const Scene& scene) {
     truth.points.push_back({point.position, point.normal, fine.mesh.facet[point.element]});
   }
   const GatheredIrradiance gathered = gather_irradiance(
-      scene, caster, direct_light,
+      {scene, caster, direct_light},
       gatherable_radiosity(fine.mesh, direct_light, fine.solution.irradiance()), truth.points,
       {.rays = rays, .shadows = {.min_rays = 256, .max_rays = 256}, .replica = 7});
   truth.irradiance = gathered.direct + gathered.indirect;

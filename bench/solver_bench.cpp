@@ -57,7 +57,7 @@ Solvable prepare(const std::string& name, const Scene& raw, int patches, int ray
   s.mesh = build_patches(scene, {.auto_patch_count = patches, .elements_per_patch_edge = 1});
   const ElementCaster caster(s.mesh);
   const DirectLight direct_light(scene, s.mesh);
-  s.form_factors = compute_form_factors(scene, caster, direct_light, {.rays_per_patch = rays});
+  s.form_factors = compute_form_factors({scene, caster, direct_light}, {.rays_per_patch = rays});
   return s;
 }
 

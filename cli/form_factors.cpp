@@ -105,7 +105,7 @@ Computed compute(const Arguments& arguments, const NumberedScene& numbered, cons
       MemoryOptions{.limit = arguments.memory, .folder = fs::path(arguments.output).parent_path()});
   options.progress = console.progress();
   const auto form_factors =
-      compute_form_factors(view.scene, caster, no_light, options, &computed.report);
+      compute_form_factors({view.scene, caster, no_light}, options, &computed.report);
   console.finish_phase();
   stop_if_interrupted();
   if (!computed.report.row_error.empty()) {

@@ -149,23 +149,22 @@ Spectrum excess_of_reflected(const Eigen::ArrayXd& weight, const BandArray& foun
 
 }  // namespace
 
-ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
-                             const DirectLight& direct_light, const SolveOptions& options,
+ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
                              const RadiositySolution& solution, Eigen::ArrayXf* of_elements,
                              int batch) {
-  const PatchMesh& mesh = caster.mesh();
+  const PatchMesh& mesh = lit.mesh();
   BandArray irradiance = solution.irradiance();
   const bool is_told = solution.interpolation_error.size() > 0;
   const Eigen::ArrayXf guessed = is_told ? Eigen::ArrayXf() : indicators(mesh, irradiance);
   const Eigen::ArrayXf& told = is_told ? solution.interpolation_error : guessed;
   const int wanted = estimate_places(options.error_points, mesh.vertex_count());
-  const std::vector<ErrorPlace> drawn = draw_places(scene, caster, told, wanted, batch);
+  const std::vector<ErrorPlace> drawn = draw_places(lit.scene, lit.caster, told, wanted, batch);
   if (drawn.empty()) return {};
 
   const auto count = static_cast<Eigen::Index>(drawn.size());
   std::vector<GatherPoint> points;
-  BandArray caustic = BandArray::Zero(count, scene.bands.count());
-  BandArray interpolated(count, scene.bands.count());
+  BandArray caustic = BandArray::Zero(count, lit.scene.bands.count());
+  BandArray interpolated(count, lit.scene.bands.count());
   std::vector<int> element;
   Eigen::ArrayXd weight(count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -189,10 +188,9 @@ ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
       options.gather.replica + 1 + batch_keys * static_cast<std::uint64_t>(batch);
   gather_options.progress = options.progress;
   gather_options.journal = options.journal;
-  const BandArray radiosity = gatherable_radiosity(mesh, direct_light, irradiance);
+  const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
   irradiance.resize(0, 0);
-  const GatheredIrradiance independent =
-      gather_irradiance(scene, caster, direct_light, radiosity, points, gather_options);
+  const GatheredIrradiance independent = gather_irradiance(lit, radiosity, points, gather_options);
   const BandArray not_reflected = independent.direct + caustic;
   BandArray truth = not_reflected + independent.indirect;
   truth -= independent.indirect.rowwise() *

@@ -2,6 +2,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
+#include "radiosity/emitters/lit_scene.h"
 #include "radiosity/solve.h"
 
 namespace lightwell {
@@ -35,8 +36,7 @@ struct ErrorEstimate {
 /// the noise of both gathers. (Unchanged if there is nothing to go by.)
 ///
 /// Each `batch`, from 0, is of other places and rays.
-ErrorEstimate estimate_error(const Scene& scene, const ElementCaster& caster,
-                             const DirectLight& direct_light, const SolveOptions& options,
+ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
                              const RadiositySolution& solution,
                              Eigen::ArrayXf* of_elements = nullptr, int batch = 0);
 

@@ -94,11 +94,9 @@ void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
   }
 }
 
-BandArray caustics(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                   const SolveOptions& options) {
-  return caustic_irradiance(scene, caster, direct_light, options.caustic_rays,
-                            options.form_factors.max_specular_depth, options.progress,
-                            options.journal);
+BandArray caustics(const LitScene& lit, const SolveOptions& options) {
+  return caustic_irradiance(lit, options.caustic_rays, options.form_factors.max_specular_depth,
+                            options.progress, options.journal);
 }
 
 // Caustics on elements of even size, from which vertices of all others take theirs: on small ones
@@ -114,7 +112,7 @@ class EvenCaustics {
     const RefinedMesh even = elements.mesh();
     elements.merge(all);
     values_ = BandArray::Zero(elements.vertex_count(), direct_light.column_count());
-    const BandArray found = caustics(scene, ElementCaster(even.mesh), direct_light, options);
+    const BandArray found = caustics({scene, ElementCaster(even.mesh), direct_light}, options);
     if (found.size() == 0) return;
     known_ = elements.vertex_count();
     for (std::size_t v = 0; v < even.vertex.size(); ++v) {
@@ -192,10 +190,9 @@ void go_on(const std::vector<int>& number, KeptGathers& kept) {
 
 // Has gather_indirect() look, at vertices that are not told, for what one in `one_in` of the rays
 // that are theirs would find, less those that are kept.
-void gather_more(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const BandArray& radiosity, GatherOptions options, int one_in, const Draft& draft,
-                 KeptGather& kept) {
-  const PatchMesh& mesh = caster.mesh();
+void gather_more(const LitScene& lit, const BandArray& radiosity, GatherOptions options, int one_in,
+                 const Draft& draft, KeptGather& kept) {
+  const PatchMesh& mesh = lit.mesh();
   const int count = mesh.vertex_count();
   std::vector<int> where, missing;
   {
@@ -217,8 +214,7 @@ void gather_more(const Scene& scene, const ElementCaster& caster, const DirectLi
   });
   if (kept.count > 0) options.replica += later_replicas + kept.count;
   ++kept.count;
-  const GatheredIrradiance found =
-      gather_indirect(scene, caster, direct_light, radiosity, fresh, options);
+  const GatheredIrradiance found = gather_indirect(lit, radiosity, fresh, options);
   if (kept.rays.empty()) {
     kept.rays.assign(count, 0);
     kept.indirect.setZero(count, radiosity.cols());
@@ -240,13 +236,12 @@ void gather_more(const Scene& scene, const ElementCaster& caster, const DirectLi
 // What gathers find at vertices, and the variance of one of a vertex's rays; told ones have the
 // means of their ends. `rays` gets how many each vertex stands for, with what the draft adds to its
 // own.
-GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
-                               const DirectLight& direct_light, const BandArray& radiosity,
+GatheredIrradiance gather_once(const LitScene& lit, const BandArray& radiosity,
                                const GatherOptions& gather, int one_in, const Draft& draft,
                                KeptGather& kept, Eigen::ArrayXf& rays) {
-  const PatchMesh& mesh = caster.mesh();
+  const PatchMesh& mesh = lit.mesh();
   const int count = mesh.vertex_count();
-  gather_more(scene, caster, direct_light, radiosity, gather, one_in, draft, kept);
+  gather_more(lit, radiosity, gather, one_in, draft, kept);
   GatheredIrradiance result{.indirect = kept.indirect, .variance = kept.variance};
   rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>();
   result.variance *= rays;
@@ -273,7 +268,7 @@ GatheredIrradiance gather_once(const Scene& scene, const ElementCaster& caster,
     before[v] = static_cast<float>(of_whole_set * of_a_ray / double{rays[v]});
   }
   Eigen::ArrayXf after = before;
-  join_with_draft(draft.between, draft.indirect, patch, scene.bands.count(), result.indirect,
+  join_with_draft(draft.between, draft.indirect, patch, lit.scene.bands.count(), result.indirect,
                   after);
   // Where there is none there is nothing to compare.
   rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
@@ -332,13 +327,14 @@ Draft Drafting::Impl::unrefined(const SolveOptions& options) {
   const VertexGatherPoints all(base);
   const GatherPoints points(base.vertex_count(), [&](int v) { return all[v]; });
   GatherOptions gather = gather_options(options);
-  Draft draft{.direct = gather_direct(scene, caster, direct_light, points, gather),
+  Draft draft{.direct = gather_direct({scene, caster, direct_light}, points, gather),
               .shadows = gather.shadows,
               .gather_rays = gather.rays};
   gather.rays = std::max(1, gather.rays / 4);
   gather.replica += draft_replica;
-  draft.indirect = gather_indirect(scene, caster, direct_light, radiosity, points, gather).indirect;
-  draft.caustic = caustics(scene, caster, direct_light, options);
+  draft.indirect =
+      gather_indirect({scene, caster, direct_light}, radiosity, points, gather).indirect;
+  draft.caustic = caustics({scene, caster, direct_light}, options);
   return draft;
 }
 
@@ -350,11 +346,11 @@ void Drafting::Impl::prepare(const SolveOptions& options) {
   caustic = even_caustics->at(*elements, base_vertices);
   const GatherOptions gather = gather_options(options);
   if (all_light) {
-    refinement.emplace(scene, caster, *all_light, of_all_light,
+    refinement.emplace(LitScene{scene, caster, *all_light}, of_all_light,
                        channel_sum(caustic, scene.bands.count()), *elements, gather, options.refine,
                        noise);
   } else {
-    refinement.emplace(scene, caster, direct_light, radiosity, caustic, *elements, gather,
+    refinement.emplace(LitScene{scene, caster, direct_light}, radiosity, caustic, *elements, gather,
                        options.refine, noise);
   }
 }
@@ -377,10 +373,9 @@ Draft Drafting::Impl::refined(const SolveOptions& options) {
           .gather_rays = found.gather_rays};
 }
 
-void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, const Draft& draft, RadiositySolution& solution,
-                 KeptGathers* kept) {
-  const PatchMesh& mesh = caster.mesh();
+void reconstruct(const LitScene& lit, const SolveOptions& options, const Draft& draft,
+                 RadiositySolution& solution, KeptGathers* kept) {
+  const PatchMesh& mesh = lit.mesh();
   const bool has_caustics = draft.caustic.size() > 0;
   const auto with_indirect = [&](const BandArray& indirect) -> BandArray {
     BandArray irradiance = draft.direct + indirect;
@@ -395,12 +390,12 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
   Eigen::ArrayXf rays;
   const auto gather_in = [&](BandArray of, int one_in, const GatherOptions& with,
                              KeptGather& so_far) {
-    BandArray radiosity = gatherable_radiosity(mesh, direct_light, of);
+    BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, of);
     of.resize(0, 0);
     if (draft.tree) {
-      keep_power(mesh, direct_light, unscaled_radiosity(solution), radiosity);
+      keep_power(mesh, lit.direct_light, unscaled_radiosity(solution), radiosity);
     }
-    return gather_once(scene, caster, direct_light, radiosity, with, one_in, draft, so_far, rays);
+    return gather_once(lit, radiosity, with, one_in, draft, so_far, rays);
   };
   KeptGathers none;
   KeptGathers& so_far = kept ? *kept : none;
@@ -419,14 +414,14 @@ void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLi
              draft.shadows.max_rays < gather.shadows.max_rays) {
     const VertexGatherPoints all(mesh);
     const GatherPoints points(mesh.vertex_count(), [&](int v) { return all[v]; });
-    solution.direct_irradiance = gather_direct(scene, caster, direct_light, points, gather);
+    solution.direct_irradiance = gather_direct(lit, points, gather);
   }
   GatheredIrradiance gathered = gather_in(std::move(irradiance), 1, gather, so_far.last);
   irradiance = with_indirect(gathered.indirect);
   solution.indirect_irradiance = std::move(gathered.indirect);
   solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
   solution.gather_noise = gather_noise(
-      mesh, channel_sum(std::move(irradiance), scene.bands.count()), gathered.variance, rays);
+      mesh, channel_sum(std::move(irradiance), lit.scene.bands.count()), gathered.variance, rays);
   if (has_caustics) solution.indirect_irradiance += draft.caustic;
   solution.caustic_irradiance = draft.caustic;
   solution.interpolation_error = draft.interpolation_error;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "radiosity/emitters/lit_scene.h"
 #include "radiosity/solve.h"
 
 namespace lightwell {
@@ -74,8 +75,7 @@ struct KeptGathers {
 /// elements, and in the same few directions all over a surface. A gather with an eighth of the rays
 /// makes that good, and the final one reads it. With channels it is theirs that is filled in; their
 /// sum is left to relight(). What `kept` has is not gathered again.
-void reconstruct(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const SolveOptions& options, const Draft& draft, RadiositySolution& solution,
-                 KeptGathers* kept = nullptr);
+void reconstruct(const LitScene& lit, const SolveOptions& options, const Draft& draft,
+                 RadiositySolution& solution, KeptGathers* kept = nullptr);
 
 }  // namespace lightwell

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "mesh/build_patches.h"
+#include "radiosity/emitters/lit_scene.h"
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/in_force.h"
@@ -58,17 +59,16 @@ void require_no_start(const SolveOptions& options) {
 }
 
 // Of patches; `seconds` of the result say what took how long.
-RadiositySolution shoot(const Scene& scene, const ElementCaster& caster,
-                        const DirectLight& direct_light, const SolveOptions& options) {
+RadiositySolution shoot(const LitScene& lit, const SolveOptions& options) {
   Stopwatch watch;
-  const LightPaths paths(scene, caster, options.form_factors.max_specular_depth);
-  const FreeLight free_light =
-      cast_free_light(scene, caster, paths, direct_light, options.free_rays, options.progress);
-  ProgressiveRadiosity progressive(scene, caster.mesh(),
-                                   cast_shots(caster, paths, options.progressive->most_rays),
+  const LightPaths paths(lit.scene, lit.caster, options.form_factors.max_specular_depth);
+  const FreeLight free_light = cast_free_light(lit.scene, lit.caster, paths, lit.direct_light,
+                                               options.free_rays, options.progress);
+  ProgressiveRadiosity progressive(lit.scene, lit.mesh(),
+                                   cast_shots(lit.caster, paths, options.progressive->most_rays),
                                    *options.progressive, options.channels, free_light);
   JournalPhase phase(options.journal, "shots", [&](Fingerprint& print) {
-    print.add(caster.mesh());
+    print.add(lit.mesh());
     print.add(free_light.irradiance);
     print.add(options.form_factors.max_specular_depth);
     const ProgressiveOptions& shooting = *options.progressive;
@@ -84,22 +84,22 @@ RadiositySolution shoot(const Scene& scene, const ElementCaster& caster,
   return solution;
 }
 
-RadiositySolution solve_equations(const Scene& scene, const ElementCaster& caster,
-                                  const DirectLight& direct_light, const DirectLight& kept_apart,
+RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_apart,
                                   const SolveOptions& options, SolveReport* report) {
-  const PatchMesh& mesh = caster.mesh();
+  const Scene& scene = lit.scene;
+  const PatchMesh& mesh = lit.mesh();
   Stopwatch watch;
   FormFactorOptions form_factor_options = options.form_factors;
   form_factor_options.progress = options.progress;
   form_factor_options.rays_per_patch = rays_per_patch(options);
   if (options.journal) form_factor_options.journal = options.journal;
-  const auto form_factors = compute_form_factors(scene, caster, direct_light, form_factor_options,
-                                                 report ? &report->form_factors : nullptr);
+  const auto form_factors =
+      compute_form_factors(lit, form_factor_options, report ? &report->form_factors : nullptr);
   const double form_factor_seconds = watch.lap();
   const int bands = scene.bands.count();
   const FreeLight by_channel = cast_free_light(
-      scene, caster, LightPaths(scene, caster, options.form_factors.max_specular_depth), kept_apart,
-      options.free_rays, options.progress);
+      scene, lit.caster, LightPaths(scene, lit.caster, options.form_factors.max_specular_depth),
+      kept_apart, options.free_rays, options.progress);
   const FreeLight free_light = all_channels(by_channel, bands);
 
   SolverOptions solver_options = options.solver;
@@ -233,14 +233,14 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
       give_back_free_pages();  // splitting leaves many
       if (draft->tree) spent["refine"] += watch.lap();
     }
-    reconstruct(scene, *caster, kept_apart, in_force, *draft, solution,
+    reconstruct({scene, *caster, kept_apart}, in_force, *draft, solution,
                 may_try_again ? &kept : nullptr);
     relight(solved, scales_in_force(solution));
     give_back_free_pages();
     spent["gather"] += watch.lap();
     Eigen::ArrayXf& of_elements = solution.interpolation_error;
     const auto look = [&](int batch, Eigen::ArrayXf* elements) {
-      return estimate_error(scene, *caster, direct_light, in_force, solution, elements, batch);
+      return estimate_error({scene, *caster, direct_light}, in_force, solution, elements, batch);
     };
     ErrorEstimate estimate = look(0, of_elements.size() == 0 ? &of_elements : nullptr);
     // Where the places leave open whether that is what was asked for, more of them cost less than
@@ -356,9 +356,9 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   if (options.form_factors.memory) options.form_factors.memory->plan(bytes_to_gather(solved.mesh));
   SolveOptions exchange = options;
   exchange.progressive = without_rows(direct_light, options, solved.mesh);
-  solved.solution = exchange.progressive ? shoot(scene, *caster, kept_apart, exchange)
-                                         : solve_equations(scene, *caster, direct_light, kept_apart,
-                                                           exchange, report);
+  solved.solution = exchange.progressive ? shoot({scene, *caster, kept_apart}, exchange)
+                                         : solve_equations({scene, *caster, direct_light},
+                                                           kept_apart, exchange, report);
   RadiositySolution& solution = solved.solution;
   for (const PhaseSeconds& phase : solution.seconds) seconds.push_back(phase);
   watch.lap();

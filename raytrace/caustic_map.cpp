@@ -239,7 +239,7 @@ std::shared_ptr<const CausticMap> trace_caustics(const Scene& scene, const Eleme
                                                  int max_specular_depth, const Progress& progress) {
   return std::make_shared<const CausticMap>(
       caster.mesh(),
-      shoot_photons(scene, caster, direct_light, photons, max_specular_depth, progress));
+      shoot_photons({scene, caster, direct_light}, photons, max_specular_depth, progress));
 }
 
 }  // namespace lightwell

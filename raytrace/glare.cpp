@@ -146,7 +146,7 @@ double reflected_illuminance(const Scene& scene, const ElementCaster& caster,
   const BandArray reflected = vertex_reflectance(caster.mesh()) * solution.irradiance();
   const GatherPoint point{.position = eye.position, .normal = eye.direction};
   const GatheredIrradiance E =
-      gather_indirect(scene, caster, direct_light, reflected, std::span(&point, 1), gathering);
+      gather_indirect({scene, caster, direct_light}, reflected, std::span(&point, 1), gathering);
   return luminous(scene.bands, E.indirect.row(0).transpose());
 }
 

@@ -173,7 +173,7 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
     points.push_back(point);
   }
   const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance());
-  const GatheredIrradiance E = gather_irradiance(scene, caster, direct_light, B, points, options);
+  const GatheredIrradiance E = gather_irradiance({scene, caster, direct_light}, B, points, options);
   return E.direct + E.indirect + caustic;
 }
 

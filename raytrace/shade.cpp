@@ -155,7 +155,7 @@ void RayTree::follow(Branch branch, Walk& walk) const {
                                    static_cast<std::uint64_t>(seen), hit.from_back);
   }
   if (hit.facet < 0) return look_outside(branch, walk);
-  const SurfacePoint at = surface_point(branch.ray, hit, *walk.caster);
+  const ShadingPoint at = shading_point(branch.ray, hit, *walk.caster);
   if (absorbs_) {
     branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
                                          (at.position - branch.ray.origin).norm());
@@ -191,7 +191,7 @@ void RayTree::look_outside(const Branch& branch, Walk& walk) const {
   walk.sight.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, seen);
 }
 
-void RayTree::split(const Branch& branch, const ElementHit& hit, const SurfacePoint& at,
+void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                     Walk& walk) const {
   const Material& material = scene_.materials[facets_[hit.facet].material];
   // The back of a one-sided mirror is black.
@@ -212,7 +212,7 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const SurfacePo
 }
 
 void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
-                   const ElementHit& hit, const SurfacePoint& at, Walk& walk) const {
+                   const ElementHit& hit, const ShadingPoint& at, Walk& walk) const {
   Branch branch{.weight = parent.weight * way.share,
                 .depth = parent.depth + 1,
                 .place = place,
@@ -237,10 +237,10 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
   follow(branch, walk);
 }
 
-RayTree::SurfacePoint RayTree::surface_point(const Ray& ray, const ElementHit& hit,
+RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& hit,
                                              const ElementCaster& caster) const {
   const FacetShape& facet = facets_[hit.facet];
-  SurfacePoint at{.position = ray.origin + hit.t * ray.direction,
+  ShadingPoint at{.position = ray.origin + hit.t * ray.direction,
                   .rest_normal = facet.normal,
                   .pose = caster.pose_of(hit.facet)};
   at.rest = at.pose ? Eigen::Vector3d(at.pose->inverse() * at.position) : at.position;
@@ -258,7 +258,7 @@ RayTree::SurfacePoint RayTree::surface_point(const Ray& ray, const ElementHit& h
 
 // What the file says; else the mesh's normals at vertices round off a tessellated surface, and are
 // the facet's own on a flat one.
-Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const SurfacePoint& at) const {
+Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const ShadingPoint& at) const {
   if (facets_[hit.facet].is_sphere) return at.normal;
   if (normals_.is_given(hit.facet)) {
     return at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
@@ -271,7 +271,7 @@ Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const SurfacePoint
   return normal.norm() > 0.0 ? at.turned(normal.normalized()) : at.normal;
 }
 
-RayTree::ShadowOrigin RayTree::shadow_origin(const ElementHit& hit, const SurfacePoint& at) const {
+RayTree::ShadowOrigin RayTree::shadow_origin(const ElementHit& hit, const ShadingPoint& at) const {
   const PatchMesh& mesh = caster_.mesh();
   // A lamp would see itself from before it.
   const bool shines = (mesh.emission.row(mesh.patch[hit.element]) > 0.0f).any();
@@ -285,7 +285,7 @@ RayTree::ShadowOrigin RayTree::shadow_origin(const ElementHit& hit, const Surfac
 
 // The texture's at the place, over what the pixel covers of the surface; else the patch's.
 Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
-                              const SurfacePoint& at) const {
+                              const ShadingPoint& at) const {
   const PatchMesh& mesh = caster_.mesh();
   const int patch = mesh.patch[hit.element];
   const bool is_black_back =
@@ -308,7 +308,7 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
 }
 
 // L = (M + rho E) / pi.
-void RayTree::shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at,
+void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                     Walk& walk) const {
   const float share = share_of_bright(branch, hit, at);
   Spectrum M = emission(branch, hit, at);
@@ -320,7 +320,7 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const SurfacePo
   if (with_layers_) note_layers(branch, hit, M, rho, E, walk);
 }
 
-RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& at,
+RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,
                                     const Branch& branch, const Walk& walk) const {
   const PatchMesh& mesh = caster_.mesh();
   if (options_.pass == Pass::interpolate) {
@@ -332,8 +332,10 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& a
   const ShadowOptions shadows = shadows_for(options_.shadows, share, walk.number ? 4 : 8);
   Arriving E;
   const ShadowOrigin from = shadow_origin(hit, at);
-  E.direct = direct_light_.irradiance(*walk.caster, from.position, normal, from.facet,
-                                      random_key(walk.key, branch.place, shadow_purpose), shadows);
+  E.direct = direct_light_.irradiance(*walk.caster,
+                                      {.at = {from.position, normal, from.facet},
+                                       .key = random_key(walk.key, branch.place, shadow_purpose),
+                                       .shadows = shadows});
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
         *walk.caster,
@@ -347,7 +349,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const SurfacePoint& a
 }
 
 // What is gathered has no caustics yet; the solution's indirect light has its own.
-void RayTree::add_caustics(const ElementHit& hit, const SurfacePoint& at,
+void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at,
                            Spectrum& indirect) const {
   if (solution_.caustic_irradiance.size() == 0) return;
   if (!caustics_) {

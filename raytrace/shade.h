@@ -84,7 +84,7 @@ class RayTree {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
   /// A place that was met; the normal is unit and on the side the ray came from.
-  struct SurfacePoint {
+  struct ShadingPoint {
     Eigen::Vector3d position, normal;
     Eigen::Vector3d rest, rest_normal;        ///< the same where what moves rests
     const Eigen::Isometry3d* pose = nullptr;  ///< from there; null: it stands still
@@ -127,39 +127,39 @@ class RayTree {
 
   void follow(Branch branch, Walk& walk) const;
   void look_outside(const Branch& branch, Walk& walk) const;
-  void split(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
+  void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at, Walk& walk) const;
   void scatter(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-               const SurfacePoint& at, Walk& walk) const;
+               const ShadingPoint& at, Walk& walk) const;
   void add_lamp(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                const SurfacePoint& at, const Eigen::Array4d& lot, float share, Walk& walk) const;
+                const ShadingPoint& at, const Eigen::Array4d& lot, float share, Walk& walk) const;
   void add_free_source(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                       const SurfacePoint& at, const Eigen::Array4d& lot, float share,
+                       const ShadingPoint& at, const Eigen::Array4d& lot, float share,
                        Walk& walk) const;
   void add_bright_patch(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                        const SurfacePoint& at, const BrightPatches::View& view,
+                        const ShadingPoint& at, const BrightPatches::View& view,
                         const Eigen::Array4d& lot, float share, Walk& walk) const;
-  float share_of_bright(const Branch& branch, const ElementHit& hit, const SurfacePoint& at) const;
-  Spectrum emission(const Branch& branch, const ElementHit& hit, const SurfacePoint& at) const;
+  float share_of_bright(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
+  Spectrum emission(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   const RoughLobe& lobe(int material, bool from_back) const;
   void grow(const Branch& parent, std::uint64_t place, const Onward& way, const ElementHit& hit,
-            const SurfacePoint& at, Walk& walk) const;
-  SurfacePoint surface_point(const Ray& ray, const ElementHit& hit,
+            const ShadingPoint& at, Walk& walk) const;
+  ShadingPoint shading_point(const Ray& ray, const ElementHit& hit,
                              const ElementCaster& caster) const;
   /// Where shadow rays leave from, and the facet they leave; -1: none.
   struct ShadowOrigin {
     Eigen::Vector3d position;
     int facet = -1;
   };
-  ShadowOrigin shadow_origin(const ElementHit& hit, const SurfacePoint& at) const;
-  Eigen::Vector3d smooth_normal(const ElementHit& hit, const SurfacePoint& at) const;
-  void shade(const Branch& branch, const ElementHit& hit, const SurfacePoint& at, Walk& walk) const;
-  Arriving arriving(const ElementHit& hit, const SurfacePoint& at, const Branch& branch,
+  ShadowOrigin shadow_origin(const ElementHit& hit, const ShadingPoint& at) const;
+  Eigen::Vector3d smooth_normal(const ElementHit& hit, const ShadingPoint& at) const;
+  void shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at, Walk& walk) const;
+  Arriving arriving(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
                     const Walk& walk) const;
-  Spectrum reflectance(const Branch& branch, const ElementHit& hit, const SurfacePoint& at) const;
-  double cone_width(const Branch& branch, const SurfacePoint& at) const {
+  Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
+  double cone_width(const Branch& branch, const ShadingPoint& at) const {
     return branch.width + pixel_width_ * (at.position - branch.ray.origin).norm();
   }
-  void add_caustics(const ElementHit& hit, const SurfacePoint& at, Spectrum& indirect) const;
+  void add_caustics(const ElementHit& hit, const ShadingPoint& at, Spectrum& indirect) const;
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
                    const Spectrum& rho, const Arriving& E, Walk& walk) const;
 

@@ -24,7 +24,7 @@ bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d
 
 // The mean over directions of a rough surface's lobe.
 void RayTree::scatter(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                      const SurfacePoint& at, Walk& walk) const {
+                      const ShadingPoint& at, Walk& walk) const {
   if (!walk.shades) return;
   const bool is_first = branch.is_sharp && !walk.number;
   const int count =
@@ -71,7 +71,7 @@ const RoughLobe& RayTree::lobe(int material, bool from_back) const {
 // Light of a lamp off a rough surface, by a direction drawn towards the lamp; those of the lobe
 // that meet it count for the rest (balance heuristic of Veach & Guibas 1995).
 void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                       const SurfacePoint& at, const Eigen::Array4d& lot, float share,
+                       const ShadingPoint& at, const Eigen::Array4d& lot, float share,
                        Walk& walk) const {
   if (branch.depth >= deepest_path(options_.max_depth, true)) return;
   const auto lamp = lamps_.draw(at.position, hit.facet, lot[0], lot[1], lot[2]);
@@ -108,7 +108,7 @@ void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const Eleme
 // Light of a source that is no surface, off a rough one: no direction of the lobe meets it, so this
 // counts for all. One is drawn by what it would send here.
 void RayTree::add_free_source(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                              const SurfacePoint& at, const Eigen::Array4d& lot, float share,
+                              const ShadingPoint& at, const Eigen::Array4d& lot, float share,
                               Walk& walk) const {
   const std::vector<FreeSource>& sources = direct_light_.free_sources();
   if (sources.empty() || branch.depth >= deepest_path(options_.max_depth, true)) return;
@@ -155,7 +155,7 @@ void RayTree::add_free_source(const Branch& branch, const Meeting& meeting, cons
 
 // What a bright patch reflects, off a rough mirror: as add_lamp does for lamps.
 void RayTree::add_bright_patch(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                               const SurfacePoint& at, const BrightPatches::View& view,
+                               const ShadingPoint& at, const BrightPatches::View& view,
                                const Eigen::Array4d& lot, float share, Walk& walk) const {
   if (branch.depth >= deepest_path(options_.max_depth, true)) return;
   const BrightPatches::Aim aim = bright_.draw(view, lot[0], lot[1], lot[2]);
@@ -168,7 +168,7 @@ void RayTree::add_bright_patch(const Branch& branch, const Meeting& meeting, con
   ElementHit met;
   walk.caster->closest_hits({&aimed.ray, 1}, {&met, 1});
   if (met.element != aim.element) return;
-  const SurfacePoint there = surface_point(aimed.ray, met, *walk.caster);
+  const ShadingPoint there = shading_point(aimed.ray, met, *walk.caster);
   const double distance = (there.position - at.position).norm();
   const double both = density + bright_.density(view, met.element, aim.direction, distance);
   aimed.weight *= share_of(meeting, false) * (share * static_cast<float>(density / both));
@@ -189,7 +189,7 @@ void RayTree::add_bright_patch(const Branch& branch, const Meeting& meeting, con
 
 // Of what a branch meets, what add_bright_patch leaves to it.
 float RayTree::share_of_bright(const Branch& branch, const ElementHit& hit,
-                               const SurfacePoint& at) const {
+                               const ShadingPoint& at) const {
   if (!branch.bright) return 1.0f;
   const Eigen::Vector3d to = at.position - branch.ray.origin;
   const double distance = to.norm();
@@ -200,7 +200,7 @@ float RayTree::share_of_bright(const Branch& branch, const ElementHit& hit,
 
 // M of the side that was met, without what add_lamp counts.
 Spectrum RayTree::emission(const Branch& branch, const ElementHit& hit,
-                           const SurfacePoint& at) const {
+                           const ShadingPoint& at) const {
   const PatchMesh& mesh = caster_.mesh();
   const Spectrum M = mesh.emission.row(mesh.patch[hit.element]).transpose();
   if (branch.is_aimed && direct_light_.owns(hit.facet, hit.from_back))

@@ -106,9 +106,9 @@ ShadowSample near_sample(const NearEmitter& near, const Eigen::Vector3d& point,
           .weight = std::max(0.0, to.normalized().dot(normal))};
 }
 
-ShadowSample shadow_sample(const Emitter& emitter, const NearEmitter& near,
-                           const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
+ShadowSample shadow_sample(const Emitter& emitter, const NearEmitter& near, const SurfacePoint& at,
                            double u, double v) {
+  const auto& [point, normal, facet] = at;
   ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u, v)
                         : near.empty()    ? polygon_sample(emitter, point, normal, u, v)
                                           : near_sample(near, point, normal, u, v);
@@ -135,8 +135,7 @@ struct LightShadow {
 // The rays of all emitters go together. Where the share is known, the tally says just that.
 std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
                                       const ElementCaster& caster, const SobolPoints& sobol,
-                                      const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                      int facet, const ClearPanes* panes) {
+                                      const SurfacePoint& at, const ClearPanes* panes) {
   std::vector<ShadowTally> tallies(shadows.size());
   ShadowBatch batch(caster, tallies, panes);
   const auto add = [&](std::size_t i, int begin, int end) {
@@ -144,9 +143,8 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
       const Eigen::Array4f u = sobol.point(s, shadows[i].key);
       const LightShadow& shadow = shadows[i];
       batch.add(static_cast<int>(i),
-                shadow.emitter
-                    ? shadow_sample(*shadow.emitter, shadow.near, point, normal, facet, u[0], u[1])
-                    : shadow_sample(*shadow.source, point, normal, facet, u[0], u[1]));
+                shadow.emitter ? shadow_sample(*shadow.emitter, shadow.near, at, u[0], u[1])
+                               : shadow_sample(*shadow.source, at, u[0], u[1]));
     }
   };
   for (std::size_t i = 0; i < shadows.size(); ++i) {
@@ -197,13 +195,12 @@ int pieces_worth(int rays) {
 }
 
 // What of the light's emitter is seen, if that is told without rays; else what rays need.
-void find_share(const ExactShadows& exact, const ElementCaster& caster,
-                const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
+void find_share(const ExactShadows& exact, const ElementCaster& caster, const SurfacePoint& at,
                 LightShadow& shadow) {
   if (!caster.moves()) {
-    shadow.share = exact.share(shadow.index, point, normal, facet, pieces_worth(shadow.most));
+    shadow.share = exact.share(shadow.index, at, pieces_worth(shadow.most));
   }
-  if (!shadow.share) shadow.near = NearEmitter(*shadow.emitter, point);
+  if (!shadow.share) shadow.near = NearEmitter(*shadow.emitter, at.position);
 }
 
 // A patch of each facet's front; -1 where the mesh has none.
@@ -300,8 +297,8 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
   exact_ = like ? like->exact_ : std::make_shared<const ExactShadows>(scene, mesh, emitters_);
 }
 
-double DirectLight::unoccluded_form_factor(const Emitter& emitter, const Eigen::Vector3d& point,
-                                           const Eigen::Vector3d& normal, int facet) const {
+double DirectLight::unoccluded_form_factor(const Emitter& emitter, const SurfacePoint& at) const {
+  const auto& [point, normal, facet] = at;
   if (facet == emitter.facet) return 0.0;
   double F = 0.0;
   if (emitter.is_sphere) {
@@ -317,29 +314,25 @@ double DirectLight::unoccluded_form_factor(const Emitter& emitter, const Eigen::
 }
 
 double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& caster,
-                                const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                int facet, std::uint64_t key, const ShadowOptions& options) const {
+                                const LightQuery& query) const {
   LightShadow shadow{
-      .emitter = &emitter, .F = unoccluded_form_factor(emitter, point, normal, facet), .key = key};
+      .emitter = &emitter, .F = unoccluded_form_factor(emitter, query.at), .key = query.key};
   if (!(shadow.F > 0.0)) return 0.0;
-  set_effort({&shadow, 1}, 1, options);
+  set_effort({&shadow, 1}, 1, query.shadows);
   const auto known = std::ranges::find(emitters_, emitter.facet, &Emitter::facet);
   if (known == emitters_.end()) throw std::invalid_argument("an emitter of another DirectLight");
   shadow.index = static_cast<int>(known - emitters_.begin());
-  find_share(*exact_, caster, point, normal, facet, shadow);
-  return shadow.F *
-         cast_shadows({&shadow, 1}, caster, samples_, point, normal, facet, nullptr)[0].share();
+  find_share(*exact_, caster, query.at, shadow);
+  return shadow.F * cast_shadows({&shadow, 1}, caster, samples_, query.at, nullptr)[0].share();
 }
 
 std::optional<bool> DirectLight::sees(int light, const ElementCaster& caster,
-                                      const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                      int facet, double u, double v) const {
+                                      const SurfacePoint& at, double u, double v) const {
   const auto emitter_count = static_cast<int>(emitters_.size());
   const ShadowSample sample =
       light < emitter_count
-          ? shadow_sample(emitters_[light], NearEmitter(emitters_[light], point), point, normal,
-                          facet, u, v)
-          : shadow_sample(free_sources_[light - emitter_count], point, normal, facet, u, v);
+          ? shadow_sample(emitters_[light], NearEmitter(emitters_[light], at.position), at, u, v)
+          : shadow_sample(free_sources_[light - emitter_count], at, u, v);
   if (!(sample.weight > 0.0)) return std::nullopt;
   return (passed(caster, sample.ray) > 0.0f).any();
 }
@@ -357,16 +350,26 @@ const FreeSource* DirectLight::dome() const {
   return found == free_sources_.end() ? nullptr : &*found;
 }
 
+// Emitters come first, then lamps, then sky and sun.
+int DirectLight::first_light(Lights lights) const {
+  std::size_t first = 0;
+  if (lights != Lights::all) first = emitters_.size();
+  if (lights == Lights::distant) {
+    first += static_cast<std::size_t>(
+        std::ranges::count_if(free_sources_, [](const auto& s) { return !s.is_distant(); }));
+  }
+  return static_cast<int>(first);
+}
+
 template <class Add>
-void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
-                                 const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                 int facet, std::uint64_t key, const ShadowOptions& options,
+void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
                                  EmitterSight* sight, Add&& add) const {
+  const auto& [point, normal, facet] = query.at;
   const auto emitter_count = static_cast<int>(emitters_.size());
   std::vector<LightShadow> shadows;
   std::optional<LightShadow> dome;
-  for (int i = first_light; i < light_count(); ++i) {
-    LightShadow shadow{.index = i, .key = random_key(key, static_cast<std::uint64_t>(i))};
+  for (int i = first_light(query.lights); i < light_count(); ++i) {
+    LightShadow shadow{.index = i, .key = random_key(query.key, static_cast<std::uint64_t>(i))};
     if (i < emitter_count) {
       shadow.emitter = &emitters_[i];
       shadow.channel = first_column(shadow.emitter->facet) / bands_;
@@ -379,22 +382,22 @@ void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
       dome = shadow;
       continue;
     }
-    shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, point, normal, facet)
+    shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, query.at)
                               : unoccluded_kernel(*shadow.source, point, normal);
     if (!(shadow.F > 0.0)) continue;
     shadows.push_back(std::move(shadow));
   }
-  set_effort(shadows, channel_count_, options);
+  set_effort(shadows, channel_count_, query.shadows);
   for (LightShadow& shadow : shadows) {
-    if (shadow.emitter) find_share(*exact_, caster, point, normal, facet, shadow);
+    if (shadow.emitter) find_share(*exact_, caster, query.at, shadow);
   }
-  const std::vector<ShadowTally> tallies = cast_shadows(shadows, caster, samples_, point, normal,
-                                                        facet, panes_.empty() ? nullptr : &panes_);
+  const std::vector<ShadowTally> tallies =
+      cast_shadows(shadows, caster, samples_, query.at, panes_.empty() ? nullptr : &panes_);
   if (sight) *sight = {};
   if (dome) {
-    const SkyEffort effort{.first = std::clamp(options.min_rays, 8, most_sky_rays),
-                           .most = std::clamp(options.max_rays, 8, most_sky_rays)};
-    const SkyGlow glow = sky_->irradiance(caster, point, normal, facet, dome->key, effort);
+    const SkyEffort effort{.first = std::clamp(query.shadows.min_rays, 8, most_sky_rays),
+                           .most = std::clamp(query.shadows.max_rays, 8, most_sky_rays)};
+    const SkyGlow glow = sky_->irradiance(caster, query.at, dome->key, effort);
     add(dome->channel, dome->light(), glow.irradiance);
     // Its penumbra is all that rays see: as if three times as much stood behind it, their noise is
     // about that of a lamp's.
@@ -422,30 +425,19 @@ void DirectLight::for_each_light(int first_light, const ElementCaster& caster,
   }
 }
 
-Spectrum DirectLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                                 const ShadowOptions& options, EmitterSight* sight) const {
+Spectrum DirectLight::irradiance(const ElementCaster& caster, const LightQuery& query,
+                                 EmitterSight* sight) const {
   Spectrum E = Spectrum::Zero(bands_);
-  for_each_light(0, caster, point, normal, facet, key, options, sight,
+  for_each_light(caster, query, sight,
                  [&](int, const Spectrum& light, const auto& F) { E += light * F; });
   return E;
 }
 
-void DirectLight::add_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                                 const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                                 const ShadowOptions& options, float* E, Lights lights,
+void DirectLight::add_irradiance(const ElementCaster& caster, const LightQuery& query, float* E,
                                  EmitterSight* sight) const {
-  // Emitters come first, then lamps, then what is distant.
-  std::size_t first = 0;
-  if (lights != Lights::all) first = emitters_.size();
-  if (lights == Lights::distant) {
-    first += static_cast<std::size_t>(
-        std::ranges::count_if(free_sources_, [](const auto& s) { return !s.is_distant(); }));
-  }
-  for_each_light(static_cast<int>(first), caster, point, normal, facet, key, options, sight,
-                 [&](int channel, const Spectrum& light, const auto& F) {
-                   Eigen::Map<Eigen::ArrayXf>(E + channel * bands_, bands_) += light * F;
-                 });
+  for_each_light(caster, query, sight, [&](int channel, const Spectrum& light, const auto& F) {
+    Eigen::Map<Eigen::ArrayXf>(E + channel * bands_, bands_) += light * F;
+  });
 }
 
 }  // namespace lightwell

@@ -15,6 +15,7 @@
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
+#include "scene/surface_point.h"
 
 namespace lightwell {
 
@@ -53,8 +54,16 @@ struct EmitterSight {
   std::uint64_t hidden = 0;  ///< bit i: nothing is
 };
 
-/// Whose light is asked for: everything's, that of free sources, or that of the sky and the sun.
+/// Lights that give a sum: all, free sources only, or sky and sun only.
 enum class Lights { all, free, distant };
+
+/// A point that direct light is computed at, and with which effort.
+struct LightQuery {
+  SurfacePoint at{};
+  std::uint64_t key = 0;  ///< of the shadow rays' random numbers
+  ShadowOptions shadows{};
+  Lights lights = Lights::all;
+};
 
 /// Light straight from the scene's emitters. Emitters are taken in order of falling exitance, all
 /// of one exitance together, while they add up to at most a quarter of the scene's area: those are
@@ -95,43 +104,37 @@ class DirectLight {
   /// Form factor from a differential element to one of emitters(): the unoccluded closed form times
   /// the visible share. That is exact where few polygons are in the way (see ExactShadows); else it
   /// is the ratio of the cosine kernel over samples that see the point to that over all samples, so
-  /// that without an occluder, too, the result is exact. `facet` is where the point lies (-1: in
-  /// free space); `key` decides where the samples fall. Throws std::invalid_argument for an emitter
-  /// that is not one of emitters().
+  /// that without an occluder, too, the result is exact. Throws std::invalid_argument for an
+  /// emitter that is not one of emitters().
   double form_factor(const Emitter& emitter, const ElementCaster& caster,
-                     const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet,
-                     std::uint64_t key, const ShadowOptions& options = {}) const;
+                     const LightQuery& query) const;
 
   /// The same with nothing in the way.
-  double unoccluded_form_factor(const Emitter& emitter, const Eigen::Vector3d& point,
-                                const Eigen::Vector3d& normal, int facet) const;
+  double unoccluded_form_factor(const Emitter& emitter, const SurfacePoint& at) const;
 
   /// Whether a point sees the place (u, v), in [0,1)^2, of a light; empty if no light would come
   /// from there.
-  std::optional<bool> sees(int light, const ElementCaster& caster, const Eigen::Vector3d& point,
-                           const Eigen::Vector3d& normal, int facet, double u, double v) const;
+  std::optional<bool> sees(int light, const ElementCaster& caster, const SurfacePoint& at, double u,
+                           double v) const;
 
   /// Share of light that a straight way to `ray.t_max` lets through, in each band: 1, 0, or what
   /// clear panes pass.
   Spectrum passed(const ElementCaster& caster, const Ray& ray) const;
 
-  /// Irradiance E = sum M F at a point, W/m^2 per band, from all lights and channels.
-  Spectrum irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                      const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                      const ShadowOptions& options = {}, EmitterSight* sight = nullptr) const;
+  /// Irradiance E = sum M F at a point, W/m^2 per band, all channels added.
+  Spectrum irradiance(const ElementCaster& caster, const LightQuery& query,
+                      EmitterSight* sight = nullptr) const;
 
-  /// The same from some of the lights, each channel's added to its columns of E, which has
-  /// column_count() of them.
-  void add_irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                      const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                      const ShadowOptions& options, float* E, Lights lights = Lights::all,
+  /// Adds the irradiance of each channel to the channel's columns of E, which has column_count()
+  /// of them.
+  void add_irradiance(const ElementCaster& caster, const LightQuery& query, float* E,
                       EmitterSight* sight = nullptr) const;
 
  private:
+  int first_light(Lights lights) const;
   template <class Add>
-  void for_each_light(int first_light, const ElementCaster& caster, const Eigen::Vector3d& point,
-                      const Eigen::Vector3d& normal, int facet, std::uint64_t key,
-                      const ShadowOptions& options, EmitterSight* sight, Add&& add) const;
+  void for_each_light(const ElementCaster& caster, const LightQuery& query, EmitterSight* sight,
+                      Add&& add) const;
 
   std::vector<Emitter> emitters_;
   std::vector<FreeSource> free_sources_;

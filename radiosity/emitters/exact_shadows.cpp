@@ -151,10 +151,10 @@ bool ExactShadows::is_covered(const Vector3d& point, int sheet) const {
   return false;
 }
 
-std::optional<double> ExactShadows::share(int emitter, const Vector3d& point,
-                                          const Vector3d& normal, int facet,
+std::optional<double> ExactShadows::share(int emitter, const SurfacePoint& at,
                                           int most_pieces) const {
   if (targets_.empty() || most_pieces < 0) return std::nullopt;
+  const auto& [point, normal, facet] = at;
   const Target& target = targets_[static_cast<std::size_t>(emitter)];
   if (!target.is_exact) return std::nullopt;
   const double tolerance = occluders_->tolerance, height = target.front.plane.height(point);

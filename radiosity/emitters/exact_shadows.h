@@ -8,6 +8,7 @@
 #include "mesh/geometry/box_tree.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/visibility/occluders.h"
+#include "scene/surface_point.h"
 
 namespace lightwell {
 
@@ -27,8 +28,7 @@ class ExactShadows {
   /// `most_pieces` (below 0: none at all) convex polygons may be in the way, a sphere, a clear
   /// pane, or a picture that cuts holes; to emitters that are no polygons, or have something lying
   /// on them; and from points that lie under something.
-  std::optional<double> share(int emitter, const Eigen::Vector3d& point,
-                              const Eigen::Vector3d& normal, int facet, int most_pieces) const;
+  std::optional<double> share(int emitter, const SurfacePoint& at, int most_pieces) const;
 
  private:
   // An emitter from one of its sides.

@@ -187,8 +187,8 @@ double unoccluded_kernel(const FreeSource& source, const Eigen::Vector3d& point,
   return kernel(std::get<LampLight>(source.shape), point, normal);
 }
 
-ShadowSample shadow_sample(const FreeSource& source, const Eigen::Vector3d& point,
-                           const Eigen::Vector3d& normal, int facet, double u, double v) {
+ShadowSample shadow_sample(const FreeSource& source, const SurfacePoint& at, double u, double v) {
+  const auto& [point, normal, facet] = at;
   if (const auto* sun = std::get_if<SunLight>(&source.shape)) {
     const Eigen::Vector3d direction = towards_sun(sun->sun, u, v);
     return {.ray = {.origin = point, .direction = direction, .origin_group = facet},

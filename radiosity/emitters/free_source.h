@@ -7,6 +7,7 @@
 
 #include "radiosity/visibility/shadow_rays.h"
 #include "scene/scene.h"
+#include "scene/surface_point.h"
 
 namespace lightwell {
 
@@ -62,8 +63,7 @@ double unoccluded_kernel(const FreeSource& source, const Eigen::Vector3d& point,
 
 /// A ray from the point to a place of the source, by two numbers in [0,1); its weight is the kernel
 /// of that place alone.
-ShadowSample shadow_sample(const FreeSource& source, const Eigen::Vector3d& point,
-                           const Eigen::Vector3d& normal, int facet, double u, double v);
+ShadowSample shadow_sample(const FreeSource& source, const SurfacePoint& at, double u, double v);
 
 /// A ray that the source sends out: it carries `light * weight` watts, in the mean over all
 /// numbers.

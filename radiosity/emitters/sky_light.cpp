@@ -213,7 +213,7 @@ std::uint64_t SkyLight::site_key(const Eigen::Vector3d& position, const Eigen::V
 // each.
 void SkyLight::learn(const ElementCaster& caster) {
   const PatchMesh& mesh = caster.mesh();
-  std::map<std::uint64_t, std::vector<SitePoint>> points;  // in an order of their own
+  std::map<std::uint64_t, std::vector<SurfacePoint>> points;  // in an order of their own
   std::map<int, const Sphere*> spheres;
   for (const SphereGrid& grid : mesh.sphere_grids) spheres[grid.facet] = &grid.sphere;
   for (;; cube_ *= 1.5) {
@@ -252,7 +252,7 @@ void SkyLight::learn(const ElementCaster& caster) {
             const int octant = octant_of(p, cube_);
             int there = 0;
             bool is_known = false;  // its plane is
-            for (const SitePoint& other : list) {
+            for (const SurfacePoint& other : list) {
               if (octant_of(other.position, cube_) != octant) continue;
               ++there;
               constexpr double thin = 1e-6;
@@ -268,7 +268,7 @@ void SkyLight::learn(const ElementCaster& caster) {
     }
     if (!is_too_many) break;
   }
-  std::vector<const std::vector<SitePoint>*> lists;
+  std::vector<const std::vector<SurfacePoint>*> lists;
   std::vector<std::uint64_t> keys;
   for (const auto& [key, list] : points) {
     site_of_[key] = static_cast<int>(lists.size());
@@ -287,7 +287,7 @@ void SkyLight::learn(const ElementCaster& caster) {
   parallel_for(count, 16, [&](int begin, int end) {
     for (int s = begin; s < end; ++s) {
       const auto i = static_cast<std::size_t>(s);
-      const SitePoint& point = lists[i]->front();
+      const SurfacePoint& point = lists[i]->front();
       std::vector<const Look*> beside;
       for (int side = 0; side < 6; ++side) {
         Eigen::Vector3d position = point.position;
@@ -302,8 +302,8 @@ void SkyLight::learn(const ElementCaster& caster) {
   });
 }
 
-SkyLight::Look SkyLight::look_from(const ElementCaster& caster, std::span<const SitePoint> points,
-                                   std::uint64_t key) const {
+SkyLight::Look SkyLight::look_from(const ElementCaster& caster,
+                                   std::span<const SurfacePoint> points, std::uint64_t key) const {
   struct Sample {
     int cell = 0;
     std::size_t point = 0;
@@ -318,7 +318,7 @@ SkyLight::Look SkyLight::look_from(const ElementCaster& caster, std::span<const 
       const std::uint64_t ray_key = random_key(key, number, static_cast<std::uint64_t>(c));
       const auto u = [&](std::uint64_t i) { return random_uniform(random_key(ray_key, i)); };
       const std::size_t p = from[static_cast<std::size_t>(u(0) * static_cast<double>(from.size()))];
-      const SitePoint& point = points[p];
+      const SurfacePoint& point = points[p];
       const Eigen::Vector3d direction = direction_at(c, u(1), u(2));
       if (!(direction.dot(point.normal) > 0.0)) continue;
       rays.push_back(
@@ -387,8 +387,9 @@ SkyLight::Site SkyLight::site_of(const Look& own, std::span<const Look* const> b
 }
 
 // One ray in each of `rays` equal steps through the running sum of the shares.
-void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<const Share> shares,
-                    int rays, std::uint64_t key, Tally& tally) const {
+void SkyLight::cast(const ElementCaster& caster, const SurfacePoint& at,
+                    std::span<const Share> shares, int rays, std::uint64_t key,
+                    Tally& tally) const {
   struct Sample {
     double weight = 0.0;
     int cell = 0;
@@ -438,10 +439,9 @@ void SkyLight::cast(const ElementCaster& caster, const SitePoint& at, std::span<
   }
 }
 
-SkyGlow SkyLight::irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                             const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key,
                              const SkyEffort& effort) const {
-  const SitePoint at{point, normal, facet};
+  const auto& [point, normal, facet] = at;
   Site learnt;
   const Site* site = nullptr;
   if (const auto found = site_of_.find(site_key(point, normal, cube_)); found != site_of_.end()) {

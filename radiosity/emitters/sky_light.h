@@ -11,6 +11,7 @@
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
+#include "scene/surface_point.h"
 
 namespace lightwell {
 
@@ -47,10 +48,9 @@ class SkyLight {
   /// number of threads.
   SkyLight(const Scene& scene, const PatchMesh& mesh);
 
-  /// E per band, W/m^2, of a point with a unit normal. `facet` is where it lies (-1: in free
-  /// space), `key` decides where rays go; panes dim what goes through them.
-  SkyGlow irradiance(const ElementCaster& caster, const Eigen::Vector3d& point,
-                     const Eigen::Vector3d& normal, int facet, std::uint64_t key,
+  /// E per band, W/m^2, at a point. `key` decides the directions of the rays; panes dim the light
+  /// that passes through them.
+  SkyGlow irradiance(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key,
                      const SkyEffort& effort = {}) const;
 
   /// The same with nothing in the way, to 1e-4 of it; of a uniform sky or a horizontal surface to
@@ -67,10 +67,6 @@ class SkyLight {
   };
   /// What rays to each cell are given by, next to what it would give; 0: none is known to get out.
   using Site = std::array<float, cells>;
-  struct SitePoint {
-    Eigen::Vector3d position, normal;
-    int facet = -1;
-  };
   struct Cell {
     Eigen::Vector3f middle = Eigen::Vector3f::Zero();  // unit
     /// int L w dw over the cell, W/m^2, L being the mean of the bands.
@@ -97,7 +93,7 @@ class SkyLight {
 
   void tabulate(const Sky& sky);
   void learn(const ElementCaster& caster);
-  Look look_from(const ElementCaster& caster, std::span<const SitePoint> points,
+  Look look_from(const ElementCaster& caster, std::span<const SurfacePoint> points,
                  std::uint64_t key) const;
   static Site site_of(const Look& own, std::span<const Look* const> beside);
   std::uint64_t site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
@@ -105,7 +101,7 @@ class SkyLight {
   Eigen::Vector3d direction_at(int cell, double u, double v) const;
   Draw draw(int cell, double u, double v) const;
   double irradiance_of(int cell, const Eigen::Vector3f& normal) const;
-  void cast(const ElementCaster& caster, const SitePoint& at, std::span<const Share> shares,
+  void cast(const ElementCaster& caster, const SurfacePoint& at, std::span<const Share> shares,
             int rays, std::uint64_t key, Tally& tally) const;
 
   int bands_ = 0;

@@ -63,9 +63,10 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
               !emitter.is_sphere && (at.position - emitter.loops[0][0]).dot(emitter.normal) < 0.0;
           exchange_(2 * e + behind, i) +=
               mesh_.area[i] / options.emitter_points *
-              direct_light_.form_factor(emitter, caster_, at.position, at.normal,
-                                        mesh_.facet[at.element], random_key(key, s, e),
-                                        options.shadows);
+              direct_light_.form_factor(emitter, caster_,
+                                        {.at = {at.position, at.normal, mesh_.facet[at.element]},
+                                         .key = random_key(key, s, e),
+                                         .shadows = options.shadows});
         }
       }
     }

@@ -70,15 +70,15 @@ void add_inputs(Fingerprint& print, const Scene& scene, const DirectLight& direc
 
 class Estimator {
  public:
-  Estimator(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-            const FormFactorOptions& options, std::shared_ptr<MemoryBudget> budget)
-      : scene_(scene),
-        mesh_(caster.mesh()),
+  Estimator(const LitScene& lit, const FormFactorOptions& options,
+            std::shared_ptr<MemoryBudget> budget)
+      : scene_(lit.scene),
+        mesh_(lit.mesh()),
         budget_(std::move(budget)),
-        caster_(caster),
-        direct_light_(direct_light),
+        caster_(lit.caster),
+        direct_light_(lit.direct_light),
         options_(options),
-        paths_(scene, caster, options.max_specular_depth) {
+        paths_(lit.scene, lit.caster, options.max_specular_depth) {
     for (int i = 0; i < mesh_.patch_count(); ++i) {
       receives_.push_back(paths_.is_diffuse(mesh_.facet[mesh_.first_element[i]]));
     }
@@ -287,18 +287,18 @@ FormFactorMethod form_factor_method(std::string_view name) {
                                           fmt::join(names, ", ")));
 }
 
-std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const ElementCaster& caster,
-                                                  const DirectLight& direct_light,
+std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
                                                   const FormFactorOptions& options,
                                                   FormFactorReport* report) {
   const auto budget = options.memory ? options.memory : std::make_shared<MemoryBudget>();
-  const PatchMesh& mesh = caster.mesh();
-  budget->plan(
-      bytes_beside_rows(mesh, static_cast<std::int64_t>(direct_light.emitters().size()), options));
-  Estimate estimate = Estimator(scene, caster, direct_light, options, budget).estimate();
+  const PatchMesh& mesh = lit.mesh();
+  budget->plan(bytes_beside_rows(
+      mesh, static_cast<std::int64_t>(lit.direct_light.emitters().size()), options));
+  Estimate estimate = Estimator(lit, options, budget).estimate();
   const auto phase_of = [&](std::string_view name) -> JournalPhase {
-    return {options.journal, name,
-            [&](Fingerprint& print) { add_inputs(print, scene, direct_light, mesh, options); }};
+    return {options.journal, name, [&](Fingerprint& print) {
+              add_inputs(print, lit.scene, lit.direct_light, mesh, options);
+            }};
   };
   auto result =
       assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),

@@ -9,6 +9,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
+#include "radiosity/emitters/lit_scene.h"
 #include "radiosity/rows/memory_budget.h"
 #include "scene/progress.h"
 
@@ -120,8 +121,7 @@ struct FormFactorReport {
 /// first, and closed forms only as far as that leaves a gap. The result is the same, bit for bit,
 /// for any number of threads and any memory. Throws Interrupted when progress says stop, InputError
 /// if the memory allowed is too little, and std::runtime_error if rows go to disk and it is full.
-std::unique_ptr<FormFactors> compute_form_factors(const Scene& scene, const ElementCaster& caster,
-                                                  const DirectLight& direct_light,
+std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
                                                   const FormFactorOptions& options = {},
                                                   FormFactorReport* report = nullptr);
 

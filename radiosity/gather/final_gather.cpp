@@ -30,25 +30,31 @@ constexpr std::uint64_t caustic_rays_of_lamps = 0xf4ee3;
 constexpr int batch = 128;
 constexpr float pi = std::numbers::pi_v<float>;
 
+LightQuery light_query(const GatherPoint& at, std::uint64_t key, const GatherOptions& options) {
+  return {.at = {at.position, at.normal, at.facet},
+          .key = random_key(key, gather_shadows),
+          .shadows = options.shadows};
+}
+
 int ray_count(const GatherPoint& at, const GatherOptions& options) {
   return at.rays > 0 ? at.rays : std::max(1, options.rays);
 }
 
 class HemisphereGather {
  public:
-  HemisphereGather(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                   const BandArray& radiosity, const GatherOptions& options,
+  HemisphereGather(const LitScene& lit, const BandArray& radiosity, const GatherOptions& options,
                    const GatherPoints& points)
-      : mesh_(caster.mesh()),
-        caster_(caster),
+      : mesh_(lit.mesh()),
+        caster_(lit.caster),
         radiosity_(radiosity),
-        paths_(scene, caster, options.max_specular_depth),
+        paths_(lit.scene, lit.caster, options.max_specular_depth),
         options_(options),
-        bands_(scene.bands.count()),
-        bright_(scene, mesh_, radiosity) {
-    if (const FreeSource* dome = direct_light.dome()) {
+        bands_(lit.scene.bands.count()),
+        bright_(lit.scene, mesh_, radiosity) {
+    if (const FreeSource* dome = lit.direct_light.dome()) {
       dome_ = dome->light;
-      if (direct_light.column_count() == radiosity.cols()) dome_column_ = dome->channel * bands_;
+      if (lit.direct_light.column_count() == radiosity.cols())
+        dome_column_ = dome->channel * bands_;
     }
     for (int i = 0; i < points.size(); ++i) {
       const int rays = ray_count(points[i], options);
@@ -242,17 +248,16 @@ void for_each_point(const GatherPoints& points, const GatherOptions& options,
 
 }  // namespace
 
-GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& caster,
-                                     const DirectLight& direct_light, const BandArray& radiosity,
+GatheredIrradiance gather_irradiance(const LitScene& lit, const BandArray& radiosity,
                                      const GatherPoints& points, const GatherOptions& options) {
   const int count = points.size();
-  const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
-  GatheredIrradiance result{.direct = BandArray::Zero(count, direct_light.column_count()),
+  const HemisphereGather hemisphere(lit, radiosity, options, points);
+  GatheredIrradiance result{.direct = BandArray::Zero(count, lit.direct_light.column_count()),
                             .indirect = BandArray::Zero(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf::Zero(count)};
   const JournalPhase phase(options.journal, "gather", [&](Fingerprint& print) {
-    add_inputs(print, caster.mesh(), points, options);
-    print.add(direct_light.column_count());
+    add_inputs(print, lit.mesh(), points, options);
+    print.add(lit.direct_light.column_count());
     print.add(radiosity);
   });
   const auto values = [&](int begin, int size) {
@@ -261,23 +266,21 @@ GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& ca
   };
   for_each_point(points, options, phase, values,
                  [&](int i, const GatherPoint& at, std::uint64_t key) {
-                   direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
-                                               random_key(key, gather_shadows), options.shadows,
-                                               result.direct.row(i).data());
+                   lit.direct_light.add_irradiance(lit.caster, light_query(at, key, options),
+                                                   result.direct.row(i).data());
                    hemisphere.gather(at, key, result.indirect.row(i).data(), result.variance[i]);
                  });
   return result;
 }
 
-BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
-                        const DirectLight& direct_light, const GatherPoints& points,
+BandArray gather_direct(const LitScene& lit, const GatherPoints& points,
                         const GatherOptions& options, std::vector<EmitterSight>* sights) {
   BandArray direct =
-      BandArray::Zero(points.size(), direct_light.channel_count() * scene.bands.count());
+      BandArray::Zero(points.size(), lit.direct_light.channel_count() * lit.scene.bands.count());
   if (sights) sights->assign(static_cast<std::size_t>(points.size()), {});
   const JournalPhase phase(options.journal, sights ? "sights" : "direct", [&](Fingerprint& print) {
-    add_inputs(print, caster.mesh(), points, options);
-    print.add(direct_light.column_count());
+    add_inputs(print, lit.mesh(), points, options);
+    print.add(lit.direct_light.column_count());
   });
   const auto values = [&](int begin, int size) {
     std::span<EmitterSight> seen;
@@ -286,23 +289,21 @@ BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
   };
   for_each_point(
       points, options, phase, values, [&](int i, const GatherPoint& at, std::uint64_t key) {
-        direct_light.add_irradiance(
-            caster, at.position, at.normal, at.facet, random_key(key, gather_shadows),
-            options.shadows, direct.row(i).data(), Lights::all, sights ? &(*sights)[i] : nullptr);
+        lit.direct_light.add_irradiance(lit.caster, light_query(at, key, options),
+                                        direct.row(i).data(), sights ? &(*sights)[i] : nullptr);
       });
   return direct;
 }
 
-GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
-                                   const DirectLight& direct_light, const BandArray& radiosity,
+GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosity,
                                    const GatherPoints& points, const GatherOptions& options) {
-  const HemisphereGather hemisphere(scene, caster, direct_light, radiosity, options, points);
+  const HemisphereGather hemisphere(lit, radiosity, options, points);
   const int count = points.size();
   GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf(count)};
   const JournalPhase phase(options.journal, "indirect", [&](Fingerprint& print) {
-    add_inputs(print, caster.mesh(), points, options);
-    print.add(direct_light.column_count());
+    add_inputs(print, lit.mesh(), points, options);
+    print.add(lit.direct_light.column_count());
     print.add(radiosity);
   });
   const auto values = [&](int begin, int size) {
@@ -333,24 +334,23 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
   return B;
 }
 
-BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
-                             const DirectLight& direct_light, int rays, int max_specular_depth,
+BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
                              const Progress& progress, Journal* journal) {
-  const PatchMesh& mesh = caster.mesh();
-  const LightPaths paths(scene, caster, max_specular_depth);
-  if (!paths.has_specular() || direct_light.light_count() == 0) return {};
-  const int bands = scene.bands.count();
-  BandArray power = BandArray::Zero(mesh.element_count(), direct_light.column_count());
+  const PatchMesh& mesh = lit.mesh();
+  const LightPaths paths(lit.scene, lit.caster, max_specular_depth);
+  if (!paths.has_specular() || lit.direct_light.light_count() == 0) return {};
+  const int bands = lit.scene.bands.count();
+  BandArray power = BandArray::Zero(mesh.element_count(), lit.direct_light.column_count());
 
   std::vector<int> emitter_of_facet;
-  for (int e = 0; e < static_cast<int>(direct_light.emitters().size()); ++e) {
-    const int facet = direct_light.emitters()[e].facet;
+  for (int e = 0; e < static_cast<int>(lit.direct_light.emitters().size()); ++e) {
+    const int facet = lit.direct_light.emitters()[e].facet;
     emitter_of_facet.resize(std::max<std::size_t>(emitter_of_facet.size(), facet + 1), -1);
     emitter_of_facet[facet] = e;
   }
   JournalPhase phase(journal, "caustics", [&](Fingerprint& print) {
     print.add(mesh);
-    print.add(direct_light.column_count());
+    print.add(lit.direct_light.column_count());
     print.add(rays);
     print.add(max_specular_depth);
   });
@@ -369,7 +369,7 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
       for (int r = begin; r < end; ++r) {
         const auto [ray, watts] = first(r);
         ElementHit hit;
-        caster.closest_hits({&ray, 1}, {&hit, 1});
+        lit.caster.closest_hits({&ray, 1}, {&hit, 1});
         if (hit.facet < 0 || !paths.is_specular(hit.facet)) continue;
         paths.follow(ray, hit, random_key(key, caustic_branches, static_cast<std::uint64_t>(r)),
                      [&](const LightArrival& at) {
@@ -389,15 +389,15 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
   const SobolPoints sobol(rays);
   const auto send_patch = [&](int p) {
     const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
-    if (!direct_light.owns(facet, mesh.is_back[p] != 0) || !(mesh.emission.row(p) > 0.0f).any())
+    if (!lit.direct_light.owns(facet, mesh.is_back[p] != 0) || !(mesh.emission.row(p) > 0.0f).any())
       return;
-    const double share = mesh.area[p] / direct_light.emitters()[emitter_of_facet[facet]].area;
+    const double share = mesh.area[p] / lit.direct_light.emitters()[emitter_of_facet[facet]].area;
     const int count = std::clamp(static_cast<int>(std::lround(rays * share)), 1, rays);
     const Spectrum power_per_ray =
         mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
     const std::uint64_t key = random_key(static_cast<std::uint64_t>(p), caustic_rays);
     const PatchSampler sampler(mesh, p);
-    send(count, key, direct_light.first_column(facet), [&](int r) {
+    send(count, key, lit.direct_light.first_column(facet), [&](int r) {
       const Eigen::Array4f u = sobol.point(r, key);
       const Ray ray = cosine_ray(mesh, sampler.point(u[0], u[1]), u[2], u[3]);
       return std::pair(ray, power_per_ray);
@@ -412,7 +412,7 @@ BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
       return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / rays)));
     });
   };
-  const auto& sources = direct_light.free_sources();
+  const auto& sources = lit.direct_light.free_sources();
   const int patches = mesh.patch_count(), count = patches + static_cast<int>(sources.size());
   int first = 0;
   phase.recall_state(first, power);

@@ -10,6 +10,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
+#include "radiosity/emitters/lit_scene.h"
 #include "radiosity/solution/solution.h"
 #include "scene/progress.h"
 
@@ -75,18 +76,15 @@ struct GatheredIrradiance {
 /// since rays from the receiver find it by chance only: see caustic_irradiance. That of the sky's
 /// dome they find well. `radiosity` is
 /// vertices x bands, as gatherable_radiosity makes it.
-GatheredIrradiance gather_irradiance(const Scene& scene, const ElementCaster& caster,
-                                     const DirectLight& direct_light, const BandArray& radiosity,
+GatheredIrradiance gather_irradiance(const LitScene& lit, const BandArray& radiosity,
                                      const GatherPoints& points, const GatherOptions& options = {});
 
 /// Only the direct light; `sights`, if given, gets one entry a point.
-BandArray gather_direct(const Scene& scene, const ElementCaster& caster,
-                        const DirectLight& direct_light, const GatherPoints& points,
+BandArray gather_direct(const LitScene& lit, const GatherPoints& points,
                         const GatherOptions& options, std::vector<EmitterSight>* sights = nullptr);
 
 /// Only the indirect light; `direct` is left empty.
-GatheredIrradiance gather_indirect(const Scene& scene, const ElementCaster& caster,
-                                   const DirectLight& direct_light, const BandArray& radiosity,
+GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosity,
                                    const GatherPoints& points, const GatherOptions& options);
 
 /// rho E, plus the emission of patches that `direct_light` does not own: what gather_irradiance
@@ -99,8 +97,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 /// they end (after Heckbert 1990), and vertices take the mean of the elements around; but for what
 /// goes straight through ClearPanes, which is direct light. Empty if the scene has no mirrors or
 /// glass.
-BandArray caustic_irradiance(const Scene& scene, const ElementCaster& caster,
-                             const DirectLight& direct_light, int rays, int max_specular_depth,
+BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
                              const Progress& progress = {}, Journal* journal = nullptr);
 
 /// For every vertex, a point a hair inside one of its elements, so that it lies on no edge, and

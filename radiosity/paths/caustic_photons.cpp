@@ -264,21 +264,20 @@ CausticPhotons join(const std::vector<std::vector<Deposit>>& lists, int bands) {
 
 }  // namespace
 
-CausticPhotons shoot_photons(const Scene& scene, const ElementCaster& caster,
-                             const DirectLight& direct_light, int count, int max_specular_depth,
+CausticPhotons shoot_photons(const LitScene& lit, int count, int max_specular_depth,
                              const Progress& progress) {
   if (count < 1 || count > most_photons) {
     throw std::invalid_argument(
         fmt::format("{} photons; there must be between 1 and {}", count, most_photons));
   }
-  const int bands = scene.bands.count();
-  const LightPaths paths(scene, caster, max_specular_depth, PathNormals::smooth);
-  const SpecularTargets targets(scene);
-  std::vector<Beam> beams = make_beams(direct_light, targets);
+  const int bands = lit.scene.bands.count();
+  const LightPaths paths(lit.scene, lit.caster, max_specular_depth, PathNormals::smooth);
+  const SpecularTargets targets(lit.scene);
+  std::vector<Beam> beams = make_beams(lit.direct_light, targets);
   if (beams.empty()) return {.power = BandArray(0, bands)};
   share_out(beams, count);
   const auto more = [](const Beam& a, const Beam& b) { return a.count < b.count; };
-  const PhotonGun gun(caster, paths, targets,
+  const PhotonGun gun(lit.caster, paths, targets,
                       std::max(1, std::max_element(beams.begin(), beams.end(), more)->count));
   const std::vector<Piece> pieces = cut_into_pieces(beams);
   std::vector<std::vector<Deposit>> lists(pieces.size());

@@ -5,6 +5,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
+#include "radiosity/emitters/lit_scene.h"
 #include "scene/progress.h"
 #include "scene/scene.h"
 
@@ -35,8 +36,7 @@ constexpr int most_photons = 1 << 24;
 ///
 /// The same photons for any number of threads. Throws std::invalid_argument if the count is out of
 /// range, Interrupted when progress says stop.
-CausticPhotons shoot_photons(const Scene& scene, const ElementCaster& caster,
-                             const DirectLight& direct_light, int count, int max_specular_depth,
+CausticPhotons shoot_photons(const LitScene& lit, int count, int max_specular_depth,
                              const Progress& progress = {});
 
 }  // namespace lightwell

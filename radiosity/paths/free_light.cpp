@@ -161,10 +161,12 @@ class Collector {
           for (int p = 0; p < points; ++p) {
             const Eigen::Array4f u = at_points.point(p, key);
             const PatchPoint at = sampler.point(u[0], u[1]);
-            direct_light.add_irradiance(caster_, at.position, at.normal, mesh.facet[at.element],
-                                        random_key(key, static_cast<std::uint64_t>(p)),
-                                        {.min_rays = 16, .max_rays = 64}, E.row(i).data(),
-                                        Lights::distant);
+            direct_light.add_irradiance(caster_,
+                                        {.at = {at.position, at.normal, mesh.facet[at.element]},
+                                         .key = random_key(key, static_cast<std::uint64_t>(p)),
+                                         .shadows = {.min_rays = 16, .max_rays = 64},
+                                         .lights = Lights::distant},
+                                        E.row(i).data());
           }
           E.row(i) /= static_cast<float>(points);
           if (!has_specular) continue;

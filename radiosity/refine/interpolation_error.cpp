@@ -70,20 +70,19 @@ Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradian
   return own;
 }
 
-InterpolationError::InterpolationError(const Scene& scene, const ElementCaster& caster,
-                                       const DirectLight& direct_light, const BandArray& radiosity,
+InterpolationError::InterpolationError(const LitScene& lit, const BandArray& radiosity,
                                        const BandArray& caustic, RefinedElements& elements,
                                        const GatherOptions& options, const RefineOptions& refine,
                                        double noise)
-    : scene_(scene),
-      caster_(caster),
-      direct_light_(direct_light),
+    : scene_(lit.scene),
+      caster_(lit.caster),
+      direct_light_(lit.direct_light),
       radiosity_(radiosity),
       elements_(elements),
       options_(options),
       has_noise_goal_(noise > 0.0),
       inset_(std::ldexp(finest_inset, -refine.max_level)),
-      sight_(direct_light.light_count()),
+      sight_(lit.direct_light.light_count()),
       probes_(probe_count) {
   if (options.progress) {
     options_.progress = [progress = options.progress](std::string_view, double share) {
@@ -181,7 +180,8 @@ void InterpolationError::gather_direct_at(const std::vector<int>& vertices) {
     points.back().key = static_cast<std::uint64_t>(v);
   }
   std::vector<EmitterSight> sights;
-  const BandArray direct = gather_direct(scene_, caster_, direct_light_, points, options_, &sights);
+  const BandArray direct =
+      gather_direct({scene_, caster_, direct_light_}, points, options_, &sights);
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     direct_.row(fresh[i]) = direct.row(static_cast<Eigen::Index>(i));
     sight_.set(fresh[i], sights[i]);
@@ -204,7 +204,7 @@ GatheredIrradiance InterpolationError::indirect_at(const std::vector<int>& verti
   GatherOptions options = options_;
   options.rays = draft_rays(options_.rays, has_noise_goal_);
   options.replica = options_.replica + draft_replica + replica;
-  return gather_indirect(scene_, caster_, direct_light_, radiosity, points, options);
+  return gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);
 }
 
 // With `noise`, it also says what the final gather takes to leave no more of that.
@@ -443,7 +443,7 @@ GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>&
     points.push_back(gather_point(v));
     points.back().key = static_cast<std::uint64_t>(v);
   }
-  const BandArray direct = gather_direct(scene_, caster_, light.direct_light, points, options_);
+  const BandArray direct = gather_direct({scene_, caster_, light.direct_light}, points, options_);
   BandArray irradiance =
       direct.topRows(mesh.vertex_count()) + indirect_at(base, 2, light.radiosity).indirect;
   if (light.caustic.size() > 0) irradiance += light.caustic;
@@ -597,8 +597,9 @@ double InterpolationError::parts_error(int cell, int side) const {
   for (int k = 0; k < 4; ++k) {
     const CellPlace at = place_in(cell, side, k % 2 == 0 ? 0.25 : 0.75, k < 2 ? 0.25 : 0.75);
     const Spectrum E =
-        direct_light_.irradiance(caster_, at.position, normal, facet,
-                                 random_key(key, static_cast<std::uint64_t>(k)), options_.shadows);
+        direct_light_.irradiance(caster_, {.at = {at.position, normal, facet},
+                                           .key = random_key(key, static_cast<std::uint64_t>(k)),
+                                           .shadows = options_.shadows});
     error += mean_square(E - at.direct) / 4.0;
   }
   return error;
@@ -624,12 +625,13 @@ double InterpolationError::probed_error(int cell, int side) const {
     for (int k = 0; k < probe_count; ++k) {
       const Eigen::Array4f u = probes_.point(k, random_key(key, e));
       const CellPlace at = place_in(cell, side, u[0], u[1]);
-      const auto sees =
-          direct_light_.sees(static_cast<int>(e), caster_, at.position, normal, facet, u[2], u[3]);
+      const auto sees = direct_light_.sees(static_cast<int>(e), caster_,
+                                           {at.position, normal, facet}, u[2], u[3]);
       if (!sees || *sees == all_see) continue;
-      const Spectrum E = direct_light_.irradiance(caster_, at.position, normal, facet,
-                                                  random_key(key, e, static_cast<std::uint64_t>(k)),
-                                                  options_.shadows);
+      const Spectrum E = direct_light_.irradiance(
+          caster_, {.at = {at.position, normal, facet},
+                    .key = random_key(key, e, static_cast<std::uint64_t>(k)),
+                    .shadows = options_.shadows});
       error += mean_square(E - at.direct) / probe_count;
     }
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/elements/refine_elements.h"
+#include "radiosity/emitters/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/refine/sight_list.h"
 #include "radiosity/refine/told_vertices.h"
@@ -54,10 +55,9 @@ class InterpolationError {
   /// each, before the gathers that are compared; with `noise` above 0 it also tells how many rays
   /// the final gather takes to leave no larger a share of the mean irradiance. `caster` is of the
   /// base.
-  InterpolationError(const Scene& scene, const ElementCaster& caster,
-                     const DirectLight& direct_light, const BandArray& radiosity,
-                     const BandArray& caustic, RefinedElements& elements,
-                     const GatherOptions& options, const RefineOptions& refine, double noise);
+  InterpolationError(const LitScene& lit, const BandArray& radiosity, const BandArray& caustic,
+                     RefinedElements& elements, const GatherOptions& options,
+                     const RefineOptions& refine, double noise);
 
   /// Goes on to another tolerance: what was gathered is kept.
   void go_on(double tolerance);

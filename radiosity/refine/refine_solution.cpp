@@ -304,11 +304,11 @@ std::string sentence(const RefineReport& report) {
 }
 
 struct SolutionRefinement::Impl {
-  Impl(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-       const BandArray& radiosity, const BandArray& caustic, RefinedElements& all,
-       const GatherOptions& gather, const RefineOptions& options, double noise)
+  Impl(const LitScene& lit, const BandArray& radiosity, const BandArray& caustic,
+       RefinedElements& all, const GatherOptions& gather, const RefineOptions& options,
+       double noise)
       : elements(all),
-        error(scene, caster, direct_light, radiosity, caustic, all, gather, options, noise),
+        error(lit, radiosity, caustic, all, gather, options, noise),
         refinement(all, error, options, noise > 0.0) {}
 
   RefinedElements& elements;
@@ -316,14 +316,12 @@ struct SolutionRefinement::Impl {
   Refinement refinement;
 };
 
-SolutionRefinement::SolutionRefinement(const Scene& scene, const ElementCaster& caster,
-                                       const DirectLight& direct_light, const BandArray& radiosity,
+SolutionRefinement::SolutionRefinement(const LitScene& lit, const BandArray& radiosity,
                                        const BandArray& caustic, RefinedElements& elements,
                                        const GatherOptions& gather, const RefineOptions& options,
                                        double noise) {
   require_room(elements.base(), options);
-  impl_ = std::make_unique<Impl>(scene, caster, direct_light, radiosity, caustic, elements, gather,
-                                 options, noise);
+  impl_ = std::make_unique<Impl>(lit, radiosity, caustic, elements, gather, options, noise);
 }
 
 SolutionRefinement::~SolutionRefinement() = default;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/elements/refine_elements.h"
+#include "radiosity/emitters/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/refine/told_vertices.h"
 
@@ -83,10 +84,9 @@ class SolutionRefinement {
   /// many rays the final gather takes to leave no larger a share of the mean irradiance; else they
   /// are those of `gather`. Keeps references to the first three and to `elements`. Throws as
   /// require_room does.
-  SolutionRefinement(const Scene& scene, const ElementCaster& caster,
-                     const DirectLight& direct_light, const BandArray& radiosity,
-                     const BandArray& caustic, RefinedElements& elements,
-                     const GatherOptions& gather, const RefineOptions& options, double noise = 0.0);
+  SolutionRefinement(const LitScene& lit, const BandArray& radiosity, const BandArray& caustic,
+                     RefinedElements& elements, const GatherOptions& gather,
+                     const RefineOptions& options, double noise = 0.0);
   ~SolutionRefinement();
 
   /// Splits until the tolerance is reached, and goes on from there when it is called again: what

@@ -21,9 +21,11 @@ VertexLight::VertexLight(const ElementCaster& caster, const DirectLight& direct_
   parallel_for(mesh_.vertex_count(), grain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       const ReceivingPoint& at = points_[static_cast<std::size_t>(v)];
-      direct_light.add_irradiance(caster, at.position, at.normal, at.facet,
-                                  static_cast<std::uint64_t>(v), {}, irradiance_.row(v).data(),
-                                  Lights::free);
+      direct_light.add_irradiance(caster,
+                                  {.at = {at.position, at.normal, at.facet},
+                                   .key = static_cast<std::uint64_t>(v),
+                                   .lights = Lights::free},
+                                  irradiance_.row(v).data());
     }
   });
 }

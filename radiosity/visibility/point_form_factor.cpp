@@ -101,7 +101,7 @@ PointFormFactors::Unsampled PointFormFactors::without_rays(const ShaftEnd& targe
   }
   if (!(result.F > nothing)) return {};
   result.F = std::min(result.F, 1.0);
-  const ShaftEnd from = shafts_.end(point.position, point.normal, point.facet);
+  const ShaftEnd from = shafts_.end({point.position, point.normal, point.facet});
   Between between;
   shafts_.find(from, target, between);
   result.needs_rays = between.may_be_sphere || between.pieces.size() > most_pieces_between ||

@@ -97,7 +97,8 @@ ShaftEnd Shafts::end(const PatchOutline& outline, int facet) const {
   return end;
 }
 
-ShaftEnd Shafts::end(const Vector3d& point, const Vector3d& normal, int facet) const {
+ShaftEnd Shafts::end(const SurfacePoint& at) const {
+  const auto& [point, normal, facet] = at;
   ShaftEnd end{.corners = {point},
                .plane = {normal, normal.dot(point)},
                .box = Eigen::AlignedBox3d(point, point)};

@@ -5,6 +5,7 @@
 #include "mesh/geometry/box_tree.h"
 #include "mesh/patches/patch_outline.h"
 #include "radiosity/visibility/occluders.h"
+#include "scene/surface_point.h"
 
 namespace lightwell {
 
@@ -43,7 +44,7 @@ class Shafts {
   /// `facet`: of the patch; -1: of several.
   ShaftEnd end(const PatchOutline& outline, int facet) const;
   /// `facet`: on which the point lies; -1: in free space.
-  ShaftEnd end(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int facet) const;
+  ShaftEnd end(const SurfacePoint& at) const;
 
   /// Whether a facet of another sheet lies on the end, face to face: it hides what it covers, which
   /// no shaft shows.

@@ -307,7 +307,8 @@ TEST_P(ThinLeg, IsDarkBehindItsFootWhereLightIsGathered) {
   double off = 0.0;
   for (const Vector3d& at : behind_foot(leg)) {
     const ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
-    const double E = direct_light.irradiance(caster, at, up, 0, 1, shadows)[0];
+    const double E =
+        direct_light.irradiance(caster, {.at = {at, up, 0}, .key = 1, .shadows = shadows})[0];
     off = std::max(off, std::abs(E - beside_leg(leg, at)) / open);
   }
   std::printf("leg, gathered: off by at most %.3f\n", off);

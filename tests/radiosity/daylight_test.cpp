@@ -122,7 +122,8 @@ TEST(Daylight, SunDrawsTheWindowOnTheWall) {
   const ElementCaster caster(mesh);
   const DirectLight light(scene, mesh);
   const auto at = [&](double y, double z) {
-    return static_cast<double>(light.irradiance(caster, {0, y, z}, Vector3d::UnitX(), 0, 1)[0]);
+    return static_cast<double>(
+        light.irradiance(caster, {.at = {{0, y, z}, Vector3d::UnitX(), 0}, .key = 1})[0]);
   };
   constexpr double rounding = 500.0 * 1.2e-7;  // of a float
   EXPECT_NEAR(at(2.0, 1.5), 500.0, rounding);
@@ -156,7 +157,7 @@ TEST(Daylight, MirrorGivesBackItsHalfOfTheSky) {
   }
   const BandArray none = BandArray::Zero(mesh.vertex_count(), 3);
   const GatheredIrradiance E =
-      gather_irradiance(scene, caster, light, none, points, {.rays = 4096});
+      gather_irradiance({scene, caster, light}, none, points, {.rays = 4096});
   // The mirror ends at `far`: from 1 m all is seen of its half but 1 / far of its light at the
   // most. That half is known but for cells beside its edge, a tenth at most, which 160 rays tell to
   // sqrt(0.1 * 0.9 / 160) = 0.024 of the light without strata, and the mean of 64 points to 0.003,

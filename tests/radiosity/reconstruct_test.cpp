@@ -27,8 +27,8 @@ struct Room {
     options.refine = {.tolerance = tolerance, .max_elements = 1000000};
     patches.mesh = build_patches(scene, options.mesh);
     const ElementCaster caster(patches.mesh);
-    const auto form_factors = compute_form_factors(scene, caster, DirectLight(scene, patches.mesh),
-                                                   {.rays_per_patch = 128});
+    const auto form_factors = compute_form_factors(
+        {scene, caster, DirectLight(scene, patches.mesh)}, {.rays_per_patch = 128});
     patches.solution =
         solve_radiosity(SolverMethod::automatic, patches.mesh, *form_factors, options.solver);
   }
@@ -190,7 +190,7 @@ TEST(Reconstruct, AddsToWhatIsKept) {
   RadiositySolution solution = room.patches.solution;
   const auto gather = [&](int rays) {
     room.options.gather.rays = rays;
-    reconstruct(room.scene, caster, direct_light, room.options, draft, solution, &kept);
+    reconstruct({room.scene, caster, direct_light}, room.options, draft, solution, &kept);
     return BandArray(solution.indirect_irradiance);
   };
   const BandArray first = gather(64);

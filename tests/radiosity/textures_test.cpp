@@ -158,7 +158,7 @@ TEST(Textures, ShadowsOfHolesAreTheHoles) {
     // From 101 m a line over x at the floor crosses the plate at 0.5 + (x - 0.5) 100/101.
     const double at_plate = 0.5 + (x - 0.5) * 100.0 / 101.0;
     const bool is_hole = static_cast<int>(4.0 * at_plate) % 2 == 1;
-    const Spectrum E = light.irradiance(caster, {x, 0.3, 0}, {0, 0, 1}, 0, 1, {});
+    const Spectrum E = light.irradiance(caster, {.at = {{x, 0.3, 0}, {0, 0, 1}, 0}, .key = 1});
     EXPECT_NEAR(E[0], is_hole ? E_free : 0.0, 1e-3 * E_free) << x;
   }
 }

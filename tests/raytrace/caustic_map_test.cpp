@@ -133,7 +133,7 @@ class MirroredLamp {
   // RMS relative error over 150 places, and the neighbours that discs reach over.
   std::pair<double, int> error(int photon_count) const {
     const CausticPhotons photons =
-        shoot_photons(lit.scene, lit.caster, lit.direct_light, photon_count, 4);
+        shoot_photons({lit.scene, lit.caster, lit.direct_light}, photon_count, 4);
     const CausticMap map(lit.mesh, photons);
     double square = 0.0;
     int n = 0;

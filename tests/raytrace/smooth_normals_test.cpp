@@ -226,7 +226,7 @@ Eigen::ArrayXd thrown_on_ceiling(Ball ball) {
       SceneBuilder().sphere({.specular = 1.0f}, {0, 0, 0}, 1.0).build().materials[0]);
   add_ball(scene, ball, 2);
   const LitScene lit(scene);
-  const CausticMap map(lit.mesh, shoot_photons(scene, lit.caster, lit.direct_light, 1 << 18, 4));
+  const CausticMap map(lit.mesh, shoot_photons({scene, lit.caster, lit.direct_light}, 1 << 18, 4));
   constexpr int across = 24;
   Eigen::ArrayXd E(across * across);
   for (int i = 0; i < across * across; ++i) {

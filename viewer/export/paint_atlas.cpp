@@ -117,12 +117,12 @@ BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& mode
   BandArray found;
   if (options.pass == Pass::direct) {
     interpolated(s.indirect_irradiance);
-    found = gather_direct(scene, caster, direct_light, points, gathering);
+    found = gather_direct({scene, caster, direct_light}, points, gathering);
   } else {
     if (s.caustic_irradiance.size() > 0) interpolated(s.caustic_irradiance);
     const BandArray B = gatherable_radiosity(solved.mesh, direct_light, s.irradiance());
     const GatheredIrradiance all =
-        gather_irradiance(scene, caster, direct_light, B, points, gathering);
+        gather_irradiance({scene, caster, direct_light}, B, points, gathering);
     found = all.direct + all.indirect;
   }
   for (std::size_t i = 0; i < number.size(); ++i) {

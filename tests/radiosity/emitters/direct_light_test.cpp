@@ -69,8 +69,9 @@ TEST(DirectLight, OccludedFormFactorsAreExactInTheMean) {
     for (int i = 0; i < points; ++i) {
       const Eigen::Array4f at = sobol.point(i, 7);
       const Eigen::Vector3d p = receiver[0] + at[0] * u + at[1] * v;
-      const double F = direct_light.form_factor(direct_light.emitters()[0], caster, p, n, 0,
-                                                random_key(i), {.min_rays = 64, .max_rays = 64});
+      const double F = direct_light.form_factor(
+          direct_light.emitters()[0], caster,
+          {.at = {p, n, 0}, .key = random_key(i), .shadows = {.min_rays = 64, .max_rays = 64}});
       sum += F;
       sum2 += F * F;
     }
@@ -108,11 +109,12 @@ TEST(DirectLight, UnoccludedIrradianceIsTheClosedForm) {
     const Eigen::Vector3d p(2 * random_uniform(2 * i), 2 * random_uniform(2 * i + 1), 0.0);
     const Eigen::Vector3d n(0, 0, 1);
     const double exact = 3.0 * std::abs(point_to_polygon(p, n, {&points, 1}));
-    const Spectrum E = direct_light.irradiance(caster, p, n, 4, random_key(i));
+    const Spectrum E = direct_light.irradiance(caster, {.at = {p, n, 4}, .key = random_key(i)});
     EXPECT_NEAR(E[0], exact, 1e-6 * exact);  // float spectrum
   }
   // The lamp's back and the ceiling above it get nothing from it.
-  EXPECT_EQ(direct_light.irradiance(caster, {1.0, 1.0, 2.0}, {0, 0, -1}, 5, 1)[0], 0.0f);
+  EXPECT_EQ(direct_light.irradiance(caster, {.at = {{1.0, 1.0, 2.0}, {0, 0, -1}, 5}, .key = 1})[0],
+            0.0f);
 }
 
 TEST(DirectLight, LargeEmittersAreLeftToTheHemisphereOfRays) {
@@ -134,8 +136,8 @@ TEST(DirectLight, SphereLampObeysTheClosedForm) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d p(2 * random_uniform(2 * i), 0.0, 2 * random_uniform(2 * i + 1));
     const double exact = 2.0 * point_to_sphere(p, {0, 1, 0}, ball.center, ball.radius);
-    EXPECT_NEAR(direct_light.irradiance(caster, p, {0, 1, 0}, 2, random_key(i))[1], exact,
-                1e-6 * exact);
+    EXPECT_NEAR(direct_light.irradiance(caster, {.at = {p, {0, 1, 0}, 2}, .key = random_key(i)})[1],
+                exact, 1e-6 * exact);
   }
 }
 

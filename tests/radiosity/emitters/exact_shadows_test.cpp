@@ -28,7 +28,7 @@ struct Lit {
 
   std::optional<double> share(const Vector3d& point, const Vector3d& normal, int facet = -1,
                               int most = plenty) const {
-    return shadows.share(0, point, normal, facet, most);
+    return shadows.share(0, {point, normal, facet}, most);
   }
 
   // Of the kernel cos cos / r^2, by rays to a grid of places; the lamp is a rectangle.
@@ -86,7 +86,7 @@ TEST(ExactShadows, AreWhatManyRaysFind) {
                       0.9 * (2.0 * random_point(random_key(i, 4)) - Vector3d::Ones());
     normal.normalize();
     const Emitter& lamp = lit.light.emitters()[0];
-    if (!(lit.light.unoccluded_form_factor(lamp, at, normal, -1) > 1e-6)) continue;
+    if (!(lit.light.unoccluded_form_factor(lamp, {at, normal}) > 1e-6)) continue;
     const auto share = lit.share(at, normal);
     if (!share) continue;
     ++told;

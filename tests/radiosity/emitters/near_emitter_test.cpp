@@ -93,14 +93,16 @@ TEST(NearEmitter, WhatASlatHidesOfAWindowIsFoundWithFewRays) {
   double squares = 0.0;
   constexpr int tries = 64;
   for (int i = 0; i < tries; ++i) {
-    const double F = light.form_factor(light.emitters()[0], caster, point, normal, -1,
-                                       random_key(i, 3), {.min_rays = 64, .max_rays = 64});
+    const double F = light.form_factor(light.emitters()[0], caster,
+                                       {.at = {point, normal},
+                                        .key = random_key(i, 3),
+                                        .shadows = {.min_rays = 64, .max_rays = 64}});
     squares += std::pow(F / exact - 1.0, 2) / tries;
   }
   // A straight edge crosses 2 sqrt(64) of the 64 rays' cells at most, each of which is off by 0.3:
   // 1.9 % of all that the window gives, of which 0.128 is seen: 15 %. (Places even in area: 260 %.)
   std::printf("F %.4f of %.4f, off by %.3f RMS\n", exact,
-              light.unoccluded_form_factor(light.emitters()[0], point, normal, -1),
+              light.unoccluded_form_factor(light.emitters()[0], {point, normal}),
               std::sqrt(squares));
   EXPECT_LT(std::sqrt(squares), 0.15);
 }

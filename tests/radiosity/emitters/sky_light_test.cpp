@@ -37,7 +37,7 @@ struct UnderSky {
   SkyLight light{scene, mesh};
 
   double at(const Vector3d& point, const Vector3d& normal, int facet, std::uint64_t key = 1) const {
-    return static_cast<double>(light.irradiance(caster, point, normal, facet, key).irradiance[1]);
+    return static_cast<double>(light.irradiance(caster, {point, normal, facet}, key).irradiance[1]);
   }
 };
 
@@ -278,7 +278,7 @@ TEST(SkyLight, ShadowOfABrightPlaceIsFoundWithoutNoise) {
     constexpr int keys = 4;
     for (std::uint64_t key = 0; key < keys; ++key) {
       truth += static_cast<double>(plane.light
-                                       .irradiance(plane.caster, point, Vector3d::UnitZ(), 0,
+                                       .irradiance(plane.caster, {point, Vector3d::UnitZ(), 0},
                                                    100 + key, {.first = 1024, .most = 1024})
                                        .irradiance[1]) /
                keys;

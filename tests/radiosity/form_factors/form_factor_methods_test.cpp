@@ -32,7 +32,7 @@ Computed compute(const Scene& scene, double patch_size, const FormFactorOptions&
   result.mesh = build_patches(scene, {.max_patch_size = patch_size});
   const ElementCaster caster(result.mesh);
   const DirectLight direct_light(scene, result.mesh);
-  result.F = compute_form_factors(scene, caster, direct_light, options, &result.report);
+  result.F = compute_form_factors({scene, caster, direct_light}, options, &result.report);
   return result;
 }
 

@@ -82,7 +82,7 @@ class Storage : public testing::TestWithParam<NamedFormFactorMethod> {
     options.memory =
         std::make_shared<MemoryBudget>(MemoryOptions{.rows = rows, .folder = folder_ / ""});
     Computed computed;
-    const auto F = compute_form_factors(scene, caster, direct_light, options, &computed.report);
+    const auto F = compute_form_factors({scene, caster, direct_light}, options, &computed.report);
     computed.bits = bits_of(*F);
     computed.storage = options.memory->report();
     EXPECT_EQ(folder_.file_count(), 0);
@@ -131,7 +131,7 @@ TEST_P(Storage, KeepsBothEndsOfEveryPair) {
   options.memory =
       std::make_shared<MemoryBudget>(MemoryOptions{.rows = 50000, .folder = folder_ / ""});
   FormFactorReport report;
-  const auto F = compute_form_factors(scene, caster, direct_light, options, &report);
+  const auto F = compute_form_factors({scene, caster, direct_light}, options, &report);
   const int n = mesh.patch_count();
   Eigen::MatrixXf stored = Eigen::MatrixXf::Zero(n, n), taken_over = stored;
   std::vector<int> row_of_patch;

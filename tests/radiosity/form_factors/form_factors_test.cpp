@@ -20,7 +20,7 @@ Solved cast(const Scene& scene, const FormFactorOptions& options, double patch_s
   s.mesh = build_patches(scene, {.max_patch_size = patch_size, .elements_per_patch_edge = 1});
   const ElementCaster caster(s.mesh);
   const DirectLight direct_light(scene, s.mesh);
-  s.form_factors = compute_form_factors(scene, caster, direct_light, options, &s.report);
+  s.form_factors = compute_form_factors({scene, caster, direct_light}, options, &s.report);
   return s;
 }
 

@@ -63,7 +63,7 @@ Statistics gathered(const Room& room, const BandArray& B, const Eigen::Vector3d&
   double sum = 0.0, squares = 0.0;
   for (int i = 0; i < replicas; ++i) {
     const GatheredIrradiance E =
-        gather_indirect(room.scene, room.caster, room.direct_light, B, std::array{point},
+        gather_indirect({room.scene, room.caster, room.direct_light}, B, std::array{point},
                         {.rays = rays, .replica = static_cast<std::uint64_t>(i)});
     sum += E.indirect(0, 0);
     squares += std::pow(double{E.indirect(0, 0)}, 2);
@@ -110,7 +110,7 @@ TEST(BrightPatches, GiveTheSameNearBy) {
     constexpr int replicas = 200;
     for (int i = 0; i < replicas; ++i) {
       const double told =
-          gather_indirect(room.scene, room.caster, room.direct_light, B, std::array{point},
+          gather_indirect({room.scene, room.caster, room.direct_light}, B, std::array{point},
                           {.rays = 64, .replica = static_cast<std::uint64_t>(i)})
               .indirect(0, 0);
       sum += told / replicas;

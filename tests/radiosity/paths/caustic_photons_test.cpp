@@ -57,7 +57,7 @@ TEST(CausticPhotons, CarryWhatALampSendsToAGlassBall) {
   add_lamp(scene, {0, 0, 0.8}, 1e-3, 5.0f);
   add_sphere(scene, lossless_glass(scene.bands), {0, 0, -0.2}, 0.3);
   const Shot shot(scene);
-  const auto photons = shoot_photons(scene, shot.caster, shot.light, 1 << 14, 40);
+  const auto photons = shoot_photons({scene, shot.caster, shot.light}, 1 << 14, 40);
   const double power = 5.0 * 4e-6 * 0.09;
   // Of the cone around the ball all rays meet it, each for the cosine it has; 1e-5 of its size are
   // the margin, 1e-6 the lamp's own extent.
@@ -75,7 +75,7 @@ TEST(CausticPhotons, AddUpToWhatRaysAllAroundFind) {
   add_sphere(scene, test::clear_glass(scene.bands), {0.6, 0.6, 0.55}, 0.1);
   const Shot shot(scene);
   constexpr int rays = 1 << 19;
-  const BandArray E = caustic_irradiance(scene, shot.caster, shot.light, rays, 16);
+  const BandArray E = caustic_irradiance({scene, shot.caster, shot.light}, rays, 16);
   // Elements of a cube are equal squares: their vertices' means add up to what they got.
   double all_around = 0.0;
   for (int e = 0; e < shot.mesh.element_count(); ++e) {
@@ -85,7 +85,7 @@ TEST(CausticPhotons, AddUpToWhatRaysAllAroundFind) {
     }
     all_around += mean * shot.mesh.element_area[e];
   }
-  const auto photons = shoot_photons(scene, shot.caster, shot.light, 1 << 17, 16);
+  const auto photons = shoot_photons({scene, shot.caster, shot.light}, 1 << 17, 16);
   // At least a tenth of the rays of either lamp meet a ball: sqrt(9 / 2^19) = 0.4 %; and about as
   // much for the photons.
   EXPECT_NEAR(photons.power.cast<double>().sum() / all_around, 1.0, 0.01);
@@ -101,7 +101,7 @@ TEST(CausticPhotons, LeaveALampWithinASpecularSurface) {
       scene, "mirror", of_mirror,
       {{-0.99, -0.99, -0.5}, {0.99, -0.99, -0.5}, {0.99, 0.99, -0.5}, {-0.99, 0.99, -0.5}});
   const Shot shot(scene);
-  const auto photons = shoot_photons(scene, shot.caster, shot.light, 1 << 15, 4);
+  const auto photons = shoot_photons({scene, shot.caster, shot.light}, 1 << 15, 4);
   // Point to a coaxial square of half width a at distance d, by its four quarters.
   const double a = 0.99, d = 0.7, s = std::hypot(a, d);
   const double F = 4.0 * (a / s) * std::atan(a / s) / M_PI;
@@ -114,8 +114,8 @@ TEST(CausticPhotons, NoneWithoutSpecularSurfaces) {
   Scene scene = black_room();
   add_lamp(scene, {0, 0, 0.8}, 0.1, 5.0f);
   const Shot shot(scene);
-  EXPECT_EQ(shoot_photons(scene, shot.caster, shot.light, 1024, 8).count(), 0u);
-  EXPECT_THROW(shoot_photons(scene, shot.caster, shot.light, 0, 8), std::invalid_argument);
+  EXPECT_EQ(shoot_photons({scene, shot.caster, shot.light}, 1024, 8).count(), 0u);
+  EXPECT_THROW(shoot_photons({scene, shot.caster, shot.light}, 0, 8), std::invalid_argument);
 }
 
 TEST(SpecularTargets, ManyAreAFewHeapsThatHoldThem) {

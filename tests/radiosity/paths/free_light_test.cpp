@@ -58,7 +58,7 @@ double direct(const Scene& scene, const Eigen::Vector3d& point, const Eigen::Vec
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 1.0});
   const ElementCaster caster(mesh);
   const DirectLight light(scene, mesh);
-  return light.irradiance(caster, point, normal, -1, 7)[0];
+  return light.irradiance(caster, {.at = {point, normal}, .key = 7})[0];
 }
 
 TEST(FreeSources, PointGivesIntensityTimesCosineOverSquaredDistance) {
@@ -190,8 +190,9 @@ TEST(FreeLight, RaysAgreeWithTheClosedForm) {
     double mean = 0.0, all = 0.0;
     for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
       const PatchPoint at = element_center(mesh, e);
-      mean += mesh.element_area[e] *
-              light.irradiance(caster, at.position, at.normal, mesh.facet[e], 3)[0];
+      mean +=
+          mesh.element_area[e] *
+          light.irradiance(caster, {.at = {at.position, at.normal, mesh.facet[e]}, .key = 3})[0];
       all += mesh.element_area[e];
     }
     squares += mesh.area[p] * std::pow(cast.irradiance(p, 0) - mean / all, 2);
@@ -264,11 +265,11 @@ TEST(FreeLight, MirrorThrowsTheLampsLightOn) {
   const DirectLight light(scene, mesh);
   const FreeLight cast = cast_free_light(scene, caster, LightPaths(scene, caster, 8), light);
   const double thrown = cast.absorbed[0] / 0.2 * 0.8;
-  const CausticPhotons photons = shoot_photons(scene, caster, light, 1 << 18, 8);
+  const CausticPhotons photons = shoot_photons({scene, caster, light}, 1 << 18, 8);
   // One of 2^18 photons in six or so meets it, and one of a million rays: 1 / sqrt(2^18 / 6).
   EXPECT_NEAR(photons.power.col(0).sum() / thrown, 1.0, 0.005);
 
-  const BandArray caustic = caustic_irradiance(scene, caster, light, 1 << 19, 8);
+  const BandArray caustic = caustic_irradiance({scene, caster, light}, 1 << 19, 8);
   const std::vector<GatherPoint> points = vertex_gather_points(mesh);
   const Eigen::Vector3d image(-2.0, 2.5, 2.2);
   double found = 0.0, exact = 0.0;

@@ -36,7 +36,7 @@ struct Room {
   }
   GatheredIrradiance gather(const BandArray& B, int rays, std::uint64_t replica) const {
     const GatherPoint point{.position = {0.7, 0.9, 0.0}, .normal = {0, 0, 1}, .facet = 4};
-    return gather_irradiance(scene, caster, direct_light, B, std::array{point},
+    return gather_irradiance({scene, caster, direct_light}, B, std::array{point},
                              {.rays = rays, .replica = replica});
   }
 };

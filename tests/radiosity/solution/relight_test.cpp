@@ -213,7 +213,7 @@ TEST(Relight, DirectLightTracedAfreshIsThatOfTheFileWhateverIsOff) {
     relight(relit, scales);
     const DirectLight direct_light(scene, relit.mesh);
     const BandArray traced =
-        gather_direct(scene, ElementCaster(relit.mesh), direct_light,
+        gather_direct({scene, ElementCaster(relit.mesh), direct_light},
                       vertex_gather_points(relit.mesh), test::exact_and_even().gather);
     expect_same_light(traced, relit.solution.direct_irradiance, name);
   }

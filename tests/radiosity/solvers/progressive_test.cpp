@@ -43,7 +43,7 @@ struct Solved {
         paths(scene, caster, 8) {}
 
   std::unique_ptr<FormFactors> form_factors() const {
-    return compute_form_factors(scene, caster, direct_light, {});
+    return compute_form_factors({scene, caster, direct_light}, {});
   }
   Scene scene;
   PatchMesh mesh;
@@ -172,7 +172,7 @@ TEST(VertexLight, SeesShadowsAfterTheFirstRoundAndAllLightInTheEnd) {
   light.receive(progressive.last_shots());
   const BandArray nothing = BandArray::Zero(room.mesh.vertex_count(), 3);
   const BandArray direct =
-      gather_irradiance(room.scene, room.caster, room.direct_light, nothing, points, many_rays)
+      gather_irradiance({room.scene, room.caster, room.direct_light}, nothing, points, many_rays)
           .direct;
   const auto relative = [](const BandArray& a, const BandArray& b) {
     return std::sqrt((a - b).square().cast<double>().sum() / b.square().cast<double>().sum());
@@ -181,7 +181,7 @@ TEST(VertexLight, SeesShadowsAfterTheFirstRoundAndAllLightInTheEnd) {
   while (progressive.step()) light.receive(progressive.last_shots());
   const BandArray B = gatherable_radiosity(room.mesh, room.direct_light, light.irradiance());
   const GatheredIrradiance all =
-      gather_irradiance(room.scene, room.caster, room.direct_light, B, points, many_rays);
+      gather_irradiance({room.scene, room.caster, room.direct_light}, B, points, many_rays);
   // One ray a shooter, and shooters of one value each: 300 patches are few.
   EXPECT_LT(relative(light.irradiance(), all.direct + all.indirect), 0.03);
 }

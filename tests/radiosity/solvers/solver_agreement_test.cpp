@@ -32,7 +32,7 @@ Solvable prepare(Scene scene, double patch, const MemoryOptions& memory = {}) {
   s.mesh = build_patches(s.scene, {.max_patch_size = patch});
   const ElementCaster caster(s.mesh);
   const DirectLight direct_light(s.scene, s.mesh);
-  s.F = compute_form_factors(s.scene, caster, direct_light,
+  s.F = compute_form_factors({s.scene, caster, direct_light},
                              {.rays_per_patch = 256, .memory = s.memory});
   return s;
 }

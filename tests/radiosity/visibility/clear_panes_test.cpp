@@ -50,7 +50,7 @@ struct Lit {
   DirectLight light{scene, mesh};
 
   Spectrum at(double x, EmitterSight* sight = nullptr) const {
-    return light.irradiance(caster, {x, 0.0, 0.0}, Vector3d::UnitZ(), 0, 1, {}, sight);
+    return light.irradiance(caster, {.at = {{x, 0.0, 0.0}, Vector3d::UnitZ(), 0}, .key = 1}, sight);
   }
 };
 
@@ -116,7 +116,7 @@ TEST(ClearPanes, WhatTheyPassIsNoCaustic) {
   add_square(scene, pane(scene.bands), 1.0, 4.0);
   add_square(scene, test::diffuse(scene.bands, 0.5f), 3.0, 4.0, true);  // ceiling
   const Lit lit{scene};
-  const auto photons = shoot_photons(scene, lit.caster, lit.light, 1 << 14, 8);
+  const auto photons = shoot_photons({scene, lit.caster, lit.light}, 1 << 14, 8);
   ASSERT_GT(photons.count(), 0u);
   double reflected = 0.0;
   for (std::size_t i = 0; i < photons.count(); ++i) {
@@ -124,7 +124,7 @@ TEST(ClearPanes, WhatTheyPassIsNoCaustic) {
     reflected += double{photons.power(static_cast<Eigen::Index>(i), 0)};
   }
   EXPECT_GT(reflected, 0.0);
-  const BandArray E = caustic_irradiance(scene, lit.caster, lit.light, 1 << 14, 8);
+  const BandArray E = caustic_irradiance({scene, lit.caster, lit.light}, 1 << 14, 8);
   for (int v = 0; v < lit.mesh.vertex_count(); ++v) {
     if (lit.mesh.position(v).z() < 0.5) {
       EXPECT_EQ(E.row(v).maxCoeff(), 0.0f);

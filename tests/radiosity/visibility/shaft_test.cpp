@@ -95,8 +95,8 @@ TEST(Shaft, KnowsWhatIsCoveredFaceToFace) {
     }
     EXPECT_EQ(any, is_covered);
     const Vector3d up = Vector3d::UnitZ();
-    EXPECT_EQ(shafts.is_covered(shafts.end({0.3, 0.3, 0}, up, 0)), is_covered);
-    EXPECT_FALSE(shafts.is_covered(shafts.end({0.7, 0.7, 0}, up, 0)));
+    EXPECT_EQ(shafts.is_covered(shafts.end({{0.3, 0.3, 0}, up, 0})), is_covered);
+    EXPECT_FALSE(shafts.is_covered(shafts.end({{0.7, 0.7, 0}, up, 0})));
   }
 }
 

@@ -320,7 +320,7 @@ TEST(Lightmap, DirectLightIsTracedAnewAtTexelCentres) {
     const double x = (static_cast<double>(i % 64) + 0.5 - place.x) / place.width * chart.size.x();
     const double y = (static_cast<double>(i / 64) + 0.5 - place.y) / place.height * chart.size.y();
     const double F = lit.direct_light.unoccluded_form_factor(lit.direct_light.emitters()[0],
-                                                             {x, y, 0}, {0, 0, 1}, -1);
+                                                             {{x, y, 0}, {0, 0, 1}});
     const double E = 100.0 * F + 0.25;
     // Places are held a thousandth of an element off its edges, over which F changes by 0.4 %.
     EXPECT_NEAR(reader.atlases[0].irradiance(static_cast<Eigen::Index>(i), 0), E, 0.005 * E);
