@@ -196,29 +196,29 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
   const Material& material = scene_.materials[facets_[hit.facet].material];
   // The back of a one-sided mirror is black.
   if (!material.is_specular() || (!material.dielectric && hit.element < 0)) return;
-  Meeting meeting{.material = material,
-                  .direction = branch.ray.direction,
-                  .normal = at.normal,
-                  .from_back = hit.from_back};
+  SurfaceInteraction interaction{.material = material,
+                                 .direction = branch.ray.direction,
+                                 .normal = at.normal,
+                                 .from_back = hit.from_back};
   if (normals_.is_given(hit.facet)) {
     const Eigen::Vector3d smooth = at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
-    meeting.normal = visible_normal(branch.ray.direction, at.normal, smooth);
+    interaction.normal = visible_normal(branch.ray.direction, at.normal, smooth);
   }
-  if (material.gloss_roughness() > 0.0f) return scatter(branch, meeting, hit, at, walk);
-  const OnwardWays ways = smooth_ways(meeting);
-  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(ways.count); ++i) {
-    grow(branch, 2 * branch.place + i, ways.way[i], hit, at, walk);
+  if (material.gloss_roughness() > 0.0f) return scatter(branch, interaction, hit, at, walk);
+  const SmoothScattering lobes = smooth_scattering(interaction);
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
+    grow(branch, 2 * branch.place + i, lobes.sample[i], hit, at, walk);
   }
 }
 
-void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
+void RayTree::grow(const Branch& parent, std::uint64_t place, const ScatteringSample& sample,
                    const ElementHit& hit, const ShadingPoint& at, Walk& walk) const {
-  Branch branch{.weight = parent.weight * way.share,
+  Branch branch{.weight = parent.weight * sample.weight,
                 .depth = parent.depth + 1,
                 .place = place,
                 .is_sharp = parent.is_sharp,
-                .lobe_density = way.density,
-                .bright = way.density > 0.0 ? parent.bright : nullptr,
+                .lobe_density = sample.density,
+                .bright = sample.density > 0.0 ? parent.bright : nullptr,
                 .width = cone_width(parent, at),
                 .media = parent.media};
   if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
@@ -228,11 +228,11 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const Onward& way,
     return;
   }
   const int material = facets_[hit.facet].material;
-  branch.media.go_on(material, scene_.materials[material], way, hit.from_back);
+  branch.media.cross(material, scene_.materials[material], sample, hit.from_back);
   branch.ray = {
-      .origin = at.position, .direction = way.direction.normalized(), .origin_group = hit.facet};
+      .origin = at.position, .direction = sample.direction.normalized(), .origin_group = hit.facet};
   if (normals_.is_given(hit.facet)) {
-    branch.ray.direction = on_its_side(branch.ray.direction, at.normal, way.crosses);
+    branch.ray.direction = on_its_side(branch.ray.direction, at.normal, sample.crosses);
   }
   follow(branch, walk);
 }

@@ -35,8 +35,8 @@ struct Sight {
 /// Whitted's ray tree (1980) over a radiosity solution. Where a ray meets something diffuse,
 /// L = (M + rho E) / pi; mirrors add specular * L(reflected); clear dielectrics add
 /// R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R. Rough ones add the mean over some
-/// directions of their lobe, see draw_way. Within a body that absorbs, L is less by Beer and
-/// Lambert's law, see Media.
+/// directions of their lobe, see sample_scattering. Within a body that absorbs, L is less by Beer
+/// and Lambert's law, see Media.
 ///
 /// L inside a dielectric is the basic radiance L/n^2, which refraction leaves unchanged; a path
 /// that ends outside again needs no factor n^2.
@@ -128,21 +128,22 @@ class RayTree {
   void follow(Branch branch, Walk& walk) const;
   void look_outside(const Branch& branch, Walk& walk) const;
   void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at, Walk& walk) const;
-  void scatter(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
+  void scatter(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
                const ShadingPoint& at, Walk& walk) const;
-  void add_lamp(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                const ShadingPoint& at, const Eigen::Array4d& lot, float share, Walk& walk) const;
-  void add_free_source(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                       const ShadingPoint& at, const Eigen::Array4d& lot, float share,
-                       Walk& walk) const;
-  void add_bright_patch(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                        const ShadingPoint& at, const BrightPatches::View& view,
-                        const Eigen::Array4d& lot, float share, Walk& walk) const;
+  void add_lamp(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
+                const ShadingPoint& at, const Eigen::Array4d& u, float share, Walk& walk) const;
+  void add_free_source(const Branch& branch, const SurfaceInteraction& interaction,
+                       const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u,
+                       float share, Walk& walk) const;
+  void add_bright_patch(const Branch& branch, const SurfaceInteraction& interaction,
+                        const ElementHit& hit, const ShadingPoint& at,
+                        const BrightPatches::View& view, const Eigen::Array4d& u, float share,
+                        Walk& walk) const;
   float share_of_bright(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   Spectrum emission(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   const RoughLobe& lobe(int material, bool from_back) const;
-  void grow(const Branch& parent, std::uint64_t place, const Onward& way, const ElementHit& hit,
-            const ShadingPoint& at, Walk& walk) const;
+  void grow(const Branch& parent, std::uint64_t place, const ScatteringSample& sample,
+            const ElementHit& hit, const ShadingPoint& at, Walk& walk) const;
   ShadingPoint shading_point(const Ray& ray, const ElementHit& hit,
                              const ElementCaster& caster) const;
   /// Where shadow rays leave from, and the facet they leave; -1: none.

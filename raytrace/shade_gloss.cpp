@@ -23,8 +23,8 @@ bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d
 }  // namespace
 
 // The mean over directions of a rough surface's lobe.
-void RayTree::scatter(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                      const ShadingPoint& at, Walk& walk) const {
+void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interaction,
+                      const ElementHit& hit, const ShadingPoint& at, Walk& walk) const {
   if (!walk.shades) return;
   const bool is_first = branch.is_sharp && !walk.number;
   const int count =
@@ -35,32 +35,35 @@ void RayTree::scatter(const Branch& branch, const Meeting& meeting, const Elemen
   // As many as a picture takes of one place or so.
   constexpr int usual_looks = 64;
   BrightPatches::View view;
-  if (!bright_.is_empty() && !meeting.material.dielectric) {
-    view = bright_.view(at.position, meeting.normal, usual_looks);
+  if (!bright_.is_empty() && !interaction.material.dielectric) {
+    view = bright_.view(at.position, interaction.normal, usual_looks);
   }
   for (int i = 0; i < count; ++i) {
     const int index = (first + i) % gloss_point_count;
-    const auto lot_key = random_key(key, static_cast<std::uint64_t>(index));
+    const auto sample_key = random_key(key, static_cast<std::uint64_t>(index));
     const Eigen::Array4d u = gloss_points_.point(index, key).cast<double>();
-    Onward way = draw_way(meeting, {.way = u[2], .u = u[0], .v = u[1], .key = lot_key});
-    way.share /= static_cast<float>(count);
-    way.density = lobe(facets_[hit.facet].material, hit.from_back).density(meeting, way.direction);
-    const Eigen::Array4d lamp_lot =
+    ScatteringSample sample = sample_scattering(
+        interaction, {.component = u[2], .u = u[0], .v = u[1], .key = sample_key});
+    sample.weight /= static_cast<float>(count);
+    sample.density =
+        lobe(facets_[hit.facet].material, hit.from_back).density(interaction, sample.direction);
+    const Eigen::Array4d lamp_u =
         gloss_points_.point(index, random_key(key, lamp_purpose)).cast<double>();
-    add_lamp(branch, meeting, hit, at, lamp_lot, 1.0f / static_cast<float>(count), walk);
-    add_free_source(branch, meeting, hit, at, lamp_lot, 1.0f / static_cast<float>(count), walk);
+    add_lamp(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), walk);
+    add_free_source(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), walk);
     if (!view.is_empty()) {
-      const Eigen::Array4d lot =
+      const Eigen::Array4d bright_u =
           gloss_points_.point(index, random_key(key, bright_purpose)).cast<double>();
-      add_bright_patch(branch, meeting, hit, at, view, lot, 1.0f / static_cast<float>(count), walk);
+      add_bright_patch(branch, interaction, hit, at, view, bright_u,
+                       1.0f / static_cast<float>(count), walk);
     }
     // Places of many looks are alike, so that theirs are spread over what lies behind as well.
     const auto place =
-        random_key(branch.place, gloss_purpose, static_cast<std::uint64_t>(i), way.crosses);
+        random_key(branch.place, gloss_purpose, static_cast<std::uint64_t>(i), sample.crosses);
     Branch spread = branch;
     spread.is_sharp = false;
     spread.bright = view.is_empty() ? nullptr : &view;
-    grow(spread, place, way, hit, at, walk);
+    grow(spread, place, sample, hit, at, walk);
   }
 }
 
@@ -70,19 +73,19 @@ const RoughLobe& RayTree::lobe(int material, bool from_back) const {
 
 // Light of a lamp off a rough surface, by a direction drawn towards the lamp; those of the lobe
 // that meet it count for the rest (balance heuristic of Veach & Guibas 1995).
-void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                       const ShadingPoint& at, const Eigen::Array4d& lot, float share,
-                       Walk& walk) const {
+void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interaction,
+                       const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u,
+                       float share, Walk& walk) const {
   if (branch.depth >= deepest_path(options_.max_depth, true)) return;
-  const auto lamp = lamps_.draw(at.position, hit.facet, lot[0], lot[1], lot[2]);
+  const auto lamp = lamps_.draw(at.position, hit.facet, u[0], u[1], u[2]);
   if (!lamp) return;
-  if (crosses_facet_alone(lamp->direction, meeting.normal, at.normal)) return;
+  if (crosses_facet_alone(lamp->direction, interaction.normal, at.normal)) return;
   const int material = facets_[hit.facet].material;
-  const double density = lobe(material, hit.from_back).density(meeting, lamp->direction);
-  const Onward way{.direction = lamp->direction,
-                   .crosses = lamp->direction.dot(meeting.normal) < 0.0};
+  const double density = lobe(material, hit.from_back).density(interaction, lamp->direction);
+  const ScatteringSample sample{.direction = lamp->direction,
+                                .crosses = lamp->direction.dot(interaction.normal) < 0.0};
   const Spectrum L = lamp->emitter->exitance * one_over_pi;
-  Spectrum seen = branch.weight * share_of(meeting, way.crosses) * L *
+  Spectrum seen = branch.weight * scattering_weight(interaction, sample.crosses) * L *
                   (share * static_cast<float>(density / (density + lamp->density)));
   if (!((branch.weight > 0.0f).any() && density > 0.0)) return;
   const Ray ray{.origin = at.position,
@@ -95,7 +98,7 @@ void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const Eleme
   if (blocked != 0) return;
   if (absorbs_) {
     Media media = branch.media;
-    media.go_on(material, meeting.material, way, hit.from_back);
+    media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, facets_[lamp->emitter->facet].material, false, lamp->distance);
   }
   walk.sight.radiance += seen;
@@ -107,44 +110,44 @@ void RayTree::add_lamp(const Branch& branch, const Meeting& meeting, const Eleme
 
 // Light of a source that is no surface, off a rough one: no direction of the lobe meets it, so this
 // counts for all. One is drawn by what it would send here.
-void RayTree::add_free_source(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                              const ShadingPoint& at, const Eigen::Array4d& lot, float share,
-                              Walk& walk) const {
+void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& interaction,
+                              const ElementHit& hit, const ShadingPoint& at,
+                              const Eigen::Array4d& u, float share, Walk& walk) const {
   const std::vector<FreeSource>& sources = direct_light_.free_sources();
   if (sources.empty() || branch.depth >= deepest_path(options_.max_depth, true)) return;
   std::vector<double> sum;
   sum.reserve(sources.size());
   for (const FreeSource& source : sources) {
-    const double sent = glimpse(source, at.position, lot[1], lot[2]).irradiance *
+    const double sent = glimpse(source, at.position, u[1], u[2]).irradiance *
                         static_cast<double>(source.light.sum());
     sum.push_back(sent + (sum.empty() ? 0.0 : sum.back()));
   }
   if (!(sum.back() > 0.0)) return;
-  const auto drawn =
-      std::upper_bound(sum.begin(), sum.end() - 1, lot[0] * sum.back()) - sum.begin();
+  const auto drawn = std::upper_bound(sum.begin(), sum.end() - 1, u[0] * sum.back()) - sum.begin();
   const auto i = static_cast<std::size_t>(drawn);
   const double chance = (sum[i] - (i > 0 ? sum[i - 1] : 0.0)) / sum.back();
   if (!(chance > 0.0)) return;
-  const SourceGlimpse seen_source = glimpse(sources[i], at.position, lot[1], lot[2]);
-  if (crosses_facet_alone(seen_source.direction, meeting.normal, at.normal)) return;
+  const SourceGlimpse source_sample = glimpse(sources[i], at.position, u[1], u[2]);
+  if (crosses_facet_alone(source_sample.direction, interaction.normal, at.normal)) return;
   const int material = facets_[hit.facet].material;
-  const double density = lobe(material, hit.from_back).density(meeting, seen_source.direction);
+  const double density =
+      lobe(material, hit.from_back).density(interaction, source_sample.direction);
   if (!(density > 0.0)) return;
-  const Onward way{.direction = seen_source.direction,
-                   .crosses = seen_source.direction.dot(meeting.normal) < 0.0};
+  const ScatteringSample sample{.direction = source_sample.direction,
+                                .crosses = source_sample.direction.dot(interaction.normal) < 0.0};
   const Ray ray{.origin = at.position,
-                .direction = seen_source.direction,
-                .t_max = seen_source.distance,
+                .direction = source_sample.direction,
+                .t_max = source_sample.distance,
                 .origin_group = hit.facet};
   // What a lobe averages is radiance; a point's is E as a peak of solid angle 0.
-  Spectrum seen = branch.weight * share_of(meeting, way.crosses) * sources[i].light *
-                  direct_light_.passed(*walk.caster, ray) *
-                  (share * static_cast<float>(density * seen_source.irradiance / chance));
+  Spectrum seen = branch.weight * scattering_weight(interaction, sample.crosses) *
+                  sources[i].light * direct_light_.passed(*walk.caster, ray) *
+                  (share * static_cast<float>(density * source_sample.irradiance / chance));
   if (!(seen > 0.0f).any()) return;
   if (absorbs_) {
     Media media = branch.media;
-    media.go_on(material, meeting.material, way, hit.from_back);
-    seen *= media.passed(scene_, -1, false, seen_source.distance);
+    media.cross(material, interaction.material, sample, hit.from_back);
+    seen *= media.passed(scene_, -1, false, source_sample.distance);
   }
   walk.sight.radiance += seen;
   if (with_layers_) {
@@ -154,14 +157,16 @@ void RayTree::add_free_source(const Branch& branch, const Meeting& meeting, cons
 }
 
 // What a bright patch reflects, off a rough mirror: as add_lamp does for lamps.
-void RayTree::add_bright_patch(const Branch& branch, const Meeting& meeting, const ElementHit& hit,
-                               const ShadingPoint& at, const BrightPatches::View& view,
-                               const Eigen::Array4d& lot, float share, Walk& walk) const {
+void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& interaction,
+                               const ElementHit& hit, const ShadingPoint& at,
+                               const BrightPatches::View& view, const Eigen::Array4d& u,
+                               float share, Walk& walk) const {
   if (branch.depth >= deepest_path(options_.max_depth, true)) return;
-  const BrightPatches::Aim aim = bright_.draw(view, lot[0], lot[1], lot[2]);
-  if (!(aim.direction.dot(at.normal) > 0.0) || !(aim.direction.dot(meeting.normal) > 0.0)) return;
+  const BrightPatches::Aim aim = bright_.draw(view, u[0], u[1], u[2]);
+  if (!(aim.direction.dot(at.normal) > 0.0) || !(aim.direction.dot(interaction.normal) > 0.0))
+    return;
   const double density =
-      lobe(facets_[hit.facet].material, hit.from_back).density(meeting, aim.direction);
+      lobe(facets_[hit.facet].material, hit.from_back).density(interaction, aim.direction);
   if (!(density > 0.0)) return;
   Branch aimed = branch;
   aimed.ray = {.origin = at.position, .direction = aim.direction, .origin_group = hit.facet};
@@ -171,7 +176,8 @@ void RayTree::add_bright_patch(const Branch& branch, const Meeting& meeting, con
   const ShadingPoint there = shading_point(aimed.ray, met, *walk.caster);
   const double distance = (there.position - at.position).norm();
   const double both = density + bright_.density(view, met.element, aim.direction, distance);
-  aimed.weight *= share_of(meeting, false) * (share * static_cast<float>(density / both));
+  aimed.weight *=
+      scattering_weight(interaction, false) * (share * static_cast<float>(density / both));
   if (absorbs_) {
     aimed.weight *=
         aimed.media.passed(scene_, facets_[met.facet].material, met.from_back, distance);

@@ -9,7 +9,7 @@
 namespace lightwell {
 
 /// Light that meets a mirror or a clear surface.
-struct Meeting {
+struct SurfaceInteraction {
   const Material& material;   ///< one that is_specular()
   Eigen::Vector3d direction;  ///< of the light, unit, towards the surface
   Eigen::Vector3d normal;     ///< unit, on the side the light comes from
@@ -17,31 +17,31 @@ struct Meeting {
 };
 
 /// A way in which it goes on.
-struct Onward {
+struct ScatteringSample {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit
-  Spectrum share{};                                     ///< of the light that goes on this way
+  Spectrum weight{};                                    ///< of the light that goes on this way
   bool crosses = false;                                 ///< to the other side of the surface
   double density = 0.0;  ///< of the direction, 1/sr, where it was drawn and that is known
 };
 
 /// The ways from a smooth surface: a mirror's one; the reflected and, unless all is, the refracted
 /// light of a dielectric.
-struct OnwardWays {
-  std::array<Onward, 2> way{};
+struct SmoothScattering {
+  std::array<ScatteringSample, 2> sample{};
   int count = 0;
 };
-OnwardWays smooth_ways(const Meeting& meeting);
+SmoothScattering smooth_scattering(const SurfaceInteraction& interaction);
 
 /// Share of light that goes on by a way that crosses the surface or not, once that way is drawn: a
 /// mirror's reflectance, all that is reflected and the tint of what crosses a dielectric.
-Spectrum share_of(const Meeting& meeting, bool crosses);
+Spectrum scattering_weight(const SurfaceInteraction& interaction, bool crosses);
 
 /// Whether light that crosses goes straight on: a thin pane without roughness.
 bool is_clear_pane(const Material& material);
 
 /// What decides between ways; in [0,1). `key` draws more numbers where the first ones are refused.
-struct OnwardLot {
-  double way = 0.0;         ///< reflected or refracted
+struct ScatteringRandom {
+  double component = 0.0;   ///< reflected or refracted
   double u = 0.0, v = 0.0;  ///< which microfacet
   std::uint64_t key = 0;
 };
@@ -53,21 +53,22 @@ struct OnwardLot {
 /// thereby spread over the same lobe, and at every angle of incidence roughness leaves the share of
 /// a mirror, and all light of glass, as it is. A rough thin pane passes the mirrored picture of
 /// what it reflects.
-Onward draw_way(const Meeting& meeting, const OnwardLot& lot);
+ScatteringSample sample_scattering(const SurfaceInteraction& interaction,
+                                   const ScatteringRandom& random);
 
 /// How many mirrors and clear surfaces a path is followed by: at most `most` or, once it met a
 /// rough one, 64 if that is more. Light in a rough ball is caught beyond the critical angle and
 /// gets out by chance: after eight surfaces some percent of it are still within.
 int deepest_path(int most, bool met_rough);
 
-/// Density of draw_way's directions from one side of a rough surface, 1/sr: of single scattering
-/// over the share that is not lost to it, which is tabulated.
+/// Density of sample_scattering's directions from one side of a rough surface, 1/sr: of single
+/// scattering over the share that is not lost to it, which is tabulated.
 class RoughLobe {
  public:
   /// A material with gloss_roughness() > 0.
   RoughLobe(const Material& material, bool from_back);
   /// In a unit direction; 0 where light does not go.
-  double density(const Meeting& meeting, const Eigen::Vector3d& onward) const;
+  double density(const SurfaceInteraction& interaction, const Eigen::Vector3d& outgoing) const;
 
  private:
   static constexpr int steps_ = 64;
@@ -79,7 +80,7 @@ class RoughLobe {
 class Media {
  public:
   /// Light goes on from a surface of that material.
-  void go_on(int material, const Material& what, const Onward& way, bool from_back);
+  void cross(int material, const Material& what, const ScatteringSample& sample, bool from_back);
   /// What is left of light after `distance` metres on the way to a surface of that material, met
   /// from behind or not: exp(-absorption d) of the body it is in, ones where nothing absorbs.
   /// Behind a clear surface is its body, whatever was crossed before.
@@ -87,7 +88,7 @@ class Media {
 
  private:
   static constexpr int deepest = 4;  // bodies within bodies; of more, the outer ones are forgotten
-  std::array<int, deepest> within_{};
+  std::array<int, deepest> bodies_{};
   int count_ = 0;
 };
 

@@ -57,23 +57,24 @@ bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const Elemen
            smooth_->at(hit.facet, pose->inverse() * point, pose->linear().transpose() * normal);
   }
   if (is_smooth) bent = visible_normal(direction, normal, bent);
-  OnwardLot lot{.way = random_uniform(key), .key = key};
+  ScatteringRandom random{.component = random_uniform(key), .key = key};
   if (material.gloss_roughness() > 0.0f) {
     constexpr std::uint64_t microfacets = 0x66c3;
-    lot.u = random_uniform(random_key(key, microfacets, 1));
-    lot.v = random_uniform(random_key(key, microfacets, 2));
+    random.u = random_uniform(random_key(key, microfacets, 1));
+    random.v = random_uniform(random_key(key, microfacets, 2));
   }
-  const Onward way = draw_way(
+  const ScatteringSample sample = sample_scattering(
       {.material = material, .direction = direction, .normal = bent, .from_back = hit.from_back},
-      lot);
-  media.go_on(material_[hit.facet], material, way, hit.from_back);
-  through_panes_only = through_panes_only && way.crosses && is_clear_pane(material);
+      random);
+  media.cross(material_[hit.facet], material, sample, hit.from_back);
+  through_panes_only = through_panes_only && sample.crosses && is_clear_pane(material);
   // What a partly diffuse surface does not mirror was taken up by its diffuse side, where the
   // caller counts it.
-  if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - way.share);
-  throughput *= way.share;
+  if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - sample.weight);
+  throughput *= sample.weight;
   ray = {.origin = point,
-         .direction = is_smooth ? on_its_side(way.direction, normal, way.crosses) : way.direction,
+         .direction =
+             is_smooth ? on_its_side(sample.direction, normal, sample.crosses) : sample.direction,
          .origin_group = hit.facet};
   return (throughput > 0.0f).any();
 }

@@ -38,8 +38,8 @@ enum class PathNormals {
 
 /// Follows rays through mirrors and clear glass until something diffuse takes them up (extended
 /// form factors, Sillion & Puech 1989). At glass one branch is followed, picked with Fresnel's
-/// probability, and at rough surfaces one direction of their lobe (see draw_way), so that a ray
-/// stays a ray and the mean is exact. Bodies that absorb do so along the way, see Media.
+/// probability, and at rough surfaces one direction of their lobe (see sample_scattering), so that
+/// a ray stays a ray and the mean is exact. Bodies that absorb do so along the way, see Media.
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,

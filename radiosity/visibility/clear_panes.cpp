@@ -45,12 +45,12 @@ Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const
       normal = pose->linear() * normal;
     }
     if (normal.dot(direction) > 0.0) normal = -normal;
-    const OnwardWays ways = smooth_ways({.material = pane.material,
-                                         .direction = direction,
-                                         .normal = normal,
-                                         .from_back = hit.from_back});
-    if (ways.count < 2) break;
-    share *= ways.way[1].share;
+    const SmoothScattering lobes = smooth_scattering({.material = pane.material,
+                                                      .direction = direction,
+                                                      .normal = normal,
+                                                      .from_back = hit.from_back});
+    if (lobes.count < 2) break;
+    share *= lobes.sample[1].weight;
     ray.origin = place;
     ray.t_max -= hit.t;
     ray.origin_group = hit.facet;

@@ -17,8 +17,8 @@ class ClearPanes {
   bool empty() const { return panes_.empty(); }
 
   /// The share of light that gets to the ray's t_max, or to its target group, which something is
-  /// in the way of: what all panes between pass, (1 - R) tint of each (see smooth_ways); 0 in all
-  /// bands if anything else is.
+  /// in the way of: what all panes between pass, (1 - R) tint of each (see smooth_scattering); 0 in
+  /// all bands if anything else is.
   Spectrum passed(const ElementCaster& caster, const Ray& ray) const;
 
  private:

@@ -36,12 +36,16 @@ Material glass(float alpha, bool thin = false) {
   return material;
 }
 
-Onward draw(const Material& material, const Eigen::Vector3d& direction, bool from_back, int i) {
+ScatteringSample draw(const Material& material, const Eigen::Vector3d& direction, bool from_back,
+                      int i) {
   static const SobolPoints points(1 << 14);
   const Eigen::Array4d u = points.point(i, 11).cast<double>();
-  return draw_way(
+  return sample_scattering(
       {.material = material, .direction = direction, .normal = up, .from_back = from_back},
-      {.way = u[2], .u = u[0], .v = u[1], .key = random_key(5, static_cast<std::uint64_t>(i))});
+      {.component = u[2],
+       .u = u[0],
+       .v = u[1],
+       .key = random_key(5, static_cast<std::uint64_t>(i))});
 }
 
 TEST(RoughMirror, ReflectsItsShareAtEveryAngle) {
@@ -49,11 +53,11 @@ TEST(RoughMirror, ReflectsItsShareAtEveryAngle) {
     for (const double degrees : {0.0, 30.0, 60.0, 85.0, 89.9}) {
       const Material material = mirror(alpha);
       for (int i = 0; i < 500; ++i) {
-        const Onward way = draw(material, downwards(degrees), false, i);
-        EXPECT_GT(way.direction.z(), 0.0);
-        EXPECT_NEAR(way.direction.norm(), 1.0, 1e-12);
-        EXPECT_EQ(way.share[1], 0.7f);
-        EXPECT_FALSE(way.crosses);
+        const ScatteringSample sample = draw(material, downwards(degrees), false, i);
+        EXPECT_GT(sample.direction.z(), 0.0);
+        EXPECT_NEAR(sample.direction.norm(), 1.0, 1e-12);
+        EXPECT_EQ(sample.weight[1], 0.7f);
+        EXPECT_FALSE(sample.crosses);
       }
     }
   }
@@ -96,10 +100,10 @@ TEST(RoughGlass, LosesNothingAndReflectsByFresnelWhereItIsNearlySmooth) {
       constexpr int count = 4096;
       double reflected = 0.0;
       for (int i = 0; i < count; ++i) {
-        const Onward way = draw(glass(0.001f), downwards(degrees), from_back, i);
-        EXPECT_EQ(way.share[0], 1.0f);
-        EXPECT_EQ(way.crosses, way.direction.z() < 0.0);
-        reflected += way.crosses ? 0.0 : 1.0 / count;
+        const ScatteringSample sample = draw(glass(0.001f), downwards(degrees), from_back, i);
+        EXPECT_EQ(sample.weight[0], 1.0f);
+        EXPECT_EQ(sample.crosses, sample.direction.z() < 0.0);
+        reflected += sample.crosses ? 0.0 : 1.0 / count;
       }
       const double R = fresnel_reflectance(std::cos(degrees * degree), from_back ? 1 / 1.5 : 1.5);
       // Stratified: the bound of R crosses few strata. Slopes of 0.001 change R by 0.001 dR/dangle,
@@ -115,9 +119,9 @@ TEST(RoughGlass, SpreadsMoreTheRougherItIs) {
     double straight = 0.0;
     int crossed = 0;
     for (int i = 0; i < 2000; ++i) {
-      const Onward way = draw(glass(alpha), downwards(0.0), false, i);
-      straight += way.crosses ? -way.direction.z() : 0.0;
-      crossed += way.crosses ? 1 : 0;
+      const ScatteringSample sample = draw(glass(alpha), downwards(0.0), false, i);
+      straight += sample.crosses ? -sample.direction.z() : 0.0;
+      crossed += sample.crosses ? 1 : 0;
     }
     EXPECT_LT(straight / crossed, last) << alpha;
     last = straight / crossed;
@@ -132,10 +136,10 @@ TEST(RoughLobe, IsTheDensityOfWhatIsDrawn) {
     for (const bool from_back : {false, true}) {
       for (const double degrees : {10.0, 50.0, 75.0}) {
         const RoughLobe lobe(material, from_back);
-        const Meeting meeting{.material = material,
-                              .direction = downwards(degrees),
-                              .normal = up,
-                              .from_back = from_back};
+        const SurfaceInteraction interaction{.material = material,
+                                             .direction = downwards(degrees),
+                                             .normal = up,
+                                             .from_back = from_back};
         constexpr int steps = 400;
         double all = 0.0;
         Eigen::Vector3d expected = Eigen::Vector3d::Zero(), drawn = expected;
@@ -144,7 +148,8 @@ TEST(RoughLobe, IsTheDensityOfWhatIsDrawn) {
           for (int j = 0; j < steps; ++j) {
             const double phi = 2.0 * std::numbers::pi * (j + 0.5) / steps;
             const Eigen::Vector3d d(r * std::cos(phi), r * std::sin(phi), z);
-            const double p = lobe.density(meeting, d) * 4.0 * std::numbers::pi / (steps * steps);
+            const double p =
+                lobe.density(interaction, d) * 4.0 * std::numbers::pi / (steps * steps);
             all += p;
             expected += p * d;
           }
@@ -168,12 +173,12 @@ TEST(ThinPane, PassesStraightThroughWhateverItsIndex) {
   const Eigen::Vector3d d = downwards(50.0);
   for (const bool from_back : {false, true}) {
     const Material pane = glass(0.0f, true);
-    const OnwardWays ways =
-        smooth_ways({.material = pane, .direction = d, .normal = up, .from_back = from_back});
-    ASSERT_EQ(ways.count, 2);
-    EXPECT_LT((ways.way[1].direction - d).norm(), 1e-12);
-    EXPECT_NEAR(ways.way[0].share[0] + ways.way[1].share[0], 1.0, 1e-6);
-    EXPECT_NEAR(ways.way[0].share[0], pane_reflectance(-d.z(), 1.5), 1e-6);
+    const SmoothScattering lobes =
+        smooth_scattering({.material = pane, .direction = d, .normal = up, .from_back = from_back});
+    ASSERT_EQ(lobes.count, 2);
+    EXPECT_LT((lobes.sample[1].direction - d).norm(), 1e-12);
+    EXPECT_NEAR(lobes.sample[0].weight[0] + lobes.sample[1].weight[0], 1.0, 1e-6);
+    EXPECT_NEAR(lobes.sample[0].weight[0], pane_reflectance(-d.z(), 1.5), 1e-6);
   }
 }
 
@@ -182,8 +187,8 @@ TEST(Media, AbsorbByBeerAndLambertWhereLightIsWithin) {
   scene.materials = {glass(0.0f), glass(0.0f), mirror(0.0f)};
   scene.materials[0].dielectric->absorption = Spectrum::Constant(3, 2.0f);
   scene.materials[1].dielectric->absorption = Spectrum::Constant(3, 0.5f);
-  const Onward inwards{.direction = -up, .share = Spectrum::Ones(3), .crosses = true};
-  Onward back = inwards;
+  const ScatteringSample inwards{.direction = -up, .weight = Spectrum::Ones(3), .crosses = true};
+  ScatteringSample back = inwards;
   back.crosses = false;
   const auto passed = [&](const Media& media, int material, bool from_back) {
     return media.passed(scene, material, from_back, 0.3)[0];
@@ -192,15 +197,15 @@ TEST(Media, AbsorbByBeerAndLambertWhereLightIsWithin) {
   EXPECT_EQ(passed(media, 2, false), 1.0f);
   // An eye within: what is met from behind surrounds it.
   EXPECT_FLOAT_EQ(passed(media, 0, true), std::exp(-0.6f));
-  media.go_on(0, scene.materials[0], inwards, false);
+  media.cross(0, scene.materials[0], inwards, false);
   EXPECT_FLOAT_EQ(passed(media, 2, false), std::exp(-0.6f));  // a mirror within the glass
-  media.go_on(1, scene.materials[1], inwards, false);         // a bubble of the other
+  media.cross(1, scene.materials[1], inwards, false);         // a bubble of the other
   EXPECT_FLOAT_EQ(passed(media, 1, true), std::exp(-0.15f));
-  media.go_on(1, scene.materials[1], back, true);  // reflected within
+  media.cross(1, scene.materials[1], back, true);  // reflected within
   EXPECT_FLOAT_EQ(passed(media, 2, false), std::exp(-0.15f));
-  media.go_on(1, scene.materials[1], inwards, true);
+  media.cross(1, scene.materials[1], inwards, true);
   EXPECT_FLOAT_EQ(passed(media, 2, false), std::exp(-0.6f));
-  media.go_on(0, scene.materials[0], inwards, true);
+  media.cross(0, scene.materials[0], inwards, true);
   EXPECT_EQ(passed(media, 2, false), 1.0f);
 }
 
@@ -208,11 +213,11 @@ TEST(Media, BodiesWithinBodiesBeyondAllMeasureAreForgottenNotWrittenBeyond) {
   Scene scene;
   scene.materials = {glass(0.0f)};
   scene.materials[0].dielectric->absorption = Spectrum::Constant(3, 1.0f);
-  const Onward inwards{.direction = -up, .share = Spectrum::Ones(3), .crosses = true};
+  const ScatteringSample inwards{.direction = -up, .weight = Spectrum::Ones(3), .crosses = true};
   Media media;
-  for (int i = 0; i < 100; ++i) media.go_on(0, scene.materials[0], inwards, false);
+  for (int i = 0; i < 100; ++i) media.cross(0, scene.materials[0], inwards, false);
   EXPECT_FLOAT_EQ(media.passed(scene, 0, false, 1.0)[0], std::exp(-1.0f));
-  for (int i = 0; i < 200; ++i) media.go_on(0, scene.materials[0], inwards, true);
+  for (int i = 0; i < 200; ++i) media.cross(0, scene.materials[0], inwards, true);
   EXPECT_EQ(media.passed(scene, 0, false, 1.0)[0], 1.0f);
 }
 
