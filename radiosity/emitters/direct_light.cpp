@@ -363,7 +363,7 @@ int DirectLight::first_light(Lights lights) const {
 
 template <class Add>
 void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
-                                 EmitterSight* sight, Add&& add) const {
+                                 EmitterVisibility* visibility, Add&& add) const {
   const auto& [point, normal, facet] = query.at;
   const auto emitter_count = static_cast<int>(emitters_.size());
   std::vector<LightShadow> shadows;
@@ -393,7 +393,7 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
   }
   const std::vector<ShadowTally> tallies =
       cast_shadows(shadows, caster, samples_, query.at, panes_.empty() ? nullptr : &panes_);
-  if (sight) *sight = {};
+  if (visibility) *visibility = {};
   if (dome) {
     const SkyEffort effort{.first = std::clamp(query.shadows.min_rays, 8, most_sky_rays),
                            .most = std::clamp(query.shadows.max_rays, 8, most_sky_rays)};
@@ -402,8 +402,9 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     // Its penumbra is all that rays see: as if three times as much stood behind it, their noise is
     // about that of a lamp's.
     constexpr double as_of_a_lamp = 3.0;
-    if (sight) {
-      sight->noisy += glow.is_mixed ? as_of_a_lamp * (dome->light() * glow.irradiance).mean() : 0.0;
+    if (visibility) {
+      visibility->noisy +=
+          glow.is_mixed ? as_of_a_lamp * (dome->light() * glow.irradiance).mean() : 0.0;
     }
   }
   for (std::size_t i = 0; i < shadows.size(); ++i) {
@@ -415,27 +416,27 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     if (is_dimmed) through = static_cast<float>(s.F / tally.all) * tally.through;
     if (share > 0.0) add(s.channel, s.light(), static_cast<float>(s.F * share));
     if (is_dimmed) add(s.channel, s.light(), through);
-    if (!sight) continue;
+    if (!visibility) continue;
     const bool is_behind_panes = is_dimmed && !tally.is_mixed();
-    if (!s.share && tally.is_mixed()) sight->noisy += s.F * s.light().mean();
+    if (!s.share && tally.is_mixed()) visibility->noisy += s.F * s.light().mean();
     constexpr int bits = 64;
     const std::uint64_t bit = s.index < bits ? std::uint64_t{1} << s.index : 0;
-    if (share == 1.0 || is_behind_panes) sight->whole |= bit;
-    if (share == 0.0 && !is_dimmed) sight->hidden |= bit;
+    if (share == 1.0 || is_behind_panes) visibility->whole |= bit;
+    if (share == 0.0 && !is_dimmed) visibility->hidden |= bit;
   }
 }
 
 Spectrum DirectLight::irradiance(const ElementCaster& caster, const LightQuery& query,
-                                 EmitterSight* sight) const {
+                                 EmitterVisibility* visibility) const {
   Spectrum E = Spectrum::Zero(bands_);
-  for_each_light(caster, query, sight,
+  for_each_light(caster, query, visibility,
                  [&](int, const Spectrum& light, const auto& F) { E += light * F; });
   return E;
 }
 
 void DirectLight::add_irradiance(const ElementCaster& caster, const LightQuery& query, float* E,
-                                 EmitterSight* sight) const {
-  for_each_light(caster, query, sight, [&](int channel, const Spectrum& light, const auto& F) {
+                                 EmitterVisibility* visibility) const {
+  for_each_light(caster, query, visibility, [&](int channel, const Spectrum& light, const auto& F) {
     Eigen::Map<Eigen::ArrayXf>(E + channel * bands_, bands_) += light * F;
   });
 }

@@ -46,7 +46,7 @@ struct ShadowOptions {
 };
 
 /// What a point sees of the lights, by the shadows of its irradiance.
-struct EmitterSight {
+struct EmitterVisibility {
   /// sum M F with nothing in the way, mean of the bands, W/m^2, of lights whose shadow rays
   /// disagreed: what their noise is a share of.
   double noisy = 0.0;
@@ -123,18 +123,18 @@ class DirectLight {
 
   /// Irradiance E = sum M F at a point, W/m^2 per band, all channels added.
   Spectrum irradiance(const ElementCaster& caster, const LightQuery& query,
-                      EmitterSight* sight = nullptr) const;
+                      EmitterVisibility* visibility = nullptr) const;
 
   /// Adds the irradiance of each channel to the channel's columns of E, which has column_count()
   /// of them.
   void add_irradiance(const ElementCaster& caster, const LightQuery& query, float* E,
-                      EmitterSight* sight = nullptr) const;
+                      EmitterVisibility* visibility = nullptr) const;
 
  private:
   int first_light(Lights lights) const;
   template <class Add>
-  void for_each_light(const ElementCaster& caster, const LightQuery& query, EmitterSight* sight,
-                      Add&& add) const;
+  void for_each_light(const ElementCaster& caster, const LightQuery& query,
+                      EmitterVisibility* visibility, Add&& add) const;
 
   std::vector<Emitter> emitters_;
   std::vector<FreeSource> free_sources_;

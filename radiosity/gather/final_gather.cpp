@@ -274,24 +274,27 @@ GatheredIrradiance gather_irradiance(const LitScene& lit, const BandArray& radio
 }
 
 BandArray gather_direct(const LitScene& lit, const GatherPoints& points,
-                        const GatherOptions& options, std::vector<EmitterSight>* sights) {
+                        const GatherOptions& options,
+                        std::vector<EmitterVisibility>* visibilities) {
   BandArray direct =
       BandArray::Zero(points.size(), lit.direct_light.channel_count() * lit.scene.bands.count());
-  if (sights) sights->assign(static_cast<std::size_t>(points.size()), {});
-  const JournalPhase phase(options.journal, sights ? "sights" : "direct", [&](Fingerprint& print) {
-    add_inputs(print, lit.mesh(), points, options);
-    print.add(lit.direct_light.column_count());
-  });
+  if (visibilities) visibilities->assign(static_cast<std::size_t>(points.size()), {});
+  const JournalPhase phase(options.journal, visibilities ? "sights" : "direct",
+                           [&](Fingerprint& print) {
+                             add_inputs(print, lit.mesh(), points, options);
+                             print.add(lit.direct_light.column_count());
+                           });
   const auto values = [&](int begin, int size) {
-    std::span<EmitterSight> seen;
-    if (sights) seen = std::span(*sights).subspan(begin, size);
+    std::span<EmitterVisibility> seen;
+    if (visibilities) seen = std::span(*visibilities).subspan(begin, size);
     return std::tuple(rows_of(direct, begin, size), seen);
   };
-  for_each_point(
-      points, options, phase, values, [&](int i, const GatherPoint& at, std::uint64_t key) {
-        lit.direct_light.add_irradiance(lit.caster, light_query(at, key, options),
-                                        direct.row(i).data(), sights ? &(*sights)[i] : nullptr);
-      });
+  for_each_point(points, options, phase, values,
+                 [&](int i, const GatherPoint& at, std::uint64_t key) {
+                   lit.direct_light.add_irradiance(lit.caster, light_query(at, key, options),
+                                                   direct.row(i).data(),
+                                                   visibilities ? &(*visibilities)[i] : nullptr);
+                 });
   return direct;
 }
 

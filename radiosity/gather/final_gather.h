@@ -79,9 +79,10 @@ struct GatheredIrradiance {
 GatheredIrradiance gather_irradiance(const LitScene& lit, const BandArray& radiosity,
                                      const GatherPoints& points, const GatherOptions& options = {});
 
-/// Only the direct light; `sights`, if given, gets one entry a point.
+/// Only the direct light; `visibilities`, if given, gets one entry a point.
 BandArray gather_direct(const LitScene& lit, const GatherPoints& points,
-                        const GatherOptions& options, std::vector<EmitterSight>* sights = nullptr);
+                        const GatherOptions& options,
+                        std::vector<EmitterVisibility>* visibilities = nullptr);
 
 /// Only the indirect light; `direct` is left empty.
 GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosity,

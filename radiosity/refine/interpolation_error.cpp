@@ -82,7 +82,7 @@ InterpolationError::InterpolationError(const LitScene& lit, const BandArray& rad
       options_(options),
       has_noise_goal_(noise > 0.0),
       inset_(std::ldexp(finest_inset, -refine.max_level)),
-      sight_(lit.direct_light.light_count()),
+      visibility_(lit.direct_light.light_count()),
       probes_(probe_count) {
   if (options.progress) {
     options_.progress = [progress = options.progress](std::string_view, double share) {
@@ -154,7 +154,7 @@ void InterpolationError::make_room() {
     for (const int end : elements_.ends(v)) most = end < 0 ? most : std::max(most, rays_[end]);
     rays_.push_back(most);
   }
-  sight_.resize(count);
+  visibility_.resize(count);
   sides_.resize(elements_.side_total());
 }
 
@@ -165,7 +165,7 @@ void InterpolationError::shrink_to_fit() {
   has_direct_.shrink_to_fit();
   indirect_.shrink_to_fit();
   rays_.shrink_to_fit();
-  sight_.shrink_to_fit();
+  visibility_.shrink_to_fit();
   sides_.shrink_to_fit();
 }
 
@@ -179,12 +179,12 @@ void InterpolationError::gather_direct_at(const std::vector<int>& vertices) {
     points.push_back(gather_point(v));
     points.back().key = static_cast<std::uint64_t>(v);
   }
-  std::vector<EmitterSight> sights;
+  std::vector<EmitterVisibility> visibilities;
   const BandArray direct =
-      gather_direct({scene_, caster_, direct_light_}, points, options_, &sights);
+      gather_direct({scene_, caster_, direct_light_}, points, options_, &visibilities);
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     direct_.row(fresh[i]) = direct.row(static_cast<Eigen::Index>(i));
-    sight_.set(fresh[i], sights[i]);
+    visibility_.set(fresh[i], visibilities[i]);
   }
   gathers_ += static_cast<std::int64_t>(points.size());
 }
@@ -520,7 +520,7 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
   double shadow_noise = 0.0;
   const double of_one = mixed_shadow_noise(options_.shadows.max_rays);
   const auto add_shadow_noise = [&](int v, double weight) {
-    shadow_noise += weight * std::pow(of_one * sight_[v].noisy, 2);
+    shadow_noise += weight * std::pow(of_one * visibility_[v].noisy, 2);
   };
   Spectrum direct = Spectrum::Zero(scene_.bands.count()), first = direct, second = direct;
   for (int i = 0; i < n; ++i) {
@@ -558,13 +558,13 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
 }
 
 bool InterpolationError::has_edge(int cell, int side) const {
-  EmitterSight some, all{.whole = ~std::uint64_t{0}, .hidden = ~std::uint64_t{0}};
+  EmitterVisibility some, all{.whole = ~std::uint64_t{0}, .hidden = ~std::uint64_t{0}};
   for_each_vertex(cell, side, [&](int v) {
-    const EmitterSight sight = sight_[v];
-    some.whole |= sight.whole;
-    some.hidden |= sight.hidden;
-    all.whole &= sight.whole;
-    all.hidden &= sight.hidden;
+    const EmitterVisibility visibility = visibility_[v];
+    some.whole |= visibility.whole;
+    some.hidden |= visibility.hidden;
+    all.whole &= visibility.whole;
+    all.hidden &= visibility.hidden;
   });
   return some.whole != all.whole || some.hidden != all.hidden;
 }
@@ -609,9 +609,9 @@ double InterpolationError::probed_error(int cell, int side) const {
   const int element = elements_.element(cell, side);
   std::uint64_t whole = ~std::uint64_t{0}, hidden = whole;
   for_each_vertex(cell, side, [&](int v) {
-    const EmitterSight sight = sight_[v];
-    whole &= sight.whole;
-    hidden &= sight.hidden;
+    const EmitterVisibility visibility = visibility_[v];
+    whole &= visibility.whole;
+    hidden &= visibility.hidden;
   });
   const int facet = elements_.base().facet[element];
   const Eigen::Vector3d normal = element_center(elements_.base(), element).normal;

@@ -8,7 +8,7 @@
 #include "mesh/elements/refine_elements.h"
 #include "radiosity/emitters/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
-#include "radiosity/refine/sight_list.h"
+#include "radiosity/refine/emitter_visibility_list.h"
 #include "radiosity/refine/told_vertices.h"
 
 namespace lightwell {
@@ -171,7 +171,7 @@ class InterpolationError {
   std::vector<Indirect> indirect_;
   std::vector<int> rays_;  // of each of the two gathers of indirect light
   BandArray direct_, first_, second_;
-  SightList sight_;
+  EmitterVisibilityList visibility_;
   std::int64_t gathers_ = 0;
   SobolPoints probes_;
 };

@@ -49,8 +49,9 @@ struct Lit {
   ElementCaster caster{mesh};
   DirectLight light{scene, mesh};
 
-  Spectrum at(double x, EmitterSight* sight = nullptr) const {
-    return light.irradiance(caster, {.at = {{x, 0.0, 0.0}, Vector3d::UnitZ(), 0}, .key = 1}, sight);
+  Spectrum at(double x, EmitterVisibility* visibility = nullptr) const {
+    return light.irradiance(caster, {.at = {{x, 0.0, 0.0}, Vector3d::UnitZ(), 0}, .key = 1},
+                            visibility);
   }
 };
 
@@ -69,8 +70,8 @@ TEST_P(BehindPanes, LightOfALampIsWhatTheyPass) {
   const Lit lit{scene};
   for (const double x : {0.0, 1.0, 3.0}) {
     const Spectrum without = bare.at(x);
-    EmitterSight sight;
-    const Spectrum with = lit.at(x, &sight);
+    EmitterVisibility visibility;
+    const Spectrum with = lit.at(x, &visibility);
     for (int k = 0; k < 3; ++k) {
       const double tint = double{pane(scene.bands).dielectric->tint[k]};
       const double expected =
@@ -78,9 +79,9 @@ TEST_P(BehindPanes, LightOfALampIsWhatTheyPass) {
       // The lamp is a millimetre wide: the angle differs by 5e-4 over it. Floats.
       EXPECT_NEAR(double{with[k]}, expected, 1e-3 * expected);
     }
-    EXPECT_EQ(sight.whole, 1u);
-    EXPECT_EQ(sight.hidden, 0u);
-    EXPECT_EQ(sight.noisy, 0.0);
+    EXPECT_EQ(visibility.whole, 1u);
+    EXPECT_EQ(visibility.hidden, 0u);
+    EXPECT_EQ(visibility.noisy, 0.0);
   }
 }
 
@@ -92,9 +93,9 @@ TEST(ClearPanes, WhatIsBehindOrBeforeThemStillHidesALamp) {
     add_square(scene, pane(scene.bands), 1.0, 4.0);
     add_square(scene, test::diffuse(scene.bands, 0.5f), z, 0.5);
     const Lit lit{scene};
-    EmitterSight sight;
-    EXPECT_EQ(lit.at(0.0, &sight).maxCoeff(), 0.0f);
-    EXPECT_EQ(sight.hidden, 1u);
+    EmitterVisibility visibility;
+    EXPECT_EQ(lit.at(0.0, &visibility).maxCoeff(), 0.0f);
+    EXPECT_EQ(visibility.hidden, 1u);
     EXPECT_GT(lit.at(3.0).minCoeff(), 0.0f);
   }
 }

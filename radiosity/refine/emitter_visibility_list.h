@@ -8,16 +8,16 @@
 namespace lightwell {
 
 /// Which of the first 64 lights places see, in a quarter of a byte for each light instead of
-/// EmitterSight's fixed size.
-class SightList {
+/// EmitterVisibility's fixed size.
+class EmitterVisibilityList {
  public:
-  explicit SightList(int lights);
+  explicit EmitterVisibilityList(int lights);
 
   void resize(int count);
   void shrink_to_fit();
-  void set(int place, const EmitterSight& sight);
+  void set(int place, const EmitterVisibility& visibility);
   /// Its `noisy` as a float has it.
-  EmitterSight operator[](int place) const;
+  EmitterVisibility operator[](int place) const;
 
  private:
   int bytes_;  // for a bit of each light
