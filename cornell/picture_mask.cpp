@@ -57,8 +57,8 @@ PictureMask places(const Sightlines& sightlines, const Camera& camera, double le
         bool out = false;
         for (const auto& [dx, dy] :
              {std::pair{0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}}) {
-          sightlines.look(rays.ray(x + dx, y + dy), least_weight,
-                          [&](const SeenPlace& place) { out = out || is_out(place); });
+          sightlines.trace(rays.ray(x + dx, y + dy), least_weight,
+                           [&](const SeenPlace& place) { out = out || is_out(place); });
         }
         mask.at(x, y) = out ? 1 : 0;
       }

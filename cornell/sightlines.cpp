@@ -18,8 +18,8 @@ int Sightlines::surface_ahead(const Ray& ray) const {
   return hit.facet < 0 ? -1 : facets_[hit.facet].surface;
 }
 
-void Sightlines::look(const Ray& ray, double least_weight,
-                      const std::function<void(const SeenPlace&)>& show) const {
+void Sightlines::trace(const Ray& ray, double least_weight,
+                       const std::function<void(const SeenPlace&)>& show) const {
   follow(ray, 1.0, 0, least_weight, show);
 }
 

@@ -24,8 +24,8 @@ class Sightlines {
   Sightlines(const Scene& scene, const ElementCaster& caster);
 
   /// Calls `show` for every place whose weight is at least `least_weight`.
-  void look(const Ray& ray, double least_weight,
-            const std::function<void(const SeenPlace&)>& show) const;
+  void trace(const Ray& ray, double least_weight,
+             const std::function<void(const SeenPlace&)>& show) const;
 
   /// The surface straight ahead; -1: none.
   int surface_ahead(const Ray& ray) const;

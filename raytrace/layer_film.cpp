@@ -39,15 +39,15 @@ void LayerFilm::finish_row(int y, const Bands& bands, const Camera& camera, cons
       image_.layers.values(pixel, column) = static_cast<float>(luminous(bands, L));
     }
   }
-  if (has_centres) look_at_centres(y, camera, rays, caster);
+  if (has_centres) trace_centres(y, camera, rays, caster);
 }
 
-void LayerFilm::look_at_centres(int y, const Camera& camera, const CameraRays& rays,
-                                const ElementCaster& caster) {
-  std::vector<Ray> looks(image_.width);
-  for (int x = 0; x < image_.width; ++x) looks[x] = rays.ray(x + 0.5, y + 0.5);
-  std::vector<ElementHit> hits(looks.size());
-  caster.closest_elements(looks, hits);
+void LayerFilm::trace_centres(int y, const Camera& camera, const CameraRays& rays,
+                              const ElementCaster& caster) {
+  std::vector<Ray> view_rays(image_.width);
+  for (int x = 0; x < image_.width; ++x) view_rays[x] = rays.ray(x + 0.5, y + 0.5);
+  std::vector<ElementHit> hits(view_rays.size());
+  caster.closest_elements(view_rays, hits);
   for (const auto& [layer, column, count] : placed_) {
     for (int x = 0; x < image_.width; ++x) {
       const ElementHit& hit = hits[x];
@@ -55,7 +55,7 @@ void LayerFilm::look_at_centres(int y, const Camera& camera, const CameraRays& r
       if (layer == Layer::depth) {
         value = hit.facet < 0
                     ? std::numeric_limits<float>::infinity()
-                    : static_cast<float>(hit.t * looks[x].direction.dot(camera.direction));
+                    : static_cast<float>(hit.t * view_rays[x].direction.dot(camera.direction));
       } else if (layer == Layer::patch) {
         // Exact up to 2^24 patches.
         value = hit.element < 0 ? -1.0f : static_cast<float>(caster.mesh().patch[hit.element]);

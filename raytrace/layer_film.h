@@ -26,8 +26,8 @@ class LayerFilm {
     Layer layer;
     int column, count;  // of its channels
   };
-  void look_at_centres(int y, const Camera& camera, const CameraRays& rays,
-                       const ElementCaster& caster);
+  void trace_centres(int y, const Camera& camera, const CameraRays& rays,
+                     const ElementCaster& caster);
 
   Image& image_;
   std::vector<Placed> placed_{};

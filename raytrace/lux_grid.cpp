@@ -177,8 +177,8 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
 }
 
 LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
-  constexpr int looks = 64;
-  const SobolPoints sobol(looks);
+  constexpr int ray_count = 64;
+  const SobolPoints sobol(ray_count);
   // Which side of a face a point is on that lies in it is for rounding to say; light of its inside
   // is none of the plane's.
   constexpr double beside = 1e-5;  // of the scene
@@ -186,9 +186,9 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
   const auto is_inside = [&](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
     Eigen::Vector3d a, b;
     tangent_frame(normal, a, b);
-    std::array<Ray, looks> rays;
-    std::array<ElementHit, looks> hits;
-    for (int i = 0; i < looks; ++i) {
+    std::array<Ray, ray_count> rays;
+    std::array<ElementHit, ray_count> hits;
+    for (int i = 0; i < ray_count; ++i) {
       const Eigen::Array4f lot = sobol.point(i, 0);
       const Eigen::Vector3d d = cosine_direction(lot[0], lot[1]);
       rays[static_cast<std::size_t>(i)] = {.origin = position,

@@ -49,55 +49,56 @@ PixelSamples::PixelSamples(const CameraRays& rays, const RayTree& tree,
       exposure_(std::move(exposure)),
       points_(options.most) {}
 
-PixelTally PixelSamples::first_looks(int x, int y) const {
+PixelTally PixelSamples::first_samples(int x, int y) const {
   PixelTally tally;
-  look(x, y, std::min(options_.least, options_.most), tally);
+  take(x, y, std::min(options_.least, options_.most), tally);
   return tally;
 }
 
-void PixelSamples::look_on(int x, int y, bool is_beside_noise, PixelTally& tally) const {
+void PixelSamples::take_more(int x, int y, bool is_beside_noise, PixelTally& tally) const {
   constexpr int more_beside_noise = 4;
   if (is_beside_noise) {
-    look(x, y, std::min(more_beside_noise * options_.least, options_.most), tally);
+    take(x, y, std::min(more_beside_noise * options_.least, options_.most), tally);
   }
   while (tally.count < options_.most && !tally.is_good(options_.noise)) {
-    look(x, y, std::min(2 * tally.count, options_.most), tally);
+    take(x, y, std::min(2 * tally.count, options_.most), tally);
   }
 }
 
-Sight PixelSamples::look_at_time(Ray ray, double time, std::uint64_t key, int number) const {
+RaySample PixelSamples::sample_at_time(Ray ray, double time, std::uint64_t key, int number) const {
   if (exposure_->camera) {
     const Eigen::Isometry3d moved = exposure_->camera->at(time);
     ray.origin = moved * ray.origin;
     ray.direction = moved.linear() * ray.direction;
   }
-  return tree_.look_one_of_many(ray, key, number, exposure_->caster.at(time));
+  return tree_.trace_one_of_many(ray, key, number, exposure_->caster.at(time));
 }
 
-void PixelSamples::look(int x, int y, int until, PixelTally& tally) const {
+void PixelSamples::take(int x, int y, int until, PixelTally& tally) const {
   const auto column = static_cast<std::uint64_t>(x), row = static_cast<std::uint64_t>(y);
   const std::uint64_t place_key = random_key(column, row, place_purpose);
-  const std::uint64_t look_key = random_key(column, row, look_purpose);
+  const std::uint64_t shading_key = random_key(column, row, look_purpose);
   for (; tally.count < until; ++tally.count) {
     const Eigen::Array4d u = points_.point(tally.count, place_key).cast<double>();
     const Ray ray =
         rays_.ray(x + 0.5 + filter_.offset(u[0]), y + 0.5 + filter_.offset(u[1]), u[2], u[3]);
     const double part = exposure_ ? SobolPoints::fifth(tally.count, place_key) : 0.0;
-    Sight sight =
-        exposure_ ? look_at_time(ray, exposure_->open + part * (exposure_->close - exposure_->open),
-                                 look_key, tally.count)
-                  : tree_.look_one_of_many(ray, look_key, tally.count);
-    const auto light = static_cast<double>(sight.radiance.mean());
+    RaySample sample =
+        exposure_
+            ? sample_at_time(ray, exposure_->open + part * (exposure_->close - exposure_->open),
+                             shading_key, tally.count)
+            : tree_.trace_one_of_many(ray, shading_key, tally.count);
+    const auto light = static_cast<double>(sample.radiance.mean());
     tally.light += light;
     tally.square += light * light;
     if (tally.count == 0) {
-      tally.sum = std::move(sight);
+      tally.sum = std::move(sample);
       continue;
     }
-    tally.sum.radiance += sight.radiance;
-    tally.sum.layers += sight.layers;
-    tally.sum.depth_cut += sight.depth_cut;
-    tally.sum.cut_weight += sight.cut_weight;
+    tally.sum.radiance += sample.radiance;
+    tally.sum.layers += sample.layers;
+    tally.sum.depth_cut += sample.depth_cut;
+    tally.sum.cut_weight += sample.cut_weight;
   }
 }
 

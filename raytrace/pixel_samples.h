@@ -25,12 +25,12 @@ class FilterPlaces {
 
 /// What looks through one pixel saw.
 struct PixelTally {
-  Sight sum{};  ///< of all looks; its fingerprint means nothing
+  RaySample sum{};  ///< of all samples; its fingerprint means nothing
   int count = 0;
   double light = 0.0, square = 0.0;  ///< sums of the bands' mean radiance and of its square
 
   /// Whether the standard error of the mean is at most `noise`, above 0, of it: that of as many
-  /// independent looks; stratified ones are better.
+  /// independent samples; stratified ones are better.
   bool is_good(float noise) const;
 };
 
@@ -41,7 +41,7 @@ struct Exposure {
   std::optional<RigidMotion> camera{};  ///< of the camera itself
 };
 
-/// A pixel by many looks, each through a place of its own of picture and lens: for what no
+/// A pixel by many samples, each through a place of its own of picture and lens: for what no
 /// subdivision of the pixel's square resolves, gloss, depth of field and motion (Cook, Porter &
 /// Carpenter 1984). Samples are points of one scrambled Sobol sequence per pixel, in picture, lens
 /// and time, and neighbours share none.
@@ -50,18 +50,18 @@ class PixelSamples {
   PixelSamples(const CameraRays& rays, const RayTree& tree, const SampleOptions& options,
                std::optional<Exposure> exposure = {});
 
-  /// SampleOptions::least looks.
-  PixelTally first_looks(int x, int y) const;
+  /// SampleOptions::least samples.
+  PixelTally first_samples(int x, int y) const;
   /// More, until the error is what SampleOptions::noise asks for, at most SampleOptions::most.
-  /// Beside a pixel whose first looks are not good, four times `least` come before the first
+  /// Beside a pixel whose first samples are not good, four times `least` come before the first
   /// judgement: what is small and bright may have escaped them.
-  void look_on(int x, int y, bool is_beside_noise, PixelTally& tally) const;
+  void take_more(int x, int y, bool is_beside_noise, PixelTally& tally) const;
 
   const SampleOptions& options() const { return options_; }
 
  private:
-  void look(int x, int y, int until, PixelTally& tally) const;
-  Sight look_at_time(Ray ray, double time, std::uint64_t key, int number) const;
+  void take(int x, int y, int until, PixelTally& tally) const;
+  RaySample sample_at_time(Ray ray, double time, std::uint64_t key, int number) const;
 
   const CameraRays& rays_;
   const RayTree& tree_;

@@ -51,13 +51,13 @@ class Eye {
   Eye(const CameraRays& rays, const RayTree& tree, Counters& counters)
       : rays_(rays), tree_(tree), counters_(counters) {}
 
-  Sight look(int x, int y, float effort = 1.0f) const {
+  RaySample trace(int x, int y, float effort = 1.0f) const {
     const auto key = random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));
-    Sight sight = tree_.look(ray(x, y), key, effort);
+    RaySample sample = tree_.trace(ray(x, y), key, effort);
     counters_.eye_rays.fetch_add(1, std::memory_order_relaxed);
-    counters_.depth_cut.fetch_add(sight.depth_cut, std::memory_order_relaxed);
-    counters_.add_cut(double{sight.cut_weight});
-    return sight;
+    counters_.depth_cut.fetch_add(sample.depth_cut, std::memory_order_relaxed);
+    counters_.add_cut(double{sample.cut_weight});
+    return sample;
   }
   std::uint64_t fingerprint(double x, double y) const { return tree_.fingerprint(ray(x, y)); }
 
@@ -78,7 +78,7 @@ struct PixelValue {
   SampledLayers layers = SampledLayers::Zero();
 
   static PixelValue zero(int bands) { return {.radiance = Spectrum::Zero(bands)}; }
-  template <class Seen>  // a Sight or another PixelValue
+  template <class Seen>  // a RaySample or another PixelValue
   void add(const Seen& seen, float share) {
     radiance += share * seen.radiance;
     layers += share * seen.layers;
@@ -94,14 +94,14 @@ class PixelMean {
         options_(options),
         cells_(1 << options.max_subdivision),
         steps_per_cell_(lattice_steps >> options.max_subdivision),
-        sights_((cells_ + 1) * (cells_ + 1)),
-        known_(sights_.size()) {}
+        lattice_samples_((cells_ + 1) * (cells_ + 1)),
+        known_(lattice_samples_.size()) {}
 
   // `corners`: top left, top right, bottom left, bottom right.
-  PixelValue operator()(int x, int y, const std::array<const Sight*, 4>& corners) {
+  PixelValue operator()(int x, int y, const std::array<const RaySample*, 4>& corners) {
     x_ = x * lattice_steps;
     y_ = y * lattice_steps;
-    if (!must_split(0, 0, cells_, corners) && (cells_ > 1 || look_alike(corners))) {
+    if (!must_split(0, 0, cells_, corners) && (cells_ > 1 || are_alike(corners))) {
       return mean(corners);
     }
     std::fill(known_.begin(), known_.end(), 0);
@@ -110,31 +110,31 @@ class PixelMean {
   }
 
  private:
-  using Corners = std::array<const Sight*, 4>;
+  using Corners = std::array<const RaySample*, 4>;
 
   int slot(int i, int j) const { return j * (cells_ + 1) + i; }
 
-  void keep(int i, int j, Sight sight) {
-    sights_[slot(i, j)] = std::move(sight);
+  void keep(int i, int j, RaySample sample) {
+    lattice_samples_[slot(i, j)] = std::move(sample);
     known_[slot(i, j)] = 1;
   }
 
-  const Sight* sight(int i, int j) {
+  const RaySample* sample(int i, int j) {
     if (!known_[slot(i, j)]) {
       // Samples of a finer level are more to average.
       int step = cells_;
       while ((i | j) % step != 0) step /= 2;
       const float effort = static_cast<float>(step) / static_cast<float>(cells_);
-      keep(i, j, eye_.look(x_ + i * steps_per_cell_, y_ + j * steps_per_cell_, effort));
+      keep(i, j, eye_.trace(x_ + i * steps_per_cell_, y_ + j * steps_per_cell_, effort));
     }
-    return &sights_[slot(i, j)];
+    return &lattice_samples_[slot(i, j)];
   }
 
   PixelValue cell_mean(int i, int j, int size) {
-    const Corners corners = {sight(i, j), sight(i + size, j), sight(i, j + size),
-                             sight(i + size, j + size)};
+    const Corners corners = {sample(i, j), sample(i + size, j), sample(i, j + size),
+                             sample(i + size, j + size)};
     if (must_split(i, j, size, corners)) return split(i, j, size);
-    return size == 1 && !look_alike(corners) ? edge_mean(i, j, corners) : mean(corners);
+    return size == 1 && !are_alike(corners) ? edge_mean(i, j, corners) : mean(corners);
   }
 
   PixelValue split(int i, int j, int size) {
@@ -181,25 +181,26 @@ class PixelMean {
       const Eigen::Array4f u = edge_points_.point(s, key);
       const std::uint64_t seen =
           eye_.fingerprint(x + u[0] * steps_per_cell_, y + u[1] * steps_per_cell_);
-      const auto alike = [&](const Sight* sight) { return sight->fingerprint == seen; };
+      const auto alike = [&](const RaySample* sample) { return sample->fingerprint == seen; };
       const auto count = std::count_if(c.begin(), c.end(), alike);
       if (count == 0) continue;  // a third thing, which no corner shows
       ++votes;
-      for (const Sight* sight : c) {
-        if (alike(sight)) sum.add(*sight, 1.0f / static_cast<float>(count));
+      for (const RaySample* sample : c) {
+        if (alike(sample)) sum.add(*sample, 1.0f / static_cast<float>(count));
       }
     }
     return votes > 0 ? scaled(sum, 1.0f / static_cast<float>(votes)) : mean(c);
   }
 
-  static bool look_alike(const Corners& c) {
-    return std::all_of(c.begin(), c.end(),
-                       [&](const Sight* sight) { return sight->fingerprint == c[0]->fingerprint; });
+  static bool are_alike(const Corners& c) {
+    return std::all_of(c.begin(), c.end(), [&](const RaySample* sample) {
+      return sample->fingerprint == c[0]->fingerprint;
+    });
   }
 
   bool must_split(int i, int j, int size, const Corners& c) const {
     if (size < 2) return false;
-    if (!look_alike(c)) return true;
+    if (!are_alike(c)) return true;
     if (!(spread(c) <= options_.contrast)) return true;
     // Something thin may pass between the corners; to see what is in the middle costs no shadow
     // rays.
@@ -213,20 +214,20 @@ class PixelMean {
   const SobolPoints edge_points_{16};
   int cells_, steps_per_cell_;
   int x_ = 0, y_ = 0;
-  std::vector<Sight> sights_;  // of this pixel's lattice points
+  std::vector<RaySample> lattice_samples_;  // of this pixel's lattice points
   std::vector<char> known_;
 };
 
 // A row of pixel corners.
-using CornerRow = std::vector<Sight>;
+using CornerRow = std::vector<RaySample>;
 
-void look_at_corners(const Eye& eye, int first_row, std::span<CornerRow> rows) {
+void trace_corners(const Eye& eye, int first_row, std::span<CornerRow> rows) {
   constexpr int grain = 32;
   const int columns = static_cast<int>(rows.front().size());
   parallel_for(static_cast<int>(rows.size()) * columns, grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const int row = i / columns, column = i % columns;
-      rows[row][column] = eye.look(column * lattice_steps, (first_row + row) * lattice_steps);
+      rows[row][column] = eye.trace(column * lattice_steps, (first_row + row) * lattice_steps);
     }
   });
 }
@@ -337,7 +338,7 @@ std::span<float> rows_of(BandArray& values, int width, int first_row, int rows) 
   return {values.data() + first_row * row, rows * row};
 }
 
-// Renders tile by tile: strips that share a row of corners, or strips of many looks per pixel if
+// Renders tile by tile: strips that share a row of corners, or strips of many samples per pixel if
 // there are `samples`.
 class TileRenderer {
  public:
@@ -353,7 +354,7 @@ class TileRenderer {
 
   /// Small ones, to stop soon and to lose little; large enough to keep all threads busy.
   int tile_rows() const {
-    constexpr int sampled_rows = 16;  // and those beside them, whose first looks are lost
+    constexpr int sampled_rows = 16;  // and those beside them, whose first samples are lost
     if (samples_) return sampled_rows;
     constexpr int pixels_per_tile = 8192;
     return std::max(1, pixels_per_tile / image_.width);
@@ -364,13 +365,13 @@ class TileRenderer {
       const double part = static_cast<double>(first_row) / image_.height;
       const SampledRows took =
           sample_rows(*samples_, first_row, rows, options_.progress, part, image_, layers_);
-      counters_.eye_rays += took.looks;
+      counters_.eye_rays += took.samples;
       counters_.depth_cut += took.depth_cut;
       counters_.add_cut(took.cut_weight);
       return;
     }
-    if (row_of_corners_ != first_row) look_at_corners(eye_, first_row, {corners_.data(), 1});
-    look_at_corners(eye_, first_row + 1, {corners_.data() + 1, static_cast<std::size_t>(rows)});
+    if (row_of_corners_ != first_row) trace_corners(eye_, first_row, {corners_.data(), 1});
+    trace_corners(eye_, first_row + 1, {corners_.data() + 1, static_cast<std::size_t>(rows)});
     average_pixels(eye_, options_, first_row, {corners_.data(), static_cast<std::size_t>(rows) + 1},
                    image_, layers_);
     std::swap(corners_.front(), corners_[rows]);

@@ -23,7 +23,7 @@ enum class Pass {
   gather,       ///< direct light as above, indirect light by a final gather at every hit
 };
 
-/// Many looks per pixel instead of subdivision: for pictures with gloss, a lens or
+/// Many samples per pixel instead of subdivision: for pictures with gloss, a lens or
 /// motion.
 struct SampleOptions {
   int most = 0;  ///< 0: most_by_default where a lens, motion or rough surfaces ask for it

@@ -36,7 +36,7 @@ SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
            static_cast<std::size_t>(x);
   };
   for_each_pixel(image.width, top, bottom, progress, part, [&](int x, int y) {
-    PixelTally& tally = tallies[slot(x, y)] = samples.first_looks(x, y);
+    PixelTally& tally = tallies[slot(x, y)] = samples.first_samples(x, y);
     good[slot(x, y)] = tally.is_good(samples.options().noise);
   });
   const auto is_beside_noise = [&](int x, int y) {
@@ -49,7 +49,7 @@ SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
   };
   for_each_pixel(image.width, first_row, first_row + rows, progress, part, [&](int x, int y) {
     PixelTally& tally = tallies[slot(x, y)];
-    samples.look_on(x, y, is_beside_noise(x, y), tally);
+    samples.take_more(x, y, is_beside_noise(x, y), tally);
     const float share = 1.0f / static_cast<float>(tally.count);
     const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
     image.radiance.row(pixel) = share * tally.sum.radiance.transpose();
@@ -58,7 +58,7 @@ SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
   SampledRows result;
   for (int y = first_row; y < first_row + rows; ++y) {
     for (int x = 0; x < image.width; ++x) {
-      result.looks += tallies[slot(x, y)].count;
+      result.samples += tallies[slot(x, y)].count;
       result.depth_cut += tallies[slot(x, y)].sum.depth_cut;
       result.cut_weight += double{tallies[slot(x, y)].sum.cut_weight};
     }

@@ -11,13 +11,13 @@ namespace lightwell {
 
 /// What rows of a picture took.
 struct SampledRows {
-  std::int64_t looks = 0, depth_cut = 0;
+  std::int64_t samples = 0, depth_cut = 0;
   double cut_weight = 0.0;
 };
 
-/// Fills some rows of a picture, and their sampled layers, by many looks per pixel. Rows do not
-/// depend on which others are filled with them: the first looks of those above and below are taken
-/// too, see PixelSamples::look_on. Reports `part` of the picture as done all along.
+/// Fills some rows of a picture, and their sampled layers, by many samples per pixel. Rows do not
+/// depend on which others are filled with them: the first samples of those above and below are
+/// taken too, see PixelSamples::take_more. Reports `part` of the picture as done all along.
 SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
                         const Progress& progress, double part, Image& image, LayerFilm& layers);
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t shadow_purpose = 0x5ec07d, gather_purpose = 0x6a7e4;
 constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
 
-// What one of many looks does with light: a share of the rays of a look that stands alone.
+// What one of many samples does with light: a share of the rays of a sample that stands alone.
 constexpr float share_of_many = 1.0f / 16.0f;
 
 int root(std::vector<int>& parent, int i) {
@@ -115,46 +115,46 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   for (std::size_t f = 0; f < facets_.size(); ++f) facets_[f].smooth_surface = joined[f];
 }
 
-Sight RayTree::look(const Ray& ray, std::uint64_t key, float effort) const {
+RaySample RayTree::trace(const Ray& ray, std::uint64_t key, float effort) const {
   const int bands = scene_.bands.count();
-  Walk walk{.sight = {.radiance = Spectrum::Zero(bands)},
+  Walk walk{.result = {.radiance = Spectrum::Zero(bands)},
             .key = key,
             .effort = effort,
             .caster = &caster_,
             .gloss_key = key};
   follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
-  return walk.sight;
+  return walk.result;
 }
 
-Sight RayTree::look_one_of_many(const Ray& ray, std::uint64_t key, int number,
-                                const ElementCaster& caster) const {
+RaySample RayTree::trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
+                                     const ElementCaster& caster) const {
   const int bands = scene_.bands.count();
-  Walk walk{.sight = {.radiance = Spectrum::Zero(bands)},
+  Walk walk{.result = {.radiance = Spectrum::Zero(bands)},
             .key = random_key(key, static_cast<std::uint64_t>(number)),
             .effort = share_of_many,
             .caster = &caster,
             .number = number,
             .gloss_key = key};
   follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
-  return walk.sight;
+  return walk.result;
 }
 
 std::uint64_t RayTree::fingerprint(const Ray& ray) const {
   Walk walk{.caster = &caster_, .shades = false};
   follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, walk);
-  return walk.sight.fingerprint;
+  return walk.result.fingerprint;
 }
 
 void RayTree::follow(Branch branch, Walk& walk) const {
   ElementHit hit;
   walk.caster->closest_hits({&branch.ray, 1}, {&hit, 1});
-  Sight& sight = walk.sight;
+  RaySample& result = walk.result;
   if (branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
-    sight.fingerprint = random_key(sight.fingerprint, branch.place,
-                                   static_cast<std::uint64_t>(seen), hit.from_back);
+    result.fingerprint = random_key(result.fingerprint, branch.place,
+                                    static_cast<std::uint64_t>(seen), hit.from_back);
   }
-  if (hit.facet < 0) return look_outside(branch, walk);
+  if (hit.facet < 0) return add_background(branch, walk);
   const ShadingPoint at = shading_point(branch.ray, hit, *walk.caster);
   if (absorbs_) {
     branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
@@ -162,7 +162,7 @@ void RayTree::follow(Branch branch, Walk& walk) const {
   }
   if (walk.shades && with_layers_ && branch.place == 1) {
     const Eigen::Vector3d normal = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
-    sight.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
+    result.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
   }
   if (walk.shades && hit.element >= 0) shade(branch, hit, at, walk);
   split(branch, hit, at, walk);
@@ -170,7 +170,7 @@ void RayTree::follow(Branch branch, Walk& walk) const {
 
 // The sky; and the sun, but off rough surfaces, which draw directions towards it: see
 // add_free_source.
-void RayTree::look_outside(const Branch& branch, Walk& walk) const {
+void RayTree::add_background(const Branch& branch, Walk& walk) const {
   if (!walk.shades || !scene_.sky) return;
   const Eigen::Vector3d direction = branch.ray.direction.normalized();
   Spectrum L = Spectrum::Zero(scene_.bands.count());
@@ -185,10 +185,10 @@ void RayTree::look_outside(const Branch& branch, Walk& walk) const {
     }
   }
   const Spectrum seen = branch.weight * L;
-  walk.sight.radiance += seen;
+  walk.result.radiance += seen;
   if (!with_layers_) return;
   const Layer layer = branch.place == 1 ? Layer::emission : Layer::specular;
-  walk.sight.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, seen);
+  walk.result.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, seen);
 }
 
 void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
@@ -223,8 +223,8 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const ScatteringSa
                 .media = parent.media};
   if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
   if (branch.depth > deepest_path(options_.max_depth, !branch.is_sharp)) {
-    ++walk.sight.depth_cut;
-    walk.sight.cut_weight += branch.weight.maxCoeff();
+    ++walk.result.depth_cut;
+    walk.result.cut_weight += branch.weight.maxCoeff();
     return;
   }
   const int material = facets_[hit.facet].material;
@@ -316,7 +316,7 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   const Spectrum rho = share * reflectance(branch, hit, at);
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
   if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, walk);
-  walk.sight.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
+  walk.result.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
   if (with_layers_) note_layers(branch, hit, M, rho, E, walk);
 }
 
@@ -368,7 +368,7 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
                           const Spectrum& rho, const Arriving& E, Walk& walk) const {
   const Bands& bands = scene_.bands;
   const auto three = [&](Layer layer) {
-    return walk.sight.layers.segment<3>(first_sampled_column(layer));
+    return walk.result.layers.segment<3>(first_sampled_column(layer));
   };
   const auto light = [&](const Spectrum& radiosity) {
     const Spectrum L = branch.weight * one_over_pi * radiosity;
@@ -389,7 +389,7 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
   const bool is_straight = branch.is_sharp && (branch.place & (branch.place + 1)) == 0;
   if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
     const Spectrum all = E.direct + E.indirect;
-    walk.sight.layers[first_sampled_column(Layer::illuminance)] =
+    walk.result.layers[first_sampled_column(Layer::illuminance)] =
         static_cast<float>(luminous(bands, all));
   }
 }

@@ -23,7 +23,7 @@
 namespace lightwell {
 
 /// What one look along a ray found.
-struct Sight {
+struct RaySample {
   Spectrum radiance{};  ///< W/(m^2 sr)
   /// What a pixel averages beside radiance; zero unless RenderOptions::layers has any of them.
   SampledLayers layers = SampledLayers::Zero();
@@ -60,17 +60,17 @@ class RayTree {
           const RadiositySolution& solution, const RenderOptions& options,
           double pixel_width = 0.0);
 
-  /// `key` decides the shadow samples; `effort`, (0, 1], scales their number, for looks that are
+  /// `key` decides the shadow samples; `effort`, (0, 1], scales their number, for samples that are
   /// averaged with others.
-  Sight look(const Ray& ray, std::uint64_t key, float effort = 1.0f) const;
-  /// One of many looks that are averaged with others of the same key, numbered from 0: with few
+  RaySample trace(const Ray& ray, std::uint64_t key, float effort = 1.0f) const;
+  /// One of many samples that are averaged with others of the same key, numbered from 0: with few
   /// shadow and gather rays and one direction per rough surface, well spread over all of them.
-  Sight look_one_of_many(const Ray& ray, std::uint64_t key, int number) const {
-    return look_one_of_many(ray, key, number, caster_);
+  RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number) const {
+    return trace_one_of_many(ray, key, number, caster_);
   }
   /// The same by what ElementCaster::at() makes of a caster of the scene that knows what moves.
-  Sight look_one_of_many(const Ray& ray, std::uint64_t key, int number,
-                         const ElementCaster& caster) const;
+  RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
+                              const ElementCaster& caster) const;
   /// The fingerprint alone, without shadow rays.
   std::uint64_t fingerprint(const Ray& ray) const;
 
@@ -116,17 +116,17 @@ class RayTree {
   };
   /// What is gathered while the tree grows.
   struct Walk {
-    Sight sight{};
+    RaySample result{};
     std::uint64_t key = 0;
     float effort = 1.0f;
     const ElementCaster* caster = nullptr;
     bool shades = true;
-    std::optional<int> number{};  ///< of many looks of one key
+    std::optional<int> number{};  ///< of many samples of one key
     std::uint64_t gloss_key = 0;  ///< the same in all of them
   };
 
   void follow(Branch branch, Walk& walk) const;
-  void look_outside(const Branch& branch, Walk& walk) const;
+  void add_background(const Branch& branch, Walk& walk) const;
   void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at, Walk& walk) const;
   void scatter(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
                const ShadingPoint& at, Walk& walk) const;
@@ -178,7 +178,7 @@ class RayTree {
   std::optional<PixelGather> gather_{};  ///< for Pass::gather
   std::shared_ptr<const CausticMap> caustics_{};  ///< in place of the solution's; null: none
   static constexpr int gloss_point_count = 1024;
-  SobolPoints gloss_points_;  ///< of looks of one key; later ones use a new scrambling
+  SobolPoints gloss_points_;  ///< of samples of one key; later ones use a new scrambling
   LampSamples lamps_;
   BrightPatches bright_{};  ///< what rough mirrors aim at beside the lamps
   /// Of the front and the back of each material; empty if it is not rough.

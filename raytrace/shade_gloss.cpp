@@ -33,10 +33,10 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
   const std::uint64_t key = random_key(walk.gloss_key, branch.place, gloss_purpose,
                                        static_cast<std::uint64_t>(first / gloss_point_count));
   // As many as a picture takes of one place or so.
-  constexpr int usual_looks = 64;
+  constexpr int usual_samples = 64;
   BrightPatches::View view;
   if (!bright_.is_empty() && !interaction.material.dielectric) {
-    view = bright_.view(at.position, interaction.normal, usual_looks);
+    view = bright_.view(at.position, interaction.normal, usual_samples);
   }
   for (int i = 0; i < count; ++i) {
     const int index = (first + i) % gloss_point_count;
@@ -57,7 +57,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
       add_bright_patch(branch, interaction, hit, at, view, bright_u,
                        1.0f / static_cast<float>(count), walk);
     }
-    // Places of many looks are alike, so that theirs are spread over what lies behind as well.
+    // Places of many samples are alike, so that theirs are spread over what lies behind as well.
     const auto place =
         random_key(branch.place, gloss_purpose, static_cast<std::uint64_t>(i), sample.crosses);
     Branch spread = branch;
@@ -101,9 +101,9 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
     media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, facets_[lamp->emitter->facet].material, false, lamp->distance);
   }
-  walk.sight.radiance += seen;
+  walk.result.radiance += seen;
   if (with_layers_) {
-    walk.sight.layers.segment<3>(first_sampled_column(Layer::specular)) +=
+    walk.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
         linear_rgb(scene_.bands, seen);
   }
 }
@@ -149,9 +149,9 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
     media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, -1, false, source_sample.distance);
   }
-  walk.sight.radiance += seen;
+  walk.result.radiance += seen;
   if (with_layers_) {
-    walk.sight.layers.segment<3>(first_sampled_column(Layer::specular)) +=
+    walk.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
         linear_rgb(scene_.bands, seen);
   }
 }

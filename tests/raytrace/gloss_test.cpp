@@ -20,7 +20,7 @@ const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 float radiance(const LitScene& lit, const Ray& ray, const RenderOptions& options = {},
                std::uint64_t key = 1) {
   return RayTree(lit.scene, lit.caster, lit.direct_light, lit.solution, options)
-      .look(ray, key)
+      .trace(ray, key)
       .radiance[0];
 }
 
@@ -90,7 +90,7 @@ TEST(Gloss, ScattersAlikeInBothPasses) {
           found += static_cast<double>(throughput[0] * L) / count;
         });
         if (key % 20 == 0)
-          seen += static_cast<double>(tree.look(ray, key).radiance[0]) * 20 / count;
+          seen += static_cast<double>(tree.trace(ray, key).radiance[0]) * 20 / count;
       }
       // A share p of independent rays: sigma = sqrt(p (1 - p) / count), at most 0.005; the eye has
       // 8 times 500 and lamp samples, which are no worse.

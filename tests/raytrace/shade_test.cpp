@@ -38,7 +38,7 @@ Eigen::Vector3d downwards(double degrees) {
 // First band of what is seen; all bands are alike in these grey scenes.
 float radiance(const LitScene& lit, const Ray& ray, const RenderOptions& options = {}) {
   return RayTree(lit.scene, lit.caster, lit.direct_light, lit.solution, options)
-      .look(ray, 1)
+      .trace(ray, 1)
       .radiance[0];
 }
 
@@ -231,7 +231,7 @@ TEST(RayTree, DirectLightHasTheExactPenumbra) {
     double sum = 0.0;
     for (int key = 0; key < keys; ++key) {
       const Ray ray{.origin = {x, 0, 0.5}, .direction = -up};
-      sum += pi * tree.look(ray, static_cast<std::uint64_t>(key)).radiance[0];
+      sum += pi * tree.trace(ray, static_cast<std::uint64_t>(key)).radiance[0];
     }
     // The shadow's edge crosses about 2 sqrt(64) of the 64 strata of a lamp in two triangles, each
     // with variance of at most 1/4: sigma = sqrt(16/4)/64 = 1/32 of the open irradiance a look.
