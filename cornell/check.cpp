@@ -173,7 +173,7 @@ constexpr double least_weight = 0.02;
 PictureMask cells_that_show_the_light(const Sightlines& sightlines, const Camera& camera) {
   const Scene& scene = sightlines.scene();
   return cells(places(sightlines, camera, least_weight,
-                      [&scene](const SeenPlace& place) {
+                      [&scene](const TracedPoint& place) {
                         const Surface& surface = scene.surfaces[place.surface];
                         return scene.materials[surface.material].is_emitter();
                       }),
@@ -190,7 +190,7 @@ PictureMask cells_that_show_the_focus(const Sightlines& sightlines, const Camera
   const Eigen::Vector3d middle = light + stretch * (sphere - light);
   const double radius = 1.5 * stretch * sphere_radius;
   return cells(places(sightlines, camera, least_weight,
-                      [&](const SeenPlace& place) {
+                      [&](const TracedPoint& place) {
                         return scene.surfaces[place.surface].name == "floor" &&
                                (place.position - middle).norm() < radius;
                       }),

@@ -48,7 +48,7 @@ PictureMask silhouettes(const Sightlines& sightlines, const Camera& camera) {
 }
 
 PictureMask places(const Sightlines& sightlines, const Camera& camera, double least_weight,
-                   const std::function<bool(const SeenPlace&)>& is_out) {
+                   const std::function<bool(const TracedPoint&)>& is_out) {
   const CameraRays rays(camera);
   PictureMask mask(camera.width, camera.height);
   parallel_for(camera.height, 8, [&](int begin, int end) {
@@ -58,7 +58,7 @@ PictureMask places(const Sightlines& sightlines, const Camera& camera, double le
         for (const auto& [dx, dy] :
              {std::pair{0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}}) {
           sightlines.trace(rays.ray(x + dx, y + dy), least_weight,
-                           [&](const SeenPlace& place) { out = out || is_out(place); });
+                           [&](const TracedPoint& place) { out = out || is_out(place); });
         }
         mask.at(x, y) = out ? 1 : 0;
       }

@@ -32,7 +32,7 @@ PictureMask silhouettes(const Sightlines& sightlines, const Camera& camera);
 /// Pixels that show, with at least `least_weight`, a place that `is_out` picks: one look through
 /// each quarter of the pixel.
 PictureMask places(const Sightlines& sightlines, const Camera& camera, double least_weight,
-                   const std::function<bool(const SeenPlace&)>& is_out);
+                   const std::function<bool(const TracedPoint&)>& is_out);
 
 /// Everything within `pixels` of what is out already (a square around it).
 PictureMask grown(const PictureMask& mask, int pixels);

@@ -19,12 +19,12 @@ int Sightlines::surface_ahead(const Ray& ray) const {
 }
 
 void Sightlines::trace(const Ray& ray, double least_weight,
-                       const std::function<void(const SeenPlace&)>& show) const {
+                       const std::function<void(const TracedPoint&)>& show) const {
   follow(ray, 1.0, 0, least_weight, show);
 }
 
 void Sightlines::follow(const Ray& ray, double weight, int bounces, double least_weight,
-                        const std::function<void(const SeenPlace&)>& show) const {
+                        const std::function<void(const TracedPoint&)>& show) const {
   if (weight < least_weight || bounces > most_bounces) return;
   ElementHit hit;
   caster_.closest_hits({&ray, 1}, {&hit, 1});

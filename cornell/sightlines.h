@@ -9,7 +9,7 @@
 namespace lightwell {
 
 /// A place that is not specular and that a ray shows, straight or by way of mirrors and glass.
-struct SeenPlace {
+struct TracedPoint {
   int surface = -1;                                    ///< index into Scene::surfaces
   int facet = -1;                                      ///< scene-wide facet number
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< metres
@@ -25,7 +25,7 @@ class Sightlines {
 
   /// Calls `show` for every place whose weight is at least `least_weight`.
   void trace(const Ray& ray, double least_weight,
-             const std::function<void(const SeenPlace&)>& show) const;
+             const std::function<void(const TracedPoint&)>& show) const;
 
   /// The surface straight ahead; -1: none.
   int surface_ahead(const Ray& ray) const;
@@ -35,7 +35,7 @@ class Sightlines {
 
  private:
   void follow(const Ray& ray, double weight, int bounces, double least_weight,
-              const std::function<void(const SeenPlace&)>& show) const;
+              const std::function<void(const TracedPoint&)>& show) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;

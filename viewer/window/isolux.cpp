@@ -179,7 +179,7 @@ void IsoluxLines::show(bool shown) {
 }
 
 void IsoluxLines::look_from(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                            const Camera& camera, const SightOptions& options) {
+                            const Camera& camera, const VisibleHitOptions& options) {
   if (!shown_) return;
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -198,7 +198,7 @@ void IsoluxLines::look_from(const ElementCaster& caster, const std::vector<Eleme
   for (const Label& label : labels_) {
     rays.push_back({.origin = camera.position, .direction = label.place - camera.position});
   }
-  const std::vector<Seen> seen = see(caster, kinds, rays, options);
+  const std::vector<VisibleHit> seen = visible_hits(caster, kinds, rays, options);
   for (std::size_t i = 0; i < labels_.size(); ++i) {
     constexpr double just_before = 0.999;  // the label is lifted off what it is seen on
     const bool faces = labels_[i].normal.dot(rays[i].direction) < 0.0;

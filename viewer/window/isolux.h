@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "viewer/window/fine_spheres.h"
-#include "viewer/window/sight.h"
+#include "viewer/window/visible_hits.h"
 
 class vtkActor;
 class vtkPolyData;
@@ -30,7 +30,7 @@ class IsoluxLines {
   void show(bool shown);
   /// Draws what faces the eye, and numbers where they are seen.
   void look_from(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                 const Camera& camera, const SightOptions& options);
+                 const Camera& camera, const VisibleHitOptions& options);
   int segment_count() const { return static_cast<int>(segments_.size()); }
 
  private:

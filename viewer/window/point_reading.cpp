@@ -11,7 +11,7 @@
 namespace lightwell {
 namespace {
 
-Eigen::Vector3d normal_at(const PatchMesh& mesh, const Seen& seen) {
+Eigen::Vector3d normal_at(const PatchMesh& mesh, const VisibleHit& seen) {
   for (const SphereGrid& grid : mesh.sphere_grids) {
     if (grid.facet != seen.hit.facet) continue;
     const Eigen::Vector3d outward = (seen.position - grid.sphere.center).normalized();
@@ -43,7 +43,7 @@ std::string per_band(const Spectrum& values, const Bands& bands) {
 }  // namespace
 
 PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArray& irradiance,
-                        const Scene* scene, const Seen& seen, const JoinedSurfaces* names) {
+                        const Scene* scene, const VisibleHit& seen, const JoinedSurfaces* names) {
   PointReading reading;
   reading.position = seen.position;
   reading.normal = normal_at(mesh, seen);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "viewer/window/sight.h"
+#include "viewer/window/visible_hits.h"
 
 namespace lightwell {
 
@@ -26,7 +26,7 @@ struct PointReading {
 /// a scene surface and material go by their numbers; `names` are of the scene's polygons that
 /// several surfaces share (null: there are none).
 PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArray& irradiance,
-                        const Scene* scene, const Seen& seen,
+                        const Scene* scene, const VisibleHit& seen,
                         const JoinedSurfaces* names = nullptr);
 
 /// How the numbers of a scene are shown to people.

@@ -11,20 +11,20 @@ ShownUnits units_of(const RadiositySolution& solution) {
   return {solution.metres_per_unit, solution.unit_name, solution.relative_units};
 }
 
-Seen look_at(const SolutionView& view, double x, double y) {
-  return see_through_pixel(view.caster(), view.kinds(), view.look().camera, x, y,
-                           {.unlit = view.look().unlit});
+VisibleHit look_at(const SolutionView& view, double x, double y) {
+  return visible_hit_at_pixel(view.caster(), view.kinds(), view.look().camera, x, y,
+                              {.unlit = view.look().unlit});
 }
 
 }  // namespace
 
-PointReading PointerTools::read(const SolutionView& view, const Seen& seen) const {
+PointReading PointerTools::read(const SolutionView& view, const VisibleHit& seen) const {
   const SolvedScene& solved = view.solved();
   return read_point(solved.mesh, solved.solution.bands, view.irradiance(), scene_, seen, names_);
 }
 
 void PointerTools::click(const SolutionView& view, double x, double y) {
-  const Seen seen = look_at(view, x, y);
+  const VisibleHit seen = look_at(view, x, y);
   if (measuring_) {
     if (!seen) return;
     if (measured_.size() > 1) measured_.clear();
@@ -39,7 +39,7 @@ void PointerTools::click(const SolutionView& view, double x, double y) {
 void PointerTools::hover(const SolutionView& view, double x, double y) {
   under_pointer_.reset();
   if (!probing_) return;
-  if (const Seen seen = look_at(view, x, y)) under_pointer_ = read(view, seen);
+  if (const VisibleHit seen = look_at(view, x, y)) under_pointer_ = read(view, seen);
 }
 
 void PointerTools::switch_measuring() {

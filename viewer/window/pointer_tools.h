@@ -44,12 +44,12 @@ class PointerTools {
   std::vector<Eigen::Vector3d> marks() const;
 
  private:
-  PointReading read(const SolutionView& view, const Seen& seen) const;
+  PointReading read(const SolutionView& view, const VisibleHit& seen) const;
 
   const Scene* scene_;
   const JoinedSurfaces* names_;
   bool probing_ = false, measuring_ = false;
-  Seen clicked_{};
+  VisibleHit clicked_{};
   std::optional<PointReading> reading_{}, under_pointer_{};
   std::vector<Eigen::Vector3d> measured_{};
 };

@@ -45,7 +45,7 @@ WalkPhysics::WalkPhysics(const WalkBody& body, const Eigen::Vector3d& up_axis)
 namespace {
 
 /// What is met of a wall, as an outwards level direction; nothing of floors and slopes.
-std::optional<Eigen::Vector3d> wall_normal(const Obstacles& obstacles, const Seen& seen,
+std::optional<Eigen::Vector3d> wall_normal(const Obstacles& obstacles, const VisibleHit& seen,
                                            const Eigen::Vector3d& up) {
   if (!seen) return std::nullopt;
   const Eigen::Vector3d n = element_center(obstacles.caster.mesh(), seen.hit.element).normal;
@@ -72,7 +72,8 @@ std::vector<double> WalkPhysics::heights(const Obstacles& obstacles, const Eigen
                     .direction = up_,
                     .t_max = knee + body_.above_eye});
   }
-  for (const Seen& seen : see(obstacles.caster, obstacles.kinds, rays, obstacles.options)) {
+  for (const VisibleHit& seen :
+       visible_hits(obstacles.caster, obstacles.kinds, rays, obstacles.options)) {
     if (seen) drops.push_back((eye - seen.position).dot(up_) - board * body_.radius);
   }
   return drops;
@@ -91,7 +92,8 @@ WalkPhysics::Contact WalkPhysics::deepest_around(const Obstacles& obstacles,
                       .t_max = body_.radius});
     }
   }
-  const std::vector<Seen> seen = see(obstacles.caster, obstacles.kinds, rays, obstacles.options);
+  const std::vector<VisibleHit> seen =
+      visible_hits(obstacles.caster, obstacles.kinds, rays, obstacles.options);
   Contact deepest{.depth = slack * body_.radius};
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto wall = wall_normal(obstacles, seen[i], up_);
@@ -117,9 +119,10 @@ WalkPhysics::Contact WalkPhysics::deepest_ahead(const Obstacles& obstacles,
                       .t_max = std::sqrt(1.0 - share * share) * body_.radius});
     }
   }
-  const std::vector<Seen> seen = see(obstacles.caster, obstacles.kinds, rays, obstacles.options);
+  const std::vector<VisibleHit> seen =
+      visible_hits(obstacles.caster, obstacles.kinds, rays, obstacles.options);
   Contact deepest{.depth = slack * body_.radius};
-  for (const Seen& met : seen) {
+  for (const VisibleHit& met : seen) {
     const auto wall = wall_normal(obstacles, met, up_);
     if (!wall) continue;
     const Eigen::Vector3d from = eye - met.position, level = from - from.dot(up_) * up_;
@@ -182,7 +185,8 @@ Eigen::Vector3d WalkPhysics::settle_a_moment(const Obstacles& obstacles, const E
          .direction = -up_});
   }
   rays.push_back({.origin = eye, .direction = up_});
-  const std::vector<Seen> seen = see(obstacles.caster, obstacles.kinds, rays, obstacles.options);
+  const std::vector<VisibleHit> seen =
+      visible_hits(obstacles.caster, obstacles.kinds, rays, obstacles.options);
   std::optional<double> ground;  // above the feet
   for (std::size_t i = 0; i + 1 < seen.size(); ++i) {
     if (!seen[i]) continue;

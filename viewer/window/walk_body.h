@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "viewer/window/sight.h"
+#include "viewer/window/visible_hits.h"
 
 namespace lightwell {
 
@@ -27,7 +27,7 @@ WalkBody walk_body(const Bounds& bounds, const Eigen::Vector3d& up_axis, double 
 struct Obstacles {
   const ElementCaster& caster;
   const std::vector<ElementKind>& kinds;
-  SightOptions options{.glass = true};
+  VisibleHitOptions options{.glass = true};
 };
 
 /// Moves a body through a scene by rays at five heights: 16 around, and a fan of parallel ones over

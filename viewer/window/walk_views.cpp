@@ -58,8 +58,9 @@ void WalkWindow::jump() {
 void WalkWindow::switch_orbit() {
   if (std::exchange(pivot_, std::nullopt)) return say("");
   const auto [width, height] = size();
-  const Seen seen = see_through_pixel(view_->caster(), view_->kinds(), view_->look().camera,
-                                      0.5 * width, 0.5 * height, {.unlit = view_->look().unlit});
+  const VisibleHit seen =
+      visible_hit_at_pixel(view_->caster(), view_->kinds(), view_->look().camera, 0.5 * width,
+                           0.5 * height, {.unlit = view_->look().unlit});
   const Bounds& bounds = view_->bounds();
   pivot_ = seen ? seen.position : Eigen::Vector3d(0.5 * (bounds.low + bounds.high));
   walking_ = false;

@@ -27,7 +27,7 @@ TEST(PointReading, OfAPictureIsTheTexels) {
   const auto kinds = element_kinds(box.solved, box.scene.materials);
   const BandArray E = box.solved.solution.irradiance();
   for (const auto& [x, rho] : {std::pair(80, bright_half), std::pair(120, dark_half)}) {
-    const Seen seen = see_through_pixel(caster, kinds, box_camera(), x, 75);
+    const VisibleHit seen = visible_hit_at_pixel(caster, kinds, box_camera(), x, 75);
     ASSERT_TRUE(static_cast<bool>(seen));
     const PointReading reading = read_point(box.solved.mesh, rgb_bands(), E, &box.scene, seen);
     EXPECT_NEAR(reading.reflectance[1], rho, 1e-3f * rho);
@@ -47,7 +47,7 @@ TEST(PointReading, IsWhatProbeInterpolates) {
   int compared = 0;
   for (int y = 15; y < 200; y += 24) {
     for (int x = 7; x < 200; x += 24) {
-      const Seen seen = see_through_pixel(caster, kinds, scene.cameras[0], x, y);
+      const VisibleHit seen = visible_hit_at_pixel(caster, kinds, scene.cameras[0], x, y);
       if (!seen) continue;
       const PointReading reading = read_point(solved.mesh, solved.solution.bands, E, &scene, seen);
       const Probe probe{.position = reading.position, .normal = reading.normal};
@@ -70,7 +70,7 @@ TEST(PointReading, KnowsWhoseAPlaceOnASharedPolygonIs) {
   const auto kinds = element_kinds(floor.solved, floor.scene.materials);
   for (const double x : {0.2, 0.9, 1.1, 1.9}) {
     const Ray ray{.origin = {x, 0.4, 0.5}, .direction = -Eigen::Vector3d::UnitZ()};
-    const Seen seen = see(caster, kinds, {&ray, 1})[0];
+    const VisibleHit seen = visible_hits(caster, kinds, {&ray, 1})[0];
     const PointReading reading =
         read_point(floor.solved.mesh, floor.solved.solution.bands,
                    floor.solved.solution.irradiance(), &floor.scene, seen, floor.names.get());
@@ -83,7 +83,8 @@ TEST(PointReading, KnowsWhoseAPlaceOnASharedPolygonIs) {
 TEST(PointReading, LuminanceIsRadiosityOverPi) {
   const SolvedScene box = solved_box();
   const ElementCaster caster(box.mesh);
-  const Seen seen = see_through_pixel(caster, element_kinds(box, {}), box_camera(), 100, 75);
+  const VisibleHit seen =
+      visible_hit_at_pixel(caster, element_kinds(box, {}), box_camera(), 100, 75);
   const PointReading reading =
       read_point(box.mesh, box.solution.bands, box.solution.irradiance(), nullptr, seen);
   EXPECT_NEAR(reading.lux, 2.0 * 683.0, 0.1);
@@ -107,10 +108,10 @@ TEST(PointReading, LooksThroughBacks) {
   camera.position = {-3, 1, 1};
   camera.direction = {1, 0, 0};
   const ElementCaster caster(box.mesh);
-  const Seen seen = see_through_pixel(caster, element_kinds(box, {}), camera, 100, 75);
+  const VisibleHit seen = visible_hit_at_pixel(caster, element_kinds(box, {}), camera, 100, 75);
   EXPECT_EQ(seen.hit.element, 0);
   EXPECT_NEAR(seen.distance, 5.0, 1e-5) << "through the wall at 3 m";
-  EXPECT_FALSE(see_through_pixel(caster, element_kinds(box, {}), box_camera(), 1, 75));
+  EXPECT_FALSE(visible_hit_at_pixel(caster, element_kinds(box, {}), box_camera(), 1, 75));
 }
 
 class PointerToolsTest : public testing::Test {

@@ -11,13 +11,13 @@ namespace lightwell {
 
 /// Which of the elements that face the eye count; the backs of surfaces never do, since they are
 /// not drawn.
-struct SightOptions {
+struct VisibleHitOptions {
   bool glass = false;  ///< else it is looked through
   bool unlit = true;   ///< else what gets no light is looked through
 };
 
 /// What a ray met.
-struct Seen {
+struct VisibleHit {
   ElementHit hit{};  ///< element < 0: nothing
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   double distance = 0.0;  ///< in multiples of the ray's direction
@@ -26,11 +26,14 @@ struct Seen {
 };
 
 /// The first element along each ray that a window draws, as deep as 16 layers of what it does not.
-std::vector<Seen> see(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                      std::span<const Ray> rays, const SightOptions& options = {});
+std::vector<VisibleHit> visible_hits(const ElementCaster& caster,
+                                     const std::vector<ElementKind>& kinds,
+                                     std::span<const Ray> rays,
+                                     const VisibleHitOptions& options = {});
 
 /// Through a place of the picture, pixels from the left and from the top.
-Seen see_through_pixel(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                       const Camera& camera, double x, double y, const SightOptions& options = {});
+VisibleHit visible_hit_at_pixel(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                                const Camera& camera, double x, double y,
+                                const VisibleHitOptions& options = {});
 
 }  // namespace lightwell
