@@ -116,7 +116,7 @@ int verdict(const Arguments& arguments, double relative_rmse, Console& console) 
 }
 
 template <class Difference>
-int tell(const Difference& difference, const Arguments& arguments, Console& console) {
+int report(const Difference& difference, const Arguments& arguments, Console& console) {
   if (console.options().json) {
     Json json = json_of(difference);
     if (arguments.fail_above) {
@@ -141,7 +141,7 @@ int compare(const Arguments& arguments, Console& console) {
   if (arguments.second_half.empty()) {
     const ImageDifference difference = compare_images(a, b, arguments.compare);
     if (!arguments.output.empty()) write_difference(arguments, a, b, difference.mean_b);
-    return tell(difference, arguments, console);
+    return report(difference, arguments, console);
   }
   const Image second = read_exr(arguments.second_half);
   const HalvesDifference difference = compare_with_halves(a, b, second, arguments.compare);
@@ -150,7 +150,7 @@ int compare(const Arguments& arguments, Console& console) {
     mean.radiance = 0.5f * (b.radiance + second.radiance);
     write_difference(arguments, a, mean, difference.mean_reference);
   }
-  return tell(difference, arguments, console);
+  return report(difference, arguments, console);
 }
 
 }  // namespace

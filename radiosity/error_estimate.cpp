@@ -53,8 +53,8 @@ struct ErrorPlace {
 // meet.
 class ErrorPlaces {
  public:
-  ErrorPlaces(const ElementCaster& caster, const Eigen::ArrayXf& told)
-      : mesh_(caster.mesh()), told_(told), counts_(mesh_.patch_count(), 0) {
+  ErrorPlaces(const ElementCaster& caster, const Eigen::ArrayXf& indicator)
+      : mesh_(caster.mesh()), indicator_(indicator), counts_(mesh_.patch_count(), 0) {
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       // Nobody sees what another surface lies on.
       const bool is_seen = caster.hidden_elements(p) == 0;
@@ -82,7 +82,7 @@ class ErrorPlaces {
  private:
   // Of elements that count, m^2; and that times what is told, squared.
   double area(int e) const { return counts_[mesh_.patch[e]] ? mesh_.element_area[e] : 0.0; }
-  double error(int e) const { return area(e) * std::pow(double{told_[e]}, 2); }
+  double error(int e) const { return area(e) * std::pow(double{indicator_[e]}, 2); }
 
   // Share of the places on an element.
   double density(int e) const {
@@ -91,7 +91,7 @@ class ErrorPlaces {
   }
 
   const PatchMesh& mesh_;
-  const Eigen::ArrayXf& told_;
+  const Eigen::ArrayXf& indicator_;
   std::vector<char> counts_;  // per patch
   double total_area_ = 0.0, total_error_ = 0.0;
   std::vector<double> up_to_{};  // densities of an element and all before
@@ -118,8 +118,8 @@ std::vector<ErrorPlace> open_places(const ElementCaster& caster, double width,
 }
 
 std::vector<ErrorPlace> draw_places(const Scene& scene, const ElementCaster& caster,
-                                    const Eigen::ArrayXf& told, int wanted, int batch) {
-  const ErrorPlaces places(caster, told);
+                                    const Eigen::ArrayXf& indicator, int wanted, int batch) {
+  const ErrorPlaces places(caster, indicator);
   if (places.is_empty() || wanted < 1) return {};
   const SobolPoints sobol(wanted);
   std::vector<ErrorPlace> drawn;
@@ -154,11 +154,12 @@ ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
                              int batch) {
   const PatchMesh& mesh = lit.mesh();
   BandArray irradiance = solution.irradiance();
-  const bool is_told = solution.interpolation_error.size() > 0;
-  const Eigen::ArrayXf guessed = is_told ? Eigen::ArrayXf() : indicators(mesh, irradiance);
-  const Eigen::ArrayXf& told = is_told ? solution.interpolation_error : guessed;
+  const bool has_indicator = solution.interpolation_error.size() > 0;
+  const Eigen::ArrayXf guessed = has_indicator ? Eigen::ArrayXf() : indicators(mesh, irradiance);
+  const Eigen::ArrayXf& indicator = has_indicator ? solution.interpolation_error : guessed;
   const int wanted = estimate_places(options.error_points, mesh.vertex_count());
-  const std::vector<ErrorPlace> drawn = draw_places(lit.scene, lit.caster, told, wanted, batch);
+  const std::vector<ErrorPlace> drawn =
+      draw_places(lit.scene, lit.caster, indicator, wanted, batch);
   if (drawn.empty()) return {};
 
   const auto count = static_cast<Eigen::Index>(drawn.size());
@@ -210,11 +211,11 @@ ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
   if (of_elements) {
     double square = 0.0;
     for (Eigen::Index i = 0; i < count; ++i) {
-      square += weight[i] * std::pow(double{told[element[static_cast<std::size_t>(i)]]}, 2);
+      square += weight[i] * std::pow(double{indicator[element[static_cast<std::size_t>(i)]]}, 2);
     }
     const double excess = (weight * (relative - noise)).sum();
     if (square > 0.0) {
-      *of_elements = static_cast<float>(std::sqrt(std::max(excess, 0.0) / square)) * told;
+      *of_elements = static_cast<float>(std::sqrt(std::max(excess, 0.0) / square)) * indicator;
     }
   }
   const Eigen::ArrayXd squared = weight * relative;

@@ -196,7 +196,7 @@ void gather_more(const LitScene& lit, const BandArray& radiosity, GatherOptions 
   const int count = mesh.vertex_count();
   std::vector<int> where, missing;
   {
-    const std::vector<int> share_of = share_rays(mesh, draft.told, options.rays);
+    const std::vector<int> share_of = share_rays(mesh, draft.interpolated, options.rays);
     for (int v = 0; v < count; ++v) {
       const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / one_in) : 0;
       const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
@@ -233,9 +233,9 @@ void gather_more(const LitScene& lit, const BandArray& radiosity, GatherOptions 
   }
 }
 
-// What gathers find at vertices, and the variance of one of a vertex's rays; told ones have the
-// means of their ends. `rays` gets how many each vertex stands for, with what the draft adds to its
-// own.
+// What gathers find at vertices, and the variance of one of a vertex's rays; interpolated ones have
+// the means of their ends. `rays` gets how many each vertex stands for, with what the draft adds to
+// its own.
 GatheredIrradiance gather_once(const LitScene& lit, const BandArray& radiosity,
                                const GatherOptions& gather, int one_in, const Draft& draft,
                                KeptGather& kept, Eigen::ArrayXf& rays) {
@@ -245,8 +245,8 @@ GatheredIrradiance gather_once(const LitScene& lit, const BandArray& radiosity,
   GatheredIrradiance result{.indirect = kept.indirect, .variance = kept.variance};
   rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>();
   result.variance *= rays;
-  tell(draft.told, result.indirect);
-  for (const ToldVertex& t : draft.told) {
+  interpolate_vertices(draft.interpolated, result.indirect);
+  for (const InterpolatedVertex& t : draft.interpolated) {
     float inverse = 0.0f, variance = 0.0f;
     for (int i = 0; i < t.end_count(); ++i) {
       inverse += 1.0f / rays[t.ends[i]];
@@ -268,8 +268,8 @@ GatheredIrradiance gather_once(const LitScene& lit, const BandArray& radiosity,
     before[v] = static_cast<float>(of_whole_set * of_a_ray / double{rays[v]});
   }
   Eigen::ArrayXf after = before;
-  join_with_draft(draft.between, draft.indirect, patch, lit.scene.bands.count(), result.indirect,
-                  after);
+  combine_with_predictions(draft.predictions, draft.indirect, patch, lit.scene.bands.count(),
+                           result.indirect, after);
   // Where there is none there is nothing to compare.
   rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
   return result;
@@ -367,8 +367,8 @@ Draft Drafting::Impl::refined(const SolveOptions& options) {
           .caustic = std::move(at_vertices),
           .interpolation_error = std::move(found.error),
           .refinement = found.report,
-          .told = std::move(found.told),
-          .between = std::move(found.between),
+          .interpolated = std::move(found.interpolated),
+          .predictions = std::move(found.predictions),
           .number = std::move(found.refined.vertex),
           .gather_rays = found.gather_rays};
 }

@@ -21,8 +21,9 @@ struct Draft {
   BandArray caustic{};                   ///< the same; empty if the scene has no mirrors or glass
   Eigen::ArrayXf interpolation_error{};  ///< see RadiositySolution; empty without refinement
   RefineReport refinement{};
-  std::vector<ToldVertex> told{};        ///< where later gathers leave indirect light out
-  std::vector<BetweenVertex> between{};  ///< what `indirect` is good for beside the final gather
+  std::vector<InterpolatedVertex> interpolated{};  ///< where later gathers leave indirect light out
+  std::vector<VertexPrediction>
+      predictions{};  ///< what `indirect` is good for beside the final gather
   /// Per vertex, what it is called in later drafts of the same elements too; empty without
   /// refinement.
   std::vector<int> number{};

@@ -243,14 +243,14 @@ void InterpolationError::gather_indirect_at(const std::vector<int>& vertices) {
 }
 
 // Unless it is known already.
-void InterpolationError::tell_indirect(int vertex) {
+void InterpolationError::interpolate_indirect(int vertex) {
   if (indirect_[vertex] != Indirect::unknown) return;
-  indirect_[vertex] = Indirect::told;
+  indirect_[vertex] = Indirect::interpolated;
   Eigen::RowVectorXf first = Eigen::RowVectorXf::Zero(first_.cols()), second = first;
   int count = 0;
   for (const int end : elements_.ends(vertex)) {
     if (end < 0) continue;
-    tell_indirect(end);
+    interpolate_indirect(end);
     first += first_.row(end).matrix();
     second += second_.row(end).matrix();
     ++count;
@@ -274,14 +274,14 @@ bool InterpolationError::is_even(int cell, int side) const {
   return false;
 }
 
-bool InterpolationError::is_told(int cell, int side) const {
+bool InterpolationError::is_interpolated(int cell, int side) const {
   return elements_.parent(cell) >= 0 && is_even(elements_.parent(cell), side);
 }
 
 bool InterpolationError::is_stale(int cell) const {
   for (int side = 0; side < elements_.side_count(cell); ++side) {
     const CellSide* known = known_of(cell, side);
-    if (known && known->was_told && !is_told(cell, side)) return true;
+    if (known && known->was_interpolated && !is_interpolated(cell, side)) return true;
   }
   return false;
 }
@@ -318,7 +318,7 @@ void InterpolationError::for_each_with_ends(const std::vector<int>& vertices, Vi
   for (std::size_t i = 0; i < vertices.size(); ++i) place[vertices[i]] = static_cast<int>(i);
   for (int v = 0; v < elements_.vertex_count(); ++v) {
     if (place[v] < 0 || elements_.ends(v)[0] < 0) continue;
-    ToldVertex at{.vertex = place[v]};
+    InterpolatedVertex at{.vertex = place[v]};
     bool has_ends = true;
     for (int i = 0; i < 4; ++i) {
       const int end = elements_.ends(v)[i];
@@ -330,7 +330,7 @@ void InterpolationError::for_each_with_ends(const std::vector<int>& vertices, Vi
   }
 }
 
-std::vector<ToldVertex> InterpolationError::told(const std::vector<int>& vertices) {
+std::vector<InterpolatedVertex> InterpolationError::interpolated(const std::vector<int>& vertices) {
   // Told is what no cell asks for that was split, and whose indirect light its corners do not tell.
   std::vector<char> is_asked_for(elements_.vertex_count(), 0);
   for (int cell = 0; cell < elements_.cell_count(); ++cell) {
@@ -345,15 +345,15 @@ std::vector<ToldVertex> InterpolationError::told(const std::vector<int>& vertice
   }
   make_room();
   is_asked_for.resize(elements_.vertex_count(), 0);
-  std::vector<ToldVertex> told;
-  for_each_with_ends(vertices, [&](int v, const ToldVertex& at) {
-    if (!is_asked_for[v]) told.push_back(at);
+  std::vector<InterpolatedVertex> interpolated;
+  for_each_with_ends(vertices, [&](int v, const InterpolatedVertex& at) {
+    if (!is_asked_for[v]) interpolated.push_back(at);
   });
-  return told;
+  return interpolated;
 }
 
-std::vector<BetweenVertex> InterpolationError::between(const std::vector<int>& vertices,
-                                                       std::span<const ToldVertex> told) {
+std::vector<VertexPrediction> InterpolationError::predictions(
+    const std::vector<int>& vertices, std::span<const InterpolatedVertex> interpolated) {
   // The worst of what the cells say that a vertex is inside of.
   struct Said {
     float spread = -1.0f, noise = 0.0f;  // spread below 0: none is
@@ -374,30 +374,30 @@ std::vector<BetweenVertex> InterpolationError::between(const std::vector<int>& v
   }
   make_room();
   said.resize(elements_.vertex_count());
-  std::vector<char> is_told(vertices.size(), 0);
-  for (const ToldVertex& t : told) is_told[t.vertex] = 1;
-  std::vector<BetweenVertex> between;
-  between.reserve(vertices.size());
-  for_each_with_ends(vertices, [&](int v, const ToldVertex& at) {
-    BetweenVertex b{.at = at, .is_told = is_told[at.vertex] != 0};
+  std::vector<char> is_interpolated(vertices.size(), 0);
+  for (const InterpolatedVertex& t : interpolated) is_interpolated[t.vertex] = 1;
+  std::vector<VertexPrediction> predictions;
+  predictions.reserve(vertices.size());
+  for_each_with_ends(vertices, [&](int v, const InterpolatedVertex& at) {
+    VertexPrediction b{.at = at, .is_interpolated = is_interpolated[at.vertex] != 0};
     if (said[v].spread >= 0.0f && indirect_[v] == Indirect::gathered) {
       b.spread = said[v].spread;
       b.noise = said[v].noise;
     }
-    between.push_back(b);
+    predictions.push_back(b);
   });
-  return between;
+  return predictions;
 }
 
 namespace {
 
 // The places in a list of `count` that are not told by others.
-std::vector<int> without(std::span<const ToldVertex> told, std::size_t count) {
-  std::vector<char> is_told(count, 0);
-  for (const ToldVertex& t : told) is_told[t.vertex] = 1;
+std::vector<int> without(std::span<const InterpolatedVertex> interpolated, std::size_t count) {
+  std::vector<char> is_interpolated(count, 0);
+  for (const InterpolatedVertex& t : interpolated) is_interpolated[t.vertex] = 1;
   std::vector<int> others;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!is_told[i]) others.push_back(static_cast<int>(i));
+    if (!is_interpolated[i]) others.push_back(static_cast<int>(i));
   }
   return others;
 }
@@ -405,13 +405,13 @@ std::vector<int> without(std::span<const ToldVertex> told, std::size_t count) {
 }  // namespace
 
 void InterpolationError::gather(const std::vector<int>& vertices,
-                                std::span<const ToldVertex> told) {
+                                std::span<const InterpolatedVertex> interpolated) {
   make_room();
   gather_direct_at(vertices);
-  std::vector<int> others = without(told, vertices.size());
+  std::vector<int> others = without(interpolated, vertices.size());
   for (int& place : others) place = vertices[place];
   gather_indirect_at(others);
-  for (const int v : vertices) tell_indirect(v);
+  for (const int v : vertices) interpolate_indirect(v);
 }
 
 GatheredIrradiance InterpolationError::values(const std::vector<int>& vertices) const {
@@ -425,9 +425,9 @@ GatheredIrradiance InterpolationError::values(const std::vector<int>& vertices) 
   return result;
 }
 
-GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>& vertices,
-                                                         std::span<const ToldVertex> told,
-                                                         const ChannelLight& light) {
+GatheredIrradiance InterpolationError::values_by_channel(
+    const std::vector<int>& vertices, std::span<const InterpolatedVertex> interpolated,
+    const ChannelLight& light) {
   const PatchMesh& mesh = elements_.base();
   std::vector<int> base(mesh.vertex_count());
   std::iota(base.begin(), base.end(), 0);
@@ -450,7 +450,7 @@ GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>&
   const BandArray sharpened =
       with_pools(mesh, light.radiosity, gatherable_radiosity(mesh, light.direct_light, irradiance));
 
-  const std::vector<int> gathered = without(told, vertices.size());
+  const std::vector<int> gathered = without(interpolated, vertices.size());
   std::vector<int> at;
   for (const int place : gathered) at.push_back(vertices[place]);
   const BandArray indirect =
@@ -460,7 +460,7 @@ GatheredIrradiance InterpolationError::values_by_channel(const std::vector<int>&
   for (std::size_t i = 0; i < at.size(); ++i) {
     result.indirect.row(gathered[i]) = indirect.row(static_cast<Eigen::Index>(i));
   }
-  tell(told, result.indirect);
+  interpolate_vertices(interpolated, result.indirect);
   result.direct.resize(result.indirect.rows(), direct.cols());
   for (Eigen::Index i = 0; i < result.direct.rows(); ++i) {
     result.direct.row(i) = direct.row(row_of[vertices[static_cast<std::size_t>(i)]]);
@@ -640,7 +640,7 @@ double InterpolationError::probed_error(int cell, int side) const {
 
 std::vector<InterpolationError::Measured> InterpolationError::measure(
     const std::vector<int>& cells) {
-  std::vector<int> vertices, to_gather, to_tell;
+  std::vector<int> vertices, to_gather, to_interpolate;
   for (const int cell : cells) {
     for (int side = 0; side < elements_.side_count(cell); ++side) {
       if (!matters(elements_.element(cell, side))) continue;
@@ -649,7 +649,7 @@ std::vector<InterpolationError::Measured> InterpolationError::measure(
         vertices.push_back(elements_.corner_vertex(cell, side, i));
       }
       for_each_inner_vertex(cell, side, [&](int v) { vertices.push_back(v); });
-      std::vector<int>& indirect = is_told(cell, side) ? to_tell : to_gather;
+      std::vector<int>& indirect = is_interpolated(cell, side) ? to_interpolate : to_gather;
       indirect.insert(indirect.end(), vertices.begin() + static_cast<std::ptrdiff_t>(first),
                       vertices.end());
     }
@@ -657,7 +657,7 @@ std::vector<InterpolationError::Measured> InterpolationError::measure(
   make_room();
   gather_direct_at(vertices);
   gather_indirect_at(to_gather);
-  for (const int v : to_tell) tell_indirect(v);
+  for (const int v : to_interpolate) interpolate_indirect(v);
   const int count = static_cast<int>(cells.size());
   std::vector<Measured> measured(cells.size());
   constexpr int slice = 4096;  // cells between two looks at the stop request
@@ -679,7 +679,7 @@ void InterpolationError::measure(int cell, int side, Measured& measured) {
   const double E = reference(cell, side);
   if (!(E > 0.0)) return;
   CellSide& known = sides_[elements_.side_number(cell, side)];
-  known.was_told = is_told(cell, side);
+  known.was_interpolated = is_interpolated(cell, side);
   const Squares lattice = lattice_error(cell, side);
   if (known.probed < 0.0f) {
     double probed = probed_error(cell, side);
@@ -696,7 +696,7 @@ void InterpolationError::measure(int cell, int side, Measured& measured) {
   }
   measured.error[side] = lattice.error / (E * E) + known.probed;
   measured.hidden[side] = lattice.hidden / (E * E);
-  if (known.was_told) return;
+  if (known.was_interpolated) return;
   known.indirect = static_cast<float>(lattice.indirect / (E * E));
   known.noise = static_cast<float>(lattice.noise / (E * E));
 }

@@ -9,7 +9,7 @@
 #include "radiosity/emitters/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/refine/emitter_visibility_list.h"
-#include "radiosity/refine/told_vertices.h"
+#include "radiosity/refine/interpolated_vertices.h"
 
 namespace lightwell {
 
@@ -82,20 +82,22 @@ class InterpolationError {
   };
   std::vector<Measured> measure(const std::vector<int>& cells);
 
-  /// Those of a mesh's vertices whose indirect light is told by others of them; numbers are places
-  /// in the list.
-  std::vector<ToldVertex> told(const std::vector<int>& vertices);
-  /// Of the same list, those that have all of their ends in it; `told` as told() has it.
-  std::vector<BetweenVertex> between(const std::vector<int>& vertices,
-                                     std::span<const ToldVertex> told);
+  /// Those of a mesh's vertices whose indirect light is interpolated from others of them; numbers
+  /// are places in the list.
+  std::vector<InterpolatedVertex> interpolated(const std::vector<int>& vertices);
+  /// Of the same list, those that have all of their ends in it; `interpolated` as interpolated()
+  /// has it.
+  std::vector<VertexPrediction> predictions(const std::vector<int>& vertices,
+                                            std::span<const InterpolatedVertex> interpolated);
   /// Gathers where nobody has yet, but for indirect light where it is told.
-  void gather(const std::vector<int>& vertices, std::span<const ToldVertex> told);
+  void gather(const std::vector<int>& vertices, std::span<const InterpolatedVertex> interpolated);
   /// What was gathered at vertices, in their order.
   GatheredIrradiance values(const std::vector<int>& vertices) const;
   /// The same gathers, made again of light by channels: their sum is what values() would give after
   /// gather().
   GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
-                                       std::span<const ToldVertex> told, const ChannelLight& light);
+                                       std::span<const InterpolatedVertex> interpolated,
+                                       const ChannelLight& light);
   std::int64_t gathers() const { return gathers_; }
   /// Gives back memory for what was expected to be gathered.
   void shrink_to_fit();
@@ -108,11 +110,11 @@ class InterpolationError {
   void make_room();
   void gather_direct_at(const std::vector<int>& vertices);
   void gather_indirect_at(const std::vector<int>& vertices);
-  void tell_indirect(int vertex);
+  void interpolate_indirect(int vertex);
   GatheredIrradiance indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
                                  const BandArray& radiosity) const;
   bool is_even(int cell, int side) const;
-  bool is_told(int cell, int side) const;
+  bool is_interpolated(int cell, int side) const;
   // Of those in a list whose ends all are in it, after their ends: what they are here, and by their
   // places in the list.
   template <class Visit>
@@ -158,16 +160,16 @@ class InterpolationError {
   double even_ = 0.0;  // of squared errors of indirect light, relative: told by corners if below
   // Of a cell's side: the squared error of indirect light, or how large it may be; the squared
   // noise in what says so; that of direct light between vertices, below 0 if nobody looked for it;
-  // whether indirect light was told when the cell was measured.
+  // whether indirect light was interpolated when the cell was measured.
   struct CellSide {
     float indirect = std::numeric_limits<float>::infinity(), noise = indirect, probed = -1.0f;
-    bool was_told = false;
+    bool was_interpolated = false;
   };
   const CellSide* known_of(int cell, int side) const;
   std::vector<CellSide> sides_;  // by RefinedElements::side_number()
   // Per vertex.
   std::vector<char> has_direct_;
-  enum class Indirect : char { unknown, told, gathered };
+  enum class Indirect : char { unknown, interpolated, gathered };
   std::vector<Indirect> indirect_;
   std::vector<int> rays_;  // of each of the two gathers of indirect light
   BandArray direct_, first_, second_;

@@ -334,16 +334,16 @@ RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
   result.report = refinement.run(options.tolerance);
   result.refined = elements.mesh();
   elements.shrink_to_fit();
-  result.told = error.told(result.refined.vertex);
-  if (!by_channel) error.gather(result.refined.vertex, result.told);
+  result.interpolated = error.interpolated(result.refined.vertex);
+  if (!by_channel) error.gather(result.refined.vertex, result.interpolated);
   error.shrink_to_fit();
-  result.between = error.between(result.refined.vertex, result.told);
+  result.predictions = error.predictions(result.refined.vertex, result.interpolated);
   if (by_channel) {
-    result.draft = error.values_by_channel(result.refined.vertex, result.told, *by_channel);
+    result.draft = error.values_by_channel(result.refined.vertex, result.interpolated, *by_channel);
   } else {
     result.draft = error.values(result.refined.vertex);
     // Some were gathered before others told of them: as with channels, those have the last word.
-    tell(result.told, result.draft.indirect);
+    interpolate_vertices(result.interpolated, result.draft.indirect);
   }
   const PatchMesh& mesh = result.refined.mesh;
   result.error = Eigen::ArrayXf::Zero(mesh.element_count());

@@ -8,7 +8,7 @@
 #include "mesh/elements/refine_elements.h"
 #include "radiosity/emitters/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
-#include "radiosity/refine/told_vertices.h"
+#include "radiosity/refine/interpolated_vertices.h"
 
 namespace lightwell {
 
@@ -60,9 +60,10 @@ struct ChannelLight {
 /// Refined elements, and a first gather at their vertices.
 struct RefinedSolution {
   RefinedMesh refined{};
-  GatheredIrradiance draft{};      ///< vertices x bands; the direct light is as good as it gets
-  std::vector<ToldVertex> told{};  ///< where the final gather of indirect light may be left out
-  std::vector<BetweenVertex> between{};  ///< what the draft says of the others, and of these
+  GatheredIrradiance draft{};  ///< vertices x bands; the direct light is as good as it gets
+  std::vector<InterpolatedVertex>
+      interpolated{};  ///< where the final gather of indirect light may be left out
+  std::vector<VertexPrediction> predictions{};  ///< what the draft says of the others, and of these
   /// Per element: estimated relative RMS error of interpolation over it, with half of what noise
   /// may hide, in the square.
   Eigen::ArrayXf error{};

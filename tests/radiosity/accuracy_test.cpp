@@ -90,19 +90,19 @@ TEST(Accuracy, BoundsOfElementsHold) {
     std::vector<int> element;
     const BandArray found = irradiance_at_places(solved, truth.mesh, places, &element);
     int held = 0;
-    double off = 0.0, told = 0.0;
+    double off = 0.0, estimated = 0.0;
     for (int i = 0; i < places; ++i) {
       const double own = E.row(i).cast<double>().mean(), reference = std::max(mean, own / 4);
       const double error = std::abs(found.row(i).cast<double>().mean() - own) / reference;
       held += error <= bound[element[i]] ? 1 : 0;
       off += error * error / places;
-      told += std::pow(bound[element[i]] / 2.0, 2) / places;
+      estimated += std::pow(bound[element[i]] / 2.0, 2) / places;
     }
     std::printf("refined to %.2f: %.1f %% within their bounds, RMS %.4f, told %.4f\n", tolerance,
-                100.0 * held / places, std::sqrt(off), std::sqrt(told));
+                100.0 * held / places, std::sqrt(off), std::sqrt(estimated));
     EXPECT_GE(held, 0.95 * places);
     // What the truth is off by itself comes on top of the error that is seen here.
-    EXPECT_LE(std::sqrt(told), 5.0 * std::sqrt(off));
+    EXPECT_LE(std::sqrt(estimated), 5.0 * std::sqrt(off));
   }
 }
 

@@ -34,12 +34,12 @@ struct Room {
   }
 };
 
-TEST(ToldVertices, AreMeansOfTheirEnds) {
+TEST(InterpolatedVertices, AreMeansOfTheirEnds) {
   BandArray values(5, 1);
   values << 1.0f, 3.0f, 100.0f, 5.0f, 100.0f;
-  const std::vector<ToldVertex> told{{.vertex = 2, .ends = {0, 1, -1, -1}},
-                                     {.vertex = 4, .ends = {0, 1, 2, 3}}};
-  tell(told, values);
+  const std::vector<InterpolatedVertex> interpolated{{.vertex = 2, .ends = {0, 1, -1, -1}},
+                                                     {.vertex = 4, .ends = {0, 1, 2, 3}}};
+  interpolate_vertices(interpolated, values);
   EXPECT_FLOAT_EQ(values(2, 0), 2.0f);
   EXPECT_FLOAT_EQ(values(4, 0), 2.75f);
 }
@@ -48,18 +48,18 @@ TEST(ToldVertices, AreMeansOfTheirEnds) {
 // had 10, 12 and between them 13, two above their mean.
 class BetweenTwo : public testing::Test {
  protected:
-  void join(float spread, float noise, bool is_told = false) {
+  void join(float spread, float noise, bool is_interpolated = false) {
     values.resize(3, 1);
     values << 2.0f, 4.0f, 9.0f;
     variance.resize(3);
     variance << 1.0f, 1.0f, 8.0f;
     BandArray draft(3, 1);
     draft << 10.0f, 12.0f, 13.0f;
-    const std::vector<BetweenVertex> between{{.at = {.vertex = 2, .ends = {0, 1, -1, -1}},
-                                              .is_told = is_told,
-                                              .spread = spread,
-                                              .noise = noise}};
-    join_with_draft(between, draft, group, 1, values, variance);
+    const std::vector<VertexPrediction> between{{.at = {.vertex = 2, .ends = {0, 1, -1, -1}},
+                                                 .is_interpolated = is_interpolated,
+                                                 .spread = spread,
+                                                 .noise = noise}};
+    combine_with_predictions(between, draft, group, 1, values, variance);
     EXPECT_EQ(values(0, 0), 2.0f);
     EXPECT_EQ(values(1, 0), 4.0f);
   }
@@ -94,7 +94,7 @@ TEST_F(BetweenTwo, WhatNobodyMeasuredIsLeftAndWhatIsToldIsTheMean) {
   EXPECT_EQ(values(2, 0), 3.0f);
 }
 
-TEST(ToldVertices, GiveTheirAreaToTheirEnds) {
+TEST(InterpolatedVertices, GiveTheirAreaToTheirEnds) {
   Scene scene;
   const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
   test::add_box(scene, {0, 0, 0}, {1, 1, 1}, {grey, grey, grey, grey, grey, grey}, true);
@@ -104,9 +104,9 @@ TEST(ToldVertices, GiveTheirAreaToTheirEnds) {
   double sum = 0.0;
   for (const double a : area) sum += a;
   EXPECT_NEAR(sum, 6.0, 1e-12);  // a few roundings of each of 24 elements
-  std::vector<ToldVertex> told;
-  for (int v = 1; v < mesh.vertex_count(); ++v) told.push_back({v, {0, 0, -1, -1}});
-  const std::vector<int> rays = share_rays(mesh, told, 64);
+  std::vector<InterpolatedVertex> interpolated;
+  for (int v = 1; v < mesh.vertex_count(); ++v) interpolated.push_back({v, {0, 0, -1, -1}});
+  const std::vector<int> rays = share_rays(mesh, interpolated, 64);
   EXPECT_EQ(rays[0], 64);  // all of the area is as large as the typical one
   for (std::size_t v = 1; v < rays.size(); ++v) EXPECT_EQ(rays[v], 0);
 }
@@ -156,19 +156,21 @@ TEST(Drafting, GoesOnWhereItEnded) {
   EXPECT_LT(200 * gone, coarse.number.size());  // one in 1444 here
 }
 
-// Told vertices lie between others of the mesh, which come first where they are told themselves.
-TEST(Drafting, TellsIndirectLightFromVerticesOfTheMesh) {
+// Interpolated vertices lie between others of the mesh, which come first where they are
+// interpolated themselves.
+TEST(Drafting, InterpolatesIndirectLightFromVerticesOfTheMesh) {
   Room room(0.02);
   room.options.gather.rays = 2048;
   const DirectLight direct_light(room.scene, room.patches.mesh);
   Drafting drafting(room.scene, room.patches.mesh, direct_light, room.patches.solution);
   const Draft draft = drafting.draft(room.options);
   ASSERT_TRUE(draft.refined);
-  std::printf("%zu of %d vertices are told\n", draft.told.size(), draft.refined->vertex_count());
-  EXPECT_GT(draft.told.size(), 0u);
+  std::printf("%zu of %d vertices are interpolated\n", draft.interpolated.size(),
+              draft.refined->vertex_count());
+  EXPECT_GT(draft.interpolated.size(), 0u);
   std::set<int> still_to_come;
-  for (const ToldVertex& t : draft.told) still_to_come.insert(t.vertex);
-  for (const ToldVertex& t : draft.told) {
+  for (const InterpolatedVertex& t : draft.interpolated) still_to_come.insert(t.vertex);
+  for (const InterpolatedVertex& t : draft.interpolated) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (int i = 0; i < t.end_count(); ++i) {
       EXPECT_FALSE(still_to_come.contains(t.ends[i]));

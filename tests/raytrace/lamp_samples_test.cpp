@@ -54,7 +54,7 @@ double summed_form_factors(const LampSamples& lamps, const Eigen::Vector3d& from
   return sum / count;
 }
 
-TEST(LampSamples, AreDrawnByTheDensityThatIsTold) {
+TEST(LampSamples, AreDrawnByTheStatedDensity) {
   // Up to most_weighed lamps are weighed by place, more by their power alone.
   for (const int count : {1, 5, LampSamples::most_weighed + 10}) {
     const Room room{.lamps = count};
@@ -62,12 +62,12 @@ TEST(LampSamples, AreDrawnByTheDensityThatIsTold) {
     const Eigen::Vector3d from{1.1, 2.6, 1.0};
     double F = 0.0;
     for (int i = 0; i < count; ++i) F += point_to_polygon(from, {0, 0, 1}, Room::lamp(i));
-    const double told = summed_form_factors(lamps, from);
-    std::printf("%d lamps: sum of form factors %.6f, by draws %.6f\n", count, F, told);
+    const double estimate = summed_form_factors(lamps, from);
+    std::printf("%d lamps: sum of form factors %.6f, by draws %.6f\n", count, F, estimate);
     // Drawn by power, one in five of 74 lamps is the uplight, which gives nothing here, and the
     // others differ by up to twice their mean: a spread of 2 at most, and of stratified points
     // less. Four standard errors.
-    EXPECT_NEAR(told / F, 1.0, 4.0 * 2.0 / std::sqrt(double{1 << 14}));
+    EXPECT_NEAR(estimate / F, 1.0, 4.0 * 2.0 / std::sqrt(double{1 << 14}));
   }
 }
 

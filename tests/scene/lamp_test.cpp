@@ -10,7 +10,7 @@
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
 #include "scene/scene.h"
-#include "tests/scene/told_errors.h"
+#include "tests/scene/expected_messages.h"
 #include "tests/temporary_folder.h"
 
 namespace lightwell {
@@ -127,7 +127,7 @@ box = { min = [0, 0, 0], max = [400, 300, 250], inward = true }
 )" + lamps));
   }
   void expect_error(const std::string& lamps, const std::vector<std::string>& parts) {
-    test::expect_told([&] { read(lamps); }, parts);
+    test::expect_message([&] { read(lamps); }, parts);
   }
   TemporaryFolder folder_{};
 };

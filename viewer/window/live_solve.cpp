@@ -105,7 +105,7 @@ struct LiveSolve::Impl {
   }
 
   void run();
-  void shoot_until_told();
+  void shoot_until_stopped();
   int wait_for_leave();
   void publish(bool always);
 
@@ -161,7 +161,7 @@ void LiveSolve::Impl::publish(bool always) {
   last_published = now;
 }
 
-void LiveSolve::Impl::shoot_until_told() {
+void LiveSolve::Impl::shoot_until_stopped() {
   publish(true);
   while (const int most = wait_for_leave()) {
     const Clock::time_point start = Clock::now();
@@ -180,7 +180,7 @@ void LiveSolve::Impl::shoot_until_told() {
 
 void LiveSolve::Impl::run() {
   try {
-    shoot_until_told();
+    shoot_until_stopped();
     if (ending) return;
     publish(true);
     {

@@ -77,7 +77,7 @@ TEST(ExactShadows, AreWhatManyRaysFind) {
     test::add_box(scene, low, low + size, {0, 0, 0, 0, 0, 0}, false);
   }
   const Lit lit(std::move(scene));
-  int partly = 0, told = 0;
+  int partly = 0, exact = 0;
   double worst = 0.0;
   for (std::uint64_t i = 0; i < 800; ++i) {
     const Vector3d at = Vector3d(0.1, 0.1, 0.1) +
@@ -89,7 +89,7 @@ TEST(ExactShadows, AreWhatManyRaysFind) {
     if (!(lit.light.unoccluded_form_factor(lamp, {at, normal}) > 1e-6)) continue;
     const auto share = lit.share(at, normal);
     if (!share) continue;
-    ++told;
+    ++exact;
     constexpr int side = 64;
     const double expected = lit.share_of_rays(at, normal, side);
     partly += *share > 0.0 && *share < 1.0 ? 1 : 0;
@@ -102,9 +102,9 @@ TEST(ExactShadows, AreWhatManyRaysFind) {
       EXPECT_EQ(expected, *share) << at.transpose();
     }
   }
-  std::printf("%d told, %d of them partly hidden; at worst off by %.1e of the rays\n", told, partly,
-              worst);
-  EXPECT_GT(told, 150);
+  std::printf("%d told, %d of them partly hidden; at worst off by %.1e of the rays\n", exact,
+              partly, worst);
+  EXPECT_GT(exact, 150);
   EXPECT_GT(partly, 50);
 }
 

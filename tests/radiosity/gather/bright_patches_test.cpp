@@ -87,14 +87,15 @@ TEST(BrightPatches, GiveWhatTheFormFactorSays) {
   const double F = point_to_polygon(place, {0, 0, 1}, room.tile());
   const double E = 1.0 + (bright - 1.0) * F;
   constexpr int replicas = 200;
-  const Statistics told = gathered(room, B, place, 256, replicas);
-  std::printf("F %.2e, E %.4f, gathered %.4f, deviation %.4f\n", F, E, told.mean, told.deviation);
-  EXPECT_NEAR(told.mean, E, 4.0 * told.deviation / std::sqrt(replicas));
+  const Statistics estimate = gathered(room, B, place, 256, replicas);
+  std::printf("F %.2e, E %.4f, gathered %.4f, deviation %.4f\n", F, E, estimate.mean,
+              estimate.deviation);
+  EXPECT_NEAR(estimate.mean, E, 4.0 * estimate.deviation / std::sqrt(replicas));
   // A cosine-distributed ray meets the tile by a chance of F, and the deviation of 256 that did so
   // by themselves would be (bright - 1) sqrt(F / 256); of those that are aimed it is what the form
   // factor's kernel varies by over the tile, 5 % at the most here, of its light.
-  EXPECT_LT(told.deviation, 0.05 * (E - 1.0));
-  EXPECT_GT((bright - 1.0) * std::sqrt(F / 256.0), 10.0 * told.deviation);
+  EXPECT_LT(estimate.deviation, 0.05 * (E - 1.0));
+  EXPECT_GT((bright - 1.0) * std::sqrt(F / 256.0), 10.0 * estimate.deviation);
 }
 
 // Near it the cosine-distributed rays are the better ones; both together have no bias.
@@ -109,12 +110,12 @@ TEST(BrightPatches, GiveTheSameNearBy) {
     double sum = 0.0, squares = 0.0;
     constexpr int replicas = 200;
     for (int i = 0; i < replicas; ++i) {
-      const double told =
+      const double estimate =
           gather_indirect({room.scene, room.caster, room.direct_light}, B, std::array{point},
                           {.rays = 64, .replica = static_cast<std::uint64_t>(i)})
               .indirect(0, 0);
-      sum += told / replicas;
-      squares += told * told / replicas;
+      sum += estimate / replicas;
+      squares += estimate * estimate / replicas;
     }
     const double deviation = std::sqrt(std::max(0.0, squares - sum * sum));
     // Float sums besides.
@@ -131,11 +132,11 @@ TEST(BrightPatches, AreHiddenByWhatStandsBefore) {
   const Loop half = {{1.8, 1.8, 3.9}, {1.8, 2.2, 3.9}, {2, 2.2, 3.9}, {2, 1.8, 3.9}};
   const double E = 1.0 + (bright - 1.0) * point_to_polygon(place, {0, 0, 1}, half);
   constexpr int replicas = 200;
-  const Statistics told = gathered(room, B, place, 256, replicas);
-  EXPECT_NEAR(told.mean, E, 4.0 * told.deviation / std::sqrt(replicas));
+  const Statistics estimate = gathered(room, B, place, 256, replicas);
+  EXPECT_NEAR(estimate.mean, E, 4.0 * estimate.deviation / std::sqrt(replicas));
 }
 
-TEST(BrightPatches, HaveDirectionsOfTheDensityThatIsTold) {
+TEST(BrightPatches, HaveDirectionsOfTheStatedDensity) {
   const Room room{.side = 1.2, .with_shelf = false};
   const BrightPatches bright(room.scene, room.mesh, room.radiosity(100.0f));
   const Eigen::Vector3d place{1.0, 0.5, 2.0};

@@ -46,21 +46,22 @@ TEST(GatherNoise, IsWhatIndependentGathersDifferBy) {
   const BandArray B = room.radiosity(1.0f, 0.2f);
   for (const int rays : {64, 256, 4096}) {
     constexpr int replicas = 400;
-    double sum = 0.0, squares = 0.0, told = 0.0;
+    double sum = 0.0, squares = 0.0, estimated = 0.0;
     for (int i = 0; i < replicas; ++i) {
       const GatheredIrradiance E = room.gather(B, rays, static_cast<std::uint64_t>(i));
       sum += E.indirect(0, 0);
       squares += std::pow(double{E.indirect(0, 0)}, 2);
-      told += E.variance[0] / replicas;
+      estimated += E.variance[0] / replicas;
     }
     const double mean = sum / replicas;
     const double variance = squares / replicas - mean * mean;
-    std::printf("%d rays: noise %.2e, told %.2e\n", rays, std::sqrt(variance), std::sqrt(told));
+    std::printf("%d rays: noise %.2e, told %.2e\n", rays, std::sqrt(variance),
+                std::sqrt(estimated));
     // 400 replicas know a variance to 7 %, here three times that. Halves are stratified less well
     // than the whole, whose error falls with a power of rays between 1/2 and 1: their difference
     // says up to twice its variance.
-    EXPECT_GT(told, 0.79 * variance);
-    EXPECT_LT(told, 2.0 * 1.21 * variance);
+    EXPECT_GT(estimated, 0.79 * variance);
+    EXPECT_LT(estimated, 2.0 * 1.21 * variance);
   }
 }
 

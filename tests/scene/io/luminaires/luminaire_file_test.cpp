@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "scene/errors.h"
-#include "tests/scene/told_errors.h"
+#include "tests/scene/expected_messages.h"
 #include "tests/temporary_folder.h"
 
 namespace lightwell {
@@ -150,7 +150,7 @@ class WrittenFiles : public testing::Test {
   }
   void expect_error(const std::string& text, const std::vector<std::string>& parts,
                     const std::string& name = "it.ies") {
-    test::expect_told([&] { read(text, name); }, parts);
+    test::expect_message([&] { read(text, name); }, parts);
   }
   TemporaryFolder folder_{};
 };

@@ -11,7 +11,7 @@ namespace lightwell::test {
 
 /// Expects an InputError from `call` whose message has all `parts`.
 template <class Call>
-void expect_told(Call&& call, const std::vector<std::string>& parts) {
+void expect_message(Call&& call, const std::vector<std::string>& parts) {
   try {
     call();
     FAIL() << "no error that says " << parts.front();

@@ -1,4 +1,4 @@
-#include "radiosity/refine/told_vertices.h"
+#include "radiosity/refine/interpolated_vertices.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace lightwell {
 
 namespace {
 
-Eigen::RowVectorXf mean_of_ends(const ToldVertex& at, const BandArray& of) {
+Eigen::RowVectorXf mean_of_ends(const InterpolatedVertex& at, const BandArray& of) {
   Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(of.cols());
   for (int i = 0; i < at.end_count(); ++i) sum += of.row(at.ends[i]).matrix();
   return sum / static_cast<float>(at.end_count());
@@ -17,8 +17,8 @@ Eigen::RowVectorXf mean_of_ends(const ToldVertex& at, const BandArray& of) {
 
 }  // namespace
 
-void tell(std::span<const ToldVertex> told, BandArray& values) {
-  for (const ToldVertex& t : told) values.row(t.vertex) = mean_of_ends(t, values);
+void interpolate_vertices(std::span<const InterpolatedVertex> interpolated, BandArray& values) {
+  for (const InterpolatedVertex& t : interpolated) values.row(t.vertex) = mean_of_ends(t, values);
 }
 
 namespace {
@@ -29,7 +29,7 @@ struct Prediction {
 };
 
 // Of a vertex that is not told.
-Prediction predict(const BetweenVertex& b, const BandArray& draft, const BandArray& values) {
+Prediction predict(const VertexPrediction& b, const BandArray& draft, const BandArray& values) {
   const float both = b.spread + b.noise;
   const float trusted = both > 0.0f ? b.spread / both : 0.0f;  // of the difference (Wiener 1949)
   return {mean_of_ends(b.at, values) +
@@ -37,18 +37,18 @@ Prediction predict(const BetweenVertex& b, const BandArray& draft, const BandArr
           trusted * b.noise};
 }
 
-bool is_predicted(const BetweenVertex& b) {
-  return !b.is_told && std::isfinite(b.spread) && std::isfinite(b.noise);
+bool is_predicted(const VertexPrediction& b) {
+  return !b.is_interpolated && std::isfinite(b.spread) && std::isfinite(b.noise);
 }
 
 // Per group: how much further predictions are off, in the mean square, than noise explains. (The
 // draft read light as it was before refinement.)
-Eigen::ArrayXd unexplained(std::span<const BetweenVertex> between, const BandArray& draft,
+Eigen::ArrayXd unexplained(std::span<const VertexPrediction> predictions, const BandArray& draft,
                            const BandArray& values, const Eigen::ArrayXf& variance,
                            std::span<const int> group, int bands) {
   const int groups = group.empty() ? 0 : *std::max_element(group.begin(), group.end()) + 1;
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(groups), count = sum;
-  for (const BetweenVertex& b : between) {
+  for (const VertexPrediction& b : predictions) {
     if (!is_predicted(b)) continue;
     const int v = b.at.vertex;
     const Prediction predicted = predict(b, draft, values);
@@ -68,16 +68,16 @@ Eigen::ArrayXd unexplained(std::span<const BetweenVertex> between, const BandArr
 
 }  // namespace
 
-void join_with_draft(std::span<const BetweenVertex> between, const BandArray& draft,
-                     std::span<const int> group, int bands, BandArray& values,
-                     Eigen::ArrayXf& variance) {
-  const Eigen::ArrayXd more = unexplained(between, draft, values, variance, group, bands);
-  for (const BetweenVertex& b : between) {
+void combine_with_predictions(std::span<const VertexPrediction> predictions, const BandArray& draft,
+                              std::span<const int> group, int bands, BandArray& values,
+                              Eigen::ArrayXf& variance) {
+  const Eigen::ArrayXd more = unexplained(predictions, draft, values, variance, group, bands);
+  for (const VertexPrediction& b : predictions) {
     const int v = b.at.vertex;
     float of_ends = 0.0f;  // as if their noise were all alike: some of it is
     for (int i = 0; i < b.at.end_count(); ++i) of_ends += variance[b.at.ends[i]];
     of_ends /= static_cast<float>(b.at.end_count());
-    if (b.is_told) {
+    if (b.is_interpolated) {
       values.row(v) = mean_of_ends(b.at, values);
       variance[v] = of_ends;
     }
@@ -122,14 +122,15 @@ std::vector<int> share_rays(std::span<const double> area, int rays) {
   return shares;
 }
 
-std::vector<int> share_rays(const PatchMesh& mesh, std::span<const ToldVertex> told, int rays) {
+std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedVertex> interpolated,
+                            int rays) {
   std::vector<double> area = vertex_areas(mesh);
-  for (auto t = told.rbegin(); t != told.rend(); ++t) {
+  for (auto t = interpolated.rbegin(); t != interpolated.rend(); ++t) {
     for (int i = 0; i < t->end_count(); ++i) area[t->ends[i]] += area[t->vertex] / t->end_count();
     area[t->vertex] = 0.0;
   }
   std::vector<int> shares = share_rays(area, rays);
-  for (const ToldVertex& t : told) shares[t.vertex] = 0;
+  for (const InterpolatedVertex& t : interpolated) shares[t.vertex] = 0;
   return shares;
 }
 

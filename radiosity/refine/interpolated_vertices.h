@@ -10,10 +10,10 @@
 
 namespace lightwell {
 
-/// A vertex whose indirect light is told by others: it is their mean, and nothing is gathered
-/// there. (Elements are mostly split for the edges of shadows, across which indirect light hardly
-/// changes.)
-struct ToldVertex {
+/// A vertex whose indirect light is interpolated from others: it is their mean, and nothing is
+/// gathered there. (Elements are mostly split for the edges of shadows, across which indirect light
+/// hardly changes.)
+struct InterpolatedVertex {
   int vertex = 0;
   std::array<int, 4> ends{-1, -1, -1, -1};  ///< 2 or 4 vertices, the rest -1
 
@@ -22,27 +22,27 @@ struct ToldVertex {
 
 /// A vertex that a split made, and what a draft says of its indirect light against the mean of its
 /// ends; (W/m^2)^2, mean of the bands, channels added.
-struct BetweenVertex {
-  ToldVertex at{};
-  bool is_told = false;                                   ///< taken for the mean
+struct VertexPrediction {
+  InterpolatedVertex at{};
+  bool is_interpolated = false;                           ///< taken for the mean
   float spread = std::numeric_limits<float>::infinity();  ///< mean square of the difference
   float noise = std::numeric_limits<float>::infinity();   ///< of the draft, left in the difference
 };
 
 /// Puts what was gathered at vertices (rows of `values`, of variance `variance`, which becomes what
 /// is left of it) together with what the draft predicts from their ends, each by how sure it is;
-/// told ones have their ends' mean. The draft's rays go the same ways from neighbours, so that
-/// little noise is in differences between them: small elements take their light from many rays at
-/// large ones, and keep what sets them apart. Where predictions of a `group` of vertices (such as a
-/// patch's) turn out worse than noise explains, they count for less. Entries come after all of
+/// interpolated ones have their ends' mean. The draft's rays go the same ways from neighbours, so
+/// that little noise is in differences between them: small elements take their light from many rays
+/// at large ones, and keep what sets them apart. Where predictions of a `group` of vertices (such
+/// as a patch's) turn out worse than noise explains, they count for less. Entries come after all of
 /// their ends. Columns of `bands` for each channel; each is a sum of gathers, some of them less
 /// others, and may fall below 0 by their noise.
-void join_with_draft(std::span<const BetweenVertex> between, const BandArray& draft,
-                     std::span<const int> group, int bands, BandArray& values,
-                     Eigen::ArrayXf& variance);
+void combine_with_predictions(std::span<const VertexPrediction> predictions, const BandArray& draft,
+                              std::span<const int> group, int bands, BandArray& values,
+                              Eigen::ArrayXf& variance);
 
-/// Sets the rows of told vertices, which come after all of their ends in the list.
-void tell(std::span<const ToldVertex> told, BandArray& values);
+/// Sets the rows of interpolated vertices, which come after all of their ends in the list.
+void interpolate_vertices(std::span<const InterpolatedVertex> interpolated, BandArray& values);
 
 /// Per vertex, m^2: the share of the elements around that is nearer to it than to their other
 /// corners.
@@ -54,7 +54,9 @@ std::vector<double> vertex_areas(const PatchMesh& mesh);
 /// two times that.
 std::vector<int> share_rays(std::span<const double> area, int rays);
 
-/// The same, with the areas of told vertices added to their ends'; they themselves get 0 rays.
-std::vector<int> share_rays(const PatchMesh& mesh, std::span<const ToldVertex> told, int rays);
+/// The same, with the areas of interpolated vertices added to their ends'; they themselves get 0
+/// rays.
+std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedVertex> interpolated,
+                            int rays);
 
 }  // namespace lightwell
