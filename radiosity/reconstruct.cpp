@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t draft_replica = 1000, later_replicas = 2000, first_replicas = 3000;
+constexpr std::uint64_t pilot_replica = 1000, later_replicas = 2000, first_replicas = 3000;
 
 // Patch radiosities less what DirectLight accounts for, patches x columns of its channels.
 BandArray without_owned_emission(const PatchMesh& mesh, const DirectLight& direct_light,
@@ -175,7 +175,7 @@ void take_rows(const std::vector<int>& row, KeptGather& kept) {
   kept = std::move(taken);
 }
 
-// Goes on to the vertices of another draft.
+// Goes on to the vertices of another pilot gather.
 void go_on(const std::vector<int>& number, KeptGathers& kept) {
   if (kept.number == number) return;
   int numbers = 0;
@@ -183,7 +183,7 @@ void go_on(const std::vector<int>& number, KeptGathers& kept) {
   std::vector<int> row_of(numbers, -1), row;
   for (std::size_t v = 0; v < kept.number.size(); ++v) row_of[kept.number[v]] = static_cast<int>(v);
   for (const int n : number) row.push_back(n < numbers ? row_of[n] : -1);
-  take_rows(row, kept.of_draft);
+  take_rows(row, kept.of_pilot);
   take_rows(row, kept.last);
   kept.number = number;
 }
@@ -191,12 +191,12 @@ void go_on(const std::vector<int>& number, KeptGathers& kept) {
 // Has gather_indirect() look, at vertices that are not told, for what one in `one_in` of the rays
 // that are theirs would find, less those that are kept.
 void gather_more(const LitScene& lit, const BandArray& radiosity, GatherOptions options, int one_in,
-                 const Draft& draft, KeptGather& kept) {
+                 const PilotGather& pilot, KeptGather& kept) {
   const PatchMesh& mesh = lit.mesh();
   const int count = mesh.vertex_count();
   std::vector<int> where, missing;
   {
-    const std::vector<int> share_of = share_rays(mesh, draft.interpolated, options.rays);
+    const std::vector<int> share_of = share_rays(mesh, pilot.interpolated, options.rays);
     for (int v = 0; v < count; ++v) {
       const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / one_in) : 0;
       const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
@@ -234,19 +234,19 @@ void gather_more(const LitScene& lit, const BandArray& radiosity, GatherOptions 
 }
 
 // What gathers find at vertices, and the variance of one of a vertex's rays; interpolated ones have
-// the means of their ends. `rays` gets how many each vertex stands for, with what the draft adds to
-// its own.
+// the means of their ends. `rays` gets how many each vertex stands for, with what the pilot gather
+// adds to its own.
 GatheredIrradiance gather_once(const LitScene& lit, const BandArray& radiosity,
-                               const GatherOptions& gather, int one_in, const Draft& draft,
+                               const GatherOptions& gather, int one_in, const PilotGather& pilot,
                                KeptGather& kept, Eigen::ArrayXf& rays) {
   const PatchMesh& mesh = lit.mesh();
   const int count = mesh.vertex_count();
-  gather_more(lit, radiosity, gather, one_in, draft, kept);
+  gather_more(lit, radiosity, gather, one_in, pilot, kept);
   GatheredIrradiance result{.indirect = kept.indirect, .variance = kept.variance};
   rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>();
   result.variance *= rays;
-  interpolate_vertices(draft.interpolated, result.indirect);
-  for (const InterpolatedVertex& t : draft.interpolated) {
+  interpolate_vertices(pilot.interpolated, result.indirect);
+  for (const InterpolatedVertex& t : pilot.interpolated) {
     float inverse = 0.0f, variance = 0.0f;
     for (int i = 0; i < t.end_count(); ++i) {
       inverse += 1.0f / rays[t.ends[i]];
@@ -268,7 +268,7 @@ GatheredIrradiance gather_once(const LitScene& lit, const BandArray& radiosity,
     before[v] = static_cast<float>(of_whole_set * of_a_ray / double{rays[v]});
   }
   Eigen::ArrayXf after = before;
-  combine_with_predictions(draft.predictions, draft.indirect, patch, lit.scene.bands.count(),
+  combine_with_predictions(pilot.predictions, pilot.indirect, patch, lit.scene.bands.count(),
                            result.indirect, after);
   // Where there is none there is nothing to compare.
   rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
@@ -277,13 +277,13 @@ GatheredIrradiance gather_once(const LitScene& lit, const BandArray& radiosity,
 
 }  // namespace
 
-struct Drafting::Impl {
+struct PilotGathers::Impl {
   Impl(const Scene& of, PatchMesh mesh, const DirectLight& direct, double noise_goal)
       : scene(of), base(std::move(mesh)), caster(base), direct_light(direct), noise(noise_goal) {}
 
-  Draft unrefined(const SolveOptions& options);
+  PilotGather unrefined(const SolveOptions& options);
   void prepare(const SolveOptions& options);
-  Draft refined(const SolveOptions& options);
+  PilotGather refined(const SolveOptions& options);
 
   const Scene& scene;
   PatchMesh base;
@@ -299,8 +299,8 @@ struct Drafting::Impl {
   std::optional<SolutionRefinement> refinement{};
 };
 
-Drafting::Drafting(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
-                   const RadiositySolution& solution, double noise)
+PilotGathers::PilotGathers(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
+                           const RadiositySolution& solution, double noise)
     : impl_(new Impl(scene, std::move(base), direct_light, noise)) {
   const PatchMesh& mesh = impl_->base;
   impl_->radiosity = patch_to_vertex(mesh, direct_light, unscaled_radiosity(solution));
@@ -309,36 +309,36 @@ Drafting::Drafting(const Scene& scene, PatchMesh base, const DirectLight& direct
   impl_->of_all_light = patch_to_vertex(mesh, *impl_->all_light, solution.patch_radiosity);
 }
 
-Drafting::~Drafting() = default;
+PilotGathers::~PilotGathers() = default;
 
-PatchMesh& Drafting::base() {
+PatchMesh& PilotGathers::base() {
   return impl_->base;
 }
 
-Draft Drafting::draft(const SolveOptions& options) {
+PilotGather PilotGathers::gather(const SolveOptions& options) {
   return options.refine.tolerance > 0.0 ? impl_->refined(options) : impl_->unrefined(options);
 }
 
-ElementCaster Drafting::caster(const PatchMesh& mesh, const Draft& draft) const {
-  return {mesh, impl_->caster, draft.tree};
+ElementCaster PilotGathers::caster(const PatchMesh& mesh, const PilotGather& pilot) const {
+  return {mesh, impl_->caster, pilot.tree};
 }
 
-Draft Drafting::Impl::unrefined(const SolveOptions& options) {
+PilotGather PilotGathers::Impl::unrefined(const SolveOptions& options) {
   const VertexGatherPoints all(base);
   const GatherPoints points(base.vertex_count(), [&](int v) { return all[v]; });
   GatherOptions gather = gather_options(options);
-  Draft draft{.direct = gather_direct({scene, caster, direct_light}, points, gather),
-              .shadows = gather.shadows,
-              .gather_rays = gather.rays};
+  PilotGather pilot{.direct = gather_direct({scene, caster, direct_light}, points, gather),
+                    .shadows = gather.shadows,
+                    .gather_rays = gather.rays};
   gather.rays = std::max(1, gather.rays / 4);
-  gather.replica += draft_replica;
-  draft.indirect =
+  gather.replica += pilot_replica;
+  pilot.indirect =
       gather_indirect({scene, caster, direct_light}, radiosity, points, gather).indirect;
-  draft.caustic = caustics({scene, caster, direct_light}, options);
-  return draft;
+  pilot.caustic = caustics({scene, caster, direct_light}, options);
+  return pilot;
 }
 
-void Drafting::Impl::prepare(const SolveOptions& options) {
+void PilotGathers::Impl::prepare(const SolveOptions& options) {
   elements.emplace(base);
   even_caustics.emplace(scene, direct_light, options, *elements);
   std::vector<int> base_vertices(static_cast<std::size_t>(base.vertex_count()));
@@ -355,15 +355,15 @@ void Drafting::Impl::prepare(const SolveOptions& options) {
   }
 }
 
-Draft Drafting::Impl::refined(const SolveOptions& options) {
+PilotGather PilotGathers::Impl::refined(const SolveOptions& options) {
   if (!refinement) prepare(options);
   const ChannelLight by_channel{direct_light, radiosity, caustic};
   RefinedSolution found = refinement->refine(options.refine, all_light ? &by_channel : nullptr);
   BandArray at_vertices = even_caustics->at(*elements, found.refined.vertex);
   return {.refined = std::move(found.refined.mesh),
           .tree = std::move(found.refined.tree),
-          .direct = std::move(found.draft.direct),
-          .indirect = std::move(found.draft.indirect),
+          .direct = std::move(found.pilot.direct),
+          .indirect = std::move(found.pilot.indirect),
           .caustic = std::move(at_vertices),
           .interpolation_error = std::move(found.error),
           .refinement = found.report,
@@ -373,45 +373,45 @@ Draft Drafting::Impl::refined(const SolveOptions& options) {
           .gather_rays = found.gather_rays};
 }
 
-void reconstruct(const LitScene& lit, const SolveOptions& options, const Draft& draft,
+void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGather& pilot,
                  RadiositySolution& solution, KeptGathers* kept) {
   const PatchMesh& mesh = lit.mesh();
-  const bool has_caustics = draft.caustic.size() > 0;
+  const bool has_caustics = pilot.caustic.size() > 0;
   const auto with_indirect = [&](const BandArray& indirect) -> BandArray {
-    BandArray irradiance = draft.direct + indirect;
-    if (has_caustics) irradiance += draft.caustic;
+    BandArray irradiance = pilot.direct + indirect;
+    if (has_caustics) irradiance += pilot.caustic;
     return irradiance;
   };
   for (BandArray* before : {&solution.direct_irradiance, &solution.indirect_irradiance}) {
     before->resize(0, before->cols());
   }
   const GatherOptions gather = gather_options(options);
-  BandArray irradiance = with_indirect(draft.indirect);
+  BandArray irradiance = with_indirect(pilot.indirect);
   Eigen::ArrayXf rays;
   const auto gather_in = [&](BandArray of, int one_in, const GatherOptions& with,
                              KeptGather& so_far) {
     BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, of);
     of.resize(0, 0);
-    if (draft.tree) {
+    if (pilot.tree) {
       keep_power(mesh, lit.direct_light, unscaled_radiosity(solution), radiosity);
     }
-    return gather_once(lit, radiosity, with, one_in, draft, so_far, rays);
+    return gather_once(lit, radiosity, with, one_in, pilot, so_far, rays);
   };
   KeptGathers none;
   KeptGathers& so_far = kept ? *kept : none;
-  go_on(draft.number, so_far);
-  solution.direct_irradiance = draft.direct;
-  if (draft.tree) {
+  go_on(pilot.number, so_far);
+  solution.direct_irradiance = pilot.direct;
+  if (pilot.tree) {
     GatherOptions first = gather;
     first.replica += first_replicas;
     // Rays of all around meet what it finds, so that its noise goes down in their mean: with a
     // sixteenth to a half of the rays indirect light in the hall of docs/solvers.md is 0.67 to
-    // 0.65 % off, and 0.85 % where the draft is read.
+    // 0.65 % off, and 0.85 % where the pilot gather is read.
     constexpr int few = 8;
     irradiance =
-        with_indirect(gather_in(std::move(irradiance), few, first, so_far.of_draft).indirect);
-  } else if (draft.shadows.min_rays < gather.shadows.min_rays ||
-             draft.shadows.max_rays < gather.shadows.max_rays) {
+        with_indirect(gather_in(std::move(irradiance), few, first, so_far.of_pilot).indirect);
+  } else if (pilot.shadows.min_rays < gather.shadows.min_rays ||
+             pilot.shadows.max_rays < gather.shadows.max_rays) {
     const VertexGatherPoints all(mesh);
     const GatherPoints points(mesh.vertex_count(), [&](int v) { return all[v]; });
     solution.direct_irradiance = gather_direct(lit, points, gather);
@@ -422,9 +422,9 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const Draft& 
   solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
   solution.gather_noise = gather_noise(
       mesh, channel_sum(std::move(irradiance), lit.scene.bands.count()), gathered.variance, rays);
-  if (has_caustics) solution.indirect_irradiance += draft.caustic;
-  solution.caustic_irradiance = draft.caustic;
-  solution.interpolation_error = draft.interpolation_error;
+  if (has_caustics) solution.indirect_irradiance += pilot.caustic;
+  solution.caustic_irradiance = pilot.caustic;
+  solution.interpolation_error = pilot.interpolation_error;
   if (solution.channels.empty()) return;
   split_columns(solution.direct_irradiance, &LightChannel::direct_irradiance, solution.channels);
   split_columns(solution.indirect_irradiance, &LightChannel::indirect_irradiance,

@@ -210,30 +210,30 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
         elements_in(memory->report().limit - resident_memory().now, kept_apart.column_count());
   }
   const bool may_try_again = target > 0.0;
-  std::optional<Drafting> drafting(std::in_place, scene, std::move(solved.mesh), kept_apart,
-                                   solution, noise_share(target));
-  std::optional<Draft> draft;
+  std::optional<PilotGathers> pilot_gathers(std::in_place, scene, std::move(solved.mesh),
+                                            kept_apart, solution, noise_share(target));
+  std::optional<PilotGather> pilot;
   std::optional<ElementCaster> caster;
   KeptGathers kept;
   for (int attempt = 0;; ++attempt) {
-    if (!draft) {
+    if (!pilot) {
       caster.reset();
-      draft = drafting->draft(in_force);
+      pilot = pilot_gathers->gather(in_force);
       if (attempt == 0 && target > 0.0) {
-        effort.gather_rays = draft->gather_rays;
+        effort.gather_rays = pilot->gather_rays;
         take(effort);
       }
-      if (draft->refined) {
-        solved.mesh = std::move(*draft->refined);
+      if (pilot->refined) {
+        solved.mesh = std::move(*pilot->refined);
       } else {
-        solved.mesh = may_try_again ? drafting->base() : std::move(drafting->base());
+        solved.mesh = may_try_again ? pilot_gathers->base() : std::move(pilot_gathers->base());
       }
-      caster.emplace(drafting->caster(solved.mesh, *draft));
-      if (!may_try_again) drafting.reset();
+      caster.emplace(pilot_gathers->caster(solved.mesh, *pilot));
+      if (!may_try_again) pilot_gathers.reset();
       give_back_free_pages();  // splitting leaves many
-      if (draft->tree) spent["refine"] += watch.lap();
+      if (pilot->tree) spent["refine"] += watch.lap();
     }
-    reconstruct({scene, *caster, kept_apart}, in_force, *draft, solution,
+    reconstruct({scene, *caster, kept_apart}, in_force, *pilot, solution,
                 may_try_again ? &kept : nullptr);
     relight(solved, scales_in_force(solution));
     give_back_free_pages();
@@ -255,22 +255,22 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
     spent["error_estimate"] += watch.lap();
     if (!may_try_again || solution.error_estimate <= target) break;
     const auto next =
-        next_effort(effort, target, estimate.error(), estimate.noise, draft->refinement, attempt);
+        next_effort(effort, target, estimate.error(), estimate.noise, pilot->refinement, attempt);
     if (!next) {
       if (solution.outcome == Outcome::converged) solution.outcome = Outcome::accuracy_missed;
       break;
     }
-    if (next->refine_tolerance < effort.refine_tolerance) draft.reset();
+    if (next->refine_tolerance < effort.refine_tolerance) pilot.reset();
     effort = *next;
     take(effort);
   }
   require_finite(scene, solution);
-  if (draft->tree) solution.provenance.refinement = sentence(draft->refinement);
+  if (pilot->tree) solution.provenance.refinement = sentence(pilot->refinement);
   for (const char* phase : {"refine", "gather", "error_estimate"}) {
     if (spent[phase] > 0.0) seconds.push_back({phase, spent[phase]});
   }
   if (!report) return;
-  report->refinement = draft->refinement;
+  report->refinement = pilot->refinement;
   report->accuracy = target;
   report->gather_rays = effort.gather_rays;
 }

@@ -29,11 +29,11 @@ struct Prediction {
 };
 
 // Of a vertex that is not told.
-Prediction predict(const VertexPrediction& b, const BandArray& draft, const BandArray& values) {
+Prediction predict(const VertexPrediction& b, const BandArray& pilot, const BandArray& values) {
   const float both = b.spread + b.noise;
   const float trusted = both > 0.0f ? b.spread / both : 0.0f;  // of the difference (Wiener 1949)
   return {mean_of_ends(b.at, values) +
-              trusted * (draft.row(b.at.vertex).matrix() - mean_of_ends(b.at, draft)),
+              trusted * (pilot.row(b.at.vertex).matrix() - mean_of_ends(b.at, pilot)),
           trusted * b.noise};
 }
 
@@ -42,8 +42,8 @@ bool is_predicted(const VertexPrediction& b) {
 }
 
 // Per group: how much further predictions are off, in the mean square, than noise explains. (The
-// draft read light as it was before refinement.)
-Eigen::ArrayXd unexplained(std::span<const VertexPrediction> predictions, const BandArray& draft,
+// pilot gather read light as it was before refinement.)
+Eigen::ArrayXd unexplained(std::span<const VertexPrediction> predictions, const BandArray& pilot,
                            const BandArray& values, const Eigen::ArrayXf& variance,
                            std::span<const int> group, int bands) {
   const int groups = group.empty() ? 0 : *std::max_element(group.begin(), group.end()) + 1;
@@ -51,7 +51,7 @@ Eigen::ArrayXd unexplained(std::span<const VertexPrediction> predictions, const 
   for (const VertexPrediction& b : predictions) {
     if (!is_predicted(b)) continue;
     const int v = b.at.vertex;
-    const Prediction predicted = predict(b, draft, values);
+    const Prediction predicted = predict(b, pilot, values);
     Eigen::ArrayXf off = Eigen::ArrayXf::Zero(bands);
     for (Eigen::Index k = 0; k < values.cols(); k += bands) {
       off += (values.row(v).matrix() - predicted.value).segment(k, bands).transpose().array();
@@ -68,10 +68,10 @@ Eigen::ArrayXd unexplained(std::span<const VertexPrediction> predictions, const 
 
 }  // namespace
 
-void combine_with_predictions(std::span<const VertexPrediction> predictions, const BandArray& draft,
+void combine_with_predictions(std::span<const VertexPrediction> predictions, const BandArray& pilot,
                               std::span<const int> group, int bands, BandArray& values,
                               Eigen::ArrayXf& variance) {
-  const Eigen::ArrayXd more = unexplained(predictions, draft, values, variance, group, bands);
+  const Eigen::ArrayXd more = unexplained(predictions, pilot, values, variance, group, bands);
   for (const VertexPrediction& b : predictions) {
     const int v = b.at.vertex;
     float of_ends = 0.0f;  // as if their noise were all alike: some of it is
@@ -82,7 +82,7 @@ void combine_with_predictions(std::span<const VertexPrediction> predictions, con
       variance[v] = of_ends;
     }
     if (!is_predicted(b) || !(variance[v] > 0.0f)) continue;
-    const Prediction predicted = predict(b, draft, values);
+    const Prediction predicted = predict(b, pilot, values);
     const float of_predicted = of_ends + predicted.variance + static_cast<float>(more[group[v]]);
     const float share = variance[v] / (variance[v] + of_predicted);
     values.row(v) = (1.0f - share) * values.row(v).matrix() + share * predicted.value;

@@ -20,24 +20,25 @@ struct InterpolatedVertex {
   int end_count() const { return ends[2] < 0 ? 2 : 4; }
 };
 
-/// A vertex that a split made, and what a draft says of its indirect light against the mean of its
-/// ends; (W/m^2)^2, mean of the bands, channels added.
+/// A vertex that a split made, and what a pilot gather says of its indirect light against the mean
+/// of its ends; (W/m^2)^2, mean of the bands, channels added.
 struct VertexPrediction {
   InterpolatedVertex at{};
   bool is_interpolated = false;                           ///< taken for the mean
   float spread = std::numeric_limits<float>::infinity();  ///< mean square of the difference
-  float noise = std::numeric_limits<float>::infinity();   ///< of the draft, left in the difference
+  float noise =
+      std::numeric_limits<float>::infinity();  ///< of the pilot gather, left in the difference
 };
 
 /// Puts what was gathered at vertices (rows of `values`, of variance `variance`, which becomes what
-/// is left of it) together with what the draft predicts from their ends, each by how sure it is;
-/// interpolated ones have their ends' mean. The draft's rays go the same ways from neighbours, so
-/// that little noise is in differences between them: small elements take their light from many rays
-/// at large ones, and keep what sets them apart. Where predictions of a `group` of vertices (such
-/// as a patch's) turn out worse than noise explains, they count for less. Entries come after all of
-/// their ends. Columns of `bands` for each channel; each is a sum of gathers, some of them less
-/// others, and may fall below 0 by their noise.
-void combine_with_predictions(std::span<const VertexPrediction> predictions, const BandArray& draft,
+/// is left of it) together with what the pilot gather predicts from their ends, each by how sure it
+/// is; interpolated ones have their ends' mean. The pilot gather's rays go the same ways from
+/// neighbours, so that little noise is in differences between them: small elements take their light
+/// from many rays at large ones, and keep what sets them apart. Where predictions of a `group` of
+/// vertices (such as a patch's) turn out worse than noise explains, they count for less. Entries
+/// come after all of their ends. Columns of `bands` for each channel; each is a sum of gathers,
+/// some of them less others, and may fall below 0 by their noise.
+void combine_with_predictions(std::span<const VertexPrediction> predictions, const BandArray& pilot,
                               std::span<const int> group, int bands, BandArray& values,
                               Eigen::ArrayXf& variance);
 

@@ -16,7 +16,7 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t probe_key = 30, parts_key = 31;  // purposes of random keys
-constexpr std::uint64_t draft_replica = 1000;
+constexpr std::uint64_t pilot_replica = 1000;
 constexpr int probe_count = 16;
 // Of it, what may hide in an indirect light that is taken for even: the product of two gathers has
 // none in the mean, and most of what it hides is nothing.
@@ -30,7 +30,7 @@ constexpr double beyond_doubt = 2.0;
 
 // Of each of two gathers, for a final one of `rays`. Where that is as exact as is asked for, fewer
 // do; else predictions made of them show.
-int draft_rays(int rays, bool has_noise_goal) {
+int pilot_rays(int rays, bool has_noise_goal) {
   const int share = has_noise_goal ? 16 : 8;
   return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(1, rays / share))));
 }
@@ -90,7 +90,7 @@ InterpolationError::InterpolationError(const LitScene& lit, const BandArray& rad
     };
   }
   go_on(refine.tolerance);
-  share_draft_rays();
+  share_pilot_rays();
   sharpen_radiosity(caustic, noise);
   std::vector<int> all(static_cast<std::size_t>(elements.base().vertex_count()));
   std::iota(all.begin(), all.end(), 0);
@@ -104,8 +104,8 @@ void InterpolationError::go_on(double tolerance) {
 }
 
 // Crumbs take fewer, but none so few that noise hides what there is to be seen.
-void InterpolationError::share_draft_rays() {
-  const int rays = draft_rays(options_.rays, has_noise_goal_);
+void InterpolationError::share_pilot_rays() {
+  const int rays = pilot_rays(options_.rays, has_noise_goal_);
   rays_ = share_rays(elements_.base(), {}, rays);
   for (int& share : rays_) share = std::min(2 * share, rays);
 }
@@ -202,8 +202,8 @@ GatheredIrradiance InterpolationError::indirect_at(const std::vector<int>& verti
     point.rays = rays_[static_cast<std::size_t>(v)];
   }
   GatherOptions options = options_;
-  options.rays = draft_rays(options_.rays, has_noise_goal_);
-  options.replica = options_.replica + draft_replica + replica;
+  options.rays = pilot_rays(options_.rays, has_noise_goal_);
+  options.replica = options_.replica + pilot_replica + replica;
   return gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);
 }
 
@@ -223,8 +223,8 @@ void InterpolationError::sharpen_radiosity(const BandArray& caustic, double nois
       Eigen::Map<const Eigen::ArrayXi>(rays_.data(), mesh.vertex_count()).cast<float>();
   const double found =
       rms_noise(mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays));
-  options_.rays = rays_for_noise(draft_rays(options_.rays, has_noise_goal_), found, noise);
-  share_draft_rays();
+  options_.rays = rays_for_noise(pilot_rays(options_.rays, has_noise_goal_), found, noise);
+  share_pilot_rays();
 }
 
 void InterpolationError::gather_indirect_at(const std::vector<int>& vertices) {

@@ -103,7 +103,7 @@ class InterpolationError {
   void shrink_to_fit();
 
  private:
-  void share_draft_rays();
+  void share_pilot_rays();
   void sharpen_radiosity(const BandArray& caustic, double noise);
   void find_what_matters();
   GatherPoint gather_point(int vertex) const;

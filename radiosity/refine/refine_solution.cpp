@@ -339,11 +339,11 @@ RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
   error.shrink_to_fit();
   result.predictions = error.predictions(result.refined.vertex, result.interpolated);
   if (by_channel) {
-    result.draft = error.values_by_channel(result.refined.vertex, result.interpolated, *by_channel);
+    result.pilot = error.values_by_channel(result.refined.vertex, result.interpolated, *by_channel);
   } else {
-    result.draft = error.values(result.refined.vertex);
+    result.pilot = error.values(result.refined.vertex);
     // Some were gathered before others told of them: as with channels, those have the last word.
-    interpolate_vertices(result.interpolated, result.draft.indirect);
+    interpolate_vertices(result.interpolated, result.pilot.indirect);
   }
   const PatchMesh& mesh = result.refined.mesh;
   result.error = Eigen::ArrayXf::Zero(mesh.element_count());

@@ -60,10 +60,11 @@ struct ChannelLight {
 /// Refined elements, and a first gather at their vertices.
 struct RefinedSolution {
   RefinedMesh refined{};
-  GatheredIrradiance draft{};  ///< vertices x bands; the direct light is as good as it gets
+  GatheredIrradiance pilot{};  ///< vertices x bands; the direct light is as good as it gets
   std::vector<InterpolatedVertex>
       interpolated{};  ///< where the final gather of indirect light may be left out
-  std::vector<VertexPrediction> predictions{};  ///< what the draft says of the others, and of these
+  std::vector<VertexPrediction>
+      predictions{};  ///< what the pilot gather says of the others, and of these
   /// Per element: estimated relative RMS error of interpolation over it, with half of what noise
   /// may hide, in the square.
   Eigen::ArrayXf error{};
@@ -92,7 +93,7 @@ class SolutionRefinement {
 
   /// Splits until the tolerance is reached, and goes on from there when it is called again: what
   /// was gathered is kept. Of `options` only the tolerance may have changed. With `by_channel` the
-  /// draft is of that light, which has the same sum.
+  /// pilot gather is of that light, which has the same sum.
   RefinedSolution refine(const RefineOptions& options, const ChannelLight* by_channel = nullptr);
 
  private:

@@ -44,8 +44,8 @@ TEST(InterpolatedVertices, AreMeansOfTheirEnds) {
   EXPECT_FLOAT_EQ(values(4, 0), 2.75f);
 }
 
-// Two ends of 2 and 4, and between them a vertex whose rays said 9 with a variance of 8; the draft
-// had 10, 12 and between them 13, two above their mean.
+// Two ends of 2 and 4, and between them a vertex whose rays said 9 with a variance of 8; the pilot
+// gather had 10, 12 and between them 13, two above their mean.
 class BetweenTwo : public testing::Test {
  protected:
   void join(float spread, float noise, bool is_interpolated = false) {
@@ -53,13 +53,13 @@ class BetweenTwo : public testing::Test {
     values << 2.0f, 4.0f, 9.0f;
     variance.resize(3);
     variance << 1.0f, 1.0f, 8.0f;
-    BandArray draft(3, 1);
-    draft << 10.0f, 12.0f, 13.0f;
+    BandArray pilot(3, 1);
+    pilot << 10.0f, 12.0f, 13.0f;
     const std::vector<VertexPrediction> between{{.at = {.vertex = 2, .ends = {0, 1, -1, -1}},
                                                  .is_interpolated = is_interpolated,
                                                  .spread = spread,
                                                  .noise = noise}};
-    combine_with_predictions(between, draft, group, 1, values, variance);
+    combine_with_predictions(between, pilot, group, 1, values, variance);
     EXPECT_EQ(values(0, 0), 2.0f);
     EXPECT_EQ(values(1, 0), 4.0f);
   }
@@ -69,7 +69,7 @@ class BetweenTwo : public testing::Test {
   Eigen::ArrayXf variance;
 };
 
-TEST_F(BetweenTwo, WhatADraftKnowsWellCountsByHowSureItIs) {
+TEST_F(BetweenTwo, WhatAPilotGatherKnowsWellCountsByHowSureItIs) {
   // A difference known exactly predicts 3 + 2 with the ends' variance of 1. It is off by 4 where
   // 8 + 2/4 are explained: by 7.5 more in the mean square.
   join(4.0f, 0.0f);
@@ -111,18 +111,18 @@ TEST(InterpolatedVertices, GiveTheirAreaToTheirEnds) {
   for (std::size_t v = 1; v < rays.size(); ++v) EXPECT_EQ(rays[v], 0);
 }
 
-// A finer draft has the coarser one's vertices, by the same numbers and with the same light, and
-// gathers no more than one that was made at once. (But for the few that closed elements against
+// A finer pilot gather has the coarser one's vertices, by the same numbers and with the same light,
+// and gathers no more than one that was made at once. (But for the few that closed elements against
 // finer neighbours, and go when the elements are split themselves.)
-TEST(Drafting, GoesOnWhereItEnded) {
+TEST(PilotGathers, GoesOnWhereItEnded) {
   Room room(0.03);
   const DirectLight direct_light(room.scene, room.patches.mesh);
-  Drafting drafting(room.scene, room.patches.mesh, direct_light, room.patches.solution);
-  const Draft coarse = drafting.draft(room.options);
+  PilotGathers pilot_gathers(room.scene, room.patches.mesh, direct_light, room.patches.solution);
+  const PilotGather coarse = pilot_gathers.gather(room.options);
   room.options.refine.tolerance = 0.01;
-  const Draft fine = drafting.draft(room.options);
-  Drafting at_once(room.scene, room.patches.mesh, direct_light, room.patches.solution);
-  const Draft other = at_once.draft(room.options);
+  const PilotGather fine = pilot_gathers.gather(room.options);
+  PilotGathers at_once(room.scene, room.patches.mesh, direct_light, room.patches.solution);
+  const PilotGather other = at_once.gather(room.options);
   ASSERT_TRUE(coarse.refined && fine.refined && other.refined);
   std::printf("%d elements with %lld gathers, %d with %lld; at once %d with %lld\n",
               coarse.refined->element_count(), static_cast<long long>(coarse.refinement.gathers),
@@ -158,51 +158,51 @@ TEST(Drafting, GoesOnWhereItEnded) {
 
 // Interpolated vertices lie between others of the mesh, which come first where they are
 // interpolated themselves.
-TEST(Drafting, InterpolatesIndirectLightFromVerticesOfTheMesh) {
+TEST(PilotGathers, InterpolatesIndirectLightFromVerticesOfTheMesh) {
   Room room(0.02);
   room.options.gather.rays = 2048;
   const DirectLight direct_light(room.scene, room.patches.mesh);
-  Drafting drafting(room.scene, room.patches.mesh, direct_light, room.patches.solution);
-  const Draft draft = drafting.draft(room.options);
-  ASSERT_TRUE(draft.refined);
-  std::printf("%zu of %d vertices are interpolated\n", draft.interpolated.size(),
-              draft.refined->vertex_count());
-  EXPECT_GT(draft.interpolated.size(), 0u);
+  PilotGathers pilot_gathers(room.scene, room.patches.mesh, direct_light, room.patches.solution);
+  const PilotGather pilot = pilot_gathers.gather(room.options);
+  ASSERT_TRUE(pilot.refined);
+  std::printf("%zu of %d vertices are interpolated\n", pilot.interpolated.size(),
+              pilot.refined->vertex_count());
+  EXPECT_GT(pilot.interpolated.size(), 0u);
   std::set<int> still_to_come;
-  for (const InterpolatedVertex& t : draft.interpolated) still_to_come.insert(t.vertex);
-  for (const InterpolatedVertex& t : draft.interpolated) {
+  for (const InterpolatedVertex& t : pilot.interpolated) still_to_come.insert(t.vertex);
+  for (const InterpolatedVertex& t : pilot.interpolated) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (int i = 0; i < t.end_count(); ++i) {
       EXPECT_FALSE(still_to_come.contains(t.ends[i]));
-      mean += draft.refined->position(t.ends[i]) / t.end_count();
+      mean += pilot.refined->position(t.ends[i]) / t.end_count();
     }
     still_to_come.erase(t.vertex);
     // In the room's 3 m, to the rounding of single precision.
-    EXPECT_LT((mean - draft.refined->position(t.vertex)).norm(), 1e-6);
+    EXPECT_LT((mean - pilot.refined->position(t.vertex)).norm(), 1e-6);
   }
 }
 
 TEST(Reconstruct, AddsToWhatIsKept) {
   Room room(0.03);
   const DirectLight direct_light(room.scene, room.patches.mesh);
-  Drafting drafting(room.scene, room.patches.mesh, direct_light, room.patches.solution);
-  const Draft draft = drafting.draft(room.options);
-  const ElementCaster caster(*draft.refined);
+  PilotGathers pilot_gathers(room.scene, room.patches.mesh, direct_light, room.patches.solution);
+  const PilotGather pilot = pilot_gathers.gather(room.options);
+  const ElementCaster caster(*pilot.refined);
   KeptGathers kept;
   RadiositySolution solution = room.patches.solution;
   const auto gather = [&](int rays) {
     room.options.gather.rays = rays;
-    reconstruct({room.scene, caster, direct_light}, room.options, draft, solution, &kept);
+    reconstruct({room.scene, caster, direct_light}, room.options, pilot, solution, &kept);
     return BandArray(solution.indirect_irradiance);
   };
   const BandArray first = gather(64);
-  const double noise = rms_noise(*draft.refined, solution.gather_noise);
+  const double noise = rms_noise(*pilot.refined, solution.gather_noise);
   EXPECT_TRUE((gather(64) == first).all());  // nothing is missing
   const BandArray second = gather(128);
   EXPECT_FALSE((second == first).all());
   // Two independent gathers of 64 rays: half of the variance, which some 1000 vertices tell to a
   // few percent.
-  const double left = rms_noise(*draft.refined, solution.gather_noise) / noise;
+  const double left = rms_noise(*pilot.refined, solution.gather_noise) / noise;
   std::printf("noise of twice the rays: %.3f of that of once\n", left);
   EXPECT_NEAR(left, std::sqrt(0.5), 0.07);
 }

@@ -23,12 +23,12 @@ Spectrum even(float factor) {
   return Spectrum::Constant(3, factor);
 }
 
-// A float holds 2^-24 = 6e-8 of itself. From patches by way of vertices, draft and final gather
-// some ten roundings follow each other, of values that are no larger than the largest; caustics add
-// up some hundred floats at a vertex, with ten times the rounding of one. Twice that.
+// A float holds 2^-24 = 6e-8 of itself. From patches by way of vertices, pilot gather and final
+// gather some ten roundings follow each other, of values that are no larger than the largest;
+// caustics add up some hundred floats at a vertex, with ten times the rounding of one. Twice that.
 constexpr double rounding = 1.2e-6;
-// Where elements were refined, gathers are joined with a draft's predictions by weights that go by
-// their variances. Those are squares of differences of a percent or two, in which some four
+// Where elements were refined, gathers are joined with a pilot gather's predictions by weights that
+// go by their variances. Those are squares of differences of a percent or two, in which some four
 // roundings of 6e-8 are 1e-5 or 2e-5, and twice that when squared; what predictions are off beyond
 // them is the small difference of several, good to 1e-4. A weight off by that moves a value by as
 // much of what gather and prediction are apart: a tenth of the light at most.
