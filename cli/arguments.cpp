@@ -10,7 +10,7 @@
 #include "cli/memory_size.h"
 #include "cli/refinement.h"
 #include "mesh/build_patches.h"
-#include "radiosity/in_force.h"
+#include "radiosity/effective_options.h"
 #include "radiosity/paths/caustic_photons.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"

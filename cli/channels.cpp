@@ -99,7 +99,7 @@ void add_channel_settings(CLI::App& command, ChannelSettings& settings) {
 
 std::vector<Spectrum> channel_scales(const RadiositySolution& solution,
                                      const ChannelSettings& settings, const std::string& file) {
-  std::vector<Spectrum> scales = scales_in_force(solution);
+  std::vector<Spectrum> scales = effective_scales(solution);
   try {
     for (const auto& [name, setting] : settings) {
       const auto c = static_cast<std::size_t>(find_channel(solution, name));

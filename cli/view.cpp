@@ -236,10 +236,10 @@ std::vector<Eigen::Vector2d> pixels(const std::string& text, const char* option,
   std::vector<double> numbers;
   const char* at = text.data();
   const char* const last = at + text.size();
-  for (bool goes_on = true; goes_on;) {
+  for (bool has_more = true; has_more;) {
     const auto [end, bad] = std::from_chars(at, last, numbers.emplace_back());
-    goes_on = bad == std::errc() && end != last && *end == ',';
-    at = bad == std::errc() ? end + (goes_on ? 1 : 0) : nullptr;
+    has_more = bad == std::errc() && end != last && *end == ',';
+    at = bad == std::errc() ? end + (has_more ? 1 : 0) : nullptr;
   }
   if (at != last || numbers.size() % 2 != 0 || numbers.size() > 2 * most) {
     throw CLI::ValidationError(

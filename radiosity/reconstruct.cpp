@@ -176,7 +176,7 @@ void take_rows(const std::vector<int>& row, KeptGather& kept) {
 }
 
 // Goes on to the vertices of another pilot gather.
-void go_on(const std::vector<int>& number, KeptGathers& kept) {
+void carry_over(const std::vector<int>& number, KeptGathers& kept) {
   if (kept.number == number) return;
   int numbers = 0;
   for (const int n : kept.number) numbers = std::max(numbers, n + 1);
@@ -399,7 +399,7 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
   };
   KeptGathers none;
   KeptGathers& so_far = kept ? *kept : none;
-  go_on(pilot.number, so_far);
+  carry_over(pilot.number, so_far);
   solution.direct_irradiance = pilot.direct;
   if (pilot.tree) {
     GatherOptions first = gather;

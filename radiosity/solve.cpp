@@ -11,10 +11,10 @@
 #include <string>
 
 #include "mesh/build_patches.h"
+#include "radiosity/effective_options.h"
 #include "radiosity/emitters/lit_scene.h"
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
-#include "radiosity/in_force.h"
 #include "radiosity/journal/journal.h"
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/reconstruct.h"
@@ -184,11 +184,11 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
                          SolvedScene& solved, std::vector<PhaseSeconds>& seconds,
                          SolveReport* report) {
   const double target = target_of(scene, options, solved);
-  SolveOptions in_force = options;
+  SolveOptions effective = options;
   const auto take = [&](const Effort& effort) {
-    in_force.refine.tolerance = effort.refine_tolerance;
-    in_force.gather.rays = effort.gather_rays;
-    if (target > 0.0) in_force.gather.shadows = effort.shadows();
+    effective.refine.tolerance = effort.refine_tolerance;
+    effective.gather.rays = effort.gather_rays;
+    if (target > 0.0) effective.gather.shadows = effort.shadows();
   };
   Effort effort{options.refine.tolerance, options.gather.rays};
   if (target > 0.0) effort = first_effort(target, options.refine.tolerance > 0.0);
@@ -199,14 +199,14 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   if (target > 0.0) {
     // In the end the edges of shadows are what is left, on whatever large elements they lie.
     constexpr int deeper = 3;
-    in_force.refine.max_level += deeper;
+    effective.refine.max_level += deeper;
     // Who asks for an accuracy asks for the elements it takes; about 1 GB of them.
     constexpr std::int64_t plenty = 1000000;
-    auto& most = in_force.refine.max_elements;
+    auto& most = effective.refine.max_elements;
     if (most == 0) most = std::max<std::int64_t>(plenty, 4 * solved.mesh.element_count());
   }
   if (const auto memory = options.form_factors.memory) {
-    in_force.refine.room =
+    effective.refine.room =
         elements_in(memory->report().limit - resident_memory().now, kept_apart.column_count());
   }
   const bool may_try_again = target > 0.0;
@@ -218,7 +218,7 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
   for (int attempt = 0;; ++attempt) {
     if (!pilot) {
       caster.reset();
-      pilot = pilot_gathers->gather(in_force);
+      pilot = pilot_gathers->gather(effective);
       if (attempt == 0 && target > 0.0) {
         effort.gather_rays = pilot->gather_rays;
         take(effort);
@@ -233,14 +233,14 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
       give_back_free_pages();  // splitting leaves many
       if (pilot->tree) spent["refine"] += watch.lap();
     }
-    reconstruct({scene, *caster, kept_apart}, in_force, *pilot, solution,
+    reconstruct({scene, *caster, kept_apart}, effective, *pilot, solution,
                 may_try_again ? &kept : nullptr);
-    relight(solved, scales_in_force(solution));
+    relight(solved, effective_scales(solution));
     give_back_free_pages();
     spent["gather"] += watch.lap();
     Eigen::ArrayXf& of_elements = solution.interpolation_error;
     const auto look = [&](int batch, Eigen::ArrayXf* elements) {
-      return estimate_error({scene, *caster, direct_light}, in_force, solution, elements, batch);
+      return estimate_error({scene, *caster, direct_light}, effective, solution, elements, batch);
     };
     ErrorEstimate estimate = look(0, of_elements.size() == 0 ? &of_elements : nullptr);
     // Where the places leave open whether that is what was asked for, more of them cost less than

@@ -110,7 +110,7 @@ class ProbeSurface {
   // A neighbour in nearly the same plane counts as an end: at their common edge it would shade.
   bool is_inside(const Place& place, const Eigen::Vector3d& position, const Frame& frame,
                  double radius) const {
-    const auto goes_on = [&](const Eigen::Vector3d& at) {
+    const auto continues = [&](const Eigen::Vector3d& at) {
       const auto other = below(at, frame.normal);
       return other && other->hit.facet == place.hit.facet;
     };
@@ -120,7 +120,8 @@ class ProbeSurface {
                     .t_max = 2.0 * radius};
       std::uint8_t blocked = 0;
       caster_.occluded({&ray, 1}, {&blocked, 1});
-      if (blocked || !goes_on(position - radius * along) || !goes_on(position + radius * along)) {
+      if (blocked || !continues(position - radius * along) ||
+          !continues(position + radius * along)) {
         return false;
       }
     }

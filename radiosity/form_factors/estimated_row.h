@@ -12,7 +12,7 @@ namespace lightwell {
 struct EstimatedRow {
   /// How much S_ij = A_i F_ij from this row counts against S_ji from the other end: the inverse of
   /// its variance, up to a factor common to all rows of a method. 0: the row is empty.
-  double trust = 0.0;
+  double inverse_variance = 0.0;
   std::vector<FormFactor> shares{};  ///< first arrivals at diffuse patches, ordered by patch
   /// Per share, if asked for: rays that would have met the front of the patch, had nothing stood
   /// before it.
@@ -27,7 +27,7 @@ struct EstimatedRow {
 
 /// What of a row is needed after `hidden` was looked at.
 inline auto kept_parts(EstimatedRow& row) {
-  return std::tie(row.trust, row.shares, row.escaped, row.specular, row.specular_patch,
+  return std::tie(row.inverse_variance, row.shares, row.escaped, row.specular, row.specular_patch,
                   row.specular_share, row.specular_escaped, row.absorbed, row.cut, row.rays);
 }
 

@@ -65,7 +65,9 @@ class Assembly {
 
   // Both ends of a pair estimate S; the sum that gives each its trust has the least variance.
   void join() {
-    const auto weight = [&](int i) { return static_cast<float>(rows_.trust(i) * mesh_.area[i]); };
+    const auto weight = [&](int i) {
+      return static_cast<float>(rows_.inverse_variance(i) * mesh_.area[i]);
+    };
     fold_symmetric(
         rows_.shares(),
         [&](int i, RecordSpan row, RecordSpan column) {
@@ -85,7 +87,8 @@ class Assembly {
             if (own) sum += weight(i) * static_cast<double>(share(own));
             if (other) sum += weight(j) * static_cast<double>(share(other));
             joined.push_back(Exchange::of(
-                j, Exchange::sampled, static_cast<float>(sum / (rows_.trust(i) + rows_.trust(j)))));
+                j, Exchange::sampled,
+                static_cast<float>(sum / (rows_.inverse_variance(i) + rows_.inverse_variance(j)))));
           });
           add_known_before(n_);
           S_.append(i, joined);

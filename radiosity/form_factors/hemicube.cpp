@@ -23,7 +23,7 @@ class Tally {
   EstimatedRow row(int patch, const HemicubeEye& eye, std::span<const int> items) {
     const PatchMesh& mesh = caster_.mesh();
     const int bands = static_cast<int>(mesh.reflectance.cols());
-    row_ = {.trust = 1.0 / mesh.area[patch]};
+    row_ = {.inverse_variance = 1.0 / mesh.area[patch]};
     specular_escaped_ = absorbed_ = cut_ = Eigen::ArrayXd::Zero(bands);
     key_ = random_key(static_cast<std::uint64_t>(patch), hemicube_branches);
     const int n = cells_.resolution();
@@ -165,7 +165,7 @@ void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
             any_holes && mesh.textures->has_holes(mesh.facet[mesh.first_element[i]]);
         if (has_holes || caster.hidden_elements(i) > 0) {
           row = row_caster.cast(i, rays_where_covered, ray_scratch);
-          row.trust = 1.0 / mesh.area[i];
+          row.inverse_variance = 1.0 / mesh.area[i];
         } else {
           const HemicubeEye eye = hemicube_eye(mesh, i, !by_rays);
           if (by_rays) {

@@ -85,7 +85,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   const PatchMesh& mesh = caster_.mesh();
   if (!paths_.is_diffuse(mesh.facet[mesh.first_element[patch]]) || rays <= 0) return {};
   const int bands = static_cast<int>(mesh.reflectance.cols());
-  EstimatedRow row{.trust = rays / mesh.area[patch],
+  EstimatedRow row{.inverse_variance = rays / mesh.area[patch],
                    .specular_escaped = Spectrum::Zero(bands),
                    .absorbed = Spectrum::Zero(bands),
                    .cut = Spectrum::Zero(bands),

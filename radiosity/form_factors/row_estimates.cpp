@@ -10,13 +10,13 @@ RowEstimates::RowEstimates(const std::shared_ptr<MemoryBudget>& budget, int patc
       specular_shares_(budget, patches,
                        sizeof(int) + sizeof(float) * static_cast<std::size_t>(bands),
                        RecordStore::Count::below_diagonal),
-      trust_(Eigen::ArrayXd::Zero(patches)),
-      escaped_(trust_),
-      specular_(trust_),
-      rays_(trust_) {}
+      inverse_variance_(Eigen::ArrayXd::Zero(patches)),
+      escaped_(inverse_variance_),
+      specular_(inverse_variance_),
+      rays_(inverse_variance_) {}
 
 void RowEstimates::add(int i, const EstimatedRow& row) {
-  trust_[i] = row.trust;
+  inverse_variance_[i] = row.inverse_variance;
   escaped_[i] = row.escaped;
   specular_[i] = row.specular;
   rays_[i] = row.rays;
@@ -33,8 +33,8 @@ void RowEstimates::add_specular(int i, const EstimatedRow& row) {
     const std::lock_guard lock(*specular_mutex_);
     if (!has_specular_) {
       has_specular_ = true;
-      specular_sum_.setZero(trust_.size(), bands_);
-      specular_escaped_ = absorbed_ = cut_ = BandArray::Zero(trust_.size(), bands_);
+      specular_sum_.setZero(inverse_variance_.size(), bands_);
+      specular_escaped_ = absorbed_ = cut_ = BandArray::Zero(inverse_variance_.size(), bands_);
     }
   }
   specular_sum_.row(i) = row.specular_share.cast<double>().colwise().sum();

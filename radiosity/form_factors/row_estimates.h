@@ -17,10 +17,10 @@ class RowEstimates {
   void add(int i, const EstimatedRow& row);
   void close();
 
-  int patch_count() const { return static_cast<int>(trust_.size()); }
+  int patch_count() const { return static_cast<int>(inverse_variance_.size()); }
   int bands() const { return bands_; }
-  double trust(int i) const { return trust_[i]; }
-  bool is_measured(int i) const { return trust_[i] > 0.0; }
+  double inverse_variance(int i) const { return inverse_variance_[i]; }
+  bool is_measured(int i) const { return inverse_variance_[i] > 0.0; }
   double escaped(int i) const { return escaped_[i]; }
   double specular(int i) const { return specular_[i]; }  ///< first met a mirror or glass
   double rays(int i) const { return rays_[i]; }
@@ -43,7 +43,7 @@ class RowEstimates {
 
   int bands_ = 0;
   RecordStore shares_, specular_shares_;
-  Eigen::ArrayXd trust_, escaped_, specular_, rays_;
+  Eigen::ArrayXd inverse_variance_, escaped_, specular_, rays_;
   std::unique_ptr<std::mutex> specular_mutex_ = std::make_unique<std::mutex>();  // to be moved
   bool has_specular_ = false;
   Eigen::ArrayXXd specular_sum_;  // patches x bands, as those below

@@ -19,7 +19,9 @@ Values values_of(const std::byte* record, int bands) {
 RecordStore joined(const PatchMesh& mesh, RowEstimates& rows,
                    const std::shared_ptr<MemoryBudget>& budget) {
   const int bands = rows.bands();
-  const auto weight = [&](int i) { return static_cast<float>(rows.trust(i) * mesh.area[i]); };
+  const auto weight = [&](int i) {
+    return static_cast<float>(rows.inverse_variance(i) * mesh.area[i]);
+  };
   RecordStore S(budget, rows.patch_count(), rows.specular_shares().record_bytes(),
                 RecordStore::Count::above_diagonal);
   fold_symmetric(
@@ -31,7 +33,7 @@ RecordStore joined(const PatchMesh& mesh, RowEstimates& rows,
           Spectrum sum = Spectrum::Zero(bands);
           if (own) sum += values_of(own, bands).transpose() * weight(i);
           if (other) sum += values_of(other, bands).transpose() * weight(j);
-          sum /= static_cast<float>(rows.trust(i) + rows.trust(j));
+          sum /= static_cast<float>(rows.inverse_variance(i) + rows.inverse_variance(j));
           records.resize(++count * S.record_bytes());
           std::byte* const to = records.data() + records.size() - S.record_bytes();
           std::memcpy(to, &j, sizeof j);

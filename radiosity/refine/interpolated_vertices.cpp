@@ -31,10 +31,10 @@ struct Prediction {
 // Of a vertex that is not told.
 Prediction predict(const VertexPrediction& b, const BandArray& pilot, const BandArray& values) {
   const float both = b.spread + b.noise;
-  const float trusted = both > 0.0f ? b.spread / both : 0.0f;  // of the difference (Wiener 1949)
+  const float weight = both > 0.0f ? b.spread / both : 0.0f;  // of the difference (Wiener 1949)
   return {mean_of_ends(b.at, values) +
-              trusted * (pilot.row(b.at.vertex).matrix() - mean_of_ends(b.at, pilot)),
-          trusted * b.noise};
+              weight * (pilot.row(b.at.vertex).matrix() - mean_of_ends(b.at, pilot)),
+          weight * b.noise};
 }
 
 bool is_predicted(const VertexPrediction& b) {

@@ -89,7 +89,7 @@ InterpolationError::InterpolationError(const LitScene& lit, const BandArray& rad
       return progress("refine", share);
     };
   }
-  go_on(refine.tolerance);
+  set_tolerance(refine.tolerance);
   share_pilot_rays();
   sharpen_radiosity(caustic, noise);
   std::vector<int> all(static_cast<std::size_t>(elements.base().vertex_count()));
@@ -98,7 +98,7 @@ InterpolationError::InterpolationError(const LitScene& lit, const BandArray& rad
   find_what_matters();
 }
 
-void InterpolationError::go_on(double tolerance) {
+void InterpolationError::set_tolerance(double tolerance) {
   constexpr double share = 0.3;  // a tenth of the squared error that is allowed, at worst
   even_ = std::pow(share * tolerance, 2);
 }

@@ -60,8 +60,8 @@ class InterpolationError {
                      const RefineOptions& refine, double noise);
 
   /// Goes on to another tolerance: what was gathered is kept.
-  void go_on(double tolerance);
-  /// Whether measure() would see more now than it did before go_on().
+  void set_tolerance(double tolerance);
+  /// Whether measure() would see more now than it did before set_tolerance().
   bool is_stale(int cell) const;
   /// Of the final gather.
   int rays() const { return options_.rays; }

@@ -329,7 +329,7 @@ SolutionRefinement::~SolutionRefinement() = default;
 RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
                                            const ChannelLight* by_channel) {
   auto& [elements, error, refinement] = *impl_;
-  error.go_on(options.tolerance);
+  error.set_tolerance(options.tolerance);
   RefinedSolution result;
   result.report = refinement.run(options.tolerance);
   result.refined = elements.mesh();

@@ -190,7 +190,7 @@ void scale_sources(SolvedScene& solved) {
   }
 }
 
-std::vector<Spectrum> scales_in_force(const RadiositySolution& solution) {
+std::vector<Spectrum> effective_scales(const RadiositySolution& solution) {
   std::vector<Spectrum> scales;
   for (const LightChannel& channel : solution.channels) scales.push_back(channel.scale);
   return scales;

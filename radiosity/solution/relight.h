@@ -43,7 +43,7 @@ void relight(SolvedScene& solved, std::span<const Spectrum> scales);
 void scale_sources(SolvedScene& solved);
 
 /// The scales in force.
-std::vector<Spectrum> scales_in_force(const RadiositySolution& solution);
+std::vector<Spectrum> effective_scales(const RadiositySolution& solution);
 
 /// Flux that a channel's emitters give with its scale in force, W per band.
 Spectrum emitted_flux(const LightChannel& channel);

@@ -41,12 +41,12 @@ LightVector solve_by_conjugate_gradients(SolverRun& run) {
   const UniformLight uniform(run);
   LightVector B = run.start(), r = system.residual(B);
   uniform.correct(r, B);
-  while (run.goes_on(SolverMethod::conjugate_gradients, B, r)) {
+  while (run.should_continue(SolverMethod::conjugate_gradients, B, r)) {
     LightVector p = r;
     uniform.deflate(weight, r, p);
     LaneArray rr = weighted_dot(weight, r, r), least = rr;
-    bool goes_on = true, is_astray = false;
-    while (goes_on && !is_astray) {
+    bool should_continue = true, is_astray = false;
+    while (should_continue && !is_astray) {
       const LightVector q = system.product(p);
       const LaneArray alpha = quotient(rr, weighted_dot(weight, p, q));
       add(B, alpha, p);
@@ -60,9 +60,9 @@ LightVector solve_by_conjugate_gradients(SolverRun& run) {
       constexpr double grown = 1e4;
       least = least.min(rr);
       is_astray = (rr > grown * least).any();
-      goes_on = run.goes_on(SolverMethod::conjugate_gradients, B, r);
+      should_continue = run.should_continue(SolverMethod::conjugate_gradients, B, r);
     }
-    if (!goes_on && run.outcome() != Outcome::converged) break;
+    if (!should_continue && run.outcome() != Outcome::converged) break;
     r = system.residual(B);  // r was carried along, with rounding
     uniform.correct(r, B);
   }
@@ -75,25 +75,25 @@ LightVector solve_by_bicgstab(SolverRun& run) {
     return weighted_dot(system.area, a, b);
   };
   LightVector B = run.start(), r = system.residual(B);
-  while (run.goes_on(SolverMethod::bicgstab, B, r)) {
+  while (run.should_continue(SolverMethod::bicgstab, B, r)) {
     const LightVector shadow = r;
     LightVector p = r;
     LaneArray rho = dot(shadow, r);
     const LaneArray first = rho;
-    bool goes_on = true, is_stuck = false;
-    while (goes_on && !is_stuck) {
+    bool should_continue = true, is_stuck = false;
+    while (should_continue && !is_stuck) {
       const LightVector v = system.product(p);
       const LaneArray alpha = quotient(rho, dot(shadow, v));
       add(B, alpha, p);
       add(r, -alpha, v);
-      goes_on = run.goes_on(SolverMethod::bicgstab, B, r);
-      if (!goes_on) break;
+      should_continue = run.should_continue(SolverMethod::bicgstab, B, r);
+      if (!should_continue) break;
       const LightVector t = system.product(r);
       const LaneArray omega = quotient(dot(t, r), dot(t, t));
       add(B, omega, r);
       add(p, -omega, v);
       add(r, -omega, t);
-      goes_on = run.goes_on(SolverMethod::bicgstab, B, r);
+      should_continue = run.should_continue(SolverMethod::bicgstab, B, r);
       const LaneArray next = dot(shadow, r);
       scale_and_add(p, quotient(next, rho) * quotient(alpha, omega), r);
       // Once the residual is at right angles to the first one there is no way on from here.
@@ -125,7 +125,7 @@ LightVector solve_by_gmres(SolverRun& run) {
     return weighted_dot(system.area, x, x).sqrt();
   };
   LightVector B = run.start(), r = system.residual(B);
-  while (run.goes_on(SolverMethod::gmres, B, r)) {
+  while (run.should_continue(SolverMethod::gmres, B, r)) {
     // Arnoldi: A V_m = V_m+1 H, each band with an H of its own.
     std::vector<Eigen::MatrixXd> H(static_cast<std::size_t>(lanes),
                                    Eigen::MatrixXd::Zero(most + 1, most));
@@ -133,8 +133,8 @@ LightVector solve_by_gmres(SolverRun& run) {
     std::vector<LightVector> V{LightVector::Zero(r.rows(), r.cols())};
     add(V[0], quotient(LaneArray::Ones(lanes), first), r);
     LightVector better, left;
-    bool goes_on = true;
-    for (int m = 0; m < most && goes_on; ++m) {
+    bool should_continue = true;
+    for (int m = 0; m < most && should_continue; ++m) {
       LightVector w = system.product(V[m]);
       for (int i = 0; i <= m; ++i) {
         const LaneArray h = weighted_dot(system.area, w, V[i]);
@@ -156,10 +156,10 @@ LightVector solve_by_gmres(SolverRun& run) {
       left = r;
       for (int i = 0; i <= m; ++i) add(better, y.row(i), V[i]);
       for (int i = 0; i <= m + 1; ++i) add(left, -Hy.row(i), V[i]);
-      goes_on = run.goes_on(SolverMethod::gmres, better, left);
+      should_continue = run.should_continue(SolverMethod::gmres, better, left);
     }
     B = better;
-    if (!goes_on && run.outcome() != Outcome::converged) break;
+    if (!should_continue && run.outcome() != Outcome::converged) break;
     r = system.residual(B);
   }
   return B;

@@ -115,7 +115,7 @@ LightVector solve_by_southwell(SolverRun& run) {
   const std::size_t factors = count_factors(run.system.form_factors());
   LightVector B = run.start(), r = run.system.residual(B);
   Shooter shooter(run.system, B, r);
-  while (run.goes_on(SolverMethod::southwell, B, r)) {
+  while (run.should_continue(SolverMethod::southwell, B, r)) {
     run.system.pass([&] { shooter.shoot_for(factors); }, B, r);
     r = run.system.residual(B);  // reciprocity holds but for rounding
   }

@@ -51,7 +51,7 @@ class Relaxation {
 
 LightVector solve_by_jacobi(SolverRun& run) {
   LightVector B = run.start(), r = run.system.residual(B);
-  while (run.goes_on(SolverMethod::jacobi, B, r)) {
+  while (run.should_continue(SolverMethod::jacobi, B, r)) {
     B += r;
     r = run.system.residual(B);
   }
@@ -65,7 +65,7 @@ LightVector solve_by_gauss_seidel(SolverRun& run) {
     run.system.pass([&] { sweep(run.system, 1.0, B); }, B);
     r = run.system.residual(B);
     uniform.correct(r, B);
-  } while (run.goes_on(SolverMethod::gauss_seidel, B, r));
+  } while (run.should_continue(SolverMethod::gauss_seidel, B, r));
   return B;
 }
 
@@ -76,7 +76,7 @@ LightVector solve_by_sor(SolverRun& run) {
     run.system.pass([&] { sweep(run.system, relaxation.omega(), B); }, B);
     r = run.system.residual(B);
     relaxation.see(std::sqrt(weighted_dot(run.system.area, r, r).sum()));
-  } while (run.goes_on(SolverMethod::sor, B, r));
+  } while (run.should_continue(SolverMethod::sor, B, r));
   return B;
 }
 

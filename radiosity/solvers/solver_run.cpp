@@ -126,7 +126,8 @@ LightVector SolverRun::start() const {
   return B;
 }
 
-bool SolverRun::goes_on(SolverMethod method, const LightVector& B, const LightVector& residual) {
+bool SolverRun::should_continue(SolverMethod method, const LightVector& B,
+                                const LightVector& residual) {
   double largest = 0.0, worst = 0.0, bound = 0.0;
   bool is_finite = true;
   for (int i = 0; i < system.patch_count(); ++i) {

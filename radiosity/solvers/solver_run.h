@@ -29,7 +29,7 @@ class SolverRun {
 
   /// Notes a sweep of `method` that left B with this residual. False when it was the last one, with
   /// the tolerance reached or not (see outcome).
-  bool goes_on(SolverMethod method, const LightVector& B, const LightVector& residual);
+  bool should_continue(SolverMethod method, const LightVector& B, const LightVector& residual);
 
   Outcome outcome() const { return outcome_; }
   const std::vector<StepRecord>& history() const { return history_; }

@@ -148,7 +148,7 @@ double HiddenIntegral::missed_area(const std::array<Vector3d, 3>& corner, std::u
 void HiddenIntegral::refine(std::vector<HiddenTriangle>& triangles, double tolerance) {
   // The difference of two rules is the error of the worse; how far a whole is from the sum of its
   // halves shows what the better is off by, but may be small by chance.
-  constexpr double trust = 0.1;
+  constexpr double least_error_ratio = 0.1;
   const auto is_better = [](const HiddenTriangle& a, const HiddenTriangle& b) {
     return a.error < b.error;
   };
@@ -163,7 +163,8 @@ void HiddenIntegral::refine(std::vector<HiddenTriangle>& triangles, double toler
     const double change = std::abs(whole.hidden - parts[0].hidden - parts[1].hidden);
     error -= whole.error;
     for (HiddenTriangle& part : parts) {
-      const double seen = std::min(part.error, std::max(trust * part.error, 0.5 * change));
+      const double seen =
+          std::min(part.error, std::max(least_error_ratio * part.error, 0.5 * change));
       part.error = std::max(part.least_error, seen);
       error += part.error;
       triangles.push_back(part);

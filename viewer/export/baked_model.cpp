@@ -227,7 +227,7 @@ void add_cameras(const SolvedScene& solved, const Scene& scene,
     cameras.front().name = "start";
   }
   const Bands& bands = solved.solution.bands;
-  const std::optional<Sky> sky = sky_in_force(scene, solved.mesh);
+  const std::optional<Sky> sky = effective_sky(scene, solved.mesh);
   for (const Camera& camera : cameras) {
     const double scale =
         metered_scale(caster, kinds, radiance, bands, camera, sky ? &*sky : nullptr);

@@ -294,7 +294,7 @@ namespace {
 /// Writes the data of each channel; returns what `extras` says of them, and adds to the files.
 GltfJson write_channels(const std::filesystem::path& path, const BakedModel& lit,
                         SolvedScene& switched, const Scene& scene, const LightmapLayout& layout,
-                        const LightmapOptions& options, const std::vector<Spectrum>& in_force,
+                        const LightmapOptions& options, const std::vector<Spectrum>& scales,
                         std::vector<std::filesystem::path>& files) {
   const std::vector<std::string> names = channel_names(switched.solution);
   GltfJson channels = GltfJson::array();
@@ -312,7 +312,7 @@ GltfJson write_channels(const std::filesystem::path& path, const BakedModel& lit
       files.push_back(of_channel[i]);
       written.push_back(of_channel[i].filename().string());
     }
-    const Spectrum& scale = in_force[c];
+    const Spectrum& scale = scales[c];
     channels.push_back({{"name", names[c]},
                         {"files", std::move(written)},
                         {"scale", std::vector<float>(scale.begin(), scale.end())}});
@@ -366,7 +366,7 @@ LightmapReport write_lightmapped_gltf(const std::filesystem::path& path, const B
   if (switched) {
     root["asset"]["extras"]["lightmap"]["channels"] =
         write_channels(path, lit, *switched, scene, layout, options,
-                       scales_in_force(solved.solution), result.files);
+                       effective_scales(solved.solution), result.files);
   }
   root["extensionsUsed"] = {"KHR_materials_unlit"};
   add_surfaces(model, buffer, root);

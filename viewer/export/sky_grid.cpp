@@ -6,7 +6,7 @@
 
 namespace lightwell {
 
-std::optional<Sky> sky_in_force(const Scene& scene, const PatchMesh& mesh) {
+std::optional<Sky> effective_sky(const Scene& scene, const PatchMesh& mesh) {
   std::optional<Sky> sky = scene.sky;
   if (!sky || mesh.source_scale.rows() == 0) return sky;
   // Of free sources the dome comes after the lamps, and the sun after it.

@@ -10,7 +10,7 @@ namespace lightwell {
 
 /// The scene's sky as bright as the solution on this mesh has it: channels dim sky and sun like
 /// other lamps. radiance_outside() of it is what the second pass shows where rays leave the scene.
-std::optional<Sky> sky_in_force(const Scene& scene, const PatchMesh& mesh);
+std::optional<Sky> effective_sky(const Scene& scene, const PatchMesh& mesh);
 
 /// Radiance of a sky, without the sun, by azimuth and altitude, for graphics hardware to blend.
 /// Samples lie on zenith, horizon and nadir themselves; the horizon has two rows, one of the dome

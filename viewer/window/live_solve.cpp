@@ -219,7 +219,7 @@ void show_light(const LiveLight& light, bool with_ambient, SolvedScene& shown) {
   }
   split_columns(light.irradiance, &LightChannel::direct_irradiance, s.channels);
   split_columns(ambient, &LightChannel::indirect_irradiance, s.channels);
-  relight(shown, scales_in_force(s));
+  relight(shown, effective_scales(s));
 }
 
 std::string text_of(const LiveState& state) {

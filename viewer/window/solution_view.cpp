@@ -146,7 +146,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       up_axis_(guess_up_axis(options.cameras, bounds_)),
       spheres_(fine_spheres(solved.mesh)),
       actor_(solved.mesh, spheres_, kinds_, radiance_, drawn_),
-      sky_(scene_ ? sky_in_force(*scene_, solved.mesh) : std::nullopt),
+      sky_(scene_ ? effective_sky(*scene_, solved.mesh) : std::nullopt),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
       legend_(make_legend()),
       isolux_levels_(options.isolux) {
@@ -244,7 +244,7 @@ void SolutionView::light_changed() {
   radiance_ = shown_radiance(*solved_, materials_);
   lux_ = vertex_illuminance(solved_->solution);
   if (outside_) {
-    sky_ = sky_in_force(*scene_, solved_->mesh);
+    sky_ = effective_sky(*scene_, solved_->mesh);
     outside_->set_sky(*sky_);
   }
   isolux_is_stale_ = true;

@@ -32,17 +32,17 @@ RadianceProject::RadianceProject(const TextFile& file) {
   RadiancePlace place{&file.path(), 0};
   file.for_each_line([&](int line, std::string_view text) {
     if (joined.empty()) place.line = line;
-    bool goes_on = false;
+    bool continues = false;
     for (std::size_t i = 0; i < text.size() && text[i] != '#'; ++i) {
       if (text[i] == '\\') {
-        goes_on = i + 1 == text.size();
-        if (!goes_on) joined += text.substr(i++, 2);
+        continues = i + 1 == text.size();
+        if (!continues) joined += text.substr(i++, 2);
       } else {
         joined += text[i];
       }
     }
     joined += ' ';
-    if (goes_on) return;
+    if (continues) return;
     assign(joined, place);
     joined.clear();
   });

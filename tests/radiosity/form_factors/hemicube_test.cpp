@@ -50,7 +50,7 @@ TEST_P(Hemicube, RowsOfAClosedRoomSumToOne) {
     const EstimatedRow& row = rows.row[i];
     EXPECT_EQ(row.escaped, 0.0);
     EXPECT_EQ(row.specular, 0.0);
-    EXPECT_DOUBLE_EQ(row.trust, 1.0 / rows.mesh.area[i]);
+    EXPECT_DOUBLE_EQ(row.inverse_variance, 1.0 / rows.mesh.area[i]);
     // Entries are rounded to float each: in all at most half a float digit of 1.
     EXPECT_NEAR(sum_of_shares(row), 1.0, 6e-8 + 1e-12);
     int before = -1;
@@ -104,7 +104,7 @@ TEST_P(Hemicube, PerfectMirrorPassesEverythingOn) {
   for (int i = 0; i < rows.mesh.patch_count(); ++i) {
     const EstimatedRow& row = rows.row[i];
     if (rows.mesh.facet_of(i) == 0) {
-      EXPECT_EQ(row.trust, 0.0);  // a mirror has no row of its own
+      EXPECT_EQ(row.inverse_variance, 0.0);  // a mirror has no row of its own
       continue;
     }
     EXPECT_NEAR(sum_of_shares(row) + row.specular, 1.0, 1e-7);

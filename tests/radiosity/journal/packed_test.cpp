@@ -10,7 +10,7 @@ namespace {
 EstimatedRow row() {
   BandArray share(2, 3);
   share << 0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f;
-  return {.trust = 12.5,
+  return {.inverse_variance = 12.5,
           .shares = {{3, 0.25f}, {7, 0.5f}},
           .escaped = 0.125,
           .specular = 0.0625,
@@ -34,7 +34,7 @@ TEST(Packed, GivesBackWhatWasPutIn) {
   ASSERT_TRUE(unpacked.take(number));
   EXPECT_TRUE(unpacked.is_empty());
   EXPECT_EQ(number, -1.5);
-  EXPECT_EQ(back.trust, there.trust);
+  EXPECT_EQ(back.inverse_variance, there.inverse_variance);
   ASSERT_EQ(back.shares.size(), 2u);
   EXPECT_EQ(back.shares[1].patch, 7);
   EXPECT_EQ(back.shares[1].value, 0.5f);

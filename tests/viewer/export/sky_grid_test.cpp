@@ -51,15 +51,15 @@ TEST(SkyInForce, IsAsBrightAsTheSolutionHasIt) {
   scene.sky->sun = Sun{.irradiance = Eigen::Array3f(8.0f, 8.0f, 8.0f)};
   scene.lamps.push_back({.name = "bulb", .intensity = Spectrum::Ones(3)});
   SolvedScene box = solved_box();
-  EXPECT_EQ(sky_hash(*sky_in_force(scene, box.mesh)), sky_hash(*scene.sky));
+  EXPECT_EQ(sky_hash(*effective_sky(scene, box.mesh)), sky_hash(*scene.sky));
   box.mesh.source_scale = BandArray(3, 3);
   box.mesh.source_scale << 9, 9, 9, 0.5f, 1, 2, 0.25f, 0.25f, 0.25f;
-  const Sky dimmed = *sky_in_force(scene, box.mesh);
+  const Sky dimmed = *effective_sky(scene, box.mesh);
   EXPECT_TRUE((dimmed.scale == Eigen::Array3f(0.5f, 2.0f, 8.0f)).all());
   EXPECT_TRUE((dimmed.ground == Eigen::Array3f(0.25f, 0.4f, 0.6f)).all());
   EXPECT_TRUE((dimmed.sun->irradiance == 2.0f).all());
   scene.sky.reset();
-  EXPECT_FALSE(sky_in_force(scene, box.mesh).has_value());
+  EXPECT_FALSE(effective_sky(scene, box.mesh).has_value());
 }
 
 /// A miss shows the sky, and exposure counts it.
