@@ -189,8 +189,8 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
     std::array<Ray, ray_count> rays;
     std::array<ElementHit, ray_count> hits;
     for (int i = 0; i < ray_count; ++i) {
-      const Eigen::Array4f lot = sobol.point(i, 0);
-      const Eigen::Vector3d d = cosine_direction(lot[0], lot[1]);
+      const Eigen::Array4f u = sobol.point(i, 0);
+      const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
       rays[static_cast<std::size_t>(i)] = {.origin = position,
                                            .direction = d.x() * a + d.y() * b + d.z() * normal};
     }

@@ -87,8 +87,8 @@ void PixelGather::aim(const ElementCaster& caster, const GatherPlace& at,
                       Eigen::ArrayXd& sum) const {
   const std::uint64_t aim_key = random_key(key, aim_purpose);
   for (int i = 0; i < BrightPatches::aimed(rays); ++i) {
-    const Eigen::Array4d lot = aims_.point(i, aim_key).cast<double>();
-    const BrightPatches::Aim aim = bright_.draw(view, lot[0], lot[1], lot[2]);
+    const Eigen::Array4d u = aims_.point(i, aim_key).cast<double>();
+    const BrightPatches::Aim aim = bright_.draw(view, u[0], u[1], u[2]);
     const double cosine = measure(at, aim.direction);
     if (!(cosine > 0.0)) continue;
     const Ray ray{.origin = at.position, .direction = aim.direction, .origin_group = at.facet};

@@ -118,7 +118,7 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
   std::vector<double> sum;
   sum.reserve(sources.size());
   for (const FreeSource& source : sources) {
-    const double sent = glimpse(source, at.position, u[1], u[2]).irradiance *
+    const double sent = sample_source(source, at.position, u[1], u[2]).irradiance *
                         static_cast<double>(source.light.sum());
     sum.push_back(sent + (sum.empty() ? 0.0 : sum.back()));
   }
@@ -127,7 +127,7 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
   const auto i = static_cast<std::size_t>(drawn);
   const double chance = (sum[i] - (i > 0 ? sum[i - 1] : 0.0)) / sum.back();
   if (!(chance > 0.0)) return;
-  const SourceGlimpse source_sample = glimpse(sources[i], at.position, u[1], u[2]);
+  const SourceSample source_sample = sample_source(sources[i], at.position, u[1], u[2]);
   if (crosses_facet_alone(source_sample.direction, interaction.normal, at.normal)) return;
   const int material = facets_[hit.facet].material;
   const double density =

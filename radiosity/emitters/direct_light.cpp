@@ -9,7 +9,7 @@
 
 #include "radiosity/emitters/emitter_point.h"
 #include "radiosity/emitters/exact_shadows.h"
-#include "radiosity/emitters/near_emitter.h"
+#include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"
 
 namespace lightwell {
@@ -99,19 +99,19 @@ ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
 }
 
 // The same of one that is near.
-ShadowSample near_sample(const NearEmitter& near, const Eigen::Vector3d& point,
-                         const Eigen::Vector3d& normal, double u, double v) {
-  const Eigen::Vector3d to = near.to_place(u, v);
+ShadowSample solid_angle_sample(const SolidAngleSampler& sampler, const Eigen::Vector3d& point,
+                                const Eigen::Vector3d& normal, double u, double v) {
+  const Eigen::Vector3d to = sampler.to_point(u, v);
   return {.ray = {.origin = point, .direction = to, .t_max = 1.0},
           .weight = std::max(0.0, to.normalized().dot(normal))};
 }
 
-ShadowSample shadow_sample(const Emitter& emitter, const NearEmitter& near, const SurfacePoint& at,
-                           double u, double v) {
+ShadowSample shadow_sample(const Emitter& emitter, const SolidAngleSampler& sampler,
+                           const SurfacePoint& at, double u, double v) {
   const auto& [point, normal, facet] = at;
   ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u, v)
-                        : near.empty()    ? polygon_sample(emitter, point, normal, u, v)
-                                          : near_sample(near, point, normal, u, v);
+                        : sampler.empty() ? polygon_sample(emitter, point, normal, u, v)
+                                          : solid_angle_sample(sampler, point, normal, u, v);
   sample.ray.origin_group = facet;
   sample.ray.target_group = emitter.facet;
   return sample;
@@ -121,7 +121,7 @@ ShadowSample shadow_sample(const Emitter& emitter, const NearEmitter& near, cons
 struct LightShadow {
   const Emitter* emitter = nullptr;    // or
   const FreeSource* source = nullptr;  // whose kernel F then is
-  NearEmitter near{};
+  SolidAngleSampler sampler{};
   int index = 0;
   double F = 0.0;
   int channel = 0;
@@ -143,7 +143,7 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
       const Eigen::Array4f u = sobol.point(s, shadows[i].key);
       const LightShadow& shadow = shadows[i];
       batch.add(static_cast<int>(i),
-                shadow.emitter ? shadow_sample(*shadow.emitter, shadow.near, at, u[0], u[1])
+                shadow.emitter ? shadow_sample(*shadow.emitter, shadow.sampler, at, u[0], u[1])
                                : shadow_sample(*shadow.source, at, u[0], u[1]));
     }
   };
@@ -173,7 +173,7 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
   for (const LightShadow& s : shadows) most_light[s.channel] += light(s);
   const int most = std::clamp(options.max_rays, 1, most_shadow_rays);
   const int least = std::clamp(options.min_rays, 1, most);
-  constexpr int first_look = 8;
+  constexpr int first_rays = 8;
   for (LightShadow& s : shadows) {
     if (s.source && has_sharp_shadows(*s.source)) {
       s.least = s.most = 1;
@@ -183,7 +183,7 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
     const double effort = all > 0.0 ? std::pow(light(s) / all, 0.8) : 1.0;
     s.most = std::clamp(static_cast<int>(std::ceil(effort * most)), 1, most);
     s.least = std::min(
-        s.most, std::max(std::min(first_look, least), static_cast<int>(std::ceil(effort * least))));
+        s.most, std::max(std::min(first_rays, least), static_cast<int>(std::ceil(effort * least))));
   }
 }
 
@@ -200,7 +200,7 @@ void find_share(const ExactShadows& exact, const ElementCaster& caster, const Su
   if (!caster.moves()) {
     shadow.share = exact.share(shadow.index, at, pieces_worth(shadow.most));
   }
-  if (!shadow.share) shadow.near = NearEmitter(*shadow.emitter, at.position);
+  if (!shadow.share) shadow.sampler = SolidAngleSampler(*shadow.emitter, at.position);
 }
 
 // A patch of each facet's front; -1 where the mesh has none.
@@ -331,7 +331,8 @@ std::optional<bool> DirectLight::sees(int light, const ElementCaster& caster,
   const auto emitter_count = static_cast<int>(emitters_.size());
   const ShadowSample sample =
       light < emitter_count
-          ? shadow_sample(emitters_[light], NearEmitter(emitters_[light], at.position), at, u, v)
+          ? shadow_sample(emitters_[light], SolidAngleSampler(emitters_[light], at.position), at, u,
+                          v)
           : shadow_sample(free_sources_[light - emitter_count], at, u, v);
   if (!(sample.weight > 0.0)) return std::nullopt;
   return (passed(caster, sample.ray) > 0.0f).any();

@@ -258,7 +258,8 @@ double total_weight(const FreeSource& source) {
   return relative_flux(std::get<LampLight>(source.shape).lamp);
 }
 
-SourceGlimpse glimpse(const FreeSource& source, const Eigen::Vector3d& from, double u, double v) {
+SourceSample sample_source(const FreeSource& source, const Eigen::Vector3d& from, double u,
+                           double v) {
   if (const auto* sun = std::get_if<SunLight>(&source.shape)) {
     return {.direction = towards_sun(sun->sun, u, v),
             .distance = std::numeric_limits<double>::infinity(),

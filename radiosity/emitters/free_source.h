@@ -83,11 +83,12 @@ std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eige
 double total_weight(const FreeSource& source);
 
 /// Light that comes to a place from one direction of a source, as a rough surface reflects it.
-struct SourceGlimpse {
+struct SourceSample {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, towards the source
   double distance = 0.0;                                 ///< m that must be clear
   double irradiance = 0.0;  ///< across the direction: `light` times this, W/m^2
 };
-SourceGlimpse glimpse(const FreeSource& source, const Eigen::Vector3d& from, double u, double v);
+SourceSample sample_source(const FreeSource& source, const Eigen::Vector3d& from, double u,
+                           double v);
 
 }  // namespace lightwell

@@ -110,23 +110,23 @@ class HemisphereGather {
   void aim(const GatherPoint& at, const BrightPatches::View& view, std::uint64_t key,
            std::array<Eigen::ArrayXd, 2>& sum) const {
     const int rays = ray_count(at, options_);
-    const SobolPoints& lots = aims_.at(rays);
+    const SobolPoints& aims = aims_.at(rays);
     std::array<Ray, batch> ray;
     std::array<ElementHit, batch> hit;
     std::array<int, batch> element;
-    for (int begin = 0; begin < lots.count(); begin += batch) {
-      const auto n = static_cast<std::size_t>(std::min(batch, lots.count() - begin));
+    for (int begin = 0; begin < aims.count(); begin += batch) {
+      const auto n = static_cast<std::size_t>(std::min(batch, aims.count() - begin));
       for (std::size_t r = 0; r < n; ++r) {
-        const Eigen::Array4d lot =
-            lots.point(begin + static_cast<int>(r), random_key(key, aimed_rays)).cast<double>();
-        const BrightPatches::Aim aim = bright_.draw(view, lot[0], lot[1], lot[2]);
+        const Eigen::Array4d u =
+            aims.point(begin + static_cast<int>(r), random_key(key, aimed_rays)).cast<double>();
+        const BrightPatches::Aim aim = bright_.draw(view, u[0], u[1], u[2]);
         element[r] = aim.element;
         ray[r] = {.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
       }
       caster_.closest_hits({ray.data(), n}, {hit.data(), n});
       for (std::size_t r = 0; r < n; ++r) {
         if (hit[r].element != element[r] || !paths_.is_diffuse(hit[r].facet)) continue;
-        const bool is_first = begin + static_cast<int>(r) < lots.count() / 2;
+        const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
         add_radiosity(hit[r],
                       bright_.share(view, at.normal.dot(ray[r].direction), rays, ray[r], hit[r]),
                       sum[is_first ? 0 : 1]);

@@ -41,11 +41,11 @@ struct Room {
 // f = cos / pi gives the sum of their form factors.
 double summed_form_factors(const LampSamples& lamps, const Eigen::Vector3d& from) {
   constexpr int count = 1 << 14;
-  const SobolPoints lots(count);
+  const SobolPoints sobol(count);
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {
-    const Eigen::Array4d lot = lots.point(i, 3).cast<double>();
-    const auto sample = lamps.draw(from, -1, lot[0], lot[1], lot[2]);
+    const Eigen::Array4d u = sobol.point(i, 3).cast<double>();
+    const auto sample = lamps.draw(from, -1, u[0], u[1], u[2]);
     if (!sample) continue;
     const Eigen::Vector3d place = from + sample->distance * sample->direction;
     EXPECT_NEAR(lamps.density(from, place, sample->emitter->facet) / sample->density, 1.0, 1e-9);
@@ -74,11 +74,11 @@ TEST(LampSamples, AreDrawnByTheStatedDensity) {
 TEST(LampSamples, AreOfLampsThatFaceThePlace) {
   const Room room{.lamps = 1};
   const LampSamples lamps(room.direct_light);
-  const SobolPoints lots(256);
-  for (int i = 0; i < lots.count(); ++i) {
-    const Eigen::Array4d lot = lots.point(i, 5).cast<double>();
+  const SobolPoints sobol(256);
+  for (int i = 0; i < sobol.count(); ++i) {
+    const Eigen::Array4d u = sobol.point(i, 5).cast<double>();
     // The uplight has sixteen times the power, and none of it goes down.
-    const auto below = lamps.draw({2, 2, 1}, -1, lot[0], lot[1], lot[2]);
+    const auto below = lamps.draw({2, 2, 1}, -1, u[0], u[1], u[2]);
     ASSERT_TRUE(below);
     EXPECT_LT(below->emitter->normal.z(), 0.0);
   }

@@ -144,11 +144,11 @@ TEST(BrightPatches, HaveDirectionsOfTheStatedDensity) {
   ASSERT_FALSE(view.is_empty());
   // The mean of f / density is the integral of f over the tile's solid angle: f = cos / pi gives
   // the form factor.
-  const SobolPoints lots(4096);
+  const SobolPoints aims(4096);
   double sum = 0.0;
-  for (int i = 0; i < lots.count(); ++i) {
-    const Eigen::Array4d lot = lots.point(i, 7).cast<double>();
-    const BrightPatches::Aim aim = bright.draw(view, lot[0], lot[1], lot[2]);
+  for (int i = 0; i < aims.count(); ++i) {
+    const Eigen::Array4d u = aims.point(i, 7).cast<double>();
+    const BrightPatches::Aim aim = bright.draw(view, u[0], u[1], u[2]);
     const double distance = (3.9 - place.z()) / aim.direction.z();
     const double density = bright.density(view, aim.element, aim.direction, distance);
     ASSERT_GT(density, 0.0);
@@ -156,7 +156,7 @@ TEST(BrightPatches, HaveDirectionsOfTheStatedDensity) {
   }
   const double F = point_to_polygon(place, {0, 0, 1}, room.tile());
   // Stratified points err by a few times 1 / count of what the summand varies by, about 1.
-  EXPECT_NEAR(sum / lots.count(), F, 3e-3 * F);
+  EXPECT_NEAR(sum / aims.count(), F, 3e-3 * F);
 }
 
 TEST(BrightPatches, AreTheSameBitsAgain) {

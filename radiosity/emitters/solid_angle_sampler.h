@@ -11,17 +11,17 @@ namespace lightwell {
 /// A polygon that emits, seen from a point close by: places of it are even in solid angle. Those
 /// even in area would be far away for the most part, while what is near gives most of the light: a
 /// slat before a window would be left with noise of a fifth of it.
-class NearEmitter {
+class SolidAngleSampler {
  public:
-  NearEmitter() = default;  ///< nothing
+  SolidAngleSampler() = default;  ///< nothing
   /// Nothing where places even in area do as well: below 1 sr, in the polygon's plane, and of
   /// polygons of many triangles.
-  NearEmitter(const Emitter& emitter, const Eigen::Vector3d& point);
+  SolidAngleSampler(const Emitter& emitter, const Eigen::Vector3d& point);
 
   bool empty() const { return triangles_.empty(); }
   /// From the point to a place of the polygon, for (u, v) in [0,1)^2 (Arvo 1995, "Stratified
   /// sampling of spherical triangles").
-  Eigen::Vector3d to_place(double u, double v) const;
+  Eigen::Vector3d to_point(double u, double v) const;
 
  private:
   // Of unit directions, and its sides' and angles' cosines that samples need.

@@ -1,4 +1,4 @@
-#include "radiosity/emitters/near_emitter.h"
+#include "radiosity/emitters/solid_angle_sampler.h"
 
 #include <gtest/gtest.h>
 
@@ -34,13 +34,13 @@ Window window_with(const Loop& slat) {
   return w;
 }
 
-TEST(NearEmitter, PlacesAreEvenInSolidAngle) {
+TEST(SolidAngleSampler, PlacesAreEvenInSolidAngle) {
   const Window w = window_with({});
   const DirectLight light(w.scene, w.mesh);
   const Emitter& window = light.emitters().at(0);
   const Vector3d point{0.9, 1.2, 0.1}, normal = Vector3d(0.3, 0.2, -0.9).normalized();
-  const NearEmitter near(window, point);
-  ASSERT_FALSE(near.empty());
+  const SolidAngleSampler sampler(window, point);
+  ASSERT_FALSE(sampler.empty());
   // Of a rectangle whose corner is below the point (twice the integral of Lambert's cosine).
   const auto corner = [&](double x, double y) {
     const double z = point.z();
@@ -55,7 +55,7 @@ TEST(NearEmitter, PlacesAreEvenInSolidAngle) {
   int lower_left = 0;
   for (int i = 0; i < count; ++i) {
     const Eigen::Array4d u = sobol.point(i, 5).cast<double>();
-    const Vector3d to = near.to_place(u[0], u[1]), at = point + to;
+    const Vector3d to = sampler.to_point(u[0], u[1]), at = point + to;
     ASSERT_NEAR(at.z(), 0.0, 1e-16);  // two roundings of 0.1
     // Arcs' cosines are known to 1e-16 each, and places to about the distance times as much.
     ASSERT_TRUE(at.x() > -1e-14 && at.x() < 3 + 1e-14 && at.y() > -1e-14 && at.y() < 5 + 1e-14);
@@ -69,18 +69,18 @@ TEST(NearEmitter, PlacesAreEvenInSolidAngle) {
   EXPECT_NEAR(cosines * all / std::numbers::pi / F, 1.0, 2.5e-4);  // smooth: one of 4096 places
 }
 
-TEST(NearEmitter, IsNothingFromAfarOrInThePlane) {
+TEST(SolidAngleSampler, IsNothingFromAfarOrInThePlane) {
   const Window w = window_with({});
   const DirectLight light(w.scene, w.mesh);
   const Emitter& window = light.emitters().at(0);
-  EXPECT_TRUE(NearEmitter(window, {1.5, 2.5, 6.0}).empty());
-  EXPECT_TRUE(NearEmitter(window, {8.0, 2.5, 1.0}).empty());  // beside it
-  EXPECT_TRUE(NearEmitter(window, {1.5, 2.5, 0.0}).empty());
-  EXPECT_FALSE(NearEmitter(window, {1.5, 2.5, 2.0}).empty());
+  EXPECT_TRUE(SolidAngleSampler(window, {1.5, 2.5, 6.0}).empty());
+  EXPECT_TRUE(SolidAngleSampler(window, {8.0, 2.5, 1.0}).empty());  // beside it
+  EXPECT_TRUE(SolidAngleSampler(window, {1.5, 2.5, 0.0}).empty());
+  EXPECT_FALSE(SolidAngleSampler(window, {1.5, 2.5, 2.0}).empty());
 }
 
 // 9 cm in front of the window, with a slat's edge half-way between.
-TEST(NearEmitter, WhatASlatHidesOfAWindowIsFoundWithFewRays) {
+TEST(SolidAngleSampler, WhatASlatHidesOfAWindowIsFoundWithFewRays) {
   constexpr double height = 0.09, edge = 1.45;
   const Window w = window_with(
       {{edge, -9, height / 2}, {8, -9, height / 2}, {8, 9, height / 2}, {edge, 9, height / 2}});

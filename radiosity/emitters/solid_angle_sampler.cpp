@@ -1,4 +1,4 @@
-#include "radiosity/emitters/near_emitter.h"
+#include "radiosity/emitters/solid_angle_sampler.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -24,7 +24,7 @@ Vector3d towards(const Vector3d& axis, const Vector3d& beside, double cosine) {
 
 }  // namespace
 
-NearEmitter::NearEmitter(const Emitter& emitter, const Vector3d& point) {
+SolidAngleSampler::SolidAngleSampler(const Emitter& emitter, const Vector3d& point) {
   constexpr std::size_t most_triangles = 32;
   constexpr double large = 1.0;  // sr
   constexpr double in_plane = 1e-3;
@@ -50,7 +50,7 @@ NearEmitter::NearEmitter(const Emitter& emitter, const Vector3d& point) {
   if (sum < large) triangles_.clear();
 }
 
-Vector3d NearEmitter::to_place(double u, double v) const {
+Vector3d SolidAngleSampler::to_point(double u, double v) const {
   const double wanted = u * triangles_.back().up_to;
   std::size_t i = 0;
   while (i + 1 < triangles_.size() && wanted >= triangles_[i].up_to) ++i;
