@@ -239,17 +239,17 @@ void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
     give_back_free_pages();
     spent["gather"] += watch.lap();
     Eigen::ArrayXf& of_elements = solution.interpolation_error;
-    const auto look = [&](int batch, Eigen::ArrayXf* elements) {
+    const auto estimate_batch = [&](int batch, Eigen::ArrayXf* elements) {
       return estimate_error({scene, *caster, direct_light}, effective, solution, elements, batch);
     };
-    ErrorEstimate estimate = look(0, of_elements.size() == 0 ? &of_elements : nullptr);
+    ErrorEstimate estimate = estimate_batch(0, of_elements.size() == 0 ? &of_elements : nullptr);
     // Where the places leave open whether that is what was asked for, more of them cost less than
     // another attempt: single ones may hold a fifth of the squared error. Four batches halve what
     // one leaves open.
     constexpr int most_batches = 4;
     for (int batch = 1;
          batch < most_batches && estimate.least() < target && target < estimate.error(); ++batch) {
-      estimate = joined(estimate, look(batch, nullptr));
+      estimate = joined(estimate, estimate_batch(batch, nullptr));
     }
     solution.error_estimate = estimate.error();
     spent["error_estimate"] += watch.lap();

@@ -117,61 +117,61 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
 
 RaySample RayTree::trace(const Ray& ray, std::uint64_t key, float effort) const {
   const int bands = scene_.bands.count();
-  Walk walk{.result = {.radiance = Spectrum::Zero(bands)},
-            .key = key,
-            .effort = effort,
-            .caster = &caster_,
-            .gloss_key = key};
-  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
-  return walk.result;
+  TreeState state{.result = {.radiance = Spectrum::Zero(bands)},
+                  .key = key,
+                  .effort = effort,
+                  .caster = &caster_,
+                  .gloss_key = key};
+  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, state);
+  return state.result;
 }
 
 RaySample RayTree::trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
                                      const ElementCaster& caster) const {
   const int bands = scene_.bands.count();
-  Walk walk{.result = {.radiance = Spectrum::Zero(bands)},
-            .key = random_key(key, static_cast<std::uint64_t>(number)),
-            .effort = share_of_many,
-            .caster = &caster,
-            .number = number,
-            .gloss_key = key};
-  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, walk);
-  return walk.result;
+  TreeState state{.result = {.radiance = Spectrum::Zero(bands)},
+                  .key = random_key(key, static_cast<std::uint64_t>(number)),
+                  .effort = share_of_many,
+                  .caster = &caster,
+                  .number = number,
+                  .gloss_key = key};
+  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, state);
+  return state.result;
 }
 
 std::uint64_t RayTree::fingerprint(const Ray& ray) const {
-  Walk walk{.caster = &caster_, .shades = false};
-  follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, walk);
-  return walk.result.fingerprint;
+  TreeState state{.caster = &caster_, .shades = false};
+  follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, state);
+  return state.result.fingerprint;
 }
 
-void RayTree::follow(Branch branch, Walk& walk) const {
+void RayTree::follow(Branch branch, TreeState& state) const {
   ElementHit hit;
-  walk.caster->closest_hits({&branch.ray, 1}, {&hit, 1});
-  RaySample& result = walk.result;
+  state.caster->closest_hits({&branch.ray, 1}, {&hit, 1});
+  RaySample& result = state.result;
   if (branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
     result.fingerprint = random_key(result.fingerprint, branch.place,
                                     static_cast<std::uint64_t>(seen), hit.from_back);
   }
-  if (hit.facet < 0) return add_background(branch, walk);
-  const ShadingPoint at = shading_point(branch.ray, hit, *walk.caster);
+  if (hit.facet < 0) return add_background(branch, state);
+  const ShadingPoint at = shading_point(branch.ray, hit, *state.caster);
   if (absorbs_) {
     branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
                                          (at.position - branch.ray.origin).norm());
   }
-  if (walk.shades && with_layers_ && branch.place == 1) {
+  if (state.shades && with_layers_ && branch.place == 1) {
     const Eigen::Vector3d normal = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
     result.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
   }
-  if (walk.shades && hit.element >= 0) shade(branch, hit, at, walk);
-  split(branch, hit, at, walk);
+  if (state.shades && hit.element >= 0) shade(branch, hit, at, state);
+  split(branch, hit, at, state);
 }
 
 // The sky; and the sun, but off rough surfaces, which draw directions towards it: see
 // add_free_source.
-void RayTree::add_background(const Branch& branch, Walk& walk) const {
-  if (!walk.shades || !scene_.sky) return;
+void RayTree::add_background(const Branch& branch, TreeState& state) const {
+  if (!state.shades || !scene_.sky) return;
   const Eigen::Vector3d direction = branch.ray.direction.normalized();
   Spectrum L = Spectrum::Zero(scene_.bands.count());
   for (const FreeSource& source : direct_light_.free_sources()) {
@@ -185,14 +185,14 @@ void RayTree::add_background(const Branch& branch, Walk& walk) const {
     }
   }
   const Spectrum seen = branch.weight * L;
-  walk.result.radiance += seen;
+  state.result.radiance += seen;
   if (!with_layers_) return;
   const Layer layer = branch.place == 1 ? Layer::emission : Layer::specular;
-  walk.result.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, seen);
+  state.result.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, seen);
 }
 
 void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
-                    Walk& walk) const {
+                    TreeState& state) const {
   const Material& material = scene_.materials[facets_[hit.facet].material];
   // The back of a one-sided mirror is black.
   if (!material.is_specular() || (!material.dielectric && hit.element < 0)) return;
@@ -204,15 +204,15 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
     const Eigen::Vector3d smooth = at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
     interaction.normal = visible_normal(branch.ray.direction, at.normal, smooth);
   }
-  if (material.gloss_roughness() > 0.0f) return scatter(branch, interaction, hit, at, walk);
+  if (material.gloss_roughness() > 0.0f) return scatter(branch, interaction, hit, at, state);
   const SmoothScattering lobes = smooth_scattering(interaction);
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
-    grow(branch, 2 * branch.place + i, lobes.sample[i], hit, at, walk);
+    grow(branch, 2 * branch.place + i, lobes.sample[i], hit, at, state);
   }
 }
 
 void RayTree::grow(const Branch& parent, std::uint64_t place, const ScatteringSample& sample,
-                   const ElementHit& hit, const ShadingPoint& at, Walk& walk) const {
+                   const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
   Branch branch{.weight = parent.weight * sample.weight,
                 .depth = parent.depth + 1,
                 .place = place,
@@ -223,8 +223,8 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const ScatteringSa
                 .media = parent.media};
   if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
   if (branch.depth > deepest_path(options_.max_depth, !branch.is_sharp)) {
-    ++walk.result.depth_cut;
-    walk.result.cut_weight += branch.weight.maxCoeff();
+    ++state.result.depth_cut;
+    state.result.cut_weight += branch.weight.maxCoeff();
     return;
   }
   const int material = facets_[hit.facet].material;
@@ -234,7 +234,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t place, const ScatteringSa
   if (normals_.is_given(hit.facet)) {
     branch.ray.direction = on_its_side(branch.ray.direction, at.normal, sample.crosses);
   }
-  follow(branch, walk);
+  follow(branch, state);
 }
 
 RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& hit,
@@ -309,38 +309,38 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
 
 // L = (M + rho E) / pi.
 void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
-                    Walk& walk) const {
+                    TreeState& state) const {
   const float share = share_of_bright(branch, hit, at);
   Spectrum M = emission(branch, hit, at);
   if (!direct_light_.owns(hit.facet, hit.from_back)) M *= share;
   const Spectrum rho = share * reflectance(branch, hit, at);
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
-  if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, walk);
-  walk.result.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
-  if (with_layers_) note_layers(branch, hit, M, rho, E, walk);
+  if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, state);
+  state.result.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
+  if (with_layers_) note_layers(branch, hit, M, rho, E, state);
 }
 
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,
-                                    const Branch& branch, const Walk& walk) const {
+                                    const Branch& branch, const TreeState& state) const {
   const PatchMesh& mesh = caster_.mesh();
   if (options_.pass == Pass::interpolate) {
     return {.direct = interpolate(mesh, solution_.direct_irradiance, hit),
             .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
   }
   const Eigen::Vector3d normal = smooth_normal(hit, at);
-  const float share = walk.effort * branch.weight.maxCoeff();
-  const ShadowOptions shadows = shadows_for(options_.shadows, share, walk.number ? 4 : 8);
+  const float share = state.effort * branch.weight.maxCoeff();
+  const ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? 4 : 8);
   Arriving E;
   const ShadowOrigin from = shadow_origin(hit, at);
-  E.direct = direct_light_.irradiance(*walk.caster,
+  E.direct = direct_light_.irradiance(*state.caster,
                                       {.at = {from.position, normal, from.facet},
-                                       .key = random_key(walk.key, branch.place, shadow_purpose),
+                                       .key = random_key(state.key, branch.place, shadow_purpose),
                                        .shadows = shadows});
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
-        *walk.caster,
+        *state.caster,
         {.position = at.position, .normal = at.normal, .smooth_normal = normal, .facet = hit.facet},
-        random_key(walk.key, branch.place, gather_purpose), share);
+        random_key(state.key, branch.place, gather_purpose), share);
   } else {
     E.indirect = interpolate(mesh, solution_.indirect_irradiance, hit);
   }
@@ -365,10 +365,10 @@ void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at,
 }
 
 void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
-                          const Spectrum& rho, const Arriving& E, Walk& walk) const {
+                          const Spectrum& rho, const Arriving& E, TreeState& state) const {
   const Bands& bands = scene_.bands;
   const auto three = [&](Layer layer) {
-    return walk.result.layers.segment<3>(first_sampled_column(layer));
+    return state.result.layers.segment<3>(first_sampled_column(layer));
   };
   const auto light = [&](const Spectrum& radiosity) {
     const Spectrum L = branch.weight * one_over_pi * radiosity;
@@ -389,7 +389,7 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
   const bool is_straight = branch.is_sharp && (branch.place & (branch.place + 1)) == 0;
   if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
     const Spectrum all = E.direct + E.indirect;
-    walk.result.layers[first_sampled_column(Layer::illuminance)] =
+    state.result.layers[first_sampled_column(Layer::illuminance)] =
         static_cast<float>(luminous(bands, all));
   }
 }

@@ -115,7 +115,7 @@ class RayTree {
     Spectrum direct{}, indirect{};
   };
   /// What is gathered while the tree grows.
-  struct Walk {
+  struct TreeState {
     RaySample result{};
     std::uint64_t key = 0;
     float effort = 1.0f;
@@ -125,25 +125,27 @@ class RayTree {
     std::uint64_t gloss_key = 0;  ///< the same in all of them
   };
 
-  void follow(Branch branch, Walk& walk) const;
-  void add_background(const Branch& branch, Walk& walk) const;
-  void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at, Walk& walk) const;
+  void follow(Branch branch, TreeState& state) const;
+  void add_background(const Branch& branch, TreeState& state) const;
+  void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+             TreeState& state) const;
   void scatter(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
-               const ShadingPoint& at, Walk& walk) const;
+               const ShadingPoint& at, TreeState& state) const;
   void add_lamp(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
-                const ShadingPoint& at, const Eigen::Array4d& u, float share, Walk& walk) const;
+                const ShadingPoint& at, const Eigen::Array4d& u, float share,
+                TreeState& state) const;
   void add_free_source(const Branch& branch, const SurfaceInteraction& interaction,
                        const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u,
-                       float share, Walk& walk) const;
+                       float share, TreeState& state) const;
   void add_bright_patch(const Branch& branch, const SurfaceInteraction& interaction,
                         const ElementHit& hit, const ShadingPoint& at,
                         const BrightPatches::View& view, const Eigen::Array4d& u, float share,
-                        Walk& walk) const;
+                        TreeState& state) const;
   float share_of_bright(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   Spectrum emission(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   const RoughLobe& lobe(int material, bool from_back) const;
   void grow(const Branch& parent, std::uint64_t place, const ScatteringSample& sample,
-            const ElementHit& hit, const ShadingPoint& at, Walk& walk) const;
+            const ElementHit& hit, const ShadingPoint& at, TreeState& state) const;
   ShadingPoint shading_point(const Ray& ray, const ElementHit& hit,
                              const ElementCaster& caster) const;
   /// Where shadow rays leave from, and the facet they leave; -1: none.
@@ -153,16 +155,17 @@ class RayTree {
   };
   ShadowOrigin shadow_origin(const ElementHit& hit, const ShadingPoint& at) const;
   Eigen::Vector3d smooth_normal(const ElementHit& hit, const ShadingPoint& at) const;
-  void shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at, Walk& walk) const;
+  void shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+             TreeState& state) const;
   Arriving arriving(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
-                    const Walk& walk) const;
+                    const TreeState& state) const;
   Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   double cone_width(const Branch& branch, const ShadingPoint& at) const {
     return branch.width + pixel_width_ * (at.position - branch.ray.origin).norm();
   }
   void add_caustics(const ElementHit& hit, const ShadingPoint& at, Spectrum& indirect) const;
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
-                   const Spectrum& rho, const Arriving& E, Walk& walk) const;
+                   const Spectrum& rho, const Arriving& E, TreeState& state) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;

@@ -24,13 +24,14 @@ bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d
 
 // The mean over directions of a rough surface's lobe.
 void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interaction,
-                      const ElementHit& hit, const ShadingPoint& at, Walk& walk) const {
-  if (!walk.shades) return;
-  const bool is_first = branch.is_sharp && !walk.number;
+                      const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
+  if (!state.shades) return;
+  const bool is_first = branch.is_sharp && !state.number;
   const int count =
-      is_first ? std::max(1, static_cast<int>(std::lround(walk.effort * options_.glossy_rays))) : 1;
-  const int first = walk.number.value_or(0);
-  const std::uint64_t key = random_key(walk.gloss_key, branch.place, gloss_purpose,
+      is_first ? std::max(1, static_cast<int>(std::lround(state.effort * options_.glossy_rays)))
+               : 1;
+  const int first = state.number.value_or(0);
+  const std::uint64_t key = random_key(state.gloss_key, branch.place, gloss_purpose,
                                        static_cast<std::uint64_t>(first / gloss_point_count));
   // As many as a picture takes of one place or so.
   constexpr int usual_samples = 64;
@@ -49,13 +50,13 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
         lobe(facets_[hit.facet].material, hit.from_back).density(interaction, sample.direction);
     const Eigen::Array4d lamp_u =
         gloss_points_.point(index, random_key(key, lamp_purpose)).cast<double>();
-    add_lamp(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), walk);
-    add_free_source(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), walk);
+    add_lamp(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), state);
+    add_free_source(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), state);
     if (!view.is_empty()) {
       const Eigen::Array4d bright_u =
           gloss_points_.point(index, random_key(key, bright_purpose)).cast<double>();
       add_bright_patch(branch, interaction, hit, at, view, bright_u,
-                       1.0f / static_cast<float>(count), walk);
+                       1.0f / static_cast<float>(count), state);
     }
     // Places of many samples are alike, so that theirs are spread over what lies behind as well.
     const auto place =
@@ -63,7 +64,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
     Branch spread = branch;
     spread.is_sharp = false;
     spread.bright = view.is_empty() ? nullptr : &view;
-    grow(spread, place, sample, hit, at, walk);
+    grow(spread, place, sample, hit, at, state);
   }
 }
 
@@ -75,7 +76,7 @@ const RoughLobe& RayTree::lobe(int material, bool from_back) const {
 // that meet it count for the rest (balance heuristic of Veach & Guibas 1995).
 void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interaction,
                        const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u,
-                       float share, Walk& walk) const {
+                       float share, TreeState& state) const {
   if (branch.depth >= deepest_path(options_.max_depth, true)) return;
   const auto lamp = lamps_.draw(at.position, hit.facet, u[0], u[1], u[2]);
   if (!lamp) return;
@@ -94,16 +95,16 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
                 .origin_group = hit.facet,
                 .target_group = lamp->emitter->facet};
   std::uint8_t blocked = 0;
-  walk.caster->occluded({&ray, 1}, {&blocked, 1});
+  state.caster->occluded({&ray, 1}, {&blocked, 1});
   if (blocked != 0) return;
   if (absorbs_) {
     Media media = branch.media;
     media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, facets_[lamp->emitter->facet].material, false, lamp->distance);
   }
-  walk.result.radiance += seen;
+  state.result.radiance += seen;
   if (with_layers_) {
-    walk.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
+    state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
         linear_rgb(scene_.bands, seen);
   }
 }
@@ -112,7 +113,7 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
 // counts for all. One is drawn by what it would send here.
 void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& interaction,
                               const ElementHit& hit, const ShadingPoint& at,
-                              const Eigen::Array4d& u, float share, Walk& walk) const {
+                              const Eigen::Array4d& u, float share, TreeState& state) const {
   const std::vector<FreeSource>& sources = direct_light_.free_sources();
   if (sources.empty() || branch.depth >= deepest_path(options_.max_depth, true)) return;
   std::vector<double> sum;
@@ -141,7 +142,7 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
                 .origin_group = hit.facet};
   // What a lobe averages is radiance; a point's is E as a peak of solid angle 0.
   Spectrum seen = branch.weight * scattering_weight(interaction, sample.crosses) *
-                  sources[i].light * direct_light_.passed(*walk.caster, ray) *
+                  sources[i].light * direct_light_.passed(*state.caster, ray) *
                   (share * static_cast<float>(density * source_sample.irradiance / chance));
   if (!(seen > 0.0f).any()) return;
   if (absorbs_) {
@@ -149,9 +150,9 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
     media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, -1, false, source_sample.distance);
   }
-  walk.result.radiance += seen;
+  state.result.radiance += seen;
   if (with_layers_) {
-    walk.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
+    state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
         linear_rgb(scene_.bands, seen);
   }
 }
@@ -160,7 +161,7 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
 void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& interaction,
                                const ElementHit& hit, const ShadingPoint& at,
                                const BrightPatches::View& view, const Eigen::Array4d& u,
-                               float share, Walk& walk) const {
+                               float share, TreeState& state) const {
   if (branch.depth >= deepest_path(options_.max_depth, true)) return;
   const BrightPatches::Aim aim = bright_.draw(view, u[0], u[1], u[2]);
   if (!(aim.direction.dot(at.normal) > 0.0) || !(aim.direction.dot(interaction.normal) > 0.0))
@@ -171,9 +172,9 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   Branch aimed = branch;
   aimed.ray = {.origin = at.position, .direction = aim.direction, .origin_group = hit.facet};
   ElementHit met;
-  walk.caster->closest_hits({&aimed.ray, 1}, {&met, 1});
+  state.caster->closest_hits({&aimed.ray, 1}, {&met, 1});
   if (met.element != aim.element) return;
-  const ShadingPoint there = shading_point(aimed.ray, met, *walk.caster);
+  const ShadingPoint there = shading_point(aimed.ray, met, *state.caster);
   const double distance = (there.position - at.position).norm();
   const double both = density + bright_.density(view, met.element, aim.direction, distance);
   aimed.weight *=
@@ -190,7 +191,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   aimed.lobe_density = 0.0;
   aimed.bright = nullptr;
   aimed.is_aimed = true;
-  shade(aimed, met, there, walk);
+  shade(aimed, met, there, state);
 }
 
 // Of what a branch meets, what add_bright_patch leaves to it.

@@ -94,7 +94,7 @@ class HangingPoints {
     boxes.reserve(points.size());
     for (const int p : points) boxes.emplace_back(points_[p], points_[p]);
     const BoxTree tree(std::move(boxes));
-    const auto look = [&](int e, std::int64_t& visits, std::vector<int>& found) {
+    const auto try_edge = [&](int e, std::int64_t& visits, std::vector<int>& found) {
       Edge& edge = edges_[e];
       if (!tree.find_along(points_[edge.low], points_[edge.high], tolerance_, visits, found)) {
         return false;
@@ -109,13 +109,13 @@ class HangingPoints {
       std::vector<int> found;
       for (int k = begin; k < end; ++k) {
         std::int64_t visits = quick;
-        is_done[k] = look(edges[k], visits, found) ? 1 : 0;
+        is_done[k] = try_edge(edges[k], visits, found) ? 1 : 0;
       }
     });
     std::int64_t visits = most_per_edge * static_cast<std::int64_t>(edges_.size());
     std::vector<int> found;
     for (std::size_t k = 0; k < edges.size() && visits > 0; ++k) {
-      if (!is_done[k]) look(edges[k], visits, found);
+      if (!is_done[k]) try_edge(edges[k], visits, found);
     }
   }
 

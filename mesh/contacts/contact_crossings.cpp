@@ -54,7 +54,7 @@ void ContactGraph::cut_at_crossings(const Scene& scene) {
       const Segment& si = segments_[i];
       const Vector3d p = welded_[si.a], u = welded_[si.b] - p;
       tree.find_overlaps(boxes[i], near);
-      effort.look_at(near.size());
+      effort.count(near.size());
       for (int j : near) {
         if (j <= i) continue;
         const Segment& sj = segments_[j];

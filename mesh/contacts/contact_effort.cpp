@@ -26,7 +26,7 @@ ContactEffort::ContactEffort(const Scene& scene, int facets)
     : scene_(scene),
       most_contacts_(std::clamp(contacts_per_facet * facets, least_contacts, most_contacts)) {}
 
-void ContactEffort::look_at(std::size_t pairs) {
+void ContactEffort::count(std::size_t pairs) {
   if ((pairs_ += static_cast<std::int64_t>(pairs)) <= most_pairs) return;
   refuse(scene_, fmt::format("more than {} million pairs of polygons or their edges lie close "
                              "together",

@@ -16,7 +16,7 @@ class ContactEffort {
  public:
   ContactEffort(const Scene& scene, int facets);
 
-  void look_at(std::size_t pairs);
+  void count(std::size_t pairs);
   void found(std::size_t contacts);
 
  private:

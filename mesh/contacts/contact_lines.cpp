@@ -11,14 +11,15 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // How a facet's corners lie to a plane, and where its boundary meets that plane.
-struct PlaneMeeting {
+struct PlaneIntersection {
   bool in_plane = true;    // every corner lies in the plane
   bool can_share = false;  // at least a segment of the facet may lie in the plane
   std::vector<Vector3d> points{};
 };
 
-PlaneMeeting meet_plane(const FacetPlane& facet, const FacetPlane& plane, double tolerance) {
-  PlaneMeeting meeting;
+PlaneIntersection intersect_plane(const FacetPlane& facet, const FacetPlane& plane,
+                                  double tolerance) {
+  PlaneIntersection intersection;
   int above = 0, below = 0, on = 0;
   std::vector<double> height(facet.corner.size());
   for (std::size_t i = 0; i < facet.corner.size(); ++i) {
@@ -26,18 +27,18 @@ PlaneMeeting meet_plane(const FacetPlane& facet, const FacetPlane& plane, double
     if (std::abs(height[i]) <= tolerance) height[i] = 0.0;
     (height[i] > 0.0 ? above : height[i] < 0.0 ? below : on)++;
   }
-  meeting.in_plane = above == 0 && below == 0;
-  meeting.can_share = (above > 0 && below > 0) || on > 1;
-  if (!meeting.can_share || meeting.in_plane) return meeting;
+  intersection.in_plane = above == 0 && below == 0;
+  intersection.can_share = (above > 0 && below > 0) || on > 1;
+  if (!intersection.can_share || intersection.in_plane) return intersection;
   facet.for_each_edge([&](int i, int j) {
-    if (height[i] == 0.0) meeting.points.push_back(facet.corner[i]);
+    if (height[i] == 0.0) intersection.points.push_back(facet.corner[i]);
     if (!(height[i] * height[j] < 0.0)) return;
     // From the lower-numbered end, so that every facet with this edge finds the very same point.
     if (facet.point[i] > facet.point[j]) std::swap(i, j);
     const double t = height[i] / (height[i] - height[j]);
-    meeting.points.push_back(facet.corner[i] + t * (facet.corner[j] - facet.corner[i]));
+    intersection.points.push_back(facet.corner[i] + t * (facet.corner[j] - facet.corner[i]));
   });
-  return meeting;
+  return intersection;
 }
 
 // Parameters in ascending order, those closer than `gap` joined.
@@ -142,9 +143,9 @@ std::vector<ContactSegment> facet_contact(const FacetPlane& a, const FacetPlane&
   constexpr double share_of_extent = 1e-3;
   tolerance = std::min({tolerance, share_of_extent * a.box.diagonal().norm(),
                         share_of_extent * b.box.diagonal().norm()});
-  const PlaneMeeting of_b = meet_plane(b, a, tolerance);
+  const PlaneIntersection of_b = intersect_plane(b, a, tolerance);
   if (!of_b.can_share) return {};
-  const PlaneMeeting of_a = meet_plane(a, b, tolerance);
+  const PlaneIntersection of_a = intersect_plane(a, b, tolerance);
   if (!of_a.can_share) return {};
   const bool coplanar = of_a.in_plane || of_b.in_plane;
   const bool neighbours = a.is_triangle() && b.is_triangle() && shared_corners(a, b) == 2;

@@ -43,7 +43,7 @@ void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
       for (int k = from; k < to; ++k) {
         const int i = begin + k;
         tree.find_overlaps(boxes[i], near);
-        effort.look_at(near.size());
+        effort.count(near.size());
         for (int j : near) {
           if (j <= i) continue;
           // A circle much smaller than an element would only make slivers.

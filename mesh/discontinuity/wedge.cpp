@@ -47,24 +47,24 @@ void meet_facet(const FacetPlane& facet, const Wedge& wedge, double tolerance,
   }
   if (above == 0 && below == 0) return;
   if ((above == 0 || below == 0) && on < 2) return;
-  struct Meeting {
-    double place;
+  struct Intersection {
+    double along;
     Vector3d point;
     int corner;
   };
   const Vector3d line = facet.normal.cross(wedge.normal);
-  std::vector<Meeting> meetings;
+  std::vector<Intersection> intersections;
   facet.for_each_edge([&](int i, int j) {
-    if (height[i] == 0.0) meetings.push_back({line.dot(facet.corner[i]), facet.corner[i], i});
+    if (height[i] == 0.0) intersections.push_back({line.dot(facet.corner[i]), facet.corner[i], i});
     if (!(height[i] * height[j] < 0.0)) return;
     // From the lower-numbered end, so that both facets of an edge find the very same point.
     if (facet.point[i] > facet.point[j]) std::swap(i, j);
     const double t = height[i] / (height[i] - height[j]);
     const Vector3d point = facet.corner[i] + t * (facet.corner[j] - facet.corner[i]);
-    meetings.push_back({line.dot(point), point, -1});
+    intersections.push_back({line.dot(point), point, -1});
   });
-  std::sort(meetings.begin(), meetings.end(),
-            [](const Meeting& a, const Meeting& b) { return a.place < b.place; });
+  std::sort(intersections.begin(), intersections.end(),
+            [](const Intersection& a, const Intersection& b) { return a.along < b.along; });
   const auto edge_mask = [&](int one, int other) -> unsigned {
     unsigned mask = hides_nothing;
     if (one < 0 || other < 0) return mask;
@@ -75,8 +75,8 @@ void meet_facet(const FacetPlane& facet, const Wedge& wedge, double tolerance,
     });
     return mask;
   };
-  for (std::size_t k = 0; k + 1 < meetings.size(); ++k) {
-    const Meeting &a = meetings[k], &b = meetings[k + 1];
+  for (std::size_t k = 0; k + 1 < intersections.size(); ++k) {
+    const Intersection &a = intersections[k], &b = intersections[k + 1];
     if (!((b.point - a.point).norm() > tolerance)) continue;
     unsigned mask = edge_mask(a.corner, b.corner);
     if (mask == hides_nothing && facet.contains(facet.project(0.5 * (a.point + b.point)), 0.0)) {

@@ -6,7 +6,7 @@
 #include <queue>
 #include <vector>
 
-#include "mesh/facets/join_crumbs.h"
+#include "mesh/facets/merge_small_groups.h"
 
 namespace lightwell {
 namespace {
@@ -176,7 +176,7 @@ std::vector<int> group_facets(const std::vector<FacetPatch>& patches,
                               const std::vector<FacetPatchContact>& contacts,
                               const FacetGroupOptions& options) {
   std::vector<int> group = Grower(patches, contacts, options).grow_all();
-  join_crumbs(patches, options, group);
+  merge_small_groups(patches, options, group);
   // Named by their lowest member.
   std::vector<int> lowest(patches.size(), -1);
   for (std::size_t i = 0; i < group.size(); ++i) {

@@ -39,9 +39,9 @@ inline constexpr double seed_angle = 0.75;      ///< of the angle: a mean may mo
 /// middles are within 0.7 patch sizes of its middle and their normals within 3/4 of the angle of
 /// its own; what then is not within the angle of the mean is let go of. Less than half a patch
 /// joins a neighbour that has room. What is less than 15 % of a patch still is joined with others
-/// of its place that face alike (see join_crumbs): a plant's leaves, a heap of bolts. All normals
-/// of a group are within the angle of their mean. Result: by patch of a facet the lowest one of its
-/// group.
+/// of its place that face alike (see merge_small_groups): a plant's leaves, a heap of bolts. All
+/// normals of a group are within the angle of their mean. Result: by patch of a facet the lowest
+/// one of its group.
 std::vector<int> group_facets(const std::vector<FacetPatch>& patches,
                               const std::vector<FacetPatchContact>& contacts,
                               const FacetGroupOptions& options);

@@ -47,7 +47,8 @@ struct Covered {
   Eigen::ArrayXd reflected{};      // times area
 };
 
-Covered look_over(const PatchMesh& mesh, const FacetTextures& textures, int element, int bands) {
+Covered covered_light(const PatchMesh& mesh, const FacetTextures& textures, int element,
+                      int bands) {
   const int facet = mesh.facet[element];
   const auto corner = corners_of(mesh, element);
   const bool has_holes = textures.has_holes(facet), is_textured = textures.is_textured(facet);
@@ -88,7 +89,7 @@ void lay_on_patch(const Scene& scene, const FacetTextures& textures, int patch, 
     double share = 1.0;
     const bool is_textured = textures.is_textured(facet);
     if (is_textured || textures.has_holes(facet)) {
-      const Covered sum = look_over(mesh, textures, e, bands);
+      const Covered sum = covered_light(mesh, textures, e, bands);
       share = sum.cover / sum.area;
       if (is_textured) reflected += mesh.element_area[e] / sum.area * sum.reflected;
     }

@@ -216,7 +216,7 @@ std::optional<double> ExactShadows::share(int emitter, const SurfacePoint& at,
   }
   if (count == 0) return 1.0;
   view.set(face.parts, {blockers.data(), count});
-  const ShadowedPolygon::View seen = view.look(point, normal);
+  const ShadowedPolygon::View seen = view.view_from(point, normal);
   if (!(seen.all > 0.0)) return std::nullopt;
   constexpr double rounding = 1e-9;
   const double share = 1.0 - seen.hidden / seen.all;

@@ -276,11 +276,11 @@ void SkyLight::learn(const ElementCaster& caster) {
     keys.push_back(key);
   }
   const auto count = static_cast<int>(lists.size());
-  std::vector<Look> looks(lists.size());
+  std::vector<CellVisibility> visibilities(lists.size());
   parallel_for(count, 4, [&](int begin, int end) {
     for (int s = begin; s < end; ++s) {
       const auto i = static_cast<std::size_t>(s);
-      looks[i] = look_from(caster, *lists[i], random_key(keys[i], learn_purpose));
+      visibilities[i] = sample_cells(caster, *lists[i], random_key(keys[i], learn_purpose));
     }
   });
   sites_.resize(lists.size());
@@ -288,22 +288,23 @@ void SkyLight::learn(const ElementCaster& caster) {
     for (int s = begin; s < end; ++s) {
       const auto i = static_cast<std::size_t>(s);
       const SurfacePoint& point = lists[i]->front();
-      std::vector<const Look*> beside;
+      std::vector<const CellVisibility*> beside;
       for (int side = 0; side < 6; ++side) {
         Eigen::Vector3d position = point.position;
         position[side / 2] += side % 2 == 0 ? cube_ : -cube_;
         const auto found = site_of_.find(site_key(position, point.normal, cube_));
         if (found != site_of_.end()) {
-          beside.push_back(&looks[static_cast<std::size_t>(found->second)]);
+          beside.push_back(&visibilities[static_cast<std::size_t>(found->second)]);
         }
       }
-      sites_[i] = site_of(looks[i], beside);
+      sites_[i] = site_of(visibilities[i], beside);
     }
   });
 }
 
-SkyLight::Look SkyLight::look_from(const ElementCaster& caster,
-                                   std::span<const SurfacePoint> points, std::uint64_t key) const {
+SkyLight::CellVisibility SkyLight::sample_cells(const ElementCaster& caster,
+                                                std::span<const SurfacePoint> points,
+                                                std::uint64_t key) const {
   struct Sample {
     int cell = 0;
     std::size_t point = 0;
@@ -333,10 +334,10 @@ SkyLight::Look SkyLight::look_from(const ElementCaster& caster,
     }
     return samples;
   };
-  Look look;
+  CellVisibility visibility;
   const auto count_in = [&](const Sample& sample) {
-    look.tried[static_cast<std::size_t>(sample.cell)] += 1.0f;
-    look.open[static_cast<std::size_t>(sample.cell)] += sample.is_open ? 1.0f : 0.0f;
+    visibility.tried[static_cast<std::size_t>(sample.cell)] += 1.0f;
+    visibility.open[static_cast<std::size_t>(sample.cell)] += sample.is_open ? 1.0f : 0.0f;
   };
   std::vector<std::size_t> all(points.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -351,21 +352,22 @@ SkyLight::Look SkyLight::look_from(const ElementCaster& caster,
     if (seeing.empty() || sees[sample.point] != 0) count_in(sample);
   }
   for (const Sample& sample : samples_from(seeing.empty() ? all : seeing, 1)) count_in(sample);
-  return look;
+  return visibility;
 }
 
 // What gets out of a cell is likely to get out of those around it, and from the cubes beside, whose
 // points may see what those of this one, being few, do not. Rays are best given in proportion to
 // the root of how likely that is, since of light that is there or not that is the deviation.
-SkyLight::Site SkyLight::site_of(const Look& own, std::span<const Look* const> beside) {
+SkyLight::Site SkyLight::site_of(const CellVisibility& own,
+                                 std::span<const CellVisibility* const> beside) {
   constexpr float of_cube_beside = 0.25f, of_cell_beside = 0.125f;  // own rays count 1
   // Less would save few rays, and make what they find too bright a dot.
   constexpr float least = 0.3f;
-  Look all = own;
-  for (const Look* look : beside) {
+  CellVisibility all = own;
+  for (const CellVisibility* visibility : beside) {
     for (std::size_t i = 0; i < cells; ++i) {
-      all.tried[i] += of_cube_beside * look->tried[i];
-      all.open[i] += of_cube_beside * look->open[i];
+      all.tried[i] += of_cube_beside * visibility->tried[i];
+      all.open[i] += of_cube_beside * visibility->open[i];
     }
   }
   Site site;
@@ -447,7 +449,7 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at
   if (const auto found = site_of_.find(site_key(point, normal, cube_)); found != site_of_.end()) {
     site = &sites_[static_cast<std::size_t>(found->second)];
   } else {
-    learnt = site_of(look_from(caster, {&at, 1}, random_key(key, point_purpose)), {});
+    learnt = site_of(sample_cells(caster, {&at, 1}, random_key(key, point_purpose)), {});
     site = &learnt;
   }
   const Eigen::Vector3f n = normal.cast<float>();
@@ -505,12 +507,12 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at
   };
   const int first = sees_nothing ? std::max(8, effort.first / 4) : effort.first;
   share_out();
-  const Tally look = tally_of(first, 1);
-  if (sees_nothing && look.clear == 0) return {result(look).cast<float>()};
+  const Tally pilot = tally_of(first, 1);
+  if (sees_nothing && pilot.clear == 0) return {result(pilot).cast<float>()};
   // Where the site tells little of the point, as beside a wall that parts light from dark, rays
   // that follow it are few for what they find.
   constexpr double much = 0.2;
-  if (look.seen_elsewhere.sum() > much * result(look).sum()) {
+  if (pilot.seen_elsewhere.sum() > much * result(pilot).sum()) {
     for (Share& share : shares) share.likely = 1.0;
     E_open = open_irradiance();
     share_out();
@@ -521,7 +523,7 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at
   // That they all get out does where nothing of the site said otherwise.
   const bool is_clear =
       std::ranges::all_of(shares, [](const Share& share) { return share.likely >= 1.0; });
-  if (is_clear && look.clear == look.rays) return {result(look).cast<float>()};
+  if (is_clear && pilot.clear == pilot.rays) return {result(pilot).cast<float>()};
   const Tally more = tally_of(effort.most, 2);
   // What rays make of all that is open is off by as much as they are not even over it, and what
   // they see of it about in proportion. The proportion is that of the other rays: one's own would
@@ -530,8 +532,8 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at
     return tally.seen_open + seen_share(other) * (E_open - tally.all_open) + tally.seen_elsewhere;
   };
   const double share = static_cast<double>(first) / (first + effort.most);
-  const Eigen::ArrayXd E = share * corrected(look, more) + (1.0 - share) * corrected(more, look);
-  return {E.max(0.0).cast<float>(), look.clear < look.rays || more.clear < more.rays};
+  const Eigen::ArrayXd E = share * corrected(pilot, more) + (1.0 - share) * corrected(more, pilot);
+  return {E.max(0.0).cast<float>(), pilot.clear < pilot.rays || more.clear < more.rays};
 }
 
 }  // namespace lightwell

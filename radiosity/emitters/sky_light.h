@@ -62,7 +62,7 @@ class SkyLight {
   static constexpr int cells = around * rings;
   static constexpr int fine = 8;  // grid within a cell, each way
   /// Rays tried through each cell, and those that got out.
-  struct Look {
+  struct CellVisibility {
     std::array<float, cells> tried{}, open{};
   };
   /// What rays to each cell are given by, next to what it would give; 0: none is known to get out.
@@ -93,9 +93,9 @@ class SkyLight {
 
   void tabulate(const Sky& sky);
   void learn(const ElementCaster& caster);
-  Look look_from(const ElementCaster& caster, std::span<const SurfacePoint> points,
-                 std::uint64_t key) const;
-  static Site site_of(const Look& own, std::span<const Look* const> beside);
+  CellVisibility sample_cells(const ElementCaster& caster, std::span<const SurfacePoint> points,
+                              std::uint64_t key) const;
+  static Site site_of(const CellVisibility& own, std::span<const CellVisibility* const> beside);
   std::uint64_t site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
                          double cube) const;
   Eigen::Vector3d direction_at(int cell, double u, double v) const;

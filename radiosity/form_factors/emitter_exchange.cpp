@@ -48,7 +48,7 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
     return std::tuple(std::span(exchange_.data() + begin * exchange_.rows(),
                                 static_cast<std::size_t>(size * exchange_.rows())));
   };
-  const auto look = [&](int) { report(options.progress, "closed forms", 0.0); };
+  const auto report_progress = [&](int) { report(options.progress, "closed forms", 0.0); };
   const auto fill = [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       if (!receives[i]) continue;
@@ -71,7 +71,7 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
       }
     }
   };
-  for_each_slice(phase, mesh_.patch_count(), slice, 16, columns, look, fill);
+  for_each_slice(phase, mesh_.patch_count(), slice, 16, columns, report_progress, fill);
 }
 
 // An emitter's light is even, so its patches share it in proportion to their area.

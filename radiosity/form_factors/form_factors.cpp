@@ -146,8 +146,8 @@ class Estimator {
   // Casts each row, with four times the rays while `error_of(i, row)` is above the target.
   // It may leave pairs, which `done(i, pairs)` gets when there are enough.
   template <class ErrorOf, class Done>
-  void cast(Estimate& estimate, const std::vector<int>& rays_of, bool look_behind, ErrorOf error_of,
-            Done done) const {
+  void cast(Estimate& estimate, const std::vector<int>& rays_of, bool count_hidden,
+            ErrorOf error_of, Done done) const {
     estimate.row_error.assign(static_cast<std::size_t>(mesh_.patch_count()), 0.0f);
     const int longest = *std::max_element(rays_of.begin(), rays_of.end());
     const RowCaster caster(caster_, paths_, most_rays(longest));
@@ -158,7 +158,7 @@ class Estimator {
       double error = 0.0;
       if (!phase.recall(i, kept_parts(row), pairs, error)) {
         for (int rays = rays_of[i];; rays *= 4) {
-          row = caster.cast(i, rays, scratch, look_behind);
+          row = caster.cast(i, rays, scratch, count_hidden);
           pairs.clear();
           error = error_of(i, row, pairs);
           if (!(error > options_.target_error) || 4 * rays > most_rays(rays_of[i])) break;
@@ -213,7 +213,7 @@ class Estimator {
     cast(
         estimate, rays_of(emitters, base_rays()), true,
         [&](int i, const EstimatedRow& row, std::vector<NearExchange::Pair>& found) {
-          return near.look(i, row, found);
+          return near.find_pairs(i, row, found);
         },
         [&](int i, std::vector<NearExchange::Pair>& found) {
           std::erase_if(found, [&](const NearExchange::Pair& pair) {

@@ -43,7 +43,8 @@ bool NearExchange::is_exact_due(int i, int j, double variance, Between& between)
   return shafts_->has_exact(i, j, between);
 }
 
-double NearExchange::look(int patch, const EstimatedRow& row, std::vector<Pair>& pairs) const {
+double NearExchange::find_pairs(int patch, const EstimatedRow& row,
+                                std::vector<Pair>& pairs) const {
   double worst_variance = 0.0;
   Between between;
   for (std::size_t k = 0; k < row.shares.size(); ++k) {

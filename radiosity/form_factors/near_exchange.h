@@ -37,9 +37,9 @@ class NearExchange {
     int first = 0, all = 0;
   };
 
-  /// Adds the pairs of a row that was cast with `look_behind`. Returns the standard error of its
+  /// Adds the pairs of a row that was cast with `count_hidden`. Returns the standard error of its
   /// worst F_ij, those that remain counts included. Safe to call from many threads.
-  double look(int patch, const EstimatedRow& row, std::vector<Pair>& pairs) const;
+  double find_pairs(int patch, const EstimatedRow& row, std::vector<Pair>& pairs) const;
 
   /// Takes rows of pairs, kept so that columns below the diagonal are counted. `take(i, row)` gets
   /// the exchange of patch i with patches j > i, one row after another; both ends' counts of a pair

@@ -116,7 +116,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
           ++row.escaped;
         }
       }
-      if (behind) look_behind({ray.data(), n}, {hit.data(), n}, scratch);
+      if (behind) count_hidden({ray.data(), n}, {hit.data(), n}, scratch);
     }
   }
   scratch.take(rays, behind, row);
@@ -156,8 +156,8 @@ void RowCaster::pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t bra
 }
 
 // Sends the rays on through what they met, again and again, until they leave the scene.
-void RowCaster::look_behind(std::span<Ray> rays, std::span<ElementHit> hits,
-                            Scratch& scratch) const {
+void RowCaster::count_hidden(std::span<Ray> rays, std::span<ElementHit> hits,
+                             Scratch& scratch) const {
   constexpr int most_layers = 256;
   const PatchMesh& mesh = caster_.mesh();
   std::size_t left = rays.size();

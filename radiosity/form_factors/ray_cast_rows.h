@@ -85,14 +85,14 @@ class RowCaster {
   };
 
   /// `rays` cosine-distributed rays from all over the patch. Empty for patches that take no part in
-  /// diffuse exchange. `look_behind`: rays go on through whatever they meet, to fill
+  /// diffuse exchange. `count_hidden`: rays go on through whatever they meet, to fill
   /// EstimatedRow::hidden.
-  EstimatedRow cast(int patch, int rays, Scratch& scratch, bool look_behind = false) const;
+  EstimatedRow cast(int patch, int rays, Scratch& scratch, bool count_hidden = false) const;
 
  private:
   void pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch, Scratch& scratch,
                EstimatedRow& row, std::map<int, Spectrum>& by_way_of_specular) const;
-  void look_behind(std::span<Ray> rays, std::span<ElementHit> hits, Scratch& scratch) const;
+  void count_hidden(std::span<Ray> rays, std::span<ElementHit> hits, Scratch& scratch) const;
 
   const ElementCaster& caster_;
   const LightPaths& paths_;

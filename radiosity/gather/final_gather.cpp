@@ -234,10 +234,10 @@ void for_each_point(const GatherPoints& points, const GatherOptions& options,
   const int slice =
       std::clamp(rays_per_slice / std::max(options.rays, 1), 2, std::max(64, count / 100));
   const int grain = std::clamp(slice / 8, 1, 8);
-  const auto look = [&](int begin) {
+  const auto report_progress = [&](int begin) {
     report(options.progress, "gather", static_cast<double>(begin) / count);
   };
-  for_each_slice(phase, count, slice, grain, values, look, [&](int begin, int end) {
+  for_each_slice(phase, count, slice, grain, values, report_progress, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const GatherPoint at = points[i];
       body(i, at, random_key(at.key.value_or(static_cast<std::uint64_t>(i)), options.replica));

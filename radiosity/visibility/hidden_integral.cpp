@@ -87,7 +87,7 @@ HiddenTriangle HiddenIntegral::over(const std::array<Vector3d, 3>& corner) {
   for (int p = 0; p < TriangleRule::count; ++p) {
     const Vector3d& w = rule.at[p];
     const ShadowedPolygon::View view =
-        view_.look(w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2], normal_);
+        view_.view_from(w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2], normal_);
     result.hidden += area * rule.weight[p] * view.hidden;
     outer += area * rule.within[0][p] * view.hidden;
     inner += area * rule.within[1][p] * view.hidden;
@@ -124,7 +124,7 @@ double HiddenIntegral::change_at_corners(const std::array<Vector3d, 3>& corner,
   const Vector3d middle = (corner[0] + corner[1] + corner[2]) / 3.0;
   double change = 0.0;
   for (const Vector3d& c : corner) {
-    const ShadowedPolygon::View view = view_.look(c + inwards * (middle - c), normal_);
+    const ShadowedPolygon::View view = view_.view_from(c + inwards * (middle - c), normal_);
     change += is_all_hidden ? view.all - view.hidden : view.hidden;
   }
   return part * change;

@@ -117,7 +117,7 @@ PointFormFactors::Unsampled PointFormFactors::without_rays(const ShaftEnd& targe
     }
   }
   if (blockers.empty()) return result;
-  const auto view = ShadowedPolygon(target.parts, blockers).look(point.position, point.normal);
+  const auto view = ShadowedPolygon(target.parts, blockers).view_from(point.position, point.normal);
   result.F = view.all - view.hidden;
   return result;
 }

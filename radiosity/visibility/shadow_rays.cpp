@@ -20,13 +20,13 @@ void ShadowBatch::flush() {
     if (!blocked[k]) {
       tally.seen += weights_[k];
     } else if (panes_) {
-      look_through_panes(rays_[k], weights_[k], tally);
+      add_through_panes(rays_[k], weights_[k], tally);
     }
   }
   count_ = 0;
 }
 
-void ShadowBatch::look_through_panes(const Ray& ray, double weight, ShadowTally& tally) const {
+void ShadowBatch::add_through_panes(const Ray& ray, double weight, ShadowTally& tally) const {
   const Spectrum share = panes_->passed(caster_, ray);
   if (!(share > 0.0f).any()) {
     tally.blocked = true;

@@ -52,7 +52,7 @@ class ShadowBatch {
   void flush();
 
  private:
-  void look_through_panes(const Ray& ray, double weight, ShadowTally& tally) const;
+  void add_through_panes(const Ray& ray, double weight, ShadowTally& tally) const;
 
   static constexpr std::size_t size = 256;
   const ElementCaster& caster_;

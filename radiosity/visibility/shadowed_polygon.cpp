@@ -153,7 +153,7 @@ double ShadowedPolygon::take_away(const Blocker& blocker, const Vector3d& point,
   return hidden;
 }
 
-ShadowedPolygon::View ShadowedPolygon::look(const Vector3d& point, const Vector3d& normal) {
+ShadowedPolygon::View ShadowedPolygon::view_from(const Vector3d& point, const Vector3d& normal) {
   View view;
   for (const ConvexPolygon& part : parts_) {
     view.all += point_to_polygon(point, normal, part.corners());

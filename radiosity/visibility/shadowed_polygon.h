@@ -65,7 +65,7 @@ class ShadowedPolygon {
     std::uint32_t met = 0;  ///< bit k: blocker k reaches the point
   };
   /// From a point before the polygon's plane with unit normal `normal`. Exact up to rounding.
-  View look(const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
+  View view_from(const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
 
  private:
   /// Takes what the blocker hides off the fragments; the form factor of that.

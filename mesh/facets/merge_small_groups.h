@@ -11,7 +11,7 @@ namespace lightwell {
 /// member. A group joins the first one there whose seed all its normals face as to the options'
 /// angle and none of whose facets it shares; what then is not within the angle of the mean is let
 /// go of, and joins others.
-void join_crumbs(const std::vector<FacetPatch>& patches, const FacetGroupOptions& options,
-                 std::vector<int>& group);
+void merge_small_groups(const std::vector<FacetPatch>& patches, const FacetGroupOptions& options,
+                        std::vector<int>& group);
 
 }  // namespace lightwell

@@ -1,4 +1,4 @@
-#include "mesh/facets/join_crumbs.h"
+#include "mesh/facets/merge_small_groups.h"
 
 #include <algorithm>
 #include <cmath>
@@ -151,8 +151,8 @@ class Joiner {
 
 }  // namespace
 
-void join_crumbs(const std::vector<FacetPatch>& patches, const FacetGroupOptions& options,
-                 std::vector<int>& group) {
+void merge_small_groups(const std::vector<FacetPatch>& patches, const FacetGroupOptions& options,
+                        std::vector<int>& group) {
   Joiner(patches, options, group).join_all();
 }
 
