@@ -1,7 +1,8 @@
 # Shared by cornell/run, tests/run and .ci/run: the packages a build needs, and the build itself.
 # To be sourced by bash, with the repository root as the working directory.
 
-build_dir=build/release
+preset=release
+build_dir=build/$preset
 export CCACHE_BASEDIR="$PWD"  # what was compiled in one clone is not compiled again in the next
 
 # Everything the program, its viewer and its tests are compiled against (Debian's names).
@@ -13,10 +14,18 @@ build_packages=(
 )
 # A virtual display and a software OpenGL, for the tests of the viewer.
 display_packages=(xvfb xauth libgl1-mesa-dri)
+# What checks the format of the sources: the version whose output is the format. Debian 13 has later ones only.
+format_packages=(clang-format-14)
 # What opens exported pages and checks exported models, in the tests.
 browser_packages=(chromium nodejs)
 # A second browser (0.3 GB), and hands for the window: without them the tests with them are skipped.
 extra_packages=(firefox-esr xdotool)
+
+# use_preset NAME: builds with another preset of CMakePresets.json, in build/NAME.
+use_preset() {
+  preset=$1
+  build_dir=build/$preset
+}
 
 say() { printf '==> %s\n' "$*"; }
 die() { printf 'error: %s\n' "$*" >&2; exit 1; }
@@ -76,7 +85,7 @@ configure() {
     ! command -v ccache >/dev/null || launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
     mkdir -p build
     say "Configuring in $build_dir"
-    cmake --preset release "${launcher[@]}" "$@" >build/configure.log 2>&1 || {
+    cmake --preset $preset "${launcher[@]}" "$@" >build/configure.log 2>&1 || {
       tail -n 40 build/configure.log >&2
       die "CMake could not configure the build; the lines above (all of them: build/configure.log) say why."
     }
