@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,35 +10,21 @@
 #include "mesh/build_patches.h"
 #include "radiosity/effective_options.h"
 #include "radiosity/emitters/lit_scene.h"
-#include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
+#include "radiosity/illuminate_elements.h"
 #include "radiosity/journal/journal.h"
 #include "radiosity/journal/journal_phase.h"
-#include "radiosity/reconstruct.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solvers/solve_channels.h"
 #include "radiosity/solvers/solve_radiosity.h"
 #include "radiosity/start_radiosity.h"
+#include "radiosity/stopwatch.h"
 #include "scene/errors.h"
 
 namespace lightwell {
 namespace {
-
-class Stopwatch {
- public:
-  // Seconds since the last call.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 void require_light(const Scene& scene) {
   if (gives_light(scene)) return;
@@ -159,122 +142,6 @@ void require_unit(const Scene& scene, const SolveOptions& options) {
       "the mean irradiance, such as 1%");
 }
 
-// Of the mean irradiance; 0: none is asked for.
-double target_of(const Scene& scene, const SolveOptions& options, const SolvedScene& patches) {
-  if (!options.accuracy) return 0.0;
-  if (options.accuracy->share > 0.0) return options.accuracy->share;
-  const double mean = mean_illuminance(scene.bands, patches.mesh, patches.solution.patch_radiosity);
-  return mean > 0.0 ? std::min(options.accuracy->lux / mean, 1.0) : 1.0;
-}
-
-void require_finite(const Scene& scene, const RadiositySolution& solution) {
-  const BandArray E = solution.irradiance();
-  const Eigen::Index odd = E.rows() - E.isFinite().rowwise().all().count();
-  if (odd == 0 && solution.patch_radiosity.allFinite()) return;
-  throw InputError(fmt::format(
-      "{}: its light is no finite number at {} of {} vertices; what emits 1e38 W/m2 is more than "
-      "can be counted. Check the units of its emission",
-      scene.file.empty() ? "the scene" : scene.file.string(), odd, E.rows()));
-}
-
-// From the light on patches to that at vertices, refined and gathered as exactly as is asked for.
-// `kept_apart` is the direct light, by channel where there are channels.
-void illuminate_elements(const Scene& scene, const DirectLight& direct_light,
-                         const DirectLight& kept_apart, const SolveOptions& options,
-                         SolvedScene& solved, std::vector<PhaseSeconds>& seconds,
-                         SolveReport* report) {
-  const double target = target_of(scene, options, solved);
-  SolveOptions effective = options;
-  const auto take = [&](const Effort& effort) {
-    effective.refine.tolerance = effort.refine_tolerance;
-    effective.gather.rays = effort.gather_rays;
-    if (target > 0.0) effective.gather.shadows = effort.shadows();
-  };
-  Effort effort{options.refine.tolerance, options.gather.rays};
-  if (target > 0.0) effort = first_effort(target, options.refine.tolerance > 0.0);
-  take(effort);
-  std::map<std::string, double> spent;
-  Stopwatch watch;
-  RadiositySolution& solution = solved.solution;
-  if (target > 0.0) {
-    // In the end the edges of shadows are what is left, on whatever large elements they lie.
-    constexpr int deeper = 3;
-    effective.refine.max_level += deeper;
-    // Who asks for an accuracy asks for the elements it takes; about 1 GB of them.
-    constexpr std::int64_t plenty = 1000000;
-    auto& most = effective.refine.max_elements;
-    if (most == 0) most = std::max<std::int64_t>(plenty, 4 * solved.mesh.element_count());
-  }
-  if (const auto memory = options.form_factors.memory) {
-    effective.refine.room =
-        elements_in(memory->report().limit - resident_memory().now, kept_apart.column_count());
-  }
-  const bool may_try_again = target > 0.0;
-  std::optional<PilotGathers> pilot_gathers(std::in_place, scene, std::move(solved.mesh),
-                                            kept_apart, solution, noise_share(target));
-  std::optional<PilotGather> pilot;
-  std::optional<ElementCaster> caster;
-  KeptGathers kept;
-  for (int attempt = 0;; ++attempt) {
-    if (!pilot) {
-      caster.reset();
-      pilot = pilot_gathers->gather(effective);
-      if (attempt == 0 && target > 0.0) {
-        effort.gather_rays = pilot->gather_rays;
-        take(effort);
-      }
-      if (pilot->refined) {
-        solved.mesh = std::move(*pilot->refined);
-      } else {
-        solved.mesh = may_try_again ? pilot_gathers->base() : std::move(pilot_gathers->base());
-      }
-      caster.emplace(pilot_gathers->caster(solved.mesh, *pilot));
-      if (!may_try_again) pilot_gathers.reset();
-      give_back_free_pages();  // splitting leaves many
-      if (pilot->tree) spent["refine"] += watch.lap();
-    }
-    reconstruct({scene, *caster, kept_apart}, effective, *pilot, solution,
-                may_try_again ? &kept : nullptr);
-    relight(solved, effective_scales(solution));
-    give_back_free_pages();
-    spent["gather"] += watch.lap();
-    Eigen::ArrayXf& of_elements = solution.interpolation_error;
-    const auto estimate_batch = [&](int batch, Eigen::ArrayXf* elements) {
-      return estimate_error({scene, *caster, direct_light}, effective, solution, elements, batch);
-    };
-    ErrorEstimate estimate = estimate_batch(0, of_elements.size() == 0 ? &of_elements : nullptr);
-    // Where the places leave open whether that is what was asked for, more of them cost less than
-    // another attempt: single ones may hold a fifth of the squared error. Four batches halve what
-    // one leaves open.
-    constexpr int most_batches = 4;
-    for (int batch = 1;
-         batch < most_batches && estimate.least() < target && target < estimate.error(); ++batch) {
-      estimate = joined(estimate, estimate_batch(batch, nullptr));
-    }
-    solution.error_estimate = estimate.error();
-    spent["error_estimate"] += watch.lap();
-    if (!may_try_again || solution.error_estimate <= target) break;
-    const auto next =
-        next_effort(effort, target, estimate.error(), estimate.noise, pilot->refinement, attempt);
-    if (!next) {
-      if (solution.outcome == Outcome::converged) solution.outcome = Outcome::accuracy_missed;
-      break;
-    }
-    if (next->refine_tolerance < effort.refine_tolerance) pilot.reset();
-    effort = *next;
-    take(effort);
-  }
-  require_finite(scene, solution);
-  if (pilot->tree) solution.provenance.refinement = sentence(pilot->refinement);
-  for (const char* phase : {"refine", "gather", "error_estimate"}) {
-    if (spent[phase] > 0.0) seconds.push_back({phase, spent[phase]});
-  }
-  if (!report) return;
-  report->refinement = pilot->refinement;
-  report->accuracy = target;
-  report->gather_rays = effort.gather_rays;
-}
-
 // Direct light by channel, where light is kept apart.
 std::optional<DirectLight> light_by_channel(const Scene& scene, const PatchMesh& mesh,
                                             const DirectLight& all_light,
@@ -299,12 +166,10 @@ SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const So
                                SolveReport* report) {
   SolvedScene solved = std::move(patches);
   describe(scene, solved.solution);
-  std::vector<PhaseSeconds> seconds = std::move(solved.solution.seconds);
   const DirectLight direct_light(scene, solved.mesh);
   const auto by_channel = light_by_channel(scene, solved.mesh, direct_light, options.channels);
-  illuminate_elements(scene, direct_light, by_channel ? *by_channel : direct_light, options, solved,
-                      seconds, report);
-  solved.solution.seconds = std::move(seconds);
+  illuminate_elements(scene, {direct_light, by_channel ? *by_channel : direct_light}, options,
+                      solved, report);
   return solved;
 }
 
@@ -364,9 +229,10 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   watch.lap();
   describe(scene, solution);
 
-  caster.reset();
-  illuminate_elements(scene, direct_light, kept_apart, options, solved, seconds, report);
   solution.seconds = std::move(seconds);
+
+  caster.reset();
+  illuminate_elements(scene, {direct_light, kept_apart}, options, solved, report);
   return solved;
 }
 
