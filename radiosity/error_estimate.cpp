@@ -42,7 +42,7 @@ Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance) {
   return indicator;
 }
 
-struct ErrorPlace {
+struct ErrorSample {
   PatchPoint point{};
   double weight = 0.0;  // the share of the area over that of places
 };
@@ -51,9 +51,9 @@ struct ErrorPlace {
 // proportion to the squared error that elements are told to have (any multiple of it). That may sit
 // in few small ones, along the edges of shadows, which as many places spread evenly would hardly
 // meet.
-class ErrorPlaces {
+class ErrorSampler {
  public:
-  ErrorPlaces(const ElementCaster& caster, const Eigen::ArrayXf& indicator)
+  ErrorSampler(const ElementCaster& caster, const Eigen::ArrayXf& indicator)
       : mesh_(caster.mesh()), indicator_(indicator), counts_(mesh_.patch_count(), 0) {
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       // Nobody sees what another surface lies on.
@@ -72,7 +72,7 @@ class ErrorPlaces {
 
   bool is_empty() const { return !(total_area_ > 0.0); }
 
-  ErrorPlace place(const Eigen::Array4f& u) const {
+  ErrorSample draw(const Eigen::Array4f& u) const {
     const auto at = std::upper_bound(up_to_.begin(), up_to_.end() - 1, u[0] * up_to_.back());
     const auto e = static_cast<int>(at - up_to_.begin());
     return {PatchSampler(mesh_, mesh_.patch[e], e).point(u[1], u[2]),
@@ -99,10 +99,10 @@ class ErrorPlaces {
 
 // Those that are in no crack. Where another surface lies a hair above nobody sees a place, and what
 // light the crack lets in there the vertices around cannot tell.
-std::vector<ErrorPlace> open_places(const ElementCaster& caster, double width,
-                                    const std::vector<ErrorPlace>& places) {
+std::vector<ErrorSample> unenclosed_samples(const ElementCaster& caster, double width,
+                                            const std::vector<ErrorSample>& samples) {
   std::vector<Ray> rays;
-  for (const auto& [point, weight] : places) {
+  for (const auto& [point, weight] : samples) {
     rays.push_back({.origin = point.position,
                     .direction = width * point.normal,
                     .t_max = 1.0,
@@ -110,23 +110,23 @@ std::vector<ErrorPlace> open_places(const ElementCaster& caster, double width,
   }
   std::vector<std::uint8_t> blocked(rays.size());
   caster.occluded(rays, blocked);
-  std::vector<ErrorPlace> open;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (blocked[i] == 0) open.push_back(places[i]);
+  std::vector<ErrorSample> open;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (blocked[i] == 0) open.push_back(samples[i]);
   }
   return open;
 }
 
-std::vector<ErrorPlace> draw_places(const Scene& scene, const ElementCaster& caster,
-                                    const Eigen::ArrayXf& indicator, int wanted, int batch) {
-  const ErrorPlaces places(caster, indicator);
-  if (places.is_empty() || wanted < 1) return {};
+std::vector<ErrorSample> draw_samples(const Scene& scene, const ElementCaster& caster,
+                                      const Eigen::ArrayXf& indicator, int wanted, int batch) {
+  const ErrorSampler sampler(caster, indicator);
+  if (sampler.is_empty() || wanted < 1) return {};
   const SobolPoints sobol(wanted);
-  std::vector<ErrorPlace> drawn;
+  std::vector<ErrorSample> drawn;
   const std::uint64_t key = error_point_key + batch_keys * static_cast<std::uint64_t>(batch);
-  for (int i = 0; i < wanted; ++i) drawn.push_back(places.place(sobol.point(i, key)));
+  for (int i = 0; i < wanted; ++i) drawn.push_back(sampler.draw(sobol.point(i, key)));
   constexpr double crack = 1e-4;  // of the scene
-  return open_places(caster, crack * scene_bounds(scene).diagonal(), drawn);
+  return unenclosed_samples(caster, crack * scene_bounds(scene).diagonal(), drawn);
 }
 
 // How much too much light is in what is reflected, of each band, if what is found at places is that
@@ -157,9 +157,9 @@ ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
   const bool has_indicator = solution.interpolation_error.size() > 0;
   const Eigen::ArrayXf guessed = has_indicator ? Eigen::ArrayXf() : indicators(mesh, irradiance);
   const Eigen::ArrayXf& indicator = has_indicator ? solution.interpolation_error : guessed;
-  const int wanted = estimate_places(options.error_points, mesh.vertex_count());
-  const std::vector<ErrorPlace> drawn =
-      draw_places(lit.scene, lit.caster, indicator, wanted, batch);
+  const int wanted = estimate_points(options.error_points, mesh.vertex_count());
+  const std::vector<ErrorSample> drawn =
+      draw_samples(lit.scene, lit.caster, indicator, wanted, batch);
   if (drawn.empty()) return {};
 
   const auto count = static_cast<Eigen::Index>(drawn.size());
@@ -171,7 +171,7 @@ ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto& [point, share] = drawn[static_cast<std::size_t>(i)];
     points.push_back({point.position, point.normal, mesh.facet[point.element]});
-    const ElementHit hit = place_on_element(mesh, point);
+    const ElementHit hit = point_on_element(mesh, point);
     element.push_back(hit.element);
     interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
     if (solution.caustic_irradiance.size() > 0) {

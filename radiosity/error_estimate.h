@@ -19,7 +19,7 @@ struct ErrorEstimate {
 };
 
 /// Relative RMS error of interpolated irradiance over the area that reflects: at random places,
-/// `options.error_points` or more (see estimate_places), against gathers with twice the rays of
+/// `options.error_points` or more (see estimate_points), against gathers with twice the rays of
 /// the solution's or more (see estimate_rays) and other random numbers. Those read the solution's
 /// own light: what is too much or too little of it in all, such as power that interpolation cuts
 /// off, comes back in them, by as much as reflections are of all light, and is reckoned with. The

@@ -202,13 +202,13 @@ void CausticMap::insert(const std::vector<Folded>& folded, const BandArray& powe
   }
 }
 
-Spectrum CausticMap::irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+Spectrum CausticMap::irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                 int element) const {
   Spectrum E = Spectrum::Zero(power_.cols());
   const int root =
       root_[static_cast<std::size_t>(regions_.of_element[static_cast<std::size_t>(element)])];
   if (root < 0) return E;
-  const Eigen::Vector3f p = (place - origin_).cast<float>(), n = normal.cast<float>();
+  const Eigen::Vector3f p = (point - origin_).cast<float>(), n = normal.cast<float>();
   constexpr float most_bend = 0.5f;  // cosine: beyond, light that falls on one misses the other
   std::array<int, 64> stack;
   int depth = 0;

@@ -26,7 +26,7 @@ class CausticMap {
   CausticMap(const PatchMesh& mesh, const CausticPhotons& photons);
 
   /// W/m^2 at a place on an element; `normal` is the surface's own there, unit.
-  Spectrum irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+  Spectrum irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                       int element) const;
 
   /// Of `count` photons, how many a disc reaches over.

@@ -124,11 +124,11 @@ std::optional<LampSample> LampSamples::draw(const Eigen::Vector3d& from, int fac
   return sample;
 }
 
-double LampSamples::density(const Eigen::Vector3d& from, const Eigen::Vector3d& place,
+double LampSamples::density(const Eigen::Vector3d& from, const Eigen::Vector3d& point,
                             int facet) const {
   const auto f = static_cast<std::size_t>(facet);
   if (f >= of_facet_.size() || of_facet_[f] < 0) return 0.0;
-  const Eigen::Vector3d to = place - from;
+  const Eigen::Vector3d to = point - from;
   const double distance = to.norm();
   if (!(distance > 0.0)) return 0.0;
   const auto e = static_cast<std::size_t>(of_facet_[f]);

@@ -33,7 +33,7 @@ class LampSamples {
                                  double v) const;
   /// Density of draw() in the direction of a place on the lit side of a facet; 0 if that is none of
   /// DirectLight's emitters.
-  double density(const Eigen::Vector3d& from, const Eigen::Vector3d& place, int facet) const;
+  double density(const Eigen::Vector3d& from, const Eigen::Vector3d& point, int facet) const;
 
  private:
   double density_of(double share, const Emitter& emitter, const Eigen::Vector3d& from,

@@ -38,18 +38,18 @@ std::vector<DirectedEdge> directed_edges(const PatchMesh& mesh) {
   return edges;
 }
 
-using Place = std::array<double, 3>;
+using PointKey = std::array<double, 3>;
 
-Place place_of(const Eigen::Vector3d& p) {
+PointKey key_of(const Eigen::Vector3d& p) {
   return {p.x(), p.y(), p.z()};
 }
 
 // Elements that meet without sharing vertices, at reflex corners, bound nothing there.
 void drop_seams(std::vector<LightRegions::Edge>& bounds) {
-  std::set<std::pair<Place, Place>> all;
-  for (const auto& edge : bounds) all.insert({place_of(edge.from), place_of(edge.to)});
+  std::set<std::pair<PointKey, PointKey>> all;
+  for (const auto& edge : bounds) all.insert({key_of(edge.from), key_of(edge.to)});
   std::erase_if(bounds, [&](const LightRegions::Edge& edge) {
-    return all.contains({place_of(edge.to), place_of(edge.from)});
+    return all.contains({key_of(edge.to), key_of(edge.from)});
   });
 }
 

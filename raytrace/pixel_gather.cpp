@@ -22,7 +22,7 @@ Eigen::Vector3d above(const Eigen::Vector3d& direction, const Eigen::Vector3d& n
 }
 
 // pi times the density of a direction once above() has turned up what went below.
-double measure(const GatherPlace& at, const Eigen::Vector3d& direction) {
+double measure(const ShadingPoint& at, const Eigen::Vector3d& direction) {
   const double height = direction.dot(at.normal);
   if (!(height > 0.0)) return 0.0;
   const Eigen::Vector3d below = direction - 2.0 * height * at.normal;
@@ -46,7 +46,7 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
   }
 }
 
-Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const GatherPlace& at,
+Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const ShadingPoint& at,
                                           std::uint64_t key, float share) const {
   std::size_t level = 0;
   for (; share <= 0.5f && level + 1 < sets_.size(); share *= 2.0f) ++level;
@@ -82,7 +82,7 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Gat
 }
 
 // Light straight from bright patches, each ray for the one it was drawn for.
-void PixelGather::aim(const ElementCaster& caster, const GatherPlace& at,
+void PixelGather::aim(const ElementCaster& caster, const ShadingPoint& at,
                       const BrightPatches::View& view, int rays, std::uint64_t key,
                       Eigen::ArrayXd& sum) const {
   const std::uint64_t aim_key = random_key(key, aim_purpose);

@@ -15,7 +15,7 @@
 namespace lightwell {
 
 /// A place that a pixel shows.
-struct GatherPlace {
+struct ShadingPoint {
   Eigen::Vector3d position, normal;  ///< the surface's own, unit, towards the eye
   Eigen::Vector3d smooth_normal;     ///< that light is measured about
   int facet = -1;
@@ -35,11 +35,11 @@ class PixelGather {
 
   /// By about `share`, (0, 1], of the rays: the nearest power of two less, at least 8. `caster` is
   /// the one given, or what ElementCaster::at() makes of it.
-  Spectrum indirect_irradiance(const ElementCaster& caster, const GatherPlace& at,
+  Spectrum indirect_irradiance(const ElementCaster& caster, const ShadingPoint& at,
                                std::uint64_t key, float share) const;
 
  private:
-  void aim(const ElementCaster& caster, const GatherPlace& at, const BrightPatches::View& view,
+  void aim(const ElementCaster& caster, const ShadingPoint& at, const BrightPatches::View& view,
            int rays, std::uint64_t key, Eigen::ArrayXd& sum) const;
   Spectrum arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                     std::uint64_t key, double share) const;

@@ -27,14 +27,14 @@ bool PixelTally::is_good(float noise) const {
   return std::sqrt(variance) <= static_cast<double>(noise) * mean;
 }
 
-FilterPlaces::FilterPlaces() {
+FilterSampler::FilterSampler() {
   for (int i = 0; i < steps_; ++i) {
     cdf_[i + 1] = cdf_[i] + blackman_harris(2.0 * (i + 0.5) / steps_ - 1.0);
   }
   for (double& share : cdf_) share /= cdf_[steps_];
 }
 
-double FilterPlaces::offset(double u) const {
+double FilterSampler::offset(double u) const {
   const auto above = std::upper_bound(cdf_.begin() + 1, cdf_.end() - 1, u);
   const auto step = above - cdf_.begin() - 1;
   const double within = (u - *(above - 1)) / (*above - *(above - 1));
@@ -76,13 +76,13 @@ RaySample PixelSamples::sample_at_time(Ray ray, double time, std::uint64_t key, 
 
 void PixelSamples::take(int x, int y, int until, PixelTally& tally) const {
   const auto column = static_cast<std::uint64_t>(x), row = static_cast<std::uint64_t>(y);
-  const std::uint64_t place_key = random_key(column, row, place_purpose);
+  const std::uint64_t sample_key = random_key(column, row, place_purpose);
   const std::uint64_t shading_key = random_key(column, row, look_purpose);
   for (; tally.count < until; ++tally.count) {
-    const Eigen::Array4d u = points_.point(tally.count, place_key).cast<double>();
+    const Eigen::Array4d u = points_.point(tally.count, sample_key).cast<double>();
     const Ray ray =
         rays_.ray(x + 0.5 + filter_.offset(u[0]), y + 0.5 + filter_.offset(u[1]), u[2], u[3]);
-    const double part = exposure_ ? SobolPoints::fifth(tally.count, place_key) : 0.0;
+    const double part = exposure_ ? SobolPoints::fifth(tally.count, sample_key) : 0.0;
     RaySample sample =
         exposure_
             ? sample_at_time(ray, exposure_->open + part * (exposure_->close - exposure_->open),

@@ -12,9 +12,9 @@ namespace lightwell {
 /// Places about a pixel's centre with the density of the Blackman-Harris window over three pixels
 /// (Harris 1978), a reconstruction filter without negative lobes: a plain mean of samples at such
 /// places is the filtered picture (Ernst, Stamminger & Greiner 2006).
-class FilterPlaces {
+class FilterSampler {
  public:
-  FilterPlaces();
+  FilterSampler();
   /// Of u in [0,1): -1.5 to 1.5 pixels.
   double offset(double u) const;
 
@@ -68,7 +68,7 @@ class PixelSamples {
   SampleOptions options_;
   std::optional<Exposure> exposure_;  // none: nothing moves
   SobolPoints points_;
-  FilterPlaces filter_;
+  FilterSampler filter_;
 };
 
 }  // namespace lightwell

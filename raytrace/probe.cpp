@@ -40,7 +40,7 @@ Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
 // Finds the surface a probe lies on.
 class ProbeSurface {
  public:
-  struct Place {
+  struct SurfacePoint {
     ElementHit hit{};
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< on the surface
   };
@@ -50,22 +50,22 @@ class ProbeSurface {
 
   // A probe on an edge, or where another surface stands on its own, is moved by a hair to where it
   // is clear on which side of what it lies: on the surface, and in front of what stands there.
-  std::optional<Place> find(const Probe& probe) const {
+  std::optional<SurfacePoint> find(const Probe& probe) const {
     Frame frame{.normal = probe.normal};
     tangent_frame(probe.normal, frame.a, frame.b);
     const double hair = 0.1 * reach_;
     auto straight = below(probe.position, probe.normal);
     if (straight && is_inside(*straight, probe.position, frame, hair)) return straight;
-    std::optional<Place> behind;
+    std::optional<SurfacePoint> behind;
     const Eigen::Vector3d &a = frame.a, &b = frame.b;
     for (const Eigen::Vector3d& step :
          {a, b, Eigen::Vector3d(-a), Eigen::Vector3d(-b), Eigen::Vector3d(a + b),
           Eigen::Vector3d(a - b), Eigen::Vector3d(b - a), Eigen::Vector3d(-a - b)}) {
       const Eigen::Vector3d moved = probe.position + hair * step;
-      auto place = below(moved, probe.normal);
-      if (!place || !is_inside(*place, moved, frame, 0.5 * hair)) continue;
-      if (!is_behind(moved, -hair * step, frame)) return place;
-      if (!behind) behind = place;
+      auto point_on_surface = below(moved, probe.normal);
+      if (!point_on_surface || !is_inside(*point_on_surface, moved, frame, 0.5 * hair)) continue;
+      if (!is_behind(moved, -hair * step, frame)) return point_on_surface;
+      if (!behind) behind = point_on_surface;
     }
     return behind ? behind : straight;
   }
@@ -77,10 +77,11 @@ class ProbeSurface {
 
   // Of all that lies within reach above or below the point and faces the probe's way, the nearest;
   // what can give light back comes before black backs.
-  std::optional<Place> below(const Eigen::Vector3d& position, const Eigen::Vector3d& normal) const {
+  std::optional<SurfacePoint> below(const Eigen::Vector3d& position,
+                                    const Eigen::Vector3d& normal) const {
     constexpr double min_facing = 0.9;  // a wall touched from the side is not what it lies on
     constexpr int max_layers = 8;
-    std::optional<Place> best;
+    std::optional<SurfacePoint> best;
     double best_distance = 0.0;
     const Eigen::Vector3d top = position + reach_ * normal;
     Ray ray{.origin = top, .direction = -normal, .t_max = 2.0 * reach_};
@@ -95,7 +96,7 @@ class ProbeSurface {
           !best || (hit.element >= 0 && best->hit.element < 0) ||
           ((hit.element >= 0) == (best->hit.element >= 0) && distance < best_distance);
       if (faces && is_better) {
-        best = Place{.hit = hit, .position = at};
+        best = SurfacePoint{.hit = hit, .position = at};
         best_distance = distance;
       }
       // From a little before this surface, for another may lie in the same plane.
@@ -108,11 +109,11 @@ class ProbeSurface {
 
   // Whether the place's facet goes on for `radius` around the point and nothing stands on it there.
   // A neighbour in nearly the same plane counts as an end: at their common edge it would shade.
-  bool is_inside(const Place& place, const Eigen::Vector3d& position, const Frame& frame,
-                 double radius) const {
+  bool is_inside(const SurfacePoint& point_on_surface, const Eigen::Vector3d& position,
+                 const Frame& frame, double radius) const {
     const auto continues = [&](const Eigen::Vector3d& at) {
       const auto other = below(at, frame.normal);
-      return other && other->hit.facet == place.hit.facet;
+      return other && other->hit.facet == point_on_surface.hit.facet;
     };
     for (const Eigen::Vector3d& along : {frame.a, frame.b}) {
       const Ray ray{.origin = position + reach_ * frame.normal - radius * along,
@@ -163,12 +164,13 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   points.reserve(probes.size());
   for (const Probe& probe : probes) {
     GatherPoint point{.position = probe.position, .normal = probe.normal};
-    if (const auto place = surface.find(probe)) {
-      point.position = place->position;
-      point.facet = place->hit.facet;
-      if (has_caustics && place->hit.element >= 0) {
+    if (const auto point_on_surface = surface.find(probe)) {
+      point.position = point_on_surface->position;
+      point.facet = point_on_surface->hit.facet;
+      if (has_caustics && point_on_surface->hit.element >= 0) {
         caustic.row(static_cast<Eigen::Index>(points.size())) =
-            interpolate(caster.mesh(), solution.caustic_irradiance, place->hit).transpose();
+            interpolate(caster.mesh(), solution.caustic_irradiance, point_on_surface->hit)
+                .transpose();
       }
     }
     points.push_back(point);
@@ -186,16 +188,16 @@ std::vector<ElementHit> on_elements(const ElementCaster& caster, const Radiosity
   const ProbeSurface surface(caster);
   std::vector<ElementHit> hits;
   for (std::size_t i = 0; i < probes.size(); ++i) {
-    const auto place = surface.find(probes[i]);
-    if (!place || place->hit.element < 0) {
+    const auto point_on_surface = surface.find(probes[i]);
+    if (!point_on_surface || point_on_surface->hit.element < 0) {
       const Eigen::Vector3d p = probes[i].position / solution.metres_per_unit;
       throw InputError(fmt::format("probe {} at ({:g}, {:g}, {:g}) {} {}: {}", i + 1, p.x(), p.y(),
                                    p.z(), solution.unit_name,
-                                   place ? "lies on the back of a one-sided surface"
-                                         : "lies on no surface that faces its way",
+                                   point_on_surface ? "lies on the back of a one-sided surface"
+                                                    : "lies on no surface that faces its way",
                                    "there is nothing to interpolate; gather instead, or move it"));
     }
-    hits.push_back(place->hit);
+    hits.push_back(point_on_surface->hit);
   }
   return hits;
 }

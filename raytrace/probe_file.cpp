@@ -36,7 +36,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 }
 
 // Where an error lies, in front of every message.
-struct Place {
+struct FileLocation {
   std::string file{};
   int line = 0;
 
@@ -45,48 +45,48 @@ struct Place {
   }
 };
 
-Columns read_header(const std::vector<std::string_view>& cells, const Place& place) {
+Columns read_header(const std::vector<std::string_view>& cells, const FileLocation& location) {
   Columns columns{};
   for (std::size_t c = 0; c < column_names.size(); ++c) {
     const auto found = std::find(cells.begin(), cells.end(), column_names[c]);
     if (found == cells.end()) {
-      place.fail(
+      location.fail(
           fmt::format("no column is named '{}'; the first line must name x,y,z,nx,ny,nz (in any "
                       "order, others are ignored)",
                       column_names[c]));
     }
     if (std::find(found + 1, cells.end(), column_names[c]) != cells.end()) {
-      place.fail(fmt::format("two columns are named '{}'", column_names[c]));
+      location.fail(fmt::format("two columns are named '{}'", column_names[c]));
     }
     columns[c] = static_cast<int>(found - cells.begin());
   }
   return columns;
 }
 
-double number(std::string_view text, std::string_view column, const Place& place) {
+double number(std::string_view text, std::string_view column, const FileLocation& location) {
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value)) {
-    place.fail(fmt::format("{} is '{}', which is not a finite number", column, text));
+    location.fail(fmt::format("{} is '{}', which is not a finite number", column, text));
   }
   return value;
 }
 
 Probe read_row(const std::vector<std::string_view>& cells, const Columns& columns,
-               double metres_per_unit, const Place& place) {
+               double metres_per_unit, const FileLocation& location) {
   std::array<double, 6> values{};
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (columns[c] >= static_cast<int>(cells.size())) {
-      place.fail(fmt::format("has {} values; column '{}' is number {}", cells.size(),
-                             column_names[c], columns[c] + 1));
+      location.fail(fmt::format("has {} values; column '{}' is number {}", cells.size(),
+                                column_names[c], columns[c] + 1));
     }
-    values[c] = number(cells[columns[c]], column_names[c], place);
+    values[c] = number(cells[columns[c]], column_names[c], location);
   }
   const Eigen::Vector3d normal(values[3], values[4], values[5]);
   const double length = normal.stableNorm();
   if (!(length > 0.0)) {
-    place.fail("the normal nx,ny,nz has no length; it says which way the probe faces");
+    location.fail("the normal nx,ny,nz has no length; it says which way the probe faces");
   }
   return {.position = metres_per_unit * Eigen::Vector3d(values[0], values[1], values[2]),
           .normal = normal / length};
@@ -95,33 +95,33 @@ Probe read_row(const std::vector<std::string_view>& cells, const Columns& column
 }  // namespace
 
 std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_per_unit) {
-  Place place{.file = csv.string()};
+  FileLocation location{.file = csv.string()};
   std::ifstream stream(csv);
   if (!stream || std::filesystem::is_directory(csv)) {
-    throw InputError(fmt::format("{}: cannot be opened; is it there?", place.file));
+    throw InputError(fmt::format("{}: cannot be opened; is it there?", location.file));
   }
   std::vector<Probe> probes;
   std::optional<Columns> columns;
   std::string line;
   while (std::getline(stream, line)) {
-    ++place.line;
+    ++location.line;
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     std::string_view text = line;
-    if (place.line == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(3);
+    if (location.line == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(3);
     text = trimmed(text);
     if (text.empty() || text.starts_with('#')) continue;
     const auto cells = cells_of(text);
     if (!columns) {
-      columns = read_header(cells, place);
+      columns = read_header(cells, location);
     } else {
-      probes.push_back(read_row(cells, *columns, metres_per_unit, place));
+      probes.push_back(read_row(cells, *columns, metres_per_unit, location));
     }
   }
   if (!columns) {
     throw InputError(
-        fmt::format("{}: is empty; the first line must name x,y,z,nx,ny,nz", place.file));
+        fmt::format("{}: is empty; the first line must name x,y,z,nx,ny,nz", location.file));
   }
-  if (probes.empty()) throw InputError(fmt::format("{}: has no probes", place.file));
+  if (probes.empty()) throw InputError(fmt::format("{}: has no probes", location.file));
   return probes;
 }
 

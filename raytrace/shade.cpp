@@ -151,7 +151,7 @@ void RayTree::follow(Branch branch, TreeState& state) const {
   RaySample& result = state.result;
   if (branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
-    result.fingerprint = random_key(result.fingerprint, branch.place,
+    result.fingerprint = random_key(result.fingerprint, branch.node,
                                     static_cast<std::uint64_t>(seen), hit.from_back);
   }
   if (hit.facet < 0) return add_background(branch, state);
@@ -160,7 +160,7 @@ void RayTree::follow(Branch branch, TreeState& state) const {
     branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
                                          (at.position - branch.ray.origin).norm());
   }
-  if (state.shades && with_layers_ && branch.place == 1) {
+  if (state.shades && with_layers_ && branch.node == 1) {
     const Eigen::Vector3d normal = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
     result.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
   }
@@ -187,7 +187,7 @@ void RayTree::add_background(const Branch& branch, TreeState& state) const {
   const Spectrum seen = branch.weight * L;
   state.result.radiance += seen;
   if (!with_layers_) return;
-  const Layer layer = branch.place == 1 ? Layer::emission : Layer::specular;
+  const Layer layer = branch.node == 1 ? Layer::emission : Layer::specular;
   state.result.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, seen);
 }
 
@@ -207,15 +207,15 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
   if (material.gloss_roughness() > 0.0f) return scatter(branch, interaction, hit, at, state);
   const SmoothScattering lobes = smooth_scattering(interaction);
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
-    grow(branch, 2 * branch.place + i, lobes.sample[i], hit, at, state);
+    grow(branch, 2 * branch.node + i, lobes.sample[i], hit, at, state);
   }
 }
 
-void RayTree::grow(const Branch& parent, std::uint64_t place, const ScatteringSample& sample,
+void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
                    const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
   Branch branch{.weight = parent.weight * sample.weight,
                 .depth = parent.depth + 1,
-                .place = place,
+                .node = node,
                 .is_sharp = parent.is_sharp,
                 .lobe_density = sample.density,
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
@@ -334,13 +334,13 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   const ShadowOrigin from = shadow_origin(hit, at);
   E.direct = direct_light_.irradiance(*state.caster,
                                       {.at = {from.position, normal, from.facet},
-                                       .key = random_key(state.key, branch.place, shadow_purpose),
+                                       .key = random_key(state.key, branch.node, shadow_purpose),
                                        .shadows = shadows});
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
         *state.caster,
         {.position = at.position, .normal = at.normal, .smooth_normal = normal, .facet = hit.facet},
-        random_key(state.key, branch.place, gather_purpose), share);
+        random_key(state.key, branch.node, gather_purpose), share);
   } else {
     E.indirect = interpolate(mesh, solution_.indirect_irradiance, hit);
   }
@@ -374,7 +374,7 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
     const Spectrum L = branch.weight * one_over_pi * radiosity;
     return linear_rgb(bands, L);
   };
-  if (branch.place == 1) {
+  if (branch.node == 1) {
     // Bands that do not make up white, such as infrared, have no colour.
     three(Layer::albedo) = (white_rgb_ > 0.0f).all()
                                ? Eigen::Array3f(linear_rgb(bands, rho) / white_rgb_)
@@ -386,7 +386,7 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
     three(Layer::specular) += light(M + rho * (E.direct + E.indirect));
   }
   // Refracted children alone have odd places, so that straight through glass all bits are ones.
-  const bool is_straight = branch.is_sharp && (branch.place & (branch.place + 1)) == 0;
+  const bool is_straight = branch.is_sharp && (branch.node & (branch.node + 1)) == 0;
   if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
     const Spectrum all = E.direct + E.indirect;
     state.result.layers[first_sampled_column(Layer::illuminance)] =

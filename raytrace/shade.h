@@ -100,7 +100,7 @@ class RayTree {
     Spectrum weight{};  ///< share of what it sees that reaches the eye
     int depth = 0;
     /// 1 for the root, 2 p and 2 p + 1 for the children of p; any for those off rough surfaces.
-    std::uint64_t place = 1;
+    std::uint64_t node = 1;
     bool is_sharp = true;  ///< no rough surface on the way
     /// Of its direction, 1/sr, off a rough surface, which samples lamps beside; else 0.
     double lobe_density = 0.0;
@@ -144,7 +144,7 @@ class RayTree {
   float share_of_bright(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   Spectrum emission(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   const RoughLobe& lobe(int material, bool from_back) const;
-  void grow(const Branch& parent, std::uint64_t place, const ScatteringSample& sample,
+  void grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
             const ElementHit& hit, const ShadingPoint& at, TreeState& state) const;
   ShadingPoint shading_point(const Ray& ray, const ElementHit& hit,
                              const ElementCaster& caster) const;

@@ -31,7 +31,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
       is_first ? std::max(1, static_cast<int>(std::lround(state.effort * options_.glossy_rays)))
                : 1;
   const int first = state.number.value_or(0);
-  const std::uint64_t key = random_key(state.gloss_key, branch.place, gloss_purpose,
+  const std::uint64_t key = random_key(state.gloss_key, branch.node, gloss_purpose,
                                        static_cast<std::uint64_t>(first / gloss_point_count));
   // As many as a picture takes of one place or so.
   constexpr int usual_samples = 64;
@@ -59,12 +59,12 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
                        1.0f / static_cast<float>(count), state);
     }
     // Places of many samples are alike, so that theirs are spread over what lies behind as well.
-    const auto place =
-        random_key(branch.place, gloss_purpose, static_cast<std::uint64_t>(i), sample.crosses);
+    const auto node =
+        random_key(branch.node, gloss_purpose, static_cast<std::uint64_t>(i), sample.crosses);
     Branch spread = branch;
     spread.is_sharp = false;
     spread.bright = view.is_empty() ? nullptr : &view;
-    grow(spread, place, sample, hit, at, state);
+    grow(spread, node, sample, hit, at, state);
   }
 }
 
@@ -185,7 +185,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   }
   if (!(aimed.weight > 0.0f).any()) return;
   aimed.depth = branch.depth + 1;
-  aimed.place = random_key(branch.place, bright_purpose, static_cast<std::uint64_t>(aim.element));
+  aimed.node = random_key(branch.node, bright_purpose, static_cast<std::uint64_t>(aim.element));
   aimed.is_sharp = false;
   aimed.width = cone_width(branch, at);
   aimed.lobe_density = 0.0;

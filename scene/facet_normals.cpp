@@ -25,7 +25,7 @@ FacetNormals::FacetNormals(const Scene& scene) {
   for (const Surface& surface : scene.surfaces) {
     const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
     if (!has_normals(surface)) {
-      places_.insert(places_.end(), mesh ? mesh->facets.size() : 1, Place{});
+      entries_.insert(entries_.end(), mesh ? mesh->facets.size() : 1, Entry{});
       continue;
     }
     const int first_map = static_cast<int>(maps_.size());
@@ -35,26 +35,26 @@ FacetNormals::FacetNormals(const Scene& scene) {
       for (const double x : map.offset) add(x);
     }
     for (const Facet& facet : mesh->facets) {
-      Place place{.is_given = true, .first_corner = static_cast<int>(corners_.size())};
+      Entry entry{.is_given = true, .first_corner = static_cast<int>(corners_.size())};
       if (facet.normal_map >= 0) {
-        place.map = first_map + facet.normal_map;
+        entry.map = first_map + facet.normal_map;
         if (facet.holes.empty()) {
           for (const int v : facet.boundary) {
             corners_.push_back(mesh->vertices[static_cast<std::size_t>(v)]);
           }
         }
       }
-      place.corners = static_cast<int>(corners_.size()) - place.first_corner;
-      add(place.map);
-      places_.push_back(place);
+      entry.corners = static_cast<int>(corners_.size()) - entry.first_corner;
+      add(entry.map);
+      entries_.push_back(entry);
     }
   }
 }
 
 Eigen::Vector3d FacetNormals::at(int facet, const Eigen::Vector3d& point,
                                  const Eigen::Vector3d& normal) const {
-  if (places_.empty() || place(facet).map < 0) return normal;
-  Eigen::Vector3d smooth = maps_[static_cast<std::size_t>(place(facet).map)].at(point);
+  if (entries_.empty() || entry(facet).map < 0) return normal;
+  Eigen::Vector3d smooth = maps_[static_cast<std::size_t>(entry(facet).map)].at(point);
   const double length = smooth.norm();
   if (!(length > 0.0)) return normal;
   smooth /= length;
@@ -65,8 +65,8 @@ Eigen::Vector3d FacetNormals::at(int facet, const Eigen::Vector3d& point,
 
 double FacetNormals::height(int facet, const Eigen::Vector3d& point,
                             const Eigen::Vector3d& normal) const {
-  if (places_.empty() || place(facet).corners == 0) return 0.0;
-  const Place& here = place(facet);
+  if (entries_.empty() || entry(facet).corners == 0) return 0.0;
+  const Entry& here = entry(facet);
   const Eigen::Vector3d n = at(facet, point, normal);
   double least = std::numeric_limits<double>::infinity();
   for (int i = here.first_corner; i < here.first_corner + here.corners; ++i) {

@@ -17,9 +17,9 @@ class FacetNormals {
   explicit FacetNormals(const Scene& scene);
 
   /// Whether no surface has normals of its own.
-  bool is_empty() const { return places_.empty(); }
+  bool is_empty() const { return entries_.empty(); }
   /// Whether the surface of a facet has: its flat facets then are flat, as it says.
-  bool is_given(int facet) const { return !places_.empty() && place(facet).is_given; }
+  bool is_given(int facet) const { return !entries_.empty() && entry(facet).is_given; }
   /// Unit normal at a point (metres) of a facet's plane, on the side of `normal`, the facet's own
   /// or its opposite, which it is where there is no other.
   Eigen::Vector3d at(int facet, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
@@ -35,15 +35,15 @@ class FacetNormals {
   std::uint64_t hash() const { return hash_; }
 
  private:
-  struct Place {
+  struct Entry {
     int map = -1;  // into maps_
     bool is_given = false;
     int first_corner = 0, corners = 0;
   };
-  const Place& place(int facet) const { return places_[static_cast<std::size_t>(facet)]; }
+  const Entry& entry(int facet) const { return entries_[static_cast<std::size_t>(facet)]; }
 
   std::vector<NormalMap> maps_{};
-  std::vector<Place> places_{};             // by facet; empty: nowhere
+  std::vector<Entry> entries_{};            // by facet; empty: nowhere
   std::vector<Eigen::Vector3d> corners_{};  // of the boundaries of facets that have a map
   std::uint64_t hash_ = 0;
 };

@@ -20,21 +20,21 @@ FacetTextures::FacetTextures(const Scene& scene) {
     const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
     const int pictures = pictures_of_material[static_cast<std::size_t>(surface.material)];
     if (!mesh || pictures < 0) {
-      place_of_.insert(place_of_.end(), mesh ? mesh->facets.size() : 1, -1);
+      entry_of_.insert(entry_of_.end(), mesh ? mesh->facets.size() : 1, -1);
       continue;
     }
-    const int first = static_cast<int>(places_.size());
-    for (const UvMap& uv : mesh->uv_maps) places_.push_back({.pictures = pictures, .uv = uv});
+    const int first = static_cast<int>(entries_.size());
+    for (const UvMap& uv : mesh->uv_maps) entries_.push_back({.pictures = pictures, .uv = uv});
     for (const Facet& facet : mesh->facets) {
       const bool has_uv = facet.uv_map >= 0;
-      place_of_.push_back(has_uv ? first + facet.uv_map : -1);
+      entry_of_.push_back(has_uv ? first + facet.uv_map : -1);
       any = any || has_uv;
       has_holes_ =
           has_holes_ || (has_uv && pictures_[static_cast<std::size_t>(pictures)].mask.has_value());
     }
   }
-  if (!any) place_of_.clear();
-  for (std::size_t f = 0; f < place_of_.size(); ++f) {
+  if (!any) entry_of_.clear();
+  for (std::size_t f = 0; f < entry_of_.size(); ++f) {
     const int facet = static_cast<int>(f);
     if (has_holes(facet)) add_to_hash(facet);
   }
@@ -52,31 +52,31 @@ void FacetTextures::add_to_hash(int facet) {
   for (const TextureWrap wrap : mask.image.wrap) add(static_cast<std::uint64_t>(wrap));
   add(static_cast<std::uint64_t>(mask.image.is_smooth));
   add_numbers(mask.image.placement);
-  add_numbers(place(facet).uv.gradient);
-  add_numbers(place(facet).uv.offset);
+  add_numbers(entry(facet).uv.gradient);
+  add_numbers(entry(facet).uv.offset);
 }
 
 Spectrum FacetTextures::reflectance(int facet, const Eigen::Vector3d& point) const {
   const ReflectanceTexture& texture = *materials_of(facet).texture;
-  return texture.factor * texture.image.at(place(facet).uv.at(point));
+  return texture.factor * texture.image.at(entry(facet).uv.at(point));
 }
 
 Spectrum FacetTextures::reflectance(int facet, const Eigen::Vector3d& point,
                                     const Eigen::Matrix<double, 3, 2>& footprint) const {
   const ReflectanceTexture& texture = *materials_of(facet).texture;
-  const UvMap& uv = place(facet).uv;
+  const UvMap& uv = entry(facet).uv;
   return texture.factor * texture.image.over(uv.at(point), uv.gradient * footprint);
 }
 
 double FacetTextures::texels_along(int facet, const Eigen::Vector3d& vector) const {
   const SurfaceTexture& image = materials_of(facet).texture->image;
-  const Eigen::Vector2d along = image.placement.leftCols<2>() * (place(facet).uv.gradient * vector);
+  const Eigen::Vector2d along = image.placement.leftCols<2>() * (entry(facet).uv.gradient * vector);
   return std::hypot(along.x() * image.picture->width(), along.y() * image.picture->height());
 }
 
 bool FacetTextures::is_hole(int facet, const Eigen::Vector3d& point) const {
   const Mask& mask = *materials_of(facet).mask;
-  return !(mask.image.at(place(facet).uv.at(point))[0] >= mask.cutoff);
+  return !(mask.image.at(entry(facet).uv.at(point))[0] >= mask.cutoff);
 }
 
 }  // namespace lightwell

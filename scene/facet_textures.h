@@ -17,7 +17,7 @@ class FacetTextures {
   explicit FacetTextures(const Scene& scene);
 
   /// Whether there is nothing that varies.
-  bool is_empty() const { return place_of_.empty(); }
+  bool is_empty() const { return entry_of_.empty(); }
   /// Whether some facet has holes.
   bool has_holes() const { return has_holes_; }
   /// Of all that decides where the holes are; 0 without holes.
@@ -40,22 +40,22 @@ class FacetTextures {
     std::optional<ReflectanceTexture> texture{};
     std::optional<Mask> mask{};
   };
-  struct Place {
+  struct Entry {
     int pictures = 0;
     UvMap uv{};
   };
   void add_to_hash(int facet);
-  bool varying(int facet) const { return !place_of_.empty() && place_of_[std::size_t(facet)] >= 0; }
-  const Place& place(int facet) const {
-    return places_[static_cast<std::size_t>(place_of_[static_cast<std::size_t>(facet)])];
+  bool varying(int facet) const { return !entry_of_.empty() && entry_of_[std::size_t(facet)] >= 0; }
+  const Entry& entry(int facet) const {
+    return entries_[static_cast<std::size_t>(entry_of_[static_cast<std::size_t>(facet)])];
   }
   const Pictures& materials_of(int facet) const {
-    return pictures_[static_cast<std::size_t>(place(facet).pictures)];
+    return pictures_[static_cast<std::size_t>(entry(facet).pictures)];
   }
 
   std::vector<Pictures> pictures_{};
-  std::vector<Place> places_{};  // one for each UvMap of a surface that has pictures
-  std::vector<int> place_of_{};  // by facet; -1: nothing varies; empty: nowhere
+  std::vector<Entry> entries_{};  // one for each UvMap of a surface that has pictures
+  std::vector<int> entry_of_{};   // by facet; -1: nothing varies; empty: nowhere
   bool has_holes_ = false;
   std::uint64_t hash_of_holes_ = 0;
 };

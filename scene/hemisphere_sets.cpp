@@ -22,11 +22,11 @@ unsigned place_on_curve(const HemispherePoint& point) {
   constexpr int bits = 8;
   const auto cell = [](float x) { return static_cast<unsigned>((0.5f * x + 0.5f) * 255.0f); };
   const unsigned column = cell(point.x), row = cell(point.y);
-  unsigned place = 0;
+  unsigned index = 0;
   for (int i = 0; i < bits; ++i) {
-    place |= (column >> i & 1) << (2 * i) | (row >> i & 1) << (2 * i + 1);
+    index |= (column >> i & 1) << (2 * i) | (row >> i & 1) << (2 * i + 1);
   }
-  return place;
+  return index;
 }
 
 void sort_by_direction(std::span<HemispherePoint> points) {
@@ -42,12 +42,12 @@ void sort_by_direction(std::span<HemispherePoint> points) {
 
 }  // namespace
 
-HemisphereSets::HemisphereSets(int count, bool with_places)
+HemisphereSets::HemisphereSets(int count, bool with_planar_points)
     : count_(count), sets_(std::clamp(points_in_cache / count, fewest_sets, most_sets)) {
   const SobolPoints sobol(count);
   const auto size = static_cast<std::size_t>(count);
   points_.resize(size * static_cast<std::size_t>(sets_));
-  if (with_places) places_.resize(points_.size());
+  if (with_planar_points) planar_points_.resize(points_.size());
   parallel_for(sets_, 1, [&](int begin, int end) {
     std::vector<Eigen::Array4f> points(size);
     for (int set = begin; set < end; ++set) {
@@ -59,7 +59,7 @@ HemisphereSets::HemisphereSets(int count, bool with_places)
         // The first two dimensions are stratified best; directions gain most by it.
         const Eigen::Vector3f d = cosine_direction(p[0], p[1]).cast<float>();
         made[i] = {d.x(), d.y(), d.z(), static_cast<int>(i % block)};
-        if (with_places) places_[begin_of_set + i] = {p[2], p[3]};
+        if (with_planar_points) planar_points_[begin_of_set + i] = {p[2], p[3]};
       }
       for (std::size_t first = 0; first < size; first += block) {
         sort_by_direction(made.subspan(first, std::min<std::size_t>(block, size - first)));
@@ -74,7 +74,7 @@ HemisphereSets::Draw HemisphereSets::draw(std::uint64_t key) const {
   const auto size = static_cast<std::size_t>(count_), first = static_cast<std::size_t>(set) * size;
   Draw draw;
   draw.points_ = std::span(points_).subspan(first, size);
-  if (!places_.empty()) draw.places_ = std::span(places_).subspan(first, size);
+  if (!planar_points_.empty()) draw.planar_points_ = std::span(planar_points_).subspan(first, size);
   draw.shift_ = {random_uniform(key + 2), random_uniform(key + 3)};
   draw.cosine_ = std::cos(turn);
   draw.sine_ = std::sin(turn);

@@ -24,7 +24,7 @@ class HemisphereSets {
  public:
   static constexpr int block = 1024;
   /// Sets of `count` >= 1 points; without places for who casts from points.
-  explicit HemisphereSets(int count, bool with_places = false);
+  explicit HemisphereSets(int count, bool with_planar_points = false);
   int count() const { return count_; }
 
   class Draw {
@@ -35,9 +35,9 @@ class HemisphereSets {
     std::span<const HemispherePoint> points(int first, int size,
                                             std::vector<HemispherePoint>& some) const;
     /// The place of a point of the block that begins at `first`, shifted; in [0,1)^2.
-    Eigen::Vector2d place(int first, const HemispherePoint& point) const {
-      const Eigen::Vector2f& place = places_[static_cast<std::size_t>(first + point.rank)];
-      return {wrapped(place.x() + shift_.x()), wrapped(place.y() + shift_.y())};
+    Eigen::Vector2d planar_point(int first, const HemispherePoint& point) const {
+      const Eigen::Vector2f& planar = planar_points_[static_cast<std::size_t>(first + point.rank)];
+      return {wrapped(planar.x() + shift_.x()), wrapped(planar.y() + shift_.y())};
     }
     /// Columns: the frame about the unit vector `normal` in which the points' directions are meant.
     Eigen::Matrix3d frame(const Eigen::Vector3d& normal) const;
@@ -47,7 +47,7 @@ class HemisphereSets {
     // Half of all sums pass 1, and no processor foresees which: no branch.
     static double wrapped(double x) { return x - static_cast<int>(x); }
     std::span<const HemispherePoint> points_{};
-    std::span<const Eigen::Vector2f> places_{};  // in the sequence's order
+    std::span<const Eigen::Vector2f> planar_points_{};  // in the sequence's order
     Eigen::Vector2d shift_ = Eigen::Vector2d::Zero();
     double cosine_ = 1.0, sine_ = 0.0;  // of the turn
   };
@@ -57,8 +57,8 @@ class HemisphereSets {
  private:
   int count_;
   int sets_;
-  std::vector<HemispherePoint> points_;  // set by set
-  std::vector<Eigen::Vector2f> places_;  // the same, or none
+  std::vector<HemispherePoint> points_;         // set by set
+  std::vector<Eigen::Vector2f> planar_points_;  // the same, or none
 };
 
 }  // namespace lightwell

@@ -36,11 +36,11 @@ class FacingGroups {
       : parent_(static_cast<std::size_t>(count)), turned_(parent_.size()), mixed_(parent_.size()) {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
-  struct Place {
+  struct Membership {
     int root = 0;
     bool turned = false;
   };
-  Place find(int i) {
+  Membership find(int i) {
     bool turned = false;
     int root = i;
     while (parent_[root] != root) {
@@ -59,7 +59,7 @@ class FacingGroups {
     return {root, turned};
   }
   void join(int i, int j, bool opposed) {
-    const Place a = find(i), b = find(j);
+    const Membership a = find(i), b = find(j);
     if (a.root == b.root) {
       if ((a.turned ^ b.turned) != opposed) mixed_[a.root] = 1;
       return;

@@ -38,12 +38,12 @@ Array4f turned(const Array4f& w, bool is_triangle) {
 // Puts the element under a point of a sphere into `hit`, `from_center` away from its center.
 void find_on_sphere(const PatchMesh& mesh, const SphereGrid& grid, const Vector3d& from_center,
                     ElementHit& hit) {
-  const SpherePlace place = sphere_place(grid, from_center);
-  hit.element = grid.element[place.ring * grid.sectors + place.sector];
-  hit.weights = sphere_weights(grid, place);
+  const SphereGridPoint found = sphere_grid_point(grid, from_center);
+  hit.element = grid.element[found.ring * grid.sectors + found.sector];
+  hit.weights = sphere_weights(grid, found);
   if (!hit.from_back) return;
   hit.element = mesh.twin[hit.element];
-  const bool is_triangle = place.ring == 0 || place.ring == grid.rings - 1;
+  const bool is_triangle = found.ring == 0 || found.ring == grid.rings - 1;
   hit.weights = hit.element < 0 ? Array4f(Array4f::Zero()) : turned(hit.weights, is_triangle);
 }
 
@@ -155,22 +155,22 @@ struct ElementCaster::Part {
       result.weights = {1.0f - hit.u - hit.v, hit.u, hit.v, 0.0f};
       return;
     }
-    const ElementTree::Place place = tree->in_triangle(result.element, hit.u, hit.v);
-    result.element = place.element;
-    result.weights = place.weights;
+    const ElementTree::ElementPoint found = tree->in_triangle(result.element, hit.u, hit.v);
+    result.element = found.element;
+    result.weights = found.weights;
   }
 
   void find_in_quad(const ElementTree* tree, const Hit& hit, ElementHit& result) const {
     const QuadShape& shape =
         primitives.quad_shape[static_cast<std::size_t>(hit.primitive - triangles)];
-    const Eigen::Vector2d at = bilinear_place(shape, hit.u, hit.v);
+    const Eigen::Vector2d at = bilinear_coordinates(shape, hit.u, hit.v);
     if (!tree) {
       result.weights = bilinear_weights(at);
       return;
     }
-    const ElementTree::Place place = tree->in_quad(result.element, shape, at);
-    result.element = place.element;
-    result.weights = place.weights;
+    const ElementTree::ElementPoint found = tree->in_quad(result.element, shape, at);
+    result.element = found.element;
+    result.weights = found.weights;
   }
 
   template <bool with_weights>
@@ -199,13 +199,13 @@ struct ElementCaster::Part {
 };
 
 struct ElementCaster::Bodies {
-  struct Place {
+  struct FacetBody {
     int body = -1;  // -1: the facet stands still
     int group = -1;
   };
   std::vector<RigidMotion> motions{};
   std::vector<Part> parts{};
-  std::vector<Place> places{};  // by facet
+  std::vector<FacetBody> of_facet{};  // by facet
 };
 
 ElementCaster::ElementCaster(const PatchMesh& mesh)
@@ -222,7 +222,7 @@ ElementCaster::ElementCaster(const PatchMesh& mesh, const Scene& scene) : mesh_(
   const std::vector<FacetRef> refs = scene_facets(scene);
   for (std::size_t f = 0; f < refs.size(); ++f) {
     const int motion = scene.surfaces[static_cast<std::size_t>(refs[f].surface)].motion;
-    Bodies::Place& place = bodies->places.emplace_back();
+    Bodies::FacetBody& found = bodies->of_facet.emplace_back();
     if (motion < 0) continue;
     int& body = body_of[static_cast<std::size_t>(motion)];
     if (body < 0) {
@@ -231,17 +231,17 @@ ElementCaster::ElementCaster(const PatchMesh& mesh, const Scene& scene) : mesh_(
       bodies->motions.push_back(scene.motions[static_cast<std::size_t>(motion)]);
     }
     std::vector<int>& own = facets[static_cast<std::size_t>(body)];
-    place = {.body = body, .group = static_cast<int>(own.size())};
+    found = {.body = body, .group = static_cast<int>(own.size())};
     own.push_back(static_cast<int>(f));
   }
-  const auto& places = bodies->places;
+  const auto& of_facet = bodies->of_facet;
   still_ = std::make_shared<const Part>(mesh, std::vector<int>(), [&](int facet) {
-    return places[static_cast<std::size_t>(facet)].body < 0 ? facet : -1;
+    return of_facet[static_cast<std::size_t>(facet)].body < 0 ? facet : -1;
   });
   for (std::size_t b = 0; b < facets.size(); ++b) {
     bodies->parts.emplace_back(mesh, std::move(facets[b]), [&](int facet) {
-      const Bodies::Place& place = places[static_cast<std::size_t>(facet)];
-      return place.body == static_cast<int>(b) ? place.group : -1;
+      const Bodies::FacetBody& found = of_facet[static_cast<std::size_t>(facet)];
+      return found.body == static_cast<int>(b) ? found.group : -1;
     });
   }
   poses_.resize(bodies->parts.size());
@@ -274,7 +274,7 @@ ElementCaster ElementCaster::at(double time) const {
 
 const Eigen::Isometry3d* ElementCaster::pose_of(int facet) const {
   if (!bodies_) return nullptr;
-  const int body = bodies_->places[static_cast<std::size_t>(facet)].body;
+  const int body = bodies_->of_facet[static_cast<std::size_t>(facet)].body;
   return body < 0 ? nullptr : &poses_[static_cast<std::size_t>(body)].forth;
 }
 
@@ -307,11 +307,11 @@ Ray ElementCaster::ray_for(int body, const Ray& ray) const {
   Ray result = ray;
   for (int* group : {&result.origin_group, &result.target_group}) {
     if (*group < 0) continue;
-    const Bodies::Place& place = bodies_->places[static_cast<std::size_t>(*group)];
-    if (place.body != body) {
+    const Bodies::FacetBody& found = bodies_->of_facet[static_cast<std::size_t>(*group)];
+    if (found.body != body) {
       *group = -1;
     } else if (body >= 0) {
-      *group = place.group;
+      *group = found.group;
     }
   }
   if (body < 0) return result;
@@ -381,7 +381,7 @@ void ElementCaster::closest_elements(std::span<const Ray> rays, std::span<Elemen
   cast<false>(rays, hits);
 }
 
-ElementHit place_on_element(const PatchMesh& mesh, const PatchPoint& point) {
+ElementHit point_on_element(const PatchMesh& mesh, const PatchPoint& point) {
   const bool is_back = mesh.is_back[mesh.patch[point.element]] != 0;
   ElementHit result{
       .facet = mesh.facet[point.element], .element = point.element, .from_back = is_back};
@@ -398,7 +398,7 @@ ElementHit place_on_element(const PatchMesh& mesh, const PatchPoint& point) {
     result.weights = Eigen::Array4d(1.0 - at[0] - at[1], at[0], at[1], 0.0).cast<float>();
   } else {
     const Eigen::Vector2d shape = shape_of_quad(mesh, c);
-    result.weights = bilinear_weights(bilinear_place(shape[0], shape[1], at[0], at[1], at));
+    result.weights = bilinear_weights(bilinear_coordinates(shape[0], shape[1], at[0], at[1], at));
   }
   return result;
 }

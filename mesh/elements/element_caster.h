@@ -88,7 +88,7 @@ class ElementCaster {
 
 /// What a ray would meet at a point of an element if nothing else were there: the point must lie in
 /// the element, or on its sphere.
-ElementHit place_on_element(const PatchMesh& mesh, const PatchPoint& point);
+ElementHit point_on_element(const PatchMesh& mesh, const PatchPoint& point);
 
 /// Value at a hit from values at vertices (vertices x bands).
 Spectrum interpolate(const PatchMesh& mesh, const BandArray& vertex_values, const ElementHit& hit);

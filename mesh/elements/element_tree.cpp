@@ -90,11 +90,13 @@ Eigen::Array4f weights_in(const Outline& piece, const Eigen::Array4d& areas,
     return (Eigen::Array4d(areas[1], areas[2], areas[0], 0.0) / piece.twice_area).cast<float>();
   }
   const Vector2d at = piece.to_edges * (place - piece.corner);
-  return bilinear_weights(bilinear_place(piece.shape.x(), piece.shape.y(), at.x(), at.y(), at));
+  return bilinear_weights(
+      bilinear_coordinates(piece.shape.x(), piece.shape.y(), at.x(), at.y(), at));
 }
 
 // The one that has a place, or is nearest to it, as rounding leaves it.
-ElementTree::Place in_one_of(const Outlines& pieces, int first_element, const Vector2d& place) {
+ElementTree::ElementPoint in_one_of(const Outlines& pieces, int first_element,
+                                    const Vector2d& place) {
   double most = -std::numeric_limits<double>::infinity();
   int nearest = 0;
   Eigen::Array4d areas_of_nearest = Eigen::Array4d::Zero();
@@ -116,7 +118,7 @@ ElementTree::Place in_one_of(const Outlines& pieces, int first_element, const Ve
 
 }  // namespace
 
-ElementTree::Place ElementTree::in_triangle(int base_element, double w1, double w2) const {
+ElementTree::ElementPoint ElementTree::in_triangle(int base_element, double w1, double w2) const {
   Node node = nodes[root[base_element]];
   double w0 = 1.0 - w1 - w2;
   while (node.split_edges == is_split) {
@@ -148,8 +150,8 @@ ElementTree::Place ElementTree::in_triangle(int base_element, double w1, double 
                    {w1, w2});
 }
 
-ElementTree::Place ElementTree::in_quad(int base_element, const QuadShape& shape,
-                                        const Eigen::Vector2d& place) const {
+ElementTree::ElementPoint ElementTree::in_quad(int base_element, const QuadShape& shape,
+                                               const Eigen::Vector2d& place) const {
   Node node = nodes[root[base_element]];
   Vector2d at = place;
   double size = 1.0;  // of the node, in the base's s and t

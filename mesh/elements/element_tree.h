@@ -19,7 +19,7 @@ struct ElementTree {
     std::int8_t split_edges = 0;
   };
   /// An element, and weights of its corners.
-  struct Place {
+  struct ElementPoint {
     int element = -1;
     Eigen::Array4f weights = Eigen::Array4f::Zero();
   };
@@ -29,9 +29,10 @@ struct ElementTree {
   std::vector<Node> nodes{};
 
   /// In a triangle of the base, at weights 1 - w1 - w2, w1, w2 of its corners.
-  Place in_triangle(int base_element, double w1, double w2) const;
+  ElementPoint in_triangle(int base_element, double w1, double w2) const;
   /// In a quad of the base.
-  Place in_quad(int base_element, const QuadShape& shape, const Eigen::Vector2d& place) const;
+  ElementPoint in_quad(int base_element, const QuadShape& shape,
+                       const Eigen::Vector2d& place) const;
 };
 
 }  // namespace lightwell

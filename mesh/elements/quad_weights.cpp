@@ -5,8 +5,8 @@
 
 namespace lightwell {
 
-Eigen::Vector2d bilinear_place(double alpha, double beta, double a, double b,
-                               const Eigen::Vector2d& guess) {
+Eigen::Vector2d bilinear_coordinates(double alpha, double beta, double a, double b,
+                                     const Eigen::Vector2d& guess) {
   constexpr int most_steps = 8;
   constexpr double converged = 1e-7;  // of the element; the next step would square it
   double s = guess.x(), t = guess.y();
@@ -22,7 +22,7 @@ Eigen::Vector2d bilinear_place(double alpha, double beta, double a, double b,
   return {std::clamp(s, 0.0, 1.0), std::clamp(t, 0.0, 1.0)};
 }
 
-Eigen::Vector2d bilinear_place(const QuadShape& shape, double u, double v) {
+Eigen::Vector2d bilinear_coordinates(const QuadShape& shape, double u, double v) {
   const Eigen::Vector2d of_parallelogram(u, v);
   if (shape.is_parallelogram()) return of_parallelogram;
   const double alpha = shape.alpha, beta = shape.beta;
@@ -32,7 +32,7 @@ Eigen::Vector2d bilinear_place(const QuadShape& shape, double u, double v) {
     a = w1 + alpha * w2;
     b = w3 + beta * w2;
   }
-  return bilinear_place(alpha, beta, a, b, of_parallelogram);
+  return bilinear_coordinates(alpha, beta, a, b, of_parallelogram);
 }
 
 }  // namespace lightwell

@@ -28,12 +28,12 @@ Eigen::Vector2d in_terms_of(const Vector& x, const Vector& y, const Vector& d) {
 
 /// (s, t) of (a, b), by Newton's method from a first guess; a convex quad has one root in the unit
 /// square.
-Eigen::Vector2d bilinear_place(double alpha, double beta, double a, double b,
-                               const Eigen::Vector2d& guess);
+Eigen::Vector2d bilinear_coordinates(double alpha, double beta, double a, double b,
+                                     const Eigen::Vector2d& guess);
 
 /// (s, t) of a place that a ray caster met: as one of the triangles (0,1,3) and (2,3,1), with u and
 /// v linear in each.
-Eigen::Vector2d bilinear_place(const QuadShape& shape, double u, double v);
+Eigen::Vector2d bilinear_coordinates(const QuadShape& shape, double u, double v);
 
 /// Weights of the corners.
 inline Eigen::Array4f bilinear_weights(const Eigen::Vector2d& place) {

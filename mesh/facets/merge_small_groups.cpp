@@ -63,9 +63,9 @@ class Joiner {
     Vector3d axis = Vector3d::Zero();
     std::set<int> facets{};
   };
-  using Place = std::tuple<int, std::int64_t, std::int64_t, std::int64_t>;
+  using CellKey = std::tuple<int, std::int64_t, std::int64_t, std::int64_t>;
 
-  Place place_of(const Group& group) const {
+  CellKey cell_of(const Group& group) const {
     const Vector3d at = (group.center / group.area - bounds_.min()) / patch_size_;
     const auto cell = [&](int c) { return static_cast<std::int64_t>(std::floor(at[c])); };
     return {patches_[group.members.front()].surface, cell(0), cell(1), cell(2)};
@@ -89,11 +89,11 @@ class Joiner {
 
   // Fills clusters from the first group on; returns the groups that do not suit theirs.
   std::vector<int> join(const std::vector<int>& open) {
-    std::map<Place, std::vector<Cluster>> filling;
+    std::map<CellKey, std::vector<Cluster>> filling;
     std::vector<int> let_go;
     for (const int g : open) {
       const Group& group = groups_[g];
-      std::vector<Cluster>& here = filling[place_of(group)];
+      std::vector<Cluster>& here = filling[cell_of(group)];
       const auto fitting = std::find_if(here.begin(), here.end(), [&](const Cluster& c) {
         return lies_within(group, c.axis, least_to_seed_) && !shares_facet(group, c);
       });

@@ -22,16 +22,16 @@ constexpr double inset = 1e-4;
 // Uniform over a sphere's element: even in longitude and in cos(theta) (Archimedes).
 Vector3d direction_of_sphere(const PatchMesh& mesh, const SphereGrid& grid, int element, double u,
                              double v) {
-  SpherePlace place =
-      sphere_place(grid, element_center(mesh, element).position - grid.sphere.center);
-  place.u = 0.0;
-  place.v = 0.0;
-  const double south = sphere_direction(grid, place).z();
-  place.v = 1.0;
-  const double north = sphere_direction(grid, place).z();
+  SphereGridPoint grid_point =
+      sphere_grid_point(grid, element_center(mesh, element).position - grid.sphere.center);
+  grid_point.u = 0.0;
+  grid_point.v = 0.0;
+  const double south = sphere_direction(grid, grid_point).z();
+  grid_point.v = 1.0;
+  const double north = sphere_direction(grid, grid_point).z();
   const double z = std::clamp(south + v * (north - south), -1.0, 1.0);
-  place.u = u;
-  const Vector3d around = sphere_direction(grid, {place.ring, place.sector, u, 0.5});
+  grid_point.u = u;
+  const Vector3d around = sphere_direction(grid, {grid_point.ring, grid_point.sector, u, 0.5});
   const double across = std::hypot(around.x(), around.y()), r = std::sqrt(1.0 - z * z);
   return {r * around.x() / across, r * around.y() / across, z};
 }

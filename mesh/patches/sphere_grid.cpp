@@ -82,32 +82,32 @@ SphereElements sphere_elements(const Sphere& sphere, const CutSize& size) {
   return s;
 }
 
-SpherePlace sphere_place(const SphereGrid& grid, const Eigen::Vector3d& direction) {
+SphereGridPoint sphere_grid_point(const SphereGrid& grid, const Eigen::Vector3d& direction) {
   const double across = std::hypot(direction.x(), direction.y());
   double phi = std::atan2(direction.y(), direction.x());
   if (phi < 0.0) phi += 2.0 * pi;
   // Rounding may carry either to the very end of its range: the last cell's far edge.
   const double x = phi / (2.0 * pi) * grid.sectors;
   const double y = std::atan2(across, direction.z()) / pi * grid.rings;
-  SpherePlace place;
-  place.sector = std::clamp(static_cast<int>(x), 0, grid.sectors - 1);
-  place.ring = std::clamp(static_cast<int>(y), 0, grid.rings - 1);
-  place.u = std::clamp(x - place.sector, 0.0, 1.0);
-  place.v = std::clamp(1.0 - (y - place.ring), 0.0, 1.0);
-  return place;
+  SphereGridPoint grid_point;
+  grid_point.sector = std::clamp(static_cast<int>(x), 0, grid.sectors - 1);
+  grid_point.ring = std::clamp(static_cast<int>(y), 0, grid.rings - 1);
+  grid_point.u = std::clamp(x - grid_point.sector, 0.0, 1.0);
+  grid_point.v = std::clamp(1.0 - (y - grid_point.ring), 0.0, 1.0);
+  return grid_point;
 }
 
-Eigen::Vector3d sphere_direction(const SphereGrid& grid, const SpherePlace& place) {
-  const double phi = 2.0 * pi * (place.sector + place.u) / grid.sectors;
-  const double theta = pi * (place.ring + 1.0 - place.v) / grid.rings;
+Eigen::Vector3d sphere_direction(const SphereGrid& grid, const SphereGridPoint& grid_point) {
+  const double phi = 2.0 * pi * (grid_point.sector + grid_point.u) / grid.sectors;
+  const double theta = pi * (grid_point.ring + 1.0 - grid_point.v) / grid.rings;
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-Eigen::Array4f sphere_weights(const SphereGrid& grid, const SpherePlace& place) {
-  const auto u = static_cast<float>(place.u), v = static_cast<float>(place.v);
+Eigen::Array4f sphere_weights(const SphereGrid& grid, const SphereGridPoint& grid_point) {
+  const auto u = static_cast<float>(grid_point.u), v = static_cast<float>(grid_point.v);
   const float sw = (1 - u) * (1 - v), se = u * (1 - v), ne = u * v, nw = (1 - u) * v;
-  if (place.ring == 0) return {sw, se, v, 0.0f};
-  if (place.ring == grid.rings - 1) return {1 - v, ne, nw, 0.0f};
+  if (grid_point.ring == 0) return {sw, se, v, 0.0f};
+  if (grid_point.ring == grid.rings - 1) return {1 - v, ne, nw, 0.0f};
   return {sw, se, ne, nw};
 }
 

@@ -19,18 +19,18 @@ struct SphereElements {
 SphereElements sphere_elements(const Sphere& sphere, const CutSize& size);
 
 /// Where a direction from a sphere's centre meets its grid: the cell, and the place in it in angle.
-struct SpherePlace {
+struct SphereGridPoint {
   int ring = 0, sector = 0;
   double u = 0.0;  ///< [0,1] along the sector, with longitude
   double v = 0.0;  ///< [0,1] across the ring, from its southern to its northern edge
 };
-SpherePlace sphere_place(const SphereGrid& grid, const Eigen::Vector3d& direction);
+SphereGridPoint sphere_grid_point(const SphereGrid& grid, const Eigen::Vector3d& direction);
 
 /// Unit direction of the place.
-Eigen::Vector3d sphere_direction(const SphereGrid& grid, const SpherePlace& place);
+Eigen::Vector3d sphere_direction(const SphereGrid& grid, const SphereGridPoint& grid_point);
 
 /// Weights of the outside element's corners (in its own order): bilinear in angle.
-Eigen::Array4f sphere_weights(const SphereGrid& grid, const SpherePlace& place);
+Eigen::Array4f sphere_weights(const SphereGrid& grid, const SphereGridPoint& grid_point);
 
 /// The grid that the elements of a scene-wide facet belong to; nullptr for a polygon.
 const SphereGrid* sphere_grid_of(const PatchMesh& mesh, int facet);

@@ -19,9 +19,9 @@ namespace {
 constexpr double clearance_share = 1e-5;
 
 // shape(omega) cos / r^2 of a place of the lamp.
-double point_kernel(const Lamp& lamp, const Eigen::Vector3d& place, const Eigen::Vector3d& point,
+double point_kernel(const Lamp& lamp, const Eigen::Vector3d& on_lamp, const Eigen::Vector3d& point,
                     const Eigen::Vector3d& normal) {
-  const Eigen::Vector3d to = place - point;
+  const Eigen::Vector3d to = on_lamp - point;
   const double height = to.dot(normal), r2 = to.squaredNorm();
   if (!(height > 0.0 && r2 > 0.0)) return 0.0;
   const double r = std::sqrt(r2);
@@ -58,9 +58,9 @@ double mean_kernel(const Lamp& lamp, const Part& part, int depth, const Eigen::V
   double sum = 0.0;
   for (std::size_t i = 0; i < gauss_node.size(); ++i) {
     for (std::size_t j = 0; j < gauss_node.size(); ++j) {
-      const Eigen::Vector3d place =
+      const Eigen::Vector3d on_lamp =
           part.middle + (2.0 * gauss_node[i] - 1.0) * part.a + (2.0 * gauss_node[j] - 1.0) * part.b;
-      sum += gauss_weight[i] * gauss_weight[j] * point_kernel(lamp, place, point, normal);
+      sum += gauss_weight[i] * gauss_weight[j] * point_kernel(lamp, on_lamp, point, normal);
     }
   }
   return sum;
@@ -80,10 +80,10 @@ double mean_kernel_of_disc(const Lamp& lamp, const Eigen::Vector3d& point,
       const double r = 0.5 * std::sqrt((ring + gauss_node[i]) / rings);
       for (int k = 0; k < around; ++k) {
         const double phi = 2.0 * std::numbers::pi * (k + 0.5) / around;
-        const Eigen::Vector3d place = lamp.position +
-                                      r * std::cos(phi) * opening.along_c0 * lamp.axes.col(0) +
-                                      r * std::sin(phi) * opening.along_c90 * lamp.axes.col(1);
-        sum += gauss_weight[i] * point_kernel(lamp, place, point, normal);
+        const Eigen::Vector3d on_lamp = lamp.position +
+                                        r * std::cos(phi) * opening.along_c0 * lamp.axes.col(0) +
+                                        r * std::sin(phi) * opening.along_c90 * lamp.axes.col(1);
+        sum += gauss_weight[i] * point_kernel(lamp, on_lamp, point, normal);
       }
     }
   }
@@ -106,10 +106,10 @@ double clear_share(const LampLight& light, double distance) {
   return std::max(1.0 - light.clearance / distance, 0.0);
 }
 
-SourceRay ray_from(const LampLight& light, const Eigen::Vector3d& place,
+SourceRay ray_from(const LampLight& light, const Eigen::Vector3d& on_lamp,
                    const DrawnDirection& drawn) {
   return {
-      .ray = {.origin = place + light.clearance * drawn.direction, .direction = drawn.direction},
+      .ray = {.origin = on_lamp + light.clearance * drawn.direction, .direction = drawn.direction},
       .weight = drawn.weight};
 }
 
@@ -125,16 +125,16 @@ Eigen::Vector3d towards_sun(const Sun& sun, double u, double v) {
 }
 
 // Through a disc about a place, from before the scene.
-SourceRay sun_ray(const SunLight& light, const Eigen::Vector3d& place, double radius,
+SourceRay sun_ray(const SunLight& light, const Eigen::Vector3d& on_lamp, double radius,
                   const Eigen::Array4f& u) {
   const Eigen::Vector3d direction = -towards_sun(light.sun, u[0], u[1]);
   Eigen::Vector3d a, b;
   tangent_frame(direction, a, b);
   const double r = radius * std::sqrt(static_cast<double>(u[2]));
   const double phi = 2.0 * std::numbers::pi * static_cast<double>(u[3]);
-  const double before = (place - light.center).norm() + light.radius;
+  const double before = (on_lamp - light.center).norm() + light.radius;
   return {
-      .ray = {.origin = place + r * (std::cos(phi) * a + std::sin(phi) * b) - before * direction,
+      .ray = {.origin = on_lamp + r * (std::cos(phi) * a + std::sin(phi) * b) - before * direction,
               .direction = direction},
       .weight = std::numbers::pi * radius * radius};
 }
@@ -196,15 +196,15 @@ ShadowSample shadow_sample(const FreeSource& source, const SurfacePoint& at, dou
   }
   if (source.is_dome()) return {};
   const auto& light = std::get<LampLight>(source.shape);
-  const Eigen::Vector3d place = opening_point(light.lamp, u, v);
-  const Eigen::Vector3d to = place - point;
+  const Eigen::Vector3d on_lamp = opening_point(light.lamp, u, v);
+  const Eigen::Vector3d to = on_lamp - point;
   const double distance = to.norm();
   if (!(distance > 0.0)) return {};
   return {.ray = {.origin = point,
                   .direction = to,
                   .t_max = clear_share(light, distance),
                   .origin_group = facet},
-          .weight = point_kernel(light.lamp, place, point, normal)};
+          .weight = point_kernel(light.lamp, on_lamp, point, normal)};
 }
 
 SourceRay source_ray(const FreeSource& source, const Eigen::Array4f& u) {
@@ -224,14 +224,14 @@ std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eige
   }
   if (source.is_dome()) return std::nullopt;
   const auto& light = std::get<LampLight>(source.shape);
-  const Eigen::Vector3d place = opening_point(light.lamp, u[2], u[3]);
-  const Eigen::Vector3d to = center - place;
+  const Eigen::Vector3d on_lamp = opening_point(light.lamp, u[2], u[3]);
+  const Eigen::Vector3d to = center - on_lamp;
   const double distance = to.norm();
   // Near the ball, or within it, its cone is no better than all the light.
   constexpr double widest_sine = 0.8;
   SourceRay sent;
   if (!(radius < widest_sine * distance)) {
-    sent = ray_from(light, place, draw_direction(light.lamp, u[0], u[1]));
+    sent = ray_from(light, on_lamp, draw_direction(light.lamp, u[0], u[1]));
   } else {
     const double sine = radius / distance;
     const double height = sine * sine / (1.0 + std::sqrt(1.0 - sine * sine));
@@ -243,7 +243,7 @@ std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eige
     const Eigen::Vector3d direction =
         across * (std::cos(phi) * a + std::sin(phi) * b) + cosine * axis;
     sent = ray_from(
-        light, place,
+        light, on_lamp,
         {direction, 2.0 * std::numbers::pi * height * relative_intensity(light.lamp, direction)});
   }
   if (!(sent.weight > 0.0)) return std::nullopt;

@@ -58,7 +58,7 @@ PatchPoint center_nearest_to(const PatchMesh& mesh, int patch, const Vector3d& p
   return nearest;
 }
 
-PatchPoint place_on_polygon(const PatchMesh& mesh, int patch) {
+PatchPoint point_on_polygon(const PatchMesh& mesh, int patch) {
   Vector3d middle = Vector3d::Zero();
   double area = 0.0;
   for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
@@ -67,26 +67,26 @@ PatchPoint place_on_polygon(const PatchMesh& mesh, int patch) {
   }
   middle /= area;
   for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
-    PatchPoint place = element_center(mesh, e);
-    if (!contains(mesh, e, place.normal, middle)) continue;
+    PatchPoint eye_point = element_center(mesh, e);
+    if (!contains(mesh, e, eye_point.normal, middle)) continue;
     // A hair inside the element, as PatchSampler: the centroid of an L may be its inner corner,
     // where something else may stand.
     constexpr double inset = 1e-4;
-    place.position = middle + inset * (place.position - middle);
-    return place;
+    eye_point.position = middle + inset * (eye_point.position - middle);
+    return eye_point;
   }
   return center_nearest_to(mesh, patch, middle);
 }
 
-PatchPoint place_on_sphere(const PatchMesh& mesh, int patch, const SphereGrid& grid) {
+PatchPoint point_on_sphere(const PatchMesh& mesh, int patch, const SphereGrid& grid) {
   Vector3d middle = Vector3d::Zero();
   for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
     middle += mesh.element_area[e] * (element_center(mesh, e).position - grid.sphere.center);
   }
   if (middle.norm() > 0.0) {
     middle = grid.sphere.radius * middle.normalized();
-    const SpherePlace place = sphere_place(grid, middle);
-    const int outside = grid.element[place.ring * grid.sectors + place.sector];
+    const SphereGridPoint eye_point = sphere_grid_point(grid, middle);
+    const int outside = grid.element[eye_point.ring * grid.sectors + eye_point.sector];
     const int element = mesh.is_back[patch] != 0 ? mesh.twin[outside] : outside;
     if (element >= 0 && mesh.patch[element] == patch) {
       const Vector3d normal = (mesh.is_back[patch] != 0 ? -1.0 : 1.0) * middle.normalized();
@@ -97,31 +97,31 @@ PatchPoint place_on_sphere(const PatchMesh& mesh, int patch, const SphereGrid& g
 }
 
 // Down from the exact sphere onto the flat element.
-void drop_onto_element(const PatchMesh& mesh, PatchPoint& place) {
-  const auto& c = mesh.corners[place.element];
-  const int n = mesh.corner_count(place.element);
-  place.position = Vector3d::Zero();
-  for (int i = 0; i < n; ++i) place.position += mesh.position(c[i]) / n;
+void drop_onto_element(const PatchMesh& mesh, PatchPoint& eye_point) {
+  const auto& c = mesh.corners[eye_point.element];
+  const int n = mesh.corner_count(eye_point.element);
+  eye_point.position = Vector3d::Zero();
+  for (int i = 0; i < n; ++i) eye_point.position += mesh.position(c[i]) / n;
   const Vector3d p0 = mesh.position(c[0]);
-  place.normal = (mesh.position(c[1]) - p0).cross(mesh.position(c[2]) - p0).normalized();
+  eye_point.normal = (mesh.position(c[1]) - p0).cross(mesh.position(c[2]) - p0).normalized();
 }
 
 }  // namespace
 
 HemicubeEye hemicube_eye(const PatchMesh& mesh, int patch, bool on_elements) {
   const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[mesh.first_element[patch]]);
-  PatchPoint place = grid ? place_on_sphere(mesh, patch, *grid) : place_on_polygon(mesh, patch);
-  HemicubeEye eye{.element = place.element,
-                  .facet = mesh.facet[place.element],
+  PatchPoint eye_point = grid ? point_on_sphere(mesh, patch, *grid) : point_on_polygon(mesh, patch);
+  HemicubeEye eye{.element = eye_point.element,
+                  .facet = mesh.facet[eye_point.element],
                   .inside = grid && mesh.is_back[patch] != 0};
-  if (eye.inside && on_elements) drop_onto_element(mesh, place);
-  eye.position = place.position;
+  if (eye.inside && on_elements) drop_onto_element(mesh, eye_point);
+  eye.position = eye_point.position;
   Vector3d x, y;
-  tangent_frame(place.normal, x, y);
+  tangent_frame(eye_point.normal, x, y);
   const double turn = 2.0 * std::numbers::pi *
                       random_uniform(random_key(static_cast<std::uint64_t>(patch), hemicube_turn));
   eye.frame << std::cos(turn) * x + std::sin(turn) * y, std::cos(turn) * y - std::sin(turn) * x,
-      place.normal;
+      eye_point.normal;
   return eye;
 }
 

@@ -40,12 +40,12 @@ class PatchRays {
   void aim(int first, std::span<const HemispherePoint> points, std::span<Ray> rays) {
     for (std::size_t r = 0; r < points.size(); ++r) {
       const HemispherePoint& point = points[r];
-      const Eigen::Vector2d place = draw_.place(first, point);
+      const Eigen::Vector2d on_patch = draw_.planar_point(first, point);
       int element = first_element_;
       if (sampler_.is_flat()) {
-        rays[r].origin = sampler_.position(place.x(), place.y());
+        rays[r].origin = sampler_.position(on_patch.x(), on_patch.y());
       } else {
-        const PatchPoint from = sampler_.point(place.x(), place.y());
+        const PatchPoint from = sampler_.point(on_patch.x(), on_patch.y());
         frame_ = draw_.frame(from.normal);
         rays[r].origin = from.position;
         element = from.element;

@@ -217,7 +217,7 @@ bool Journal::recall(int phase, int block, std::vector<std::byte>& bytes) const 
   const auto& phases = impl_->contents.phases;
   const auto p = static_cast<std::size_t>(phase), b = static_cast<std::size_t>(block);
   if (p >= phases.size() || b >= phases[p].blocks.size()) return false;
-  const JournalPlace& place = phases[p].blocks[b];
+  const JournalRange& place = phases[p].blocks[b];
   if (place.offset == 0) return false;
   bytes.resize(place.size);
   if (!read_at(impl_->file.number(), place.offset, bytes)) return false;

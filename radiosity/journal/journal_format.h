@@ -61,7 +61,7 @@ class RecordChecksum {
 std::vector<std::byte> journal_record(RecordHead head, std::span<const std::byte> bytes);
 std::uint64_t state_checksum(const StateHead& head, std::span<const std::byte> bytes);
 
-struct JournalPlace {
+struct JournalRange {
   std::int64_t offset = 0;  ///< of the bytes; 0: not there
   std::uint64_t size = 0;
 };
@@ -71,8 +71,8 @@ struct JournalContents {
   struct Phase {
     std::string name{};
     std::uint64_t fingerprint = 0;
-    std::vector<JournalPlace> blocks{};
-    JournalPlace slots{};  ///< both
+    std::vector<JournalRange> blocks{};
+    JournalRange slots{};  ///< both
   };
   Provenance of{};
   std::vector<Phase> phases{};
@@ -101,7 +101,7 @@ void check_journal_of(const std::filesystem::path& path, const Provenance& found
 
 /// The latest whole state in a record of slots; false if there is none. `number` is its
 /// StateHead's.
-bool read_state(int file, const JournalPlace& slots, std::vector<std::byte>& state,
+bool read_state(int file, const JournalRange& slots, std::vector<std::byte>& state,
                 std::uint64_t& number);
 
 /// All of `bytes` from `offset` on; false if the file ends before, or cannot be read.

@@ -17,7 +17,7 @@ namespace lightwell {
 
 /// Two places in a journal's file that states go to in turn.
 struct StateSlots {
-  JournalPlace place{};
+  JournalRange place{};
   std::uint64_t number = 0;  ///< of the latest state
 };
 

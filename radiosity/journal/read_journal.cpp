@@ -191,7 +191,7 @@ bool read_at(int file, std::int64_t offset, std::span<std::byte> bytes) {
   return true;
 }
 
-bool read_state(int file, const JournalPlace& slots, std::vector<std::byte>& state,
+bool read_state(int file, const JournalRange& slots, std::vector<std::byte>& state,
                 std::uint64_t& number) {
   const std::uint64_t half = slots.size / 2;
   number = 0;

@@ -90,11 +90,11 @@ std::optional<AimedRay> aimed_ray(const Aim& aim, const Eigen::Vector3d& normal,
 
 // About the power that a source sends to a target, never 0 where it may send some.
 double estimated_power(const Source& source, const SpecularTarget& target) {
-  constexpr int places = 8;
-  const SobolPoints sobol(places);
+  constexpr int points = 8;
+  const SobolPoints sobol(points);
   double sum = 0.0;
   bool sees = false;
-  for (int i = 0; i < places; ++i) {
+  for (int i = 0; i < points; ++i) {
     const Eigen::Array4f u = sobol.point(i, 0);
     const SourcePoint from = source_point(source, u[0], u[1]);
     const Eigen::Vector3d to = target.center - from.position;
@@ -109,22 +109,22 @@ double estimated_power(const Source& source, const SpecularTarget& target) {
   }
   // A sphere that emits turns to every side, whatever its eight places do.
   constexpr double least = 0.01;
-  const double share = sees || source.emitter->is_sphere ? std::max(sum / places, least) : 0.0;
+  const double share = sees || source.emitter->is_sphere ? std::max(sum / points, least) : 0.0;
   return share * source.emitter->exitance.sum() * source.emitter->area;
 }
 
 // The same of a source that is no surface, by rays towards the target.
 double estimated_power(const FreeSource& source, const SpecularTarget& target) {
-  constexpr int places = 64;
-  const SobolPoints sobol(places);
+  constexpr int points = 64;
+  const SobolPoints sobol(points);
   double sum = 0.0;
-  for (int i = 0; i < places; ++i) {
+  for (int i = 0; i < points; ++i) {
     const auto sent = source_ray_towards(source, target.center, target.radius, sobol.point(i, 0));
     sum += sent ? sent->weight : 0.0;
   }
   // A beam may be narrower than the places are close.
   constexpr double least = 0.001;
-  const double share = std::max(sum / places, least * total_weight(source));
+  const double share = std::max(sum / points, least * total_weight(source));
   return share * source.light.sum();
 }
 

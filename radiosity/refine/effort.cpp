@@ -32,18 +32,18 @@ int rays_for_noise(int rays, double found, double target) {
   return whole;
 }
 
-int estimate_places(int asked, std::int64_t vertices) {
+int estimate_points(int asked, std::int64_t vertices) {
   // 512 places tell an error to some 10 %, eight times as many to less than 4.
   constexpr std::int64_t share = 32, most_times = 8;
-  std::int64_t places = asked;
-  while (places > 0 && places < most_times * asked && 2 * places * share <= vertices) places *= 2;
-  return static_cast<int>(places);
+  std::int64_t points = asked;
+  while (points > 0 && points < most_times * asked && 2 * points * share <= vertices) points *= 2;
+  return static_cast<int>(points);
 }
 
-int estimate_rays(int rays, std::int64_t vertices, int places) {
+int estimate_rays(int rays, std::int64_t vertices, int points) {
   constexpr std::int64_t share = 8, often = 4;
   constexpr int fewest = 256;
-  const bool is_cheap = often * places * share <= vertices;
+  const bool is_cheap = often * points * share <= vertices;
   return std::max((is_cheap ? 4 : 2) * rays, fewest);
 }
 

@@ -23,11 +23,11 @@ int rays_for_noise(int rays, double found, double target);
 /// Places that an error estimate looks at, for a solution that gathers at `vertices`: those `asked`
 /// for, or twice, four or eight times as many where that is a 32nd of the vertices at most. An
 /// estimate from more of them is surer by the square root.
-int estimate_places(int asked, std::int64_t vertices);
+int estimate_points(int asked, std::int64_t vertices);
 
 /// Rays of each of `places`, beside a solution of `rays` a vertex: twice as many, or four times
 /// where that is an eighth of the solution's work at most; 256 at least. Else the estimate would be
 /// mostly the noise of what it compares with.
-int estimate_rays(int rays, std::int64_t vertices, int places);
+int estimate_rays(int rays, std::int64_t vertices, int points);
 
 }  // namespace lightwell

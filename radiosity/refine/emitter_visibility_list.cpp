@@ -17,18 +17,18 @@ void EmitterVisibilityList::shrink_to_fit() {
   bits_.shrink_to_fit();
 }
 
-void EmitterVisibilityList::set(int place, const EmitterVisibility& visibility) {
-  noisy_[static_cast<std::size_t>(place)] = static_cast<float>(visibility.noisy);
-  std::uint8_t* whole = bits_.data() + std::ptrdiff_t{place} * 2 * bytes_;
+void EmitterVisibilityList::set(int index, const EmitterVisibility& visibility) {
+  noisy_[static_cast<std::size_t>(index)] = static_cast<float>(visibility.noisy);
+  std::uint8_t* whole = bits_.data() + std::ptrdiff_t{index} * 2 * bytes_;
   for (int i = 0; i < bytes_; ++i) {
     whole[i] = static_cast<std::uint8_t>(visibility.whole >> (8 * i));
     whole[bytes_ + i] = static_cast<std::uint8_t>(visibility.hidden >> (8 * i));
   }
 }
 
-EmitterVisibility EmitterVisibilityList::operator[](int place) const {
-  EmitterVisibility visibility{.noisy = double{noisy_[static_cast<std::size_t>(place)]}};
-  const std::uint8_t* whole = bits_.data() + std::ptrdiff_t{place} * 2 * bytes_;
+EmitterVisibility EmitterVisibilityList::operator[](int index) const {
+  EmitterVisibility visibility{.noisy = double{noisy_[static_cast<std::size_t>(index)]}};
+  const std::uint8_t* whole = bits_.data() + std::ptrdiff_t{index} * 2 * bytes_;
   for (int i = 0; i < bytes_; ++i) {
     visibility.whole |= std::uint64_t{whole[i]} << (8 * i);
     visibility.hidden |= std::uint64_t{whole[bytes_ + i]} << (8 * i);

@@ -15,9 +15,9 @@ class EmitterVisibilityList {
 
   void resize(int count);
   void shrink_to_fit();
-  void set(int place, const EmitterVisibility& visibility);
+  void set(int index, const EmitterVisibility& visibility);
   /// Its `noisy` as a float has it.
-  EmitterVisibility operator[](int place) const;
+  EmitterVisibility operator[](int index) const;
 
  private:
   int bytes_;  // for a bit of each light

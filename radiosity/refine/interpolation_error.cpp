@@ -314,17 +314,17 @@ double InterpolationError::direct_range(int cell, int side) const {
 
 template <class Visit>
 void InterpolationError::for_each_with_ends(const std::vector<int>& vertices, Visit&& visit) const {
-  std::vector<int> place(elements_.vertex_count(), -1);
-  for (std::size_t i = 0; i < vertices.size(); ++i) place[vertices[i]] = static_cast<int>(i);
+  std::vector<int> index(elements_.vertex_count(), -1);
+  for (std::size_t i = 0; i < vertices.size(); ++i) index[vertices[i]] = static_cast<int>(i);
   for (int v = 0; v < elements_.vertex_count(); ++v) {
-    if (place[v] < 0 || elements_.ends(v)[0] < 0) continue;
-    InterpolatedVertex at{.vertex = place[v]};
+    if (index[v] < 0 || elements_.ends(v)[0] < 0) continue;
+    InterpolatedVertex at{.vertex = index[v]};
     bool has_ends = true;
     for (int i = 0; i < 4; ++i) {
       const int end = elements_.ends(v)[i];
       if (end < 0) continue;
-      at.ends[i] = place[end];
-      has_ends = has_ends && place[end] >= 0;
+      at.ends[i] = index[end];
+      has_ends = has_ends && index[end] >= 0;
     }
     if (has_ends) visit(v, at);
   }
@@ -409,7 +409,7 @@ void InterpolationError::gather(const std::vector<int>& vertices,
   make_room();
   gather_direct_at(vertices);
   std::vector<int> others = without(interpolated, vertices.size());
-  for (int& place : others) place = vertices[place];
+  for (int& index : others) index = vertices[index];
   gather_indirect_at(others);
   for (const int v : vertices) interpolate_indirect(v);
 }
@@ -452,7 +452,7 @@ GatheredIrradiance InterpolationError::values_by_channel(
 
   const std::vector<int> gathered = without(interpolated, vertices.size());
   std::vector<int> at;
-  for (const int place : gathered) at.push_back(vertices[place]);
+  for (const int index : gathered) at.push_back(vertices[index]);
   const BandArray indirect =
       0.5f * (indirect_at(at, 0, sharpened).indirect + indirect_at(at, 1, sharpened).indirect);
   GatheredIrradiance result;
@@ -569,7 +569,7 @@ bool InterpolationError::has_edge(int cell, int side) const {
   return some.whole != all.whole || some.hidden != all.hidden;
 }
 
-InterpolationError::CellPlace InterpolationError::place_in(int cell, int side, double u,
+InterpolationError::CellPoint InterpolationError::point_in(int cell, int side, double u,
                                                            double v) const {
   const int n = elements_.corner_count(cell);
   Eigen::Vector4d weights;
@@ -578,13 +578,13 @@ InterpolationError::CellPlace InterpolationError::place_in(int cell, int side, d
   } else {
     weights << triangle_point(u, v), 0.0;
   }
-  CellPlace place{.direct = Spectrum::Zero(scene_.bands.count())};
+  CellPoint found{.direct = Spectrum::Zero(scene_.bands.count())};
   for (int i = 0; i < n; ++i) {
     const int corner = elements_.corner_vertex(cell, side, i);
-    place.position += weights[i] * elements_.position(corner);
-    place.direct += static_cast<float>(weights[i]) * direct_.row(corner).transpose();
+    found.position += weights[i] * elements_.position(corner);
+    found.direct += static_cast<float>(weights[i]) * direct_.row(corner).transpose();
   }
-  return place;
+  return found;
 }
 
 // In the middles of the four parts.
@@ -595,7 +595,7 @@ double InterpolationError::parts_error(int cell, int side) const {
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(2 * cell + side), parts_key);
   double error = 0.0;
   for (int k = 0; k < 4; ++k) {
-    const CellPlace at = place_in(cell, side, k % 2 == 0 ? 0.25 : 0.75, k < 2 ? 0.25 : 0.75);
+    const CellPoint at = point_in(cell, side, k % 2 == 0 ? 0.25 : 0.75, k < 2 ? 0.25 : 0.75);
     const Spectrum E =
         direct_light_.irradiance(caster_, {.at = {at.position, normal, facet},
                                            .key = random_key(key, static_cast<std::uint64_t>(k)),
@@ -624,7 +624,7 @@ double InterpolationError::probed_error(int cell, int side) const {
     if (!all_see && (hidden >> e & 1U) == 0) continue;
     for (int k = 0; k < probe_count; ++k) {
       const Eigen::Array4f u = probes_.point(k, random_key(key, e));
-      const CellPlace at = place_in(cell, side, u[0], u[1]);
+      const CellPoint at = point_in(cell, side, u[0], u[1]);
       const auto sees = direct_light_.sees(static_cast<int>(e), caster_,
                                            {at.position, normal, facet}, u[2], u[3]);
       if (!sees || *sees == all_see) continue;

@@ -137,11 +137,11 @@ class InterpolationError {
   // Whether one of its vertices sees all of a light, or nothing, and another does not.
   bool has_edge(int cell, int side) const;
   // u and v in [0, 1], and direct light interpolated there.
-  struct CellPlace {
+  struct CellPoint {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Spectrum direct{};
   };
-  CellPlace place_in(int cell, int side, double u, double v) const;
+  CellPoint point_in(int cell, int side, double u, double v) const;
   double parts_error(int cell, int side) const;
   double probed_error(int cell, int side) const;
   Spectrum total(int vertex) const;

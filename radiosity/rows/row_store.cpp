@@ -49,7 +49,7 @@ class Pages {
   std::size_t size_ = 0;
 };
 
-struct Place {
+struct RowRange {
   int chunk = -1;
   std::uint32_t first = 0, count = 0;  // in records, of the chunk
 };
@@ -84,7 +84,7 @@ struct RecordStore::Impl {
   std::size_t record_bytes = 0;
   Count count = Count::none;
   std::mutex mutex{};
-  std::vector<Place> places{};
+  std::vector<RowRange> ranges{};
   std::vector<int> column_sizes{};
   std::vector<Chunk> chunks{};
   std::int64_t records = 0;
@@ -136,7 +136,7 @@ RecordStore::RecordStore(std::shared_ptr<MemoryBudget> budget, int rows, std::si
   impl_->budget = budget ? std::move(budget) : std::make_shared<MemoryBudget>();
   impl_->record_bytes = record_bytes;
   impl_->count = count;
-  impl_->places.resize(static_cast<std::size_t>(rows));
+  impl_->ranges.resize(static_cast<std::size_t>(rows));
   if (count != Count::none) impl_->column_sizes.resize(static_cast<std::size_t>(rows));
 }
 
@@ -154,7 +154,7 @@ void RecordStore::append(int i, const void* records, std::size_t count) {
   if (!impl_->is_filling) impl_->open_chunk(bytes);
   Chunk& chunk = impl_->chunks.back();
   std::memcpy(chunk.memory.data() + chunk.used, records, bytes);
-  impl_->places[i] = {.chunk = static_cast<int>(impl_->chunks.size()) - 1,
+  impl_->ranges[i] = {.chunk = static_cast<int>(impl_->chunks.size()) - 1,
                       .first = static_cast<std::uint32_t>(chunk.used / impl_->record_bytes),
                       .count = static_cast<std::uint32_t>(count)};
   chunk.used += bytes;
@@ -171,7 +171,7 @@ void RecordStore::close() {
 }
 
 int RecordStore::row_count() const {
-  return static_cast<int>(impl_->places.size());
+  return static_cast<int>(impl_->ranges.size());
 }
 
 std::size_t RecordStore::record_bytes() const {
@@ -183,26 +183,26 @@ std::int64_t RecordStore::record_count() const {
 }
 
 std::size_t RecordStore::row_size(int i) const {
-  return impl_->places[i].count;
+  return impl_->ranges[i].count;
 }
 
 RecordSpan RecordStore::row(int i) const {
-  const Place& place = impl_->places[i];
-  if (place.count == 0) return {};
-  const Chunk& chunk = impl_->chunks[place.chunk];
+  const RowRange& range = impl_->ranges[i];
+  if (range.count == 0) return {};
+  const Chunk& chunk = impl_->chunks[range.chunk];
   const std::byte* data = chunk.memory.data();
   if (chunk.piece) {
     impl_->file->touch(*chunk.piece);
     data = chunk.piece->data();
   }
-  return {data + place.first * impl_->record_bytes, place.count, impl_->record_bytes};
+  return {data + range.first * impl_->record_bytes, range.count, impl_->record_bytes};
 }
 
 void RecordStore::release(int i) {
-  Place& place = impl_->places[i];
-  if (place.count == 0) return;
-  Chunk& chunk = impl_->chunks[place.chunk];
-  place.count = 0;
+  RowRange& range = impl_->ranges[i];
+  if (range.count == 0) return;
+  Chunk& chunk = impl_->chunks[range.chunk];
+  range.count = 0;
   if (--chunk.rows == 0) impl_->drop(chunk);
 }
 

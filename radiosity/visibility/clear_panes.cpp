@@ -36,11 +36,11 @@ Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const
     const int number = of_facet_[static_cast<std::size_t>(hit.facet)];
     if (number < 0) break;
     const Pane& pane = panes_[static_cast<std::size_t>(number)];
-    const Eigen::Vector3d place = ray.origin + hit.t * ray.direction;
+    const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
     Eigen::Vector3d normal = pane.normal;
     const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
     if (normal.isZero()) {
-      normal = (place - (pose ? *pose * pane.center : pane.center)).normalized();
+      normal = (point - (pose ? *pose * pane.center : pane.center)).normalized();
     } else if (pose) {
       normal = pose->linear() * normal;
     }
@@ -51,7 +51,7 @@ Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const
                                                       .from_back = hit.from_back});
     if (lobes.count < 2) break;
     share *= lobes.sample[1].weight;
-    ray.origin = place;
+    ray.origin = point;
     ray.t_max -= hit.t;
     ray.origin_group = hit.facet;
   }

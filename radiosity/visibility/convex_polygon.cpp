@@ -261,36 +261,37 @@ ConvexPolygon convex_hull(std::span<const Vector3d> points, const Vector3d& norm
   if (!(size > 0.0)) return result;
   // On a grid of whole numbers, where nothing is nearly straight: it is or it is not.
   constexpr double cells = 1 << 29;
-  struct Place {
+  struct GridPoint {
     std::int64_t x, y;
     const Vector3d* point;
   };
-  const auto turns_left = [](const Place& a, const Place& b, const Place& c) {
+  const auto turns_left = [](const GridPoint& a, const GridPoint& b, const GridPoint& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0;
   };
-  std::vector<Place> places;
+  std::vector<GridPoint> grid_points;
   for (const Vector3d& p : points) {
     const Vector2d q = frame.flat(p) * (cells / size);
-    places.push_back({std::llround(q.x()), std::llround(q.y()), &p});
+    grid_points.push_back({std::llround(q.x()), std::llround(q.y()), &p});
   }
-  std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  std::sort(grid_points.begin(), grid_points.end(), [](const GridPoint& a, const GridPoint& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  });
   // Andrew's monotone chain.
-  std::vector<Place> hull;
+  std::vector<GridPoint> hull;
   for (int side = 0; side < 2; ++side) {
     const std::size_t start = hull.size();
-    for (const Place& p : places) {
+    for (const GridPoint& p : grid_points) {
       while (hull.size() >= start + 2 && !turns_left(hull[hull.size() - 2], hull.back(), p)) {
         hull.pop_back();
       }
       hull.push_back(p);
     }
     hull.pop_back();
-    std::reverse(places.begin(), places.end());
+    std::reverse(grid_points.begin(), grid_points.end());
   }
   constexpr std::size_t most = ConvexPolygon::most_corners - 8;
   if (hull.size() < 3 || hull.size() > most) return result;
-  for (const Place& p : hull) result.add(*p.point);
+  for (const GridPoint& p : hull) result.add(*p.point);
   return result;
 }
 

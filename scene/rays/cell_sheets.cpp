@@ -168,7 +168,7 @@ class Joining {
 
 }  // namespace
 
-CellSheets::Place CellSheets::place(const CellSheet& sheet, float u, float v) const {
+CellSheets::CellPoint CellSheets::cell_point(const CellSheet& sheet, float u, float v) const {
   const auto cells_on = [](float share, int count, float margin) {
     return share * (static_cast<float>(count) + 2.0f * margin) - margin;
   };

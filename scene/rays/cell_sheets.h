@@ -22,12 +22,12 @@ struct CellSheets {
   std::vector<int> cells{};   ///< numbers of quads
   std::vector<int> single{};  ///< quads of no sheet
 
-  struct Place {
+  struct CellPoint {
     int quad = -1;
     float u = 0.0f, v = 0.0f;  ///< as Hit has them
   };
   /// At (u, v) of a sheet, each in [0, 1].
-  Place place(const CellSheet& sheet, float u, float v) const;
+  CellPoint cell_point(const CellSheet& sheet, float u, float v) const;
 };
 
 /// Joins quads of a group where `may_join` allows; each of a geometry's quads is in one sheet of

@@ -317,10 +317,10 @@ struct RayCaster::Impl : EmbreeScene {
     hit.u = query.hit.u;
     hit.v = query.hit.v;
     if (const CellSheet* met = sheet(query.hit)) {
-      const CellSheets::Place place = sheets.place(*met, hit.u, hit.v);
-      hit.primitive = triangles + place.quad;
-      hit.u = place.u;
-      hit.v = place.v;
+      const CellSheets::CellPoint cell = sheets.cell_point(*met, hit.u, hit.v);
+      hit.primitive = triangles + cell.quad;
+      hit.u = cell.u;
+      hit.v = cell.v;
     }
     if (query.hit.geomID == spheres_id) {
       const Sphere& sphere = sphere_set.spheres[query.hit.primID];

@@ -343,16 +343,16 @@ int hanging_vertices(const PatchMesh& mesh) {
   // Facets that lie on one another have inner vertices and edges of their own: only lines where a
   // facet ends, or is cut, must agree with everything there. An edge is inner if the element across
   // it has an end in common, or belongs to the same patch (both ends may be split reflex corners).
-  using Place = std::array<double, 3>;
+  using PointKey = std::array<double, 3>;
   const auto place = [&](int v) {
     const Vector3d p = mesh.position(v);
-    return Place{p.x(), p.y(), p.z()};
+    return PointKey{p.x(), p.y(), p.z()};
   };
-  std::map<std::pair<Place, Place>, std::vector<HalfedgeMesh::HalfedgeHandle>> edges_at;
+  std::map<std::pair<PointKey, PointKey>, std::vector<HalfedgeMesh::HalfedgeHandle>> edges_at;
   for (auto h : mesh.elements->halfedges()) {
     if (!mesh.elements->face_handle(h).is_valid()) continue;
-    const Place a = place(mesh.elements->from_vertex_handle(h).idx());
-    const Place b = place(mesh.elements->to_vertex_handle(h).idx());
+    const PointKey a = place(mesh.elements->from_vertex_handle(h).idx());
+    const PointKey b = place(mesh.elements->to_vertex_handle(h).idx());
     edges_at[std::minmax(a, b)].push_back(h);
   }
   const auto patch_of = [&](HalfedgeMesh::HalfedgeHandle h) {

@@ -27,7 +27,7 @@ SolveOptions quick() {
 
 // At places spread evenly over the area of `where`: places x bands, as `solved` interpolates it.
 // `elements`, if given, gets those of `solved` that they lie on.
-BandArray irradiance_at_places(const SolvedScene& solved, const PatchMesh& where, int count,
+BandArray irradiance_at_points(const SolvedScene& solved, const PatchMesh& where, int count,
                                std::vector<int>* elements = nullptr) {
   const ElementCaster caster(solved.mesh), hidden(where);
   std::vector<int> patches;
@@ -47,8 +47,8 @@ BandArray irradiance_at_places(const SolvedScene& solved, const PatchMesh& where
       passed += where.area[patches[at++]];
     }
     const Eigen::Array4f u = sobol.point(i, 77);
-    const PatchPoint place = PatchSampler(where, patches[at]).point(u[0], u[1]);
-    const Ray down{.origin = place.position + 1e-4 * place.normal, .direction = -place.normal};
+    const PatchPoint sample = PatchSampler(where, patches[at]).point(u[0], u[1]);
+    const Ray down{.origin = sample.position + 1e-4 * sample.normal, .direction = -sample.normal};
     ElementHit hit;
     caster.closest_hits({&down, 1}, {&hit, 1});
     found.row(i) = interpolate(solved.mesh, E, hit).transpose();
@@ -74,12 +74,12 @@ const SolvedScene& known_light() {
   return truth;
 }
 
-constexpr int places = 4096;
+constexpr int points = 4096;
 
 // With odds of 19 to 1, whether refinement measured elements or the error estimate told of them.
 TEST(Accuracy, BoundsOfElementsHold) {
   const SolvedScene& truth = known_light();
-  const BandArray E = irradiance_at_places(truth, truth.mesh, places);
+  const BandArray E = irradiance_at_points(truth, truth.mesh, points);
   const double mean = E.cast<double>().mean();
   for (const double tolerance : {0.02, unrefined}) {
     SolveOptions options = quick();
@@ -88,19 +88,19 @@ TEST(Accuracy, BoundsOfElementsHold) {
     const Eigen::ArrayXf bound = error_bound(solved.solution);
     ASSERT_EQ(bound.size(), solved.mesh.element_count());
     std::vector<int> element;
-    const BandArray found = irradiance_at_places(solved, truth.mesh, places, &element);
+    const BandArray found = irradiance_at_points(solved, truth.mesh, points, &element);
     int held = 0;
     double off = 0.0, estimated = 0.0;
-    for (int i = 0; i < places; ++i) {
+    for (int i = 0; i < points; ++i) {
       const double own = E.row(i).cast<double>().mean(), reference = std::max(mean, own / 4);
       const double error = std::abs(found.row(i).cast<double>().mean() - own) / reference;
       held += error <= bound[element[i]] ? 1 : 0;
-      off += error * error / places;
-      estimated += std::pow(bound[element[i]] / 2.0, 2) / places;
+      off += error * error / points;
+      estimated += std::pow(bound[element[i]] / 2.0, 2) / points;
     }
     std::printf("refined to %.2f: %.1f %% within their bounds, RMS %.4f, told %.4f\n", tolerance,
-                100.0 * held / places, std::sqrt(off), std::sqrt(estimated));
-    EXPECT_GE(held, 0.95 * places);
+                100.0 * held / points, std::sqrt(off), std::sqrt(estimated));
+    EXPECT_GE(held, 0.95 * points);
     // What the truth is off by itself comes on top of the error that is seen here.
     EXPECT_LE(std::sqrt(estimated), 5.0 * std::sqrt(off));
   }
@@ -109,14 +109,14 @@ TEST(Accuracy, BoundsOfElementsHold) {
 TEST(Accuracy, IsKept) {
   const Scene scene = test::two_lamps();
   const SolvedScene& truth = known_light();
-  const BandArray E = irradiance_at_places(truth, truth.mesh, places);
+  const BandArray E = irradiance_at_points(truth, truth.mesh, points);
   for (const double share : {0.05, 0.02}) {
     SolveOptions options = quick();
     options.accuracy = Accuracy{.share = share};
     SolveReport report;
     const SolvedScene solved = solve_scene(scene, options, &report);
     EXPECT_TRUE(solved.solution.gather_noise.isFinite().all());
-    const BandArray off = irradiance_at_places(solved, truth.mesh, places) - E;
+    const BandArray off = irradiance_at_points(solved, truth.mesh, points) - E;
     const double error = std::sqrt(off.cast<double>().square().mean()) / E.cast<double>().mean();
     std::printf("asked for %.3f: estimated %.4f, off by %.4f; %d elements, %d rays\n", share,
                 solved.solution.error_estimate, error, solved.mesh.element_count(),

@@ -163,10 +163,10 @@ TEST(Slivers, LeaveNoStreaksMergedOrNot) {
 }
 
 // An edge by the places of its ends, in nanometres, lower end first.
-using Place = std::array<long long, 3>;
-using Edge = std::array<Place, 2>;
+using PointKey = std::array<long long, 3>;
+using Edge = std::array<PointKey, 2>;
 
-Place place_of(const Vector3d& p) {
+PointKey key_of(const Vector3d& p) {
   return {std::llround(p.x() * 1e9), std::llround(p.y() * 1e9), std::llround(p.z() * 1e9)};
 }
 
@@ -179,8 +179,8 @@ std::map<Edge, std::vector<std::array<double, 2>>> edges_of(const Lit& lit, int 
     const int n = mesh.corner_count(e);
     for (int i = 0; i < n; ++i) {
       int a = mesh.corners[e][i], b = mesh.corners[e][(i + 1) % n];
-      if (place_of(mesh.position(b)) < place_of(mesh.position(a))) std::swap(a, b);
-      edges[{place_of(mesh.position(a)), place_of(mesh.position(b))}].push_back(
+      if (key_of(mesh.position(b)) < key_of(mesh.position(a))) std::swap(a, b);
+      edges[{key_of(mesh.position(a)), key_of(mesh.position(b))}].push_back(
           {lit.E(a, 0), lit.E(b, 0)});
     }
   }

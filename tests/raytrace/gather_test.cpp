@@ -25,7 +25,7 @@ TEST(PixelGather, ReadsTheSolutionWhereItsRaysEnd) {
                0.05);
   lit.set_indirect([](const Eigen::Vector3d& p) { return p.z() > 0.5 ? 3.0f : 0.0f; });
   const PixelGather gather(lit.scene, lit.caster, lit.direct_light, lit.solution, 1024, 4);
-  const GatherPlace at{.position = {0, 0, 0}, .normal = up, .smooth_normal = up, .facet = 0};
+  const ShadingPoint at{.position = {0, 0, 0}, .normal = up, .smooth_normal = up, .facet = 0};
   const double s = half / std::hypot(half, h);
   const double F = 4.0 / std::numbers::pi * s * std::atan(s);
   // Of the 1024 strata about 4 sqrt(1024) lie across the square's edge, each right within a
@@ -50,7 +50,7 @@ TEST(PixelGather, AMirrorDoublesWhatIsBesideIt) {
                    .build());
   lit.set_indirect([](const Eigen::Vector3d& p) { return p.z() > 1.9 ? 1.0f : 0.0f; });
   const PixelGather gather(lit.scene, lit.caster, lit.direct_light, lit.solution, 1 << 14, 4);
-  const GatherPlace at{.position = {0, 0, 0}, .normal = up, .smooth_normal = up, .facet = 0};
+  const ShadingPoint at{.position = {0, 0, 0}, .normal = up, .smooth_normal = up, .facet = 0};
   LitScene open(SceneBuilder()
                     .square({.reflectance = 0.5f}, {0, 0, 0}, up, 0.2)
                     .square({.reflectance = 1.0f}, {0, 0, 2}, -up, 0.5)

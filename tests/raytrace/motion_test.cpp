@@ -58,7 +58,7 @@ Image picture_of(const Scene& scene, const Camera& camera,
 
 // Share of the time that the square covers x, seen through the pixel filter at x.
 double expected_coverage(double x, double distance, double pixel) {
-  static const FilterPlaces filter;
+  static const FilterSampler filter;
   const auto covered = [&](double place) {
     const double from = std::max(place - 0.5, -0.5 * distance);
     const double to = std::min(place + 0.5, 0.5 * distance);

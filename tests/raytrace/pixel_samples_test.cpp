@@ -19,8 +19,8 @@ double filter_variance() {
   return 2.25 * (1.0 / 3.0 - 2.0 / (pi * pi * 0.35875) * (0.48829 - 0.14128 / 4.0 + 0.01168 / 9.0));
 }
 
-TEST(FilterPlaces, HaveTheMomentsOfTheWindow) {
-  const FilterPlaces places;
+TEST(FilterSampler, HaveTheMomentsOfTheWindow) {
+  const FilterSampler places;
   constexpr int count = 100000;
   double mean = 0.0, square = 0.0;
   for (int i = 0; i < count; ++i) {

@@ -20,18 +20,18 @@ TEST(HemisphereSets, DrawsHaveTheMomentsOfLambertsLaw) {
     ASSERT_NEAR((frame.transpose() * frame - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-14);
     ASSERT_NEAR(frame.determinant(), 1.0, 1e-14);
     Eigen::Vector3d mean_direction = Eigen::Vector3d::Zero();
-    Eigen::Vector2d mean_place = Eigen::Vector2d::Zero();
+    Eigen::Vector2d mean_point = Eigen::Vector2d::Zero();
     for (const HemispherePoint& point : draw.all()) {
       const Eigen::Vector3d d = frame * Eigen::Vector3d(point.x, point.y, point.z);
-      const Eigen::Vector2d place = draw.place(0, point);
+      const Eigen::Vector2d planar = draw.planar_point(0, point);
       ASSERT_NEAR(d.norm(), 1.0, 1e-6);
-      ASSERT_TRUE((place.array() >= 0.0).all() && (place.array() < 1.0).all());
+      ASSERT_TRUE((planar.array() >= 0.0).all() && (planar.array() < 1.0).all());
       mean_direction += d / count;
-      mean_place += place / count;
+      mean_point += planar / count;
     }
     // The mean of cos(theta) is 2/3; stratified, so far closer than 1/sqrt(1024).
     EXPECT_NEAR((mean_direction - 2.0 / 3.0 * normal).norm(), 0.0, 2e-3);
-    EXPECT_NEAR((mean_place - Eigen::Vector2d(0.5, 0.5)).norm(), 0.0, 2e-3);
+    EXPECT_NEAR((mean_point - Eigen::Vector2d(0.5, 0.5)).norm(), 0.0, 2e-3);
   }
 }
 
@@ -42,7 +42,7 @@ TEST(HemisphereSets, KeysGiveDifferentDrawsAndOneKeyTheSame) {
   EXPECT_EQ(sets.draw(7).frame(up), sets.draw(7).frame(up));
   EXPECT_NE(sets.draw(7).frame(up), sets.draw(8).frame(up));
   const HemispherePoint& point = sets.draw(7).all()[0];
-  EXPECT_NE(sets.draw(7).place(0, point), sets.draw(8).place(0, point));
+  EXPECT_NE(sets.draw(7).planar(0, point), sets.draw(8).planar(0, point));
 }
 
 TEST(HemisphereSets, OnePointIsASet) {

@@ -108,7 +108,7 @@ std::vector<ChartTexels::Texel> ChartTexels::texels() const {
 
 std::vector<ChartTexels::Texel> ChartTexels::flat_texels() const {
   const LightmapChart& chart = layout_.charts[chart_];
-  const ChartPlace& place = layout_.place[chart_];
+  const ChartRectangle& place = layout_.place[chart_];
   // One texel around the rectangle is all that a filter reads.
   const int x0 = place.x - 1, y0 = place.y - 1;
   const int width = place.width + 2, height = place.height + 2;
@@ -173,7 +173,7 @@ std::vector<ChartTexels::Texel> ChartTexels::flat_texels() const {
 // Around the seam the sphere goes on; at the poles it ends.
 std::vector<ChartTexels::Texel> ChartTexels::sphere_texels() const {
   const LightmapChart& chart = layout_.charts[chart_];
-  const ChartPlace& place = layout_.place[chart_];
+  const ChartRectangle& place = layout_.place[chart_];
   const SphereGrid& grid = mesh_.sphere_grids[chart.sphere];
   std::map<int, int> face_of;  // by element of the outside
   const bool is_back = mesh_.is_back[mesh_.patch[model_.element[chart.faces.front()]]] != 0;
@@ -187,7 +187,7 @@ std::vector<ChartTexels::Texel> ChartTexels::sphere_texels() const {
     for (int x = -1; x <= place.width; ++x) {
       const double turn = (x + 0.5) / place.width;
       const double column = (turn - std::floor(turn)) * grid.sectors;
-      SpherePlace at;
+      SphereGridPoint at;
       at.ring = std::clamp(static_cast<int>(row), 0, grid.rings - 1);
       at.sector = std::clamp(static_cast<int>(column), 0, grid.sectors - 1);
       at.u = std::clamp(column - at.sector, 0.0, 1.0);

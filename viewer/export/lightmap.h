@@ -28,7 +28,7 @@ struct LightmapOptions {
 inline constexpr int least_lightmap_size = 16, most_lightmap_size = 8192, most_atlases = 64;
 
 /// Where a chart lies, in texels from an atlas's upper left corner; the padding is outside of it.
-struct ChartPlace {
+struct ChartRectangle {
   int atlas = 0, x = 0, y = 0, width = 0, height = 0;
 };
 
@@ -37,8 +37,8 @@ struct LightmapLayout {
   int size = 0, padding = 0, atlas_count = 0;
   double texels_per_metre = 0.0;
   std::vector<LightmapChart> charts{};
-  std::vector<ChartPlace> place{};  ///< of each chart; those that are dark share one, or have their
-                                    ///< host's
+  std::vector<ChartRectangle> place{};  ///< of each chart; those that are dark share one, or have
+                                        ///< their host's
 
   /// Of a place of a chart, in texels from its atlas's upper left corner, y downwards: a chart
   /// fills its rectangle, which is a whole number of texels.

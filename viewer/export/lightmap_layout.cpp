@@ -52,7 +52,7 @@ class Packing {
   static double texels(double length, double density) {
     return std::max<double>(least_texels, std::ceil(length * density - 1e-6));
   }
-  std::optional<std::vector<ChartPlace>> pack(double density, int size, int most) const {
+  std::optional<std::vector<ChartRectangle>> pack(double density, int size, int most) const {
     std::vector<Eigen::Vector2i> sizes;
     std::vector<int> number;  // of the rectangle that a chart lies in
     std::optional<int> dark;  // that of all that are dark: they look alike
@@ -70,13 +70,13 @@ class Packing {
     }
     const auto packed = pack_rectangles(sizes, size, most);
     if (!packed) return std::nullopt;
-    std::vector<ChartPlace> places;
+    std::vector<ChartRectangle> places;
     for (const int n : number) {
       if (n < 0) {
         places.emplace_back();
         continue;
       }
-      const PackedPlace& at = (*packed)[n];
+      const PackedPosition& at = (*packed)[n];
       places.push_back({.atlas = at.square,
                         .x = at.x + padding_,
                         .y = at.y + padding_,
@@ -156,7 +156,7 @@ void pack_densely(LightmapLayout& layout, const Packing& packing) {
 }  // namespace
 
 Eigen::Vector2d LightmapLayout::texel(int chart, const Eigen::Vector2d& at) const {
-  const ChartPlace& to = place[chart];
+  const ChartRectangle& to = place[chart];
   const Eigen::Vector2d& from = charts[chart].size;
   const double u = from.x() > 0.0 ? at.x() / from.x() : 0.5;
   const double v = from.y() > 0.0 ? at.y() / from.y() : 0.5;
@@ -180,7 +180,7 @@ LightmapLayout lay_out_lightmap(const BakedModel& model, const PatchMesh& mesh,
   if (!packed) refuse_density(model, layout, density);
   layout.texels_per_metre = density;
   layout.place = std::move(*packed);
-  for (const ChartPlace& at : layout.place) {
+  for (const ChartRectangle& at : layout.place) {
     layout.atlas_count = std::max(layout.atlas_count, at.atlas + 1);
   }
   return layout;

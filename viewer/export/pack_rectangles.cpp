@@ -66,8 +66,8 @@ class Skyline {
 
 }  // namespace
 
-std::optional<std::vector<PackedPlace>> pack_rectangles(std::span<const Eigen::Vector2i> sizes,
-                                                        int square_size, int most_squares) {
+std::optional<std::vector<PackedPosition>> pack_rectangles(std::span<const Eigen::Vector2i> sizes,
+                                                           int square_size, int most_squares) {
   const std::int64_t square = std::int64_t{square_size} * square_size;
   std::int64_t area = 0;
   for (const Eigen::Vector2i& s : sizes) {
@@ -83,7 +83,7 @@ std::optional<std::vector<PackedPlace>> pack_rectangles(std::span<const Eigen::V
            std::tuple(-sizes[b].y(), -sizes[b].x(), b);
   });
   std::vector<Skyline> squares;
-  std::vector<PackedPlace> places(sizes.size());
+  std::vector<PackedPosition> places(sizes.size());
   for (const int i : order) {
     std::optional<Skyline::Fit> fit;
     std::size_t s = 0;

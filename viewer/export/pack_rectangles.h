@@ -8,7 +8,7 @@
 namespace lightwell {
 
 /// Where a rectangle came to lie: its upper left corner in one of several squares.
-struct PackedPlace {
+struct PackedPosition {
   int square = 0, x = 0, y = 0;
 };
 
@@ -16,7 +16,7 @@ struct PackedPlace {
 /// as far up and then as far left as the skyline of those before lets it, in the first square that
 /// has room (Jylänki 2010, "A thousand ways to pack the bin", skyline bottom-left). Empty if
 /// `most_squares` do not hold them.
-std::optional<std::vector<PackedPlace>> pack_rectangles(std::span<const Eigen::Vector2i> sizes,
-                                                        int square_size, int most_squares);
+std::optional<std::vector<PackedPosition>> pack_rectangles(std::span<const Eigen::Vector2i> sizes,
+                                                           int square_size, int most_squares);
 
 }  // namespace lightwell

@@ -40,10 +40,10 @@ class Splitter {
                                             : std::array{c[0], c[3], c[2], c[1]};
     for (int row = 0; row <= rows_; ++row) {
       for (int column = 0; column <= columns_; ++column) {
-        const SpherePlace place{.ring = ring,
-                                .sector = sector,
-                                .u = static_cast<double>(column) / columns_,
-                                .v = static_cast<double>(row) / rows_};
+        const SphereGridPoint place{.ring = ring,
+                                    .sector = sector,
+                                    .u = static_cast<double>(column) / columns_,
+                                    .v = static_cast<double>(row) / rows_};
         const Eigen::Vector3d direction = sphere_direction(grid_, place);
         out.points.push_back({.position = grid_.sphere.center + grid_.sphere.radius * direction,
                               .normal = is_outside ? direction : Eigen::Vector3d(-direction),

@@ -7,7 +7,8 @@ namespace {
 
 class PipeSplitter {
  public:
-  PipeSplitter(std::string_view text, const RadiancePlace& place) : rest_(text), place_(place) {}
+  PipeSplitter(std::string_view text, const RadianceLocation& location)
+      : rest_(text), location_(location) {}
 
   std::vector<std::vector<std::string>> split() {
     while (!rest_.empty()) step(take());
@@ -33,7 +34,7 @@ class PipeSplitter {
     } else if (c == '\'' || c == '"') {
       quoted(c);
     } else if (c == '\\') {
-      if (rest_.empty()) place_.fail("the command ends with a backslash");
+      if (rest_.empty()) location_.fail("the command ends with a backslash");
       add(take());
     } else if (of_a_shell.find(c) != std::string_view::npos) {
       refuse(c);
@@ -51,11 +52,11 @@ class PipeSplitter {
       if (quote == '"' && c == '\\' && !rest_.empty()) c = take();
       add(c);
     }
-    place_.fail("the command ends within a quoted word");
+    location_.fail("the command ends within a quoted word");
   }
 
   [[noreturn]] void refuse(char c) const {
-    place_.fail(fmt::format(
+    location_.fail(fmt::format(
         "the line uses '{}', which only a shell understands, and lines are never given to "
         "one; quote it if it is part of an argument",
         c));
@@ -74,13 +75,13 @@ class PipeSplitter {
 
   void end_program() {
     end_word();
-    if (program_.empty()) place_.fail("a command is missing after '!' or beside '|'");
+    if (program_.empty()) location_.fail("a command is missing after '!' or beside '|'");
     programs_.push_back(std::move(program_));
     program_.clear();
   }
 
   std::string_view rest_;
-  const RadiancePlace& place_;
+  const RadianceLocation& location_;
   bool in_word_ = false;
   std::string word_;
   std::vector<std::string> program_;
@@ -90,8 +91,8 @@ class PipeSplitter {
 }  // namespace
 
 std::vector<std::vector<std::string>> split_radiance_pipe(std::string_view text,
-                                                          const RadiancePlace& place) {
-  return PipeSplitter(text, place).split();
+                                                          const RadianceLocation& location) {
+  return PipeSplitter(text, location).split();
 }
 
 }  // namespace lightwell

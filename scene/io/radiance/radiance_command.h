@@ -12,6 +12,6 @@ namespace lightwell {
 /// a shell; whatever else only a shell could do (variables, redirection, several commands, patterns
 /// of file names) is refused. Nothing is run. Throws InputError naming the place.
 std::vector<std::vector<std::string>> split_radiance_pipe(std::string_view text,
-                                                          const RadiancePlace& place);
+                                                          const RadianceLocation& location);
 
 }  // namespace lightwell

@@ -24,7 +24,7 @@ void refuse_options(const RadianceCall& call, std::size_t first) {
 }
 
 int segments(const RadianceCall& call, std::size_t word) {
-  const RadianceExpression formula(call.words[word], {}, call.place);
+  const RadianceExpression formula(call.words[word], {}, call.location);
   const double value = std::round(formula({}));
   if (!(value >= 1.0 && value <= most_polygons)) {
     call.fail(fmt::format("the number of segments is {}; give from 1 to {}", value, most_polygons));
@@ -34,7 +34,7 @@ int segments(const RadianceCall& call, std::size_t word) {
 
 // A formula of t at 0, 1 / count, ..., 1.
 std::vector<double> samples(const RadianceCall& call, std::size_t word, int count) {
-  const RadianceExpression formula(call.words[word], {"t"}, call.place);
+  const RadianceExpression formula(call.words[word], {"t"}, call.location);
   std::vector<double> result;
   for (int i = 0; i <= count; ++i) {
     const double t = static_cast<double>(i) / count;
@@ -87,7 +87,7 @@ void run_gensurf(const RadianceCall& call, const RadianceSink& sink) {
   call.account(static_cast<std::int64_t>(m) * n);
   std::vector<RadianceExpression> formulas;
   for (std::size_t word = 3; word < 6; ++word) {
-    formulas.emplace_back(call.words[word], std::vector<std::string>{"s", "t"}, call.place);
+    formulas.emplace_back(call.words[word], std::vector<std::string>{"s", "t"}, call.location);
   }
   const auto row_at = [&](int i) {
     Loop row;
@@ -130,7 +130,7 @@ void run_genworm(const RadianceCall& call, const RadianceSink& sink) {
   if (!(*std::ranges::min_element(radius) >= 0.0)) {
     call.fail(fmt::format("the radius '{}' is negative somewhere", call.words[6]));
   }
-  RadiancePrimitive p{.modifier = call.words[1], .place = call.place};
+  RadiancePrimitive p{.modifier = call.words[1], .location = call.location};
   Eigen::Vector3d last = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < radius.size(); ++i) {
     const Eigen::Vector3d center(xyz[0][i], xyz[1][i], xyz[2][i]);

@@ -87,15 +87,15 @@ struct RadianceExpression::Impl {
   mu::Parser parser;
   std::vector<double> values;  // where the parser looks for its variables
   std::string text;
-  RadiancePlace place;
+  RadianceLocation location;
 };
 
 RadianceExpression::RadianceExpression(const std::string& text,
                                        const std::vector<std::string>& variables,
-                                       const RadiancePlace& place)
+                                       const RadianceLocation& location)
     : impl_(std::make_unique<Impl>()) {
   impl_->text = text;
-  impl_->place = place;
+  impl_->location = location;
   impl_->values.resize(variables.size());
   try {
     define_operators(impl_->parser);
@@ -106,11 +106,11 @@ RadianceExpression::RadianceExpression(const std::string& text,
     impl_->parser.SetExpr(text);
     impl_->parser.Eval();  // whatever is wrong with the text shows here
     if (impl_->parser.GetNumResults() != 1) {
-      place.fail(fmt::format("the formula '{}' gives several values", beginning(text)));
+      location.fail(fmt::format("the formula '{}' gives several values", beginning(text)));
     }
   } catch (const mu::Parser::exception_type& error) {
-    place.fail(fmt::format("the formula '{}' cannot be read: {}", beginning(text),
-                           beginning(error.GetMsg())));
+    location.fail(fmt::format("the formula '{}' cannot be read: {}", beginning(text),
+                              beginning(error.GetMsg())));
   }
 }
 
@@ -129,7 +129,7 @@ double RadianceExpression::value_or_nan(std::span<const double> values) const {
 double RadianceExpression::operator()(std::span<const double> values) const {
   const double value = value_or_nan(values);
   if (!std::isfinite(value)) {
-    impl_->place.fail(
+    impl_->location.fail(
         fmt::format("the formula '{}' has no finite value everywhere", beginning(impl_->text)));
   }
   return value;

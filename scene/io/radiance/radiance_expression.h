@@ -16,7 +16,7 @@ class RadianceExpression {
  public:
   /// Throws InputError naming the place if the text is no formula of these variables.
   RadianceExpression(const std::string& text, const std::vector<std::string>& variables,
-                     const RadiancePlace& place);
+                     const RadianceLocation& location);
   ~RadianceExpression();
   RadianceExpression(RadianceExpression&&) noexcept;
 

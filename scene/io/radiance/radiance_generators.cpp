@@ -20,7 +20,7 @@ const std::map<std::string, Generator, std::less<>>& generators() {
 }  // namespace
 
 void RadianceCall::fail(std::string_view problem) const {
-  place.fail(fmt::format("{}: {}", words[0], problem));
+  location.fail(fmt::format("{}: {}", words[0], problem));
 }
 
 double RadianceCall::number(std::size_t i, std::string_view what) const {
@@ -53,7 +53,7 @@ void RadianceCall::require_words(std::size_t least, std::string_view usage) cons
 
 GeneratedPolygons::GeneratedPolygons(const RadianceCall& call, const RadianceSink& sink)
     : sink_(sink),
-      polygon_{.modifier = call.words[1], .type = "polygon", .place = call.place},
+      polygon_{.modifier = call.words[1], .type = "polygon", .location = call.location},
       name_(call.words[2]) {}
 
 void GeneratedPolygons::add(const Loop& loop) {

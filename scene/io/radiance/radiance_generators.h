@@ -15,7 +15,7 @@ namespace lightwell {
 /// A call of a generator: the program's name and its arguments.
 struct RadianceCall {
   const std::vector<std::string>& words;
-  const RadiancePlace& place;
+  const RadianceLocation& location;
   Remarks& remarks;
   /// Opens a file that the call names, or throws InputError.
   std::function<TextFile(const std::string& name)> open;

@@ -34,13 +34,13 @@ bool makes_a_sky(std::string_view program) {
 }  // namespace
 
 std::filesystem::path RadianceLoader::find(const std::string& name,
-                                           const RadiancePlace& place) const {
+                                           const RadianceLocation& location) const {
   std::error_code error;
-  for (const auto& folder : {place.file->parent_path(), folder_, folder_ / "lib"}) {
+  for (const auto& folder : {location.file->parent_path(), folder_, folder_ / "lib"}) {
     auto path = (folder / name).lexically_normal();
     if (std::filesystem::exists(path, error)) return path;
   }
-  place.fail(fmt::format(
+  location.fail(fmt::format(
       "names the file '{}', but there is no such file beside it, in the scene's folder or in its "
       "folder 'lib'",
       name));
@@ -56,7 +56,7 @@ void RadianceLoader::read(const std::filesystem::path& path, const RadianceSink&
     if (const auto* primitive = std::get_if<RadiancePrimitive>(&item)) {
       sink(*primitive);
     } else if (const auto* command = std::get_if<RadianceCommand>(&item)) {
-      run(command->text, command->place, sink);
+      run(command->text, command->location, sink);
     } else {
       break;
     }
@@ -64,116 +64,118 @@ void RadianceLoader::read(const std::filesystem::path& path, const RadianceSink&
   open_.pop_back();
 }
 
-void RadianceLoader::read_named(const std::string& name, const RadiancePlace& place,
+void RadianceLoader::read_named(const std::string& name, const RadianceLocation& location,
                                 const RadianceSink& sink) {
-  if (name.starts_with('!')) return run(name.substr(1), place, sink);
-  const std::filesystem::path path = find(name, place);
+  if (name.starts_with('!')) return run(name.substr(1), location, sink);
+  const std::filesystem::path path = find(name, location);
   const auto canonical = std::filesystem::weakly_canonical(path);
   if (std::ranges::find(open_, canonical) != open_.end()) {
-    place.fail(fmt::format("includes '{}', which includes this file; break the circle", name));
+    location.fail(fmt::format("includes '{}', which includes this file; break the circle", name));
   }
   if (open_.size() >= most_nested) {
-    place.fail(fmt::format("includes '{}' within {} files; nest less deeply", name, most_nested));
+    location.fail(
+        fmt::format("includes '{}' within {} files; nest less deeply", name, most_nested));
   }
   std::error_code error;
   const auto bytes = std::filesystem::file_size(path, error);
-  account(error ? 0 : bytes, place);
+  account(error ? 0 : bytes, location);
   read(path, sink);
 }
 
 // Time that no picture of the scene shows: files without primitives, included again and again.
-void RadianceLoader::account(std::uintmax_t bytes, const RadiancePlace& place) {
+void RadianceLoader::account(std::uintmax_t bytes, const RadianceLocation& location) {
   if (++commands_ > most_commands) {
-    place.fail(
+    location.fail(
         fmt::format("is command {} of the scene; files seem to include each other without "
                     "end",
                     commands_));
   }
   bytes_ += bytes;
   if (bytes_ > most_bytes) {
-    place.fail(
+    location.fail(
         fmt::format("the scene's files, as often as they are included, hold more than {} "
                     "bytes; include less",
                     most_bytes));
   }
 }
 
-void RadianceLoader::account_facets(std::int64_t facets, const RadiancePlace& place) {
+void RadianceLoader::account_facets(std::int64_t facets, const RadianceLocation& location) {
   facets_ += facets;
   if (facets_ > most_generated) {
-    place.fail(fmt::format("generators make more than {} facets; use fewer segments or copies",
-                           most_generated));
+    location.fail(fmt::format("generators make more than {} facets; use fewer segments or copies",
+                              most_generated));
   }
 }
 
-void RadianceLoader::run(const std::string& command, const RadiancePlace& place,
+void RadianceLoader::run(const std::string& command, const RadianceLocation& location,
                          const RadianceSink& sink) {
-  account(0, place);
-  const auto pipe = split_radiance_pipe(command, place);
+  account(0, location);
+  const auto pipe = split_radiance_pipe(command, location);
   constexpr std::size_t longest = 64;
   if (pipe.size() > longest) {
-    place.fail(fmt::format("pipes {} programs; at most {} are run", pipe.size(), longest));
+    location.fail(fmt::format("pipes {} programs; at most {} are run", pipe.size(), longest));
   }
-  run_last(pipe, place, sink);
+  run_last(pipe, location, sink);
 }
 
 // The last program of a pipe, those before it giving it what it reads.
-void RadianceLoader::run_last(std::span<const Program> pipe, const RadiancePlace& place,
+void RadianceLoader::run_last(std::span<const Program> pipe, const RadianceLocation& location,
                               const RadianceSink& sink) {
   const Program& program = pipe.back();
   const std::string& name = program.front();
-  if (name == "xform") return run_xform(pipe, place, sink);
+  if (name == "xform") return run_xform(pipe, location, sink);
   if (pipe.size() > 1) {
-    place.fail(fmt::format("'{}' reads nothing from a pipe here; only xform does", name));
+    location.fail(fmt::format("'{}' reads nothing from a pipe here; only xform does", name));
   }
   if (name == "cat") {
-    for (std::size_t i = 1; i < program.size(); ++i) read_named(program[i], place, sink);
+    for (std::size_t i = 1; i < program.size(); ++i) read_named(program[i], location, sink);
   } else if (is_radiance_generator(name)) {
     const auto open = [&](const std::string& file) {
-      const std::filesystem::path path = find(file, place);
+      const std::filesystem::path path = find(file, location);
       require_readable(path);
-      account(std::filesystem::file_size(path), place);
+      account(std::filesystem::file_size(path), location);
       return TextFile(keep(path));
     };
-    const auto account = [&](std::int64_t facets) { account_facets(facets, place); };
-    run_radiance_generator({program, place, remarks_, open, account}, sink);
+    const auto account = [&](std::int64_t facets) { account_facets(facets, location); };
+    run_radiance_generator({program, location, remarks_, open, account}, sink);
   } else if (makes_a_sky(name)) {
-    skip_sky(program, place, sink);
+    skip_sky(program, location, sink);
   } else {
-    place.fail(fmt::format(
+    location.fail(fmt::format(
         "the command '{}' is not evaluated here, and commands are never given to a shell; run it "
         "yourself and name a file with what it writes.{}",
         name, did_you_mean(name, known_programs)));
   }
 }
 
-void RadianceLoader::run_xform(std::span<const Program> pipe, const RadiancePlace& place,
+void RadianceLoader::run_xform(std::span<const Program> pipe, const RadianceLocation& location,
                                const RadianceSink& sink) {
   const Program& program = pipe.back();
-  const RadianceXform xform = parse_radiance_xform(std::span(program).subspan(1), place);
+  const RadianceXform xform = parse_radiance_xform(std::span(program).subspan(1), location);
   const RadianceSink placing = [&](const RadiancePrimitive& primitive) {
     apply_xform(xform, primitive, sink);
   };
   if (pipe.size() > 1) {
     if (!xform.files.empty()) {
-      place.fail(fmt::format("xform reads the file '{}' and a pipe; give it one of them",
-                             xform.files.front()));
+      location.fail(fmt::format("xform reads the file '{}' and a pipe; give it one of them",
+                                xform.files.front()));
     }
-    return run_last(pipe.first(pipe.size() - 1), place, placing);
+    return run_last(pipe.first(pipe.size() - 1), location, placing);
   }
-  if (xform.files.empty()) place.fail("xform has nothing to read: name a file after its options");
-  for (const std::string& file : xform.files) read_named(file, place, placing);
+  if (xform.files.empty())
+    location.fail("xform has nothing to read: name a file after its options");
+  for (const std::string& file : xform.files) read_named(file, location, placing);
 }
 
 // The pattern a sky's generator defines stays known, so that what it modifies can be read.
-void RadianceLoader::skip_sky(const Program& program, const RadiancePlace& place,
+void RadianceLoader::skip_sky(const Program& program, const RadianceLocation& location,
                               const RadianceSink& sink) {
   remarks_.add("Skies give no light here; they were left out", program.front());
   sink({.modifier = std::string(radiance_void),
         .type = "brightfunc",
         .name = "skyfunc",
         .strings = {"skybright", "skybright.cal"},
-        .place = place});
+        .location = location});
 }
 
 }  // namespace lightwell

@@ -25,9 +25,10 @@ class RadianceLoader {
   /// Gives `sink` all primitives of a file, those of its commands in their places.
   void read(const std::filesystem::path& path, const RadianceSink& sink);
   /// The same for the file or, after an exclamation mark, the command that `name` is.
-  void read_named(const std::string& name, const RadiancePlace& place, const RadianceSink& sink);
+  void read_named(const std::string& name, const RadianceLocation& location,
+                  const RadianceSink& sink);
   /// The file that something in another one names. Throws InputError if there is none.
-  std::filesystem::path find(const std::string& name, const RadiancePlace& place) const;
+  std::filesystem::path find(const std::string& name, const RadianceLocation& location) const;
   /// A path that stays where it is as long as the loader.
   const std::filesystem::path& keep(const std::filesystem::path& path) {
     return *paths_.insert(path).first;
@@ -35,14 +36,14 @@ class RadianceLoader {
 
  private:
   using Program = std::vector<std::string>;
-  void run(const std::string& command, const RadiancePlace& place, const RadianceSink& sink);
-  void run_last(std::span<const Program> pipe, const RadiancePlace& place,
+  void run(const std::string& command, const RadianceLocation& location, const RadianceSink& sink);
+  void run_last(std::span<const Program> pipe, const RadianceLocation& location,
                 const RadianceSink& sink);
-  void run_xform(std::span<const Program> pipe, const RadiancePlace& place,
+  void run_xform(std::span<const Program> pipe, const RadianceLocation& location,
                  const RadianceSink& sink);
-  void skip_sky(const Program& program, const RadiancePlace& place, const RadianceSink& sink);
-  void account(std::uintmax_t bytes, const RadiancePlace& place);
-  void account_facets(std::int64_t facets, const RadiancePlace& place);
+  void skip_sky(const Program& program, const RadianceLocation& location, const RadianceSink& sink);
+  void account(std::uintmax_t bytes, const RadianceLocation& location);
+  void account_facets(std::int64_t facets, const RadianceLocation& location);
 
   std::filesystem::path folder_;
   Remarks& remarks_;

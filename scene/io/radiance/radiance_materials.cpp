@@ -19,7 +19,7 @@ double constant_value(const std::string& formula, const RadiancePrimitive& of) {
   std::vector<std::string> names;
   for (std::size_t i = 1; i <= of.reals.size(); ++i) names.push_back(fmt::format("A{}", i));
   try {
-    return RadianceExpression(formula, names, of.place).value_or_nan(of.reals);
+    return RadianceExpression(formula, names, of.location).value_or_nan(of.reals);
   } catch (const InputError&) {
     return std::nan("");
   }

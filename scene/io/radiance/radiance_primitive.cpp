@@ -37,7 +37,7 @@ const std::map<std::string_view, Kind>& kinds() {
 
 }  // namespace
 
-void RadiancePlace::fail(std::string_view problem) const {
+void RadianceLocation::fail(std::string_view problem) const {
   throw InputError(fmt::format("{}:{}: {}", file->string(), line, problem));
 }
 
@@ -47,7 +47,7 @@ RadianceKind radiance_kind(std::string_view type) {
 }
 
 void RadiancePrimitive::fail(std::string_view problem) const {
-  place.fail(fmt::format("{} '{}' {}", type, name, problem));
+  location.fail(fmt::format("{} '{}' {}", type, name, problem));
 }
 
 void RadiancePrimitive::require_reals(std::size_t count) const {

@@ -9,7 +9,7 @@
 namespace lightwell {
 
 /// Where something stands in the files of a RADIANCE scene.
-struct RadiancePlace {
+struct RadianceLocation {
   const std::filesystem::path* file = nullptr;
   int line = 0;
 
@@ -29,7 +29,7 @@ struct RadiancePrimitive {
   std::string modifier{}, type{}, name{};
   std::vector<std::string> strings{};
   std::vector<double> reals{};
-  RadiancePlace place{};
+  RadianceLocation location{};
 
   RadianceKind kind() const { return radiance_kind(type); }
   /// Throws InputError "file:line: type 'name' problem".

@@ -29,9 +29,9 @@ constexpr Variable variables[] = {
 
 RadianceProject::RadianceProject(const TextFile& file) {
   std::string joined;
-  RadiancePlace place{&file.path(), 0};
+  RadianceLocation location{&file.path(), 0};
   file.for_each_line([&](int line, std::string_view text) {
-    if (joined.empty()) place.line = line;
+    if (joined.empty()) location.line = line;
     bool continues = false;
     for (std::size_t i = 0; i < text.size() && text[i] != '#'; ++i) {
       if (text[i] == '\\') {
@@ -43,13 +43,13 @@ RadianceProject::RadianceProject(const TextFile& file) {
     }
     joined += ' ';
     if (continues) return;
-    assign(joined, place);
+    assign(joined, location);
     joined.clear();
   });
-  assign(joined, place);
+  assign(joined, location);
 }
 
-void RadianceProject::assign(std::string_view text, const RadiancePlace& place) {
+void RadianceProject::assign(std::string_view text, const RadianceLocation& location) {
   text = trimmed(text);
   const std::size_t end = text.find_first_of(" \t=");
   const std::string_view name = text.substr(0, end);
@@ -61,11 +61,11 @@ void RadianceProject::assign(std::string_view text, const RadiancePlace& place) 
   if (found == std::end(variables)) {
     std::vector<std::string> names;
     for (const Variable& v : variables) names.emplace_back(v.name);
-    place.fail(
+    location.fail(
         fmt::format("there is no variable '{}'.{}", name, did_you_mean(std::string(name), names)));
   }
   if (value == text.size()) return;
-  values_.emplace_back(found->name, Value{std::string(text.substr(value)), place});
+  values_.emplace_back(found->name, Value{std::string(text.substr(value)), location});
 }
 
 std::vector<RadianceProject::Value> RadianceProject::values(std::string_view variable) const {
@@ -79,9 +79,9 @@ std::vector<RadianceProject::Value> RadianceProject::values(std::string_view var
 std::vector<RadianceProject::Value> RadianceProject::words(std::string_view variable) const {
   std::vector<Value> result;
   for (const Value& value : values(variable)) {
-    const auto pipe = split_radiance_pipe(value.text, value.place);
-    if (pipe.size() > 1) value.place.fail("put commands with '|' between quotes");
-    for (const std::string& word : pipe.front()) result.push_back({word, value.place});
+    const auto pipe = split_radiance_pipe(value.text, value.location);
+    if (pipe.size() > 1) value.location.fail("put commands with '|' between quotes");
+    for (const std::string& word : pipe.front()) result.push_back({word, value.location});
   }
   return result;
 }

@@ -14,7 +14,7 @@ class RadianceProject {
  public:
   struct Value {
     std::string text{};
-    RadiancePlace place{};
+    RadianceLocation location{};
   };
 
   /// `file` must outlive the project. Throws InputError for a variable that rad does not know.
@@ -28,7 +28,7 @@ class RadianceProject {
   std::vector<std::string> given() const;
 
  private:
-  void assign(std::string_view text, const RadiancePlace& place);
+  void assign(std::string_view text, const RadianceLocation& location);
 
   std::vector<std::pair<std::string, Value>> values_;
 };

@@ -45,8 +45,8 @@ Eigen::Affine3d along(const Eigen::Vector3d& from, const Eigen::Vector3d& axis) 
          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis);
 }
 
-Loop placed(Loop loop, const Eigen::Affine3d& place) {
-  for (Eigen::Vector3d& p : loop) p = place * p;
+Loop placed(Loop loop, const Eigen::Affine3d& transform) {
+  for (Eigen::Vector3d& p : loop) p = transform * p;
   return loop;
 }
 
@@ -153,8 +153,8 @@ void RadianceShapes::add_sphere(const RadiancePrimitive& p, int material) {
     return add_surface(p, material, Sphere{.center = point(p, 0), .radius = radius});
   }
   remarks_.add("Bubbles whose sides differ became polygons of the same area", p.name);
-  const Eigen::Affine3d place = Eigen::Translation3d(point(p, 0)) * Eigen::Scaling(radius);
-  add_surface(p, material, placed_loops(sphere_loops(), place, true, repairs_));
+  const Eigen::Affine3d transform = Eigen::Translation3d(point(p, 0)) * Eigen::Scaling(radius);
+  add_surface(p, material, placed_loops(sphere_loops(), transform, true, repairs_));
 }
 
 void RadianceShapes::add_cone(const RadiancePrimitive& p, int material) {
@@ -186,10 +186,10 @@ void RadianceShapes::add_ring(const RadiancePrimitive& p, int material) {
     return remarks_.add("Shapes without area were left out", p.name);
   }
   remarks_.add("Rings were read as polygons of 32 corners and the same area", p.name);
-  const Eigen::Affine3d place = along(point(p, 0), normal);
+  const Eigen::Affine3d transform = along(point(p, 0), normal);
   Polygon ring = ring_polygon(inner, outer);
-  ring.boundary = placed(std::move(ring.boundary), place);
-  for (Loop& hole : ring.holes) hole = placed(std::move(hole), place);
+  ring.boundary = placed(std::move(ring.boundary), transform);
+  for (Loop& hole : ring.holes) hole = placed(std::move(hole), transform);
   MeshBuilder mesh;
   mesh.add(ring);
   add_surface(p, material, mesh.mesh());

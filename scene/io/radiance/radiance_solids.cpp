@@ -114,7 +114,7 @@ std::vector<Eigen::Vector2d> corners_from_file(const RadianceCall& call, const s
   for (auto word = text.next_word(); !word.empty(); word = text.next_word()) {
     const auto value = parse_finite(word);
     if (!value) {
-      text.place().fail(
+      text.location().fail(
           fmt::format("'{}' is not a finite number, as the coordinates of a prism "
                       "must be",
                       word));
@@ -261,9 +261,9 @@ void run_genblinds(const RadianceCall& call, const RadianceSink& sink) {
   GeneratedPolygons polygons(call, sink);
   const Eigen::Vector3d to_side(0.0, width, 0.0);
   for (int slat = 0; slat < slats; ++slat) {
-    const Eigen::Vector3d place(0.0, 0.0, height * (slat + 0.5) / slats);
+    const Eigen::Vector3d center(0.0, 0.0, height * (slat + 0.5) / slats);
     for (int i = 0; i < facets; ++i) {
-      const Eigen::Vector3d a = place + across(i), b = place + across(i + 1);
+      const Eigen::Vector3d a = center + across(i), b = center + across(i + 1);
       polygons.add({a, a + to_side, b + to_side, b});
     }
   }

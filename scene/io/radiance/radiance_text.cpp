@@ -14,7 +14,7 @@ constexpr std::string_view blanks = " \t\r\n\f\v";
 }  // namespace
 
 void RadianceText::advance(std::size_t length) {
-  place_.line += static_cast<int>(std::ranges::count(rest_.substr(0, length), '\n'));
+  location_.line += static_cast<int>(std::ranges::count(rest_.substr(0, length), '\n'));
   rest_.remove_prefix(length);
 }
 
@@ -36,7 +36,7 @@ std::string_view RadianceText::next_word() {
     return word;
   }
   const std::size_t end = rest_.find(quote, 1);
-  if (end == std::string_view::npos) place_.fail("a quoted word does not end");
+  if (end == std::string_view::npos) location_.fail("a quoted word does not end");
   const std::string_view word = rest_.substr(1, end - 1);
   advance(end + 1);
   return word;
@@ -49,7 +49,7 @@ RadianceText::Item RadianceText::next() {
 }
 
 RadianceCommand RadianceText::command() {
-  RadianceCommand result{.place = place_};
+  RadianceCommand result{.location = location_};
   rest_.remove_prefix(1);
   while (!rest_.empty() && rest_.front() != '\n') {
     const std::size_t escaped = rest_.starts_with("\\\r\n") ? 3 : rest_.starts_with("\\\n") ? 2 : 0;
@@ -77,19 +77,19 @@ std::size_t RadianceText::count(const RadiancePrimitive& of, std::string_view wh
   if (!value || !(*value >= 0.0 && *value <= most) ||
       *value != static_cast<double>(static_cast<std::size_t>(*value))) {
     of.fail(fmt::format("has '{}' (line {}) where the number of its {} should stand", word,
-                        place_.line, what));
+                        location_.line, what));
   }
   return static_cast<std::size_t>(*value);
 }
 
 RadiancePrimitive RadianceText::primitive() {
-  RadiancePrimitive result{.place = place_};
+  RadiancePrimitive result{.location = location_};
   result.modifier = next_word();
   result.type = next_word();
   result.name = next_word();
   const RadianceKind kind = result.kind();
   if (kind == RadianceKind::unknown) {
-    result.place.fail(
+    result.location.fail(
         fmt::format("'{} {} {}' is no primitive: a modifier, a known type and a name are needed",
                     result.modifier, result.type, result.name));
   }
@@ -110,7 +110,7 @@ RadiancePrimitive RadianceText::primitive() {
     const auto value = parse_finite(word);
     if (!value) {
       result.fail(fmt::format("has '{}' (line {}) where real argument {} of {} should stand", word,
-                              place_.line, i + 1, reals));
+                              location_.line, i + 1, reals));
     }
     result.reals.push_back(*value);
   }

@@ -12,7 +12,7 @@ namespace lightwell {
 /// mark.
 struct RadianceCommand {
   std::string text{};
-  RadiancePlace place{};
+  RadianceLocation location{};
 };
 
 /// Splits the text of a RADIANCE file into primitives and commands. Words are parted by blanks of
@@ -23,14 +23,14 @@ class RadianceText {
 
   /// Both must outlive what is read from them.
   RadianceText(std::string_view text, const std::filesystem::path& file)
-      : rest_(text), place_{&file, 1} {}
+      : rest_(text), location_{&file, 1} {}
 
   /// The next item; std::monostate at the end. Throws InputError naming file and line.
   Item next();
   /// The next word, or an empty one at the end of the text.
   std::string_view next_word();
   /// Where the last word stands.
-  const RadiancePlace& place() const { return place_; }
+  const RadianceLocation& location() const { return location_; }
 
  private:
   bool skip_blanks();
@@ -41,7 +41,7 @@ class RadianceText {
   void advance(std::size_t length);
 
   std::string_view rest_;
-  RadiancePlace place_;
+  RadianceLocation location_;
 };
 
 }  // namespace lightwell

@@ -17,8 +17,9 @@ constexpr double degree = std::numbers::pi / 180.0;
 
 class OptionReader {
  public:
-  OptionReader(std::span<const std::string> words, const RadiancePlace& place, RadianceView& view)
-      : words_(words), place_(place), view_(view) {}
+  OptionReader(std::span<const std::string> words, const RadianceLocation& location,
+               RadianceView& view)
+      : words_(words), location_(location), view_(view) {}
 
   void read() {
     while (next_ < words_.size()) option(words_[next_++]);
@@ -42,7 +43,7 @@ class OptionReader {
 
   double number(const std::string& option) {
     const auto value = next_ < words_.size() ? parse_finite(words_[next_]) : std::nullopt;
-    if (!value) place_.fail(fmt::format("the view's option '{}' lacks a number", option));
+    if (!value) location_.fail(fmt::format("the view's option '{}' lacks a number", option));
     ++next_;
     return *value;
   }
@@ -53,7 +54,7 @@ class OptionReader {
   }
 
   std::span<const std::string> words_;
-  const RadiancePlace& place_;
+  const RadianceLocation& location_;
   RadianceView& view_;
   std::size_t next_ = 0;
 };
@@ -85,9 +86,9 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
-void apply_view_options(std::span<const std::string> words, const RadiancePlace& place,
+void apply_view_options(std::span<const std::string> words, const RadianceLocation& location,
                         RadianceView& view) {
-  OptionReader(words, place, view).read();
+  OptionReader(words, location, view).read();
 }
 
 std::vector<RadianceView> read_radiance_views(const TextFile& file, RadianceView view) {
@@ -103,13 +104,13 @@ std::vector<RadianceView> read_radiance_views(const TextFile& file, RadianceView
 }
 
 void add_radiance_camera(const RadianceView& view, const std::string& name,
-                         const RadiancePlace& place, Scene& scene, Remarks& remarks) {
+                         const RadianceLocation& location, Scene& scene, Remarks& remarks) {
   if (view.type != 'v') {
     remarks.add("Views that are no perspectives (-vtv) were left out", name);
     return;
   }
   const auto fail = [&](const std::string& what) {
-    place.fail(fmt::format("the view '{}' {}", name, what));
+    location.fail(fmt::format("the view '{}' {}", name, what));
   };
   for (const double angle : {view.horizontal, view.vertical}) {
     if (!(angle > 0.0 && angle < 180.0)) {

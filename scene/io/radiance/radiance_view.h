@@ -29,7 +29,7 @@ struct RadianceView {
 /// Changes a view by the options among the words (-vp x y z, ..., and -x, -y for the picture's
 /// size); other words are passed over. Throws InputError naming the place where an option lacks its
 /// numbers.
-void apply_view_options(std::span<const std::string> words, const RadiancePlace& place,
+void apply_view_options(std::span<const std::string> words, const RadianceLocation& location,
                         RadianceView& view);
 
 /// Lines of a view file: those that begin with VIEW= or the name of a program that takes views.
@@ -38,7 +38,7 @@ std::vector<RadianceView> read_radiance_views(const TextFile& file, RadianceView
 
 /// Adds a camera to the scene; views that are no perspectives are remarked upon and left out.
 void add_radiance_camera(const RadianceView& view, const std::string& name,
-                         const RadiancePlace& place, Scene& scene, Remarks& remarks);
+                         const RadianceLocation& location, Scene& scene, Remarks& remarks);
 
 /// Words parted by blanks.
 std::vector<std::string> words_of(std::string_view text);

@@ -33,15 +33,15 @@ Eigen::Affine3d power(Eigen::Affine3d base, int exponent) {
 
 class XformParser {
  public:
-  XformParser(std::span<const std::string> arguments, const RadiancePlace& place)
-      : arguments_(arguments), place_(place) {}
+  XformParser(std::span<const std::string> arguments, const RadianceLocation& location)
+      : arguments_(arguments), location_(location) {}
 
   RadianceXform parse() {
     while (next_ < arguments_.size() && arguments_[next_].starts_with('-')) option();
     for (; next_ < arguments_.size(); ++next_) {
       if (arguments_[next_].starts_with('-')) {
-        place_.fail(fmt::format("xform has the option '{}' after a file; options come first",
-                                arguments_[next_]));
+        location_.fail(fmt::format("xform has the option '{}' after a file; options come first",
+                                   arguments_[next_]));
       }
       result_.files.push_back(arguments_[next_]);
     }
@@ -66,7 +66,7 @@ class XformParser {
       step = Eigen::Scaling(sign) * step;
     } else if (option == "-s") {
       const double factor = number(option);
-      if (!(factor != 0.0)) place_.fail("xform is to scale by 0 (-s); give another factor");
+      if (!(factor != 0.0)) location_.fail("xform is to scale by 0 (-s); give another factor");
       step = Eigen::Scaling(factor) * step;
     } else if (option == "-i") {
       groups_.push_back({.count = std::max(0, whole(option, most_repetitions))});
@@ -80,7 +80,7 @@ class XformParser {
     } else if (option == "-I") {
       result_.inverts = !result_.inverts;
     } else if (option != "-e" && option != "-c") {
-      place_.fail(fmt::format(
+      location_.fail(fmt::format(
           "xform has the option '{}', which is not read; known are -t, -rx, -ry, -rz, -s, -mx, "
           "-my, -mz, -i, -a, -n, -m, -I, -e and -c",
           option));
@@ -92,7 +92,8 @@ class XformParser {
   }
 
   const std::string& word(const std::string& option) {
-    if (next_ == arguments_.size()) place_.fail(fmt::format("xform lacks what '{}' needs", option));
+    if (next_ == arguments_.size())
+      location_.fail(fmt::format("xform lacks what '{}' needs", option));
     return arguments_[next_++];
   }
 
@@ -100,7 +101,7 @@ class XformParser {
     const std::string& given = word(option);
     const auto value = parse_finite(given);
     if (!value) {
-      place_.fail(
+      location_.fail(
           fmt::format("xform has '{}' after '{}', where a number is needed", given, option));
     }
     return *value;
@@ -109,16 +110,16 @@ class XformParser {
   int whole(const std::string& option, int most) {
     const double value = number(option);
     if (value != std::floor(value) || !(std::abs(value) <= most)) {
-      place_.fail(
+      location_.fail(
           fmt::format("xform has '{} {}'; a whole number up to {} is needed", option, value, most));
     }
     return static_cast<int>(value);
   }
 
   void add_array(int count) {
-    if (count < 1) place_.fail("xform makes an array (-a) of no copies; give a positive number");
+    if (count < 1) location_.fail("xform makes an array (-a) of no copies; give a positive number");
     if (count > most_copies / copies_) {
-      place_.fail(fmt::format("xform makes more than {} copies (-a); make fewer", most_copies));
+      location_.fail(fmt::format("xform makes more than {} copies (-a); make fewer", most_copies));
     }
     copies_ *= count;
     groups_.push_back({.count = count, .is_array = true});
@@ -143,7 +144,7 @@ class XformParser {
     const double determinant = to_world.linear().determinant();
     const double scale = std::cbrt(std::abs(determinant));
     if (!(scale > 0.0) || !to_world.matrix().allFinite()) {
-      place_.fail("xform scales beyond the range of numbers");
+      location_.fail("xform scales beyond the range of numbers");
     }
     result_.copies.push_back({.to_world = to_world,
                               .scale = scale,
@@ -152,7 +153,7 @@ class XformParser {
   }
 
   std::span<const std::string> arguments_;
-  const RadiancePlace& place_;
+  const RadianceLocation& location_;
   std::size_t next_ = 0;
   std::vector<Group> groups_ = {Group{}};
   int copies_ = 1;
@@ -220,8 +221,8 @@ void place_surface(RadiancePrimitive& p, const RadianceXform::Copy& copy, bool i
 }  // namespace
 
 RadianceXform parse_radiance_xform(std::span<const std::string> arguments,
-                                   const RadiancePlace& place) {
-  return XformParser(arguments, place).parse();
+                                   const RadianceLocation& location) {
+  return XformParser(arguments, location).parse();
 }
 
 void apply_xform(const RadianceXform& xform, const RadiancePrimitive& primitive,

@@ -28,7 +28,7 @@ struct RadianceXform {
 /// follows it, -a n makes n copies, the k-th (from 0) with what follows repeated k times. Throws
 /// InputError naming the place, also where there are more copies or repetitions than any scene has.
 RadianceXform parse_radiance_xform(std::span<const std::string> arguments,
-                                   const RadiancePlace& place);
+                                   const RadianceLocation& location);
 
 /// Gives `sink` all copies of a primitive. Materials pass once, unmoved.
 void apply_xform(const RadianceXform& xform, const RadiancePrimitive& primitive,

@@ -70,8 +70,8 @@ class RadianceReader {
                           : "; an octree alone cannot be read, name what it was made from"));
     }
     for (const char* variable : {"materials", "scene", "illum"}) {
-      for (const auto& [name, place] : project.words(variable)) {
-        loader_.read_named(name, place, sink_);
+      for (const auto& [name, location] : project.words(variable)) {
+        loader_.read_named(name, location, sink_);
       }
     }
     finish_shapes();
@@ -105,50 +105,52 @@ class RadianceReader {
 
   void read_views(const RadianceProject& project) {
     RadianceView defaults;
-    for (const auto& [text, place] : project.values("UP")) defaults.up = up_axis(text, place);
-    for (const auto& [text, place] : project.values("RESOLUTION")) {
+    for (const auto& [text, location] : project.values("UP")) defaults.up = up_axis(text, location);
+    for (const auto& [text, location] : project.values("RESOLUTION")) {
       const std::vector<std::string> words = words_of(text);
-      defaults.width = positive(words.front(), place);
-      defaults.height = words.size() > 1 ? positive(words[1], place) : defaults.width;
+      defaults.width = positive(words.front(), location);
+      defaults.height = words.size() > 1 ? positive(words[1], location) : defaults.width;
     }
     auto views = project.values("view");
     // As rad has it.
     if (views.empty()) views.push_back({"X", {&loader_.keep(path_), 1}});
-    for (const auto& [text, place] : views) add_view(project, defaults, words_of(text), place);
+    for (const auto& [text, location] : views)
+      add_view(project, defaults, words_of(text), location);
   }
 
-  static Eigen::Vector3d up_axis(const std::string& text, const RadiancePlace& place) {
+  static Eigen::Vector3d up_axis(const std::string& text, const RadianceLocation& location) {
     const bool has_sign = text.starts_with('-') || text.starts_with('+');
     const std::string axis = text.substr(has_sign ? 1 : 0);
     const int letter = axis.size() == 1 ? std::toupper(static_cast<unsigned char>(axis[0])) : 0;
-    if (letter < 'X' || letter > 'Z') place.fail(fmt::format("UP is '{}'; write X, Y or Z", text));
+    if (letter < 'X' || letter > 'Z')
+      location.fail(fmt::format("UP is '{}'; write X, Y or Z", text));
     return (text.starts_with('-') ? -1.0 : 1.0) * Eigen::Vector3d::Unit(letter - 'X');
   }
 
-  static double positive(const std::string& word, const RadiancePlace& place) {
+  static double positive(const std::string& word, const RadianceLocation& location) {
     const auto value = parse_finite(word);
     if (!value || !(*value > 0.0)) {
-      place.fail(fmt::format("RESOLUTION has '{}'; give one or two numbers of pixels", word));
+      location.fail(fmt::format("RESOLUTION has '{}'; give one or two numbers of pixels", word));
     }
     return *value;
   }
 
   void add_view(const RadianceProject& project, RadianceView view,
-                const std::vector<std::string>& words, const RadiancePlace& place) {
+                const std::vector<std::string>& words, const RadianceLocation& location) {
     const bool is_named = !words.front().starts_with('-');
     const std::string name = is_named ? words.front() : "";
     if (is_named) set_standard_view(project, name, view);
     for (std::size_t i = 0; i < words.size(); ++i) {
       if (words[i] != "-vf" || i + 1 == words.size()) continue;
-      const std::filesystem::path& file = loader_.keep(loader_.find(words[i + 1], place));
+      const std::filesystem::path& file = loader_.keep(loader_.find(words[i + 1], location));
       const auto views = read_radiance_views(TextFile(file), view);
       if (views.empty()) {
-        place.fail(fmt::format("the view file '{}' holds no view", file.string()));
+        location.fail(fmt::format("the view file '{}' holds no view", file.string()));
       }
       view = views.back();  // the program that writes them appends
     }
-    apply_view_options(words, place, view);
-    add_radiance_camera(view, name, place, scene_, remarks_);
+    apply_view_options(words, location, view);
+    add_radiance_camera(view, name, location, scene_, remarks_);
   }
 
   // "X", "xYz", "Zl": from the side or corner of the zone that the letters name, small letters for
@@ -184,7 +186,7 @@ class RadianceReader {
   std::pair<Bounds, bool> zone_of(const RadianceProject& project) const {
     const auto values = project.values("ZONE");
     if (values.empty()) return {scene_bounds(scene_), false};
-    const auto& [text, place] = values.back();
+    const auto& [text, location] = values.back();
     const std::vector<std::string> words = words_of(text);
     Bounds zone{};
     bool is_sound = words.size() == 7;
@@ -195,7 +197,7 @@ class RadianceReader {
       zone.low[static_cast<Eigen::Index>(axis)] = *low;
       zone.high[static_cast<Eigen::Index>(axis)] = *high;
     }
-    if (!is_sound) place.fail(fmt::format("ZONE is '{}'; write 'I x0 x1 y0 y1 z0 z1'", text));
+    if (!is_sound) location.fail(fmt::format("ZONE is '{}'; write 'I x0 x1 y0 y1 z0 z1'", text));
     return {zone, words[0].starts_with('I') || words[0].starts_with('i')};
   }
 

@@ -116,7 +116,7 @@ TEST(ElementCaster, PlaceOnAnElementIsWhereARayMeetsIt) {
       const Ray ray{.origin = point.position + away * point.normal, .direction = -point.normal};
       ElementHit met;
       caster.closest_hits({&ray, 1}, {&met, 1});
-      const ElementHit place = place_on_element(mesh, point);
+      const ElementHit place = point_on_element(mesh, point);
       ASSERT_EQ(place.element, met.element);
       EXPECT_EQ(place.facet, met.facet);
       EXPECT_EQ(place.from_back, met.from_back);

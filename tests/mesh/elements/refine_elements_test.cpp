@@ -59,20 +59,20 @@ std::vector<int> parents(const RefinedElements& refined) {
   return {found.begin(), found.end()};
 }
 
-using Place = std::array<double, 3>;
-Place place(const Vector3d& p) {
+using PointKey = std::array<double, 3>;
+PointKey place(const Vector3d& p) {
   return {p.x(), p.y(), p.z()};
 }
 
 // Levels of the cells that have an edge, whole or half, at one place of a facet. (Facets that lie
 // on one another have inner edges of their own, one of which may happen to be half of another.)
 void expect_balance(RefinedElements& refined) {
-  std::map<std::tuple<int, Place, Place>, std::set<int>> whole, halves;
+  std::map<std::tuple<int, PointKey, PointKey>, std::set<int>> whole, halves;
   for (const int cell : refined.leaves()) {
     const int n = refined.corner_count(cell);
     const int facet = refined.base().facet[refined.element(cell, 0)];
     const auto edge = [facet](const Vector3d& p, const Vector3d& q) {
-      const Place a = place(p), b = place(q);
+      const PointKey a = place(p), b = place(q);
       return std::tuple(facet, std::min(a, b), std::max(a, b));
     };
     for (int i = 0; i < n; ++i) {
@@ -250,17 +250,17 @@ TEST(ReflexCorner, AloneHasAVertexForEveryElement) {
   RefinedElements refined(base);
   for (int round = 0; round < 2; ++round) refined.split(refined.leaves());
   const PatchMesh mesh = refined.mesh().mesh;
-  std::map<Place, std::set<int>> vertices;
-  std::map<Place, int> elements;
+  std::map<PointKey, std::set<int>> vertices;
+  std::map<PointKey, int> elements;
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (mesh.is_back[mesh.patch[e]]) continue;
     for (int i = 0; i < mesh.corner_count(e); ++i) {
-      const Place at = place(mesh.position(mesh.corners[e][i]));
+      const PointKey at = place(mesh.position(mesh.corners[e][i]));
       vertices[at].insert(mesh.corners[e][i]);
       ++elements[at];
     }
   }
-  const Place corner{1, 1, 0};
+  const PointKey corner{1, 1, 0};
   for (const auto& [at, there] : vertices) {
     EXPECT_EQ(static_cast<int>(there.size()), at == corner ? elements[at] : 1);
   }

@@ -67,8 +67,9 @@ TEST(SphereGrid, EveryCellFindsItsElement) {
   for (int e : grid.element) {
     const PatchPoint center = element_center(mesh, e);
     EXPECT_EQ(mesh.is_back[mesh.patch[e]], 0);
-    const SpherePlace place = sphere_place(grid, center.position - grid.sphere.center);
-    EXPECT_EQ(grid.element[place.ring * grid.sectors + place.sector], e);
+    const SphereGridPoint grid_point =
+        sphere_grid_point(grid, center.position - grid.sphere.center);
+    EXPECT_EQ(grid.element[grid_point.ring * grid.sectors + grid_point.sector], e);
   }
 }
 
@@ -77,14 +78,15 @@ TEST(SphereGrid, LastSectorClosesAtLongitudeZero) {
   const SphereGrid& grid = mesh.sphere_grids.front();
   const double tiny = 1e-12;
   for (const double phi : {0.0, tiny, -tiny, -1e-300}) {
-    const SpherePlace place = sphere_place(grid, {std::cos(phi), std::sin(phi), 0.1});
-    EXPECT_TRUE(place.sector == (phi < 0 ? grid.sectors - 1 : 0)) << phi << " " << place.sector;
-    const Vector3d back = sphere_direction(grid, place);
+    const SphereGridPoint grid_point = sphere_grid_point(grid, {std::cos(phi), std::sin(phi), 0.1});
+    EXPECT_TRUE(grid_point.sector == (phi < 0 ? grid.sectors - 1 : 0))
+        << phi << " " << grid_point.sector;
+    const Vector3d back = sphere_direction(grid, grid_point);
     EXPECT_NEAR(std::abs(std::atan2(back.y(), back.x())), 0.0, 1e-9);
   }
   for (const double z : {1.0, -1.0}) {
-    const SpherePlace place = sphere_place(grid, {0, 0, z});
-    EXPECT_EQ(place.ring, z > 0 ? 0 : grid.rings - 1);
+    const SphereGridPoint grid_point = sphere_grid_point(grid, {0, 0, z});
+    EXPECT_EQ(grid_point.ring, z > 0 ? 0 : grid.rings - 1);
   }
 }
 

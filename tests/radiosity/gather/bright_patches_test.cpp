@@ -57,9 +57,9 @@ struct Statistics {
 };
 
 // Of the irradiance at a place of the floor.
-Statistics gathered(const Room& room, const BandArray& B, const Eigen::Vector3d& place, int rays,
+Statistics gathered(const Room& room, const BandArray& B, const Eigen::Vector3d& receiver, int rays,
                     int replicas) {
-  const GatherPoint point{.position = place, .normal = {0, 0, 1}, .facet = 4};
+  const GatherPoint point{.position = receiver, .normal = {0, 0, 1}, .facet = 4};
   double sum = 0.0, squares = 0.0;
   for (int i = 0; i < replicas; ++i) {
     const GatheredIrradiance E =
@@ -83,11 +83,11 @@ TEST(BrightPatches, GiveWhatTheFormFactorSays) {
   const Room room{.side = 0.1, .with_shelf = false};
   constexpr float bright = 1000.0f;
   const BandArray B = room.radiosity(bright);
-  const Eigen::Vector3d place{1.2, 0.7, 0.0};
-  const double F = point_to_polygon(place, {0, 0, 1}, room.tile());
+  const Eigen::Vector3d receiver{1.2, 0.7, 0.0};
+  const double F = point_to_polygon(receiver, {0, 0, 1}, room.tile());
   const double E = 1.0 + (bright - 1.0) * F;
   constexpr int replicas = 200;
-  const Statistics estimate = gathered(room, B, place, 256, replicas);
+  const Statistics estimate = gathered(room, B, receiver, 256, replicas);
   std::printf("F %.2e, E %.4f, gathered %.4f, deviation %.4f\n", F, E, estimate.mean,
               estimate.deviation);
   EXPECT_NEAR(estimate.mean, E, 4.0 * estimate.deviation / std::sqrt(replicas));
@@ -104,9 +104,9 @@ TEST(BrightPatches, GiveTheSameNearBy) {
   constexpr float bright = 100.0f;
   const BandArray B = room.radiosity(bright);
   for (const double z : {3.89, 3.5, 2.0}) {
-    const Eigen::Vector3d place{1.9, 1.6, z};
-    const double E = 1.0 + (bright - 1.0) * point_to_polygon(place, {0, 0, 1}, room.tile());
-    const GatherPoint point{.position = place, .normal = {0, 0, 1}};
+    const Eigen::Vector3d receiver{1.9, 1.6, z};
+    const double E = 1.0 + (bright - 1.0) * point_to_polygon(receiver, {0, 0, 1}, room.tile());
+    const GatherPoint point{.position = receiver, .normal = {0, 0, 1}};
     double sum = 0.0, squares = 0.0;
     constexpr int replicas = 200;
     for (int i = 0; i < replicas; ++i) {
@@ -127,20 +127,20 @@ TEST(BrightPatches, AreHiddenByWhatStandsBefore) {
   const Room room{.side = 0.4, .with_shelf = true};
   constexpr float bright = 400.0f;
   const BandArray B = room.radiosity(bright);
-  const Eigen::Vector3d place{2.0, 2.0, 0.0};
+  const Eigen::Vector3d receiver{2.0, 2.0, 0.0};
   // The shelf's edge is in the plane above the place, so half of the tile is seen.
   const Loop half = {{1.8, 1.8, 3.9}, {1.8, 2.2, 3.9}, {2, 2.2, 3.9}, {2, 1.8, 3.9}};
-  const double E = 1.0 + (bright - 1.0) * point_to_polygon(place, {0, 0, 1}, half);
+  const double E = 1.0 + (bright - 1.0) * point_to_polygon(receiver, {0, 0, 1}, half);
   constexpr int replicas = 200;
-  const Statistics estimate = gathered(room, B, place, 256, replicas);
+  const Statistics estimate = gathered(room, B, receiver, 256, replicas);
   EXPECT_NEAR(estimate.mean, E, 4.0 * estimate.deviation / std::sqrt(replicas));
 }
 
 TEST(BrightPatches, HaveDirectionsOfTheStatedDensity) {
   const Room room{.side = 1.2, .with_shelf = false};
   const BrightPatches bright(room.scene, room.mesh, room.radiosity(100.0f));
-  const Eigen::Vector3d place{1.0, 0.5, 2.0};
-  const BrightPatches::View view = bright.view(place, {0, 0, 1}, 64);
+  const Eigen::Vector3d receiver{1.0, 0.5, 2.0};
+  const BrightPatches::View view = bright.view(receiver, {0, 0, 1}, 64);
   ASSERT_FALSE(view.is_empty());
   // The mean of f / density is the integral of f over the tile's solid angle: f = cos / pi gives
   // the form factor.
@@ -149,12 +149,12 @@ TEST(BrightPatches, HaveDirectionsOfTheStatedDensity) {
   for (int i = 0; i < aims.count(); ++i) {
     const Eigen::Array4d u = aims.point(i, 7).cast<double>();
     const BrightPatches::Aim aim = bright.draw(view, u[0], u[1], u[2]);
-    const double distance = (3.9 - place.z()) / aim.direction.z();
+    const double distance = (3.9 - receiver.z()) / aim.direction.z();
     const double density = bright.density(view, aim.element, aim.direction, distance);
     ASSERT_GT(density, 0.0);
     sum += aim.direction.z() * std::numbers::inv_pi / density;
   }
-  const double F = point_to_polygon(place, {0, 0, 1}, room.tile());
+  const double F = point_to_polygon(receiver, {0, 0, 1}, room.tile());
   // Stratified points err by a few times 1 / count of what the summand varies by, about 1.
   EXPECT_NEAR(sum / aims.count(), F, 3e-3 * F);
 }

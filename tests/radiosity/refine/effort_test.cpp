@@ -46,11 +46,11 @@ TEST(Effort, NeverTakesMoreThanIsAskedFor) {
 
 TEST(Effort, EstimateTakesMorePlacesAndRaysWhereTheyAreCheap) {
   constexpr int asked = 512;
-  EXPECT_EQ(estimate_places(asked, 6000), 512);
-  EXPECT_EQ(estimate_places(asked, 32768), 1024);  // a 32nd
-  EXPECT_EQ(estimate_places(asked, 32767), 512);
-  EXPECT_EQ(estimate_places(asked, 1000000), 4096);  // enough
-  EXPECT_EQ(estimate_places(0, 1000000), 0);         // nobody looks
+  EXPECT_EQ(estimate_points(asked, 6000), 512);
+  EXPECT_EQ(estimate_points(asked, 32768), 1024);  // a 32nd
+  EXPECT_EQ(estimate_points(asked, 32767), 512);
+  EXPECT_EQ(estimate_points(asked, 1000000), 4096);  // enough
+  EXPECT_EQ(estimate_points(0, 1000000), 0);         // nobody looks
   EXPECT_EQ(estimate_rays(1024, 6000, asked), 2048);
   EXPECT_EQ(estimate_rays(1024, 16384, asked), 4096);  // 4 x 512 are an eighth of the places
   EXPECT_EQ(estimate_rays(1024, 16383, asked), 2048);

@@ -69,18 +69,18 @@ void expect_all_once(const CastGeometry& g, const CellSheets& sheets) {
 }
 
 // On `inner` of each sheet, about its middle.
-void expect_places(const CastGeometry& g, const CellSheets& sheets, double inner = 1.0) {
+void expect_cells(const CastGeometry& g, const CellSheets& sheets, double inner = 1.0) {
   for (std::size_t s = 0; s < sheets.sheets.size(); ++s) {
     const CellSheet& sheet = sheets.sheets[s];
     for (int i = 0; i < 1000; ++i) {
       const double u = 0.5 + inner * (uniform(s, 2 * i) - 0.5),
                    v = 0.5 + inner * (uniform(s, 2 * i + 1) - 0.5);
-      const auto place = sheets.place(sheet, static_cast<float>(u), static_cast<float>(v));
-      ASSERT_GE(std::min(place.u, place.v), 0.0f);
-      ASSERT_LE(std::max(place.u, place.v), 1.0f);
-      const Vector3d in_cell = at({corner(g, place.quad, 0), corner(g, place.quad, 1),
-                                   corner(g, place.quad, 2), corner(g, place.quad, 3)},
-                                  place.u, place.v);
+      const auto cell = sheets.cell_point(sheet, static_cast<float>(u), static_cast<float>(v));
+      ASSERT_GE(std::min(cell.u, cell.v), 0.0f);
+      ASSERT_LE(std::max(cell.u, cell.v), 1.0f);
+      const Vector3d in_cell = at({corner(g, cell.quad, 0), corner(g, cell.quad, 1),
+                                   corner(g, cell.quad, 2), corner(g, cell.quad, 3)},
+                                  cell.u, cell.v);
       // Floats tell u and v of 2 m to 2e-7, times and less up to 20 cells by a rounding each.
       ASSERT_LT((in_cell - at(sheet.corners, u, v)).norm(), 1e-5);
     }
@@ -95,7 +95,7 @@ TEST(CellSheets, EvenCellsAreOneAndToldApart) {
   EXPECT_EQ(sheets.sheets[0].rows, 3);
   EXPECT_TRUE(sheets.single.empty());
   expect_all_once(g, sheets);
-  expect_places(g, sheets);
+  expect_cells(g, sheets);
 }
 
 TEST(CellSheets, WhatMayNotJoinIsLeftOut) {
@@ -104,7 +104,7 @@ TEST(CellSheets, WhatMayNotJoinIsLeftOut) {
   const CellSheets sheets =
       join_cells(g, any_length, 0.0, [&](int q) { return !covered.contains(q); });
   expect_all_once(g, sheets);
-  expect_places(g, sheets);
+  expect_cells(g, sheets);
   for (const int q : covered) {
     EXPECT_NE(std::ranges::find(sheets.single, q), sheets.single.end());
   }
@@ -116,7 +116,7 @@ TEST(CellSheets, NoneIsLongerThanAllowed) {
   constexpr double longest = 0.55;
   const CellSheets sheets = join_cells(g, longest, 0.0, [](int) { return true; });
   expect_all_once(g, sheets);
-  expect_places(g, sheets);
+  expect_cells(g, sheets);
   EXPECT_EQ(sheets.sheets.size(), 4u * 4u);
   for (const CellSheet& sheet : sheets.sheets) {
     EXPECT_LE((sheet.corners[1] - sheet.corners[0]).norm(), longest);
@@ -149,7 +149,7 @@ TEST(CellSheets, CellsOfNoWidthAreSingle) {
   expect_all_once(g, sheets);
   EXPECT_EQ(sheets.sheets.size(), 1u);
   EXPECT_EQ(sheets.single.size(), 4u);
-  expect_places(g, sheets, 0.99);
+  expect_cells(g, sheets, 0.99);
 }
 
 TEST(CellSheets, AMarginMovesNoPlace) {
@@ -161,9 +161,9 @@ TEST(CellSheets, AMarginMovesNoPlace) {
                        (corner(g, 0, 3) - corner(g, 0, 0)).normalized();
   const double roundings = 4.0 * 8.0 * std::numeric_limits<double>::epsilon();
   EXPECT_LT((a.corners[0] - 0.01 * way - b.corners[0]).norm(), roundings);
-  expect_places(g, wide, 0.98);
-  const auto edge = wide.place(b, 0.0f, 1.0f);  // past the cells
-  EXPECT_EQ(edge.quad, bare.place(a, 0.0f, 1.0f).quad);
+  expect_cells(g, wide, 0.98);
+  const auto edge = wide.cell_point(b, 0.0f, 1.0f);  // past the cells
+  EXPECT_EQ(edge.quad, bare.cell_point(a, 0.0f, 1.0f).quad);
   EXPECT_EQ(edge.u, 0.0f);
   EXPECT_EQ(edge.v, 1.0f);
 }

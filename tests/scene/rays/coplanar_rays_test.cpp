@@ -115,11 +115,11 @@ constexpr int low_x = 0, high_x = 1, low_z = 4;
 
 // Where two bodies stand, and with which rounding: the second may come turned by a quarter about an
 // axis, as a node of a glTF file whose quaternion is stored in float.
-struct Place {
+struct Placement {
   const char* name;
   Eigen::Affine3d of_both = Eigen::Affine3d::Identity();
   std::optional<Vector3d> turns_second{};  // the axis
-  friend void PrintTo(const Place& place, std::ostream* out) { *out << place.name; }
+  friend void PrintTo(const Placement& place, std::ostream* out) { *out << place.name; }
 };
 
 // Off a quarter turn by 1.7e-7.
@@ -130,10 +130,10 @@ Eigen::Affine3d float_quarter_turn(const Vector3d& axis) {
   return Eigen::Affine3d(turn);
 }
 
-class CoplanarBodies : public testing::TestWithParam<Place> {
+class CoplanarBodies : public testing::TestWithParam<Placement> {
  protected:
   void build(CastGeometry geometry, std::size_t first_vertex_of_second) {
-    const Place& place = GetParam();
+    const Placement& place = GetParam();
     for (std::size_t v = 0; v < geometry.vertices.size(); ++v) {
       Vector3d& p = geometry.vertices[v];
       if (place.turns_second && v >= first_vertex_of_second) {
@@ -252,21 +252,22 @@ const Eigen::Affine3d eighth_turn(Eigen::AngleAxisd(std::numbers::pi / 4.0, Vect
 INSTANTIATE_TEST_SUITE_P(
     Places, CoplanarBodies,
     testing::Values(
-        Place{.name = "Plain"}, Place{.name = "TurnedAboutX", .turns_second = Vector3d::UnitX()},
-        Place{.name = "TurnedAboutY", .turns_second = Vector3d::UnitY()},
-        Place{.name = "TurnedAboutZ", .turns_second = Vector3d::UnitZ()},
-        Place{.name = "OnTheMap", .of_both = on_the_map(0.3)},
-        Place{.name = "OnTheMapTurned",
-              .of_both = on_the_map(0.3),
-              .turns_second = Vector3d::UnitY()},
-        Place{.name = "Diagonal", .of_both = eighth_turn, .turns_second = Vector3d::UnitY()},
-        Place{.name = "DiagonalTheOtherWay",
-              .of_both = eighth_turn,
-              .turns_second = Vector3d::UnitZ()},
-        Place{.name = "Undecided", .of_both = undecided(), .turns_second = Vector3d::UnitY()},
-        Place{.name = "UndecidedTheOtherWay",
-              .of_both = undecided(),
-              .turns_second = -Vector3d::UnitZ()}),
+        Placement{.name = "Plain"},
+        Placement{.name = "TurnedAboutX", .turns_second = Vector3d::UnitX()},
+        Placement{.name = "TurnedAboutY", .turns_second = Vector3d::UnitY()},
+        Placement{.name = "TurnedAboutZ", .turns_second = Vector3d::UnitZ()},
+        Placement{.name = "OnTheMap", .of_both = on_the_map(0.3)},
+        Placement{.name = "OnTheMapTurned",
+                  .of_both = on_the_map(0.3),
+                  .turns_second = Vector3d::UnitY()},
+        Placement{.name = "Diagonal", .of_both = eighth_turn, .turns_second = Vector3d::UnitY()},
+        Placement{.name = "DiagonalTheOtherWay",
+                  .of_both = eighth_turn,
+                  .turns_second = Vector3d::UnitZ()},
+        Placement{.name = "Undecided", .of_both = undecided(), .turns_second = Vector3d::UnitY()},
+        Placement{.name = "UndecidedTheOtherWay",
+                  .of_both = undecided(),
+                  .turns_second = -Vector3d::UnitZ()}),
     [](const auto& place) { return std::string(place.param.name); });
 
 // A strip that is as long as the floor, and small ones beside it and beyond its end, in an order

@@ -54,7 +54,7 @@ TEST(Lightmap, BilinearLightIsReadAsItIs) {
   const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = 64});
   const LightmapReader reader(layout, model, solved);
   for (int f = 0; f < model.face_count(); ++f) {
-    const ChartPlace& place = layout.place[reader.chart_of(f)];
+    const ChartRectangle& place = layout.place[reader.chart_of(f)];
     // (1 - 2 + 5 - 3) = 1 is the slopes' product over the whole quad; light(a) doubles it.
     const double at_corner = 0.25 * 2.0 * 2.0 * 0.25 / (place.width * place.height);
     for (int i = 0; i < 500; ++i) {
@@ -115,7 +115,7 @@ TEST(Lightmap, ReadsWhatProbesReadAndBetterWithMoreTexels) {
 double power(const LightmapLayout& layout, const LightmapAtlas& atlas, std::size_t c,
              const SolvedScene& solved) {
   const LightmapChart& chart = layout.charts[c];
-  const ChartPlace& place = layout.place[c];
+  const ChartRectangle& place = layout.place[c];
   const double texel = chart.size.x() * chart.size.y() / (place.width * place.height);
   double sum = 0.0;
   for (int y = place.y; y < place.y + place.height; ++y) {
@@ -163,7 +163,7 @@ TEST(Lightmap, PaddingHasTheLightOfItsChart) {
   ASSERT_EQ(layout.charts.size(), 5u);
   const LightmapReader reader(layout, model, solved);
   for (std::size_t c = 0; c < layout.charts.size(); ++c) {
-    const ChartPlace& place = layout.place[c];
+    const ChartRectangle& place = layout.place[c];
     const auto E = model.irradiance.row(layout.charts[c].vertices.front());
     for (int y = place.y - padding; y < place.y + place.height + padding; ++y) {
       for (int x = place.x - padding; x < place.x + place.width + padding; ++x) {
@@ -271,7 +271,8 @@ TEST(Lightmap, ABallIsRolledOffByLongitudeAndLatitude) {
   const auto ball =
       std::ranges::find_if(layout.charts, [](const auto& c) { return c.sphere >= 0; });
   ASSERT_NE(ball, layout.charts.end());
-  const ChartPlace& place = layout.place[static_cast<std::size_t>(ball - layout.charts.begin())];
+  const ChartRectangle& place =
+      layout.place[static_cast<std::size_t>(ball - layout.charts.begin())];
   const Sphere& sphere = solved.mesh.sphere_grids[ball->sphere].sphere;
   std::vector<Probe> probes;
   std::vector<float> read;
@@ -315,7 +316,7 @@ TEST(Lightmap, DirectLightIsTracedAnewAtTexelCentres) {
     const int f = reader.atlases[0].face[i];
     if (f < 0 || model.position[model.faces[f][0]].z() > 0.5) continue;
     const LightmapChart& chart = layout.charts[reader.chart_of(f)];
-    const ChartPlace& place = layout.place[reader.chart_of(f)];
+    const ChartRectangle& place = layout.place[reader.chart_of(f)];
     // The floor is a square of 2 m and so is its chart, turned or not; the lamp is in its middle.
     const double x = (static_cast<double>(i % 64) + 0.5 - place.x) / place.width * chart.size.x();
     const double y = (static_cast<double>(i / 64) + 0.5 - place.y) / place.height * chart.size.y();

@@ -18,7 +18,7 @@ TEST(PackRectangles, NothingOverlapsOrSticksOut) {
   ASSERT_TRUE(places);
   std::vector<char> taken(std::size_t{10} * size * size, 0);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const PackedPlace& at = (*places)[i];
+    const PackedPosition& at = (*places)[i];
     ASSERT_GE(at.x, 0);
     ASSERT_GE(at.y, 0);
     ASSERT_LE(at.x + sizes[i].x(), size);
@@ -42,7 +42,7 @@ TEST(PackRectangles, EqualSquaresFillTheSquare) {
   const auto places = pack_rectangles(one_more, 32, 2);
   ASSERT_TRUE(places);
   int in_the_second = 0;
-  for (const PackedPlace& place : *places) in_the_second += place.square;
+  for (const PackedPosition& place : *places) in_the_second += place.square;
   EXPECT_EQ(in_the_second, 1);
 }
 
