@@ -65,7 +65,7 @@ void write_lightmap(const std::filesystem::path& file, const Exported& exported,
   options.pass = arguments.lightmap_pass == "interpolate" ? Pass::interpolate
                  : arguments.lightmap_pass == "gather"    ? Pass::gather
                                                           : Pass::direct;
-  options.progress = console.progress();
+  options.run.progress = console.progress();
   const LightmapReport made =
       write_lightmapped_gltf(file, exported.model, exported.solved, exported.scene, options);
   for (const auto& written : made.files) report.add_file(written);

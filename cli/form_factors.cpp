@@ -84,9 +84,8 @@ Computed compute(const Arguments& arguments, const NumberedScene& numbered, cons
   if (per_patch) {
     mesh_options.max_patch_size = arguments.max_patch_size * view.scene.metres_per_unit;
   }
-  mesh_options.progress = console.progress();
   Computed computed;
-  computed.mesh = build_patches(view.scene, mesh_options);
+  computed.mesh = build_patches(view.scene, mesh_options, console.progress());
   report.add_phase("mesh", watch.lap());
   computed.rows = per_patch ? patch_rows(numbered, view, computed.mesh)
                             : facet_rows(numbered, view, computed.mesh);
@@ -103,7 +102,7 @@ Computed compute(const Arguments& arguments, const NumberedScene& numbered, cons
   options.hemicube_resolution = arguments.hemicube_resolution;
   options.memory = std::make_shared<MemoryBudget>(
       MemoryOptions{.limit = arguments.memory, .folder = fs::path(arguments.output).parent_path()});
-  options.progress = console.progress();
+  options.run.progress = console.progress();
   const auto form_factors =
       compute_form_factors({view.scene, caster, no_light}, options, &computed.report);
   console.finish_phase();

@@ -260,7 +260,7 @@ int report_lighting(const Arguments& arguments, Console& console) {
   const DirectLight direct_light(scene, solved.mesh);
   made.luminaires = luminaires(scene, solved.mesh, direct_light, design, arguments.watts);
   GatherOptions gathering{.rays = arguments.rays};
-  gathering.progress = console.progress();
+  gathering.run.progress = console.progress();
   for (CalculationSurface& surface : made.surfaces) {
     surface.grid = without_buried_points(caster, std::move(surface.grid));
     surface.field = measure_grid(scene, caster, direct_light, solved.solution, surface.grid,

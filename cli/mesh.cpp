@@ -104,8 +104,7 @@ int mesh(const Arguments& arguments, Console& console) {
   const std::string options = arguments.mesh.text(scene);
   console.say_verbose("meshing with " + options);
   MeshOptions mesh_options = arguments.mesh.options(scene);
-  mesh_options.progress = console.progress();
-  const PatchMesh mesh = build_patches(scene, mesh_options);
+  const PatchMesh mesh = build_patches(scene, mesh_options, console.progress());
   console.finish_phase();
   stop_if_interrupted();
   report.add_phase("mesh", watch.lap());

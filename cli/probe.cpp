@@ -25,7 +25,7 @@ struct Arguments {
 // What the points read, and no more.
 SolvedScene solve_for_probes(const Scene& scene, Console& console, Report& report) {
   SolveOptions options = options_for_probes();
-  options.progress = console.progress();
+  options.run.progress = console.progress();
   SolvedScene solved = solve_scene(scene, options);
   console.finish_phase();
   stop_if_interrupted();
@@ -63,8 +63,9 @@ int probe(const Arguments& arguments, Console& console) {
     lux_within = interpolation_bound(caster, solved.solution, probes);
   } else {
     const DirectLight direct_light(scene, solved.mesh);
-    irradiance = probe_irradiance(scene, caster, direct_light, solved.solution, probes,
-                                  {.rays = arguments.rays, .progress = console.progress()});
+    irradiance =
+        probe_irradiance(scene, caster, direct_light, solved.solution, probes,
+                         {.rays = arguments.rays, .run = {.progress = console.progress()}});
   }
   console.finish_phase();
   stop_if_interrupted();

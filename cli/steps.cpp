@@ -98,10 +98,10 @@ Provenance provenance(const Scene& scene, const SolveArguments& arguments) {
 SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, const fs::path& output,
                        Checkpoint& checkpoint, Console& console, Report& report) {
   SolveOptions options = arguments.options(scene);
-  options.progress = checkpoint.watched(console.progress());
+  options.run.progress = checkpoint.watched(console.progress());
   Journal* const journal = checkpoint.journal();
   const bool is_of_another = journal && journal->is_read_only();
-  (is_of_another ? options.form_factors.journal : options.journal) = journal;
+  (is_of_another ? options.form_factors.run.journal : options.run.journal) = journal;
   options.form_factors.memory = std::make_shared<MemoryBudget>(
       MemoryOptions{.limit = arguments.memory, .folder = output.parent_path()});
   std::optional<SolvedScene> start;
@@ -194,8 +194,8 @@ void render_step(const Scene& scene, const SolvedScene& solved, SceneRenderer& r
   console.say_verbose(fmt::format("rendering {} with {}", camera.name, arguments.text()));
   RenderOptions options = arguments.options();
   options.layers = arguments.film.rendered_layers(scene);
-  options.progress = checkpoint.watched(console.progress());
-  options.journal = checkpoint.journal();
+  options.run.progress = checkpoint.watched(console.progress());
+  options.run.journal = checkpoint.journal();
   RenderReport rendered;
   const Camera view = arguments.sized(camera);
   Image image;

@@ -139,7 +139,7 @@ int view_live(const Arguments& arguments, const Scene& scene, const ViewOptions&
                      .scene_file = scene.file.string(),
                      .scene_hash = scene_hash(scene),
                      .options = solving.text(scene)};
-  live.solve.progress = console.progress();
+  live.solve.run.progress = console.progress();
   if (!arguments.channels.empty()) {
     live.scales = [&](const RadiositySolution& dark) {
       return channel_scales(dark, arguments.channels, arguments.scene);

@@ -141,14 +141,12 @@ struct FacetMeshes {
 };
 
 FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut,
-                        const MeshOptions& options) {
-  const Progress& progress = options.progress;
+                        const MeshOptions& options, const Progress& progress) {
   FacetMeshes result;
   WeldedPoints points(tolerance);
   result.planes = facet_planes(scene, points);
   CriticalLines critical;
-  if (options.discontinuity)
-    critical = critical_lines(scene, result.planes, {.progress = progress});
+  if (options.discontinuity) critical = critical_lines(scene, result.planes, {}, progress);
   const double most_added =
       options.discontinuity_growth * predicted_elements(scene, cut.element_size());
   const ContactGraph graph(scene, result.planes, std::move(points), cut, critical.lines, most_added,
@@ -190,11 +188,12 @@ double area_to_mesh(const Scene& scene) {
 }
 
 // The smallest tolerance with which all contact lines can be kept; else the one that keeps most.
-FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOptions& options) {
+FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOptions& options,
+                        const Progress& progress) {
   const double diagonal = scene_bounds(scene).diagonal();
   FacetMeshes best;
   for (const double share : weld_shares) {
-    FacetMeshes next = mesh_facets(scene, share * diagonal, cut, options);
+    FacetMeshes next = mesh_facets(scene, share * diagonal, cut, options, progress);
     const bool is_first = share == weld_shares.front();
     if (!is_first && next.flawed >= best.flawed) break;
     best = std::move(next);
@@ -226,16 +225,16 @@ CutSize cut_size(const Scene& scene, const MeshOptions& options) {
   return {.patch_size = count * element, .elements_per_edge = count};
 }
 
-PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
+PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Progress& progress) {
   const CutSize sphere_cut = cut_size(scene, options);
   const double size = sphere_cut.patch_size;
   CutSize cut = sphere_cut;
   if (options.to_be_refined) cut.elements_per_edge = (cut.elements_per_edge + 1) / 2;
   check_count(scene, cut);
-  report(options.progress, "mesh", 0.0);
-  FacetMeshes facet_meshes = mesh_facets(scene, cut, options);
+  report(progress, "mesh", 0.0);
+  FacetMeshes facet_meshes = mesh_facets(scene, cut, options, progress);
 
-  report(options.progress, "mesh", 0.9);
+  report(progress, "mesh", 0.9);
   PatchBuilder builder(scene, options.smooth_angle_degrees,
                        {.patch_size = size, .angle_degrees = options.curve_angle_degrees});
   const std::vector<FacetRef> facets = scene_facets(scene);
@@ -261,7 +260,7 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options) {
   PatchMesh mesh = builder.finish();
   lay_on_textures(scene, mesh);
   mesh.notes = std::move(notes);
-  report(options.progress, "mesh", 1.0);
+  report(progress, "mesh", 1.0);
   return mesh;
 }
 

@@ -33,7 +33,6 @@ struct MeshOptions {
   /// Facets of one surface smaller than a patch share one as long as their normals stay within this
   /// of its mean. 0: no patch reaches over several facets.
   double curve_angle_degrees = 20.0;
-  Progress progress{};
 };
 
 /// Cuts the scene into patches and elements. Coplanar touching and intersecting surfaces are cut
@@ -41,7 +40,8 @@ struct MeshOptions {
 /// element straddles an important bound of a shadow; parts of a facet that are covered
 /// by another surface lying on it become elements of their own. Throws InputError for a scene
 /// without surfaces, or when the sizes ask for more than 20 million elements.
-PatchMesh build_patches(const Scene& scene, const MeshOptions& options = {});
+PatchMesh build_patches(const Scene& scene, const MeshOptions& options = {},
+                        const Progress& progress = {});
 
 /// What build_patches uses, but for `to_be_refined`: what the options say, or what they leave to
 /// it.

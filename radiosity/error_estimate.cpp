@@ -187,8 +187,7 @@ ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
   gather_options.rays = estimate_rays(options.gather.rays, mesh.vertex_count(), wanted);
   gather_options.replica =
       options.gather.replica + 1 + batch_keys * static_cast<std::uint64_t>(batch);
-  gather_options.progress = options.progress;
-  gather_options.journal = options.journal;
+  gather_options.run = options.run;
   const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
   irradiance.resize(0, 0);
   const GatheredIrradiance independent = gather_irradiance(lit, radiosity, points, gather_options);

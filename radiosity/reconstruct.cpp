@@ -96,7 +96,7 @@ void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
 
 BandArray caustics(const LitScene& lit, const SolveOptions& options) {
   return caustic_irradiance(lit, options.caustic_rays, options.form_factors.max_specular_depth,
-                            options.progress, options.journal);
+                            options.run);
 }
 
 // Caustics on elements of even size, from which vertices of all others take theirs: on small ones
@@ -153,8 +153,7 @@ BandArray unscaled_radiosity(const RadiositySolution& solution) {
 
 GatherOptions gather_options(const SolveOptions& options) {
   GatherOptions gather = options.gather;
-  gather.progress = options.progress;
-  gather.journal = options.journal;
+  gather.run = options.run;
   return gather;
 }
 

@@ -46,23 +46,23 @@ RadiositySolution shoot(const LitScene& lit, const SolveOptions& options) {
   Stopwatch watch;
   const LightPaths paths(lit.scene, lit.caster, options.form_factors.max_specular_depth);
   const FreeLight free_light = cast_free_light(lit.scene, lit.caster, paths, lit.direct_light,
-                                               options.free_rays, options.progress);
+                                               options.free_rays, options.run.progress);
   ProgressiveRadiosity progressive(lit.scene, lit.mesh(),
                                    cast_shots(lit.caster, paths, options.progressive->most_rays),
                                    *options.progressive, options.channels, free_light);
-  JournalPhase phase(options.journal, "shots", [&](Fingerprint& print) {
+  JournalPhase phase(options.run.journal, "shots", [&](Fingerprint& print) {
     print.add(lit.mesh());
     print.add(free_light.irradiance);
     print.add(options.form_factors.max_specular_depth);
-    const ProgressiveOptions& shooting = *options.progressive;
-    print.add(shooting.tolerance);
-    print.add(shooting.max_shots);
-    print.add(shooting.rays);
-    print.add(shooting.most_rays);
-    print.add(shooting.overshooting);
+    const auto& [tolerance, max_shots, rays, most_rays, overshooting] = *options.progressive;
+    print.add(tolerance);
+    print.add(max_shots);
+    print.add(rays);
+    print.add(most_rays);
+    print.add(overshooting);
     print.add(options.channels.of_surface);
   });
-  RadiositySolution solution = shoot_to_the_end(progressive, options.progress, &phase);
+  RadiositySolution solution = shoot_to_the_end(progressive, options.run.progress, &phase);
   solution.seconds.push_back({"solve", watch.lap()});
   return solution;
 }
@@ -73,21 +73,20 @@ RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_a
   const PatchMesh& mesh = lit.mesh();
   Stopwatch watch;
   FormFactorOptions form_factor_options = options.form_factors;
-  form_factor_options.progress = options.progress;
+  form_factor_options.run.progress = options.run.progress;
   form_factor_options.rays_per_patch = rays_per_patch(options);
-  if (options.journal) form_factor_options.journal = options.journal;
+  if (options.run.journal) form_factor_options.run.journal = options.run.journal;
   const auto form_factors =
       compute_form_factors(lit, form_factor_options, report ? &report->form_factors : nullptr);
   const double form_factor_seconds = watch.lap();
   const int bands = scene.bands.count();
   const FreeLight by_channel = cast_free_light(
       scene, lit.caster, LightPaths(scene, lit.caster, options.form_factors.max_specular_depth),
-      kept_apart, options.free_rays, options.progress);
+      kept_apart, options.free_rays, options.run.progress);
   const FreeLight free_light = all_channels(by_channel, bands);
 
   SolverOptions solver_options = options.solver;
-  solver_options.progress = options.progress;
-  solver_options.journal = options.journal;
+  solver_options.run = options.run;
   solver_options.name_of = [&](int i) {
     return fmt::format("surface '{}'", scene.surfaces[mesh.surface[i]].name);
   };
@@ -117,7 +116,7 @@ std::optional<ProgressiveOptions> without_rows(const DirectLight& direct_light,
   const StorageReport storage = memory ? memory->report() : MemoryBudget().report();
   FormFactorOptions rows = options.form_factors;
   rows.rays_per_patch = rays_per_patch(options);
-  rows.journal = options.journal;
+  rows.run.journal = options.run.journal;
   const ProgressiveOptions shooting{.tolerance = options.solver.tolerance,
                                     .overshooting = Overshooting::ambient};
   const auto emitters = static_cast<std::int64_t>(direct_light.emitters().size());
@@ -199,17 +198,16 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   require_no_start(options);
   require_unit(scene, options);
   const std::uint64_t hash = scene_hash(scene);
-  if (options.journal && options.journal->of().scene_hash != hash) {
+  if (options.run.journal && options.run.journal->of().scene_hash != hash) {
     throw std::invalid_argument("the journal is of another scene");
   }
   SolvedScene solved;
   std::vector<PhaseSeconds> seconds;
   Stopwatch watch;
   MeshOptions mesh_options = options.mesh;
-  mesh_options.progress = options.progress;
   mesh_options.to_be_refined = starts_coarse(options);
   mesh_options.auto_patch_count = auto_patch_count(options);
-  solved.mesh = build_patches(scene, mesh_options);
+  solved.mesh = build_patches(scene, mesh_options, options.run.progress);
   require_room(solved.mesh, options.refine);
   std::optional<ElementCaster> caster(std::in_place, solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);

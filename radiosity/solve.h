@@ -6,6 +6,7 @@
 #include "radiosity/accuracy.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/journal/run_control.h"
 #include "radiosity/paths/free_light.h"
 #include "radiosity/refine/refine_solution.h"
 #include "radiosity/solution/emitter_channels.h"
@@ -38,11 +39,9 @@ struct SolveOptions {
   /// the solving; not with `progressive`.
   const SolvedScene* start = nullptr;
   int error_points = 512;  ///< random points that the error estimate looks at
-  Progress progress{};
-  /// Collects finished work, and gives it back to a solve that goes on with one that was ended:
-  /// with the same bits. Of this scene. Null: none. (That of another solve, whose form factors
-  /// serve where only reflectances or emission have changed, belongs into `form_factors`.)
-  Journal* journal = nullptr;
+  /// The journal must be of this scene. (The journal of another solve, whose form factors serve
+  /// where only reflectances or emission have changed, belongs into `form_factors`.)
+  RunControl run{};
 };
 
 /// What the first pass found out besides the solution.

@@ -309,27 +309,35 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
   print.add(caster.mesh());
   print.add(solution.direct_irradiance);
   print.add(solution.indirect_irradiance);
-  for (const Eigen::Vector3d* v : {&camera.position, &camera.direction, &camera.up}) print.add(*v);
-  print.add(camera.fov_degrees);
-  print.add(camera.width);
-  print.add(camera.height);
-  print.add(options.pass);
-  print.add(options.max_depth);
-  print.add(options.min_contribution);
-  print.add(options.shadows.min_rays);
-  print.add(options.shadows.max_rays);
-  print.add(options.max_subdivision);
-  print.add(options.contrast);
+  // add_exposure() has the camera's motion and shutter.
+  const auto& [name, position, direction, up, fov_degrees, width, height, lens_radius,
+               focus_distance, blades, shutter_open, shutter_close, motion] = camera;
+  // `photons` decides `caustics`; render() adds the names of layers; the run decides no bit.
+  const auto& [pass, max_depth, min_contribution, shadows, gather_rays, photons, caustics,
+               glossy_rays, sampling, max_subdivision, contrast, layers, run, rows_done] = options;
+  const auto& [min_shadow_rays, max_shadow_rays] = shadows;
+  const auto& [most_samples, least_samples, noise] = sampling;
+  for (const Eigen::Vector3d* v : {&position, &direction, &up}) print.add(*v);
+  print.add(fov_degrees);
+  print.add(width);
+  print.add(height);
+  print.add(pass);
+  print.add(max_depth);
+  print.add(min_contribution);
+  print.add(min_shadow_rays);
+  print.add(max_shadow_rays);
+  print.add(max_subdivision);
+  print.add(contrast);
   print.add(solution.caustic_irradiance);
-  print.add(camera.lens_radius);
-  print.add(camera.focus_distance);
-  print.add(camera.blades);
-  print.add(options.gather_rays);
-  print.add(options.glossy_rays);
-  print.add(options.photons);
-  print.add(options.sampling.most);
-  print.add(options.sampling.least);
-  print.add(options.sampling.noise);
+  print.add(lens_radius);
+  print.add(focus_distance);
+  print.add(blades);
+  print.add(gather_rays);
+  print.add(glossy_rays);
+  print.add(photons);
+  print.add(most_samples);
+  print.add(least_samples);
+  print.add(noise);
 }
 
 // A strip of the picture, as wide as it is: its rows are together in memory.
@@ -364,7 +372,7 @@ class TileRenderer {
     if (samples_) {
       const double part = static_cast<double>(first_row) / image_.height;
       const SampledRows took =
-          sample_rows(*samples_, first_row, rows, options_.progress, part, image_, layers_);
+          sample_rows(*samples_, first_row, rows, options_.run.progress, part, image_, layers_);
       counters_.eye_rays += took.samples;
       counters_.depth_cut += took.depth_cut;
       counters_.add_cut(took.cut_weight);
@@ -428,7 +436,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   LayerFilm layers(options.layers, image);
 
   std::optional<Exposure> exposure = exposure_of(scene, caster.mesh(), camera);
-  const JournalPhase phase(options.journal, "picture", [&](Fingerprint& print) {
+  const JournalPhase phase(options.run.journal, "picture", [&](Fingerprint& print) {
     add_inputs(print, caster, solution, camera, options);
     if (exposure) add_exposure(print, scene, *exposure);
     if (const FacetNormals normals(scene); !normals.is_empty()) print.add(normals.hash());
@@ -438,7 +446,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   std::optional<PixelSamples> samples;
   if (sampling.most > 0) samples.emplace(rays, tree, sampling, std::move(exposure));
   TileRenderer tiles(eye, samples ? &*samples : nullptr, options, counters, image, layers);
-  report(options.progress, "render", 0.0);
+  report(options.run.progress, "render", 0.0);
   int tile = 0, recalled = 0;
   for (int y = 0; y < camera.height; y += tiles.tile_rows(), ++tile) {
     const int rows = std::min(tiles.tile_rows(), camera.height - y);
@@ -456,7 +464,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
       phase.keep(tile, values);
     }
     if (options.rows_done) options.rows_done(image, y, rows);
-    report(options.progress, "render", static_cast<double>(y + rows) / camera.height);
+    report(options.run.progress, "render", static_cast<double>(y + rows) / camera.height);
   }
   if (render_report) {
     *render_report = {

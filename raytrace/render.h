@@ -6,6 +6,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
+#include "radiosity/journal/run_control.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/image.h"
 #include "raytrace/layers.h"
@@ -14,7 +15,6 @@
 namespace lightwell {
 
 class CausticMap;
-class Journal;
 
 /// How a diffuse hit is shaded.
 enum class Pass {
@@ -57,10 +57,7 @@ struct RenderOptions {
   int max_subdivision = 2;
   float contrast = 0.1f;
   std::vector<Layer> layers{};  ///< what Image::layers shall hold
-  /// Where finished tiles are kept, so that a picture that was ended can be gone on with: of this
-  /// scene and no other. Null: nowhere.
-  Journal* journal = nullptr;
-  Progress progress{};
+  RunControl run{};             ///< the journal keeps finished tiles, of this scene and no other
   /// Called when rows first_row to first_row + rows - 1 of the picture are done, from the top down,
   /// by the thread that renders: to show what there is so far.
   std::function<void(const Image& image, int first_row, int rows)> rows_done{};

@@ -15,7 +15,7 @@ std::shared_ptr<const CausticMap> SceneRenderer::caustics(const RenderOptions& o
   const std::lock_guard lock(mutex_);
   if (!caustics_ || photons_ != options.photons || max_depth_ != options.max_depth) {
     caustics_ = trace_caustics(scene_, caster_, direct_light_, options.photons, options.max_depth,
-                               options.progress);
+                               options.run.progress);
     photons_ = options.photons;
     max_depth_ = options.max_depth;
   }

@@ -79,7 +79,7 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (needs_caustic_photons(solution, options)) {
     caustics_ = options.caustics ? options.caustics
                                  : trace_caustics(scene, caster, direct_light, options.photons,
-                                                  options.max_depth, options.progress);
+                                                  options.max_depth, options.run.progress);
   }
   for (const Material& material : scene.materials) {
     const auto& glass = material.dielectric;

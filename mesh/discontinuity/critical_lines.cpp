@@ -58,10 +58,11 @@ void sort_by_weight(std::vector<Item>& items) {
 class LineFinder {
  public:
   LineFinder(const Scene& scene, const std::vector<FacetPlane>& planes,
-             const CriticalLineOptions& options)
+             const CriticalLineOptions& options, const Progress& progress)
       : scene_(scene),
         planes_(planes),
         options_(options),
+        progress_(progress),
         features_(occluder_features(scene, planes)),
         emitters_(emitting_polygons(scene, planes)) {
     for (const FacetPlane& plane : planes) bounds_.extend(plane.box);
@@ -84,7 +85,7 @@ class LineFinder {
     const int count = static_cast<int>(pairings.size());
     constexpr int batch = 1024;  // wedges between two looks at the stop request
     for (int begin = 0; begin < count; begin += batch) {
-      report(options_.progress, "mesh", 0.2 * begin / count);
+      report(progress_, "mesh", 0.2 * begin / count);
       parallel_for(std::min(batch, count - begin), 8, [&](int from, int to) {
         for (int i = begin + from; i < begin + to; ++i) found[i] = lines_of(pairings[i]);
       });
@@ -296,6 +297,7 @@ class LineFinder {
   const Scene& scene_;
   const std::vector<FacetPlane>& planes_;
   const CriticalLineOptions& options_;
+  const Progress& progress_;
   OccluderFeatures features_;
   std::vector<EmittingPolygon> emitters_;
   Eigen::AlignedBox3d bounds_{};
@@ -306,8 +308,8 @@ class LineFinder {
 }  // namespace
 
 CriticalLines critical_lines(const Scene& scene, const std::vector<FacetPlane>& planes,
-                             const CriticalLineOptions& options) {
-  return LineFinder(scene, planes, options).find();
+                             const CriticalLineOptions& options, const Progress& progress) {
+  return LineFinder(scene, planes, options, progress).find();
 }
 
 CriticalLines critical_lines(const Scene& scene, const CriticalLineOptions& options) {

@@ -32,7 +32,6 @@ struct CriticalLine {
 struct CriticalLineOptions {
   int most_emitters = 64;   ///< the most powerful; the others cast no lines
   int most_wedges = 10000;  ///< critical surfaces followed; those that matter least are left out
-  Progress progress{};
 };
 
 /// Lines by falling weight (ties by where they came from), and what bounded them.
@@ -49,7 +48,8 @@ struct CriticalLines {
 /// three edges (EEE) are left out, and spheres cast no lines. Clear facets neither cast nor
 /// receive. Faces behind which a one-sided receiver is black get none.
 CriticalLines critical_lines(const Scene& scene, const std::vector<FacetPlane>& planes,
-                             const CriticalLineOptions& options = {});
+                             const CriticalLineOptions& options = {},
+                             const Progress& progress = {});
 
 /// The same with planes of its own, for scenes whose corners meet exactly.
 CriticalLines critical_lines(const Scene& scene, const CriticalLineOptions& options = {});

@@ -48,7 +48,7 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
     return std::tuple(std::span(exchange_.data() + begin * exchange_.rows(),
                                 static_cast<std::size_t>(size * exchange_.rows())));
   };
-  const auto report_progress = [&](int) { report(options.progress, "closed forms", 0.0); };
+  const auto report_progress = [&](int) { report(options.run.progress, "closed forms", 0.0); };
   const auto fill = [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       if (!receives[i]) continue;

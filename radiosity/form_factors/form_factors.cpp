@@ -48,24 +48,29 @@ void add_inputs(Fingerprint& print, const Scene& scene, const DirectLight& direc
     print.add(material.specular_roughness);
     print.add(material.dielectric.has_value());
     if (!material.dielectric) continue;
-    const Dielectric& glass = *material.dielectric;
-    print.add(glass.index_of_refraction);
-    print.add(glass.tint);
-    print.add(glass.absorption);
-    print.add(glass.roughness);
-    print.add(glass.thin);
+    const auto& [index_of_refraction, tint, absorption, roughness, thin] = *material.dielectric;
+    print.add(index_of_refraction);
+    print.add(tint);
+    print.add(absorption);
+    print.add(roughness);
+    print.add(thin);
   }
-  print.add(options.method);
-  print.add(options.rays_per_patch);
-  print.add(options.target_error);
-  print.add(options.most_rays_per_patch);
-  print.add(options.rays_per_emitter);
-  print.add(options.max_specular_depth);
-  print.add(options.emitter_points);
-  print.add(options.shadows.min_rays);
-  print.add(options.shadows.max_rays);
-  print.add(options.hemicube_resolution);
-  print.add(options.enforce_closure);
+  // Memory and the run decide no bit of a result.
+  const auto& [method, rays_per_patch, target_error, most_rays_per_patch, rays_per_emitter,
+               max_specular_depth, emitter_points, shadows, hemicube_resolution, enforce_closure,
+               memory, run] = options;
+  const auto& [min_shadow_rays, max_shadow_rays] = shadows;
+  print.add(method);
+  print.add(rays_per_patch);
+  print.add(target_error);
+  print.add(most_rays_per_patch);
+  print.add(rays_per_emitter);
+  print.add(max_specular_depth);
+  print.add(emitter_points);
+  print.add(min_shadow_rays);
+  print.add(max_shadow_rays);
+  print.add(hemicube_resolution);
+  print.add(enforce_closure);
 }
 
 class Estimator {
@@ -152,7 +157,7 @@ class Estimator {
     const int longest = *std::max_element(rays_of.begin(), rays_of.end());
     const RowCaster caster(caster_, paths_, most_rays(longest));
     const JournalPhase phase = phase_of("rays", &rays_of);
-    for_each_row(mesh_, longest, options_.progress, [&](int i, RowCaster::Scratch& scratch) {
+    for_each_row(mesh_, longest, options_.run.progress, [&](int i, RowCaster::Scratch& scratch) {
       std::vector<NearExchange::Pair> pairs;
       EstimatedRow row;
       double error = 0.0;
@@ -197,7 +202,7 @@ class Estimator {
   Estimate hemicubes_alone() const {
     Estimate estimate = nothing_yet();
     for_each_hemicube_row(
-        caster_, paths_, {.resolution = options_.hemicube_resolution}, options_.progress,
+        caster_, paths_, {.resolution = options_.hemicube_resolution}, options_.run.progress,
         [&](int i, const EstimatedRow& row) { estimate.rows.add(i, row); }, phase_of("hemicubes"));
     estimate.rows.close();
     estimate.known.S.close();
@@ -226,7 +231,7 @@ class Estimator {
     for (int i = 0; i < n; ++i) known.is_whole[i] = emitters.emitter_of(i) >= 0 ? 1 : 0;
     emitters.compute(receives_, options_, phase_of("emitters"));
     near.exchange(
-        std::move(pairs), options_.progress,
+        std::move(pairs), options_.run.progress,
         [&](int i, std::vector<FormFactor>& row) {
           const auto near_count = static_cast<std::ptrdiff_t>(row.size());
           emitters.add_row(i, row);
@@ -251,7 +256,8 @@ class Estimator {
     Estimate estimate = nothing_yet();
     cast_counts(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)), is_count);
     analytic_exchange(
-        caster_, outlines, receives_, options_.target_error, options_.progress, estimate.row_error,
+        caster_, outlines, receives_, options_.target_error, options_.run.progress,
+        estimate.row_error,
         [&](int i, std::vector<FormFactor>& row) { estimate.known.S.append(i, row); },
         phase_of("all pairs"));
     estimate.known.S.close();
@@ -259,7 +265,7 @@ class Estimator {
   }
 
   JournalPhase phase_of(std::string_view name, const std::vector<int>* rays_of = nullptr) const {
-    return {options_.journal, name, [&](Fingerprint& print) {
+    return {options_.run.journal, name, [&](Fingerprint& print) {
               add_inputs(print, scene_, direct_light_, mesh_, options_);
               if (rays_of) print.add(*rays_of);
             }};
@@ -296,13 +302,13 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
       mesh, static_cast<std::int64_t>(lit.direct_light.emitters().size()), options));
   Estimate estimate = Estimator(lit, options, budget).estimate();
   const auto phase_of = [&](std::string_view name) -> JournalPhase {
-    return {options.journal, name, [&](Fingerprint& print) {
+    return {options.run.journal, name, [&](Fingerprint& print) {
               add_inputs(print, lit.scene, lit.direct_light, mesh, options);
             }};
   };
-  auto result =
-      assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
-                            options.enforce_closure, budget, options.progress, phase_of, report);
+  auto result = assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
+                                      options.enforce_closure, budget, options.run.progress,
+                                      phase_of, report);
   if (report) report->row_error = std::move(estimate.row_error);
   return result;
 }

@@ -10,12 +10,11 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/emitters/lit_scene.h"
+#include "radiosity/journal/run_control.h"
 #include "radiosity/rows/memory_budget.h"
 #include "scene/progress.h"
 
 namespace lightwell {
-
-class Journal;
 
 /// F_ij: share of what leaves patch i that arrives at patch j without meeting anything else.
 struct FormFactor {
@@ -96,8 +95,7 @@ struct FormFactorOptions {
   /// What the process may have in memory; rows that do not fit go to disk. Shared because the
   /// result's rows stay where it put them. Null: a budget of its own, with MemoryOptions' defaults.
   std::shared_ptr<MemoryBudget> memory{};
-  Progress progress{};
-  Journal* journal = nullptr;  ///< finished rows are kept there and taken from there; null: nowhere
+  RunControl run{};  ///< the journal keeps finished rows
 };
 
 /// What was measured before and after closure was enforced.

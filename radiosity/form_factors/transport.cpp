@@ -84,7 +84,7 @@ std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
   if (analytic) each += std::int64_t{sizeof(PatchSampler)};
   const bool clips =
       analytic || (options.method == FormFactorMethod::automatic && options.target_error > 0.0);
-  const std::int64_t journal = options.journal ? 2 * Journal::most_buffered : 0;
+  const std::int64_t journal = options.run.journal ? 2 * Journal::most_buffered : 0;
   return journal + mesh.patch_count() * each + (clips ? PairShafts::bytes_for(mesh) : 0);
 }
 

@@ -203,19 +203,22 @@ void add_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPoints& p
                 const GatherOptions& options) {
   print.add(mesh);
   for (int i = 0; i < points.size(); ++i) {
-    const GatherPoint point = points[i];
-    print.add(Eigen::Vector3d(point.position));
-    print.add(Eigen::Vector3d(point.normal));
-    print.add(point.facet);
-    print.add(point.key.has_value());
-    print.add(point.key.value_or(0));
-    print.add(point.rays);
+    const auto [position, normal, facet, key, rays] = points[i];
+    print.add(position);
+    print.add(normal);
+    print.add(facet);
+    print.add(key.has_value());
+    print.add(key.value_or(0));
+    print.add(rays);
   }
-  print.add(options.rays);
-  print.add(options.max_specular_depth);
-  print.add(options.shadows.min_rays);
-  print.add(options.shadows.max_rays);
-  print.add(options.replica);
+  // The run decides no bit of a result.
+  const auto& [rays, max_specular_depth, shadows, replica, run] = options;
+  const auto& [min_shadow_rays, max_shadow_rays] = shadows;
+  print.add(rays);
+  print.add(max_specular_depth);
+  print.add(min_shadow_rays);
+  print.add(max_shadow_rays);
+  print.add(replica);
 }
 
 // Rows begin, begin + 1, ...
@@ -235,7 +238,7 @@ void for_each_point(const GatherPoints& points, const GatherOptions& options,
       std::clamp(rays_per_slice / std::max(options.rays, 1), 2, std::max(64, count / 100));
   const int grain = std::clamp(slice / 8, 1, 8);
   const auto report_progress = [&](int begin) {
-    report(options.progress, "gather", static_cast<double>(begin) / count);
+    report(options.run.progress, "gather", static_cast<double>(begin) / count);
   };
   for_each_slice(phase, count, slice, grain, values, report_progress, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
@@ -243,7 +246,7 @@ void for_each_point(const GatherPoints& points, const GatherOptions& options,
       body(i, at, random_key(at.key.value_or(static_cast<std::uint64_t>(i)), options.replica));
     }
   });
-  report(options.progress, "gather", 1.0);
+  report(options.run.progress, "gather", 1.0);
 }
 
 }  // namespace
@@ -255,7 +258,7 @@ GatheredIrradiance gather_irradiance(const LitScene& lit, const BandArray& radio
   GatheredIrradiance result{.direct = BandArray::Zero(count, lit.direct_light.column_count()),
                             .indirect = BandArray::Zero(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf::Zero(count)};
-  const JournalPhase phase(options.journal, "gather", [&](Fingerprint& print) {
+  const JournalPhase phase(options.run.journal, "gather", [&](Fingerprint& print) {
     add_inputs(print, lit.mesh(), points, options);
     print.add(lit.direct_light.column_count());
     print.add(radiosity);
@@ -279,7 +282,7 @@ BandArray gather_direct(const LitScene& lit, const GatherPoints& points,
   BandArray direct =
       BandArray::Zero(points.size(), lit.direct_light.channel_count() * lit.scene.bands.count());
   if (visibilities) visibilities->assign(static_cast<std::size_t>(points.size()), {});
-  const JournalPhase phase(options.journal, visibilities ? "sights" : "direct",
+  const JournalPhase phase(options.run.journal, visibilities ? "sights" : "direct",
                            [&](Fingerprint& print) {
                              add_inputs(print, lit.mesh(), points, options);
                              print.add(lit.direct_light.column_count());
@@ -304,7 +307,7 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
   const int count = points.size();
   GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf(count)};
-  const JournalPhase phase(options.journal, "indirect", [&](Fingerprint& print) {
+  const JournalPhase phase(options.run.journal, "indirect", [&](Fingerprint& print) {
     add_inputs(print, lit.mesh(), points, options);
     print.add(lit.direct_light.column_count());
     print.add(radiosity);
@@ -338,7 +341,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 }
 
 BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
-                             const Progress& progress, Journal* journal) {
+                             const RunControl& run) {
   const PatchMesh& mesh = lit.mesh();
   const LightPaths paths(lit.scene, lit.caster, max_specular_depth);
   if (!paths.has_specular() || lit.direct_light.light_count() == 0) return {};
@@ -351,7 +354,7 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
     emitter_of_facet.resize(std::max<std::size_t>(emitter_of_facet.size(), facet + 1), -1);
     emitter_of_facet[facet] = e;
   }
-  JournalPhase phase(journal, "caustics", [&](Fingerprint& print) {
+  JournalPhase phase(run.journal, "caustics", [&](Fingerprint& print) {
     print.add(mesh);
     print.add(lit.direct_light.column_count());
     print.add(rays);
@@ -425,7 +428,7 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
     } else {
       send_source(sources[static_cast<std::size_t>(i - patches)]);
     }
-    report(progress, "caustics", static_cast<double>(i) / count);
+    report(run.progress, "caustics", static_cast<double>(i) / count);
     if (phase.is_state_due()) phase.keep_state(i + 1, power);
   }
   phase.keep_state(count, power);

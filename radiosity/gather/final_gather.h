@@ -11,12 +11,11 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/emitters/lit_scene.h"
+#include "radiosity/journal/run_control.h"
 #include "radiosity/solution/solution.h"
 #include "scene/progress.h"
 
 namespace lightwell {
-
-class Journal;
 
 /// Where irradiance is asked for.
 struct GatherPoint {
@@ -54,8 +53,7 @@ struct GatherOptions {
   int max_specular_depth = 8;
   ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
   std::uint64_t replica = 0;  ///< another number gives an independent estimate
-  Progress progress{};
-  Journal* journal = nullptr;  ///< what was gathered is kept there and taken from there
+  RunControl run{};           ///< the journal keeps gathered irradiance
 };
 
 /// points x bands, W/m^2. Where light is kept apart by channels (see DirectLight), here and below
@@ -99,7 +97,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 /// goes straight through ClearPanes, which is direct light. Empty if the scene has no mirrors or
 /// glass.
 BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
-                             const Progress& progress = {}, Journal* journal = nullptr);
+                             const RunControl& run = {});
 
 /// For every vertex, a point a hair inside one of its elements, so that it lies on no edge, and
 /// that element's facet and normal; where facets that meet smoothly share it, a hair above them

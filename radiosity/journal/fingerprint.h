@@ -16,6 +16,10 @@ struct PatchMesh;
 /// A number of 64 bits that all that is added decides, in its order: equal for equal input, and for
 /// other input as good as never. The steps are those by which XXH64 takes in 8 bytes (Collet 2012).
 /// Against accidents, not against forgery.
+///
+/// Inputs that are structs are taken apart by a structured binding that names all of their fields,
+/// so that a new field does not compile until somebody has decided whether it belongs to the
+/// fingerprint.
 class Fingerprint {
  public:
   void add_bytes(std::span<const std::byte> bytes);

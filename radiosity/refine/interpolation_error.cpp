@@ -84,8 +84,8 @@ InterpolationError::InterpolationError(const LitScene& lit, const BandArray& rad
       inset_(std::ldexp(finest_inset, -refine.max_level)),
       visibility_(lit.direct_light.light_count()),
       probes_(probe_count) {
-  if (options.progress) {
-    options_.progress = [progress = options.progress](std::string_view, double share) {
+  if (options.run.progress) {
+    options_.run.progress = [progress = options.run.progress](std::string_view, double share) {
       return progress("refine", share);
     };
   }
@@ -662,7 +662,7 @@ std::vector<InterpolationError::Measured> InterpolationError::measure(
   std::vector<Measured> measured(cells.size());
   constexpr int slice = 4096;  // cells between two looks at the stop request
   for (int begin = 0; begin < count; begin += slice) {
-    report(options_.progress, "refine", static_cast<double>(begin) / count);
+    report(options_.run.progress, "refine", static_cast<double>(begin) / count);
     parallel_for(std::min(slice, count - begin), 16, [&](int low, int high) {
       for (int i = begin + low; i < begin + high; ++i) {
         for (int side = 0; side < elements_.side_count(cells[i]); ++side) {

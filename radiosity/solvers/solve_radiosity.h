@@ -6,12 +6,11 @@
 #include <string_view>
 
 #include "radiosity/form_factors/form_factors.h"
+#include "radiosity/journal/run_control.h"
 #include "radiosity/solution/solution.h"
 #include "scene/progress.h"
 
 namespace lightwell {
-
-class Journal;
 
 /// How B = M + rho F B is solved. All read the stored rows of F, extended form factors included,
 /// with all bands in one pass, and keep the same promise of accuracy.
@@ -79,8 +78,7 @@ struct SolverOptions {
   BandArray arriving{};
   /// Sees every sweep, from the thread that called the solver.
   std::function<void(const SolverSweep&)> observer{};
-  Progress progress{};
-  Journal* journal = nullptr;  ///< passes over the rows are kept there once they take long
+  RunControl run{};  ///< the journal keeps passes over the rows once they take long
   /// What messages call a patch; empty: "patch 12".
   std::function<std::string(int patch)> name_of{};
 };

@@ -53,17 +53,17 @@ SolverRun::SolverRun(const PatchMesh& mesh, const FormFactors& form_factors,
                      const SolverOptions& solver_options)
     : system(
           checked(mesh, solver_options), form_factors,
-          [this] { report(options.progress, "solve", share_); }, solver_options.arriving),
+          [this] { report(options.run.progress, "solve", share_); }, solver_options.arriving),
       options(solver_options),
       groups(form_factors) {
   find_ends();
 }
 
 void SolverRun::keep_passes(SolverMethod method) {
-  if (!options.journal) return;
+  if (!options.run.journal) return;
   // A pass tells other form factors from these.
   const LightVector E = system.product(system.rho + system.M);
-  const JournalPhase phase(options.journal, "passes", [&](Fingerprint& print) {
+  const JournalPhase phase(options.run.journal, "passes", [&](Fingerprint& print) {
     print.add(method);
     print.add(options.relaxation);
     print.add(options.gmres_restart);
@@ -73,7 +73,7 @@ void SolverRun::keep_passes(SolverMethod method) {
     print.add(system.rho);
     print.add(E);
   });
-  passes_.emplace(phase, options.journal->every());
+  passes_.emplace(phase, options.run.journal->every());
   system.keep_passes(&*passes_);
 }
 
@@ -164,7 +164,7 @@ bool SolverRun::should_continue(SolverMethod method, const LightVector& B,
       is_done ? 1.0 : std::log(first_excess_ / excess) / std::log(std::max(first_excess_, 2.0));
   share_ = std::max({share_, std::min(fallen, 1.0),
                      std::min(1.0, static_cast<double>(sweeps) / options.max_sweeps)});
-  report(options.progress, "solve", share_);
+  report(options.run.progress, "solve", share_);
   return !is_done && sweeps < options.max_sweeps;
 }
 

@@ -211,14 +211,15 @@ TEST(Render, ProgressRisesToOneAndStopsTheWork) {
     shares.push_back(share);
     return true;
   };
-  lit.render(camera, {.pass = Pass::interpolate, .max_subdivision = 0, .progress = record});
+  lit.render(camera,
+             {.pass = Pass::interpolate, .max_subdivision = 0, .run = {.progress = record}});
   EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
   EXPECT_EQ(shares.front(), 0.0);
   EXPECT_EQ(shares.back(), 1.0);
 
   int calls = 0;
   const Progress stop = [&](std::string_view, double) { return ++calls < 2; };
-  EXPECT_THROW(lit.render(camera, {.progress = stop}), Interrupted);
+  EXPECT_THROW(lit.render(camera, {.run = {.progress = stop}}), Interrupted);
   EXPECT_EQ(calls, 2);
 }
 
@@ -241,16 +242,16 @@ TEST(Render, StoppedAnywhereAndGoneOnWithItHasTheSameBits) {
   // 3000 rows of 8 pixels are 3 tiles of 8192 pixels; each time one more is done, on other threads.
   for (int done = 1; done <= 3; ++done) {
     Journal journal(folder / "J", of);
-    options.journal = &journal;
+    options.run.journal = &journal;
     int calls = 0;
-    options.progress = [&](std::string_view, double) { return ++calls <= done; };
+    options.run.progress = [&](std::string_view, double) { return ++calls <= done; };
     const ThreadLimit limit(done);
     EXPECT_THROW(lit.render(camera, options), Interrupted);
     journal.close();
   }
   Journal journal(folder / "J", of);
-  options.journal = &journal;
-  options.progress = {};
+  options.run.journal = &journal;
+  options.run.progress = {};
   RenderReport report;
   const Image image = lit.render(camera, options, &report);
   EXPECT_TRUE((image.radiance == whole.radiance).all());
@@ -266,7 +267,7 @@ TEST(Render, TilesOfAnotherPictureAreNotTaken) {
   const auto recalled = [&](const Camera& from, const RenderOptions& asked) {
     Journal journal(folder / "J", {.version = "1"});
     RenderOptions options = asked;
-    options.journal = &journal;
+    options.run.journal = &journal;
     RenderReport report;
     lit.render(from, options, &report);
     journal.close();

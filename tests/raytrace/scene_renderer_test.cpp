@@ -21,10 +21,10 @@ struct MirroredLamp {
 
 // Options that count how often photons are traced.
 RenderOptions counting(int& traced, int photons) {
-  return {.photons = photons, .progress = [&traced](std::string_view phase, double share) {
-            if (phase == "photons" && share == 0.0) ++traced;
-            return true;
-          }};
+  return {.photons = photons, .run = {.progress = [&traced](std::string_view phase, double share) {
+                                if (phase == "photons" && share == 0.0) ++traced;
+                                return true;
+                              }}};
 }
 
 TEST(SceneRenderer, PicturesShareTheirPhotonsAndHaveTheBitsOfPicturesAlone) {
@@ -53,9 +53,10 @@ TEST(SceneRenderer, StoppedWhileItTracesPhotonsItStartsAgain) {
   const MirroredLamp mirrored;
   SceneRenderer renderer(mirrored.lit.scene, mirrored.lit.mesh, mirrored.lit.solution);
   const Camera camera = camera_towards({0.75, 0.1, 1.0}, {0.75, 0.1, 2.0}, 40.0, 8);
-  EXPECT_THROW(renderer.render(camera, {.progress = [](std::string_view phase,
-                                                       double) { return phase != "photons"; }}),
-               Interrupted);
+  EXPECT_THROW(
+      renderer.render(camera, {.run = {.progress = [](std::string_view phase,
+                                                      double) { return phase != "photons"; }}}),
+      Interrupted);
   EXPECT_TRUE((renderer.render(camera).radiance == mirrored.lit.render(camera).radiance).all());
 }
 

@@ -304,7 +304,7 @@ GltfJson write_channels(const std::filesystem::path& path, const BakedModel& lit
     const auto of_channel =
         channel_lightmap_files(path, names, static_cast<int>(c), layout.atlas_count);
     for (int i = 0; i < layout.atlas_count; ++i) {
-      report(options.progress, "lightmaps of channels",
+      report(options.run.progress, "lightmaps of channels",
              (static_cast<double>(c) + static_cast<double>(i) / layout.atlas_count) /
                  static_cast<double>(names.size()));
       LightmapAtlas atlas = paint_atlas(layout, i, lit, switched, scene, options);
@@ -343,7 +343,7 @@ LightmapReport write_lightmapped_gltf(const std::filesystem::path& path, const B
   std::vector<std::string> pictures;
   std::int64_t covered = 0, bright = 0;
   for (int i = 0; i < layout.atlas_count; ++i) {
-    report(options.progress, "lightmap", static_cast<double>(i) / layout.atlas_count);
+    report(options.run.progress, "lightmap", static_cast<double>(i) / layout.atlas_count);
     LightmapAtlas atlas = paint_atlas(layout, i, lit, solved, scene, options);
     covered += atlas.covered;
     bright += clipped(atlas, exposure);

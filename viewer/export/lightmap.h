@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "radiosity/journal/run_control.h"
 #include "raytrace/render.h"
 #include "viewer/export/baked_model.h"
 #include "viewer/export/lightmap_charts.h"
@@ -22,7 +23,7 @@ struct LightmapOptions {
   ShadowOptions shadows{};
   int gather_rays = 256;     ///< for Pass::gather; 1 to most_gather_rays
   bool per_channel = false;  ///< data of each light channel as well, in the same charts
-  Progress progress{};
+  RunControl run{};
 };
 
 inline constexpr int least_lightmap_size = 16, most_lightmap_size = 8192, most_atlases = 64;

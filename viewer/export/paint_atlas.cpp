@@ -113,7 +113,7 @@ BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& mode
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
   const GatherOptions gathering{
-      .rays = options.gather_rays, .shadows = options.shadows, .progress = options.progress};
+      .rays = options.gather_rays, .shadows = options.shadows, .run = options.run};
   BandArray found;
   if (options.pass == Pass::direct) {
     interpolated(s.indirect_irradiance);

@@ -31,8 +31,7 @@ double seconds_since(Clock::time_point start) {
 
 SolveOptions for_a_window(SolveOptions options, const Scene& scene) {
   if (!options.progressive) options.progressive.emplace();
-  options.mesh.progress = options.progress;
-  options.journal = nullptr;
+  options.run.journal = nullptr;
   if (gives_light(scene)) return options;
   throw InputError(fmt::format(
       "{}: nothing emits light, so there is nothing to watch arriving; give a material a "
@@ -47,14 +46,14 @@ struct LiveSolve::Impl {
       : scene(of),
         options(for_a_window(asked, of)),
         provenance(from),
-        mesh(build_patches(of, options.mesh)),
+        mesh(build_patches(of, options.mesh, options.run.progress)),
         caster(mesh),
         direct_light(of, mesh, options.channels),
         paths(of, caster, options.form_factors.max_specular_depth),
-        progressive(
-            of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
-            *options.progressive, options.channels,
-            cast_free_light(of, caster, paths, direct_light, options.free_rays, options.progress)),
+        progressive(of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
+                    *options.progressive, options.channels,
+                    cast_free_light(of, caster, paths, direct_light, options.free_rays,
+                                    options.run.progress)),
         begun(progressive.solution()),
         vertex_light(caster, direct_light) {
     shown.lacks_specular = std::ranges::any_of(of.surfaces, [&](const Surface& surface) {
@@ -97,7 +96,7 @@ struct LiveSolve::Impl {
     s.history.push_back({.residual = s.residual, .seconds = shooting_seconds});
     s.seconds.push_back({"solve", shooting_seconds});
     SolveOptions gathering = options;
-    gathering.progress = progress;
+    gathering.run.progress = progress;
     SolvedScene solved = gather_to_elements(scene, std::move(patches), gathering);
     solved.solution.provenance.version = provenance.version;
     solved.solution.provenance.options = provenance.options;
@@ -282,7 +281,7 @@ void LiveSolve::shoot(int shots) {
   const Clock::time_point start = Clock::now();
   while (impl_->progressive.shots() < shots && impl_->step(shots)) {
     const double share = static_cast<double>(impl_->progressive.shots()) / shots;
-    report(impl_->options.progress, "solve", std::max(share, impl_->progressive.done()));
+    report(impl_->options.run.progress, "solve", std::max(share, impl_->progressive.done()));
   }
   impl_->shooting_seconds += seconds_since(start);
 }
@@ -292,7 +291,7 @@ LiveLight LiveSolve::light() const {
 }
 
 SolvedScene LiveSolve::finish() {
-  return impl_->finish(impl_->options.progress);
+  return impl_->finish(impl_->options.run.progress);
 }
 
 void LiveSolve::start() {

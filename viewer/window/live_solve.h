@@ -56,8 +56,8 @@ std::string text_of(const LiveState& state);
 /// on. Keeps a reference to the scene.
 class LiveSolve {
  public:
-  /// Cuts the scene into patches. `options.journal` is not used; `progress` is not by the thread
-  /// that start() begins. Throws InputError where nothing emits light.
+  /// Cuts the scene into patches. `options.run.journal` is not used; `progress` is not by the
+  /// thread that start() begins. Throws InputError where nothing emits light.
   LiveSolve(const Scene& scene, const SolveOptions& options, const Provenance& provenance);
   /// Ends the thread after the shot it is at, or within a second of gathering.
   ~LiveSolve();

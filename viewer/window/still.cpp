@@ -77,7 +77,7 @@ struct Still::Job {
   void run(const Camera& camera) {
     try {
       RenderOptions options;
-      options.progress = [this](std::string_view, double share) {
+      options.run.progress = [this](std::string_view, double share) {
         progress = share;
         return !cancelled;
       };

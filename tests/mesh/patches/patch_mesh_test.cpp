@@ -404,16 +404,15 @@ TEST(PatchMesh, SelfCrossingPolygonIsNamed) {
 }
 
 TEST(PatchMesh, StopRequestIsHonoured) {
-  EXPECT_THROW(
-      build_patches(cornell_box(), {.progress = [](std::string_view, double) { return false; }}),
-      Interrupted);
+  EXPECT_THROW(build_patches(cornell_box(), {}, [](std::string_view, double) { return false; }),
+               Interrupted);
   double last = 0.0;
-  build_patches(cornell_box(), {.progress = [&](std::string_view phase, double share) {
-                  EXPECT_EQ(phase, "mesh");
-                  EXPECT_GE(share, last);
-                  last = share;
-                  return true;
-                }});
+  build_patches(cornell_box(), {}, [&](std::string_view phase, double share) {
+    EXPECT_EQ(phase, "mesh");
+    EXPECT_GE(share, last);
+    last = share;
+    return true;
+  });
   EXPECT_EQ(last, 1.0);
 }
 

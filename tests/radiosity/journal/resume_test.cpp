@@ -136,8 +136,8 @@ class Resumed : public testing::TestWithParam<std::tuple<Case, double>> {
   std::optional<SolvedScene> solve(Journal* journal, int calls, int* called = nullptr) {
     SolveOptions asked = options();
     int count = 0;
-    asked.progress = [&](std::string_view, double) { return ++count < calls; };
-    asked.journal = journal;
+    asked.run.progress = [&](std::string_view, double) { return ++count < calls; };
+    asked.run.journal = journal;
     std::optional<SolvedScene> solved;
     try {
       solved = solve_scene(scene, asked);
@@ -223,7 +223,7 @@ TEST(Resume, AJournalOfAnotherSceneIsRefused) {
   const Scene scene = room(false);
   Journal journal(folder / "C", {.scene_hash = scene_hash(scene) + 1}, 1.0);
   SolveOptions options = quick();
-  options.journal = &journal;
+  options.run.journal = &journal;
   EXPECT_THROW(solve_scene(scene, options), std::invalid_argument);
 }
 
@@ -236,23 +236,23 @@ TEST(Resume, OtherOptionsTakeNothingFromAJournal) {
   SolveOptions options = quick();
   {
     Journal journal(folder / "C", of, 1.0);
-    options.journal = &journal;
+    options.run.journal = &journal;
     solve_scene(scene, options);
   }
   options.form_factors.emitter_points = 4;
   options.gather.shadows.max_rays = 64;
   options.caustic_rays = 1 << 11;
   Journal journal(folder / "C", of, 1.0);
-  options.journal = &journal;
+  options.run.journal = &journal;
   const SolvedScene found = solve_scene(scene, options);
-  options.journal = nullptr;
+  options.run.journal = nullptr;
   expect_same_solve(found, solve_scene(scene, options));
 }
 
 // Leaves the journal of a whole solve.
 void keep_solve(const std::filesystem::path& file, const Scene& scene, SolveOptions options) {
   Journal journal(file, {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
-  options.journal = &journal;
+  options.run.journal = &journal;
   solve_scene(scene, options);
 }
 
@@ -268,17 +268,17 @@ TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
   }
   const auto journal = Journal::of_another_solve(folder / "C", "1");
   const std::int64_t size = journal->size();
-  options.form_factors.journal = journal.get();
+  options.form_factors.run.journal = journal.get();
   const SolvedScene reused = solve_scene(scene, options);
   EXPECT_GT(journal->recalled(), 0);
-  options.form_factors.journal = nullptr;
+  options.form_factors.run.journal = nullptr;
   expect_same_solve(reused, solve_scene(scene, options));
   EXPECT_EQ(std::filesystem::file_size(folder / "C"), size);  // nothing was written
 
   // Mirrors are in the form factors.
   for (Material& material : scene.materials) material.specular *= 0.9f;
   const auto other = Journal::of_another_solve(folder / "C", "1");
-  options.form_factors.journal = other.get();
+  options.form_factors.run.journal = other.get();
   solve_scene(scene, options);
   EXPECT_EQ(other->recalled(), 0);
 }
@@ -291,13 +291,13 @@ TEST(Resume, AnotherMirrorTakesNothing) {
   keep_solve(folder / "C", scene, options);
   for (Material& material : scene.materials) material.specular *= 0.5f;
   const auto journal = Journal::of_another_solve(folder / "C", "1");
-  options.journal = journal.get();
+  options.run.journal = journal.get();
   EXPECT_THROW(solve_scene(scene, options), std::invalid_argument);
-  options.journal = nullptr;
-  options.form_factors.journal = journal.get();
+  options.run.journal = nullptr;
+  options.form_factors.run.journal = journal.get();
   const SolvedScene found = solve_scene(scene, options);
   EXPECT_EQ(journal->recalled(), 0);
-  options.form_factors.journal = nullptr;
+  options.form_factors.run.journal = nullptr;
   expect_same_solve(found, solve_scene(scene, options));
 }
 
@@ -315,9 +315,9 @@ TEST(Resume, FormFactorsOfLampsAreNotMistakenForThoseOfOthers) {
   }
   dimmest->emission *= 100.0f;
   const auto journal = Journal::of_another_solve(folder / "C", "1");
-  options.form_factors.journal = journal.get();
+  options.form_factors.run.journal = journal.get();
   const SolvedScene reused = solve_scene(scene, options);
-  options.form_factors.journal = nullptr;
+  options.form_factors.run.journal = nullptr;
   expect_same_solve(reused, solve_scene(scene, options));
 }
 

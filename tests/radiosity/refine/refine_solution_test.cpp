@@ -210,7 +210,7 @@ TEST(Refinement, LeavesAnEvenlyLitRoomAlone) {
 
 TEST(Refinement, StopsWhenAsked) {
   SolveOptions options;
-  options.progress = [](std::string_view phase, double) { return phase != "refine"; };
+  options.run.progress = [](std::string_view phase, double) { return phase != "refine"; };
   EXPECT_THROW(solve_scene(lit_floor({-1, -1}, {1, 1}, small_lamp()), options), Interrupted);
 }
 

@@ -348,9 +348,9 @@ TEST_P(Solver, WhereNothingSeesAnythingRadiosityIsEmission) {
 
 TEST_P(Solver, StopsWhenAskedTo) {
   const RandomRoom room(8, 3);
-  EXPECT_THROW(
-      solve(room.mesh, GivenFormFactors(room.F), {.progress = [](auto, double) { return false; }}),
-      Interrupted);
+  EXPECT_THROW(solve(room.mesh, GivenFormFactors(room.F),
+                     {.run = {.progress = [](auto, double) { return false; }}}),
+               Interrupted);
 }
 
 TEST_P(Solver, RejectsWhatMakesNoSense) {
