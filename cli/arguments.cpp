@@ -21,7 +21,7 @@ namespace {
 
 constexpr int largest_picture_edge = 32768;  // as in scene files
 
-std::optional<double> number(const std::string& text) {
+std::optional<double> parsed_number(const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -31,7 +31,7 @@ std::optional<double> number(const std::string& text) {
 CLI::Validator finite() {
   return CLI::Validator(
       [](std::string& text) -> std::string {
-        const auto value = number(text);
+        const auto value = parsed_number(text);
         return value && std::isfinite(*value)
                    ? std::string()
                    : fmt::format("a number is needed, and '{}' is none", text);
@@ -64,7 +64,7 @@ constexpr std::string_view progressive = "progressive";
 CLI::Validator whole_number(int least, int most) {
   return CLI::Validator(
       [least, most](std::string& text) -> std::string {
-        const auto value = number(text);
+        const auto value = parsed_number(text);
         return value && *value >= least && *value <= most && *value == std::floor(*value)
                    ? std::string()
                    : fmt::format("a whole number from {} to {} is needed, not '{}'", least, most,
@@ -76,7 +76,7 @@ CLI::Validator whole_number(int least, int most) {
 CLI::Validator positive() {
   return CLI::Validator(
       [](std::string& text) -> std::string {
-        const auto value = number(text);
+        const auto value = parsed_number(text);
         return value && *value > 0.0 && std::isfinite(*value)
                    ? std::string()
                    : fmt::format("a number above 0 is needed, not '{}'", text);

@@ -17,7 +17,7 @@ namespace lightwell {
 namespace fs = std::filesystem;
 namespace {
 
-std::string size_text(std::int64_t bytes) {
+std::string bytes_text(std::int64_t bytes) {
   constexpr double kilobyte = 1e3, megabyte = 1e6;
   const auto size = static_cast<double>(bytes);
   return size < megabyte ? fmt::format("{:.1f} kB", size / kilobyte)
@@ -132,13 +132,13 @@ Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& o
   journal_ = std::make_unique<Journal>(file, of, arguments.every);
   if (journal_->found() > 0) {
     console.say(fmt::format("going on with '{}': {} of finished work", file.string(),
-                            size_text(journal_->found())));
+                            bytes_text(journal_->found())));
   }
   if (journal_->torn() > 0) {
     console.say(
         fmt::format("note: behind that, {} were left unfinished by a sudden end; they are "
                     "computed again",
-                    size_text(journal_->torn())));
+                    bytes_text(journal_->torn())));
   }
 }
 
@@ -164,7 +164,7 @@ void Checkpoint::rethrow_stopped() {
   } catch (const Interrupted&) {
     console_.finish_phase();
     throw InterruptedWith(fmt::format("interrupted; what was done is in '{}' ({}). To go on:\n  {}",
-                                      file, size_text(journal_->size()),
+                                      file, bytes_text(journal_->size()),
                                       command_to_resume(console_.options())));
   } catch (...) {
     // A file that holds nothing would only be in the way of the next start.
@@ -172,7 +172,7 @@ void Checkpoint::rethrow_stopped() {
       journal_->remove();
     } else {
       console_.say(fmt::format("note: what was done is in '{}' ({}); --resume goes on with it",
-                               file, size_text(journal_->size())));
+                               file, bytes_text(journal_->size())));
     }
     throw;
   }
@@ -190,7 +190,7 @@ void Checkpoint::finish(Report& report, const std::string& key) {
           "lamps, or of other options for form factors",
           arguments_.reuse.string()));
     } else {
-      console_.say_verbose(fmt::format("used {} of '{}'", size_text(journal_->recalled()),
+      console_.say_verbose(fmt::format("used {} of '{}'", bytes_text(journal_->recalled()),
                                        arguments_.reuse.string()));
     }
     return;
@@ -200,7 +200,7 @@ void Checkpoint::finish(Report& report, const std::string& key) {
                    {"mb", static_cast<double>(journal_->size()) / megabyte},
                    {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});
   const std::string text = fmt::format("the checkpoint '{}' ({})", arguments_.file.string(),
-                                       size_text(journal_->size()));
+                                       bytes_text(journal_->size()));
   if (arguments_.keep) {
     const std::string failure = journal_->failure();
     if (!failure.empty() && !has_warned_) console_.say("warning: " + failure);

@@ -15,7 +15,7 @@
 namespace lightwell {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   std::string picture, reference, second_half, output;
   double full_scale = 0.1;
   CompareOptions compare;
@@ -23,7 +23,7 @@ struct Arguments {
 };
 
 // NaN and infinity are no JSON: a difference from black is relative to nothing.
-Json number(double value) {
+Json json_number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
@@ -32,13 +32,13 @@ Json json_of(const ImageDifference& difference) {
   for (const BandDifference& band : difference.bands) {
     bands.push_back({{"band", band.band},
                      {"rmse", band.rmse},
-                     {"relative_rmse", number(band.relative_rmse)},
+                     {"relative_rmse", json_number(band.relative_rmse)},
                      {"max_difference", band.max_difference},
                      {"mean", band.mean_a},
                      {"reference_mean", band.mean_b}});
   }
   return {{"rmse", difference.rmse},
-          {"relative_rmse", number(difference.relative_rmse)},
+          {"relative_rmse", json_number(difference.relative_rmse)},
           {"max_difference", difference.max_difference},
           {"mean", difference.mean_a},
           {"reference_mean", difference.mean_b},
@@ -51,7 +51,7 @@ Json json_of(const ImageDifference& difference) {
 
 Json json_of(const HalvesDifference& difference) {
   return {{"rmse", difference.rmse},
-          {"relative_rmse", number(difference.relative_rmse)},
+          {"relative_rmse", json_number(difference.relative_rmse)},
           {"mean_square", difference.mean_square},
           {"reference_noise", difference.reference_noise},
           {"mean", difference.mean_a},
@@ -63,7 +63,7 @@ void print_excluded(double share) {
   if (share > 0.0) fmt::print("left out        {:.2f} % of the pixels\n", 100.0 * share);
 }
 
-void print_for_people(const ImageDifference& difference) {
+void print_difference(const ImageDifference& difference) {
   fmt::print("relative RMSE   {:.4f} % of the reference's mean\n",
              100.0 * difference.relative_rmse);
   if (difference.bands.size() > 1) {
@@ -83,7 +83,7 @@ void print_for_people(const ImageDifference& difference) {
   fmt::print("tone-mapped     {:.4f} % mean difference\n", 100.0 * difference.perceptual);
 }
 
-void print_for_people(const HalvesDifference& difference) {
+void print_difference(const HalvesDifference& difference) {
   fmt::print("relative RMSE   {:.4f} % of the reference's mean, its noise taken away\n",
              100.0 * difference.relative_rmse);
   fmt::print("RMSE            {:.6g} W/(m^2 sr)\n", difference.rmse);
@@ -97,7 +97,8 @@ void print_for_people(const HalvesDifference& difference) {
 }
 
 // The reference's mean is what shows white a share of.
-void write_difference(const Arguments& arguments, const Image& a, const Image& b, double mean) {
+void write_difference(const CompareArguments& arguments, const Image& a, const Image& b,
+                      double mean) {
   const double white = arguments.full_scale * mean;
   write_png(arguments.output, a.width, a.height, difference_picture(a, b, white),
             {{"software", fmt::format("lightwell {}", LIGHTWELL_VERSION)},
@@ -106,7 +107,7 @@ void write_difference(const Arguments& arguments, const Image& a, const Image& b
              {"white", fmt::format("a difference of {:g} W/(m^2 sr)", white)}});
 }
 
-int verdict(const Arguments& arguments, double relative_rmse, Console& console) {
+int verdict(const CompareArguments& arguments, double relative_rmse, Console& console) {
   if (!arguments.fail_above || relative_rmse <= *arguments.fail_above) return exit_done;
   console.say(
       fmt::format("the relative RMSE of {:.4g} % is above the {:.4g} % that --fail-above "
@@ -116,7 +117,7 @@ int verdict(const Arguments& arguments, double relative_rmse, Console& console) 
 }
 
 template <class Difference>
-int report(const Difference& difference, const Arguments& arguments, Console& console) {
+int report(const Difference& difference, const CompareArguments& arguments, Console& console) {
   if (console.options().json) {
     Json json = json_of(difference);
     if (arguments.fail_above) {
@@ -125,7 +126,7 @@ int report(const Difference& difference, const Arguments& arguments, Console& co
     }
     print_json(json);
   } else {
-    print_for_people(difference);
+    print_difference(difference);
     if (!arguments.output.empty()) {
       fmt::print("wrote           {} (white: {:.3g} % of the reference's mean and more)\n",
                  arguments.output, 100.0 * arguments.full_scale);
@@ -134,7 +135,7 @@ int report(const Difference& difference, const Arguments& arguments, Console& co
   return verdict(arguments, difference.relative_rmse, console);
 }
 
-int compare(const Arguments& arguments, Console& console) {
+int compare(const CompareArguments& arguments, Console& console) {
   if (!arguments.output.empty()) require_writable(arguments.output);
   const Image a = read_exr(arguments.picture, ExrChannels::bands);
   const Image b = read_exr(arguments.reference, ExrChannels::bands);
@@ -156,7 +157,7 @@ int compare(const Arguments& arguments, Console& console) {
 }  // namespace
 
 Action add_compare(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CompareArguments>();
   command.description(
       "How much a picture differs from a reference of the same size, or from two noisy ones.");
   command.add_option("picture", arguments->picture, "EXR file")->required()->type_name("A.exr");

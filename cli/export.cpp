@@ -18,7 +18,7 @@
 namespace lightwell {
 namespace {
 
-struct Arguments {
+struct ExportArguments {
   std::string solution, scene;
   std::vector<std::string> outputs;
   double exposure_ev = 0.0;
@@ -46,7 +46,7 @@ SolvedScene read_alone(const std::string& file, Console& console, Report& report
   return solved;
 }
 
-void require_all_writable(const Arguments& arguments) {
+void require_all_writable(const ExportArguments& arguments) {
   for (const std::filesystem::path file : arguments.outputs) {
     require_writable(file);
     if (lower_extension(file) == ".obj") {
@@ -60,7 +60,7 @@ void require_all_writable(const Arguments& arguments) {
 }
 
 void write_lightmap(const std::filesystem::path& file, const Exported& exported,
-                    const Arguments& arguments, Console& console, Report& report) {
+                    const ExportArguments& arguments, Console& console, Report& report) {
   LightmapOptions options = arguments.light;
   options.pass = arguments.lightmap_pass == "interpolate" ? Pass::interpolate
                  : arguments.lightmap_pass == "gather"    ? Pass::gather
@@ -77,7 +77,7 @@ void write_lightmap(const std::filesystem::path& file, const Exported& exported,
 }
 
 void write_file(const std::filesystem::path& file, const Exported& exported,
-                const Arguments& arguments, Console& console, Report& report) {
+                const ExportArguments& arguments, Console& console, Report& report) {
   const std::string kind = lower_extension(file);
   const BakedModel& model = exported.model;
   const Stopwatch watch;
@@ -97,7 +97,7 @@ void write_file(const std::filesystem::path& file, const Exported& exported,
   report.add_phase("write_" + kind.substr(1), watch.seconds());
 }
 
-int export_model(const Arguments& arguments, Console& console) {
+int export_model(const ExportArguments& arguments, Console& console) {
   Report report(console.options());
   require_all_writable(arguments);
   Scene scene;
@@ -125,7 +125,7 @@ int export_model(const Arguments& arguments, Console& console) {
   return exit_done;
 }
 
-void add_lightmap(CLI::App& command, Arguments& arguments) {
+void add_lightmap(CLI::App& command, ExportArguments& arguments) {
   const std::string group = "Lightmaps";
   LightmapOptions& light = arguments.light;
   CLI::Option* lightmap =
@@ -166,7 +166,7 @@ void add_lightmap(CLI::App& command, Arguments& arguments) {
       ->needs(lightmap);
 }
 
-void check(const Arguments& arguments) {
+void check(const ExportArguments& arguments) {
   if (!arguments.lightmap) return;
   const bool has_glb = std::ranges::any_of(
       arguments.outputs, [](const std::string& file) { return lower_extension(file) == ".glb"; });
@@ -182,7 +182,7 @@ void check(const Arguments& arguments) {
 }  // namespace
 
 Action add_export(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ExportArguments>();
   command.description(
       "Writes a solution as a model with its light in the colours of its vertices, or as a page\n"
       "to walk through in a web browser.");

@@ -22,7 +22,7 @@ namespace lightwell {
 namespace fs = std::filesystem;
 namespace {
 
-struct Arguments {
+struct FormFactorArguments {
   std::string scene, output, method = "auto", view3d, row_output;
   double target_error = 1e-3;
   double max_patch_size = 0.0;  // in the scene file's unit; 0: a row per facet
@@ -36,7 +36,7 @@ struct Arguments {
   fs::path row_file() const;
 };
 
-std::string Arguments::text() const {
+std::string FormFactorArguments::text() const {
   // Without the option there is a row for each facet, which no size says.
   return fmt::format(
       "--method {}{} --target-error {:g}{}{}", method, hemicube_text(method, hemicube_resolution),
@@ -45,7 +45,7 @@ std::string Arguments::text() const {
       two_sided ? " --two-sided" : "");
 }
 
-fs::path Arguments::row_file() const {
+fs::path FormFactorArguments::row_file() const {
   if (!row_output.empty()) return row_output;
   return fs::path(output).replace_extension(fmt::format(".row{}.vtp", show_row));
 }
@@ -74,8 +74,8 @@ struct Computed {
   std::optional<double> error{};  // estimated, of the worst factor
 };
 
-Computed compute(const Arguments& arguments, const NumberedScene& numbered, const FacetCheck& check,
-                 Console& console, Report& report) {
+Computed compute(const FormFactorArguments& arguments, const NumberedScene& numbered,
+                 const FacetCheck& check, Console& console, Report& report) {
   Stopwatch watch;
   const ViewFactorScene view = make_view_factor_scene(numbered, check, arguments.two_sided);
   const FormFactorMethod method = form_factor_method(arguments.method);
@@ -118,7 +118,8 @@ Computed compute(const Arguments& arguments, const NumberedScene& numbered, cons
   return computed;
 }
 
-Json facts(const Arguments& arguments, const NumberedScene& numbered, const Computed& computed) {
+Json form_factor_facts(const FormFactorArguments& arguments, const NumberedScene& numbered,
+                       const Computed& computed) {
   const ViewFactors& F = computed.factors;
   double area = 0.0, most_open = 0.0;
   for (int i = 0; i < F.row_count(); ++i) {
@@ -159,7 +160,7 @@ Json row_facts(const Computed& computed) {
           {"blocked", computed.factors.blocked}};
 }
 
-std::string for_people(const Json& facts) {
+std::string form_factor_text(const Json& facts) {
   std::string text;
   const auto number = [&facts](const char* key) { return facts[key].get<double>(); };
   text += fmt::format("{:<9} {} of {} facets, {} entries, {:.6g} m2 in all\n", "rows",
@@ -179,7 +180,7 @@ std::string for_people(const Json& facts) {
   return text;
 }
 
-void write_files(const Arguments& arguments, const NumberedScene& numbered,
+void write_files(const FormFactorArguments& arguments, const NumberedScene& numbered,
                  const Computed& computed, Report& report) {
   const ViewFactors& F = computed.factors;
   write_matrix_market(
@@ -201,7 +202,7 @@ void write_files(const Arguments& arguments, const NumberedScene& numbered,
   }
 }
 
-int form_factors(const Arguments& arguments, Console& console) {
+int form_factors(const FormFactorArguments& arguments, Console& console) {
   Report report(console.options());
   Stopwatch watch;
   const NumberedScene numbered = read_numbered_scene(arguments.scene);
@@ -218,7 +219,7 @@ int form_factors(const Arguments& arguments, Console& console) {
     notes.push_back("No facet sees another; facets see where their corners run counter-clockwise.");
   }
   for (const std::string& note : notes) console.say("note: " + note);
-  const Json found = facts(arguments, numbered, computed);
+  const Json found = form_factor_facts(arguments, numbered, computed);
   for (const auto& [key, value] : found.items()) report.add(key, value);
   report.add("notes", notes);
 
@@ -232,12 +233,12 @@ int form_factors(const Arguments& arguments, Console& console) {
   write_json(arguments.json_file(), beside);
 
   const CommonOptions& common = console.options();
-  if (!common.json && !common.quiet) fmt::print("{}", for_people(found));
+  if (!common.json && !common.quiet) fmt::print("{}", form_factor_text(found));
   report.print();
   return exit_done;
 }
 
-void add_how(CLI::App& command, Arguments& arguments) {
+void add_how(CLI::App& command, FormFactorArguments& arguments) {
   const std::string group = "How they are found";
   command
       .add_option("--method,--form-factors", arguments.method,
@@ -269,7 +270,7 @@ void add_how(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 Action add_form_factors(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<FormFactorArguments>();
   command.description(
       "View factors between the facets of a file, as a sparse matrix; materials do not matter.");
   command

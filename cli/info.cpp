@@ -310,7 +310,7 @@ Json describe(const std::string& file) {
 }
 
 // A value on one line; a list of objects as a line each.
-void print_for_people(const Json& facts) {
+void print_info(const Json& facts) {
   const auto word = [](const Json& value) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
@@ -366,7 +366,7 @@ Action add_info(CLI::App& command) {
     }
     Json facts = describe(file);
     if (!arguments->ugr) {
-      console.options().json ? print_json(facts) : print_for_people(facts);
+      console.options().json ? print_json(facts) : print_info(facts);
       return int{exit_done};
     }
     const UgrTable table = ugr_table(read_luminaire(file));
@@ -374,7 +374,7 @@ Action add_info(CLI::App& command) {
       facts["ugr"] = ugr_json(table);
       print_json(facts);
     } else {
-      print_for_people(facts);
+      print_info(facts);
       print_ugr(table);
     }
     return int{exit_done};

@@ -32,7 +32,7 @@ struct Named {
   double value = 0.0;
 };
 
-struct Arguments {
+struct LightingArguments {
   std::string scene, solution;
   std::vector<std::string> outputs, surfaces, observers;
   std::vector<Named> planes, watts;
@@ -113,7 +113,7 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
 }
 
 /// The grids of the file and those that were asked for, before any light is traced.
-std::vector<CalculationSurface> grids(const Arguments& arguments, const Scene& scene,
+std::vector<CalculationSurface> grids(const LightingArguments& arguments, const Scene& scene,
                                       const LightingDesign& design, const Eigen::Vector3d& up) {
   std::vector<CalculationSurface> surfaces;
   const double metres = scene.metres_per_unit;
@@ -227,7 +227,7 @@ void print_figures(const LightingReport& report) {
   }
 }
 
-int report_lighting(const Arguments& arguments, Console& console) {
+int report_lighting(const LightingArguments& arguments, Console& console) {
   Report report(console.options());
   CleanUpReport clean_up;
   const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
@@ -295,7 +295,7 @@ int report_lighting(const Arguments& arguments, Console& console) {
 }  // namespace
 
 Action add_report(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<LightingArguments>();
   command.description(
       "Figures of a lighting design: mean and least illuminance and uniformity of surfaces and "
       "working\nplanes, glare (UGR) of observers, the luminaires; as a page, JSON or CSV.");

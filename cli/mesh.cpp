@@ -17,7 +17,7 @@
 namespace lightwell {
 namespace {
 
-struct Arguments {
+struct MeshCommandArguments {
   std::string scene, output;
   bool both_sides = false;
   MeshArguments mesh;
@@ -38,8 +38,8 @@ Json element_json(const Scene& scene, const JoinedSurfaces* names, const PatchMe
           {"center", {at.x(), at.y(), at.z()}}};
 }
 
-Json facts(const Scene& scene, const JoinedSurfaces* names, const PatchMesh& mesh,
-           const std::string& options) {
+Json mesh_facts(const Scene& scene, const JoinedSurfaces* names, const PatchMesh& mesh,
+                const std::string& options) {
   const ElementQuality quality = element_quality(mesh);
   const double area = scene_area(scene);
   return {{"scene", scene.file.string()},
@@ -60,7 +60,7 @@ Json facts(const Scene& scene, const JoinedSurfaces* names, const PatchMesh& mes
           {"largest_element", element_json(scene, names, mesh, quality.largest)}};
 }
 
-std::string for_people(const Json& facts, const CleanUpReport& clean_up) {
+std::string mesh_text(const Json& facts, const CleanUpReport& clean_up) {
   std::string text;
   const auto line = [&text](const char* head, const std::string& body) {
     text += fmt::format("{:<9} {}\n", head, body);
@@ -94,7 +94,7 @@ std::string for_people(const Json& facts, const CleanUpReport& clean_up) {
   return text;
 }
 
-int mesh(const Arguments& arguments, Console& console) {
+int mesh(const MeshCommandArguments& arguments, Console& console) {
   Report report(console.options());
   CleanUpReport clean_up;
   const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
@@ -109,7 +109,7 @@ int mesh(const Arguments& arguments, Console& console) {
   stop_if_interrupted();
   report.add_phase("mesh", watch.lap());
   note_mesh(scene, mesh, console, report);
-  const Json found = facts(scene, clean_up.names.get(), mesh, options);
+  const Json found = mesh_facts(scene, clean_up.names.get(), mesh, options);
   for (const auto& [key, value] : found.items()) report.add(key, value);
   report.add_phase("quality", watch.lap());
 
@@ -123,7 +123,7 @@ int mesh(const Arguments& arguments, Console& console) {
     report.add_phase("write", watch.lap());
   }
   const CommonOptions& common = console.options();
-  if (!common.json && !common.quiet) fmt::print("{}", for_people(found, clean_up));
+  if (!common.json && !common.quiet) fmt::print("{}", mesh_text(found, clean_up));
   report.print();
   return exit_done;
 }
@@ -131,7 +131,7 @@ int mesh(const Arguments& arguments, Console& console) {
 }  // namespace
 
 Action add_mesh(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<MeshCommandArguments>();
   command.description(
       "The patches and elements that 'solve' would use, and how well they are made.");
   command

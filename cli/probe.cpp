@@ -16,7 +16,7 @@
 namespace lightwell {
 namespace {
 
-struct Arguments {
+struct ProbeArguments {
   std::string scene, solution, points, output;
   bool interpolate = false;
   int rays = 1024;
@@ -37,7 +37,7 @@ SolvedScene solve_for_probes(const Scene& scene, Console& console, Report& repor
   return solved;
 }
 
-int probe(const Arguments& arguments, Console& console) {
+int probe(const ProbeArguments& arguments, Console& console) {
   if (arguments.interpolate && arguments.solution.empty()) {
     throw InputError(
         "--interpolate reads the mesh of a solution: name one after the scene, as 'solve' makes "
@@ -82,7 +82,7 @@ int probe(const Arguments& arguments, Console& console) {
 }  // namespace
 
 Action add_probe(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeArguments>();
   command.description("Irradiance (W/m2 per band) and illuminance (lx) at points of a scene.");
   command.add_option("scene", arguments->scene, "scene file, as for 'solve'")
       ->required()

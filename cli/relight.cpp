@@ -13,12 +13,12 @@
 namespace lightwell {
 namespace {
 
-struct Arguments {
+struct RelightArguments {
   std::string solution, output;
   ChannelSettings settings;
 };
 
-int relight_solution(const Arguments& arguments, Console& console) {
+int relight_solution(const RelightArguments& arguments, Console& console) {
   Report report(console.options());
   require_writable(arguments.output);
   const Stopwatch reading;
@@ -38,7 +38,7 @@ int relight_solution(const Arguments& arguments, Console& console) {
 }  // namespace
 
 Action add_relight(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RelightArguments>();
   command.description(
       "Dims and recolours the channels of a solution, without solving. Settings are against the\n"
       "scene as it was solved; a channel that is not named stays as it is.");

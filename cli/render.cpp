@@ -13,14 +13,14 @@
 namespace lightwell {
 namespace {
 
-struct Arguments {
+struct RenderCommandArguments {
   std::string scene, solution, camera;
   std::vector<std::string> outputs;
   RenderArguments render;
   CheckpointArguments checkpoint;
 };
 
-int render(const Arguments& arguments, Console& console) {
+int render(const RenderCommandArguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   const Camera& camera = choose_camera(scene, arguments.camera);
@@ -45,7 +45,7 @@ int render(const Arguments& arguments, Console& console) {
 }  // namespace
 
 Action add_render(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RenderCommandArguments>();
   command.description(
       "Renders a picture of a solved scene: diffuse light from the solution,\n"
       "mirrors and glass by ray tracing.");

@@ -19,7 +19,7 @@ double peak_memory_mb() {
   return static_cast<double>(resident_memory().most) / (1 << 20);
 }
 
-std::string size_text(double megabytes) {
+std::string megabytes_text(double megabytes) {
   constexpr double large = 1000.0;
   return megabytes < large ? fmt::format("{:.0f} MB", megabytes)
                            : fmt::format("{:.1f} GB", megabytes / 1024.0);
@@ -27,7 +27,7 @@ std::string size_text(double megabytes) {
 
 // Where rows are, and why there.
 std::string storage_text(const Json& storage) {
-  const auto size = [&](const char* key) { return size_text(storage[key].get<double>()); };
+  const auto size = [&](const char* key) { return megabytes_text(storage[key].get<double>()); };
   const bool is_on_disk = storage["disk_mb"].get<double>() > 0.0;
   if (!is_on_disk && !(storage["memory_mb"].get<double>() > 0.0)) {
     return fmt::format("no rows are kept, since patches shoot theirs as they go (budget {})",

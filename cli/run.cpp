@@ -16,7 +16,7 @@ namespace lightwell {
 namespace fs = std::filesystem;
 namespace {
 
-struct Arguments {
+struct RunArguments {
   std::string scene, output;
   SolveArguments solve;
   CheckpointArguments checkpoint;
@@ -28,7 +28,7 @@ fs::path default_folder(const fs::path& scene) {
 }
 
 // What `output` holds already, if it was asked to go on with that; else solved and written now.
-SolvedScene solved_scene(const Scene& scene, const Arguments& arguments, const fs::path& output,
+SolvedScene solved_scene(const Scene& scene, const RunArguments& arguments, const fs::path& output,
                          Console& console, Report& report) {
   const Provenance of = provenance(scene, arguments.solve);
   if (auto done = finished_solution(arguments.checkpoint, of, output, console, true)) {
@@ -48,7 +48,7 @@ struct Outputs {
   std::vector<std::vector<fs::path>> pictures{};  // of each camera
 };
 
-void render_pictures(const Scene& scene, const SolvedScene& solved, const Arguments& arguments,
+void render_pictures(const Scene& scene, const SolvedScene& solved, const RunArguments& arguments,
                      const Outputs& outputs, Console& console, Report& report) {
   CheckpointArguments kept = arguments.checkpoint;
   kept.reuse.clear();
@@ -75,7 +75,7 @@ void render_pictures(const Scene& scene, const SolvedScene& solved, const Argume
   checkpoint.finish(report, "picture_checkpoint");
 }
 
-int run(const Arguments& arguments, Console& console) {
+int run(const RunArguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   choose_camera(scene, "");  // to refuse before the work, not after it
@@ -103,7 +103,7 @@ int run(const Arguments& arguments, Console& console) {
 }  // namespace
 
 Action add_run(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RunArguments>();
   command.description(
       "Solves a scene and renders its cameras: solution.vtp, .exr and .png files, report.json.");
   command

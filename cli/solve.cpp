@@ -14,13 +14,13 @@
 namespace lightwell {
 namespace {
 
-struct Arguments {
+struct SolveCommandArguments {
   std::string scene, output;
   SolveArguments solve;
   CheckpointArguments checkpoint;
 };
 
-int solve(const Arguments& arguments, Console& console) {
+int solve(const SolveCommandArguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   require_writable(arguments.output);
@@ -42,7 +42,7 @@ int solve(const Arguments& arguments, Console& console) {
 }  // namespace
 
 Action add_solve(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SolveCommandArguments>();
   command.description("Meshes a scene, solves for the light on all its surfaces, and saves it.");
   command
       .add_option("scene", arguments->scene,

@@ -24,7 +24,7 @@ namespace lightwell {
 namespace fs = std::filesystem;
 namespace {
 
-struct Arguments {
+struct ViewArguments {
   std::string scene, solution, camera, offscreen, overlay, false_colour, output;
   std::optional<LuxRange> range;
   std::optional<std::pair<int, int>> size;
@@ -43,7 +43,7 @@ struct Arguments {
 };
 
 #ifdef LIGHTWELL_VIEWER
-Annotations annotations(const Arguments& arguments) {
+Annotations annotations(const ViewArguments& arguments) {
   Annotations result{.keys = arguments.overlay == "keys"};
   if (!arguments.pointer.empty()) result.pointer = arguments.pointer[0];
   if (arguments.clicks.size() == 1) result.click = arguments.clicks[0];
@@ -66,7 +66,7 @@ Camera choose_view(const Scene& scene, const std::string& name, const fs::path& 
   return choose_camera(scene, name);
 }
 
-ViewOptions view_options(const Arguments& arguments, const Scene& scene) {
+ViewOptions view_options(const ViewArguments& arguments, const Scene& scene) {
   ViewOptions options{.cameras = scene.cameras,
                       .exposure_ev = arguments.exposure_ev,
                       .materials = scene.materials,
@@ -119,7 +119,7 @@ bool is_by_default(const ChannelArguments& channels) {
 }
 
 // Without a solution: the light arrives while one looks.
-int view_live(const Arguments& arguments, const Scene& scene, const ViewOptions& options,
+int view_live(const ViewArguments& arguments, const Scene& scene, const ViewOptions& options,
               Console& console, Report& report) {
   if (options.interpolation_error) {
     throw InputError(
@@ -167,7 +167,7 @@ int view_live(const Arguments& arguments, const Scene& scene, const ViewOptions&
   return exit_done;
 }
 
-int view(const Arguments& arguments, Console& console) {
+int view(const ViewArguments& arguments, Console& console) {
   Report report(console.options());
   CleanUpReport clean_up;
   const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
@@ -223,7 +223,7 @@ int view(const Arguments& arguments, Console& console) {
   return exit_done;
 }
 #else
-int view(const Arguments&, Console&) {
+int view(const ViewArguments&, Console&) {
   throw std::runtime_error(
       "this lightwell was built without its viewer; build it with -DLIGHTWELL_VIEWER=ON, or use "
       "'lightwell render'");
@@ -255,7 +255,7 @@ std::vector<Eigen::Vector2d> pixels(const std::string& text, const char* option,
 }  // namespace
 
 Action add_view(CLI::App& command) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ViewArguments>();
   command.description(
       "Walk through a solved scene in a window: W A S D or arrows to walk, the mouse to look\n"
       "around, 1 to 9 for the scene's cameras, H for all keys, Escape to leave. Without a "

@@ -24,7 +24,7 @@ double polygon_area(const FacetMesh& mesh, const std::array<int, 4>& c) {
   return 0.5 * sum.norm();
 }
 
-std::array<int, 4> turned(const std::array<int, 4>& c) {
+std::array<int, 4> turned_corners(const std::array<int, 4>& c) {
   return c[3] < 0 ? std::array<int, 4>{c[0], c[2], c[1], -1}
                   : std::array<int, 4>{c[0], c[3], c[2], c[1]};
 }
@@ -234,7 +234,7 @@ void PatchBuilder::emit_patch(const std::vector<Part>& parts, bool is_back,
       for (int& corner : c) corner = corner < 0 ? -1 : vertex(corner);
       out.patch.push_back(patch);
       out.facet.push_back(piece.facet);
-      out.corners.push_back(is_back ? turned(c) : c);
+      out.corners.push_back(is_back ? turned_corners(c) : c);
       element_area_.push_back(piece.sphere >= 0 ? sphere_area_[piece.sphere][e]
                                                 : polygon_area(piece.mesh, piece.mesh.corners[e]));
       area += element_area_.back();

@@ -52,7 +52,7 @@ void check_size(const Image& image, const std::filesystem::path& path) {
 }
 
 // One plane of numbers of an EXR file; every `step`th from `first` on is a pixel's.
-struct Plane {
+struct ChannelPlane {
   std::string name{};
   const float* first = nullptr;
   Eigen::Index step = 0;
@@ -66,7 +66,7 @@ bool may_be_half(const std::string& channel) {
       [&](Layer layer) { return channel_names(layer).front() == channel; });
 }
 
-void add_planes(std::vector<Plane>& planes, const std::vector<std::string>& names,
+void add_planes(std::vector<ChannelPlane>& planes, const std::vector<std::string>& names,
                 const BandArray& values) {
   for (std::size_t k = 0; k < names.size(); ++k) {
     planes.push_back({.name = names[k],
@@ -89,7 +89,7 @@ Imf::Slice slice(Imf::PixelType type, const void* first, std::size_t pixel, int 
   return {type, static_cast<char*>(const_cast<void*>(first)), pixel, pixel * width};
 }
 
-std::vector<half> halves(const Plane& plane, const Image& image,
+std::vector<half> halves(const ChannelPlane& plane, const Image& image,
                          const std::filesystem::path& path) {
   std::vector<half> result(static_cast<std::size_t>(image.radiance.rows()));
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -209,13 +209,13 @@ void write_exr(const std::filesystem::path& path, const Image& image, const Band
   }
   const bool is_rgb = bands.wavelengths_nm.empty();
   const BandArray rgb = is_rgb ? BandArray() : rgb_of_bands(image, bands);
-  std::vector<Plane> planes;
+  std::vector<ChannelPlane> planes;
   add_planes(planes, {rgb_names.begin(), rgb_names.end()}, is_rgb ? image.radiance : rgb);
   if (!is_rgb) add_planes(planes, bands.names, image.radiance);
   add_planes(planes, image.layers.names, image.layers.values);
 
   std::vector<std::vector<half>> kept;  // until they are written
-  for (const Plane& plane : planes) {
+  for (const ChannelPlane& plane : planes) {
     if (options.half && plane.may_be_half) kept.push_back(halves(plane, image, path));
   }
   PictureOutput output(path);
@@ -226,7 +226,7 @@ void write_exr(const std::filesystem::path& path, const Image& image, const Band
     for (const auto& [key, value] : metadata) add_attribute(header, key, value);
     Imf::FrameBuffer buffer;
     auto next_half = kept.begin();
-    for (const Plane& plane : planes) {
+    for (const ChannelPlane& plane : planes) {
       const bool is_half = options.half && plane.may_be_half;
       header.channels().insert(plane.name, Imf::Channel(is_half ? Imf::HALF : Imf::FLOAT));
       buffer.insert(plane.name,

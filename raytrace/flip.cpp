@@ -16,8 +16,8 @@ namespace lightwell {
 namespace {
 
 /// One channel of a picture.
-using Plane = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Planes = std::array<Plane, 3>;
+using PixelPlane = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Planes = std::array<PixelPlane, 3>;
 /// Weights of a filter along one axis, its middle in the middle.
 using Kernel = std::vector<double>;
 
@@ -84,10 +84,11 @@ Kernel scaled(Kernel k, double factor) {
 
 // Along rows by one kernel, along columns by the other. Beyond its edges a picture goes on as it is
 // there.
-Plane filtered(const Plane& plane, const Kernel& along_rows, const Kernel& along_columns) {
+PixelPlane filtered(const PixelPlane& plane, const Kernel& along_rows,
+                    const Kernel& along_columns) {
   const auto width = static_cast<int>(plane.cols()), height = static_cast<int>(plane.rows());
   const int radius = static_cast<int>(along_rows.size()) / 2;
-  Plane across(height, width), result(height, width);
+  PixelPlane across(height, width), result(height, width);
   constexpr int grain = 8;
   parallel_for(height, grain, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
@@ -122,8 +123,9 @@ struct Sensitivity {
 constexpr std::array<Sensitivity, 3> sensitivities = {
     {{1.0, 0.0047, 0.0, 1e-5}, {1.0, 0.0053, 0.0, 1e-5}, {34.1, 0.04, 13.5, 0.025}}};
 
-Plane seen(const Plane& plane, const Sensitivity& eye, double pixels_per_degree) {
-  constexpr double pi = std::numbers::pi, widest = 0.04;
+PixelPlane seen(const PixelPlane& plane, const Sensitivity& eye, double pixels_per_degree) {
+  using std::numbers::pi;
+  constexpr double widest = 0.04;
   const int radius =
       static_cast<int>(std::ceil(3.0 * std::sqrt(widest / (2.0 * pi * pi)) * pixels_per_degree));
   const auto gaussian = [&](double b) {
@@ -135,7 +137,7 @@ Plane seen(const Plane& plane, const Sensitivity& eye, double pixels_per_degree)
   const Kernel first = gaussian(eye.b1), second = gaussian(eye.b2);
   const double weight1 = eye.a1 * std::sqrt(pi / eye.b1), weight2 = eye.a2 * std::sqrt(pi / eye.b2);
   const double total = weight1 * sum(first) * sum(first) + weight2 * sum(second) * sum(second);
-  Plane result = filtered(plane, first, scaled(first, weight1 / total));
+  PixelPlane result = filtered(plane, first, scaled(first, weight1 / total));
   if (weight2 > 0.0) result += filtered(plane, second, scaled(second, weight2 / total));
   return result;
 }
@@ -143,10 +145,10 @@ Plane seen(const Plane& plane, const Sensitivity& eye, double pixels_per_degree)
 // How strong edges and points are at each pixel: first and second derivatives of a Gaussian as wide
 // as those that people find edges with.
 struct Features {
-  Plane edges, points;
+  PixelPlane edges, points;
 };
 
-Features features(const Plane& brightness, double pixels_per_degree) {
+Features features(const PixelPlane& brightness, double pixels_per_degree) {
   constexpr double peak_to_trough = 0.082;  // degrees
   const double sd = 0.5 * peak_to_trough * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3.0 * sd));
@@ -158,9 +160,9 @@ Features features(const Plane& brightness, double pixels_per_degree) {
     for (const double w : derivative) (w > 0.0 ? positive : negative) += std::abs(w);
     for (double& w : derivative) w /= w > 0.0 ? positive : negative;
     const Kernel even = scaled(smooth, 1.0 / sum(smooth));
-    const Plane x = filtered(brightness, derivative, even);
-    const Plane y = filtered(brightness, even, derivative);
-    return Plane((x.square() + y.square()).sqrt());
+    const PixelPlane x = filtered(brightness, derivative, even);
+    const PixelPlane y = filtered(brightness, even, derivative);
+    return PixelPlane((x.square() + y.square()).sqrt());
   };
   return {.edges = strength(kernel(radius, [&](double x) { return -x * gaussian(x); })),
           .points = strength(
@@ -168,7 +170,7 @@ Features features(const Plane& brightness, double pixels_per_degree) {
 }
 
 template <class Body>
-void for_each_pixel(int count, Body body) {
+void for_each_flip_pixel(int count, Body body) {
   constexpr int grain = 4096;
   parallel_for(count, grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) body(i);
@@ -184,9 +186,9 @@ struct Impression {
 Impression impression(const Image& shown, double pixels_per_degree) {
   const int width = shown.width, height = shown.height;
   Planes ycc;
-  for (Plane& plane : ycc) plane.resize(height, width);
-  Plane brightness(height, width);
-  for_each_pixel(width * height, [&](int i) {
+  for (PixelPlane& plane : ycc) plane.resize(height, width);
+  PixelPlane brightness(height, width);
+  for_each_flip_pixel(width * height, [&](int i) {
     const Eigen::Array3d rgb =
         shown.radiance.row(i).head<3>().transpose().cast<double>().max(0.0).min(1.0);
     const Eigen::Array3d xyz = (xyz_of_rgb() * rgb.matrix()).array() / white();
@@ -196,8 +198,8 @@ Impression impression(const Image& shown, double pixels_per_degree) {
   });
   Impression result{.lab = {}, .features = features(brightness, pixels_per_degree)};
   for (int k = 0; k < 3; ++k) ycc[k] = seen(ycc[k], sensitivities[k], pixels_per_degree);
-  for (Plane& plane : result.lab) plane.resize(height, width);
-  for_each_pixel(width * height, [&](int i) {
+  for (PixelPlane& plane : result.lab) plane.resize(height, width);
+  for_each_flip_pixel(width * height, [&](int i) {
     const Eigen::Array3d opponent(ycc[0].data()[i], ycc[1].data()[i], ycc[2].data()[i]);
     const Eigen::Array3d xyz = xyz_of_opponents(opponent) * white();
     const Eigen::Array3d lab =
@@ -259,7 +261,7 @@ Eigen::ArrayXf flip(const Image& picture, const Image& reference, double pixels_
   const Impression a = impression(picture, pixels_per_degree),
                    b = impression(reference, pixels_per_degree);
   Eigen::ArrayXf error(picture.radiance.rows());
-  for_each_pixel(static_cast<int>(error.size()), [&](int i) {
+  for_each_flip_pixel(static_cast<int>(error.size()), [&](int i) {
     const auto lab = [i](const Impression& of) {
       return Eigen::Array3d(of.lab[0].data()[i], of.lab[1].data()[i], of.lab[2].data()[i]);
     };

@@ -13,7 +13,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A piece of a source is small if it is so many times further away than long: then its middle
 /// stands for it, to 1e-3 of its solid angle.

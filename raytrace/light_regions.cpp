@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-int root(std::vector<int>& parent, int i) {
+int root_vertex(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
 }
@@ -59,15 +59,15 @@ LightRegions light_regions(const PatchMesh& mesh) {
   std::vector<int> parent(mesh.vertex_count());
   std::iota(parent.begin(), parent.end(), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const int first = root(parent, mesh.corners[e][0]);
+    const int first = root_vertex(parent, mesh.corners[e][0]);
     for (int c = 1; c < mesh.corner_count(e); ++c) {
-      parent[root(parent, mesh.corners[e][c])] = first;
+      parent[root_vertex(parent, mesh.corners[e][c])] = first;
     }
   }
   LightRegions regions;
   std::vector<int> number(mesh.vertex_count(), -1);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    int& region = number[root(parent, mesh.corners[e][0])];
+    int& region = number[root_vertex(parent, mesh.corners[e][0])];
     if (region < 0) {
       region = regions.count();
       regions.bounds.emplace_back();

@@ -21,21 +21,21 @@ namespace {
 using Edge = std::pair<int, int>;
 
 /// Facets of one plane.
-struct Plane {
+struct MeshPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   double area = 0.0;
   std::vector<const Facet*> facets{};
 };
 
-std::vector<Plane> planes_of(const PolygonMesh& mesh, double size) {
+std::vector<MeshPlane> planes_of(const PolygonMesh& mesh, double size) {
   constexpr double same_direction = 1.0 - 1e-6;  // 0.08 degrees
   const double same_place = 1e-5 * size;
-  std::vector<Plane> planes;
+  std::vector<MeshPlane> planes;
   for (const Facet& facet : mesh.facets) {
     const Eigen::Vector3d normal = facet_normal(mesh, facet);
     const Eigen::Vector3d point = mesh.vertices[static_cast<std::size_t>(facet.boundary.front())];
-    auto at = std::ranges::find_if(planes, [&](const Plane& plane) {
+    auto at = std::ranges::find_if(planes, [&](const MeshPlane& plane) {
       return plane.normal.dot(normal) > same_direction &&
              std::abs(plane.normal.dot(point - plane.point)) <= same_place;
     });
@@ -47,7 +47,7 @@ std::vector<Plane> planes_of(const PolygonMesh& mesh, double size) {
 }
 
 /// Edges that only one facet has.
-std::vector<Edge> outline_of(const Plane& plane) {
+std::vector<Edge> outline_of(const MeshPlane& plane) {
   std::set<Edge> edges;
   const auto add = [&](const std::vector<int>& loop) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -79,10 +79,10 @@ struct FlatOutline {
   }
 };
 
-const Plane& largest(const std::vector<Plane>& planes, const Eigen::Vector3d& up) {
+const MeshPlane& largest(const std::vector<MeshPlane>& planes, const Eigen::Vector3d& up) {
   constexpr double alike = 1e-6;
-  const Plane* best = &planes.front();
-  for (const Plane& plane : planes) {
+  const MeshPlane* best = &planes.front();
+  for (const MeshPlane& plane : planes) {
     const bool is_as_large = std::abs(plane.area - best->area) <= alike * best->area;
     const bool faces_up = plane.normal.dot(up) > best->normal.dot(up) + alike;
     if (is_as_large ? faces_up : plane.area > best->area) best = &plane;
@@ -106,7 +106,7 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
         "surface '{}' is a sphere, over which there is no plane grid; name a plane surface",
         named.name));
   }
-  const Plane plane = largest(planes_of(*mesh, scene_bounds(scene).diagonal()), up);
+  const MeshPlane plane = largest(planes_of(*mesh, scene_bounds(scene).diagonal()), up);
   const std::vector<Edge> edges = outline_of(plane);
   const auto place = [&](int v) { return mesh->vertices[static_cast<std::size_t>(v)]; };
   LuxGrid grid{.name = named.name, .options = options, .area = plane.area};

@@ -19,7 +19,7 @@ constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
 // What one of many samples does with light: a share of the rays of a sample that stands alone.
 constexpr float share_of_many = 1.0f / 16.0f;
 
-int root(std::vector<int>& parent, int i) {
+int root_facet(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
 }
@@ -35,10 +35,10 @@ std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       int& other = facet_of_vertex[mesh.corners[e][c]];
       if (other < 0) other = facet;
-      parent[root(parent, facet)] = root(parent, other);
+      parent[root_facet(parent, facet)] = root_facet(parent, other);
     }
   }
-  for (int f = 0; f < facet_count; ++f) parent[f] = root(parent, f);
+  for (int f = 0; f < facet_count; ++f) parent[f] = root_facet(parent, f);
   return parent;
 }
 

@@ -11,7 +11,6 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t gloss_purpose = 0x61055, lamp_purpose = 0x1a4b, bright_purpose = 0x1a4c;
-constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
 
 // Whether a direction is on one side of a facet and on the other of the smooth surface that it
 // stands for: light from there would come through the facet.
@@ -85,7 +84,7 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
   const double density = lobe(material, hit.from_back).density(interaction, lamp->direction);
   const ScatteringSample sample{.direction = lamp->direction,
                                 .crosses = lamp->direction.dot(interaction.normal) < 0.0};
-  const Spectrum L = lamp->emitter->exitance * one_over_pi;
+  const Spectrum L = lamp->emitter->exitance * std::numbers::inv_pi_v<float>;
   Spectrum seen = branch.weight * scattering_weight(interaction, sample.crosses) * L *
                   (share * static_cast<float>(density / (density + lamp->density)));
   if (!((branch.weight > 0.0f).any() && density > 0.0)) return;

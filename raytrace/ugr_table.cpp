@@ -15,7 +15,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double degrees = 180.0 / pi;
 constexpr double H = 2.0;  // m, of the luminaires above the eye
 constexpr double apart = 0.25 * H;

@@ -30,7 +30,7 @@ EnvironmentMap::EnvironmentMap(int width, int height, BandArray radiance)
 }
 
 Spectrum EnvironmentMap::at(const Eigen::Vector3d& direction) const {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   const double u = 0.5 + std::atan2(-direction.x(), direction.z()) / (2.0 * pi);
   const double v = std::acos(std::clamp(direction.y(), -1.0, 1.0)) / pi;
   const double x = u * width_ - 0.5;

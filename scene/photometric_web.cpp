@@ -7,37 +7,38 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "scene/degree.h"
+
 namespace lightwell {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double full_turn = 360.0, zenith = 180.0;
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_web(const std::string& what) {
   throw std::invalid_argument("a photometric web " + what);
 }
 
 void check(const std::vector<double>& planes, const std::vector<double>& gammas,
            const Eigen::ArrayXXd& values) {
-  if (planes.empty() || gammas.size() < 2) refuse("needs a plane and two angles gamma");
+  if (planes.empty() || gammas.size() < 2) refuse_web("needs a plane and two angles gamma");
   if (planes.front() != 0.0 || !(planes.back() < full_turn)) {
-    refuse("has planes from 0 to below 360 degrees");
+    refuse_web("has planes from 0 to below 360 degrees");
   }
   if (!(gammas.front() >= 0.0 && gammas.back() <= zenith)) {
-    refuse("has angles gamma within 0 and 180 degrees");
+    refuse_web("has angles gamma within 0 and 180 degrees");
   }
   for (const std::vector<double>* angles : {&planes, &gammas}) {
     for (std::size_t i = 1; i < angles->size(); ++i) {
-      if (!((*angles)[i] > (*angles)[i - 1])) refuse("has angles that rise");
+      if (!((*angles)[i] > (*angles)[i - 1])) refuse_web("has angles that rise");
     }
   }
   const auto rows = static_cast<Eigen::Index>(planes.size());
   const auto columns = static_cast<Eigen::Index>(gammas.size());
   if (values.rows() != rows || values.cols() != columns) {
-    refuse(fmt::format("of {} planes and {} angles has not {} x {} values", rows, columns,
-                       values.rows(), values.cols()));
+    refuse_web(fmt::format("of {} planes and {} angles has not {} x {} values", rows, columns,
+                           values.rows(), values.cols()));
   }
-  if (!values.isFinite().all() || !(values >= 0.0).all()) refuse("has values from 0 up");
+  if (!values.isFinite().all() || !(values >= 0.0).all()) refuse_web("has values from 0 up");
 }
 
 }  // namespace

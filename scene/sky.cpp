@@ -10,10 +10,12 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "scene/degree.h"
+
 namespace lightwell {
 namespace {
 
-constexpr double pi = std::numbers::pi, degree = pi / 180.0;
+using std::numbers::pi;
 
 // ISO 15469:2004, table 1.
 constexpr std::array<SkyGradation, 15> standard_skies = {{{4.0, -0.70, 0.0, -1.0, 0.00},
@@ -108,17 +110,17 @@ bool is_unit(const Eigen::Vector3d& v) {
   return std::abs(v.squaredNorm() - 1.0) < 1e-6;
 }
 
-[[noreturn]] void refuse(const std::string& sentence) {
+[[noreturn]] void refuse_sky(const std::string& sentence) {
   throw std::invalid_argument(sentence);
 }
 
 void check_light(const Spectrum& values, const Bands& bands, const char* what) {
   if (values.size() != bands.count()) {
-    refuse(
+    refuse_sky(
         fmt::format("the sky's {} has {} bands, the scene {}", what, values.size(), bands.count()));
   }
   if (!values.isFinite().all() || (values < 0.0f).any()) {
-    refuse(fmt::format("the sky's {} must be finite and not below 0", what));
+    refuse_sky(fmt::format("the sky's {} must be finite and not below 0", what));
   }
 }
 
@@ -135,7 +137,7 @@ double Sun::solid_angle() const {
 
 SkyGradation standard_sky(int number) {
   if (number < 1 || number > static_cast<int>(standard_skies.size())) {
-    refuse(fmt::format("there is no standard sky {}; give 1 to 15", number));
+    refuse_sky(fmt::format("there is no standard sky {}; give 1 to 15", number));
   }
   return standard_skies[static_cast<std::size_t>(number - 1)];
 }
@@ -144,14 +146,14 @@ SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double s
                        int day_of_year) {
   if (!(diffuse_horizontal > 0.0) || !(direct_normal >= 0.0) || !std::isfinite(direct_normal) ||
       !std::isfinite(diffuse_horizontal)) {
-    refuse(
+    refuse_sky(
         fmt::format("a sky by Perez needs a diffuse irradiance above 0 and a direct one of at "
                     "least 0, not {} and {} W/m2",
                     diffuse_horizontal, direct_normal));
   }
   if (!(sun_altitude_degrees > 0.0 && sun_altitude_degrees <= 90.0)) {
-    refuse(fmt::format("a sky by Perez needs the sun above the horizon, not at {:.2f} degrees",
-                       sun_altitude_degrees));
+    refuse_sky(fmt::format("a sky by Perez needs the sun above the horizon, not at {:.2f} degrees",
+                           sun_altitude_degrees));
   }
   const double Z = (90.0 - sun_altitude_degrees) * degree, Z3 = 1.041 * Z * Z * Z;
   const double clearness =
@@ -245,25 +247,25 @@ Eigen::Vector3d sky_direction(const Sky& sky, double azimuth_degrees, double alt
 
 void validate(const Sky& sky, const Bands& bands) {
   if (!is_unit(sky.up) || !is_unit(sky.north) || std::abs(sky.up.dot(sky.north)) > 1e-6) {
-    refuse("the sky's up and north must be unit vectors at right angles");
+    refuse_sky("the sky's up and north must be unit vectors at right angles");
   }
   check_light(sky.scale, bands, "radiance");
   if (sky.kind == SkyKind::map) {
-    if (!sky.map) refuse("the sky is a map without a picture");
+    if (!sky.map) refuse_sky("the sky is a map without a picture");
     if (!(sky.to_map * sky.to_map.transpose()).isIdentity(1e-6)) {
-      refuse("the sky's map must be placed by a rotation or mirroring");
+      refuse_sky("the sky's map must be placed by a rotation or mirroring");
     }
   } else {
     check_light(sky.ground, bands, "ground");
     if (!is_unit(sky.bright))
-      refuse("the direction of the sky's bright part must be a unit vector");
+      refuse_sky("the direction of the sky's bright part must be a unit vector");
   }
   if (!sky.sun) return;
   check_light(sky.sun->irradiance, bands, "sun");
-  if (!is_unit(sky.sun->direction)) refuse("the direction to the sun must be a unit vector");
+  if (!is_unit(sky.sun->direction)) refuse_sky("the direction to the sun must be a unit vector");
   if (!(sky.sun->angle_degrees > 0.0 && sky.sun->angle_degrees <= 10.0)) {
-    refuse(fmt::format("the sun is {} degrees across; give more than 0 and at most 10",
-                       sky.sun->angle_degrees));
+    refuse_sky(fmt::format("the sun is {} degrees across; give more than 0 and at most 10",
+                           sky.sun->angle_degrees));
   }
 }
 

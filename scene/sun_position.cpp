@@ -4,13 +4,12 @@
 
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+
+#include "scene/degree.h"
 
 namespace lightwell {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 std::chrono::sys_days checked_day(int year, int month, int day) {
   const std::chrono::year_month_day date{std::chrono::year(year),
@@ -23,7 +22,7 @@ std::chrono::sys_days checked_day(int year, int month, int day) {
   return date;
 }
 
-double wrapped(double degrees) {
+double wrapped_degrees(double degrees) {
   const double rest = std::fmod(degrees, 360.0);
   return rest < 0.0 ? rest + 360.0 : rest;
 }
@@ -70,7 +69,7 @@ SunPosition sun_position(const ClockTime& when, double latitude, double longitud
   const double north =
       sin_declination * cos_latitude - cos_declination * sin_latitude * std::cos(hour_angle);
   const double east = -cos_declination * std::sin(hour_angle);
-  return {.azimuth_degrees = wrapped(std::atan2(east, north) / degree),
+  return {.azimuth_degrees = wrapped_degrees(std::atan2(east, north) / degree),
           .altitude_degrees = std::atan2(up, std::hypot(north, east)) / degree};
 }
 

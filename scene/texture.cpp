@@ -34,7 +34,7 @@ std::vector<Cover> covers(int from, int to) {
   return result;
 }
 
-int wrapped(int i, int size, TextureWrap wrap) {
+int wrapped_texel(int i, int size, TextureWrap wrap) {
   switch (wrap) {
     case TextureWrap::clamp:
       return std::clamp(i, 0, size - 1);
@@ -191,7 +191,7 @@ Eigen::Array3f SurfaceTexture::at_level(const Eigen::Vector2d& place, int level)
   const double x = within_period(place.x(), wrap[0]) * w;
   const double y = within_period(place.y(), wrap[1]) * h;
   const auto texel = [&](int i, int j) {
-    return picture->texel(level, wrapped(i, w, wrap[0]), wrapped(j, h, wrap[1]));
+    return picture->texel(level, wrapped_texel(i, w, wrap[0]), wrapped_texel(j, h, wrap[1]));
   };
   if (!is_smooth && level == 0) {
     return texel(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));

@@ -47,9 +47,9 @@ Corners sorted_corners(const WeldedFacet& facet) {
 }
 
 /// Uses of an edge from its lower to its higher point, and the other way round.
-using EdgeUses = std::map<std::array<int, 2>, std::array<int, 2>>;
+using EdgeUseCounts = std::map<std::array<int, 2>, std::array<int, 2>>;
 
-void add_edges(const WeldedFacet& facet, EdgeUses& uses) {
+void add_edges(const WeldedFacet& facet, EdgeUseCounts& uses) {
   for (const Corners& loop : facet.loops) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const int a = loop[i], b = loop[(i + 1) % loop.size()];
@@ -64,7 +64,7 @@ FacetCheck check_facets(const Scene& scene) {
   FacetCheck check;
   // Facets of the same corners: at most one that is kept for each of the two sides.
   std::map<Corners, std::vector<const WeldedFacet*>> same_corners;
-  EdgeUses uses;
+  EdgeUseCounts uses;
   const std::vector<WeldedFacet> facets = weld(scene);
   for (const WeldedFacet& facet : facets) {
     auto& kept = same_corners[sorted_corners(facet)];

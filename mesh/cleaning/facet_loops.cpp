@@ -12,16 +12,16 @@ namespace lightwell {
 namespace {
 
 using Eigen::Vector3d;
-using Edge = std::pair<int, int>;  // lower point, higher point
+using EdgeEnds = std::pair<int, int>;  // lower point, higher point
 
-std::vector<Edge> sorted_edges(const FacetLoops& facets, int facet) {
-  std::vector<Edge> edges;
+std::vector<EdgeEnds> sorted_edges(const FacetLoops& facets, int facet) {
+  std::vector<EdgeEnds> edges;
   facets.for_each_edge(facet, [&](int a, int b) { edges.push_back(std::minmax(a, b)); });
   std::sort(edges.begin(), edges.end());
   return edges;
 }
 
-std::uint64_t key_of(const std::vector<Edge>& edges) {
+std::uint64_t key_of(const std::vector<EdgeEnds>& edges) {
   std::uint64_t key = edges.size();
   for (const auto& [a, b] : edges) {
     key = random_key(key, static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(b));

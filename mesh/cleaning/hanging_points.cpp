@@ -17,7 +17,7 @@ constexpr double share_of_length = 1e-3;      // an edge takes in nothing farthe
 constexpr std::size_t most_beside_edge = 64;  // facets; more are a fan whose corners nobody checks
 
 // Each edge of the surface once, with what lies inside it.
-struct Edge {
+struct HangingEdge {
   int low = 0, high = 0;  // points
   int first_use = 0, uses = 0;
   std::vector<int> inside{};  // from low to high
@@ -49,12 +49,12 @@ class HangingPoints {
     all_points = facets_.corner;
     search(open_edges, std::move(all_points));
     search(all_edges, std::move(open_points));
-    for (Edge& edge : edges_) put_in_order(edge);
+    for (HangingEdge& edge : edges_) put_in_order(edge);
   }
 
   FacetLoops result(std::int64_t& hanging) const {
     hanging = 0;
-    for (const Edge& edge : edges_) hanging += static_cast<std::int64_t>(edge.inside.size());
+    for (const HangingEdge& edge : edges_) hanging += static_cast<std::int64_t>(edge.inside.size());
     if (hanging == 0) return facets_;
     FacetLoops result;
     std::vector<int> loop;
@@ -79,11 +79,11 @@ class HangingPoints {
   }
 
  private:
-  const Edge& edge_between(int a, int b) const {
+  const HangingEdge& edge_between(int a, int b) const {
     const std::pair<int, int> ends = std::minmax(a, b);
     return *std::lower_bound(
         edges_.begin(), edges_.end(), ends,
-        [](const Edge& e, const auto& key) { return std::pair(e.low, e.high) < key; });
+        [](const HangingEdge& e, const auto& key) { return std::pair(e.low, e.high) < key; });
   }
 
   // Edges that need more of the tree than most are left for the end, and share what is left.
@@ -95,7 +95,7 @@ class HangingPoints {
     for (const int p : points) boxes.emplace_back(points_[p], points_[p]);
     const BoxTree tree(std::move(boxes));
     const auto try_edge = [&](int e, std::int64_t& visits, std::vector<int>& found) {
-      Edge& edge = edges_[e];
+      HangingEdge& edge = edges_[e];
       if (!tree.find_along(points_[edge.low], points_[edge.high], tolerance_, visits, found)) {
         return false;
       }
@@ -119,7 +119,7 @@ class HangingPoints {
     }
   }
 
-  bool is_inside(int p, const Edge& edge) const {
+  bool is_inside(int p, const HangingEdge& edge) const {
     if (p == edge.low || p == edge.high) return false;
     const Vector3d d = points_[edge.high] - points_[edge.low], q = points_[p] - points_[edge.low];
     const double length = d.norm(), along = d.dot(q) / length;
@@ -136,7 +136,7 @@ class HangingPoints {
     return true;
   }
 
-  void put_in_order(Edge& edge) const {
+  void put_in_order(HangingEdge& edge) const {
     if (edge.inside.empty()) return;
     const Vector3d& from = points_[edge.low];
     std::sort(edge.inside.begin(), edge.inside.end(), [&](int a, int b) {
@@ -150,7 +150,7 @@ class HangingPoints {
   const std::vector<Vector3d>& points_;
   double tolerance_;
   std::vector<EdgeUse> uses_;
-  std::vector<Edge> edges_;
+  std::vector<HangingEdge> edges_;
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace lightwell {
 namespace {
 
 // From its first point to its second; corners are numbers of welded points.
-using Edge = std::pair<int, int>;
+using MeshEdge = std::pair<int, int>;
 
 bool is_sliver(const PolygonMesh& mesh, const Facet& facet) {
   const auto corner = [&](std::size_t i) {
@@ -34,12 +34,12 @@ bool is_sliver(const PolygonMesh& mesh, const Facet& facet) {
   return !(area >= sliver_share * longest * longest);
 }
 
-std::vector<Edge> edges_of(const PolygonMesh& mesh, double tolerance) {
+std::vector<MeshEdge> edges_of(const PolygonMesh& mesh, double tolerance) {
   WeldedPoints points(tolerance);
   std::vector<int> welded;
   welded.reserve(mesh.vertices.size());
   for (const Eigen::Vector3d& p : mesh.vertices) welded.push_back(points.add(p, tolerance));
-  std::vector<Edge> edges;
+  std::vector<MeshEdge> edges;
   const auto add = [&](const std::vector<int>& loop) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const int a = welded[static_cast<std::size_t>(loop[i])];
@@ -55,9 +55,9 @@ std::vector<Edge> edges_of(const PolygonMesh& mesh, double tolerance) {
 }
 
 // Sorted by their ends, so that all uses of an edge, in either direction, lie side by side.
-void count_edges(std::vector<Edge> edges, MeshQuality& quality) {
-  const auto ends = [](const Edge& e) { return std::minmax(e.first, e.second); };
-  std::ranges::sort(edges, [&](const Edge& a, const Edge& b) {
+void count_edges(std::vector<MeshEdge> edges, MeshQuality& quality) {
+  const auto ends = [](const MeshEdge& e) { return std::minmax(e.first, e.second); };
+  std::ranges::sort(edges, [&](const MeshEdge& a, const MeshEdge& b) {
     return std::pair(ends(a), a) < std::pair(ends(b), b);
   });
   for (std::size_t first = 0; first < edges.size();) {

@@ -27,7 +27,7 @@ using Eigen::Vector3d;
 constexpr double least_thickness = 1e-13;  // of the diagonal: rounding of coordinates
 constexpr double least_extent = 1e-9;      // of the diagonal: dust
 
-FacetLoops without(const FacetLoops& facets, const std::vector<char>& is_gone) {
+FacetLoops without_facets(const FacetLoops& facets, const std::vector<char>& is_gone) {
   FacetLoops left;
   for (int f = 0; f < facets.count(); ++f) {
     if (is_gone[f]) continue;
@@ -145,13 +145,13 @@ std::optional<PolygonMesh> cleaned(const PolygonMesh& mesh, const std::vector<in
 
   const std::vector<char> is_degenerate = find_degenerate(facets, points, diagonal);
   found.degenerate = std::count(is_degenerate.begin(), is_degenerate.end(), 1);
-  if (found.degenerate > 0) facets = without(facets, is_degenerate);
+  if (found.degenerate > 0) facets = without_facets(facets, is_degenerate);
   if (facets.count() == 0) return {};
   const bool sides_are_alike =
       !material.one_sided && !material.dielectric && !material.is_emitter();
   const std::vector<char> is_duplicate = find_duplicates(facets, points, sides_are_alike);
   found.duplicates = std::count(is_duplicate.begin(), is_duplicate.end(), 1);
-  if (found.duplicates > 0) facets = without(facets, is_duplicate);
+  if (found.duplicates > 0) facets = without_facets(facets, is_duplicate);
 
   const double tolerance = weld_share * diagonal;
   FacetLoops whole_edged = with_hanging_points(facets, points, tolerance, found.hanging);

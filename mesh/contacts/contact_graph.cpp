@@ -16,7 +16,7 @@ std::uint64_t ends_key(int a, int b) {
 }
 
 // Both ascending.
-std::vector<int> without(const std::vector<int>& all, const std::vector<int>& less) {
+std::vector<int> without_atoms(const std::vector<int>& all, const std::vector<int>& less) {
   std::vector<int> rest;
   std::set_difference(all.begin(), all.end(), less.begin(), less.end(), std::back_inserter(rest));
   return rest;
@@ -173,13 +173,13 @@ std::vector<int> ContactGraph::atoms_of(const std::vector<int>& segments) const 
 
 std::vector<int> ContactGraph::contact_atoms(int index) const {
   if (contact_segments_[index].empty()) return {};
-  return without(atoms_of(contact_segments_[index]), atoms_of_boundary(index));
+  return without_atoms(atoms_of(contact_segments_[index]), atoms_of_boundary(index));
 }
 
 std::vector<int> ContactGraph::crease_atoms(int index) const {
   if (crease_segments_[index].empty()) return {};
-  return without(without(atoms_of(crease_segments_[index]), atoms_of_boundary(index)),
-                 contact_atoms(index));
+  return without_atoms(without_atoms(atoms_of(crease_segments_[index]), atoms_of_boundary(index)),
+                       contact_atoms(index));
 }
 
 // Opposite edges of four-sided facets get equal counts where their lengths nearly agree, so that a

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double same_angle = 1e-7;  // radians: sectors that share an edge touch to within rounding
 
 // Angles hidden around a point, as ranges within [0, 2 pi).

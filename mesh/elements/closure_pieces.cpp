@@ -9,7 +9,7 @@ namespace {
 using Pieces = std::vector<ElementPiece>;
 
 // The pattern turned so that what it does to edge 0 is done to edge `first`.
-Pieces turned(Pieces pieces, int first, int corner_count) {
+Pieces turned_pieces(Pieces pieces, int first, int corner_count) {
   for (ElementPiece& piece : pieces) {
     for (int& node : piece) {
       if (node < 0 || node == center_node) continue;
@@ -70,7 +70,7 @@ struct Table {
       const unsigned from_first =
           ((split_edges >> first) | (split_edges << (corner_count - first))) & all;
       Pieces pieces = pattern(corner_count, from_first);
-      if (!pieces.empty()) return turned(std::move(pieces), first, corner_count);
+      if (!pieces.empty()) return turned_pieces(std::move(pieces), first, corner_count);
     }
     return {};
   }

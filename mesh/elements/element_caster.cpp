@@ -31,7 +31,7 @@ Eigen::Vector2d shape_of_quad(const PatchMesh& mesh, const std::array<int, 4>& c
 }
 
 // The same place seen from the other side, whose corners run (0, 3, 2, 1) or (0, 2, 1).
-Array4f turned(const Array4f& w, bool is_triangle) {
+Array4f turned_weights(const Array4f& w, bool is_triangle) {
   return is_triangle ? Array4f(w[0], w[2], w[1], 0.0f) : Array4f(w[0], w[3], w[2], w[1]);
 }
 
@@ -44,7 +44,8 @@ void find_on_sphere(const PatchMesh& mesh, const SphereGrid& grid, const Vector3
   if (!hit.from_back) return;
   hit.element = mesh.twin[hit.element];
   const bool is_triangle = found.ring == 0 || found.ring == grid.rings - 1;
-  hit.weights = hit.element < 0 ? Array4f(Array4f::Zero()) : turned(hit.weights, is_triangle);
+  hit.weights =
+      hit.element < 0 ? Array4f(Array4f::Zero()) : turned_weights(hit.weights, is_triangle);
 }
 
 // What a ray caster's primitives are, in its order: triangles, quads, spheres.
@@ -146,7 +147,7 @@ struct ElementCaster::Part {
     result.element = mesh.twin[result.element];
     if (!with_weights) return result;
     result.weights =
-        result.element < 0 ? Array4f(Array4f::Zero()) : turned(result.weights, is_triangle);
+        result.element < 0 ? Array4f(Array4f::Zero()) : turned_weights(result.weights, is_triangle);
     return result;
   }
 

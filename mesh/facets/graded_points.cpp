@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double one_degree = std::numbers::pi / 180.0;
 constexpr double least_edge = 0.01;  // of the element size
 
 struct Candidate {
@@ -59,7 +59,7 @@ class Grading {
   }
 
   void add_candidate(int triangle, std::vector<Candidate>& found) const {
-    const double bad = std::tan(15.0 * degree), good = std::tan(11.0 * degree);
+    const double bad = std::tan(15.0 * one_degree), good = std::tan(11.0 * one_degree);
     int apex = 0;
     double shortest = INFINITY;
     for (int i = 0; i < 3; ++i) {

@@ -9,15 +9,15 @@
 namespace lightwell {
 namespace {
 
-using Cell = std::array<std::int64_t, 3>;
+using WeldCell = std::array<std::int64_t, 3>;
 
-std::uint64_t cell_key(const Cell& c) {
+std::uint64_t cell_key(const WeldCell& c) {
   return random_key(static_cast<std::uint64_t>(c[0]), static_cast<std::uint64_t>(c[1]),
                     static_cast<std::uint64_t>(c[2]));
 }
 
-Cell cell_of(const Eigen::Vector3d& p, double cell_size) {
-  Cell cell;
+WeldCell weld_cell(const Eigen::Vector3d& p, double cell_size) {
+  WeldCell cell;
   for (int c = 0; c < 3; ++c) cell[c] = static_cast<std::int64_t>(std::floor(p[c] / cell_size));
   return cell;
 }
@@ -29,7 +29,8 @@ int WeldedPoints::add(const Eigen::Vector3d& point, double radius) {
   // Cells of twice the tolerance: a point's neighbours lie in at most two cells along each axis.
   const double cell_size = 2.0 * tolerance_;
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(tolerance_);
-  const Cell low = cell_of(point - reach, cell_size), high = cell_of(point + reach, cell_size);
+  const WeldCell low = weld_cell(point - reach, cell_size),
+                 high = weld_cell(point + reach, cell_size);
   int nearest = -1;
   double nearest_distance = 0.0;
   for (std::int64_t x = low[0]; x <= high[0]; ++x) {
@@ -54,7 +55,7 @@ int WeldedPoints::add(const Eigen::Vector3d& point, double radius) {
   const int id = size();
   points_.push_back(point);
   radius_.push_back(radius);
-  const auto [cell, is_new] = first_in_cell_.try_emplace(cell_key(cell_of(point, cell_size)), id);
+  const auto [cell, is_new] = first_in_cell_.try_emplace(cell_key(weld_cell(point, cell_size)), id);
   next_in_cell_.push_back(is_new ? -1 : cell->second);
   cell->second = id;
   return id;

@@ -18,9 +18,9 @@ bool is_before(const Vector3d& a, const Vector3d& b) {
   return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
 }
 
-struct Edge {
+struct OutlineEdge {
   Vector3d from, to;
-  bool operator<(const Edge& other) const {
+  bool operator<(const OutlineEdge& other) const {
     if (from != other.from) return is_before(from, other.from);
     return is_before(to, other.to);
   }
@@ -28,8 +28,8 @@ struct Edge {
 
 // Edges of the elements that have no counterpart. Compared by place, for vertices are not shared
 // across contact lines.
-std::vector<Edge> free_edges(const PatchMesh& mesh, std::span<const int> elements) {
-  std::vector<Edge> edges;
+std::vector<OutlineEdge> free_edges(const PatchMesh& mesh, std::span<const int> elements) {
+  std::vector<OutlineEdge> edges;
   for (const int e : elements) {
     const int n = mesh.corner_count(e);
     for (int k = 0; k < n; ++k) {
@@ -38,9 +38,9 @@ std::vector<Edge> free_edges(const PatchMesh& mesh, std::span<const int> element
     }
   }
   std::sort(edges.begin(), edges.end());
-  std::vector<Edge> free;
-  for (const Edge& edge : edges) {
-    if (!std::binary_search(edges.begin(), edges.end(), Edge{edge.to, edge.from})) {
+  std::vector<OutlineEdge> free;
+  for (const OutlineEdge& edge : edges) {
+    if (!std::binary_search(edges.begin(), edges.end(), OutlineEdge{edge.to, edge.from})) {
       free.push_back(edge);
     }
   }
@@ -48,7 +48,7 @@ std::vector<Edge> free_edges(const PatchMesh& mesh, std::span<const int> element
 }
 
 // Joins the edges end to end; sorted, so the next edge is found by where it starts.
-std::vector<std::vector<Vector3d>> chained(const std::vector<Edge>& edges) {
+std::vector<std::vector<Vector3d>> chained(const std::vector<OutlineEdge>& edges) {
   std::vector<std::vector<Vector3d>> loops;
   std::vector<char> used(edges.size(), 0);
   for (std::size_t start = 0; start < edges.size(); ++start) {
@@ -58,11 +58,12 @@ std::vector<std::vector<Vector3d>> chained(const std::vector<Edge>& edges) {
       used[at] = 1;
       loop.push_back(edges[at].from);
       const Vector3d& next = edges[at].to;
-      at = static_cast<std::size_t>(std::lower_bound(edges.begin(), edges.end(), next,
-                                                     [](const Edge& edge, const Vector3d& p) {
-                                                       return is_before(edge.from, p);
-                                                     }) -
-                                    edges.begin());
+      at =
+          static_cast<std::size_t>(std::lower_bound(edges.begin(), edges.end(), next,
+                                                    [](const OutlineEdge& edge, const Vector3d& p) {
+                                                      return is_before(edge.from, p);
+                                                    }) -
+                                   edges.begin());
       while (at < edges.size() && edges[at].from == next && used[at]) ++at;
       if (at < edges.size() && edges[at].from != next) break;
     }

@@ -17,18 +17,18 @@ constexpr double least_cover = 1e-3;
 
 // A piece of an element, as the bilinear map of the unit square: a triangle ends in one corner
 // twice.
-struct Cell {
+struct TextureCell {
   Vector3d middle;
   Eigen::Matrix<double, 3, 2> sides;
   double area = 0.0;
 };
 
-Cell cell_of(const std::array<Vector3d, 4>& corner, int points, int i, int j) {
+TextureCell texture_cell(const std::array<Vector3d, 4>& corner, int points, int i, int j) {
   const double s = (i + 0.5) / points, t = (j + 0.5) / points;
   const Vector3d along = (1.0 - t) * (corner[1] - corner[0]) + t * (corner[2] - corner[3]);
   const Vector3d across = (1.0 - s) * (corner[3] - corner[0]) + s * (corner[2] - corner[1]);
-  Cell cell{.middle = (1.0 - t) * ((1.0 - s) * corner[0] + s * corner[1]) +
-                      t * ((1.0 - s) * corner[3] + s * corner[2])};
+  TextureCell cell{.middle = (1.0 - t) * ((1.0 - s) * corner[0] + s * corner[1]) +
+                             t * ((1.0 - s) * corner[3] + s * corner[2])};
   cell.sides << along / points, across / points;
   cell.area = cell.sides.col(0).cross(cell.sides.col(1)).norm();
   return cell;
@@ -66,7 +66,7 @@ Covered covered_light(const PatchMesh& mesh, const FacetTextures& textures, int 
   Covered sum{.reflected = Eigen::ArrayXd::Zero(bands)};
   for (int i = 0; i < points; ++i) {
     for (int j = 0; j < points; ++j) {
-      const Cell cell = cell_of(corner, points, i, j);
+      const TextureCell cell = texture_cell(corner, points, i, j);
       sum.area += cell.area;
       if (has_holes && textures.is_hole(facet, cell.middle)) continue;
       sum.cover += cell.area;

@@ -8,7 +8,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // First of n cells that block c of m covers: even blocks.
 int block(int c, int m, int n) {

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 // Distances between centres, in sums of the radii, from which on the rules are good to 1e-5.
 constexpr double far_from = 8.0, middle_from = 3.0;
 
-bool is_convex(const std::vector<Vector3d>& loop, const Vector3d& normal) {
+bool is_convex_outline(const std::vector<Vector3d>& loop, const Vector3d& normal) {
   const std::size_t n = loop.size();
   for (std::size_t i = 0; i < n; ++i) {
     const Vector3d in = loop[(i + 1) % n] - loop[i], out = loop[(i + 2) % n] - loop[(i + 1) % n];
@@ -65,7 +65,7 @@ PairExchange::PairExchange(const std::vector<PatchOutline>& outlines)
       offset_[i] = outline.normal.dot(loop[0]);
       Patch& patch = patches_[i];
       patch.has_points =
-          outline.loops.size() == 1 && loop.size() <= 4 && is_convex(loop, outline.normal);
+          outline.loops.size() == 1 && loop.size() <= 4 && is_convex_outline(loop, outline.normal);
       if (!patch.has_points) continue;
       patch.far = gauss_points<few>(loop);
       patch.middle = gauss_points<more>(loop);

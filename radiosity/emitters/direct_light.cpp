@@ -30,7 +30,7 @@ Loop loop_points(const PolygonMesh& mesh, const std::vector<int>& loop) {
 }
 
 // A convex polygon is a fan, which keeps samples better stratified than the mesh's many elements.
-bool is_convex(const Loop& loop, const Eigen::Vector3d& normal) {
+bool is_convex_emitter(const Loop& loop, const Eigen::Vector3d& normal) {
   const std::size_t n = loop.size();
   for (std::size_t i = 0; i < n; ++i) {
     const Eigen::Vector3d a = loop[(i + 1) % n] - loop[i];
@@ -41,7 +41,7 @@ bool is_convex(const Loop& loop, const Eigen::Vector3d& normal) {
 }
 
 void tile(const PatchMesh& mesh, Emitter& emitter) {
-  if (emitter.loops.size() == 1 && is_convex(emitter.loops[0], emitter.normal)) {
+  if (emitter.loops.size() == 1 && is_convex_emitter(emitter.loops[0], emitter.normal)) {
     const Loop& loop = emitter.loops[0];
     for (std::size_t i = 2; i < loop.size(); ++i) {
       emitter.triangles.push_back({loop[0], loop[i - 1], loop[i]});

@@ -14,7 +14,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::uint64_t learn_purpose = 0x51e7, ray_purpose = 0x51e8, point_purpose = 0x51e9;
 constexpr int most_sites = 4096, points_per_octant = 3;
 

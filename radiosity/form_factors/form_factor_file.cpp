@@ -19,7 +19,8 @@
 namespace lightwell {
 namespace {
 
-[[noreturn]] void fail_write(const std::filesystem::path& path, const std::string& reason) {
+[[noreturn]] void fail_form_factor_write(const std::filesystem::path& path,
+                                         const std::string& reason) {
   throw std::runtime_error(fmt::format("{}: could not be written: {}", path.string(), reason));
 }
 
@@ -51,7 +52,7 @@ class TextOutput {
     check();
   }
   void check() {
-    if (!stream_) fail_write(target_, std::strerror(errno != 0 ? errno : EIO));
+    if (!stream_) fail_form_factor_write(target_, std::strerror(errno != 0 ? errno : EIO));
   }
 
   std::filesystem::path target_;
@@ -150,7 +151,7 @@ void write_row(const std::filesystem::path& path, const PatchMesh& mesh,
   AtomicFile file(path);
   vtkNew<vtkXMLPolyDataWriter> writer;
   const std::string failure = write_appended(writer, poly, file.temporary());
-  if (!failure.empty()) fail_write(path, failure);
+  if (!failure.empty()) fail_form_factor_write(path, failure);
   file.commit();
 }
 

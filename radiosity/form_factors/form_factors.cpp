@@ -34,8 +34,8 @@ struct Estimate {
 
 // All that decides what form factors come out: not how much surfaces reflect and emit, as long as
 // it is the same ones that do.
-void add_inputs(Fingerprint& print, const Scene& scene, const DirectLight& direct_light,
-                const PatchMesh& mesh, const FormFactorOptions& options) {
+void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const DirectLight& direct_light,
+                            const PatchMesh& mesh, const FormFactorOptions& options) {
   print.add_geometry(mesh);
   // Which of them are found by closed form, and in what order, goes by their brightness.
   for (const Emitter& emitter : direct_light.emitters()) print.add(emitter.facet);
@@ -266,7 +266,7 @@ class Estimator {
 
   JournalPhase phase_of(std::string_view name, const std::vector<int>* rays_of = nullptr) const {
     return {options_.run.journal, name, [&](Fingerprint& print) {
-              add_inputs(print, scene_, direct_light_, mesh_, options_);
+              add_form_factor_inputs(print, scene_, direct_light_, mesh_, options_);
               if (rays_of) print.add(*rays_of);
             }};
   }
@@ -303,7 +303,7 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
   Estimate estimate = Estimator(lit, options, budget).estimate();
   const auto phase_of = [&](std::string_view name) -> JournalPhase {
     return {options.run.journal, name, [&](Fingerprint& print) {
-              add_inputs(print, lit.scene, lit.direct_light, mesh, options);
+              add_form_factor_inputs(print, lit.scene, lit.direct_light, mesh, options);
             }};
   };
   auto result = assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),

@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Form factor of the rectangle [0,x] x [0,y] of the top, odd in x and in y.
 double top_corner(double x, double y) {

@@ -10,7 +10,7 @@ namespace lightwell {
 namespace {
 
 // Rays that a pair should expect to be worth a closed form.
-constexpr int fewest_rays = 12;
+constexpr int fewest_near_rays = 12;
 // As many that the count itself may decide.
 constexpr int plenty_of_rays = 128;
 
@@ -24,7 +24,8 @@ double rough_form_factor(const PatchOutline& from, const PatchOutline& to, doubl
   return cosines * area_to / (squared * (std::numbers::pi * squared + area_to));
 }
 
-static_assert(NearExchange::worst_count_error * NearExchange::worst_count_error > fewest_rays - 1);
+static_assert(NearExchange::worst_count_error * NearExchange::worst_count_error >
+              fewest_near_rays - 1);
 
 }  // namespace
 
@@ -54,9 +55,9 @@ double NearExchange::find_pairs(int patch, const EstimatedRow& row,
     // Geometry picks the pairs. If counts did, those that came out high by chance would be put
     // right and those that came out low would not, and all rows would be too small.
     const bool is_worth_it =
-        polygons &&
-        (first >= plenty_of_rays ||
-         row.rays * rough_form_factor(outlines_[patch], outlines_[j], area_[j]) >= fewest_rays);
+        polygons && (first >= plenty_of_rays ||
+                     row.rays * rough_form_factor(outlines_[patch], outlines_[j], area_[j]) >=
+                         fewest_near_rays);
     if (!is_worth_it) {
       worst_variance = std::max(worst_variance, first / (row.rays * row.rays));
       continue;

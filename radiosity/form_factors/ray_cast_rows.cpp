@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t form_factor_rays = 1;  // purposes of random keys
 constexpr std::uint64_t form_factor_branches = 2;
-constexpr std::size_t batch = 64;
+constexpr std::size_t row_batch = 64;
 
 // Longer rows are made of several sets.
 constexpr int longest_set = 1 << 16;
@@ -93,15 +93,15 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   std::map<int, Spectrum> by_way_of_specular;
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(patch), form_factor_rays);
   PatchRays from(mesh, patch);
-  std::array<Ray, batch> ray;
-  std::array<ElementHit, batch> hit;
+  std::array<Ray, row_batch> ray;
+  std::array<ElementHit, row_batch> hit;
   for (int begin = 0; begin < rays; begin += HemisphereSets::block) {
     const int in_set = begin % sets_.count();
     if (in_set == 0) from.use(sets_.draw(random_key(key, static_cast<std::uint64_t>(begin))));
     const int size = std::min({HemisphereSets::block, rays - begin, sets_.count() - in_set});
     const auto points = from.draw().points(in_set, size, scratch.points_);
-    for (std::size_t first = 0; first < points.size(); first += batch) {
-      const std::size_t n = std::min<std::size_t>(batch, points.size() - first);
+    for (std::size_t first = 0; first < points.size(); first += row_batch) {
+      const std::size_t n = std::min<std::size_t>(row_batch, points.size() - first);
       from.aim(in_set, points.subspan(first, n), ray);
       caster_.closest_elements({ray.data(), n}, {hit.data(), n});
       for (std::size_t r = 0; r < n; ++r) {

@@ -16,8 +16,8 @@ Values values_of(const std::byte* record, int bands) {
 }
 
 // S_ij, j >= i, per band: the sum that gives each end its trust.
-RecordStore joined(const PatchMesh& mesh, RowEstimates& rows,
-                   const std::shared_ptr<MemoryBudget>& budget) {
+RecordStore joined_records(const PatchMesh& mesh, RowEstimates& rows,
+                           const std::shared_ptr<MemoryBudget>& budget) {
   const int bands = rows.bands();
   const auto weight = [&](int i) {
     return static_cast<float>(rows.inverse_variance(i) * mesh.area[i]);
@@ -88,7 +88,7 @@ Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const R
 void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_closure,
                        const std::shared_ptr<MemoryBudget>& budget, const PhaseOf& phase_of,
                        StoredFormFactors& result) {
-  RecordStore S = joined(mesh, rows, budget);
+  RecordStore S = joined_records(mesh, rows, budget);
   Eigen::ArrayXXd d = Eigen::ArrayXXd::Ones(rows.patch_count(), rows.bands());
   if (enforce_closure) d = balance(mesh, rows, S, phase_of);
   Eigen::ArrayXXd kept = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());

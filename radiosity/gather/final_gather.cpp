@@ -27,8 +27,7 @@ constexpr std::uint64_t aimed_rays = 15;
 constexpr std::uint64_t caustic_rays = 13;
 constexpr std::uint64_t caustic_branches = 14;
 constexpr std::uint64_t caustic_rays_of_lamps = 0xf4ee3;
-constexpr int batch = 128;
-constexpr float pi = std::numbers::pi_v<float>;
+constexpr int gather_batch = 128;
 
 LightQuery light_query(const GatherPoint& at, std::uint64_t key, const GatherOptions& options) {
   return {.at = {at.position, at.normal, at.facet},
@@ -77,12 +76,12 @@ class HemisphereGather {
     const int count = set.count();
     BrightPatches::View view;
     if (!bright_.is_empty()) view = bright_.view(at.position, at.normal, count);
-    std::array<Ray, batch> ray;
-    std::array<ElementHit, batch> hit;
-    for (int begin = 0; begin < set.count(); begin += batch) {
+    std::array<Ray, gather_batch> ray;
+    std::array<ElementHit, gather_batch> hit;
+    for (int begin = 0; begin < set.count(); begin += gather_batch) {
       const auto points =
           draw.all().subspan(static_cast<std::size_t>(begin),
-                             static_cast<std::size_t>(std::min(batch, set.count() - begin)));
+                             static_cast<std::size_t>(std::min(gather_batch, set.count() - begin)));
       const std::size_t n = points.size();
       for (std::size_t r = 0; r < n; ++r) {
         ray[r] = {.origin = at.position,
@@ -111,11 +110,11 @@ class HemisphereGather {
            std::array<Eigen::ArrayXd, 2>& sum) const {
     const int rays = ray_count(at, options_);
     const SobolPoints& aims = aims_.at(rays);
-    std::array<Ray, batch> ray;
-    std::array<ElementHit, batch> hit;
-    std::array<int, batch> element;
-    for (int begin = 0; begin < aims.count(); begin += batch) {
-      const auto n = static_cast<std::size_t>(std::min(batch, aims.count() - begin));
+    std::array<Ray, gather_batch> ray;
+    std::array<ElementHit, gather_batch> hit;
+    std::array<int, gather_batch> element;
+    for (int begin = 0; begin < aims.count(); begin += gather_batch) {
+      const auto n = static_cast<std::size_t>(std::min(gather_batch, aims.count() - begin));
       for (std::size_t r = 0; r < n; ++r) {
         const Eigen::Array4d u =
             aims.point(begin + static_cast<int>(r), random_key(key, aimed_rays)).cast<double>();
@@ -145,7 +144,8 @@ class HemisphereGather {
                                               add_throughput(end, throughput, sum);
                                             });
     if (losses.sky.size() == 0 || dome_.size() == 0) return;
-    sum.segment(dome_column_, bands_) += (pi * dome_ * losses.sky).cast<double>();
+    sum.segment(dome_column_, bands_) +=
+        (std::numbers::pi_v<float> * dome_ * losses.sky).cast<double>();
   }
 
   // Bands go by the columns of one channel after the other.
@@ -199,8 +199,8 @@ class HemisphereGather {
 };
 
 // All that decides what is gathered, but for the scene.
-void add_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPoints& points,
-                const GatherOptions& options) {
+void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPoints& points,
+                       const GatherOptions& options) {
   print.add(mesh);
   for (int i = 0; i < points.size(); ++i) {
     const auto [position, normal, facet, key, rays] = points[i];
@@ -259,7 +259,7 @@ GatheredIrradiance gather_irradiance(const LitScene& lit, const BandArray& radio
                             .indirect = BandArray::Zero(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf::Zero(count)};
   const JournalPhase phase(options.run.journal, "gather", [&](Fingerprint& print) {
-    add_inputs(print, lit.mesh(), points, options);
+    add_gather_inputs(print, lit.mesh(), points, options);
     print.add(lit.direct_light.column_count());
     print.add(radiosity);
   });
@@ -284,7 +284,7 @@ BandArray gather_direct(const LitScene& lit, const GatherPoints& points,
   if (visibilities) visibilities->assign(static_cast<std::size_t>(points.size()), {});
   const JournalPhase phase(options.run.journal, visibilities ? "sights" : "direct",
                            [&](Fingerprint& print) {
-                             add_inputs(print, lit.mesh(), points, options);
+                             add_gather_inputs(print, lit.mesh(), points, options);
                              print.add(lit.direct_light.column_count());
                            });
   const auto values = [&](int begin, int size) {
@@ -308,7 +308,7 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
   GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf(count)};
   const JournalPhase phase(options.run.journal, "indirect", [&](Fingerprint& print) {
-    add_inputs(print, lit.mesh(), points, options);
+    add_gather_inputs(print, lit.mesh(), points, options);
     print.add(lit.direct_light.column_count());
     print.add(radiosity);
   });

@@ -231,13 +231,13 @@ class PhotonGun {
 };
 
 // A part of a beam's photons.
-struct Piece {
+struct BeamPiece {
   int beam = 0, begin = 0, end = 0;
 };
 
-std::vector<Piece> cut_into_pieces(const std::vector<Beam>& beams) {
+std::vector<BeamPiece> cut_into_pieces(const std::vector<Beam>& beams) {
   constexpr int most = 1024;
-  std::vector<Piece> pieces;
+  std::vector<BeamPiece> pieces;
   for (int b = 0; b < static_cast<int>(beams.size()); ++b) {
     const int count = beams[static_cast<std::size_t>(b)].count;
     for (int i = 0; i < count; i += most) pieces.push_back({b, i, std::min(i + most, count)});
@@ -279,7 +279,7 @@ CausticPhotons shoot_photons(const LitScene& lit, int count, int max_specular_de
   const auto more = [](const Beam& a, const Beam& b) { return a.count < b.count; };
   const PhotonGun gun(lit.caster, paths, targets,
                       std::max(1, std::max_element(beams.begin(), beams.end(), more)->count));
-  const std::vector<Piece> pieces = cut_into_pieces(beams);
+  const std::vector<BeamPiece> pieces = cut_into_pieces(beams);
   std::vector<std::vector<Deposit>> lists(pieces.size());
   const int all = static_cast<int>(pieces.size());
   constexpr int slice = 64;  // a fraction of a second
@@ -287,7 +287,7 @@ CausticPhotons shoot_photons(const LitScene& lit, int count, int max_specular_de
     report(progress, "photons", static_cast<double>(first) / all);
     parallel_for(std::min(slice, all - first), 1, [&](int begin, int end) {
       for (int p = first + begin; p < first + end; ++p) {
-        const Piece& piece = pieces[static_cast<std::size_t>(p)];
+        const BeamPiece& piece = pieces[static_cast<std::size_t>(p)];
         for (int i = piece.begin; i < piece.end; ++i) {
           gun.shoot(beams[static_cast<std::size_t>(piece.beam)], piece.beam, i,
                     lists[static_cast<std::size_t>(p)]);

@@ -16,7 +16,7 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t ray_purpose = 0xf4ee1, branch_purpose = 0xf4ee2, patch_purpose = 0xf4ee3;
-constexpr int fewest_rays = 1 << 12, most_rays = 1 << 24;
+constexpr int fewest_free_rays = 1 << 12, most_free_rays = 1 << 24;
 
 // What some rays of one source did, as weights.
 struct Arrival {
@@ -27,18 +27,18 @@ struct PassedOn {
   int patch = 0;
   Spectrum weight{};
 };
-struct Piece {
+struct CastPiece {
   double sent = 0.0, missed = 0.0, met_black = 0.0;
   std::vector<Arrival> straight{};
   std::vector<PassedOn> by_specular{};
   Eigen::ArrayXd absorbed{}, escaped{};  // by way of mirrors and glass
 };
 
-Piece cast_piece(const FreeSource& source, const ElementCaster& caster, const LightPaths& paths,
-                 const SobolPoints& sobol, std::uint64_t key, int begin, int end) {
+CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, const LightPaths& paths,
+                     const SobolPoints& sobol, std::uint64_t key, int begin, int end) {
   const PatchMesh& mesh = caster.mesh();
   const Eigen::Index bands = source.light.size();
-  Piece piece{.absorbed = Eigen::ArrayXd::Zero(bands), .escaped = Eigen::ArrayXd::Zero(bands)};
+  CastPiece piece{.absorbed = Eigen::ArrayXd::Zero(bands), .escaped = Eigen::ArrayXd::Zero(bands)};
   constexpr int batch = 128;
   std::vector<Ray> rays(batch);
   std::vector<double> weight(batch);
@@ -91,7 +91,7 @@ struct Sums {
         absorbed(Eigen::ArrayXd::Zero(bands)),
         escaped(absorbed) {}
 
-  void add(const Piece& piece) {
+  void add(const CastPiece& piece) {
     sent += piece.sent;
     missed += piece.missed;
     met_black += piece.met_black;
@@ -127,7 +127,7 @@ class Collector {
     const int count = (rays + piece_rays - 1) / piece_rays;
     Sums sums(caster_.mesh(), bands_);
     for (int first = 0; first < count; first += slice) {
-      std::vector<Piece> pieces(static_cast<std::size_t>(std::min(slice, count - first)));
+      std::vector<CastPiece> pieces(static_cast<std::size_t>(std::min(slice, count - first)));
       parallel_for(static_cast<int>(pieces.size()), 1, [&](int begin, int end) {
         for (int p = begin; p < end; ++p) {
           const int from = (first + p) * piece_rays;
@@ -135,7 +135,7 @@ class Collector {
                                                            from, std::min(rays, from + piece_rays));
         }
       });
-      for (const Piece& piece : pieces) sums.add(piece);
+      for (const CastPiece& piece : pieces) sums.add(piece);
     }
     if (sums.sent > 0.0) add(source, sums);
   }
@@ -266,9 +266,9 @@ FreeLight of_channel(const FreeLight& light, int channel, int bands) {
 
 FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const LightPaths& paths,
                           const DirectLight& direct_light, int rays, const Progress& progress) {
-  if (rays < 1 || rays > most_rays) {
-    throw std::invalid_argument(
-        fmt::format("{} rays of free sources; there must be between 1 and {}", rays, most_rays));
+  if (rays < 1 || rays > most_free_rays) {
+    throw std::invalid_argument(fmt::format(
+        "{} rays of free sources; there must be between 1 and {}", rays, most_free_rays));
   }
   const std::vector<FreeSource>& sources = direct_light.free_sources();
   if (sources.empty()) return {};
@@ -283,7 +283,8 @@ FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const
     if (!source.is_on() || source.is_distant()) continue;
     report(progress, "lamps", done / all);
     const double due = rays * (power(source) / all);
-    const auto count = static_cast<unsigned>(std::clamp<double>(due, fewest_rays, most_rays));
+    const auto count =
+        static_cast<unsigned>(std::clamp<double>(due, fewest_free_rays, most_free_rays));
     collector.cast(source, static_cast<int>(std::bit_ceil(count)));
     done += power(source);
   }

@@ -25,7 +25,7 @@ struct Box {
   double radius2() const { return 0.25 * (high - low).squaredNorm(); }
 };
 
-Box joined(Box a, const Box& b) {
+Box joined_boxes(Box a, const Box& b) {
   a.add(b);
   return a;
 }
@@ -74,7 +74,7 @@ void join_neighbours(std::vector<Box>& boxes, std::vector<int>& group) {
     for (std::size_t a = 0; a < boxes.size(); ++a) {
       for (std::size_t b = a + 1; b < boxes.size(); ++b) {
         const double apart = boxes[a].radius2() + boxes[b].radius2();
-        const double ratio = joined(boxes[a], boxes[b]).radius2() / apart;
+        const double ratio = joined_boxes(boxes[a], boxes[b]).radius2() / apart;
         if (ratio < best) {
           best = ratio;
           pair = {a, b};

@@ -16,7 +16,7 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint64_t probe_key = 30, parts_key = 31;  // purposes of random keys
-constexpr std::uint64_t pilot_replica = 1000;
+constexpr std::uint64_t first_pilot_replica = 1000;
 constexpr int probe_count = 16;
 // Of it, what may hide in an indirect light that is taken for even: the product of two gathers has
 // none in the mean, and most of what it hides is nothing.
@@ -203,7 +203,7 @@ GatheredIrradiance InterpolationError::indirect_at(const std::vector<int>& verti
   }
   GatherOptions options = options_;
   options.rays = pilot_rays(options_.rays, has_noise_goal_);
-  options.replica = options_.replica + pilot_replica + replica;
+  options.replica = options_.replica + first_pilot_replica + replica;
   return gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);
 }
 

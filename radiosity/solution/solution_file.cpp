@@ -249,7 +249,8 @@ std::string summary(const SolvedScene& solved) {
       s.energy.absorbed, s.energy.escaped, s.energy.unshot, 100.0 * s.error_estimate, total);
 }
 
-[[noreturn]] void fail_write(const std::filesystem::path& path, const std::string& reason) {
+[[noreturn]] void fail_solution_write(const std::filesystem::path& path,
+                                      const std::string& reason) {
   throw std::runtime_error(
       fmt::format("cannot write the solution '{}': {}", path.string(), reason));
 }
@@ -269,7 +270,7 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
   vtkNew<SealedWriter> writer;
   writer->set_preamble(solution_preamble(summary(solved)));
   const std::string failure = write_appended(writer, poly, file.temporary());
-  if (!failure.empty()) fail_write(path, failure);
+  if (!failure.empty()) fail_solution_write(path, failure);
   seal_solution(file.temporary());
   file.commit();
 }

@@ -20,7 +20,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int fewest_rays = 16, least_round = 16;
+constexpr int fewest_round_rays = 16, least_round = 16;
 
 enum Energy { emitted_row, absorbed_row, escaped_row, unshot_row };  // rows of BandEnergy
 
@@ -221,8 +221,8 @@ std::vector<int> ProgressiveRadiosity::choose(int most) const {
 
 int ProgressiveRadiosity::rays_of(int patch) const {
   const double wanted = options_.rays * power(mesh_, unshot_, patch) / emitted_;
-  const int most = std::max(options_.most_rays, fewest_rays);
-  const auto rays = static_cast<unsigned>(std::clamp<double>(wanted, fewest_rays, most));
+  const int most = std::max(options_.most_rays, fewest_round_rays);
+  const auto rays = static_cast<unsigned>(std::clamp<double>(wanted, fewest_round_rays, most));
   return static_cast<int>(std::bit_floor(rays));
 }
 

@@ -36,9 +36,9 @@ class Largest {
   std::vector<double> values_;
 };
 
-class Shooter {
+class SouthwellShooter {
  public:
-  Shooter(const RadiositySystem& system, LightVector& B, LightVector& r)
+  SouthwellShooter(const RadiositySystem& system, LightVector& B, LightVector& r)
       : system_(system),
         B_(B),
         r_(r),
@@ -114,7 +114,7 @@ std::size_t count_factors(const FormFactors& form_factors) {
 LightVector solve_by_southwell(SolverRun& run) {
   const std::size_t factors = count_factors(run.system.form_factors());
   LightVector B = run.start(), r = run.system.residual(B);
-  Shooter shooter(run.system, B, r);
+  SouthwellShooter shooter(run.system, B, r);
   while (run.should_continue(SolverMethod::southwell, B, r)) {
     run.system.pass([&] { shooter.shoot_for(factors); }, B, r);
     r = run.system.residual(B);  // reciprocity holds but for rounding

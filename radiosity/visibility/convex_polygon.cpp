@@ -25,7 +25,7 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return in.x() * out.y() - in.y() * out.x();
 }
 
-bool is_convex(const std::vector<int>& loop, const std::vector<Vector2d>& points) {
+bool is_convex_loop(const std::vector<int>& loop, const std::vector<Vector2d>& points) {
   const std::size_t n = loop.size();
   for (std::size_t i = 0; i < n; ++i) {
     const Vector2d &a = points[loop[i]], &b = points[loop[(i + 1) % n]],
@@ -45,7 +45,7 @@ bool is_simple_and_convex(const std::vector<Vector2d>& points) {
                    &c = points[(i + 2) % points.size()];
     turned += std::atan2(turn(a, b, c), (b - a).dot(c - b));
   }
-  return turned < 3.0 * std::numbers::pi && is_convex(order, points);
+  return turned < 3.0 * std::numbers::pi && is_convex_loop(order, points);
 }
 
 // Which triangles lie inside an odd number of loops.
@@ -121,7 +121,7 @@ class Joiner {
     const std::vector<int> rest = from(pieces_[right], edge.a);
     if (joined.back() != edge.a || rest.back() != edge.b) return;
     joined.insert(joined.end(), rest.begin() + 1, rest.end() - 1);
-    if (!is_convex(joined, mesh_.points)) return;
+    if (!is_convex_loop(joined, mesh_.points)) return;
     pieces_[left] = std::move(joined);
     pieces_[right].clear();
     piece_of_[right] = left;

@@ -23,9 +23,9 @@ constexpr int points_at_once = 128;
 constexpr double nothing = 1e-12;  // below, the shooter is edge-on or at the horizon: rounding
 
 // Samples of one shooter, to be cast from points.
-class Shooter {
+class ShooterSamples {
  public:
-  Shooter(const PatchMesh& mesh, int patch, int most_samples)
+  ShooterSamples(const PatchMesh& mesh, int patch, int most_samples)
       : mesh_(mesh), patch_(patch), sampler_(mesh, patch), sobol_(most_samples) {}
 
   // cos cos / (pi r^2 + disc), the ray to sample s from the point.
@@ -72,7 +72,7 @@ void PointFormFactors::by_discs(int shooter, int n, std::span<const ReceivingPoi
                                 std::span<double> F) const {
   assert(points.size() == F.size());
   const PatchMesh& mesh = caster_.mesh();
-  const Shooter samples(mesh, shooter, n);
+  const ShooterSamples samples(mesh, shooter, n);
   const ShaftEnd end = shafts_.end(patch_outline(mesh, shooter), mesh.facet_of(shooter));
   const double disc = mesh.area[shooter] / n;
   parallel_for(static_cast<int>(points.size()), points_at_once, [&](int begin, int stop) {
@@ -133,7 +133,7 @@ void PointFormFactors::by_closed_form(int shooter, std::span<const ReceivingPoin
     by_discs(shooter, most, points, F);
     return;
   }
-  const Shooter samples(mesh, shooter, most);
+  const ShooterSamples samples(mesh, shooter, most);
   const bool is_covered = shafts_.is_covered(target);
   parallel_for(static_cast<int>(points.size()), points_at_once, [&](int begin, int stop) {
     std::vector<int> sampled;

@@ -27,7 +27,7 @@ Eigen::Vector3d newell(const Loop& loop) {
   return 0.5 * sum;
 }
 
-Eigen::Vector3d mean_of(const Loop& loop) {
+Eigen::Vector3d mean_point(const Loop& loop) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const auto& p : loop) sum += p - loop[0];  // relative: keeps digits far from the origin
   return loop[0] + sum / static_cast<double>(loop.size());
@@ -39,7 +39,7 @@ struct Plane {
   double size = 0.0;
 
   explicit Plane(const Loop& boundary) : size(size_of(boundary)) {
-    origin = mean_of(boundary);
+    origin = mean_point(boundary);
     const Eigen::Vector3d area = newell(boundary);
     normal = area.norm() > 0.0 ? Eigen::Vector3d(area.normalized()) : Eigen::Vector3d::UnitZ();
     tangent_frame(normal, x, y);
@@ -54,20 +54,21 @@ struct Plane {
 };
 
 // Twice the area of (a, b, c), zero where that is rounding.
-double turn(const Point& a, const Point& b, const Point& c) {
+double orientation(const Point& a, const Point& b, const Point& c) {
   const Point ab = b - a, ac = c - a;
   const double area = ab.x() * ac.y() - ab.y() * ac.x();
   return std::abs(area) > coincident * ab.norm() ? area : 0.0;
 }
 
 bool lies_on(const Point& p, const Point& a, const Point& b) {
-  if (turn(a, b, p) != 0.0) return false;
+  if (orientation(a, b, p) != 0.0) return false;
   const double along = (p - a).dot(b - a);
   return along >= 0.0 && along <= (b - a).squaredNorm();
 }
 
 bool cross_properly(const Point& a, const Point& b, const Point& c, const Point& d) {
-  return turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
+  return orientation(a, b, c) * orientation(a, b, d) < 0.0 &&
+         orientation(c, d, a) * orientation(c, d, b) < 0.0;
 }
 
 bool cross_or_touch(const Point& a, const Point& b, const Point& c, const Point& d) {
@@ -88,7 +89,7 @@ std::string loop_fault(const FlatLoop& p) {
   }
   for (std::size_t i = 0; i < n; ++i) {
     const Point &a = p[i], &b = p[(i + 1) % n], &c = p[(i + 2) % n];
-    if (turn(a, b, c) == 0.0 && (b - a).dot(c - b) < 0.0) {
+    if (orientation(a, b, c) == 0.0 && (b - a).dot(c - b) < 0.0) {
       return fmt::format("folds back on itself at vertex {}", (i + 1) % n + 1);
     }
     for (std::size_t j = i + 2; j < n; ++j) {
@@ -161,13 +162,13 @@ std::string holes_fault(const Polygon& polygon, const Plane& plane, const FlatLo
 
 bool blocks_ear(const Point& p, const Point& a, const Point& b, const Point& c) {
   if (p == a || p == b || p == c) return false;
-  return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+  return orientation(a, b, p) >= 0.0 && orientation(b, c, p) >= 0.0 && orientation(c, a, p) >= 0.0;
 }
 
 bool is_ear(const FlatLoop& p, const std::vector<int>& left, std::size_t i) {
   const std::size_t n = left.size();
   const Point &a = p[left[(i + n - 1) % n]], &b = p[left[i]], &c = p[left[(i + 1) % n]];
-  if (!(turn(a, b, c) > 0.0)) return false;
+  if (!(orientation(a, b, c) > 0.0)) return false;
   return std::none_of(left.begin(), left.end(),
                       [&](int other) { return blocks_ear(p[other], a, b, c); });
 }
@@ -175,7 +176,7 @@ bool is_ear(const FlatLoop& p, const std::vector<int>& left, std::size_t i) {
 }  // namespace
 
 double size_of(const Loop& loop) {
-  const Eigen::Vector3d middle = mean_of(loop);
+  const Eigen::Vector3d middle = mean_point(loop);
   double radius = 0.0;
   for (const auto& p : loop) radius = std::max(radius, (p - middle).norm());
   return 2.0 * radius;

@@ -19,7 +19,7 @@
 namespace lightwell {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
+[[noreturn]] void fail_geometry(const std::filesystem::path& path, const std::string& what) {
   throw InputError(fmt::format("{}: {}", path.string(), what));
 }
 
@@ -32,7 +32,7 @@ void check_ply_header(const std::filesystem::path& path) {
     std::string_view rest = line;
     const std::string_view key = next_word(rest);
     if (number == 1 && key != "ply")
-      fail(path, "this is no PLY file; its first line must be 'ply'");
+      fail_geometry(path, "this is no PLY file; its first line must be 'ply'");
     if (key == "end_header" && !stream.eof()) return;
     if (key != "element") continue;
     const std::string_view name = next_word(rest);
@@ -44,20 +44,20 @@ void check_ply_header(const std::filesystem::path& path) {
                       path.string(), number, name, trimmed(line)));
     }
   }
-  fail(path, "the header does not end with 'end_header'; the file was damaged or cut off");
+  fail_geometry(path, "the header does not end with 'end_header'; the file was damaged or cut off");
 }
 
 PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, double metres_per_unit,
                       bool with_uv, MeshFronts fronts, FilePolygons& polygons) {
   const auto position = [&](unsigned v) {
     if (v >= mesh.mNumVertices) {
-      fail(path,
-           fmt::format("a face names vertex {}, but there are only {}", v, mesh.mNumVertices));
+      fail_geometry(
+          path, fmt::format("a face names vertex {}, but there are only {}", v, mesh.mNumVertices));
     }
     const aiVector3D& p = mesh.mVertices[v];
     const Eigen::Vector3d result = metres_per_unit * Eigen::Vector3d(p.x, p.y, p.z);
     if (!result.allFinite()) {
-      fail(path, fmt::format("vertex {} has a coordinate that is not a finite number", v));
+      fail_geometry(path, fmt::format("vertex {} has a coordinate that is not a finite number", v));
     }
     return result;
   };
@@ -104,7 +104,8 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
   if (lower_extension(path) == ".ply") check_ply_header(path);
   Assimp::Importer importer;
   const aiScene* file = importer.ReadFile(path.string(), aiProcess_ValidateDataStructure);
-  if (!file) fail(path, fmt::format("the file cannot be read: {}", importer.GetErrorString()));
+  if (!file)
+    fail_geometry(path, fmt::format("the file cannot be read: {}", importer.GetErrorString()));
   Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
   scene.materials.push_back(default_material(scene.bands));
   if (materials == MeshMaterials::from_file) {
@@ -121,7 +122,7 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
         {.name = file->mNumMeshes == 1 ? stem : fmt::format("{} {}", stem, m + 1),
          .shape = std::move(mesh)});
   }
-  if (scene.surfaces.empty()) fail(path, "the file has no polygons with an area");
+  if (scene.surfaces.empty()) fail_geometry(path, "the file has no polygons with an area");
   for (const std::string& note : found.repairs.notes()) scene.notes.push_back(note + ".");
   scene.dropped_polygons = found.repairs.dropped();
   if (polygons) *polygons = std::move(found);

@@ -13,7 +13,7 @@
 namespace lightwell {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\f\v";
+constexpr std::string_view line_blanks = " \t\r\f\v";
 
 }  // namespace
 
@@ -73,14 +73,14 @@ std::string lower_extension(const std::filesystem::path& path) {
 }
 
 std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
+  const std::size_t first = text.find_first_not_of(line_blanks);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(line_blanks) - first + 1);
 }
 
 std::string_view next_word(std::string_view& text) {
   text = trimmed(text);
-  const std::string_view word = text.substr(0, text.find_first_of(blanks));
+  const std::string_view word = text.substr(0, text.find_first_of(line_blanks));
   text.remove_prefix(word.size());
   return word;
 }

@@ -197,7 +197,7 @@ void add_vertices(const SolvedScene& solved, const BandArray& radiance, BakedMod
   }
 }
 
-void add_pictures(const PatchMesh& mesh, const DrawnPictures& drawn, BakedModel& model) {
+void add_baked_pictures(const PatchMesh& mesh, const DrawnPictures& drawn, BakedModel& model) {
   model.pictures = drawn.all();
   if (model.pictures.empty()) return;
   const auto gain = picture_gains(mesh, drawn);
@@ -253,7 +253,7 @@ BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double expo
   const DrawnPictures drawn(scene, longest_picture);
   model.mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, drawn, names, model);
   add_vertices(solved, radiance, model);
-  add_pictures(solved.mesh, drawn, model);
+  add_baked_pictures(solved.mesh, drawn, model);
   model.channels = bake_channels(solved, scene.materials, model.mesh_vertex);
   model.sky = bake_sky(solved, scene);
   const Eigen::Vector3d up_axis = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));

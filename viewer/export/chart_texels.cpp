@@ -28,7 +28,7 @@ struct FlatFace {
   Eigen::Array4d weights(const Vector2d& p) const;
 };
 
-double cross(const Vector2d& a, const Vector2d& b) {
+double cross_2d(const Vector2d& a, const Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
@@ -38,7 +38,7 @@ std::pair<Vector2d, double> FlatFace::nearest(const Vector2d& p) const {
   double least = std::numeric_limits<double>::infinity();
   for (int c = 0; c < count; ++c) {
     const Vector2d along = corner[(c + 1) % count] - corner[c], to = p - corner[c];
-    const double turn = cross(along, to);
+    const double turn = cross_2d(along, to);
     left_of_all = left_of_all && turn >= 0.0;
     right_of_all = right_of_all && turn <= 0.0;
     const double square = along.squaredNorm();
@@ -54,12 +54,12 @@ std::pair<Vector2d, double> FlatFace::nearest(const Vector2d& p) const {
 
 Eigen::Array4d FlatFace::weights(const Vector2d& p) const {
   const Vector2d x = corner[1] - corner[0], y = corner[count - 1] - corner[0], to = p - corner[0];
-  const double area = cross(x, y);
+  const double area = cross_2d(x, y);
   if (count == 3) {
     // Without area, all of it is one place.
     if (!(std::abs(area) > 0.0)) return {1.0, 0.0, 0.0, 0.0};
-    const double u = std::clamp(cross(to, y) / area, 0.0, 1.0);
-    const double v = std::clamp(cross(x, to) / area, 0.0, 1.0 - u);
+    const double u = std::clamp(cross_2d(to, y) / area, 0.0, 1.0);
+    const double v = std::clamp(cross_2d(x, to) / area, 0.0, 1.0 - u);
     return {1.0 - u - v, u, v, 0.0};
   }
   // (s, t) with p = corner[0] + s x + t y + s t z, by Newton's method from the middle; a convex
@@ -71,9 +71,9 @@ Eigen::Array4d FlatFace::weights(const Vector2d& p) const {
   for (int step = 0; step < most_steps; ++step) {
     const Vector2d off = s * x + t * y + s * t * z - to;
     const Vector2d ds = x + t * z, dt = y + s * z;
-    const double determinant = cross(ds, dt);
+    const double determinant = cross_2d(ds, dt);
     if (!(std::abs(determinant) > 0.0)) break;
-    const double step_s = cross(off, dt) / determinant, step_t = cross(ds, off) / determinant;
+    const double step_s = cross_2d(off, dt) / determinant, step_t = cross_2d(ds, off) / determinant;
     s = std::clamp(s - step_s, -0.5, 1.5);
     t = std::clamp(t - step_t, -0.5, 1.5);
     if (std::abs(step_s) + std::abs(step_t) < converged) break;
@@ -91,7 +91,7 @@ int first_corner_of(const BakedModel& model, const PatchMesh& mesh, int f) {
 }
 
 /// Weights of an outside element's corners for the inside one, whose corners run backwards.
-Eigen::Array4f turned(const Eigen::Array4f& w, int count) {
+Eigen::Array4f turned_weights(const Eigen::Array4f& w, int count) {
   return count == 3 ? Eigen::Array4f(w[0], w[2], w[1], 0.0f)
                     : Eigen::Array4f(w[0], w[3], w[2], w[1]);
 }
@@ -196,7 +196,7 @@ std::vector<ChartTexels::Texel> ChartTexels::sphere_texels() const {
       if (found == face_of.end()) continue;
       const int f = found->second, count = model_.corner_count(f);
       Eigen::Array4f of_mesh = sphere_weights(grid, at);
-      if (is_back) of_mesh = turned(of_mesh, count);
+      if (is_back) of_mesh = turned_weights(of_mesh, count);
       Texel texel{.x = place.x + x,
                   .y = place.y + y,
                   .face = f,

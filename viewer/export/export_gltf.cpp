@@ -103,7 +103,7 @@ GltfJson sampler_of(const DrawnPicture& picture) {
 }
 
 /// Of each picture an image, a texture and a material: a material has one picture at most.
-void add_pictures(const BakedModel& model, GltfBuffer& buffer, GltfJson& root) {
+void add_gltf_pictures(const BakedModel& model, GltfBuffer& buffer, GltfJson& root) {
   for (std::size_t p = 0; p < model.pictures.size(); ++p) {
     const DrawnPicture& picture = model.pictures[p];
     buffer.bytes() += encode_png(picture.width, picture.height, picture.rgba);
@@ -133,7 +133,7 @@ void write_gltf(const std::filesystem::path& path, const BakedModel& model) {
   for (const BakedMaterial& material : model.materials) {
     root["materials"].push_back(unlit_material(material));
   }
-  add_pictures(model, buffer.buffer(), root);
+  add_gltf_pictures(model, buffer.buffer(), root);
   write_glb(path, std::move(root), buffer.buffer());
 }
 

@@ -9,7 +9,7 @@ namespace lightwell {
 namespace {
 
 /// A name as OBJ can hold it: one word, since some programs end names at a space.
-std::string word(const std::string& name) {
+std::string obj_word(const std::string& name) {
   std::string result;
   for (const char c : name) {
     result += static_cast<unsigned char>(c) <= 0x20 || c == 0x7f || c == '#' ? '_' : c;
@@ -19,7 +19,7 @@ std::string word(const std::string& name) {
 
 /// Numbered, since two materials may have the same name.
 std::string material_word(const BakedModel& model, int material) {
-  return fmt::format("{}_{}", material, word(model.materials[material].name));
+  return fmt::format("{}_{}", material, obj_word(model.materials[material].name));
 }
 
 /// White without shading, so that programs which multiply by it show the vertices' colours.
@@ -45,7 +45,7 @@ void write_obj(const std::filesystem::path& path, const BakedModel& model) {
                  model.provenance.version, one_line(model.provenance.scene_file),
                  one_line(materials.filename().string()));
   for (const BakedPart& part : model.parts) {
-    fmt::format_to(out, "o {}{}\nusemtl {}\n", word(part.name), part.is_back ? "_back" : "",
+    fmt::format_to(out, "o {}{}\nusemtl {}\n", obj_word(part.name), part.is_back ? "_back" : "",
                    material_word(model, part.material));
     for (int i = part.first_vertex; i < part.first_vertex + part.vertex_count; ++i) {
       const Eigen::Vector3d& p = model.position[i];

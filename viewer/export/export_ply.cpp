@@ -10,7 +10,7 @@ namespace lightwell {
 namespace {
 
 /// The name of a property is one word.
-std::string word(std::string name) {
+std::string ply_word(std::string name) {
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= 0x20 || c == 0x7f) c = '_';
   }
@@ -41,7 +41,7 @@ std::string header(const BakedModel& model, std::size_t triangle_count) {
   text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   for (const char* quantity : {"radiosity", "irradiance"}) {
     for (const std::string& band : model.bands.names) {
-      text += fmt::format("property float {}_{}\n", quantity, word(band));
+      text += fmt::format("property float {}_{}\n", quantity, ply_word(band));
     }
   }
   text += "property float illuminance\n";

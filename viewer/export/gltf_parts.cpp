@@ -79,7 +79,7 @@ void append_chunk_head(std::string& head, std::size_t length, const char* kind) 
   head.append(kind, 4);
 }
 
-Eigen::Vector3f turned(const BakedModel& model, int vertex) {
+Eigen::Vector3f turned_position(const BakedModel& model, int vertex) {
   return (model.to_y_up * model.position[vertex]).cast<float>();
 }
 
@@ -111,7 +111,7 @@ int GltfBuffer::add_positions(int view, const BakedModel& model, std::span<const
   Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
   Eigen::Array3f high = -low;
   for (const int v : vertices) {
-    const Eigen::Array3f p = turned(model, v);
+    const Eigen::Array3f p = turned_position(model, v);
     low = low.min(p);
     high = high.max(p);
   }
@@ -122,7 +122,7 @@ int GltfBuffer::add_positions(int view, const BakedModel& model, std::span<const
 }
 
 void append_position(std::string& bytes, const BakedModel& model, int vertex) {
-  for (const float x : turned(model, vertex)) append_bytes(bytes, x);
+  for (const float x : turned_position(model, vertex)) append_bytes(bytes, x);
 }
 
 GltfJson unlit_material(const BakedMaterial& material) {

@@ -78,7 +78,7 @@ vtkSmartPointer<vtkPolyData> lit_triangles(const PatchMesh& mesh, const FineSphe
   return data;
 }
 
-vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, double grey, float width) {
+vtkSmartPointer<vtkActor> make_line_actor(vtkPolyData* data, double grey, float width) {
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
   mapper->ScalarVisibilityOff();
@@ -91,7 +91,7 @@ vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, double grey, float width
   return actor;
 }
 
-vtkSmartPointer<vtkTextActor> make_text() {
+vtkSmartPointer<vtkTextActor> make_label() {
   auto text = vtkSmartPointer<vtkTextActor>::New();
   text->GetPositionCoordinate()->SetCoordinateSystemToWorld();
   vtkTextProperty* property = text->GetTextProperty();
@@ -109,9 +109,9 @@ vtkSmartPointer<vtkTextActor> make_text() {
 
 IsoluxLines::IsoluxLines()
     : data_(vtkSmartPointer<vtkPolyData>::New()),
-      dark_(make_actor(data_, 0.0, 3.0f)),
-      bright_(make_actor(data_, 1.0, 1.2f)) {
-  for (std::size_t i = 0; i < most_labels; ++i) texts_.push_back(make_text());
+      dark_(make_line_actor(data_, 0.0, 3.0f)),
+      bright_(make_line_actor(data_, 1.0, 1.2f)) {
+  for (std::size_t i = 0; i < most_labels; ++i) texts_.push_back(make_label());
 }
 
 IsoluxLines::~IsoluxLines() = default;

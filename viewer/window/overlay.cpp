@@ -14,7 +14,7 @@ constexpr int status_size = 13, panel_size = 13, help_size = 14, least_size = 7;
 /// Of a letter of the Courier that VTK brings, as shares of its size.
 constexpr double letter_width = 0.62, line_height = 1.25;
 
-vtkSmartPointer<vtkTextActor> make_text(int size, bool framed) {
+vtkSmartPointer<vtkTextActor> make_overlay_text(int size, bool framed) {
   auto text = vtkSmartPointer<vtkTextActor>::New();
   vtkTextProperty* property = text->GetTextProperty();
   property->SetFontSize(size);
@@ -45,10 +45,10 @@ void show(vtkTextActor* actor, const std::string& text) {
 }  // namespace
 
 Overlay::Overlay()
-    : status_(make_text(status_size, false)),
-      panel_(make_text(panel_size, true)),
-      cursor_(make_text(panel_size, true)),
-      help_(make_text(help_size, true)) {
+    : status_(make_overlay_text(status_size, false)),
+      panel_(make_overlay_text(panel_size, true)),
+      cursor_(make_overlay_text(panel_size, true)),
+      help_(make_overlay_text(help_size, true)) {
   place(status_, 0.01, 0.015, false);
   place(panel_, 0.01, 0.985, true);
   place(help_, 0.02, 0.98, true);

@@ -30,7 +30,7 @@ constexpr int facets_around = 72, facets_upwards = 18;
 constexpr int sun_corners = 48;
 constexpr double sun_distance = 0.95;  ///< of the dome's
 
-vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data) {
+vtkSmartPointer<vtkActor> make_sky_actor(vtkPolyData* data) {
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
   auto actor = vtkSmartPointer<vtkActor>::New();
@@ -105,7 +105,7 @@ SkyActor::SkyActor(const Sky& sky)
     : sky_(sky),
       grid_(sky_grid(sky, azimuths)),
       texels_(vtkSmartPointer<vtkImageData>::New()),
-      dome_(make_actor(dome_of(sky, grid_))) {
+      dome_(make_sky_actor(dome_of(sky, grid_))) {
   texels_->SetDimensions(grid_.columns, grid_.rows(), 1);
   texels_->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
   vtkNew<vtkTexture> texture;
@@ -114,7 +114,7 @@ SkyActor::SkyActor(const Sky& sky)
   texture->InterpolateOn();
   texture->SetWrap(vtkTexture::ClampToEdge);
   dome_->SetTexture(texture);
-  if (sky.sun) sun_ = make_actor(disc_of(sky));
+  if (sky.sun) sun_ = make_sky_actor(disc_of(sky));
 }
 
 SkyActor::~SkyActor() = default;

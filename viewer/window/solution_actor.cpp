@@ -24,7 +24,7 @@ namespace {
 
 constexpr double edge_grey = 0.1;
 
-vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, bool is_glass) {
+vtkSmartPointer<vtkActor> make_part_actor(vtkPolyData* data, bool is_glass) {
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
   mapper->SetColorModeToDirectScalars();
@@ -124,7 +124,7 @@ SolutionActor::SolutionActor(const PatchMesh& mesh, const FineSpheres& spheres,
       auto data = vtkSmartPointer<vtkPolyData>::New();
       data->SetPoints(points);
       data->GetPointData()->SetScalars(colors_);
-      parts_.push_back({kind, is_fine, data, make_actor(data, kind == ElementKind::glass)});
+      parts_.push_back({kind, is_fine, data, make_part_actor(data, kind == ElementKind::glass)});
       if (kind == ElementKind::unlit) draw_behind(parts_.back().actor);
     }
   }
@@ -163,7 +163,7 @@ void SolutionActor::add_pictures(const PatchMesh& mesh, const DrawnPictures& dra
     data->SetPoints(points);
     data->GetPointData()->SetScalars(pictured.colors);
     data->GetPointData()->SetTCoords(places);
-    pictured.part = {ElementKind::lit, false, data, make_actor(data, false)};
+    pictured.part = {ElementKind::lit, false, data, make_part_actor(data, false)};
     pictured.has_holes = drawn.all()[p].has_holes;
     if (pictured.has_holes) pictured.part.actor->ForceOpaqueOn();
     pictured_.push_back(std::move(pictured));

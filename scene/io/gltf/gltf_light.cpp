@@ -8,7 +8,7 @@
 namespace lightwell {
 namespace {
 
-SpotCone read_cone(const GltfObject& light) {
+SpotCone read_gltf_cone(const GltfObject& light) {
   const auto spot = light.object("spot");
   if (!spot) light.fail("is a spot and lacks 'spot'");
   const SpotCone cone{.inner = spot->number_or("innerConeAngle", 0.0),
@@ -63,7 +63,7 @@ void add_gltf_light(const GltfObject& light, const GltfObject& node,
                    remarks);
   }
   if (type == "spot") {
-    lamp.shape = read_cone(light);
+    lamp.shape = read_gltf_cone(light);
     const Eigen::Vector3d aim = to_world.linear() * -Eigen::Vector3d::UnitZ();
     if (!(aim.stableNorm() > 0.0)) node.fail("leaves its light no direction");
     lamp.axes = lamp_axes(aim.stableNormalized());

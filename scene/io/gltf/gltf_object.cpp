@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double most = 9007199254740992.0;  // 2^53: whole numbers a double holds exactly
+constexpr double most_exact = 9007199254740992.0;  // 2^53: whole numbers a double holds exactly
 
 }  // namespace
 
@@ -64,7 +64,7 @@ std::string GltfObject::string_or(const char* key, std::string_view otherwise) c
 std::optional<std::size_t> GltfObject::index(const char* key) const {
   if (!has(key)) return std::nullopt;
   const double value = number_or(key, 0.0);
-  if (!(value >= 0.0 && value < most && value == std::floor(value))) {
+  if (!(value >= 0.0 && value < most_exact && value == std::floor(value))) {
     fail(fmt::format("'{}' is {}; it must be a whole number that is at least 0", key, value));
   }
   return static_cast<std::size_t>(value);

@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int most_angles = 4000;
+constexpr int most_eulumdat_angles = 4000;
 
 // Lines in their order; numbers from 1.
 class Lines {
@@ -100,8 +100,8 @@ std::pair<int, int> stored_planes(int symmetry, int count) {
   }
 }
 
-PlaneTable all_planes(int symmetry, const std::vector<double>& stored,
-                      const Eigen::ArrayXXd& rows) {
+PlaneTable all_eulumdat_planes(int symmetry, const std::vector<double>& stored,
+                               const Eigen::ArrayXXd& rows) {
   if (symmetry == all_around) return {.planes = {0.0}, .values = rows};
   std::vector<std::pair<double, Eigen::Index>> planes;
   const auto add = [&](auto&& angle) {
@@ -123,7 +123,7 @@ const char* words_for(int symmetry) {
   return words[symmetry];
 }
 
-void read_sizes(Lines& lines, LuminaireFile& result) {
+void read_eulumdat_sizes(Lines& lines, LuminaireFile& result) {
   constexpr double mm = 0.001;
   lines.skip(3, "the size of the luminaire");
   const double length = mm * lines.number("the length of the luminous area");
@@ -156,7 +156,7 @@ LuminaireFile read_eulumdat(const std::filesystem::path& path, int lamp_set) {
   lines.number("the type");
   const int symmetry = lines.whole("the symmetry", none, quarters);
   result.symmetry = words_for(symmetry);
-  const int plane_count = lines.whole("the number of C planes", 1, most_angles);
+  const int plane_count = lines.whole("the number of C planes", 1, most_eulumdat_angles);
   const int divisor = symmetry == quarters || symmetry == about_c90 ? 4
                       : symmetry == about_c0                        ? 2
                                                                     : 1;
@@ -165,12 +165,12 @@ LuminaireFile read_eulumdat(const std::filesystem::path& path, int lamp_set) {
                            plane_count, divisor));
   }
   lines.number_or_text("the angle between C planes");
-  const int gamma_count = lines.whole("the number of angles gamma", 2, most_angles);
+  const int gamma_count = lines.whole("the number of angles gamma", 2, most_eulumdat_angles);
   lines.number_or_text("the angle between gammas");
   lines.text("the report's number");
   result.name = as_utf8(lines.text("the luminaire's name"));
   lines.skip(3, "the luminaire's number, file and date");
-  read_sizes(lines, result);
+  read_eulumdat_sizes(lines, result);
   lines.number("the downward flux fraction");
   lines.number("the light output ratio");
   double factor = lines.number("the conversion factor");
@@ -225,7 +225,7 @@ LuminaireFile read_eulumdat(const std::filesystem::path& path, int lamp_set) {
   }
   result.watts = lamps.watts;
   if (!lamps.is_absolute) result.lamp_lumens = lamps.lumens;
-  PlaneTable table = all_planes(symmetry, stored, values);
+  PlaneTable table = all_eulumdat_planes(symmetry, stored, values);
   if (table.planes.front() != 0.0) lines.fail("there is no plane C0; there must be one");
   result.web =
       std::make_shared<const PhotometricWeb>(std::move(table.planes), gammas, table.values);

@@ -11,7 +11,7 @@ namespace lightwell {
 namespace {
 
 constexpr double metres_per_foot = 0.3048;
-constexpr int most_angles = 4000;
+constexpr int most_ies_angles = 4000;
 
 std::string upper(std::string_view text) {
   std::string result(text);
@@ -133,7 +133,7 @@ void read_tilt(const Header& header, Numbers& numbers, LuminaireFile& result, do
     return;
   }
   numbers.whole("the lamp-to-luminaire geometry", 1, 3);
-  const int pairs = numbers.whole("the number of TILT angles", 1, most_angles);
+  const int pairs = numbers.whole("the number of TILT angles", 1, most_ies_angles);
   const std::vector<double> angles = numbers.list(pairs, "TILT angle");
   const std::vector<double> factors = numbers.list(pairs, "TILT factor");
   // Level is an angle of 0.
@@ -154,8 +154,8 @@ void check_rising(const Numbers& numbers, const std::vector<double>& angles, con
 }
 
 // All planes, from those that the file has.
-PlaneTable all_planes(const Numbers& numbers, const std::vector<double>& angles,
-                      const Eigen::ArrayXXd& rows, std::string& symmetry) {
+PlaneTable all_ies_planes(const Numbers& numbers, const std::vector<double>& angles,
+                          const Eigen::ArrayXXd& rows, std::string& symmetry) {
   std::vector<std::pair<double, Eigen::Index>> planes;
   const auto count = static_cast<Eigen::Index>(angles.size());
   const auto add = [&](auto&& angle) {
@@ -192,7 +192,7 @@ PlaneTable all_planes(const Numbers& numbers, const std::vector<double>& angles,
 }
 
 // LM-63-2002, table 1, read for those of 1995 as well: below 0 is round.
-void read_sizes(double width, double length, double height, LuminaireFile& result) {
+void read_ies_sizes(double width, double length, double height, LuminaireFile& result) {
   const bool is_round = width < 0.0 || length < 0.0;
   result.opening = {
       .along_c0 = std::abs(length), .along_c90 = std::abs(width), .is_round = is_round};
@@ -225,8 +225,8 @@ LuminaireFile read_ies(const std::filesystem::path& path) {
   const int lamps = numbers.whole("the number of lamps", 0, 1000000);
   const double lumens = numbers.next("the lumens of each lamp");
   factor *= numbers.next("the multiplier");
-  const int gamma_count = numbers.whole("the number of vertical angles", 2, most_angles);
-  const int plane_count = numbers.whole("the number of horizontal angles", 1, most_angles);
+  const int gamma_count = numbers.whole("the number of vertical angles", 2, most_ies_angles);
+  const int plane_count = numbers.whole("the number of horizontal angles", 1, most_ies_angles);
   const int type = numbers.whole("the photometric type", 1, 3);
   if (type != 1) {
     numbers.fail(
@@ -239,7 +239,7 @@ LuminaireFile read_ies(const std::filesystem::path& path) {
   const double width = metres * numbers.next("the width of the opening");
   const double length = metres * numbers.next("the length of the opening");
   const double height = metres * numbers.next("the height of the opening");
-  read_sizes(width, length, height, result);
+  read_ies_sizes(width, length, height, result);
   factor *= numbers.next("the ballast factor");
   factor *= numbers.next("the ballast-lamp factor");
   result.watts = numbers.next("the input watts");
@@ -273,7 +273,7 @@ LuminaireFile read_ies(const std::filesystem::path& path) {
   result.is_radiometric = header.is_in_milliwatts || header.is_in_watts;
   if (header.is_in_milliwatts) values *= 1e-3;
   if (lumens > 0.0 && !result.is_radiometric) result.lamp_lumens = lamps * lumens;
-  PlaneTable table = all_planes(numbers, planes, values, result.symmetry);
+  PlaneTable table = all_ies_planes(numbers, planes, values, result.symmetry);
   result.web =
       std::make_shared<const PhotometricWeb>(std::move(table.planes), gammas, table.values);
   return result;

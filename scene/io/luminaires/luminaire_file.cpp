@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "scene/degree.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -118,7 +118,7 @@ PlaneTable sorted_planes(const std::vector<std::pair<double, Eigen::Index>>& pla
 }
 
 double beam_angle(const PhotometricWeb& web, double plane, double share) {
-  constexpr double step = 0.1, degree = std::numbers::pi / 180.0;
+  constexpr double step = 0.1;
   constexpr int steps = 1800;
   // Along the half-planes C (positive) and C + 180 (negative).
   const auto value = [&](int i) {

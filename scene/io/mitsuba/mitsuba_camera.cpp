@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "scene/degree.h"
 #include "scene/io/camera_name.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
 
 namespace lightwell {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 // Tangent of half the angle across the picture's width.
 double half_width(const MitsubaNode& sensor, double width, double height) {
@@ -58,7 +56,7 @@ int pixels(const MitsubaNode* film, const char* property, int otherwise) {
 }
 
 // Scene units are metres there; without an aperture Mitsuba refuses the file.
-void read_lens(const MitsubaNode& sensor, Camera& camera) {
+void read_mitsuba_lens(const MitsubaNode& sensor, Camera& camera) {
   camera.lens_radius = sensor.number_or("aperture_radius", 0.0);
   camera.focus_distance = sensor.number_or("focus_distance", 1.0);
   if (!(camera.lens_radius >= 0.0 && std::isfinite(camera.lens_radius))) {
@@ -92,7 +90,7 @@ void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scen
   if (!place_camera(read_to_world(sensor), Eigen::Vector3d::UnitZ(), camera, remarks)) {
     sensor.fail("has a transformation that leaves it no direction or no upright");
   }
-  if (sensor.type == "thinlens") read_lens(sensor, camera);
+  if (sensor.type == "thinlens") read_mitsuba_lens(sensor, camera);
   scene.cameras.push_back(camera);
 }
 

@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int deepest = 32;  // textures of textures
+constexpr int deepest_texture = 32;  // textures of textures
 const BandEdges rgb_edges = {{600.0, 700.0}, {500.0, 600.0}, {400.0, 500.0}};
 
 Spectrum grey(double value) {
@@ -126,7 +126,7 @@ const MitsubaNode* MitsubaColors::texture_node(const MitsubaNode& owner,
   const MitsubaNode* given = owner.property(property);
   if (!given) return nullptr;
   const MitsubaNode* node = &tree_.resolved(*given);
-  for (int depth = 0; node->type == "scale" && depth < deepest; ++depth) {
+  for (int depth = 0; node->type == "scale" && depth < deepest_texture; ++depth) {
     const auto inner = tree_.children(*node, "texture");
     if (inner.empty()) return nullptr;
     node = inner.front();
@@ -238,7 +238,7 @@ double MitsubaColors::number_or(const MitsubaNode& owner, std::string_view prope
 
 Spectrum MitsubaColors::read(const MitsubaNode& given, Pixels pixels, int depth) {
   const MitsubaNode& node = tree_.resolved(given);
-  if (depth > deepest) node.fail("refers to itself, or is nested beyond all measure");
+  if (depth > deepest_texture) node.fail("refers to itself, or is nested beyond all measure");
   const auto known = known_.find({&node, pixels});
   if (known != known_.end()) return known->second;
   const Spectrum values = read_new(node, pixels, depth);

@@ -21,7 +21,6 @@ bool add_mitsuba_lamp(const MitsubaNode& emitter, MitsubaColors& colors, Scene& 
     scene.lamps.push_back(std::move(lamp));
     return true;
   }
-  constexpr double degree = std::numbers::pi / 180.0;
   const double cutoff = emitter.number_or("cutoff_angle", 20.0);
   const double beam = emitter.number_or("beam_width", 0.75 * cutoff);
   if (!(beam >= 0.0 && beam <= cutoff && cutoff > 0.0 && cutoff <= 180.0)) {

@@ -12,8 +12,8 @@
 namespace lightwell {
 namespace {
 
-constexpr int deepest = 64;              // nested elements; real scenes stay below ten
-constexpr std::size_t most_nested = 16;  // files
+constexpr int deepest_element = 64;             // nested elements; real scenes stay below ten
+constexpr std::size_t most_nested_scenes = 16;  // files
 constexpr int most_files = 1000;
 constexpr std::size_t longest = 1 << 16;  // bytes of an attribute with a $name
 
@@ -59,11 +59,11 @@ MitsubaNode MitsubaLoader::load_file(const std::filesystem::path& path,
     if (std::ranges::find(open_, canonical) != open_.end()) {
       including->fail(fmt::format("includes '{}', which includes this file", path.string()));
     }
-    if (open_.size() >= most_nested || files_ >= most_files) {
+    if (open_.size() >= most_nested_scenes || files_ >= most_files) {
       including->fail(
           fmt::format("is one include too many: at most {} files, nested at most {} "
                       "deep, are read",
-                      most_files, most_nested));
+                      most_files, most_nested_scenes));
     }
   }
   open_.push_back(canonical);
@@ -93,7 +93,8 @@ MitsubaNode MitsubaLoader::load_file(const std::filesystem::path& path,
 MitsubaNode MitsubaLoader::convert(const Source& source, const pugi::xml_node& from, int depth) {
   MitsubaNode node{.tag = from.name(), .file = source.path};
   node.line = source.line_at(std::max<std::ptrdiff_t>(from.offset_debug(), 0));
-  if (depth > deepest) node.fail(fmt::format("is nested more than {} deep", deepest));
+  if (depth > deepest_element)
+    node.fail(fmt::format("is nested more than {} deep", deepest_element));
   for (const pugi::xml_attribute& attribute : from.attributes()) {
     const std::string_view key = attribute.name();
     std::string value = substituted(node, attribute.value());

@@ -16,23 +16,23 @@ namespace {
 
 constexpr double bk7 = 1.5046, polypropylene = 1.49, air = 1.000277;  // Mitsuba's defaults
 
-Spectrum zero() {
+Spectrum black() {
   return Spectrum::Zero(3);
 }
 
-Material opaque(const Spectrum& reflectance) {
-  return {.reflectance = reflectance, .specular = zero(), .emission = zero(), .one_sided = true};
+Material opaque_bsdf(const Spectrum& reflectance) {
+  return {.reflectance = reflectance, .specular = black(), .emission = black(), .one_sided = true};
 }
 
-Material clear(double index, const Spectrum& tint) {
-  Material material = opaque(zero());
+Material clear_bsdf(double index, const Spectrum& tint) {
+  Material material = opaque_bsdf(black());
   material.one_sided = false;
   material.dielectric = Dielectric{.index_of_refraction = static_cast<float>(index), .tint = tint};
   return material;
 }
 
 Material pane(double index, const Spectrum& tint, double alpha) {
-  Material material = clear(index, tint);
+  Material material = clear_bsdf(index, tint);
   material.dielectric = thin_pane(index, tint, alpha);
   return material;
 }
@@ -115,7 +115,7 @@ Material MitsubaMaterials::read_new(const MitsubaNode& bsdf, Pixels pixels) {
   if (is({"mask", "bumpmap", "bump", "normalmap", "coating", "roughcoating"}))
     return wrapped(bsdf, pixels);
   if (is({"blendbsdf", "mixturebsdf"})) return blend(bsdf, pixels);
-  if (type == "null") return clear(1.0, Spectrum::Ones(3));
+  if (type == "null") return clear_bsdf(1.0, Spectrum::Ones(3));
   if (is({"phong", "ward", "modified_phong"})) {
     remarks_.add(fmt::format("BSDF '{}': its highlight was left out in", type), bsdf.label());
     return diffuse(bsdf, "diffuse_reflectance", pixels);
@@ -123,7 +123,7 @@ Material MitsubaMaterials::read_new(const MitsubaNode& bsdf, Pixels pixels) {
   remarks_.add(
       fmt::format("BSDF plugin '{}' is not known and got a diffuse reflectance of 0.5", type),
       bsdf.label());
-  Material material = opaque(Spectrum::Constant(3, 0.5f));
+  Material material = opaque_bsdf(Spectrum::Constant(3, 0.5f));
   material.one_sided = false;
   return material;
 }
@@ -131,11 +131,11 @@ Material MitsubaMaterials::read_new(const MitsubaNode& bsdf, Pixels pixels) {
 Material MitsubaMaterials::diffuse(const MitsubaNode& bsdf, std::string_view property,
                                    Pixels pixels) {
   if (const auto picture = colors_.texture(bsdf, property, pixels)) {
-    Material material = opaque(picture->mean);
+    Material material = opaque_bsdf(picture->mean);
     material.texture = picture->texture;
     return material;
   }
-  return opaque(colors_.share_or(bsdf, property, 0.5f, pixels));
+  return opaque_bsdf(colors_.share_or(bsdf, property, 0.5f, pixels));
 }
 
 Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
@@ -159,7 +159,7 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
   if (bsdf.type == "roughconductor") {
     if (alpha > glossy_alpha) remarks_.add(rough_metal, bsdf.label());
   }
-  Material material = opaque(zero());
+  Material material = opaque_bsdf(black());
   set_metallic(material, reflectance, 1.0, alpha);
   return material;
 }
@@ -199,7 +199,7 @@ Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf, Pixels pixels) {
   if (bsdf.type == "thindielectric") {
     return pane(ratio, tint, 0.0);
   }
-  Material glass = clear(ratio, tint);
+  Material glass = clear_bsdf(ratio, tint);
   if (bsdf.type == "roughdielectric") glass.dielectric->roughness = roughness_of(roughness(bsdf));
   return glass;
 }
@@ -212,7 +212,7 @@ Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
   remarks_.add("Plastics were read as diffuse, with what their gloss reflects in the mean",
                bsdf.label());
   const Coat coat(index_ratio(bsdf, polypropylene), bsdf.boolean_or("nonlinear", false), specular);
-  Material material = opaque(coat(rho));
+  Material material = opaque_bsdf(coat(rho));
   if (!picture) return material;
   material.texture = picture->texture;
   SurfaceTexture& image = material.texture->image;
@@ -239,13 +239,13 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
       bsdf.fail("has no index of refraction that glass has");
     if (bsdf.type == "principledthin") return pane(eta, color, alpha);
     remarks_.add("Principled BSDFs that are mostly clear were read as glass", bsdf.label());
-    Material glass = clear(eta, color);
+    Material glass = clear_bsdf(eta, color);
     glass.dielectric->roughness = roughness_of(alpha);
     return glass;
   }
   remarks_.add("Principled BSDFs were read by their base colour, metallic and roughness",
                bsdf.label());
-  Material material = opaque(zero());
+  Material material = opaque_bsdf(black());
   set_metallic(material, color, share("metallic", 0.0), alpha);
   if (picture && (material.reflectance > 0.0f).any()) {
     material.texture = picture->texture;
@@ -300,7 +300,7 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
                           [&](const auto* b) { return read(*b, pixels).texture.has_value(); })) {
     remarks_.add("Pictures in blended BSDFs were read as their mean colour", bsdf.label());
   }
-  Material sum = opaque(zero());
+  Material sum = opaque_bsdf(black());
   sum.one_sided =
       std::ranges::all_of(inner, [&](const auto* b) { return read(*b, pixels).one_sided; });
   for (std::size_t i = 0; i < inner.size(); ++i) {

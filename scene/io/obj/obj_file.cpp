@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-int index_of(std::vector<std::string>& names, const std::string& name) {
+int index_of_name(std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<int>(found - names.begin());
   names.push_back(name);
@@ -63,7 +63,7 @@ class ObjParser {
       group_ = trimmed(text);
       in_group_ = true;
     } else if (key == "usemtl") {
-      material_ = index_of(content_.material_names, std::string(trimmed(text)));
+      material_ = index_of_name(content_.material_names, std::string(trimmed(text)));
     } else if (key == "mtllib") {
       content_.material_files.emplace_back(trimmed(text));
     } else if (key == "curv" || key == "curv2" || key == "surf") {
@@ -184,7 +184,7 @@ class ObjParser {
                                    ? group_
                                    : fmt::format("{}/{}", object_, group_);
       current_group_ =
-          index_of(content_.groups, name.empty() ? file_.path().stem().string() : name);
+          index_of_name(content_.groups, name.empty() ? file_.path().stem().string() : name);
     }
     return current_group_;
   }

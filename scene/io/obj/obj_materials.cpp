@@ -175,7 +175,7 @@ struct MapStatement {
   SurfaceTexture image{};
 };
 
-MapStatement read_map(std::string_view text) {
+MapStatement read_map_statement(std::string_view text) {
   MapStatement map;
   Eigen::Vector2d scale(1.0, 1.0), offset(0.0, 0.0);
   const auto is_number = [](std::string_view word) { return parse_finite(word).has_value(); };
@@ -218,7 +218,7 @@ class MapReader {
 
   void add_maps(const MtlBlock& b, Material& material) {
     if (!b.diffuse_map.empty()) {
-      MapStatement map = read_map(b.diffuse_map);
+      MapStatement map = read_map_statement(b.diffuse_map);
       if (material.dielectric) {
         remarks_.textures.push_back(b.name);
       } else if (const auto picture = open(map.file, b)) {
@@ -229,7 +229,7 @@ class MapReader {
       }
     }
     if (b.dissolve_map.empty()) return;
-    MapStatement map = read_map(b.dissolve_map);
+    MapStatement map = read_map_statement(b.dissolve_map);
     if (material.is_emitter()) {
       remarks_.glowing_holes.push_back(b.name);
     } else if (const auto picture = open(map.file, b, PictureCode::linear)) {

@@ -23,34 +23,36 @@
 namespace lightwell {
 namespace {
 
-constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
+constexpr std::int64_t most_environment_pixels = std::int64_t{1} << 26;
 
-struct Pixels {
+struct EnvironmentPixels {
   int width = 0, height = 0;
   BandArray rgb{};
 };
 
-[[noreturn]] void fail(const std::filesystem::path& path, std::string_view problem) {
+[[noreturn]] void fail_environment(const std::filesystem::path& path, std::string_view problem) {
   throw InputError(fmt::format("{}: {}", path.string(), problem));
 }
 
-void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
-  if (width < 1 || height < 1 || width > most_pixels || height > most_pixels / width) {
-    fail(path, fmt::format("has {} x {} pixels; an environment map has at most {}", width, height,
-                           most_pixels));
+void check_environment_size(const std::filesystem::path& path, std::int64_t width,
+                            std::int64_t height) {
+  if (width < 1 || height < 1 || width > most_environment_pixels ||
+      height > most_environment_pixels / width) {
+    fail_environment(path, fmt::format("has {} x {} pixels; an environment map has at most {}",
+                                       width, height, most_environment_pixels));
   }
 }
 
-Pixels read_exr_pixels(const std::filesystem::path& path) {
+EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
   try {
     Imf::InputFile file(path.string().c_str());
     const auto window = file.header().dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-    check_size(path, width, height);
-    Pixels pixels{.width = static_cast<int>(width),
-                  .height = static_cast<int>(height),
-                  .rgb = BandArray::Zero(width * height, 3)};
+    check_environment_size(path, width, height);
+    EnvironmentPixels pixels{.width = static_cast<int>(width),
+                             .height = static_cast<int>(height),
+                             .rgb = BandArray::Zero(width * height, 3)};
     Imf::FrameBuffer buffer;
     constexpr std::array names = {"R", "G", "B"};
     constexpr std::ptrdiff_t pixel = 3 * sizeof(float);
@@ -59,7 +61,8 @@ Pixels read_exr_pixels(const std::filesystem::path& path) {
     for (std::size_t k = 0; k < names.size(); ++k) {
       const Imf::Channel* channel = file.header().channels().findChannel(names[k]);
       if (!channel || channel->xSampling != 1 || channel->ySampling != 1) {
-        fail(path, fmt::format("has no channel '{}' at full resolution; save it as RGB", names[k]));
+        fail_environment(
+            path, fmt::format("has no channel '{}' at full resolution; save it as RGB", names[k]));
       }
       auto* first = reinterpret_cast<char*>(pixels.rgb.data() + k);
       buffer.insert(names[k], Imf::Slice(Imf::FLOAT, first - pixel * origin, pixel,
@@ -71,7 +74,7 @@ Pixels read_exr_pixels(const std::filesystem::path& path) {
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
-    fail(path, fmt::format("cannot be read as OpenEXR: {}", error.what()));
+    fail_environment(path, fmt::format("cannot be read as OpenEXR: {}", error.what()));
   }
 }
 
@@ -83,19 +86,20 @@ class RgbeFile {
     rest_ = file_.text();
   }
 
-  Pixels read() {
+  EnvironmentPixels read() {
     if (!rest_.starts_with("#?"))
-      fail(path_, "is no RADIANCE picture: it does not begin with '#?'");
+      fail_environment(path_, "is no RADIANCE picture: it does not begin with '#?'");
     double exposure = 1.0;
     for (std::string_view text = line(); !text.empty(); text = line()) {
       if (text.starts_with("FORMAT=") && text != "FORMAT=32-bit_rle_rgbe") {
-        fail(path_, fmt::format("is in the {}; only FORMAT=32-bit_rle_rgbe is read", text));
+        fail_environment(path_,
+                         fmt::format("is in the {}; only FORMAT=32-bit_rle_rgbe is read", text));
       }
       constexpr std::string_view key = "EXPOSURE=";
       if (text.starts_with(key)) exposure *= number(text.substr(key.size()));
     }
     const auto [width, height] = resolution(line());
-    Pixels pixels{.width = width, .height = height};
+    EnvironmentPixels pixels{.width = width, .height = height};
     pixels.rgb = BandArray::Zero(std::int64_t{width} * height, 3);
     std::vector<std::uint8_t> row(4 * static_cast<std::size_t>(width));
     for (int y = 0; y < height; ++y) {
@@ -116,7 +120,7 @@ class RgbeFile {
  private:
   std::string_view line() {
     const auto end = rest_.find('\n');
-    if (end == std::string_view::npos) fail(path_, "ends within its header");
+    if (end == std::string_view::npos) fail_environment(path_, "ends within its header");
     std::string_view text = rest_.substr(0, end);
     rest_.remove_prefix(end + 1);
     if (text.ends_with('\r')) text.remove_suffix(1);
@@ -126,7 +130,8 @@ class RgbeFile {
   double number(std::string_view text) const {
     const auto value = parse_finite(trimmed(text));
     if (!value || !(*value > 0.0)) {
-      fail(path_, fmt::format("has an EXPOSURE of '{}', which is no number above 0", text));
+      fail_environment(path_,
+                       fmt::format("has an EXPOSURE of '{}', which is no number above 0", text));
     }
     return *value;
   }
@@ -142,14 +147,15 @@ class RgbeFile {
       is_sound = is_sound && error == std::errc() && end == word.data() + word.size();
     }
     if (!is_sound || !trimmed(rest).empty()) {
-      fail(path_, fmt::format("has the resolution '{}'; only '-Y height +X width' is read", text));
+      fail_environment(
+          path_, fmt::format("has the resolution '{}'; only '-Y height +X width' is read", text));
     }
-    check_size(path_, size[1], size[0]);
+    check_environment_size(path_, size[1], size[0]);
     return {static_cast<int>(size[1]), static_cast<int>(size[0])};
   }
 
   std::uint8_t byte() {
-    if (rest_.empty()) fail(path_, "ends before its last pixel");
+    if (rest_.empty()) fail_environment(path_, "ends before its last pixel");
     const auto value = static_cast<std::uint8_t>(rest_.front());
     rest_.remove_prefix(1);
     return value;
@@ -172,7 +178,8 @@ class RgbeFile {
       for (std::uint8_t& value : p) value = byte();
       if (p[0] == 1 && p[1] == 1 && p[2] == 1 && x > 0) {  // the last pixel again
         const std::size_t count = std::size_t{p[3]} << shift;
-        if (shift > 16 || count > width - x) fail(path_, "has a run beyond the end of its row");
+        if (shift > 16 || count > width - x)
+          fail_environment(path_, "has a run beyond the end of its row");
         for (std::size_t i = 0; i < 4 * count; ++i) row[4 * x + i] = row[4 * x - 4 + i % 4];
         x += count;
         shift += 8;
@@ -190,7 +197,8 @@ class RgbeFile {
       constexpr std::uint8_t longest = 128;
       const bool is_run = code > longest;
       const std::size_t count = is_run ? code - longest : code;
-      if (count == 0 || count > width - x) fail(path_, "has a run beyond the end of its row");
+      if (count == 0 || count > width - x)
+        fail_environment(path_, "has a run beyond the end of its row");
       const std::uint8_t same = is_run ? byte() : std::uint8_t{0};
       for (std::size_t i = 0; i < count; ++i) row[4 * x++ + k] = is_run ? same : byte();
     }
@@ -204,21 +212,21 @@ class RgbeFile {
 }  // namespace
 
 std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path)) fail(path, "there is no such file");
+  if (!std::filesystem::is_regular_file(path)) fail_environment(path, "there is no such file");
   const std::string extension = lower_extension(path);
-  Pixels pixels;
+  EnvironmentPixels pixels;
   if (extension == ".exr") {
     pixels = read_exr_pixels(path);
   } else if (extension == ".hdr" || extension == ".pic" || extension == ".rgbe") {
     pixels = RgbeFile(path).read();
   } else {
-    fail(path, "is no environment map that is read: give an .exr or .hdr");
+    fail_environment(path, "is no environment map that is read: give an .exr or .hdr");
   }
   try {
     return std::make_shared<const EnvironmentMap>(pixels.width, pixels.height,
                                                   std::move(pixels.rgb));
   } catch (const std::invalid_argument& error) {
-    fail(path, error.what());
+    fail_environment(path, error.what());
   }
 }
 

@@ -20,25 +20,25 @@
 namespace lightwell {
 namespace {
 
-constexpr double most_pixels = 1e8;  // 10 000 x 10 000: more takes seconds and gigabytes
+constexpr double most_picture_pixels = 1e8;  // 10 000 x 10 000: more takes seconds and gigabytes
 
 // Eight bits for each of r, g, b and alpha, rows from the top.
-struct Pixels {
+struct PicturePixels {
   std::size_t width = 0, height = 0, count = 0;
   std::vector<unsigned char> bytes{};
 };
 
-void check_size(double width, double height, const std::string& called) {
-  if (width * height <= most_pixels) return;
+void check_picture_size(double width, double height, const std::string& called) {
+  if (width * height <= most_picture_pixels) return;
   throw InputError(fmt::format("{} has {} x {} pixels; at most {:g} are read", called, width,
-                               height, most_pixels));
+                               height, most_picture_pixels));
 }
 
 [[noreturn]] void fail_damaged(const std::string& called, const char* why) {
   throw InputError(fmt::format("{} is no picture that can be decoded: {}", called, why));
 }
 
-Pixels decode_png(std::string_view bytes, const std::string& called) {
+PicturePixels decode_png(std::string_view bytes, const std::string& called) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) {
@@ -48,12 +48,12 @@ Pixels decode_png(std::string_view bytes, const std::string& called) {
     png_image& image;
     ~Guard() { png_image_free(&image); }
   } const guard{image};
-  check_size(image.width, image.height, called);
+  check_picture_size(image.width, image.height, called);
   image.format = PNG_FORMAT_RGBA;
   image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // as the 8-bit ones, where the file does not say
-  Pixels pixels{.width = image.width,
-                .height = image.height,
-                .count = std::size_t{image.width} * image.height};
+  PicturePixels pixels{.width = image.width,
+                       .height = image.height,
+                       .count = std::size_t{image.width} * image.height};
   pixels.bytes.resize(PNG_IMAGE_SIZE(image));
   if (!png_image_finish_read(&image, nullptr, pixels.bytes.data(), 0, nullptr)) {
     fail_damaged(called, image.message);
@@ -80,7 +80,8 @@ bool read_jpeg(std::string_view bytes, JpegError& error, jpeg_decompress_struct&
   jpeg_mem_src(&decoder, reinterpret_cast<const unsigned char*>(bytes.data()),
                static_cast<unsigned long>(bytes.size()));
   jpeg_read_header(&decoder, TRUE);
-  if (static_cast<double>(decoder.image_width) * decoder.image_height > most_pixels) return true;
+  if (static_cast<double>(decoder.image_width) * decoder.image_height > most_picture_pixels)
+    return true;
   decoder.out_color_space = JCS_RGB;
   jpeg_start_decompress(&decoder);
   const std::size_t width = std::size_t{3} * decoder.output_width;
@@ -92,7 +93,7 @@ bool read_jpeg(std::string_view bytes, JpegError& error, jpeg_decompress_struct&
   return true;
 }
 
-Pixels decode_jpeg(std::string_view bytes, const std::string& called) {
+PicturePixels decode_jpeg(std::string_view bytes, const std::string& called) {
   JpegError error;
   jpeg_decompress_struct decoder{};
   decoder.err = jpeg_std_error(&error.base);
@@ -104,10 +105,10 @@ Pixels decode_jpeg(std::string_view bytes, const std::string& called) {
   const double width = decoder.image_width, height = decoder.image_height;
   jpeg_destroy_decompress(&decoder);
   if (!is_read) fail_damaged(called, error.message.data());
-  check_size(width, height, called);
-  Pixels pixels{.width = static_cast<std::size_t>(width),
-                .height = static_cast<std::size_t>(height),
-                .count = rgb.size() / 3};
+  check_picture_size(width, height, called);
+  PicturePixels pixels{.width = static_cast<std::size_t>(width),
+                       .height = static_cast<std::size_t>(height),
+                       .count = rgb.size() / 3};
   pixels.bytes.reserve(4 * pixels.count);
   for (std::size_t p = 0; p < pixels.count; ++p) {
     pixels.bytes.insert(pixels.bytes.end(), {rgb[3 * p], rgb[3 * p + 1], rgb[3 * p + 2], 255});
@@ -125,7 +126,7 @@ std::array<double, 256> linear_values(PictureCode code) {
   return linear;
 }
 
-PictureMean mean_of(const Pixels& pixels, PictureCode code) {
+PictureMean mean_of_pixels(const PicturePixels& pixels, PictureCode code) {
   const std::array<double, 256> linear = linear_values(code);
   PictureMean mean{.alpha = 0.0};
   for (std::size_t p = 0; p < pixels.count; ++p) {
@@ -144,7 +145,7 @@ PictureMean mean_of(const Pixels& pixels, PictureCode code) {
   return mean;
 }
 
-std::shared_ptr<const Texture> texture_of(const Pixels& pixels, std::size_t first_channel,
+std::shared_ptr<const Texture> texture_of(const PicturePixels& pixels, std::size_t first_channel,
                                           std::size_t channels, PictureCode code) {
   std::array<Texture::Code, 256> codes{};
   const std::array<double, 256> linear = linear_values(code);
@@ -163,13 +164,13 @@ std::shared_ptr<const Texture> texture_of(const Pixels& pixels, std::size_t firs
                                          static_cast<int>(channels), std::move(texels));
 }
 
-Picture picture_of(const Pixels& pixels, PictureCode code) {
-  Picture picture{.color = texture_of(pixels, 0, 3, code), .mean = mean_of(pixels, code)};
+Picture picture_of(const PicturePixels& pixels, PictureCode code) {
+  Picture picture{.color = texture_of(pixels, 0, 3, code), .mean = mean_of_pixels(pixels, code)};
   if (picture.mean.alpha < 1.0) picture.alpha = texture_of(pixels, 3, 1, PictureCode::linear);
   return picture;
 }
 
-std::optional<Pixels> decode(std::string_view bytes, const std::string& called) {
+std::optional<PicturePixels> decode(std::string_view bytes, const std::string& called) {
   if (bytes.starts_with("\x89PNG")) return decode_png(bytes, called);
   if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes, called);
   return std::nullopt;
@@ -189,7 +190,7 @@ std::optional<PictureMean> picture_mean(std::string_view bytes, PictureCode code
                                         const std::string& called) {
   const auto pixels = decode(bytes, called);
   if (!pixels) return std::nullopt;
-  return mean_of(*pixels, code);
+  return mean_of_pixels(*pixels, code);
 }
 
 std::optional<Picture> read_picture(std::string_view bytes, PictureCode code,

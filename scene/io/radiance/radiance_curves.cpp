@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int most_polygons = 1'000'000;
+constexpr int most_curve_polygons = 1'000'000;
 
 void refuse_options(const RadianceCall& call, std::size_t first) {
   for (std::size_t i = first; i < call.words.size(); ++i) {
@@ -26,8 +26,9 @@ void refuse_options(const RadianceCall& call, std::size_t first) {
 int segments(const RadianceCall& call, std::size_t word) {
   const RadianceExpression formula(call.words[word], {}, call.location);
   const double value = std::round(formula({}));
-  if (!(value >= 1.0 && value <= most_polygons)) {
-    call.fail(fmt::format("the number of segments is {}; give from 1 to {}", value, most_polygons));
+  if (!(value >= 1.0 && value <= most_curve_polygons)) {
+    call.fail(
+        fmt::format("the number of segments is {}; give from 1 to {}", value, most_curve_polygons));
   }
   return static_cast<int>(value);
 }
@@ -52,7 +53,7 @@ void run_genrev(const RadianceCall& call, const RadianceSink& sink) {
   refuse_options(call, 6);
   constexpr int sides = 32;
   const int count = segments(call, 5);
-  if (count > most_polygons / sides) call.fail("makes too many polygons; use fewer segments");
+  if (count > most_curve_polygons / sides) call.fail("makes too many polygons; use fewer segments");
   call.account(static_cast<std::int64_t>(count) * sides);
   const std::vector<double> z = samples(call, 3, count), r = samples(call, 4, count);
   if (!(*std::ranges::min_element(r) >= 0.0)) {
@@ -81,8 +82,8 @@ void run_gensurf(const RadianceCall& call, const RadianceSink& sink) {
   call.require_words(8, "gensurf material name 'x(s,t)' 'y(s,t)' 'z(s,t)' m n");
   refuse_options(call, 8);
   const int m = segments(call, 6), n = segments(call, 7);
-  if (m > most_polygons / n) {
-    call.fail(fmt::format("makes more than {} polygons; use fewer segments", most_polygons));
+  if (m > most_curve_polygons / n) {
+    call.fail(fmt::format("makes more than {} polygons; use fewer segments", most_curve_polygons));
   }
   call.account(static_cast<std::int64_t>(m) * n);
   std::vector<RadianceExpression> formulas;

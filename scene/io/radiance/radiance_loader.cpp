@@ -16,9 +16,9 @@
 namespace lightwell {
 namespace {
 
-constexpr std::size_t most_nested = 32;         // files
-constexpr int most_commands = 200'000;          // files that include each other multiply quickly
-constexpr std::uintmax_t most_bytes = 1 << 30;  // read in all, again for every time
+constexpr std::size_t most_nested_includes = 32;  // files
+constexpr int most_commands = 200'000;            // files that include each other multiply quickly
+constexpr std::uintmax_t most_bytes = 1 << 30;    // read in all, again for every time
 constexpr std::int64_t most_generated = 4'000'000;
 
 const std::vector<std::string> known_programs = {"xform",     "cat",      "genbox",  "genprism",

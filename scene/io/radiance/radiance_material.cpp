@@ -153,7 +153,7 @@ Maybe ashik2(const Given& given) {
   return glossy(given, diffuse / excess, specular / excess, std::sqrt(2.0 / (exponent + 2.0)));
 }
 
-double index_of(const Given& given, std::size_t i) {
+double refractive_index(const Given& given, std::size_t i) {
   const double index = given.p.reals[i];
   if (!(index >= lowest_index && index <= highest_index)) {
     given.p.fail(fmt::format("has the index of refraction {}; glass has 1.52", index));
@@ -165,7 +165,7 @@ double index_of(const Given& given, std::size_t i) {
 // its two faces (1-F)^2 t / (1 - F^2 t^2) pass at normal incidence.
 Maybe glass(const Given& given) {
   if (given.p.reals.size() != 4) given.p.require_reals(3);
-  const double index = given.p.reals.size() == 4 ? index_of(given, 3) : window_glass;
+  const double index = given.p.reals.size() == 4 ? refractive_index(given, 3) : window_glass;
   const auto F = static_cast<float>(fresnel_reflectance(1.0, index));
   const Spectrum t = given.color(0);
   const Spectrum passed = (1.0f - F) * (1.0f - F) * t / (1.0f - F * F * t.square());
@@ -177,11 +177,11 @@ Maybe glass(const Given& given) {
 Maybe dielectric(const Given& given) {
   const bool is_interface = given.p.type == "interface";
   given.p.require_reals(is_interface ? 8 : 5);
-  const double outside = is_interface ? index_of(given, 7) : 1.0;
+  const double outside = is_interface ? refractive_index(given, 7) : 1.0;
   if ((given.rgb(0) != 1.0f).any()) {
     given.remark("What dielectrics absorb along the way through them was left out");
   }
-  return clear(index_of(given, 3) / outside, Spectrum::Ones(3));
+  return clear(refractive_index(given, 3) / outside, Spectrum::Ones(3));
 }
 
 Maybe mirror(const Given& given) {

@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int deepest = 64;  // modifiers of modifiers; real scenes stay below ten
+constexpr int deepest_modifier = 64;  // modifiers of modifiers; real scenes stay below ten
 
 // The value of a function that needs no function file and no place, such as ".5" or "A1/2".
 double constant_value(const std::string& formula, const RadiancePrimitive& of) {
@@ -109,8 +109,9 @@ std::optional<Material> RadianceMaterials::read(int index, int depth) {
 std::optional<Material> RadianceMaterials::read_new(int index, int depth) {
   for (; index != none; ++depth) {
     const Definition& definition = definitions_[static_cast<std::size_t>(index)];
-    if (depth > deepest) {
-      definition.primitive.fail(fmt::format("is reached by more than {} modifiers", deepest));
+    if (depth > deepest_modifier) {
+      definition.primitive.fail(
+          fmt::format("is reached by more than {} modifiers", deepest_modifier));
     }
     const RadianceKind kind = definition.primitive.kind();
     if (kind == RadianceKind::mixture) return mixed(definition, depth);
@@ -159,8 +160,8 @@ RadiancePattern RadianceMaterials::pattern_of(const Definition& definition) {
   int depth = 0;
   for (int i = definition.parent; i != none; i = definitions_[static_cast<std::size_t>(i)].parent) {
     const Definition& modifier = definitions_[static_cast<std::size_t>(i)];
-    if (++depth > deepest) {
-      definition.primitive.fail(fmt::format("has more than {} modifiers", deepest));
+    if (++depth > deepest_modifier) {
+      definition.primitive.fail(fmt::format("has more than {} modifiers", deepest_modifier));
     }
     const RadianceKind kind = modifier.primitive.kind();
     if (kind == RadianceKind::pattern) apply(modifier, result);

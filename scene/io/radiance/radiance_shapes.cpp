@@ -14,8 +14,8 @@ namespace lightwell {
 namespace {
 
 constexpr std::int64_t most_primitives = 2'000'000;
-constexpr std::int64_t most_polygons = 4'000'000;  // some 1 GB
-constexpr std::size_t most_corners = 2000;         // of a polygon: checked in their square
+constexpr std::int64_t most_shape_polygons = 4'000'000;  // some 1 GB
+constexpr std::size_t most_corners = 2000;               // of a polygon: checked in their square
 
 Eigen::Vector3d point(const RadiancePrimitive& p, std::size_t first) {
   return {p.reals[first], p.reals[first + 1], p.reals[first + 2]};
@@ -92,9 +92,9 @@ void RadianceShapes::finish() {
 
 void RadianceShapes::account(const RadiancePrimitive& primitive, std::size_t polygons) {
   polygons_ += static_cast<std::int64_t>(polygons);
-  if (polygons_ > most_polygons) {
-    primitive.fail(
-        fmt::format("makes more than {} polygons of the scene; use fewer copies", most_polygons));
+  if (polygons_ > most_shape_polygons) {
+    primitive.fail(fmt::format("makes more than {} polygons of the scene; use fewer copies",
+                               most_shape_polygons));
   }
 }
 

@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\n\f\v";
+constexpr std::string_view radiance_blanks = " \t\r\n\f\v";
 
 }  // namespace
 
@@ -21,7 +21,7 @@ void RadianceText::advance(std::size_t length) {
 // False at the end of the text.
 bool RadianceText::skip_blanks() {
   while (true) {
-    advance(std::min(rest_.find_first_not_of(blanks), rest_.size()));
+    advance(std::min(rest_.find_first_not_of(radiance_blanks), rest_.size()));
     if (!rest_.starts_with('#')) return !rest_.empty();
     advance(std::min(rest_.find('\n'), rest_.size()));
   }
@@ -31,7 +31,7 @@ std::string_view RadianceText::next_word() {
   if (!skip_blanks()) return {};
   const char quote = rest_.front();
   if (quote != '"' && quote != '\'') {
-    const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));
+    const std::string_view word = rest_.substr(0, rest_.find_first_of(radiance_blanks));
     rest_.remove_prefix(word.size());
     return word;
   }

@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "scene/degree.h"
 #include "scene/io/camera_name.h"
 
 namespace lightwell {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 class OptionReader {
  public:

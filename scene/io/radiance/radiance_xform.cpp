@@ -167,7 +167,7 @@ void transform(std::vector<double>& reals, std::size_t first, const Eigen::Affin
   p = (by * p).eval();
 }
 
-void turn(std::vector<double>& reals, std::size_t first, const Eigen::Matrix3d& by) {
+void turn_reals(std::vector<double>& reals, std::size_t first, const Eigen::Matrix3d& by) {
   if (reals.size() < first + 3) return;
   Eigen::Map<Eigen::Vector3d> v(reals.data() + first);
   v = (by * v).eval();
@@ -206,10 +206,10 @@ void place_surface(RadiancePrimitive& p, const RadianceXform::Copy& copy, bool i
   } else if (p.type == "ring") {
     transform(p.reals, 0, copy.to_world);
     const double side = inverts ? -1.0 : 1.0;
-    turn(p.reals, 3, copy.to_world.linear() * (side / copy.scale));
+    turn_reals(p.reals, 3, copy.to_world.linear() * (side / copy.scale));
     scale(p.reals, 6, copy.scale);
   } else if (p.type == "source") {
-    turn(p.reals, 0, copy.to_world.linear());
+    turn_reals(p.reals, 0, copy.to_world.linear());
   } else if (p.type != "instance" && p.type != "mesh") {  // cones, cups, cylinders, tubes
     transform(p.reals, 0, copy.to_world);
     transform(p.reals, 3, copy.to_world);

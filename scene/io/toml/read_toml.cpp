@@ -51,7 +51,7 @@ Eigen::Vector3d read_view_direction(const TomlTable& table, const Eigen::Vector3
 }
 
 // An f-number is that of a camera with a film 36 mm wide, whose focal length follows from fov.
-void read_lens(const TomlTable& table, double metres_per_unit, Camera& camera) {
+void read_toml_lens(const TomlTable& table, double metres_per_unit, Camera& camera) {
   const auto given = table.present({"aperture_radius", "f_number"});
   if (given.size() > 1) {
     table.require(given[1]).fail("is a second statement of the aperture, after 'aperture_radius'");
@@ -123,14 +123,14 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
     camera.width = static_cast<int>(pixels[0].integer_within(1, most));
     camera.height = static_cast<int>(pixels[1].integer_within(1, most));
   }
-  read_lens(table, scene.metres_per_unit, camera);
+  read_toml_lens(table, scene.metres_per_unit, camera);
   if (const auto shutter = table.find("shutter")) read_toml_shutter(*shutter, camera);
   if (const auto motion = table.find("motion")) camera.motion = find_toml_motion(*motion, scene);
   return camera;
 }
 
-std::vector<TomlMaterial> read_materials(const TomlTable& document, const TomlBands& bands,
-                                         Scene& scene) {
+std::vector<TomlMaterial> read_toml_materials(const TomlTable& document, const TomlBands& bands,
+                                              Scene& scene) {
   std::vector<TomlMaterial> materials;
   PictureFiles pictures;
   if (const auto tables = document.find("materials")) {
@@ -159,7 +159,7 @@ Scene read_toml(const std::filesystem::path& path) {
   const auto bands_table = document.find("bands");
   const TomlBands bands = bands_table ? read_toml_bands(*bands_table) : TomlBands{};
   scene.bands = bands.bands;
-  const auto materials = read_materials(document, bands, scene);
+  const auto materials = read_toml_materials(document, bands, scene);
   if (const auto motions = document.find("motions")) {
     scene.motions = read_toml_motions(*motions, scene.metres_per_unit);
   }

@@ -4,15 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numbers>
 
+#include "scene/degree.h"
 #include "scene/errors.h"
 #include "scene/io/luminaires/luminaire_file.h"
 
 namespace lightwell {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 Eigen::Vector3d read_direction(const TomlValue& value) {
   const Eigen::Vector3d direction = value.vector();
@@ -54,7 +52,7 @@ Eigen::Matrix3d read_axes(const TomlTable& table, const Eigen::Vector3d& positio
   return lamp_axes(aim, direction);
 }
 
-SpotCone read_cone(const TomlValue& value) {
+SpotCone read_toml_cone(const TomlValue& value) {
   const auto angles = value.elements("angle");
   if (angles.size() != 2) {
     value.fail("must be two angles [inner, outer] in degrees from the axis");
@@ -163,7 +161,7 @@ void read_toml_lamp(const TomlValue& value, std::size_t number, const TomlBands&
   if (is_measured) {
     read_measured(table, bands, scene, lamp);
   } else {
-    if (const auto cone = table.find("cone")) lamp.shape = read_cone(*cone);
+    if (const auto cone = table.find("cone")) lamp.shape = read_toml_cone(*cone);
     read_strength(table, bands, lamp);
   }
   lamp.axes = read_axes(table, position, is_measured || table.has("cone"));

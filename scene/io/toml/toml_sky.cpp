@@ -172,7 +172,7 @@ void read_gradation(const TomlTable& table, const std::string& kind,
   }
 }
 
-void read_map(const TomlTable& table, Sky& sky) {
+void read_sky_map(const TomlTable& table, Sky& sky) {
   sky.kind = SkyKind::map;
   const TomlValue file = table.require("file");
   const auto path = (file.file().parent_path() / file.name()).lexically_normal();
@@ -275,7 +275,7 @@ Sky read_toml_sky(const TomlValue& value, const TomlBands& bands) {
     for (const char* key : {"ground_reflectance", "ground_radiance", "color"}) {
       only_for(key, {});
     }
-    read_map(table, sky);
+    read_sky_map(table, sky);
     read_scale(table, bands, sky);
     if (const auto scale = table.find("scale")) {
       sky.scale *= static_cast<float>(scale->number_at_least(0.0));

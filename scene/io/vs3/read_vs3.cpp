@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-using Kind = Vs3Record::Kind;
+using Vs3Kind = Vs3Record::Kind;
 
 class Vs3Builder {
  public:
@@ -42,7 +42,7 @@ class Vs3Builder {
   void check_and_cut(std::size_t i) {
     const Vs3Record& record = content_.surfaces[i];
     const int count = static_cast<int>(content_.surfaces.size());
-    if (record.kind == Kind::mask) {
+    if (record.kind == Vs3Kind::mask) {
       fail(i,
            "is a mask (M), which cannot be read; describe what the mask leaves visible as "
            "surfaces of their own");
@@ -53,7 +53,7 @@ class Vs3Builder {
              fmt::format("is to be combined with surface {}; name one before it", record.combine));
       }
       const Vs3Record& with = content_.surfaces[static_cast<std::size_t>(record.combine) - 1];
-      if (record.kind != Kind::radiating || with.kind != Kind::radiating) {
+      if (record.kind != Vs3Kind::radiating || with.kind != Vs3Kind::radiating) {
         fail(i, "is combined; only radiating surfaces (S) can be combined");
       }
       if (with.combine != 0) {
@@ -62,7 +62,7 @@ class Vs3Builder {
                             record.combine, with.combine));
       }
     }
-    if (record.kind == Kind::null && record.base == 0) {
+    if (record.kind == Vs3Kind::null && record.base == 0) {
       fail(i, "is a null surface (N), which needs the number of its base surface");
     }
     if (record.base == 0) return;
@@ -75,7 +75,7 @@ class Vs3Builder {
   void cut_from_base(std::size_t i, std::size_t base) {
     const Loop& hole = content_.surfaces[i].loop;
     const Vs3Record& of = content_.surfaces[base];
-    if (of.kind != Kind::obstruction && base >= i) {
+    if (of.kind != Vs3Kind::obstruction && base >= i) {
       fail(i, fmt::format("has base surface {}, which must come before it", base + 1));
     }
     if (of.base != 0) {
@@ -122,7 +122,7 @@ class Vs3Builder {
     int row = -1;
     if (record.combine != 0) {
       row = row_of_record_[static_cast<std::size_t>(record.combine) - 1];
-    } else if (record.kind == Kind::radiating) {
+    } else if (record.kind == Vs3Kind::radiating) {
       row = static_cast<int>(numbered_.rows.size());
       numbered_.rows.push_back({.name = record.name, .emittance = record.emittance});
     }
@@ -131,7 +131,7 @@ class Vs3Builder {
   }
 
   int material_of(const Vs3Record& record) {
-    const bool is_opaque_only = record.kind != Kind::radiating;
+    const bool is_opaque_only = record.kind != Vs3Kind::radiating;
     const double reflectance = is_opaque_only ? 0.0 : 1.0 - record.emittance;
     const std::string name =
         is_opaque_only ? "obstruction" : fmt::format("emittance {:g}", record.emittance);
