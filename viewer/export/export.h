@@ -60,8 +60,8 @@ void write_ply(const std::filesystem::path& path, const BakedModel& model);
 void write_obj(const std::filesystem::path& path, const BakedModel& model);
 
 /// A page for a web browser that holds all it needs: the model, the program that shows it
-/// (viewer/export/web) and a library for WebGL 2. `lux_range` is that of the false colours; without one
-/// they have what suits the solution. See docs/export.md for the data in it.
+/// (viewer/export/web) and a library for WebGL 2. `lux_range` is that of the false colours; without
+/// one they have what suits the solution. See docs/export.md for the data in it.
 void write_walkthrough(const std::filesystem::path& path, const BakedModel& model,
                        const std::optional<LuxRange>& lux_range = {});
 

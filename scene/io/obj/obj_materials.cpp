@@ -28,7 +28,7 @@ struct MtlBlock {
 };
 
 // Materials that share something worth a note.
-struct Remarks {
+struct MtlRemarks {
   std::vector<std::string> highlights{}, textures{}, scaled{}, dissolved{}, dark_glass{}, unread{},
       glowing_holes{};
   std::vector<std::string> missing{};  ///< sentences
@@ -121,7 +121,7 @@ bool is_clear(const MtlBlock& b) {
   return opacity < 1.0f || (b.filter && (*b.filter > 0.0f).any() && (*b.filter < 1.0f).any());
 }
 
-void make_clear(const MtlBlock& b, Material& material, Remarks& remarks) {
+void make_clear(const MtlBlock& b, Material& material, MtlRemarks& remarks) {
   const float index = b.index.value_or(1.0f);
   const bool has_filter = b.filter && (*b.filter > 0.0f).any();
   material.dielectric =
@@ -131,7 +131,7 @@ void make_clear(const MtlBlock& b, Material& material, Remarks& remarks) {
   if (b.radiance && (*b.radiance > 0.0f).any()) remarks.dark_glass.push_back(b.name);
 }
 
-void make_opaque(const TextFile& file, const MtlBlock& b, Material& material, Remarks& remarks) {
+void make_opaque(const TextFile& file, const MtlBlock& b, Material& material, MtlRemarks& remarks) {
   Spectrum diffuse = b.diffuse.value_or(black_spectrum()),
            mirror = b.mirror.value_or(black_spectrum());
   const bool black = !(diffuse > 0.0f).any();
@@ -157,7 +157,7 @@ void make_opaque(const TextFile& file, const MtlBlock& b, Material& material, Re
   material.emission = static_cast<float>(std::numbers::pi) * b.radiance.value_or(black_spectrum());
 }
 
-Material make_material(const TextFile& file, const MtlBlock& b, Remarks& remarks) {
+Material make_material(const TextFile& file, const MtlBlock& b, MtlRemarks& remarks) {
   const Spectrum zero = black_spectrum();
   Material material{.name = b.name, .reflectance = zero, .specular = zero, .emission = zero};
   if (is_clear(b)) {
@@ -214,7 +214,7 @@ MapStatement read_map_statement(std::string_view text) {
 // What map_Kd and map_d say of a material that is otherwise done.
 class MapReader {
  public:
-  MapReader(const TextFile& file, Remarks& remarks) : file_(file), remarks_(remarks) {}
+  MapReader(const TextFile& file, MtlRemarks& remarks) : file_(file), remarks_(remarks) {}
 
   void add_maps(const MtlBlock& b, Material& material) {
     if (!b.diffuse_map.empty()) {
@@ -255,7 +255,7 @@ class MapReader {
   }
 
   const TextFile& file_;
-  Remarks& remarks_;
+  MtlRemarks& remarks_;
   PictureFiles pictures_;
 };
 
@@ -276,7 +276,7 @@ void add_note(const TextFile& file, const std::vector<std::string>& materials, c
 std::vector<Material> read_obj_materials(const std::filesystem::path& path,
                                          std::vector<std::string>& notes) {
   const TextFile file(path);
-  Remarks remarks;
+  MtlRemarks remarks;
   std::vector<Material> materials;
   MapReader maps(file, remarks);
   for (const MtlBlock& block : MtlParser(file).parse()) {

@@ -32,9 +32,9 @@ std::vector<std::filesystem::path> files_named(const std::filesystem::path& fold
   return files;
 }
 
-std::vector<Material> read_obj_materials(const std::filesystem::path& path,
-                                         const ObjContent& content,
-                                         std::vector<std::string>& notes) {
+std::vector<Material> read_material_files(const std::filesystem::path& path,
+                                          const ObjContent& content,
+                                          std::vector<std::string>& notes) {
   std::vector<Material> materials;
   for (const std::string& names : content.material_files) {
     for (const auto& file : files_named(path.parent_path(), names)) {
@@ -186,7 +186,7 @@ Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, M
   }
   std::map<int, int> materials = {{-1, 0}};
   if (wanted == MeshMaterials::from_file) {
-    materials = take_materials(content, read_obj_materials(path, content, scene.notes), scene);
+    materials = take_materials(content, read_material_files(path, content, scene.notes), scene);
   } else {
     for (ObjFace& face : content.faces) face.material = -1;
     scene.materials.push_back(default_material(scene.bands));
