@@ -72,9 +72,9 @@ void RadianceLoader::read_named(const std::string& name, const RadianceLocation&
   if (std::ranges::find(open_, canonical) != open_.end()) {
     location.fail(fmt::format("includes '{}', which includes this file; break the circle", name));
   }
-  if (open_.size() >= most_nested) {
+  if (open_.size() >= most_nested_includes) {
     location.fail(
-        fmt::format("includes '{}' within {} files; nest less deeply", name, most_nested));
+        fmt::format("includes '{}' within {} files; nest less deeply", name, most_nested_includes));
   }
   std::error_code error;
   const auto bytes = std::filesystem::file_size(path, error);
