@@ -257,14 +257,14 @@ GatheredIrradiance gather_once(const LitScene& lit, const BandArray& radiosity,
   }
   // Two halves of a stratified set are off by more than the whole, see estimate_error(). Of one
   // vertex they tell little more than a guess: a patch's tell it together.
-  constexpr double of_whole_set = 0.5;
+  constexpr double share_of_whole_set = 0.5;
   const std::vector<int> patch = vertex_patches(mesh);
   const Eigen::ArrayXd of_patch = patch_integral(mesh, result.variance).col(0);
   Eigen::ArrayXf before(count);
   for (int v = 0; v < count; ++v) {
     const double area = mesh.area[patch[v]],
                  of_a_ray = area > 0.0 ? of_patch[patch[v]] / area : 0.0;
-    before[v] = static_cast<float>(of_whole_set * of_a_ray / double{rays[v]});
+    before[v] = static_cast<float>(share_of_whole_set * of_a_ray / double{rays[v]});
   }
   Eigen::ArrayXf after = before;
   combine_with_predictions(pilot.predictions, pilot.indirect, patch, lit.scene.bands.count(),

@@ -15,7 +15,8 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t ray_purpose = 0xf4ee1, branch_purpose = 0xf4ee2, patch_purpose = 0xf4ee3;
+constexpr std::uint64_t ray_purpose = 0xf4ee1, free_branch_purpose = 0xf4ee2,
+                        patch_purpose = 0xf4ee3;
 constexpr int fewest_free_rays = 1 << 12, most_free_rays = 1 << 24;
 
 // What some rays of one source did, as weights.
@@ -70,7 +71,8 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
         piece.straight.push_back({mesh.patch[hit.element], w});
       }
       if (!is_specular) continue;
-      const auto branch = random_key(key, branch_purpose, static_cast<std::uint64_t>(first + r));
+      const auto branch =
+          random_key(key, free_branch_purpose, static_cast<std::uint64_t>(first + r));
       const PathLosses losses =
           paths.follow(rays[r], hit, branch, [&](const ElementHit& at, const Spectrum& throughput) {
             piece.by_specular.push_back(
@@ -223,9 +225,9 @@ class Collector {
       ElementHit hit;
       caster_.closest_hits({&ray, 1}, {&hit, 1});
       if (hit.facet < 0 || !paths_.is_specular(hit.facet)) continue;
-      const PathLosses losses =
-          paths_.follow(ray, hit, random_key(key, branch_purpose, static_cast<std::uint64_t>(r)),
-                        [](const LightArrival&) {});
+      const PathLosses losses = paths_.follow(
+          ray, hit, random_key(key, free_branch_purpose, static_cast<std::uint64_t>(r)),
+          [](const LightArrival&) {});
       if (losses.sky.size() > 0) sum += losses.sky;
     }
     return std::numbers::pi_v<float> / static_cast<float>(sobol.count()) * sum;

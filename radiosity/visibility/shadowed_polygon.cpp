@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double flat = 1e-12;        // sine of an angle that is none
+constexpr double flat_sine = 1e-12;   // sine of an angle that is none
 constexpr double same = 1.0 - 1e-14;  // cosine of one
 
 // Planes through an edge of `edges` and one of `corners`, with `before` at heights >= 0, `behind`
@@ -26,7 +26,7 @@ void add_parting_planes(std::span<const Vector3d> edges, std::span<const Vector3
     for (const Vector3d& corner : corners) {
       const Vector3d across = edge.cross(corner - edges[k]);
       const double length = across.norm();
-      if (!(length > flat * edge.norm() * (corner - edges[k]).norm())) continue;
+      if (!(length > flat_sine * edge.norm() * (corner - edges[k]).norm())) continue;
       for (const double sign : {1.0, -1.0}) {
         HalfSpace plane{sign / length * across, 0.0};
         plane.offset = plane.normal.dot(edges[k]);
@@ -83,7 +83,8 @@ bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, cons
   }
   if (far_parts.empty()) return false;
   blocker.cuts_target = any_above(target.corners, blocker.plane, 0.0);
-  const double slack = flat * (target.box.merged(from.box).merged(occluder.box)).diagonal().norm();
+  const double slack =
+      flat_sine * (target.box.merged(from.box).merged(occluder.box)).diagonal().norm();
   const auto near = blocker.polygon.corners();
   blocker.reach.push_back(blocker.plane);
   if (from.parts.empty()) return true;  // one point has no penumbra
@@ -113,7 +114,8 @@ double ShadowedPolygon::take_away(const Blocker& blocker, const Vector3d& point,
     const Vector3d b = polygon.corner[k + 1 < polygon.count ? k + 1 : 0] - point;
     // Clockwise corners: the normal points into the pyramid.
     const Vector3d across = a.cross(b);
-    if (!(across.squaredNorm() > flat * flat * a.squaredNorm() * b.squaredNorm())) continue;
+    if (!(across.squaredNorm() > flat_sine * flat_sine * a.squaredNorm() * b.squaredNorm()))
+      continue;
     pyramid[planes++] = {across, across.dot(point)};
   }
   double hidden = 0.0;
