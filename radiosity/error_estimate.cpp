@@ -6,12 +6,12 @@
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/interpolation_error.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
 // Between batches: more than the replicas that the gathers of one solution take (see reconstruct).
 constexpr std::uint64_t batch_keys = 10000;
 // As usual where no accuracy is asked for.
@@ -123,7 +123,8 @@ std::vector<ErrorSample> draw_samples(const Scene& scene, const ElementCaster& c
   if (sampler.is_empty() || wanted < 1) return {};
   const SobolPoints sobol(wanted);
   std::vector<ErrorSample> drawn;
-  const std::uint64_t key = error_point_key + batch_keys * static_cast<std::uint64_t>(batch);
+  const std::uint64_t key = static_cast<std::uint64_t>(RandomPurpose::error_points) +
+                            batch_keys * static_cast<std::uint64_t>(batch);
   for (int i = 0; i < wanted; ++i) drawn.push_back(sampler.draw(sobol.point(i, key)));
   constexpr double crack = 1e-4;  // of the scene
   return unenclosed_samples(caster, crack * scene_bounds(scene).diagonal(), drawn);

@@ -6,12 +6,12 @@
 #include <span>
 
 #include "radiosity/gather/final_gather.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t direction_purpose = 0x6a7e, branch_purpose = 0x6a7f, aim_purpose = 0x6a80;
 constexpr int batch = 64;
 
 // A smooth normal's hemisphere reaches below the surface it rounds off; what would go there meets
@@ -50,7 +50,8 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
                                           std::uint64_t key, float share) const {
   std::size_t level = 0;
   for (; share <= 0.5f && level + 1 < sets_.size(); share *= 2.0f) ++level;
-  const HemisphereSets::Draw draw = sets_[level].draw(random_key(key, direction_purpose));
+  const HemisphereSets::Draw draw =
+      sets_[level].draw(random_key(key, RandomPurpose::pixel_gather_rays));
   const Eigen::Matrix3d frame = draw.frame(at.smooth_normal);
   const auto points = draw.all();
   const auto count = static_cast<int>(points.size());
@@ -70,7 +71,7 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
     caster.closest_hits({rays.data(), n}, {hits.data(), n});
     for (std::size_t r = 0; r < n; ++r) {
       if (hits[r].facet < 0) continue;
-      const std::uint64_t ray_key = random_key(key, branch_purpose, begin + r);
+      const std::uint64_t ray_key = random_key(key, RandomPurpose::pixel_gather_paths, begin + r);
       const double straight = view.is_empty() ? 1.0
                                               : bright_.share(view, measure(at, rays[r].direction),
                                                               count, rays[r], hits[r]);
@@ -85,7 +86,7 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
 void PixelGather::aim(const ElementCaster& caster, const ShadingPoint& at,
                       const BrightPatches::View& view, int rays, std::uint64_t key,
                       Eigen::ArrayXd& sum) const {
-  const std::uint64_t aim_key = random_key(key, aim_purpose);
+  const std::uint64_t aim_key = random_key(key, RandomPurpose::pixel_gather_aims);
   for (int i = 0; i < BrightPatches::aimed(rays); ++i) {
     const Eigen::Array4d u = aims_.point(i, aim_key).cast<double>();
     const BrightPatches::Aim aim = bright_.draw(view, u[0], u[1], u[2]);

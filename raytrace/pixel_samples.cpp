@@ -1,4 +1,5 @@
 #include "raytrace/pixel_samples.h"
+#include "scene/random_purpose.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,6 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t place_purpose = 0x9face, look_purpose = 0x9faced;
 constexpr double filter_radius = 1.5;  // pixels
 
 // x in [-1, 1] over the window's width; 1 in the middle.
@@ -76,8 +76,8 @@ RaySample PixelSamples::sample_at_time(Ray ray, double time, std::uint64_t key, 
 
 void PixelSamples::take(int x, int y, int until, PixelTally& tally) const {
   const auto column = static_cast<std::uint64_t>(x), row = static_cast<std::uint64_t>(y);
-  const std::uint64_t sample_key = random_key(column, row, place_purpose);
-  const std::uint64_t shading_key = random_key(column, row, look_purpose);
+  const std::uint64_t sample_key = random_key(column, row, RandomPurpose::pixel_points);
+  const std::uint64_t shading_key = random_key(column, row, RandomPurpose::pixel_shading);
   for (; tally.count < until; ++tally.count) {
     const Eigen::Array4d u = points_.point(tally.count, sample_key).cast<double>();
     const Ray ray =

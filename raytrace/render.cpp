@@ -22,6 +22,7 @@
 #include "scene/errors.h"
 #include "scene/facet_normals.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -31,8 +32,6 @@ namespace {
 // subdivision in force, so that a finer picture keeps the samples of a coarser one.
 constexpr int max_levels = 6;
 constexpr int lattice_steps = 1 << max_levels;
-
-constexpr std::uint64_t edge_purpose = 0xed6e;
 
 struct Counters {
   std::atomic<std::int64_t> eye_rays{0}, depth_cut{0};
@@ -173,8 +172,8 @@ class PixelMean {
   // lamp's edge against a wall a hundred times darker needs that.
   PixelValue edge_mean(int i, int j, const Corners& c) const {
     const double x = x_ + i * steps_per_cell_, y = y_ + j * steps_per_cell_;
-    const std::uint64_t key =
-        random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y), edge_purpose);
+    const std::uint64_t key = random_key(static_cast<std::uint64_t>(x),
+                                         static_cast<std::uint64_t>(y), RandomPurpose::pixel_edges);
     PixelValue sum = PixelValue::zero(static_cast<int>(c[0]->radiance.size()));
     int votes = 0;
     for (int s = 0; s < edge_points_.count(); ++s) {

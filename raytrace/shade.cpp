@@ -8,12 +8,12 @@
 
 #include "radiosity/gather/final_gather.h"
 #include "scene/optics.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t shadow_purpose = 0x5ec07d, gather_purpose = 0x6a7e4;
 constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
 
 // What one of many samples does with light: a share of the rays of a sample that stands alone.
@@ -332,15 +332,15 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   const ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? 4 : 8);
   Arriving E;
   const ShadowOrigin from = shadow_origin(hit, at);
-  E.direct = direct_light_.irradiance(*state.caster,
-                                      {.at = {from.position, normal, from.facet},
-                                       .key = random_key(state.key, branch.node, shadow_purpose),
-                                       .shadows = shadows});
+  E.direct = direct_light_.irradiance(
+      *state.caster, {.at = {from.position, normal, from.facet},
+                      .key = random_key(state.key, branch.node, RandomPurpose::ray_tree_shadows),
+                      .shadows = shadows});
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
         *state.caster,
         {.position = at.position, .normal = at.normal, .smooth_normal = normal, .facet = hit.facet},
-        random_key(state.key, branch.node, gather_purpose), share);
+        random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers), share);
   } else {
     E.indirect = interpolate(mesh, solution_.indirect_irradiance, hit);
   }

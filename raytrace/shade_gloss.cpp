@@ -5,12 +5,11 @@
 #include <numbers>
 
 #include "raytrace/shade.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
-
-constexpr std::uint64_t gloss_purpose = 0x61055, lamp_purpose = 0x1a4b, bright_purpose = 0x1a4c;
 
 // Whether a direction is on one side of a facet and on the other of the smooth surface that it
 // stands for: light from there would come through the facet.
@@ -30,7 +29,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
       is_first ? std::max(1, static_cast<int>(std::lround(state.effort * options_.glossy_rays)))
                : 1;
   const int first = state.number.value_or(0);
-  const std::uint64_t key = random_key(state.gloss_key, branch.node, gloss_purpose,
+  const std::uint64_t key = random_key(state.gloss_key, branch.node, RandomPurpose::gloss,
                                        static_cast<std::uint64_t>(first / gloss_point_count));
   // As many as a picture takes of one place or so.
   constexpr int usual_samples = 64;
@@ -48,18 +47,18 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
     sample.density =
         lobe(facets_[hit.facet].material, hit.from_back).density(interaction, sample.direction);
     const Eigen::Array4d lamp_u =
-        gloss_points_.point(index, random_key(key, lamp_purpose)).cast<double>();
+        gloss_points_.point(index, random_key(key, RandomPurpose::gloss_lamps)).cast<double>();
     add_lamp(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), state);
     add_free_source(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), state);
     if (!view.is_empty()) {
       const Eigen::Array4d bright_u =
-          gloss_points_.point(index, random_key(key, bright_purpose)).cast<double>();
+          gloss_points_.point(index, random_key(key, RandomPurpose::gloss_patches)).cast<double>();
       add_bright_patch(branch, interaction, hit, at, view, bright_u,
                        1.0f / static_cast<float>(count), state);
     }
     // Places of many samples are alike, so that theirs are spread over what lies behind as well.
-    const auto node =
-        random_key(branch.node, gloss_purpose, static_cast<std::uint64_t>(i), sample.crosses);
+    const auto node = random_key(branch.node, RandomPurpose::gloss, static_cast<std::uint64_t>(i),
+                                 sample.crosses);
     Branch spread = branch;
     spread.is_sharp = false;
     spread.bright = view.is_empty() ? nullptr : &view;
@@ -184,7 +183,8 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   }
   if (!(aimed.weight > 0.0f).any()) return;
   aimed.depth = branch.depth + 1;
-  aimed.node = random_key(branch.node, bright_purpose, static_cast<std::uint64_t>(aim.element));
+  aimed.node = random_key(branch.node, RandomPurpose::gloss_patches,
+                          static_cast<std::uint64_t>(aim.element));
   aimed.is_sharp = false;
   aimed.width = cone_width(branch, at);
   aimed.lobe_density = 0.0;

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t set_key = 0x5e75;
 // Enough for neighbours to differ, few enough to stay in the second-level cache.
 constexpr int most_sets = 64, fewest_sets = 8, points_in_cache = 1 << 16;
 
@@ -51,7 +51,8 @@ HemisphereSets::HemisphereSets(int count, bool with_planar_points)
   parallel_for(sets_, 1, [&](int begin, int end) {
     std::vector<Eigen::Array4f> points(size);
     for (int set = begin; set < end; ++set) {
-      sobol.points(0, random_key(static_cast<std::uint64_t>(set), set_key), points);
+      sobol.points(0, random_key(static_cast<std::uint64_t>(set), RandomPurpose::hemisphere_sets),
+                   points);
       const std::size_t begin_of_set = static_cast<std::size_t>(set) * size;
       const auto made = std::span(points_).subspan(begin_of_set, size);
       for (std::size_t i = 0; i < size; ++i) {

@@ -7,6 +7,7 @@
 
 #include "scene/microfacet.h"
 #include "scene/optics.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -78,10 +79,10 @@ std::optional<ScatteringSample> sample_microfacet(const SurfaceInteraction& inte
   if (!outgoing) return std::nullopt;
   sample.direction = outgoing->normalized();
   sample.weight = scattering_weight(interaction, sample.crosses);
-  constexpr std::uint64_t masking = 0x3a5c;
   const double passes = unmasked(interaction, interaction.material.gloss_roughness(),
                                  sample.direction, sample.crosses);
-  if (!(random_uniform(random_key(random.key, masking)) < passes)) return std::nullopt;
+  if (!(random_uniform(random_key(random.key, RandomPurpose::microfacet_masking)) < passes))
+    return std::nullopt;
   return sample;
 }
 

@@ -10,12 +10,12 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 
 namespace lightwell {
 namespace {
 
 using std::numbers::pi;
-constexpr std::uint64_t learn_purpose = 0x51e7, ray_purpose = 0x51e8, point_purpose = 0x51e9;
 constexpr int most_sites = 4096, points_per_octant = 3;
 
 // A cube is no larger than this share of the scene's diagonal; more cubes cost more learning.
@@ -280,7 +280,8 @@ void SkyLight::learn(const ElementCaster& caster) {
   parallel_for(count, 4, [&](int begin, int end) {
     for (int s = begin; s < end; ++s) {
       const auto i = static_cast<std::size_t>(s);
-      visibilities[i] = sample_cells(caster, *lists[i], random_key(keys[i], learn_purpose));
+      visibilities[i] =
+          sample_cells(caster, *lists[i], random_key(keys[i], RandomPurpose::sky_site_rays));
     }
   });
   sites_.resize(lists.size());
@@ -405,7 +406,7 @@ void SkyLight::cast(const ElementCaster& caster, const SurfacePoint& at,
   std::size_t s = 0;
   for (int i = 0; i < rays; ++i) {
     const double within =
-        random_uniform(random_key(key, ray_purpose, static_cast<std::uint64_t>(i)));
+        random_uniform(random_key(key, RandomPurpose::sky_rays, static_cast<std::uint64_t>(i)));
     const double wanted = (i + within) / rays * all;
     while (s + 1 < shares.size() && !(shares[s].cdf > wanted)) ++s;
     const Share& share = shares[s];
@@ -449,7 +450,8 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at
   if (const auto found = site_of_.find(site_key(point, normal, cube_)); found != site_of_.end()) {
     site = &sites_[static_cast<std::size_t>(found->second)];
   } else {
-    learnt = site_of(sample_cells(caster, {&at, 1}, random_key(key, point_purpose)), {});
+    learnt =
+        site_of(sample_cells(caster, {&at, 1}, random_key(key, RandomPurpose::sky_point_rays)), {});
     site = &learnt;
   }
   const Eigen::Vector3f n = normal.cast<float>();
@@ -491,12 +493,12 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at
   };
   Eigen::ArrayXd E_open = open_irradiance();
 
-  const auto tally_of = [&](int rays, std::uint64_t purpose) {
+  const auto tally_of = [&](int rays, std::uint64_t round) {
     Tally tally{.seen_open = Eigen::ArrayXd::Zero(bands_),
                 .all_open = Eigen::ArrayXd::Zero(bands_),
                 .seen_elsewhere = Eigen::ArrayXd::Zero(bands_)};
     const auto count = static_cast<int>(std::lround(all_to_open * rays));
-    cast(caster, at, shares, std::clamp(count, 1, most_sky_rays), random_key(key, purpose), tally);
+    cast(caster, at, shares, std::clamp(count, 1, most_sky_rays), random_key(key, round), tally);
     return tally;
   };
   const auto seen_share = [](const Tally& tally) -> Eigen::ArrayXd {

@@ -8,6 +8,7 @@
 #include "radiosity/visibility/pair_shafts.h"
 #include "radiosity/visibility/shadow_rays.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -15,7 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t shadow_rays_key = 21;  // purpose of random keys
 // Powers of 4, so that no goal straddles two sets.
 constexpr int few_rays = 16, points_in_set = 1 << 14, most_rays = 1 << 18;
 constexpr double usual_target = 1e-3;
@@ -82,8 +82,8 @@ class PairVisibility {
   ShadowSample sample(int i, int j, int count) const {
     const int set = count / sobol_.count();
     const std::uint64_t key =
-        random_key(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j), shadow_rays_key,
-                   static_cast<std::uint64_t>(set));
+        random_key(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j),
+                   RandomPurpose::exchange_shadow_rays, static_cast<std::uint64_t>(set));
     const Eigen::Array4f u = sobol_.point(count - set * sobol_.count(), key);
     const PatchPoint a = samplers_[i].point(u[0], u[1]), b = samplers_[j].point(u[2], u[3]);
     const Vector3d way = b.position - a.position;

@@ -4,15 +4,10 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
-namespace {
-
-constexpr std::uint64_t emitter_points_key = 3;  // purpose of random keys
-
-}  // namespace
-
 EmitterExchange::EmitterExchange(const ElementCaster& caster, const DirectLight& direct_light)
     : mesh_(caster.mesh()), caster_(caster), direct_light_(direct_light) {
   const auto& emitters = direct_light.emitters();
@@ -52,7 +47,8 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
   const auto fill = [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       if (!receives[i]) continue;
-      const std::uint64_t key = random_key(static_cast<std::uint64_t>(i), emitter_points_key);
+      const std::uint64_t key =
+          random_key(static_cast<std::uint64_t>(i), RandomPurpose::emitter_exchange_points);
       const PatchSampler sampler(mesh_, i);
       for (int s = 0; s < options.emitter_points; ++s) {
         const Eigen::Array4f u = sobol.point(s, key);

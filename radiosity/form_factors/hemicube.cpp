@@ -7,12 +7,11 @@
 #include "radiosity/form_factors/ray_cast_rows.h"
 #include "scene/facet_textures.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
-
-constexpr std::uint64_t hemicube_branches = 31;  // purpose of random keys
 
 // Adds up one patch's row from what its hemicube's cells see.
 class Tally {
@@ -25,7 +24,7 @@ class Tally {
     const int bands = static_cast<int>(mesh.reflectance.cols());
     row_ = {.inverse_variance = 1.0 / mesh.area[patch]};
     specular_escaped_ = absorbed_ = cut_ = Eigen::ArrayXd::Zero(bands);
-    key_ = random_key(static_cast<std::uint64_t>(patch), hemicube_branches);
+    key_ = random_key(static_cast<std::uint64_t>(patch), RandomPurpose::hemicube_paths);
     const int n = cells_.resolution();
     for (int f = 0; f < HemicubeCells::face_count; ++f) {
       for (int r = 0; r < cells_.rows(f); ++r) {
@@ -78,7 +77,7 @@ class Tally {
     const auto cell =
         static_cast<std::uint64_t>(cells_.first_cell(face) + row * cells_.resolution() + column);
     const PathLosses losses =
-        paths_.follow(ray, hit, random_key(key_, hemicube_branches, cell),
+        paths_.follow(ray, hit, random_key(key_, RandomPurpose::hemicube_paths, cell),
                       [&](const ElementHit& end, const Spectrum& throughput) {
                         const auto [at, is_new] = by_way_of_specular_.try_emplace(
                             mesh.patch[end.element], Eigen::ArrayXd::Zero(throughput.size()));

@@ -7,14 +7,13 @@
 #include <numbers>
 
 #include "mesh/patches/sphere_grid.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr std::uint64_t hemicube_turn = 30;  // purpose of random keys
 
 // Area centroid of a flat element, by its triangles.
 Vector3d centroid(const PatchMesh& mesh, int element) {
@@ -118,8 +117,9 @@ HemicubeEye hemicube_eye(const PatchMesh& mesh, int patch, bool on_elements) {
   eye.position = eye_point.position;
   Vector3d x, y;
   tangent_frame(eye_point.normal, x, y);
-  const double turn = 2.0 * std::numbers::pi *
-                      random_uniform(random_key(static_cast<std::uint64_t>(patch), hemicube_turn));
+  const double turn =
+      2.0 * std::numbers::pi *
+      random_uniform(random_key(static_cast<std::uint64_t>(patch), RandomPurpose::hemicube_turn));
   eye.frame << std::cos(turn) * x + std::sin(turn) * y, std::cos(turn) * y - std::sin(turn) * x,
       eye_point.normal;
   return eye;

@@ -8,13 +8,12 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t form_factor_rays = 1;  // purposes of random keys
-constexpr std::uint64_t form_factor_branches = 2;
 constexpr std::size_t row_batch = 64;
 
 // Longer rows are made of several sets.
@@ -91,7 +90,8 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
                    .cut = Spectrum::Zero(bands),
                    .rays = static_cast<double>(rays)};
   std::map<int, Spectrum> by_way_of_specular;
-  const std::uint64_t key = random_key(static_cast<std::uint64_t>(patch), form_factor_rays);
+  const std::uint64_t key =
+      random_key(static_cast<std::uint64_t>(patch), RandomPurpose::form_factor_rays);
   PatchRays from(mesh, patch);
   std::array<Ray, row_batch> ray;
   std::array<ElementHit, row_batch> hit;
@@ -108,7 +108,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
         const ElementHit& h = hit[r];
         if (paths_.has_specular() && h.facet >= 0 && paths_.is_specular(h.facet)) {
           const std::uint64_t index = static_cast<std::uint64_t>(begin) + first + r;
-          pass_on(ray[r], h, random_key(key, form_factor_branches, index), scratch, row,
+          pass_on(ray[r], h, random_key(key, RandomPurpose::form_factor_paths, index), scratch, row,
                   by_way_of_specular);
         } else if (h.element >= 0) {
           scratch.first_.add(mesh.patch[h.element]);

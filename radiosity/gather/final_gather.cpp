@@ -15,23 +15,17 @@
 #include "radiosity/paths/light_path.h"
 #include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t gather_rays = 10;  // purposes of random keys
-constexpr std::uint64_t gather_branches = 11;
-constexpr std::uint64_t gather_shadows = 12;
-constexpr std::uint64_t aimed_rays = 15;
-constexpr std::uint64_t caustic_rays = 13;
-constexpr std::uint64_t caustic_branches = 14;
-constexpr std::uint64_t caustic_rays_of_lamps = 0xf4ee3;
 constexpr int gather_batch = 128;
 
 LightQuery light_query(const GatherPoint& at, std::uint64_t key, const GatherOptions& options) {
   return {.at = {at.position, at.normal, at.facet},
-          .key = random_key(key, gather_shadows),
+          .key = random_key(key, RandomPurpose::gather_shadows),
           .shadows = options.shadows};
 }
 
@@ -71,7 +65,7 @@ class HemisphereGather {
     const Eigen::Index columns = radiosity_.cols();
     std::array<Eigen::ArrayXd, 2> sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
     const HemisphereSets& set = sets_.at(ray_count(at, options_));
-    const HemisphereSets::Draw draw = set.draw(random_key(key, gather_rays));
+    const HemisphereSets::Draw draw = set.draw(random_key(key, RandomPurpose::gather_rays));
     const Eigen::Matrix3d frame = draw.frame(at.normal);
     const int count = set.count();
     BrightPatches::View view;
@@ -117,7 +111,8 @@ class HemisphereGather {
       const auto n = static_cast<std::size_t>(std::min(gather_batch, aims.count() - begin));
       for (std::size_t r = 0; r < n; ++r) {
         const Eigen::Array4d u =
-            aims.point(begin + static_cast<int>(r), random_key(key, aimed_rays)).cast<double>();
+            aims.point(begin + static_cast<int>(r), random_key(key, RandomPurpose::gather_aims))
+                .cast<double>();
         const BrightPatches::Aim aim = bright_.draw(view, u[0], u[1], u[2]);
         element[r] = aim.element;
         ray[r] = {.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
@@ -139,10 +134,11 @@ class HemisphereGather {
     if (hit.facet < 0) return;
     if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, share, sum);
     if (!paths_.is_specular(hit.facet)) return;
-    const PathLosses losses = paths_.follow(ray, hit, random_key(key, gather_branches, index),
-                                            [&](const ElementHit& end, const Spectrum& throughput) {
-                                              add_throughput(end, throughput, sum);
-                                            });
+    const PathLosses losses =
+        paths_.follow(ray, hit, random_key(key, RandomPurpose::gather_paths, index),
+                      [&](const ElementHit& end, const Spectrum& throughput) {
+                        add_throughput(end, throughput, sum);
+                      });
     if (losses.sky.size() == 0 || dome_.size() == 0) return;
     sum.segment(dome_column_, bands_) +=
         (std::numbers::pi_v<float> * dome_ * losses.sky).cast<double>();
@@ -377,7 +373,8 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
         ElementHit hit;
         lit.caster.closest_hits({&ray, 1}, {&hit, 1});
         if (hit.facet < 0 || !paths.is_specular(hit.facet)) continue;
-        paths.follow(ray, hit, random_key(key, caustic_branches, static_cast<std::uint64_t>(r)),
+        paths.follow(ray, hit,
+                     random_key(key, RandomPurpose::caustic_paths, static_cast<std::uint64_t>(r)),
                      [&](const LightArrival& at) {
                        if (at.through_panes_only) return;  // DirectLight has that
                        list.push_back({at.hit.element, at.throughput * watts});
@@ -401,7 +398,8 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
     const int count = std::clamp(static_cast<int>(std::lround(rays * share)), 1, rays);
     const Spectrum power_per_ray =
         mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
-    const std::uint64_t key = random_key(static_cast<std::uint64_t>(p), caustic_rays);
+    const std::uint64_t key =
+        random_key(static_cast<std::uint64_t>(p), RandomPurpose::caustic_rays);
     const PatchSampler sampler(mesh, p);
     send(count, key, lit.direct_light.first_column(facet), [&](int r) {
       const Eigen::Array4f u = sobol.point(r, key);
@@ -412,7 +410,7 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
   const auto send_source = [&](const FreeSource& source) {
     if (!source.is_on() || source.is_dome()) return;
     const std::uint64_t key =
-        random_key(static_cast<std::uint64_t>(source.number), caustic_rays_of_lamps);
+        random_key(static_cast<std::uint64_t>(source.number), RandomPurpose::caustic_source_rays);
     send(rays, key, source.channel * bands, [&](int r) {
       const SourceRay sent = source_ray(source, sobol.point(r, key));
       return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / rays)));

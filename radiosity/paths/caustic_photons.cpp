@@ -14,12 +14,11 @@
 #include "radiosity/paths/light_path.h"
 #include "radiosity/paths/specular_targets.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
-
-constexpr std::uint64_t photon_purpose = 0xf0704, branch_purpose = 0xf0705, share_purpose = 0xf0706;
 
 // One side of an emitter, or a source that is no surface.
 struct Source {
@@ -174,7 +173,7 @@ void share_out(std::vector<Beam>& beams, int count) {
       beams[i].stands_for = beams[i].count;
       continue;
     }
-    const double chance = random_uniform(random_key(i, share_purpose));
+    const double chance = random_uniform(random_key(i, RandomPurpose::photon_counts));
     beams[i].count = static_cast<int>(std::floor(due + chance));
     beams[i].stands_for = due;
   }
@@ -193,7 +192,8 @@ class PhotonGun {
       : caster_(caster), paths_(paths), targets_(targets), sobol_(most) {}
 
   void shoot(const Beam& beam, int number, int i, std::vector<Deposit>& deposits) const {
-    const std::uint64_t key = random_key(static_cast<std::uint64_t>(number), photon_purpose);
+    const std::uint64_t key =
+        random_key(static_cast<std::uint64_t>(number), RandomPurpose::photons);
     const auto sent = aimed(beam, sobol_.point(i, key));
     if (!sent) return;
     const Ray& ray = sent->ray;
@@ -201,7 +201,8 @@ class PhotonGun {
     caster_.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.facet < 0 || targets_.of_facet(hit.facet) != beam.target) return;
     const Spectrum power = beam.source.light() * static_cast<float>(sent->weight / beam.stands_for);
-    const auto branch_key = random_key(key, branch_purpose, static_cast<std::uint64_t>(i));
+    const auto branch_key =
+        random_key(key, RandomPurpose::photon_paths, static_cast<std::uint64_t>(i));
     paths_.follow(ray, hit, branch_key, [&](const LightArrival& at) {
       if (at.through_panes_only) return;
       deposits.push_back({at.position, at.hit.element, at.throughput * power});

@@ -10,13 +10,12 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t ray_purpose = 0xf4ee1, free_branch_purpose = 0xf4ee2,
-                        patch_purpose = 0xf4ee3;
 constexpr int fewest_free_rays = 1 << 12, most_free_rays = 1 << 24;
 
 // What some rays of one source did, as weights.
@@ -72,7 +71,7 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
       }
       if (!is_specular) continue;
       const auto branch =
-          random_key(key, free_branch_purpose, static_cast<std::uint64_t>(first + r));
+          random_key(key, RandomPurpose::free_source_paths, static_cast<std::uint64_t>(first + r));
       const PathLosses losses =
           paths.follow(rays[r], hit, branch, [&](const ElementHit& at, const Spectrum& throughput) {
             piece.by_specular.push_back(
@@ -123,7 +122,8 @@ class Collector {
 
   void cast(const FreeSource& source, int rays) {
     const SobolPoints sobol(rays);
-    const auto key = random_key(static_cast<std::uint64_t>(source.number), ray_purpose);
+    const auto key =
+        random_key(static_cast<std::uint64_t>(source.number), RandomPurpose::free_source_rays);
     // Slices of pieces bound what waits to be added.
     constexpr int piece_rays = 1 << 13, slice = 16;
     const int count = (rays + piece_rays - 1) / piece_rays;
@@ -159,7 +159,8 @@ class Collector {
           const int facet = mesh.facet[mesh.first_element[i]];
           if (!paths_.is_diffuse(facet)) continue;
           const PatchSampler sampler(mesh, i);
-          const auto key = random_key(static_cast<std::uint64_t>(i), patch_purpose);
+          const auto key =
+              random_key(static_cast<std::uint64_t>(i), RandomPurpose::free_source_points);
           for (int p = 0; p < points; ++p) {
             const Eigen::Array4f u = at_points.point(p, key);
             const PatchPoint at = sampler.point(u[0], u[1]);
@@ -172,7 +173,8 @@ class Collector {
           }
           E.row(i) /= static_cast<float>(points);
           if (!has_specular) continue;
-          const Spectrum seen = sky_by_specular(sampler, at_rays, random_key(key, ray_purpose));
+          const Spectrum seen =
+              sky_by_specular(sampler, at_rays, random_key(key, RandomPurpose::free_source_rays));
           E.row(i).segment(dome->channel * bands_, bands_) += (dome->light * seen).transpose();
         }
       });
@@ -226,7 +228,8 @@ class Collector {
       caster_.closest_hits({&ray, 1}, {&hit, 1});
       if (hit.facet < 0 || !paths_.is_specular(hit.facet)) continue;
       const PathLosses losses = paths_.follow(
-          ray, hit, random_key(key, free_branch_purpose, static_cast<std::uint64_t>(r)),
+          ray, hit,
+          random_key(key, RandomPurpose::free_source_paths, static_cast<std::uint64_t>(r)),
           [](const LightArrival&) {});
       if (losses.sky.size() > 0) sum += losses.sky;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/optics.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -59,9 +60,8 @@ bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const Elemen
   if (is_smooth) bent = visible_normal(direction, normal, bent);
   ScatteringRandom random{.component = random_uniform(key), .key = key};
   if (material.gloss_roughness() > 0.0f) {
-    constexpr std::uint64_t microfacets = 0x66c3;
-    random.u = random_uniform(random_key(key, microfacets, 1));
-    random.v = random_uniform(random_key(key, microfacets, 2));
+    random.u = random_uniform(random_key(key, RandomPurpose::path_microfacets, 1));
+    random.v = random_uniform(random_key(key, RandomPurpose::path_microfacets, 2));
   }
   const ScatteringSample sample = sample_scattering(
       {.material = material, .direction = direction, .normal = bent, .from_back = hit.from_back},

@@ -11,11 +11,11 @@
 #include "radiosity/refine/gather_noise.h"
 #include "radiosity/refine/refine_solution.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t probe_key = 30, parts_key = 31;  // purposes of random keys
 constexpr std::uint64_t first_pilot_replica = 1000;
 constexpr int probe_count = 16;
 // Of it, what may hide in an indirect light that is taken for even: the product of two gathers has
@@ -592,7 +592,8 @@ double InterpolationError::parts_error(int cell, int side) const {
   const int element = elements_.element(cell, side);
   const int facet = elements_.base().facet[element];
   const Eigen::Vector3d normal = element_center(elements_.base(), element).normal;
-  const std::uint64_t key = random_key(static_cast<std::uint64_t>(2 * cell + side), parts_key);
+  const std::uint64_t key =
+      random_key(static_cast<std::uint64_t>(2 * cell + side), RandomPurpose::refinement_quarters);
   double error = 0.0;
   for (int k = 0; k < 4; ++k) {
     const CellPoint at = point_in(cell, side, k % 2 == 0 ? 0.25 : 0.75, k < 2 ? 0.25 : 0.75);
@@ -615,7 +616,8 @@ double InterpolationError::probed_error(int cell, int side) const {
   });
   const int facet = elements_.base().facet[element];
   const Eigen::Vector3d normal = element_center(elements_.base(), element).normal;
-  const std::uint64_t key = random_key(static_cast<std::uint64_t>(2 * cell + side), probe_key);
+  const std::uint64_t key =
+      random_key(static_cast<std::uint64_t>(2 * cell + side), RandomPurpose::refinement_probes);
   double error = 0.0;
   const std::size_t lights =
       std::min<std::size_t>(static_cast<std::size_t>(direct_light_.light_count()), 64);

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <type_traits>
 
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
-
-constexpr std::uint64_t asymmetry_key = 31;
 
 template <class Weights>
 LaneArray dot(const Weights& w, const LightVector& a, const LightVector& b) {
@@ -54,7 +53,9 @@ double RadiositySystem::asymmetry() const {
   // that of |S x|^2 is ||S||^2 <x^2>.
   LightVector x(patch_count(), lanes()), y(patch_count(), lanes());
   const auto random = [](Eigen::Index i, std::uint64_t k) {
-    return 2.0 * random_uniform(random_key(static_cast<std::uint64_t>(i), asymmetry_key, k)) - 1.0;
+    return 2.0 * random_uniform(
+                     random_key(static_cast<std::uint64_t>(i), RandomPurpose::asymmetry, k)) -
+           1.0;
   };
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     x.row(i).setConstant(random(i, 0));

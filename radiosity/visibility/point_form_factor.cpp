@@ -11,6 +11,7 @@
 #include "radiosity/visibility/shadowed_polygon.h"
 #include "radiosity/visibility/visible_exchange.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -18,7 +19,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t shooter_points_key = 22;  // purpose of random keys
 constexpr int points_at_once = 128;
 constexpr double nothing = 1e-12;  // below, the shooter is edge-on or at the horizon: rounding
 
@@ -30,7 +30,8 @@ class ShooterSamples {
 
   // cos cos / (pi r^2 + disc), the ray to sample s from the point.
   ShadowSample sample(const ReceivingPoint& from, int s, double disc) const {
-    const auto key = random_key(static_cast<std::uint64_t>(patch_), from.key, shooter_points_key);
+    const auto key =
+        random_key(static_cast<std::uint64_t>(patch_), from.key, RandomPurpose::shooter_points);
     const Eigen::Array4f u = sobol_.point(s, key);
     const PatchPoint to = sampler_.point(u[0], u[1]);
     const Vector3d way = to.position - from.position;

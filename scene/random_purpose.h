@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cstdint>
+
+#include "scene/sampling.h"
+
+namespace lightwell {
+
+/// Purposes of random numbers: the part of a key that keeps the numbers of one use apart from those
+/// of all others (see random_key). A value never changes, since results depend on it. A new purpose
+/// takes a new value, here and in is_distinct_purpose().
+enum class RandomPurpose : std::uint64_t {
+  // Rows of form factors; (patch, purpose) or (key, purpose, number).
+  form_factor_rays = 1,
+  form_factor_paths = 2,
+  emitter_exchange_points = 3,
+  // Gathers at points; (key of a point, purpose), (patch, purpose) or (source, purpose).
+  gather_rays = 10,
+  gather_paths = 11,
+  gather_shadows = 12,
+  caustic_rays = 13,
+  caustic_paths = 14,
+  gather_aims = 15,
+  error_points = 20,          // alone, a multiple of 10000 added for every further batch
+  exchange_shadow_rays = 21,  // (patch, patch, purpose, set)
+  shooter_points = 22,        // (patch, receiver, purpose)
+  // Refinement; (side of a cell, purpose).
+  refinement_probes = 30,
+  refinement_quarters = 31,
+  // (patch, purpose) or (source, purpose).
+  hemicube_turn = 32,
+  hemicube_paths = 33,
+  asymmetry = 34,
+  caustic_source_rays = 35,
+  // Sets of hemisphere rays; (set, purpose).
+  hemisphere_sets = 0x5e75,
+  // Scattering at rough surfaces; (key of an interaction, purpose).
+  microfacet_masking = 0x3a5c,
+  path_microfacets = 0x66c3,
+  // The sky; (key of a site or a point, purpose).
+  sky_site_rays = 0x51e7,
+  sky_rays = 0x51e8,
+  sky_point_rays = 0x51e9,
+  // Light of sources that are no surface; (source, purpose) or (patch, purpose).
+  free_source_rays = 0xf4ee1,
+  free_source_paths = 0xf4ee2,
+  free_source_points = 0xf4ee3,
+  // Caustic photons; (number, purpose) or (key, purpose, number).
+  photons = 0xf0704,
+  photon_paths = 0xf0705,
+  photon_counts = 0xf0706,
+  // Pictures; (column, row, purpose).
+  pixel_edges = 0xed6e,
+  pixel_points = 0x9face,
+  pixel_shading = 0x9faced,
+  // A ray tree; (key, node, purpose).
+  ray_tree_shadows = 0x5ec07d,
+  ray_tree_gathers = 0x6a7e4,
+  gloss = 0x61055,
+  gloss_lamps = 0x1a4b,
+  gloss_patches = 0x1a4c,
+  // Gathers of pixels; (key, purpose).
+  pixel_gather_rays = 0x6a7e,
+  pixel_gather_paths = 0x6a7f,
+  pixel_gather_aims = 0x6a80,
+};
+
+/// True for every purpose. Two purposes of equal value are two equal cases, which no compiler
+/// accepts; a purpose that is left out is a warning (-Wswitch).
+constexpr bool is_distinct_purpose(RandomPurpose purpose) {
+  switch (purpose) {
+    case RandomPurpose::form_factor_rays:
+    case RandomPurpose::form_factor_paths:
+    case RandomPurpose::emitter_exchange_points:
+    case RandomPurpose::gather_rays:
+    case RandomPurpose::gather_paths:
+    case RandomPurpose::gather_shadows:
+    case RandomPurpose::caustic_rays:
+    case RandomPurpose::caustic_paths:
+    case RandomPurpose::gather_aims:
+    case RandomPurpose::error_points:
+    case RandomPurpose::exchange_shadow_rays:
+    case RandomPurpose::shooter_points:
+    case RandomPurpose::refinement_probes:
+    case RandomPurpose::refinement_quarters:
+    case RandomPurpose::hemicube_turn:
+    case RandomPurpose::hemicube_paths:
+    case RandomPurpose::asymmetry:
+    case RandomPurpose::caustic_source_rays:
+    case RandomPurpose::hemisphere_sets:
+    case RandomPurpose::microfacet_masking:
+    case RandomPurpose::path_microfacets:
+    case RandomPurpose::sky_site_rays:
+    case RandomPurpose::sky_rays:
+    case RandomPurpose::sky_point_rays:
+    case RandomPurpose::free_source_rays:
+    case RandomPurpose::free_source_paths:
+    case RandomPurpose::free_source_points:
+    case RandomPurpose::photons:
+    case RandomPurpose::photon_paths:
+    case RandomPurpose::photon_counts:
+    case RandomPurpose::pixel_edges:
+    case RandomPurpose::pixel_points:
+    case RandomPurpose::pixel_shading:
+    case RandomPurpose::ray_tree_shadows:
+    case RandomPurpose::ray_tree_gathers:
+    case RandomPurpose::gloss:
+    case RandomPurpose::gloss_lamps:
+    case RandomPurpose::gloss_patches:
+    case RandomPurpose::pixel_gather_rays:
+    case RandomPurpose::pixel_gather_paths:
+    case RandomPurpose::pixel_gather_aims:
+      return true;
+  }
+  return false;
+}
+
+/// Keys with a purpose in place of their second or third number.
+inline std::uint64_t random_key(std::uint64_t a, RandomPurpose purpose, std::uint64_t c = 0,
+                                std::uint64_t d = 0) {
+  return random_key(a, static_cast<std::uint64_t>(purpose), c, d);
+}
+inline std::uint64_t random_key(std::uint64_t a, std::uint64_t b, RandomPurpose purpose,
+                                std::uint64_t d = 0) {
+  return random_key(a, b, static_cast<std::uint64_t>(purpose), d);
+}
+
+}  // namespace lightwell
