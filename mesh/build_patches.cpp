@@ -16,9 +16,9 @@
 namespace lightwell {
 namespace {
 
-// Points closer than this share of the scene's diagonal are one. The first is the precision of a
-// file with single-precision coordinates; the others are for rougher ones, where facets that should
-// touch miss each other by more, but not by enough to be two things.
+// Points closer than this share of the scene's diagonal are joined. The first is the precision of
+// single-precision coordinates. The others are for rougher files, in which facets that should touch
+// miss each other by more, but by too little to be apart.
 constexpr std::array<double, 3> weld_shares{1e-7, 1e-6, 1e-5};
 constexpr double most_elements = 20e6;
 
@@ -44,7 +44,7 @@ double predicted_elements(const Scene& scene, double element_size) {
     const int sides = side_count(scene.materials[surface.material]);
     if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
       for (const Facet& facet : mesh->facets) {
-        // A strip narrower than an element is cut along its length only.
+        // A strip narrower than an element is cut along its length alone.
         const double inside = facet_area(*mesh, facet) / (element_size * element_size);
         const double along = boundary_length(*mesh, facet) / (2.0 * element_size);
         count += sides * std::max({1.0, inside, along});
@@ -103,7 +103,7 @@ void check_count(const Scene& scene, const CutSize& cut) {
       count / 1e6, most_elements / 1e6));
 }
 
-// What discontinuity meshing left out.
+// Sentences on what discontinuity meshing left out.
 std::vector<std::string> discontinuity_notes(const CriticalLines& critical,
                                              const CreaseCounts& counts, int without_creases) {
   std::vector<std::string> notes;
@@ -132,7 +132,7 @@ std::vector<std::string> discontinuity_notes(const CriticalLines& critical,
   return notes;
 }
 
-// The polygon facets of a scene cut to size, points joined with one tolerance.
+// The polygon facets of a scene cut to size, with points welded to one tolerance.
 struct FacetMeshes {
   std::vector<FacetPlane> planes{};
   std::vector<FacetMesh> meshes{};  ///< one per plane
@@ -153,7 +153,7 @@ FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut
                            progress);
   const int count = static_cast<int>(result.planes.size());
   result.meshes.resize(count);
-  constexpr int batch = 1024;  // facets between two looks at the stop request
+  constexpr int batch = 1024;  // facets between two checks of the stop request
   for (int begin = 0; begin < count; begin += batch) {
     report(progress, "mesh", 0.4 + 0.5 * begin / count);
     parallel_for(std::min(batch, count - begin), 1, [&](int from, int to) {
@@ -173,8 +173,8 @@ FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut
   return result;
 }
 
-// Mirrors and glass need no patches, but are cut like everything: a great mirror in a scene with
-// few diffuse surfaces must not make millions.
+// The area that the patch size is chosen by, m^2. Mirrors and glass need no patches but are cut as
+// well: a large mirror in a scene with few diffuse surfaces must not make millions of elements.
 double area_to_mesh(const Scene& scene) {
   double diffuse = 0.0, all = 0.0;
   for (const Surface& surface : scene.surfaces) {
@@ -187,7 +187,7 @@ double area_to_mesh(const Scene& scene) {
   return std::max(diffuse, all / most_of_all);
 }
 
-// The smallest tolerance with which all contact lines can be kept; else the one that keeps most.
+// Meshes with the smallest tolerance that keeps all contact lines, or else the one that keeps most.
 FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOptions& options,
                         const Progress& progress) {
   const double diagonal = scene_bounds(scene).diagonal();
@@ -214,7 +214,7 @@ CutSize cut_size(const Scene& scene, const MeshOptions& options) {
   }
   const double element = options.max_element_size;
   if (options.max_patch_size > 0.0) {
-    constexpr double rounding = 1e-5;  // of lengths that were written down and read again
+    constexpr double rounding = 1e-5;  // relative rounding of lengths in a text file
     const double along = std::floor(options.max_patch_size / element + rounding);
     const auto count = static_cast<int>(std::clamp(along, 1.0, 1e3));
     return {.patch_size = std::min(options.max_patch_size, count * element),

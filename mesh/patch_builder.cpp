@@ -66,7 +66,8 @@ int PatchBuilder::root(int vertex) {
   return vertex;
 }
 
-// Sorted by their points: what meets at an edge lies side by side.
+// The border edges of all pieces, sorted by their points: sides that meet at an edge are
+// consecutive.
 std::vector<PatchBuilder::Side> PatchBuilder::border_sides() const {
   std::vector<Side> sides;
   for (int p = 0; p < static_cast<int>(pieces_.size()); ++p) {
@@ -86,8 +87,8 @@ std::vector<PatchBuilder::Side> PatchBuilder::border_sides() const {
 
 namespace {
 
-// Calls visit(one, other) where exactly two elements of different facets of one surface meet at an
-// edge, and nothing else: no third facet stands there.
+// Calls visit(one, other) for each edge at which two facets of one surface meet and no third facet
+// stands.
 template <class Sides, class Pieces, class Visit>
 void for_each_joint(const Sides& sides, const Pieces& pieces, Visit&& visit) {
   for (std::size_t i = 0; i < sides.size();) {
@@ -106,14 +107,14 @@ void for_each_joint(const Sides& sides, const Pieces& pieces, Visit&& visit) {
 
 }  // namespace
 
-// Of the smooth surface that the piece stands for, at one of its vertices.
+// The normal at a piece's vertex of the smooth surface for which the piece stands.
 Vector3d PatchBuilder::normal_at(int piece, int vertex) const {
   const Piece& p = pieces_[piece];
   return normals_.at(p.facet, p.mesh.position[vertex - p.first_vertex], p.normal);
 }
 
-// Radiosity is continuous across a joint if the surface is smooth there: by its facets, or by the
-// normals it gives itself.
+// Shares vertices across smooth joints, where radiosity is continuous. A joint is smooth by the
+// normals of its facets, or by the normals at vertices where the surface has such.
 void PatchBuilder::share_smooth_edges(const std::vector<Side>& sides) {
   constexpr double rounding = 1e-12;  // coplanar facets share even at a limit of 0 degrees
   const double least_cosine = std::cos(smooth_angle_degrees_ * std::numbers::pi / 180.0) - rounding;
@@ -133,7 +134,8 @@ void PatchBuilder::share_smooth_edges(const std::vector<Side>& sides) {
 FacetPatch PatchBuilder::facet_patch(const Part& part) const {
   const Piece& piece = pieces_[part.piece];
   const Material& material = scene_.materials[scene_.surfaces[piece.surface].material];
-  // Emitters' patches keep to their facet, for whose light there are closed forms.
+  // Patches of emitters stay within a facet, because the closed forms of their light are for one
+  // facet.
   FacetPatch patch{.surface = piece.surface,
                    .may_join = piece.sphere < 0 && !material.is_emitter(),
                    .facet = part.piece,
@@ -161,7 +163,7 @@ std::vector<std::vector<std::vector<PatchBuilder::Part>>> PatchBuilder::patches_
     std::vector<FacetPatch> patches;
     for (const Part& part : parts) patches.push_back(facet_patch(part));
     std::vector<FacetPatchContact> contacts;
-    // Of a facet in many patches, which of them has an edge is known by the edge's two vertices.
+    // A facet of many patches: the two vertices of an edge identify the patch that has the edge.
     std::unordered_map<std::uint64_t, int> part_at;
     const auto key = [](int from, int to) {
       return (static_cast<std::uint64_t>(from) << 32) | static_cast<std::uint64_t>(to);

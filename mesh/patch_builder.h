@@ -8,9 +8,9 @@
 
 namespace lightwell {
 
-/// Joins the meshes of all facets and spheres into one PatchMesh, in the order they are added
-/// (ascending facet numbers): shares vertices across smooth edges, joins small facets' patches,
-/// makes the back sides.
+/// Joins the meshes of all facets and spheres into one PatchMesh, in the order in which these are
+/// added (ascending facet numbers): shares vertices across smooth edges, joins the patches of small
+/// facets, and adds the back sides. Keeps a reference to the scene.
 class PatchBuilder {
  public:
   PatchBuilder(const Scene& scene, double smooth_angle_degrees, const FacetGroupOptions& groups)
@@ -19,24 +19,28 @@ class PatchBuilder {
         smooth_angle_degrees_(smooth_angle_degrees),
         groups_(groups) {}
 
+  /// Adds the front of a facet; `normal` is its unit normal.
   void add_facet(int facet, int surface, const Eigen::Vector3d& normal, FacetMesh mesh);
+  /// Adds the outside of a sphere.
   void add_sphere(int facet, int surface, const Sphere& sphere, SphereElements elements);
+  /// Returns the mesh; the builder is empty afterwards.
   PatchMesh finish();
 
  private:
-  struct Piece {  // front of one facet, its vertices numbered from `first_vertex`
+  struct Piece {  // the front of one facet; its vertices are numbered from `first_vertex`
     int facet = 0, surface = 0;
     int first_vertex = 0;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     FacetMesh mesh{};
     std::vector<char> at_reflex_corner{};  ///< per vertex; empty: none
-    int sphere = -1;                       ///< index into grids_; its areas are in sphere_area_
+    int sphere = -1;                       ///< index into grids_ and sphere_area_; -1: a polygon
   };
   /// One of a piece's patches, before they are joined.
   struct Part {
     int piece = 0, patch = 0;
   };
-  /// A border edge of a piece, by its points; `forward`: from `low` to `high`.
+  /// A border edge of a piece by its points; `forward`: the piece passes the edge from `low` to
+  /// `high`.
   struct Side {
     int low = 0, high = 0;
     int v_low = 0, v_high = 0;  ///< vertices there
@@ -48,7 +52,7 @@ class PatchBuilder {
   Eigen::Vector3d normal_at(int piece, int vertex) const;
   int root(int vertex);
   FacetPatch facet_patch(const Part& part) const;
-  /// What becomes one patch, by the first piece that has a part of it.
+  /// Per piece, the patches whose first part lies in the piece; a patch is a list of parts.
   std::vector<std::vector<std::vector<Part>>> patches_of_pieces(
       const std::vector<Side>& sides) const;
   void emit_patch(const std::vector<Part>& parts, bool is_back, std::vector<int>& number,

@@ -46,7 +46,7 @@ Corners sorted_corners(const WeldedFacet& facet) {
   return all;
 }
 
-/// Uses of an edge from its lower to its higher point, and the other way round.
+/// Per edge, the uses from its lower to its higher point, and from its higher to its lower.
 using EdgeUseCounts = std::map<std::array<int, 2>, std::array<int, 2>>;
 
 void add_edges(const WeldedFacet& facet, EdgeUseCounts& uses) {
@@ -62,7 +62,7 @@ void add_edges(const WeldedFacet& facet, EdgeUseCounts& uses) {
 
 FacetCheck check_facets(const Scene& scene) {
   FacetCheck check;
-  // Facets of the same corners: at most one that is kept for each of the two sides.
+  // Facets by their corners: at most one facet per side of the surface is kept.
   std::map<Corners, std::vector<const WeldedFacet*>> same_corners;
   EdgeUseCounts uses;
   const std::vector<WeldedFacet> facets = weld(scene);

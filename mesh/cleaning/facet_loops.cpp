@@ -29,7 +29,8 @@ std::uint64_t key_of(const std::vector<EdgeEnds>& edges) {
   return key;
 }
 
-// Facets joined over edges, each with whether it faces as its root does.
+// Disjoint sets of facets joined over edges (union-find); each facet knows whether it faces as its
+// root does.
 class FacingGroups {
  public:
   explicit FacingGroups(int count)
@@ -47,7 +48,7 @@ class FacingGroups {
       turned ^= turned_[root] != 0;
       root = parent_[root];
     }
-    // Everything on the way then hangs on the root.
+    // Path compression: everything on the way then hangs on the root.
     for (bool rest = turned; parent_[i] != i;) {
       const int next = parent_[i];
       const bool step = turned_[i] != 0;
@@ -73,15 +74,14 @@ class FacingGroups {
 
  private:
   std::vector<int> parent_;
-  std::vector<char> turned_;  // against the parent
-  std::vector<char> mixed_;   // of a root: one of its rings comes back turned over
+  std::vector<char> turned_;  // 1: faces against its parent
+  std::vector<char> mixed_;   // of a root, 1: a ring of its facets comes back turned over
 };
 
 }  // namespace
 
 void FacetLoops::turn_over(int facet) {
   for (int l = facet_begin[facet]; l < facet_begin[facet + 1]; ++l) {
-    // The first corner stays the first.
     std::reverse(corner.begin() + loop_begin[l] + 1, corner.begin() + loop_begin[l + 1]);
   }
 }
@@ -117,7 +117,7 @@ std::vector<char> find_duplicates(const FacetLoops& facets, const std::vector<Ve
   std::vector<char> is_duplicate(by_key.size(), 0);
   for (std::size_t begin = 0, end = 0; begin < by_key.size(); begin = end) {
     while (end < by_key.size() && by_key[end].first == by_key[begin].first) ++end;
-    std::vector<int> kept;  // at most one of each facing, but for keys that agree by chance
+    std::vector<int> kept;  // at most one of each facing, except for keys that agree by chance
     for (std::size_t i = begin; i < end && end - begin > 1; ++i) {
       const int f = by_key[i].second;
       is_duplicate[f] = std::any_of(kept.begin(), kept.end(), [&](int other) {
@@ -149,7 +149,7 @@ std::vector<char> find_reversed(const FacetLoops& facets, const std::vector<Vect
     const auto place = groups.find(f);
     (place.turned ? turned : straight)[place.root] += area_vector(facets, f, points).norm();
   }
-  constexpr double clearly = 1.0 + 1e-6;  // a tie says nothing
+  constexpr double clearly = 1.0 + 1e-6;  // a tie decides nothing
   for (int f = 0; f < count; ++f) {
     const auto [root, is_turned] = groups.find(f);
     if (groups.is_mixed(root)) continue;

@@ -9,20 +9,21 @@
 
 namespace lightwell {
 
-/// What goes on over a facet's plane and must not change across it.
+/// The maps of a facet, which may not change inside a merged polygon.
 struct FacetMaps {
-  int uv = -1;      ///< see Facet::uv_map
-  int normal = -1;  ///< see Facet::normal_map
+  int uv = -1;      ///< Facet::uv_map
+  int normal = -1;  ///< Facet::normal_map
 
   bool operator==(const FacetMaps& other) const = default;
 };
 
-/// The polygons of one surface over welded points, in flat arrays: a surface may have millions.
+/// The polygons of one surface over welded points, in flat arrays, because a surface may have
+/// millions.
 struct FacetLoops {
   std::vector<int> corner{};  ///< points, loop after loop; a facet's first loop is its boundary
   std::vector<int> loop_begin{0};  ///< loop l is [loop_begin[l], loop_begin[l + 1]) of corner
-  std::vector<int> facet_begin{
-      0};                         ///< facet f is [facet_begin[f], facet_begin[f + 1]) of the loops
+  /// Facet f is [facet_begin[f], facet_begin[f + 1]) of the loops.
+  std::vector<int> facet_begin{0};
   std::vector<FacetMaps> maps{};  ///< by facet
 
   int count() const { return static_cast<int>(facet_begin.size()) - 1; }
@@ -34,11 +35,12 @@ struct FacetLoops {
     corner.insert(corner.end(), points.begin(), points.end());
     loop_begin.push_back(static_cast<int>(corner.size()));
   }
-  /// The loops added since the last facet are one.
+  /// Makes the loops added since the last facet one facet.
   void end_facet(const FacetMaps& maps_of_facet = {}) {
     facet_begin.push_back(static_cast<int>(loop_begin.size()) - 1);
     maps.push_back(maps_of_facet);
   }
+  /// Reverses the loops of a facet; the first corner of each stays first.
   void turn_over(int facet);
 
   /// Calls visit(from, to) with the points of each edge of the facet, in its direction.
@@ -53,11 +55,13 @@ struct FacetLoops {
   }
 };
 
-/// Half the sum of the edges' cross products, holes taken out: the area, along the normal.
+/// The area vector of a facet, m^2 along the normal: half the sum of the cross products of its
+/// edges, holes subtracted.
 Eigen::Vector3d area_vector(const FacetLoops& facets, int facet,
                             const std::vector<Eigen::Vector3d>& points);
 
-/// An edge of a facet, from its lower to its higher point or the other way.
+/// The use of an edge by a facet: from the edge's lower to its higher point (`forward`) or the
+/// other way.
 struct EdgeUse {
   int low = 0, high = 0;  ///< points
   int facet = 0;
@@ -66,7 +70,8 @@ struct EdgeUse {
   bool same_edge(const EdgeUse& other) const { return low == other.low && high == other.high; }
 };
 
-/// All edges, sorted by their points, then facets: the uses of one edge lie side by side.
+/// Returns the edges of all facets, sorted by their points, then by facet: the uses of one edge are
+/// consecutive.
 std::vector<EdgeUse> edge_uses(const FacetLoops& facets);
 
 /// Calls visit(uses) with all uses of each edge.
@@ -78,12 +83,13 @@ void for_each_edge_group(const std::vector<EdgeUse>& uses, Visit&& visit) {
   }
 }
 
-/// Which facets have the edges of an earlier one and its facing (of either facing, if
-/// `either_facing`), per facet.
+/// Returns per facet 1 if an earlier facet has the same edges and faces the same way (any way, if
+/// `either_facing`).
 std::vector<char> find_duplicates(const FacetLoops& facets,
                                   const std::vector<Eigen::Vector3d>& points, bool either_facing);
 
-/// Which facets to turn over so that neighbours face alike, per facet; see merge_planar_regions.
+/// Returns per facet 1 if it has to be turned over so that neighbours face alike; see
+/// merge_planar_regions().
 std::vector<char> find_reversed(const FacetLoops& facets,
                                 const std::vector<Eigen::Vector3d>& points);
 

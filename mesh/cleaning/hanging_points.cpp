@@ -11,12 +11,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::int64_t quick = 128;           // nodes of the tree that any edge may look at
-constexpr std::int64_t most_per_edge = 16;    // nodes in the mean, of what the longer edges need
-constexpr double share_of_length = 1e-3;      // an edge takes in nothing farther away
-constexpr std::size_t most_beside_edge = 64;  // facets; more are a fan whose corners nobody checks
+constexpr std::int64_t quick = 128;         // nodes of the tree that every edge may visit
+constexpr std::int64_t most_per_edge = 16;  // nodes per edge, shared by the edges that need more
+constexpr double share_of_length = 1e-3;    // of an edge; no point farther away is inserted
+// Facets; more at an edge are a fan, whose corners are not compared.
+constexpr std::size_t most_beside_edge = 64;
 
-// Each edge of the surface once, with what lies inside it.
+// An edge of the surface, with the points inside.
 struct HangingEdge {
   int low = 0, high = 0;  // points
   int first_use = 0, uses = 0;
@@ -36,7 +37,8 @@ class HangingPoints {
     }
   }
 
-  // Of a T at least one side is open: the long edge, or the short ones that end in the point.
+  // At a T-junction at least one side is open: the long edge, or the short ones that end in the
+  // point. So open edges are compared with all points, and all edges with open points.
   void find() {
     std::vector<int> open_edges, all_edges, open_points, all_points;
     for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
@@ -86,7 +88,7 @@ class HangingPoints {
         [](const HangingEdge& e, const auto& key) { return std::pair(e.low, e.high) < key; });
   }
 
-  // Edges that need more of the tree than most are left for the end, and share what is left.
+  // Edges that need more than `quick` nodes are left for the end and share a common budget.
   void search(const std::vector<int>& edges, std::vector<int> points) {
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());

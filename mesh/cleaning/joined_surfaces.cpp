@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double reach_share = 1e-6;  // of the diagonal: meshing may weld to that
+constexpr double reach_share = 1e-6;  // of the diagonal: a tolerance to which meshing may weld
 
 Scene only(const Scene& scene, const std::vector<int>& numbers) {
   Scene part;
@@ -38,7 +38,8 @@ std::vector<BoxTree::Box> boxes_of(const std::vector<FacetPlane>& planes) {
   return boxes;
 }
 
-/// All of a surface that decides the light on it, but for its shape; empty: it is left alone.
+/// The properties of a surface, except its shape, that determine its light; empty for a surface
+/// that is not joined.
 std::vector<double> light_key(const Surface& surface, const Material& material) {
   if (material.is_emitter() || material.dielectric || material.texture || material.mask) return {};
   std::vector<double> key{static_cast<double>(surface.motion), material.one_sided ? 1.0 : 0.0,
@@ -66,7 +67,7 @@ std::vector<std::vector<int>> surfaces_alike(const Scene& scene) {
   return groups;
 }
 
-/// Polygons of surfaces alike, over points that they share.
+/// Polygons of similar surfaces over shared points.
 struct Polygons {
   FacetLoops facets{};
   std::vector<FacetRef> from{};  ///< by facet
@@ -96,7 +97,8 @@ Polygons polygons_of(const Scene& scene, const std::vector<int>& numbers, double
   return all;
 }
 
-/// Facets all of whose edges are those of one other: they fill a hole of it.
+/// Marks the facets all of whose edges are shared with one other facet: each fills a hole of the
+/// other.
 std::vector<char> find_islands(const FacetLoops& facets) {
   constexpr int unknown = -1, none = -2;
   std::vector<int> around(static_cast<std::size_t>(facets.count()), unknown);
@@ -113,11 +115,12 @@ std::vector<char> find_islands(const FacetLoops& facets) {
   return is_island;
 }
 
-/// What becomes of the polygons of surfaces alike.
+/// The polygons of similar surfaces after joining.
 struct Joined {
-  std::vector<int> polygon{};  ///< by facet: of `whole`, or -1 where the facet stays
-  FacetLoops whole{};          ///< facets that stay, and joined ones in the place of their first
-  std::vector<char> is_new{};  ///< by facet of `whole`
+  std::vector<int> polygon{};  ///< per facet, its polygon in `whole`; -1: the facet stays
+  /// Facets that stay, and each joined polygon in the place of its first facet.
+  FacetLoops whole{};
+  std::vector<char> is_new{};  ///< per facet of `whole`
 };
 
 std::optional<Joined> joined(const Polygons& all, double tolerance) {
@@ -125,7 +128,8 @@ std::optional<Joined> joined(const Polygons& all, double tolerance) {
   FacetLoops whole_edged = with_hanging_points(all.facets, all.points.all(), tolerance, hanging);
   const std::vector<char> is_island = find_islands(whole_edged);
   for (int f = 0; f < whole_edged.count(); ++f) {
-    if (is_island[f]) whole_edged.maps[f].uv = f;  // goes on nowhere
+    // A map of its own, so the facet is merged with no other.
+    if (is_island[f]) whole_edged.maps[f].uv = f;
   }
   const PlaneRegions regions = find_plane_regions(whole_edged, all.points.all(), tolerance);
   std::vector<int> first_surface(regions.outlines.size(), -1);
@@ -159,7 +163,7 @@ std::optional<Joined> joined(const Polygons& all, double tolerance) {
   return result;
 }
 
-/// A surface's polygons anew: vertices that nothing uses go.
+/// Builds the polygons of a surface anew, without vertices that none uses.
 class NewShape {
  public:
   explicit NewShape(const PolygonMesh& before) : before_(before) {
@@ -195,7 +199,8 @@ class NewShape {
   std::map<int, int> kept_, added_;
 };
 
-/// Puts what was joined into the scene; appends the surfaces that had a part of it to `changed`.
+/// Puts the joined polygons into the scene; appends the surfaces that had a part of one to
+/// `changed`.
 void take_over(const Polygons& all, const Joined& joined, Scene& scene, std::vector<int>& changed) {
   std::vector<char> is_placed(static_cast<std::size_t>(joined.whole.count()), 0);
   for (std::size_t begin = 0, end = 0; begin < all.from.size(); begin = end) {
@@ -237,7 +242,7 @@ int JoinedSurfaces::surface_at(const Vector3d& point, const Vector3d& front) con
   const Vector3d reach = Vector3d::Constant(reach_);
   std::vector<int> found;
   boxes_.find_overlaps({point - reach, point + reach}, found);
-  constexpr double about_alike = 0.5;  // cosine: one of the two sides
+  constexpr double about_alike = 0.5;  // cosine; distinguishes the two sides
   int at_border = -1;
   for (const int i : found) {
     const FacetPlane& plane = planes_[i];

@@ -11,36 +11,43 @@
 
 namespace lightwell {
 
-/// Which surface a place belongs to where polygons of several surfaces became one (see
-/// join_surfaces): light is solved for on the joined polygon, and people ask by name.
+/// The surfaces to which places belong where polygons of several surfaces became one (see
+/// join_surfaces()). Light is solved for on the joined polygon, while reports and the window name
+/// the original surfaces.
 class JoinedSurfaces {
  public:
-  /// Of `before`, the surfaces numbered (rising) some of whose polygons were joined.
+  /// `numbers`, ascending, are the surfaces of `before` of which some polygons were joined.
   JoinedSurfaces(const Scene& before, std::vector<int> numbers);
 
-  /// The surface that has a point within a polygon of its own that faces along `front` (unit), to
-  /// 1e-6 of the scene's diagonal; of several the first. -1: none.
+  /// The surface that has a polygon which contains `point` (m) and faces along `front` (unit), to
+  /// 1e-6 of the scene's diagonal; the first of several; -1: none.
   int surface_at(const Eigen::Vector3d& point, const Eigen::Vector3d& front) const;
-  /// The surface that has a point (m) of an element: that of its patch, unless it was joined.
+  /// The surface that has a point (m) of an element: that of the element's patch, unless the
+  /// surface was joined.
   int surface_of(const PatchMesh& mesh, int element, const Eigen::Vector3d& point) const;
-  /// `joined` with the polygons that its surfaces had before: what to ask for a surface's shape.
+  /// Returns `joined` with the polygons that its surfaces had before joining: the true shape of
+  /// each surface.
   Scene apart(Scene joined) const;
 
  private:
   std::vector<int> numbers_;
-  std::vector<Surface> surfaces_;   // as they were, of those numbers
-  std::vector<FacetPlane> planes_;  // their polygons; `surface` counts in the two above
-  double reach_ = 0.0;              // m
-  BoxTree boxes_;                   // of the planes
+  std::vector<Surface> surfaces_;  // as they were before, in the order of numbers_
+  // Polygons of surfaces_; FacetPlane::surface is an index into surfaces_.
+  std::vector<FacetPlane> planes_;
+  double reach_ = 0.0;  // m, tolerance of surface_at()
+  BoxTree boxes_;       // of the planes
 };
 
-/// Joins the polygons of different surfaces that lie in one plane, hang together over whole edges
-/// and face alike, where the materials differ in name at most and both move alike: files that name
-/// every polygon so need no more patches than those that do not. A joined polygon belongs to the
-/// surface of its first part; surfaces may be left without any. What emits, is clear, or shows a
-/// picture or normals of its own is left alone, and so is a polygon that fills a hole of another:
-/// a switch in a wall stays an object of its own. Tolerances are those of merge_planar_regions().
-/// Null, and the scene bit by bit as it was, where there is nothing to join.
+/// Joins polygons of different surfaces, so that files that give every polygon a name of its own
+/// need no more patches than others. Polygons are joined if they
+/// - lie in one plane, are connected over whole edges and face alike;
+/// - have materials that differ in name at most, and move alike;
+/// - neither emit, nor are clear, nor show a picture or normals of their own;
+/// - do not fill a hole of another polygon: a switch in a wall stays an object of its own.
+///
+/// A joined polygon belongs to the surface of its first part; surfaces may be left without any
+/// polygon. Tolerances are those of merge_planar_regions(). Returns null and leaves the scene
+/// unchanged bit for bit where there is nothing to join.
 std::shared_ptr<const JoinedSurfaces> join_surfaces(Scene& scene);
 
 }  // namespace lightwell

@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-// From its first point to its second; corners are numbers of welded points.
+// A directed edge from its first to its second point, as numbers of welded points.
 using MeshEdge = std::pair<int, int>;
 
 bool is_sliver(const PolygonMesh& mesh, const Facet& facet) {
@@ -54,7 +54,8 @@ std::vector<MeshEdge> edges_of(const PolygonMesh& mesh, double tolerance) {
   return edges;
 }
 
-// Sorted by their ends, so that all uses of an edge, in either direction, lie side by side.
+// Counts edges, sorted by their ends so that all uses of an edge, in either direction, are
+// consecutive.
 void count_edges(std::vector<MeshEdge> edges, MeshQuality& quality) {
   const auto ends = [](const MeshEdge& e) { return std::minmax(e.first, e.second); };
   std::ranges::sort(edges, [&](const MeshEdge& a, const MeshEdge& b) {

@@ -24,8 +24,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double least_thickness = 1e-13;  // of the diagonal: rounding of coordinates
-constexpr double least_extent = 1e-9;      // of the diagonal: dust
+constexpr double least_thickness = 1e-13;  // of the diagonal: the rounding of coordinates
+constexpr double least_extent = 1e-9;      // of the diagonal; smaller facets are dust
 
 FacetLoops without_facets(const FacetLoops& facets, const std::vector<char>& is_gone) {
   FacetLoops left;
@@ -39,7 +39,8 @@ FacetLoops without_facets(const FacetLoops& facets, const std::vector<char>& is_
   return left;
 }
 
-// Corners that became one are one corner; loops that lose themselves so go.
+// The loops of a mesh over welded points. Equal neighbouring corners are joined, and holes left
+// with fewer than three corners are dropped.
 FacetLoops welded_loops(const PolygonMesh& mesh, const std::vector<int>& point, bool with_uv) {
   FacetLoops facets;
   std::vector<int> loop;
@@ -75,8 +76,8 @@ std::vector<char> find_degenerate(const FacetLoops& facets, const std::vector<Ve
   return is_degenerate;
 }
 
-// A region in the place of its first facet, the others as they are. `is_new` gets which are
-// regions.
+// Puts each region in the place of its first facet and keeps all other facets. Appends per facet to
+// `is_new` whether it is a region.
 FacetLoops merged(const FacetLoops& facets, const PlaneRegions& regions, std::vector<char>& is_new,
                   CleanUpReport& report) {
   std::vector<char> is_placed(regions.outlines.size(), 0);
@@ -122,7 +123,8 @@ PolygonMesh polygon_mesh(const FacetLoops& facets, const std::vector<Vector3d>& 
   return mesh;
 }
 
-// One surface; `global` are its vertices' numbers in the scene's welded points.
+// Cleans one surface; empty if nothing was found. `global` are the numbers of its vertices in the
+// scene's welded points.
 std::optional<PolygonMesh> cleaned(const PolygonMesh& mesh, const std::vector<int>& global,
                                    const WeldedPoints& welded, const Material& material,
                                    double diagonal, CleanUpReport& report) {

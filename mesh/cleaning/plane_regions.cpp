@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 const double least_cosine = std::cos(1.0 * std::numbers::pi / 180.0);
-constexpr double needle_width = 4.0;  // tolerances: how a thinner facet is tilted means nothing
+constexpr double needle_width = 4.0;  // tolerances; the normal of a thinner facet is meaningless
 constexpr double rounding = 1e-9;     // of an area
 
 class Regions {
@@ -54,7 +54,7 @@ class Regions {
   std::vector<std::vector<std::vector<int>>> outlines() const {
     std::vector<std::vector<RegionEdge>> edges(normal_of_region_.size());
     for_each_edge_group(uses_, [&](std::span<const EdgeUse> group) {
-      const bool is_fan = group.size() > most_at_edge;  // nothing was joined over it
+      const bool is_fan = group.size() > most_at_edge;  // no facets were joined over such an edge
       for (std::size_t i = 0; i < group.size(); ++i) {
         const int r = region_[group[i].facet];
         if (r < 0) continue;
@@ -76,7 +76,7 @@ class Regions {
     return outlines;
   }
 
-  // Where in uses_ the edges of each facet's corners are.
+  // Fills the indices from facets to their uses of edges, and from a use to all uses of its edge.
   void index_edges() {
     group_begin_.resize(uses_.size());
     first_use_.assign(region_.size() + 1, 0);
@@ -107,7 +107,7 @@ class Regions {
   struct Growing {
     int number = 0;
     Vector3d normal, origin;
-    Vector3d area_vector, moment;  // sums: the fitted plane's normal, its point times area
+    Vector3d area_vector, moment;  // sums over facets: area vectors, and area times middle
     double area = 0.0, boundary_length = 0.0;  // of its facets
   };
 
@@ -115,8 +115,9 @@ class Regions {
     if (!grow(seed, true)) grow(seed, false);
   }
 
-  // The plane is that of the seed, or, fitted, that of all facets so far: a seed's own may lean by
-  // the tolerance over its width. False if the facets do not lie in what the plane has become.
+  // Grows a region in the plane of the seed or, if `is_fitted`, in the plane fitted to all facets
+  // so far, because the seed's own plane may lean by the tolerance over the seed's width. Returns
+  // false if the facets do not lie in the fitted plane at the end.
   bool grow(int seed, bool is_fitted) {
     Growing region{.number = static_cast<int>(normal_of_region_.size()),
                    .normal = normal_[seed],
@@ -164,8 +165,8 @@ class Regions {
     return first + sum / static_cast<double>(corners.size());
   }
 
-  // The one facet that goes on in the region's plane over an edge of its; -1 if there is none, or
-  // more than one.
+  // The one facet that continues the region's plane across an edge of the region; -1 if there is
+  // none, or more than one.
   int across(int use, const Growing& region) const {
     const auto group = group_of(use);
     if (group.size() > most_at_edge) return -1;
@@ -195,7 +196,8 @@ class Regions {
     return is_near;
   }
 
-  // Whether the region has an edge of the facet's in the facet's direction: then they overlap.
+  // True if the region passes an edge of the facet in the facet's direction, which means that the
+  // two overlap.
   bool runs_along(int facet, const Growing& region) const {
     for (int k = first_use_[facet]; k < first_use_[facet + 1]; ++k) {
       const EdgeUse& mine = uses_[use_of_[k]];
@@ -217,7 +219,8 @@ class Regions {
     return std::abs(area - area_of_region_[region]) <= slack_of_region_[region] + rounding * area;
   }
 
-  static constexpr std::size_t most_at_edge = 8;  // facets; more is a fan whose sides nobody knows
+  // Facets; more are a fan, whose sides are ambiguous.
+  static constexpr std::size_t most_at_edge = 8;
 
   const FacetLoops& facets_;
   const std::vector<Vector3d>& points_;

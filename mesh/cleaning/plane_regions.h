@@ -6,21 +6,25 @@
 
 namespace lightwell {
 
-/// Facets of one surface that lie in one plane and hang together over whole edges.
+/// Regions of facets of one surface that lie in one plane and are connected over whole edges.
 struct PlaneRegions {
-  std::vector<int> region{};  ///< by facet; -1 where nothing could be added to a facet
-  /// By region: its boundary, then its holes; empty if it cannot be one polygon.
+  /// Per facet, its region; -1: the facet could be joined with no other.
+  std::vector<int> region{};
+  /// Per region, its boundary, then its holes; empty if the region cannot be one polygon.
   std::vector<std::vector<std::vector<int>>> outlines{};
 
   bool is_merged(int facet) const { return region[facet] >= 0 && !outlines[region[facet]].empty(); }
 };
 
-/// Grows regions from the largest facets on. A facet joins where exactly one of the region's meets
-/// it at an edge, all its corners lie within `tolerance` (metres) of the plane that fits the
-/// region, and it faces as that does to 1 degree, or is a needle no wider than what the tolerance
-/// may do to it; where the plane turns away from the first of the facets so, theirs is that of the
-/// largest. So a region's area differs from its facets' by less than the tolerance times the length
-/// of their edges.
+/// Grows regions from the largest facets on. A facet joins over an edge if
+/// - exactly one facet of the region's plane meets the region there;
+/// - all its corners lie within `tolerance` (metres) of the plane fitted to the region;
+/// - its normal is within 1 degree of the plane's, or it is a needle so thin that the tolerance may
+///   tilt it more.
+///
+/// If the fitted plane turns so far that earlier facets no longer lie in it, the region is grown
+/// again in the plane of its largest facet. So the area of a region differs from its facets' by
+/// less than the tolerance times the length of their edges.
 PlaneRegions find_plane_regions(const FacetLoops& facets,
                                 const std::vector<Eigen::Vector3d>& points, double tolerance);
 

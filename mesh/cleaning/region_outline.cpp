@@ -27,7 +27,7 @@ class PlaneFrame {
   Vector3d origin_, x_, y_;
 };
 
-// Edges sorted by where they start; follows them round.
+// Follows edges around into loops. Edges are sorted by their start.
 class LoopTracer {
  public:
   LoopTracer(std::vector<RegionEdge> edges, const std::vector<Vector3d>& points,
@@ -38,7 +38,7 @@ class LoopTracer {
     });
   }
 
-  // False if some edge has no successor.
+  // Appends the loops; returns false if an edge has no successor.
   bool trace(std::vector<std::vector<int>>& loops) {
     for (std::size_t start = 0; start < edges_.size(); ++start) {
       if (used_[start]) continue;
@@ -56,8 +56,7 @@ class LoopTracer {
   }
 
  private:
-  // The first unused edge clockwise from where this one came: it bounds the same piece of the
-  // region.
+  // The first unused edge clockwise from the edge `at`, which bounds the same piece of the region.
   std::size_t next(std::size_t at) const {
     const int v = edges_[at].to;
     auto i = static_cast<std::size_t>(
@@ -81,7 +80,7 @@ class LoopTracer {
     return best;
   }
 
-  // A path that comes back to a point is two loops that touch there.
+  // Splits a path at points that it passes again, into loops that touch there.
   static void split(const std::vector<int>& path, std::vector<std::vector<int>>& loops) {
     std::vector<int> open;
     std::unordered_map<int, std::size_t> place;
@@ -110,13 +109,13 @@ struct FlatEdge {
   Vector2d a, b;
 };
 
-// Whether two edges share more than a common end.
+// True if two edges share more than a common end.
 bool do_cross(const FlatEdge& e, const FlatEdge& f) {
   const bool from_shared = e.from == f.from || e.from == f.to;
   const bool to_shared = e.to == f.from || e.to == f.to;
   if (from_shared && to_shared) return true;  // one edge twice
   if (from_shared || to_shared) {
-    // From the common end in the same direction: they lie on each other.
+    // The edges overlap if they leave the common end in the same direction.
     const Vector2d& at = from_shared ? e.a : e.b;
     const Vector2d u = (from_shared ? e.b : e.a) - at;
     const bool at_f_from = f.from == (from_shared ? e.from : e.to);
@@ -144,7 +143,7 @@ bool any_cross(const Loops& loops, const std::vector<Vector3d>& points, const Pl
       edges.push_back({a, b, frame.project(points[a]), frame.project(points[b])});
     }
   }
-  constexpr std::size_t few = 24;  // all pairs are quicker than a tree
+  constexpr std::size_t few = 24;  // for few edges, testing all pairs is faster than a tree
   if (edges.size() <= few) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
       for (std::size_t j = i + 1; j < edges.size(); ++j) {
@@ -192,8 +191,8 @@ std::optional<std::vector<std::vector<int>>> region_loops(std::vector<RegionEdge
       std::swap(loops[0], loops[l]);
     }
   }
-  // With one loop around all others and none crossing, each place is covered once: how often it is
-  // covered is its winding number.
+  // The number of times a place is covered is its winding number. With one loop around all others
+  // and no crossing, each place inside is covered once.
   if (boundaries != 1 || any_cross(loops, points, frame)) return {};
   return loops;
 }

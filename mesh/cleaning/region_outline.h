@@ -13,15 +13,15 @@ struct RegionEdge {
   int from = 0, to = 0;  ///< points
 };
 
-/// The loops that edges make: the one boundary first, counter-clockwise about `normal`, then the
-/// holes, clockwise. A loop passes each point once; loops may touch. Nothing if the edges do not
-/// close, make more than one counter-clockwise loop, or cross: then they bound no polygon with
-/// holes.
+/// Returns the loops that the edges make: first the boundary, counter-clockwise about `normal`,
+/// then the holes, clockwise. A loop passes each point once; loops may touch. Returns nothing if
+/// the edges do not close, make more than one counter-clockwise loop, or cross, because they then
+/// bound no polygon with holes.
 std::optional<std::vector<std::vector<int>>> region_loops(
     std::vector<RegionEdge> edges, const std::vector<Eigen::Vector3d>& points,
     const Eigen::Vector3d& normal);
 
-/// Whether any two edges of the loops share more than a common end, seen along `normal`.
+/// True if any two edges of the loops, projected along `normal`, share more than a common end.
 bool do_loops_cross(const std::vector<std::span<const int>>& loops,
                     const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal);
 

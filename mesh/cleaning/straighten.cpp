@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Marks the points of the open chain to keep. The ends are kept by whoever asks.
+// Marks the inner points of the open chain that have to stay; the caller keeps the ends.
 void keep_corners(const std::vector<int>& chain, const std::vector<Vector3d>& points,
                   double tolerance, std::vector<char>& kept) {
   std::vector<std::pair<std::size_t, std::size_t>> open{{0, chain.size() - 1}};
@@ -45,8 +45,9 @@ void keep_corners(const std::vector<int>& chain, const std::vector<Vector3d>& po
   }
 }
 
-// The loop as chains between kept points; a loop with fewer than two gets them from its shape, so
-// that the facet on its other side finds the same.
+// Marks the points of a loop that have to stay, chain by chain between kept points. A loop with
+// fewer than two kept points gets them from its shape, so that the facet on the other side finds
+// the same.
 void keep_loop_corners(std::span<const int> loop, const std::vector<Vector3d>& points,
                        double tolerance, std::vector<char>& kept) {
   const auto is_before = [&](int a, int b) {
@@ -73,7 +74,7 @@ void keep_loop_corners(std::span<const int> loop, const std::vector<Vector3d>& p
       chain.push_back(loop[(start + i) % n]);
     } while (!kept[chain.back()]);
     if (chain.size() == 2) continue;
-    // One direction for the facets on both sides.
+    // The chain has one direction for the facets on both sides.
     if (chain.back() < chain.front()) std::reverse(chain.begin(), chain.end());
     keep_corners(chain, points, tolerance, kept);
   }
@@ -82,7 +83,7 @@ void keep_loop_corners(std::span<const int> loop, const std::vector<Vector3d>& p
 // Marks the points that have to stay.
 std::vector<char> find_kept(const FacetLoops& facets, const std::vector<char>& may_change,
                             const std::vector<Vector3d>& points, double tolerance) {
-  // A point can go if all its uses are in facets that may change and have the same two neighbours.
+  // A point may go if all its uses are in facets that may change and have the same two neighbours.
   struct Neighbours {
     int low = -1, high = -1;
   };
@@ -120,7 +121,7 @@ FacetLoops with_kept(const FacetLoops& facets, const std::vector<char>& may_chan
       for (const int v : facets.loop(l)) {
         if (!may_change[f] || kept[v]) left.push_back(v);
       }
-      // A needle as thin as what counts as straight stays.
+      // A needle thinner than the tolerance keeps its corners.
       result.add_loop(left.size() >= 3 ? std::span<const int>(left) : facets.loop(l));
     }
     result.end_facet(facets.maps[f]);
@@ -128,7 +129,7 @@ FacetLoops with_kept(const FacetLoops& facets, const std::vector<char>& may_chan
   return result;
 }
 
-// Which facets have fewer corners than before and a boundary that crosses itself.
+// Marks the facets with fewer corners than before and a boundary that crosses itself.
 std::vector<char> find_spoilt(const FacetLoops& before, const FacetLoops& after,
                               const std::vector<Vector3d>& points) {
   std::vector<char> is_spoilt(static_cast<std::size_t>(after.count()), 0);

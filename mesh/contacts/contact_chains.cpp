@@ -12,9 +12,10 @@ namespace {
 using Eigen::Vector3d;
 using Piece = std::array<int, 2>;
 
-constexpr double moved_share = 0.005;  // of the element size
-constexpr double most_share = 0.5;
-constexpr double fine_share = 0.1;
+// Lengths as shares of the element size.
+constexpr double moved_share = 0.005;  // largest distance of a joined line from the original
+constexpr double most_share = 0.5;     // longest joined piece
+constexpr double fine_share = 0.1;     // only shorter pieces are joined
 
 double distance_to(const Vector3d& q, const Vector3d& a, const Vector3d& b) {
   const Vector3d d = b - a;
@@ -23,6 +24,7 @@ double distance_to(const Vector3d& q, const Vector3d& a, const Vector3d& b) {
   return (q - a - t * d).norm();
 }
 
+// Appends the chain to `joined` in pieces no longer than `most`, within `tolerance` of the chain.
 void join(const std::vector<int>& chain, const std::vector<Vector3d>& points, double tolerance,
           double most, std::vector<Piece>& joined) {
   std::vector<std::pair<std::size_t, std::size_t>> open{{0, chain.size() - 1}};
@@ -78,7 +80,8 @@ FacetOutline with_joined_contacts(const FacetOutline& outline, const std::vector
       const auto& both = at[chain.back()];
       i = both[0] == i ? both[1] : both[0];
     }
-    // Between free ends a point has to stay, on which the two sides can differ.
+    // A line between two free ends keeps a point, at which the values on the line's two sides can
+    // differ.
     const bool is_free = at[from].size() == 1 && at[chain.back()].size() == 1 &&
                          !fixed.contains(from) && !fixed.contains(chain.back());
     if (is_free && chain.size() > 2) {

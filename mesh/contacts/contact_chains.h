@@ -4,11 +4,14 @@
 
 namespace lightwell {
 
-/// The outline with contact lines in fewer pieces, where what crosses the facet is divided more
-/// finely than its elements: a cushion's thousand facets would make slivers of the wall behind it.
-/// A point in which two pieces of contact lines meet, both below 1/10 of `element_size` (metres),
-/// and nothing else, goes where the line stays within 1/200 of it of what it was and no piece
-/// becomes longer than half of it (Douglas & Peucker 1973). The boundary stays.
+/// Returns the outline with finely divided contact lines joined into longer pieces (Douglas &
+/// Peucker 1973). Where a surface of many small facets crosses a large one, as a cushion crosses
+/// the wall behind it, the short pieces would otherwise make slivers of the wall.
+///
+/// A point is a candidate for removal if two pieces of contact lines meet there and nothing else,
+/// both shorter than `element_size` / 10 (metres). The joined line stays within `element_size` /
+/// 200 of the original, and no joined piece is longer than `element_size` / 2. Boundary and creases
+/// stay. The outline's numbers are indices into `points`.
 FacetOutline with_joined_contacts(const FacetOutline& outline,
                                   const std::vector<Eigen::Vector3d>& points, double element_size);
 

@@ -1,4 +1,4 @@
-// Where the lines of a ContactGraph meet one another.
+// The part of ContactGraph that cuts lines where they cross, and at points on them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,12 +18,14 @@ BoxTree::Box segment_box(const Vector3d& a, const Vector3d& b, double by) {
   return {a.cwiseMin(b) - d, a.cwiseMax(b) + d};
 }
 
-// Parameters of the closest points of the lines p + s u and q + t v; false if they are parallel.
+// Computes the parameters of the closest points of the lines p + s u and q + t v; false if the
+// lines are parallel.
 bool closest_parameters(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v,
                         double& s, double& t) {
   const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
   const double determinant = u.cross(v).squaredNorm();
-  constexpr double parallel = 1e-12;  // sin^2: below, a common part is found by its ends instead
+  // Smallest sin^2 of the angle. The ends of a common part are found by cut_at_points.
+  constexpr double parallel = 1e-12;
   if (!(determinant > parallel * uu * vv)) return false;
   const Vector3d w = q - p;
   s = (vv * u.dot(w) - uv * v.dot(w)) / determinant;
@@ -62,7 +64,7 @@ void ContactGraph::cut_at_crossings(const Scene& scene) {
         const Vector3d q = welded_[sj.a], v = welded_[sj.b] - q;
         double s, t;
         if (!closest_parameters(p, u, q, v, s, t)) continue;
-        // Near an end the end itself is the cut: cut_at_points finds it.
+        // A crossing near an end is that end, which cut_at_points finds.
         const double end_s = tolerance / u.norm(), end_t = tolerance / v.norm();
         if (!(s > end_s && s < 1.0 - end_s && t > end_t && t < 1.0 - end_t)) continue;
         const Vector3d on_i = p + s * u, on_j = q + t * v;
@@ -97,7 +99,7 @@ void ContactGraph::cut_at_points() {
       tree.find_along(p, welded_[s.b], tolerance, visits, near);
       for (int point : near) {
         if (point == s.a || point == s.b) continue;
-        // A needle's apex on its own long edge: cutting there would fold the triangle up.
+        // A needle's apex may lie on its own long edge; a cut there would fold the triangle up.
         if (point == s.triangle_apex[0] || point == s.triangle_apex[1]) continue;
         const double t = d.dot(welded_[point] - p) / (length * length);
         if (!(t * length > tolerance && (1.0 - t) * length > tolerance)) continue;

@@ -15,7 +15,7 @@ std::uint64_t ends_key(int a, int b) {
   return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b);
 }
 
-// Both ascending.
+// The entries of `all` that are not in `less`; both are ascending.
 std::vector<int> without_atoms(const std::vector<int>& all, const std::vector<int>& less) {
   std::vector<int> rest;
   std::set_difference(all.begin(), all.end(), less.begin(), less.end(), std::back_inserter(rest));
@@ -183,8 +183,8 @@ std::vector<int> ContactGraph::crease_atoms(int index) const {
 }
 
 // Opposite edges of four-sided facets get equal counts where their lengths nearly agree, so that a
-// slightly trapezoidal wall is a grid of quadrilaterals; and a contact line with both ends free
-// gets a point of its own, on which the two sides can differ.
+// slightly trapezoidal wall is a grid of quadrilaterals. A contact line with two free ends gets a
+// point of its own, at which the values on the line's two sides can differ.
 void ContactGraph::count_pieces() {
   std::vector<int> parent(atoms_.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -226,7 +226,7 @@ void ContactGraph::count_pieces() {
   }
   for (std::size_t i = 0; i < atoms_.size(); ++i) {
     const int wanted = most[root(static_cast<int>(i))];
-    // A long chain of ever longer edges must not refine its short end without limit.
+    // Limits the effect of a long chain of ever longer edges on its short end.
     if (wanted <= 1.25 * atoms_[i].pieces + size_.elements_per_edge) atoms_[i].pieces = wanted;
   }
 }

@@ -12,37 +12,39 @@
 
 namespace lightwell {
 
-/// What a facet's triangulation must respect, as numbers of ContactGraph::points.
+/// The lines that a facet's triangulation has to contain, as indices into ContactGraph::points().
 struct FacetOutline {
-  std::vector<std::vector<int>> loops{};       ///< boundary, then holes, already divided
+  std::vector<std::vector<int>> loops{};       ///< boundary, then holes, divided into pieces
   std::vector<std::array<int, 2>> contacts{};  ///< pieces of contact lines inside the facet
   std::vector<std::array<int, 2>> creases{};   ///< pieces of other critical lines: D1 and D2
 
   bool has_lines() const { return !contacts.empty() || !creases.empty(); }
 };
 
-/// All boundary edges and contact lines of a scene, cut at every point where one meets another, and
-/// divided into pieces of element size. A line that several facets share is cut once, for all of
-/// them: that is what makes the mesh conform across facets.
+/// All boundary edges and contact lines of a scene, cut wherever one meets another and divided into
+/// pieces of element size. A line that several facets share is cut once for all of them, so the
+/// mesh conforms across facets.
 class ContactGraph {
  public:
-  /// `points` must hold the planes' corners. `critical` are lines to cut the mesh along as far as
-  /// they add no more than `most_elements` elements. Throws InputError where facets touch and cross
-  /// in more places than there is time for (see ContactEffort).
+  /// Keeps a reference to `planes`. `points` must hold the planes' corners. The mesh is cut along
+  /// `critical` lines too, as far as these add no more than about `most_elements` elements. Throws
+  /// InputError where facets touch and cross in too many places (see ContactEffort).
   ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes, WeldedPoints points,
                const CutSize& size, const std::vector<CriticalLine>& critical, double most_elements,
                const Progress& progress);
 
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
-  /// `index` is the plane's place in `planes`.
+  /// The outline of the facet of planes[index].
   FacetOutline outline(int index) const;
   const CreaseCounts& crease_counts() const { return crease_counts_; }
 
  private:
+  /// A boundary edge, a contact line or a crease.
   struct Segment {
     int a = 0, b = 0;                 ///< points, a < b
     int triangle_apex[2] = {-1, -1};  ///< third corners of triangles that have this edge
   };
+  /// A part of a segment between two neighbouring cuts.
   struct Atom {
     int a = 0, b = 0;  ///< points, a < b
     int pieces = 1;
@@ -55,7 +57,7 @@ class ContactGraph {
   void add_creases(const Scene& scene, const std::vector<CriticalLine>& critical,
                    double most_elements);
   std::vector<FixedPiece> fixed_pieces(int index) const;
-  /// Points along a segment, from a to b.
+  /// The points along a segment: a, the cuts in order, b.
   std::vector<int> chain(int segment) const;
   void cut_at_crossings(const Scene& scene);
   void cut_at_points();
@@ -72,10 +74,10 @@ class ContactGraph {
   WeldedPoints welded_;
   std::vector<Segment> segments_;
   std::unordered_map<std::uint64_t, int> segment_of_ends_;
-  std::vector<int> first_edge_;    ///< of a plane, in edge_segment_
+  std::vector<int> first_edge_;    ///< per plane, index of its first edge in edge_segment_
   std::vector<int> edge_segment_;  ///< segment of every boundary edge of every plane
   std::vector<std::vector<int>> contact_segments_;  ///< per plane, ascending, unique
-  std::vector<std::vector<int>> crease_segments_;   ///< the same of creases
+  std::vector<std::vector<int>> crease_segments_;   ///< per plane, ascending, unique
   CreaseCounts crease_counts_{};
   std::vector<std::vector<std::pair<double, int>>> cuts_;  ///< per segment: (parameter, point)
   std::vector<Atom> atoms_;

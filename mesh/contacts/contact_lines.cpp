@@ -10,7 +10,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// How a facet's corners lie to a plane, and where its boundary meets that plane.
+// Position of a facet's corners relative to a plane, and the points in which the boundary meets the
+// plane.
 struct PlaneIntersection {
   bool in_plane = true;    // every corner lies in the plane
   bool can_share = false;  // at least a segment of the facet may lie in the plane
@@ -33,7 +34,7 @@ PlaneIntersection intersect_plane(const FacetPlane& facet, const FacetPlane& pla
   facet.for_each_edge([&](int i, int j) {
     if (height[i] == 0.0) intersection.points.push_back(facet.corner[i]);
     if (!(height[i] * height[j] < 0.0)) return;
-    // From the lower-numbered end, so that every facet with this edge finds the very same point.
+    // Interpolated from the lower-numbered end, so that all facets with the edge get the same bits.
     if (facet.point[i] > facet.point[j]) std::swap(i, j);
     const double t = height[i] / (height[i] - height[j]);
     intersection.points.push_back(facet.corner[i] + t * (facet.corner[j] - facet.corner[i]));
@@ -41,26 +42,28 @@ PlaneIntersection intersect_plane(const FacetPlane& facet, const FacetPlane& pla
   return intersection;
 }
 
-// Parameters in ascending order, those closer than `gap` joined.
+// Sorts the parameters and joins those closer than `gap`.
 void sort_and_join(std::vector<double>& t, double gap) {
   std::sort(t.begin(), t.end());
   t.erase(std::unique(t.begin(), t.end(), [gap](double a, double b) { return b - a <= gap; }),
           t.end());
 }
 
-// The candidate points lie on one line; the parts between neighbours that belong to both facets.
+// Returns the parts between neighbouring points that belong to both facets. The points lie on one
+// line.
 std::vector<ContactSegment> shared_parts(std::vector<Vector3d> points, const FacetPlane& a,
                                          const FacetPlane& b, double tolerance) {
   if (points.size() < 2) return {};
   const auto farthest = [&](const Vector3d& from) {
-    constexpr double clearly = 1.0 + 1e-9;  // ties go to the first, in every unit alike
+    constexpr double clearly = 1.0 + 1e-9;  // the first of equals wins, in every unit of length
     Vector3d best = from;
     for (const Vector3d& p : points) {
       if ((p - from).norm() > clearly * (best - from).norm()) best = p;
     }
     return best;
   };
-  // The two ends of the set give the best-conditioned direction, even for nearly parallel planes.
+  // The direction between the two ends of the set is well conditioned even for nearly parallel
+  // planes.
   const Vector3d low = farthest(points.front());
   const Vector3d high = farthest(low);
   const double length = (high - low).norm();
@@ -82,7 +85,7 @@ std::vector<ContactSegment> shared_parts(std::vector<Vector3d> points, const Fac
   return segments;
 }
 
-// The parts of edge i-j of `from` that lie on `on`, which is in the same plane.
+// Appends the parts of edge i-j of `from` that lie on the facet `on` in the same plane.
 void clip_edge(const FacetPlane& from, int i, int j, const FacetPlane& on, double tolerance,
                std::vector<ContactSegment>& segments) {
   const Vector3d &start = from.corner[i], &end = from.corner[j];
@@ -105,7 +108,7 @@ void clip_edge(const FacetPlane& from, int i, int j, const FacetPlane& on, doubl
     }
   });
   sort_and_join(t, tolerance / length);
-  if (t.back() != 1.0) t.back() = 1.0;  // the edge's own end wins over a point joined with it
+  if (t.back() != 1.0) t.back() = 1.0;  // the edge's end replaces a point joined with it
   for (std::size_t k = 0; k + 1 < t.size(); ++k) {
     if (!on.contains(p + 0.5 * (t[k] + t[k + 1]) * d, tolerance)) continue;
     const auto at = [&](double x) -> Vector3d {
@@ -121,7 +124,7 @@ int shared_corners(const FacetPlane& a, const FacetPlane& b) {
   return count;
 }
 
-// Two triangles in one plane with a common edge, on either side of it: neighbours of one mesh.
+// True for two triangles of one plane on the two sides of a common edge: neighbours in one mesh.
 bool are_flat_neighbours(const FacetPlane& a, const FacetPlane& b, double tolerance) {
   const auto apex = [](const FacetPlane& of, const FacetPlane& other) {
     for (int i = 0; i < 3; ++i) {
@@ -139,7 +142,8 @@ bool are_flat_neighbours(const FacetPlane& a, const FacetPlane& b, double tolera
 
 std::vector<ContactSegment> facet_contact(const FacetPlane& a, const FacetPlane& b,
                                           double tolerance) {
-  // Small facets in a large scene: never let the tolerance swallow their own extent.
+  // The tolerance of a large scene may exceed the extent of a small facet, so a share of the extent
+  // bounds it.
   constexpr double share_of_extent = 1e-3;
   tolerance = std::min({tolerance, share_of_extent * a.box.diagonal().norm(),
                         share_of_extent * b.box.diagonal().norm()});
@@ -170,8 +174,8 @@ std::vector<ContactSegment> sphere_contact(const FacetPlane& plane, const Sphere
   const double radius = std::sqrt(squared);
   const Vector2d center = plane.project(sphere.center);
 
-  // Angles at which the circle crosses the boundary, with the points as the edge sees them (the
-  // facet on the other side of that edge then finds the same ones).
+  // Angles at which the circle crosses the boundary. The points are computed on the edges, so that
+  // the facet across an edge finds the same ones.
   std::vector<std::pair<double, Vector3d>> cuts;
   plane.for_each_edge([&](int i, int j) {
     if (plane.point[i] > plane.point[j]) std::swap(i, j);
@@ -194,7 +198,7 @@ std::vector<ContactSegment> sphere_contact(const FacetPlane& plane, const Sphere
   };
   if (cuts.empty()) cuts.emplace_back(0.0, plane.lift(on_circle(0.0)));
 
-  constexpr int least_chords = 12;  // a full circle of fewer would lose more than 5 % of the disk
+  constexpr int least_chords = 12;  // a circle of fewer chords loses more than 5 % of the disk
   const double max_angle = std::min(max_arc / radius, full_turn / least_chords);
   std::vector<ContactSegment> segments;
   for (std::size_t c = 0; c < cuts.size(); ++c) {

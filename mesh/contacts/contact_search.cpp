@@ -1,4 +1,4 @@
-// Which facets of a ContactGraph touch or cross, and along what.
+// The part of ContactGraph that finds the facets that touch or cross, and their contact lines.
 #include <algorithm>
 
 #include "mesh/contacts/contact_effort.h"
@@ -33,7 +33,7 @@ void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
     int other;
     ContactSegment segment;
   };
-  constexpr int batch = 4096;  // facets between two looks at the stop request
+  constexpr int batch = 4096;  // facets between two checks of the stop request
   for (int begin = 0; begin < count; begin += batch) {
     report(progress, "mesh", 0.3 * begin / count);
     const int end = std::min(count, begin + batch);
@@ -46,7 +46,8 @@ void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
         effort.count(near.size());
         for (int j : near) {
           if (j <= i) continue;
-          // A circle much smaller than an element would only make slivers.
+          // A circle much smaller than an element would only make slivers (radius as a share of an
+          // element).
           constexpr double least_circle = 0.05;
           const auto segments =
               j < count ? facet_contact(planes_[i], planes_[j], tolerance)

@@ -11,10 +11,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double spacing_share = 0.05;      // of an element: nearer points make slivers
-constexpr double least_angle_sine = 0.208;  // 12 degrees
+constexpr double spacing_share = 0.05;      // of the element size; nearer points make slivers
+constexpr double least_angle_sine = 0.208;  // sin(12 degrees)
 
-// Parameters on a-b and p-q where the two cross, if they do.
+// Computes the parameters s on a-b and t on p-q of the crossing; false if the segments do not
+// cross.
 bool crossing(const Vector2d& a, const Vector2d& b, const Vector2d& p, const Vector2d& q, double& s,
               double& t) {
   const Vector2d u = b - a, v = q - p, w = p - a;
@@ -26,9 +27,10 @@ bool crossing(const Vector2d& a, const Vector2d& b, const Vector2d& p, const Vec
   return s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0;
 }
 
-// Linear elements gain nothing from a kink of the slope's slope once several of them lie across the
-// penumbra: even ones then do better than cut ones. On the floor of the Cornell box drawing these
-// lines too takes the gain of cutting from 1.8 down to 1.5 (bench/discontinuity_bench.cpp).
+// Linear elements gain nothing from a D2 line, across which the curvature of irradiance jumps, once
+// several elements lie across the penumbra; even elements then have the smaller error. On the floor
+// of the Cornell box, drawing the resolved lines as well lowers the gain of cutting from 1.8 to 1.5
+// (bench/discontinuity_bench.cpp).
 bool is_resolved(const CriticalLine& line, double element_size) {
   constexpr double enough = 6.0;
   return line.degree == LineDegree::d2 &&
@@ -48,7 +50,7 @@ CreaseSelection::CreaseSelection(const std::vector<FacetPlane>& planes,
       creases_(planes.size()) {}
 
 void CreaseSelection::select(const std::vector<CriticalLine>& lines) {
-  constexpr double least_tolerances = 10.0;  // points `spacing_` apart must stay apart
+  constexpr double least_tolerances = 10.0;  // points `spacing_` apart must not be joined
   for (const CriticalLine& line : lines) {
     if (line.degree == LineDegree::d0) continue;
     if (!(elements_ < options_.most_elements)) {
@@ -89,7 +91,8 @@ CreaseSelection::Drawing& CreaseSelection::drawing(int plane) {
   return d;
 }
 
-// Points near the line a-b, crossings of it, and its ends, in order.
+// Returns the stops of the line a-b by rising parameter: points of the drawing within `spacing_`,
+// crossings with pieces, and the ends of the line.
 std::vector<CreaseSelection::Stop> CreaseSelection::stops(const Drawing& d, const Vector2d& a,
                                                           const Vector2d& b) const {
   const Vector2d u = b - a;
@@ -103,7 +106,7 @@ std::vector<CreaseSelection::Stop> CreaseSelection::stops(const Drawing& d, cons
     return std::any_of(result.begin(), result.end(),
                        [&](const Stop& s) { return (s.xy - q).norm() <= spacing_; });
   };
-  // Ends that lie on a line become points of it, whatever rounding has done to them.
+  // An end within `spacing_` of a piece is moved onto the piece, so that rounding leaves no gap.
   for (const double end : {0.0, 1.0}) {
     const Vector2d q = a + end * u;
     if (is_taken(q)) continue;
@@ -130,7 +133,8 @@ std::vector<CreaseSelection::Stop> CreaseSelection::stops(const Drawing& d, cons
   return result;
 }
 
-// Whether the piece between two neighbouring stops keeps clear of everything else.
+// True if the piece between two neighbouring stops keeps its distance and angle from everything
+// else.
 bool CreaseSelection::fits(const Drawing& d, const Vector2d& from_xy, const Vector2d& to_xy,
                            const Stop& from, const Stop& to) const {
   const Vector2d u = to_xy - from_xy;
@@ -165,7 +169,8 @@ bool CreaseSelection::fits(const Drawing& d, const Vector2d& from_xy, const Vect
   return true;
 }
 
-// On a line that another facet shares, its point is taken if that has one near by.
+// Makes the point of a stop. On a line shared with another facet, a point that the other facet has
+// made within `spacing_` is used, so that both facets get the same vertex.
 int CreaseSelection::make_point(const FacetPlane& plane, Drawing& d, const Stop& stop) {
   const int point = static_cast<int>(d.xy.size());
   Vector3d position = plane.lift(stop.xy);
@@ -196,8 +201,8 @@ bool CreaseSelection::add_line(const CriticalLine& line) {
   if (!((b - a).norm() > spacing_) || !(plane.area() > h * h)) return false;
   Drawing& d = drawing(line.plane);
   std::vector<Stop> chain = stops(d, a, b);
-  // Points are made only where a piece is kept, so that what is left out leaves no trace; a split
-  // renumbers no piece but the second half of the one it splits.
+  // Points are made only where a piece is kept, so pieces that are left out leave no trace.
+  // Splitting a piece renumbers the second half of that piece and no other.
   bool is_kept = false;
   for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
     Stop &from = chain[k], &to = chain[k + 1];
@@ -218,7 +223,8 @@ bool CreaseSelection::add_line(const CriticalLine& line) {
     }
     d.pieces.push_back({from.point, to.point});
     is_kept = true;
-    // A line through quadrilaterals makes triangles on both sides of it, and more where it ends.
+    // A line that crosses a quadrilateral leaves triangles on both sides, and more where the line
+    // ends.
     elements_ += std::ceil((to.xy - from.xy).norm() / h) + 1.0;
   }
   return is_kept;

@@ -8,42 +8,47 @@
 
 namespace lightwell {
 
-/// A piece of a line that a facet's triangulation holds already: of its boundary or of a contact
-/// line.
+/// A piece of a line that the triangulation of a facet already contains: part of the facet's
+/// boundary or of a contact line.
 struct FixedPiece {
-  int a = 0, b = 0;  ///< points, any numbers that name them
+  int a = 0, b = 0;  ///< the end points, in any numbering
   Eigen::Vector3d from, to;
-  int segment = 0;  ///< the line it is a piece of, the same for all facets that share it
+  int segment = 0;  ///< number of the whole line, equal in all facets that share the line
 };
 
 struct CreaseOptions {
   double element_size = 1.0;   ///< metres
-  double tolerance = 0.0;      ///< metres; points nearer than that are one
-  double most_elements = 0.0;  ///< roughly how many elements creases may add
+  double tolerance = 0.0;      ///< metres; nearer points are joined
+  double most_elements = 0.0;  ///< approximate limit on the elements that creases add
 };
 
-/// What became of the critical lines.
+/// Counts of critical lines by outcome.
 struct CreaseCounts {
-  int drawn = 0;        ///< at least in part
-  int resolved = 0;     ///< D2 in penumbras that the elements resolve anyway
-  int too_close = 0;    ///< too short, or nowhere far enough from what was drawn before
-  int over_budget = 0;  ///< left out because enough elements had been added
+  int drawn = 0;        ///< drawn at least in part
+  int resolved = 0;     ///< D2 lines that were not needed: the penumbra is wider than six elements
+  int too_close = 0;    ///< too short, or everywhere too close to what was drawn before
+  int over_budget = 0;  ///< not tried: the limit on added elements was reached
 };
 
-/// Which critical lines to cut the mesh along, and where exactly, so that what comes of it can be
-/// triangulated well: lines are taken by falling weight, each broken where it meets what is there
-/// already. A piece is left out that would run closer than 1/20 of an element to another point or
-/// leave another line at less than 12 degrees: the line it would follow is there already, and is
-/// the more important one. A line that passes a point closer than that is led through it.
+/// Selects the critical lines to cut the mesh along, and breaks each into pieces that can be
+/// triangulated well. Lines are taken by falling weight and broken where they meet points and lines
+/// that are already there. A line that passes a point closer than 1/20 of an element is led through
+/// the point.
+///
+/// A piece is left out if it would be shorter than 1/20 of an element, pass a point closer than
+/// 1/40 of an element, or leave another line at less than 12 degrees. In the last case the other
+/// line nearly coincides with the piece and has the greater weight.
 class CreaseSelection {
  public:
   using Segment = std::array<Eigen::Vector3d, 2>;
 
-  /// `fixed`: per plane. Planes smaller than an element get no creases.
+  /// Keeps references to `planes` and to `fixed`, the fixed pieces of each plane. Planes of less
+  /// area than a square element get no creases.
   CreaseSelection(const std::vector<FacetPlane>& planes,
                   const std::vector<std::vector<FixedPiece>>& fixed, const CreaseOptions& options);
 
-  /// Lines by falling weight; contacts (D0) are passed over, they are fixed pieces.
+  /// Draws `lines`, which are in order of falling weight. Contact lines (D0) are skipped: they are
+  /// among the fixed pieces.
   void select(const std::vector<CriticalLine>& lines);
 
   const std::vector<Segment>& creases(int plane) const { return creases_[plane]; }
@@ -60,15 +65,16 @@ class CreaseSelection {
     std::vector<Eigen::Vector3d> position{};
     std::vector<Piece> pieces{};
   };
-  struct Stop {  // where a new line is broken
-    double t = 0.0;
-    int point = -1;  // of the drawing, or to be made at `xy`
-    int piece = -1;  // that it lies on
+  // A point at which a new line is broken.
+  struct Stop {
+    double t = 0.0;  // parameter on the line, in [0, 1]
+    int point = -1;  // of the drawing; -1: to be made at `xy`
+    int piece = -1;  // of the drawing, on which the point lies; -1: none
     Eigen::Vector2d xy{};
   };
 
   Drawing& drawing(int plane);
-  /// Whether any of it is drawn.
+  /// True if at least a part of the line is drawn.
   bool add_line(const CriticalLine& line);
   std::vector<Stop> stops(const Drawing& d, const Eigen::Vector2d& a,
                           const Eigen::Vector2d& b) const;

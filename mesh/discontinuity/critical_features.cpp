@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double parallel_cosine = 1.0 - 1e-12;  // directions less than 1.4e-6 apart are one
+constexpr double parallel_cosine = 1.0 - 1e-12;  // directions less than 1.4e-6 rad apart are equal
 
 // A facet's use of the edge between two points.
 struct EdgeUse {
@@ -36,8 +36,8 @@ EdgeUses edge_uses(const std::vector<FacetPlane>& planes, Keep&& keep) {
   return uses;
 }
 
-// Two facets of one plane on both sides of the edge, facing the same way or opposite ways: for
-// light there is no edge.
+// True if the edge lies between two facets of one plane that face the same way or opposite ways.
+// Light is continuous across such an edge.
 bool is_seam(const std::vector<EdgeUse>& uses, const std::vector<FacetPlane>& planes) {
   if (uses.size() != 2) return false;
   const double cosine = planes[uses[0].plane].normal.dot(planes[uses[1].plane].normal);
@@ -53,7 +53,7 @@ const Material& material_of(const Scene& scene, const FacetPlane& plane) {
   return scene.materials[scene.surfaces[plane.surface].material];
 }
 
-// Sets of planes joined across seams.
+// Disjoint sets of planes, joined across seams (union-find).
 class Sheets {
  public:
   explicit Sheets(std::size_t count) : parent_(count) {
@@ -133,7 +133,7 @@ std::vector<EmittingPolygon> emitting_polygons(const Scene& scene,
   }
   double most = 0.0;
   for (const EmittingPolygon& emitter : result) most = std::max(most, emitter.power);
-  // Powers that differ by rounding are equal: the order is the same in every unit.
+  // Powers equal to rounding count as equal, so the order does not depend on the unit of length.
   constexpr double step = 1e-9;
   const auto share = [most](const EmittingPolygon& e) { return std::round(e.power / most / step); };
   std::stable_sort(result.begin(), result.end(),

@@ -17,17 +17,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A corner or edge of an emitter with an edge or corner of an occluder.
+// A corner of an emitter with an edge of an occluder (VE), or an edge of an emitter with a corner
+// of an occluder (EV).
 struct Pairing {
-  double weight = 0.0;  // of the wedge: how much light how much of the occluder cuts off
+  double weight = 0.0;  // see weight_of(), W/m
   int emitter = 0;
   bool is_vertex_edge = true;
   int emitter_feature = 0;   // corner or edge of the emitter
   int occluder_feature = 0;  // edge or vertex of the occluders
 };
 
-// Irradiance at `at` of a surface with `normal` if nothing stood before the emitter, with the
-// emitter drawn together in its centre but no nearer than its size.
+// Unoccluded irradiance at `at` on a surface with the unit vector `normal`, W/m^2: E = Phi cos_i
+// cos_j / (pi d^2 + A). The emitter is a point in its centre; its area A bounds E at small
+// distances.
 double unshaded(const EmittingPolygon& emitter, const Vector3d& at, const Vector3d& normal) {
   const Vector3d d = at - emitter.center;
   const double cos_i = emitter.normal.dot(d.normalized());
@@ -36,8 +38,8 @@ double unshaded(const EmittingPolygon& emitter, const Vector3d& at, const Vector
   return emitter.power * cos_i * cos_j / (std::numbers::pi * d.squaredNorm() + emitter.area);
 }
 
-// Falling weights, those that differ by rounding alone being equal: the order is then the same in
-// every unit.
+// Sorts by falling weight. Weights equal to rounding count as equal, so the order does not depend
+// on the unit of length.
 template <class Item>
 void sort_by_weight(std::vector<Item>& items) {
   double most = 0.0;
@@ -83,7 +85,7 @@ class LineFinder {
     limit_pairings(pairings, result);
     std::vector<std::vector<CriticalLine>> found(pairings.size());
     const int count = static_cast<int>(pairings.size());
-    constexpr int batch = 1024;  // wedges between two looks at the stop request
+    constexpr int batch = 1024;  // wedges between two checks of the stop request
     for (int begin = 0; begin < count; begin += batch) {
       report(progress_, "mesh", 0.2 * begin / count);
       parallel_for(std::min(batch, count - begin), 8, [&](int from, int to) {
@@ -101,7 +103,7 @@ class LineFinder {
   }
 
   void limit_emitters(CriticalLines& result) {
-    // Every corner of an emitter is paired with every edge: more than this takes seconds.
+    // Every corner of an emitter is paired with every edge; more pairings than this take seconds.
     constexpr double most_pairings = 2e7;
     const double edges = static_cast<double>(features_.edges.size() + features_.vertices.size());
     double pairings = 0.0;
@@ -155,17 +157,18 @@ class LineFinder {
     return pairings;
   }
 
-  // Light at the occluder times the length of the wedge's edge.
+  // Unoccluded irradiance at `at`, facing the emitter, times the length of the wedge's edge, W/m.
   static double weight_of(const EmittingPolygon& emitter, const Vector3d& at, const Vector3d& from,
                           const Vector3d& to) {
     return unshaded(emitter, at, (at - emitter.center).normalized()) * (to - from).norm();
   }
 
-  // Whether a light at v could leave a shadow's bound along the edge: its facets are not on both
-  // sides of the plane of v and the edge.
+  // True if a point light at v could make the edge a bound of a shadow: the edge's facets do not
+  // lie on both sides of the plane through v and the edge.
   bool is_silhouette(const OccluderEdge& edge, const Vector3d& v) const {
     const Vector3d normal = (edge.from - v).cross(edge.to - edge.from);
-    constexpr double least_width = 10.0;  // a wedge narrower than some tolerances has no plane
+    // in tolerances; the plane of a narrower wedge is undefined
+    constexpr double least_width = 10.0;
     const double length = (edge.to - edge.from).norm();
     if (!(normal.norm() > least_width * tolerance_ * length)) return false;
     bool front = false, back = false;
@@ -183,7 +186,7 @@ class LineFinder {
     if (pairing.is_vertex_edge) {
       const OccluderEdge& edge = features_.edges[pairing.occluder_feature];
       const auto& corner = emitter.corners[pairing.emitter_feature];
-      // Only what is before the emitter is lit by it.
+      // Only the part of the edge in front of the emitter is lit.
       Vector3d p = edge.from, q = edge.to;
       const double hp = emitter.normal.dot(p - emitter.center) - tolerance_;
       const double hq = emitter.normal.dot(q - emitter.center) - tolerance_;
@@ -245,16 +248,18 @@ class LineFinder {
     return lines;
   }
 
-  // The emitter's extent across the wedge, cast through the occluder on to the receiver.
+  // Width of the penumbra at `at`, metres: the emitter's extent across the wedge, projected through
+  // the occluder onto the receiver.
   static double penumbra_width(const Wedge& wedge, const EmittingPolygon& emitter,
                                const FacetPlane& plane, const Vector3d& at) {
-    double low = 0.0, high = 0.0;  // the wedge's plane touches the emitter
+    double low = 0.0, high = 0.0;  // the wedge's plane touches the emitter at height 0
     for (const auto& corner : emitter.corners) {
       const double height = wedge.normal.dot(corner.position - wedge.apex);
       low = std::min(low, height);
       high = std::max(high, height);
     }
-    // The ray through `at`: alpha = dual . (at - apex), with dual perpendicular to `across`.
+    // The ray through `at` has alpha = dual . (at - apex) / (dual . along), with `dual`
+    // perpendicular to `across`.
     const Vector3d dual = wedge.across.cross(wedge.normal);
     const double alpha = dual.dot(at - wedge.apex) / dual.dot(wedge.along);
     const double beyond = wedge.is_vertex_edge ? alpha - 1.0 : alpha;
@@ -262,7 +267,7 @@ class LineFinder {
     return (high - low) * beyond / sine;
   }
 
-  // Bounds of the wedge as far as the scene goes.
+  // The bounding box of the wedge within the bounds of the scene.
   BoxTree::Box reach_of(const Wedge& wedge) const {
     BoxTree::Box box(wedge.apex);
     for (const double s : {0.0, 1.0}) {
@@ -276,7 +281,8 @@ class LineFinder {
     return box;
   }
 
-  // Contacts of one edge are found from every corner of every emitter: the first stands for all.
+  // The contact line of an edge is found from every corner of every emitter; only the first is
+  // kept.
   static void collect(const std::vector<std::vector<CriticalLine>>& found, CriticalLines& result) {
     std::set<std::array<double, 7>> contacts;
     for (const auto& lines : found) {

@@ -17,7 +17,7 @@ constexpr double same_angle = 1e-7;  // radians: sectors that share an edge touc
 // Angles hidden around a point, as ranges within [0, 2 pi).
 class HiddenAngles {
  public:
-  // Counter-clockwise from `start` by `length`.
+  // Adds the range of `length` radians that begins at `start`, counter-clockwise.
   void add(double start, double length) {
     if (start < 0.0) start += 2.0 * pi;
     ranges_.push_back({start, std::min(start + length, 2.0 * pi)});
@@ -40,7 +40,8 @@ class HiddenAngles {
       return r[0] <= from + same_angle && r[1] >= to - same_angle;
     });
   }
-  // One range of half a turn, whichever way it lies: the point is in the middle of a straight edge.
+  // True if exactly one half turn is hidden, at any position: the point lies in the middle of a
+  // straight edge.
   bool is_half() const {
     if (ranges_.empty()) return false;
     double total = 0.0;
@@ -85,7 +86,7 @@ void add_sectors(const FacetPlane& plane, const Vector3d& p, double tolerance,
 
 std::vector<WedgeRange> silhouette_ranges(const Wedge& wedge,
                                           const std::vector<FacetSector>& sectors) {
-  // A facet changes the side it shows where a ray lies in its plane.
+  // The side of a facet that faces a ray changes where the ray lies in the facet's plane.
   std::vector<double> stops{0.0, 1.0};
   for (const FacetSector& sector : sectors) {
     const double at = sector.normal.dot(wedge.along), by = sector.normal.dot(wedge.across);
@@ -98,7 +99,7 @@ std::vector<WedgeRange> silhouette_ranges(const Wedge& wedge,
     constexpr double least_range = 1e-10;
     if (!(stops[k + 1] - stops[k] > least_range)) continue;
     const Vector3d d = wedge.direction(0.5 * (stops[k] + stops[k + 1])).normalized();
-    // Seen along d, towards the light: x to the right, y on the wedge's front.
+    // A frame for the view along d: x points to the right, y to the front of the wedge.
     const Vector3d y = wedge.normal, x = d.cross(y);
     HiddenAngles hidden;
     for (const FacetSector& sector : sectors) {
@@ -109,8 +110,8 @@ std::vector<WedgeRange> silhouette_ranges(const Wedge& wedge,
         hidden.add(0.0, 2.0 * pi);
         continue;
       }
-      // (x, y, -d) is right-handed: what turns about a normal that faces against d turns the same
-      // way.
+      // (x, y, -d) is right-handed, so a sector about a normal that faces against d is
+      // counter-clockwise in (x, y) as well. The ends of any other sector change places.
       const Vector3d& from = facing < 0.0 ? sector.from : sector.to;
       const Vector3d& to = facing < 0.0 ? sector.to : sector.from;
       const double start = std::atan2(from.dot(y), from.dot(x));

@@ -6,21 +6,22 @@
 
 namespace lightwell {
 
-/// What a facet leaves at a point p of its own, seen from p: the sector between two directions of
-/// its plane, counter-clockwise about its normal.
+/// The sector of directions from a point p of a facet into the facet: from `from` to `to`,
+/// counter-clockwise about the facet's normal.
 struct FacetSector {
   Eigen::Vector3d normal;
   Eigen::Vector3d from, to;  ///< unit
-  bool is_full = false;      ///< p lies inside the facet
+  bool is_full = false;      ///< true if p lies inside the facet; the sector is a full turn
 };
 
-/// The sectors of `plane` at p; none if p is not within `tolerance` of the facet.
+/// Appends the sectors of `plane` at p; none if p is farther than `tolerance` (metres) from the
+/// facet.
 void add_sectors(const FacetPlane& plane, const Eigen::Vector3d& p, double tolerance,
                  std::vector<FacetSector>& sectors);
 
-/// The rays of an EV wedge along which its apex is a corner of the outline of what stands there,
-/// given by its sectors, and not hidden by it. The mask tells which halves about the wedge's plane
-/// the sectors hide entirely.
+/// Returns the rays of an EV wedge along which the apex is a corner of the silhouette of the facets
+/// that meet there, and is not hidden by these facets. `sectors` are the sectors of the facets at
+/// the apex. A range's mask holds the sides of the wedge's plane that the sectors hide entirely.
 std::vector<WedgeRange> silhouette_ranges(const Wedge& wedge,
                                           const std::vector<FacetSector>& sectors);
 

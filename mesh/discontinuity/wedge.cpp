@@ -10,10 +10,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Shorter ranges of rays are rounding.
+// In s; shorter ranges of rays come from rounding.
 constexpr double least_range = 1e-10;
 
-// A place in the wedge's plane as apex + alpha along + beta across.
+// Coordinates (alpha, beta) of a point apex + alpha along + beta across of the wedge's plane.
 class WedgeFrame {
  public:
   explicit WedgeFrame(const Wedge& wedge) : apex_(wedge.apex) {
@@ -34,7 +34,7 @@ struct PlaneSegment {
   unsigned mask;
 };
 
-// The parts of a facet in the wedge's plane.
+// Finds the segments in which a facet meets the wedge's plane. `height` is scratch memory.
 void meet_facet(const FacetPlane& facet, const Wedge& wedge, double tolerance,
                 std::vector<double>& height, std::vector<PlaneSegment>& segments) {
   segments.clear();
@@ -57,7 +57,7 @@ void meet_facet(const FacetPlane& facet, const Wedge& wedge, double tolerance,
   facet.for_each_edge([&](int i, int j) {
     if (height[i] == 0.0) intersections.push_back({line.dot(facet.corner[i]), facet.corner[i], i});
     if (!(height[i] * height[j] < 0.0)) return;
-    // From the lower-numbered end, so that both facets of an edge find the very same point.
+    // Interpolated from the lower-numbered end, so that both facets of an edge get the same bits.
     if (facet.point[i] > facet.point[j]) std::swap(i, j);
     const double t = height[i] / (height[i] - height[j]);
     const Vector3d point = facet.corner[i] + t * (facet.corner[j] - facet.corner[i]);
@@ -86,11 +86,11 @@ void meet_facet(const FacetPlane& facet, const Wedge& wedge, double tolerance,
   }
 }
 
-// Where along its rays a wedge meets a cut.
-enum class Phase { before, contact, beyond };  // of the occluder
+// Position of a cut along the rays.
+enum class Phase { before, contact, beyond };  // relative to the occluder
 
-// Where a facet cuts the rays begin..end of a wedge, at |alpha| with 1/|alpha| linear in s; or
-// touches them with one of its edges, the facet being on one side.
+// A cut of a facet through the rays begin..end of a wedge, with 1/|alpha| linear in s; or an edge
+// that the rays touch, with its facet on one side.
 struct Cut {
   int facet = 0;
   unsigned mask = hides_both;
@@ -101,13 +101,13 @@ struct Cut {
   double w(double s) const { return w_begin + (w_end - w_begin) * (s - begin) / (end - begin); }
 };
 
-// The part of a segment between rays 0 and 1 beyond the apex (sign 1) or before it (sign -1). False
-// if there is none.
+// Clips a segment to the rays between 0 and 1, beyond the apex (sign 1) or before the apex (sign
+// -1). Returns false if nothing is left.
 bool clip_to_rays(Vector2d a, Vector2d b, double sign, double least_alpha, Cut& cut) {
   a *= sign;
   b *= sign;
   double from = 0.0, to = 1.0;
-  const auto clip = [&](double fa, double fb) {  // keeps what is >= 0
+  const auto clip = [&](double fa, double fb) {  // keeps the part at which the value is >= 0
     if (fa < 0.0 && fb < 0.0) to = -1.0;
     if (fa < 0.0 && fb >= 0.0) from = std::max(from, fa / (fa - fb));
     if (fa >= 0.0 && fb < 0.0) to = std::min(to, fa / (fa - fb));
@@ -127,11 +127,11 @@ bool clip_to_rays(Vector2d a, Vector2d b, double sign, double least_alpha, Cut& 
   return true;
 }
 
-// |alpha| = 1 is the occluder's edge for VE wedges, the emitter's for EV wedges. What crosses there
-// is two cuts.
+// Adds a cut with its phase. |alpha| = 1 is the occluder's edge in a VE wedge and the emitter's
+// edge in an EV wedge; a cut that crosses |alpha| = 1 is split into two there.
 void add_cut(const Wedge& wedge, Cut cut, double sign, double slack, std::vector<Cut>& cuts) {
   const double at_begin = cut.w_begin - 1.0, at_end = cut.w_end - 1.0;
-  const bool is_near = std::max(at_begin, at_end) > slack;  // some of it nearer than that
+  const bool is_near = std::max(at_begin, at_end) > slack;  // partly at |alpha| < 1
   const bool is_far = std::min(at_begin, at_end) < -slack;
   if (!wedge.is_vertex_edge) {
     cut.phase = sign > 0.0 ? Phase::beyond : Phase::before;
@@ -157,7 +157,7 @@ void add_cut(const Wedge& wedge, Cut cut, double sign, double slack, std::vector
 std::vector<Cut> cuts_of(const Wedge& wedge, const std::vector<FacetPlane>& planes,
                          const std::vector<int>& near, double tolerance) {
   const WedgeFrame frame(wedge);
-  // The shortest ray sets how large a share of it the tolerance is.
+  // The tolerance as a share of the shorter one of the two outer rays.
   const double slack = tolerance / std::min(wedge.along.norm(), wedge.direction(1.0).norm());
   std::vector<Cut> cuts;
   std::vector<double> height;
@@ -165,7 +165,7 @@ std::vector<Cut> cuts_of(const Wedge& wedge, const std::vector<FacetPlane>& plan
   for (const int facet : near) {
     meet_facet(planes[facet], wedge, tolerance, height, segments);
     for (const PlaneSegment& segment : segments) {
-      // What runs through the apex hides one ray only.
+      // A segment through the apex hides a single ray.
       const Vector3d d = (segment.to - segment.from).normalized();
       if (!((segment.from - wedge.apex).cross(d).norm() > tolerance)) continue;
       const Vector2d a = frame.place(segment.from), b = frame.place(segment.to);
@@ -180,7 +180,7 @@ std::vector<Cut> cuts_of(const Wedge& wedge, const std::vector<FacetPlane>& plan
   return cuts;
 }
 
-// Visibility along the rays, from ray 0 to ray 1.
+// Sweeps over the rays from s = 0 to s = 1 and finds what each ray meets.
 class RaySweep {
  public:
   RaySweep(const Wedge& wedge, std::vector<Cut> cuts) : wedge_(wedge), cuts_(std::move(cuts)) {}
@@ -207,7 +207,7 @@ class RaySweep {
   }
 
  private:
-  // Between two neighbouring stops; `own` is what the occluder itself hides.
+  // Handles the rays between two neighbouring stops. `own` is the mask of the occluder's own faces.
   void follow(double begin, double end, unsigned own, int depth) {
     const double middle = 0.5 * (begin + end);
     unsigned mask = own;
@@ -237,7 +237,8 @@ class RaySweep {
       if (mask == hides_both) break;
     }
     if (!receiver) return;
-    // Facets that cross one another within the plane change places along the rays.
+    // Facets that cross each other in the plane change their order along the rays; the range is
+    // split at the crossing.
     constexpr int deepest = 24;
     for (const Cut* c : beyond) {
       if (c == receiver || depth >= deepest) continue;
@@ -265,7 +266,7 @@ class RaySweep {
   }
 
   const Wedge& wedge_;
-  std::vector<Cut> cuts_;  // by their first ray
+  std::vector<Cut> cuts_;  // by rising `begin`
   std::vector<int> open_{};
   std::vector<WedgeTrace> traces_{};
   const Cut* last_ = nullptr;

@@ -20,18 +20,20 @@ struct Wedge {
   Eigen::Vector3d at(double s, double alpha) const { return apex + alpha * direction(s); }
 };
 
-/// From point `v` through the edge p-q; its plane is meaningless where v lies on the edge's line.
+/// The VE wedge from the point `v` through the edge p-q. The normal is meaningless if v lies on the
+/// line of the edge.
 Wedge vertex_edge_wedge(const Eigen::Vector3d& v, const Eigen::Vector3d& p,
                         const Eigen::Vector3d& q);
-/// From the edge a-b through point `p`.
+/// The EV wedge from the edge a-b through the point `p`.
 Wedge edge_vertex_wedge(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                         const Eigen::Vector3d& p);
 
-/// Which sides of a wedge's plane something hides along its rays: the side its normal points to,
-/// the other, or both. What hides both ends the wedge.
+/// Bits for the sides of a wedge's plane that an occluder hides along the rays: the front (the side
+/// that `Wedge::normal` points to), the back, or both. An occluder that hides both sides ends the
+/// wedge.
 enum SideMask : unsigned { hides_nothing = 0, hides_front = 1, hides_back = 2, hides_both = 3 };
 
-/// A range of rays, and what the occluder's own faces hide along them.
+/// A range of rays, with the SideMask of what the occluder's own faces hide along the range.
 struct WedgeRange {
   double begin = 0.0, end = 1.0;
   unsigned mask = hides_nothing;
@@ -39,16 +41,20 @@ struct WedgeRange {
 
 /// A straight piece of a critical line on a facet.
 struct WedgeTrace {
-  int facet = 0;  ///< index into the planes
-  double begin = 0.0, end = 0.0;
+  int facet = 0;                  ///< index into the planes
+  double begin = 0.0, end = 0.0;  ///< rays
   Eigen::Vector3d from, to;
-  bool is_contact = false;  ///< the occluder's edge itself, which lies in the facet
+  bool is_contact = false;  ///< true if the piece is the occluder's edge itself, lying in the facet
 };
 
-/// Follows a wedge through the facets `near` (indices into `planes`): 2-D visibility in its plane.
-/// Along every ray, what hides one side of the plane is passed and what hides both is where the
-/// line falls, unless that stands before the occluder. Facets in the wedge's plane hide nothing.
-/// Corners within `tolerance` (metres) of the plane lie in it. `ranges` are the rays to follow.
+/// Traces the rays `ranges` of a wedge through the facets `near` (indices into `planes`), by 2-D
+/// visibility in the wedge's plane. Along each ray, facets that hide one side of the plane are
+/// passed, and the first facet that hides both sides carries the critical line. There is no line
+/// where both sides were hidden before that facet, or where a facet between emitter and occluder
+/// hides them.
+///
+/// Facets in the wedge's plane hide nothing. Corners within `tolerance` (metres) of the plane count
+/// as in the plane.
 std::vector<WedgeTrace> trace_wedge(const Wedge& wedge, const std::vector<WedgeRange>& ranges,
                                     const std::vector<FacetPlane>& planes,
                                     const std::vector<int>& near, double tolerance);

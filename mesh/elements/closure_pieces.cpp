@@ -8,7 +8,7 @@ namespace {
 
 using Pieces = std::vector<ElementPiece>;
 
-// The pattern turned so that what it does to edge 0 is done to edge `first`.
+// Turns a pattern so that its edge 0 becomes edge `first`.
 Pieces turned_pieces(Pieces pieces, int first, int corner_count) {
   for (ElementPiece& piece : pieces) {
     for (int& node : piece) {
@@ -20,7 +20,7 @@ Pieces turned_pieces(Pieces pieces, int first, int corner_count) {
   return pieces;
 }
 
-// The pattern whose split edges begin at edge 0; empty if none does so.
+// The pattern whose split edges begin at edge 0; empty if there is none.
 Pieces pattern(int corner_count, unsigned split_edges) {
   if (corner_count == 3) {
     switch (split_edges) {
@@ -47,7 +47,7 @@ Pieces pattern(int corner_count, unsigned split_edges) {
       return {{0, 4, 6, 3}, {4, 1, 2, 6}};
     case 0b0111:
       return {{0, 4, 6, 3}, {4, 1, 5, -1}, {5, 2, 6, -1}, {4, 5, 6, -1}};
-    // A corner keeps its number, so that grids stay grids of one direction.
+    // Corners keep their numbers, so that all cells of a refined grid have one direction.
     case 0b1111:
       return {{0, 4, 8, 7}, {4, 1, 5, 8}, {8, 5, 2, 6}, {7, 8, 6, 3}};
     default:

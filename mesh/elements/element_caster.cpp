@@ -23,19 +23,20 @@ bool is_front_polygon(const PatchMesh& mesh, int patch) {
   return mesh.is_back[patch] == 0 && sphere_grid_of(mesh, facet) == nullptr;
 }
 
-// (alpha, beta) of QuadShape.
+// (alpha, beta) of QuadShape, of the quadrilateral with corners `c`.
 Eigen::Vector2d shape_of_quad(const PatchMesh& mesh, const std::array<int, 4>& c) {
   const Vector3d p0 = mesh.position(c[0]);
   return in_terms_of<Vector3d>(mesh.position(c[1]) - p0, mesh.position(c[3]) - p0,
                                mesh.position(c[2]) - p0);
 }
 
-// The same place seen from the other side, whose corners run (0, 3, 2, 1) or (0, 2, 1).
+// Weights of the same place for the element on the other side, whose corners run (0, 3, 2, 1) or
+// (0, 2, 1).
 Array4f turned_weights(const Array4f& w, bool is_triangle) {
   return is_triangle ? Array4f(w[0], w[2], w[1], 0.0f) : Array4f(w[0], w[3], w[2], w[1]);
 }
 
-// Puts the element under a point of a sphere into `hit`, `from_center` away from its center.
+// Sets the element and weights of `hit` at the point `from_center` away from a sphere's centre.
 void find_on_sphere(const PatchMesh& mesh, const SphereGrid& grid, const Vector3d& from_center,
                     ElementHit& hit) {
   const SphereGridPoint found = sphere_grid_point(grid, from_center);
@@ -48,13 +49,13 @@ void find_on_sphere(const PatchMesh& mesh, const SphereGrid& grid, const Vector3
       hit.element < 0 ? Array4f(Array4f::Zero()) : turned_weights(hit.weights, is_triangle);
 }
 
-// What a ray caster's primitives are, in its order: triangles, quads, spheres.
+// The primitives of a ray caster in its order: triangles, quadrilaterals, spheres.
 struct Primitives {
   std::vector<int> element{};  // on the front; of a sphere, the index of its grid
   std::vector<QuadShape> quad_shape{};
 };
 
-// Of the facets of one part; `group_of` numbers those, and is -1 for others.
+// The geometry of the facets of one part. `group_of` numbers these facets and is -1 for others.
 template <class GroupOf>
 CastGeometry cast_geometry(const PatchMesh& mesh, const GroupOf& group_of, Primitives& primitives) {
   CastGeometry geometry;
@@ -102,8 +103,9 @@ CastGeometry cast_geometry(const PatchMesh& mesh, const GroupOf& group_of, Primi
 struct ElementCaster::Part {
   std::vector<int> facets{};  // by group; empty: groups are the scene's facets
   Primitives primitives{};
-  std::optional<RayCaster> caster{};  // none where there is nothing
-  int triangles = 0, polygons = 0;    // the first of the primitives
+  std::optional<RayCaster> caster{};  // none if the part is empty
+  // Ends of the triangles and of the quadrilaterals among the primitives; spheres follow.
+  int triangles = 0, polygons = 0;
 
   template <class GroupOf>
   Part(const PatchMesh& mesh, std::vector<int> facets_of_groups, const GroupOf& group_of)
@@ -121,7 +123,8 @@ struct ElementCaster::Part {
     polygons = triangles + caster->quad_count();
   }
 
-  // Elements are those of `mesh`: the one that this was built over, or one that it was refined to.
+  // The element hit for a primitive's hit. Elements are those of `mesh`: the mesh of this part, or
+  // its refinement with `tree`.
   template <bool with_weights>
   ElementHit element_hit(const PatchMesh& mesh, const ElementTree* tree, const Ray& ray,
                          const Hit& hit) const {
@@ -182,7 +185,7 @@ struct ElementCaster::Part {
       std::ranges::fill(hits, ElementHit{});
       return;
     }
-    if (rays.size() == 1) {  // as ray trees ask: a whole buffer would cost a third of the ray
+    if (rays.size() == 1) {  // as ray trees do; a whole buffer would cost a third of the ray
       Hit hit;
       caster->closest_hits(rays, {&hit, 1});
       hits[0] = element_hit<with_weights>(mesh, tree, rays[0], hit);
@@ -302,8 +305,8 @@ int ElementCaster::hidden_elements(int patch) const {
   return count;
 }
 
-// As a body's caster is asked it, or, for body -1, that of what stands still: from where the body
-// rests, and without groups that are others'.
+// `ray` as the caster of `body` expects it (-1: the caster of everything that stands still): moved
+// to the body's rest pose; group numbers of other bodies become -1.
 Ray ElementCaster::ray_for(int body, const Ray& ray) const {
   Ray result = ray;
   for (int* group : {&result.origin_group, &result.target_group}) {
@@ -362,7 +365,7 @@ void ElementCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> 
     for (int body = -1; body < static_cast<int>(poses_.size()); ++body) {
       const Part& part = body < 0 ? *still_ : bodies_->parts[static_cast<std::size_t>(body)];
       if (!part.caster) continue;
-      std::size_t count = 0;  // that nothing is in the way of yet
+      std::size_t count = 0;  // of rays not blocked so far
       for (std::size_t i = begin; i < begin + size; ++i) {
         if (blocked[i] != 0) continue;
         own[count] = ray_for(body, rays[i]);

@@ -12,17 +12,18 @@ namespace lightwell {
 namespace {
 
 using Eigen::Vector2d;
-// Corners, middles of edges and centre, in a plane of any two axes.
+// Nodes of closure_pieces(): corners, middles of edges and centre, in a plane with any two axes.
 using Nodes = std::array<Vector2d, center_node + 1>;
 
-// A piece of a node of the tree.
+// A piece of a leaf of the tree, prepared for point location.
 struct Outline {
   int corner_count = 3;
-  /// Of each edge: (1, x, y) times this is twice the area of the triangle that it makes with a
-  /// place, below 0 for those beyond it.
+  /// Per edge, coefficients whose product with (1, x, y) is twice the area of the triangle of the
+  /// edge and the place (x, y); negative for places beyond the edge.
   std::array<Eigen::Array3d, 4> edge{};
-  double twice_area = 0.0;  // of a triangle
-  // Of a quad: from a place less corner 0 to (a, b) of QuadShape, and its shape.
+  double twice_area = 0.0;  // used for triangles
+  // Used for quadrilaterals: `to_edges` maps a place minus `corner` to (a, b) of QuadShape, and
+  // `shape` is (alpha, beta).
   Vector2d corner = Vector2d::Zero(), shape = Vector2d::Ones();
   Eigen::Matrix2d to_edges = Eigen::Matrix2d::Identity();
 };
@@ -70,7 +71,8 @@ Nodes lattice(int corner_count, const Point& point) {
   return nodes;
 }
 
-// Of triangles and parallelograms, by the edges that are split; axes are the edges at corner 0.
+// Outlines of the pieces of a triangle or parallelogram, by the edges that are split. The axes are
+// the two edges at corner 0.
 template <int corner_count>
 const Outlines& straight_outlines(unsigned split_edges) {
   static const auto table = [] {
@@ -94,7 +96,7 @@ Eigen::Array4f weights_in(const Outline& piece, const Eigen::Array4d& areas,
       bilinear_coordinates(piece.shape.x(), piece.shape.y(), at.x(), at.y(), at));
 }
 
-// The one that has a place, or is nearest to it, as rounding leaves it.
+// The piece that contains `place`, or the nearest one if rounding leaves `place` outside all.
 ElementTree::ElementPoint in_one_of(const Outlines& pieces, int first_element,
                                     const Vector2d& place) {
   double most = -std::numeric_limits<double>::infinity();
@@ -131,7 +133,7 @@ ElementTree::ElementPoint ElementTree::in_triangle(int base_element, double w1, 
     } else if (second > 0.5) {
       child = 2;
     }
-    // The middle one's corners are the middles of edges 0, 1 and 2.
+    // The corners of the middle child are the middles of edges 0, 1 and 2.
     if (child == 3) {
       w0 = 1.0 - 2.0 * second;
       w1 = 1.0 - 2.0 * before;
@@ -154,9 +156,9 @@ ElementTree::ElementPoint ElementTree::in_quad(int base_element, const QuadShape
                                                const Eigen::Vector2d& place) const {
   Node node = nodes[root[base_element]];
   Vector2d at = place;
-  double size = 1.0;  // of the node, in the base's s and t
+  double size = 1.0;  // edge of the node, in the base's s and t
   while (node.split_edges == is_split) {
-    // No branch: no processor foresees where rays end.
+    // Without a branch, because the end points of rays are unpredictable.
     const int is_right = at.x() > 0.5 ? 1 : 0, is_above = at.y() > 0.5 ? 1 : 0;
     at = 2.0 * at - Vector2d(is_right, is_above);
     size *= 0.5;
@@ -165,8 +167,8 @@ ElementTree::ElementPoint ElementTree::in_quad(int base_element, const QuadShape
   if (node.split_edges == 0) return {.element = node.first, .weights = bilinear_weights(at)};
   const auto edges = static_cast<unsigned>(node.split_edges);
   if (shape.is_parallelogram()) return in_one_of(straight_outlines<4>(edges), node.first, at);
-  // Corner 0 and the base's two edges there are the axes, in units of the node's edges if those
-  // were as long: what is bilinear in the base is so in a node.
+  // Coordinates have their origin in corner 0 of the node, and the base's two edges at its corner
+  // 0, times `size`, as axes. The bilinear map of the base is bilinear in the node too.
   const Vector2d corner = place - size * at, bend(shape.alpha - 1.0, shape.beta - 1.0);
   const Vector2d x = Vector2d(1.0, 0.0) + corner.y() * bend,
                  y = Vector2d(0.0, 1.0) + corner.x() * bend;

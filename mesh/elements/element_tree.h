@@ -8,29 +8,30 @@
 
 namespace lightwell {
 
-/// Where in the elements of a base mesh those lie that they were split into (see RefinedElements):
-/// who has met a place of the base finds the element there. Of fronts; elements on spheres are
-/// not split, and are in none of it.
+/// The elements into which those of a base mesh were split (see RefinedElements), as a tree over
+/// each: finds the element at a place of the base. The tree holds fronts only, and no elements of
+/// spheres, which are never split.
 struct ElementTree {
   static constexpr std::int8_t is_split = -1;
   struct Node {
-    int first = 0;  ///< the first of the four nodes it is split into, or its first element
-    /// is_split, or which of its edges are, so that closure_pieces() are its elements.
+    int first = 0;  ///< index of the first of its four children, or number of its first element
+    /// is_split, or the bits of its split edges, so that closure_pieces() are its elements.
     std::int8_t split_edges = 0;
   };
-  /// An element, and weights of its corners.
+  /// An element with the weights of its corners.
   struct ElementPoint {
     int element = -1;
     Eigen::Array4f weights = Eigen::Array4f::Zero();
   };
 
-  std::vector<int> root{};           ///< per element of the base, its node; -1: none
-  std::vector<int> first_element{};  ///< the same, its first; one entry more than there are
+  std::vector<int> root{};  ///< per element of the base, index of its node; -1: none
+  /// Per element of the base, its first element; and the number of all elements.
+  std::vector<int> first_element{};
   std::vector<Node> nodes{};
 
-  /// In a triangle of the base, at weights 1 - w1 - w2, w1, w2 of its corners.
+  /// The element at weights 1 - w1 - w2, w1, w2 of the corners of a triangle of the base.
   ElementPoint in_triangle(int base_element, double w1, double w2) const;
-  /// In a quad of the base.
+  /// The element at the place (s, t) of a quadrilateral of the base.
   ElementPoint in_quad(int base_element, const QuadShape& shape,
                        const Eigen::Vector2d& place) const;
 };

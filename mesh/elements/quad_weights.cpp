@@ -8,7 +8,7 @@ namespace lightwell {
 Eigen::Vector2d bilinear_coordinates(double alpha, double beta, double a, double b,
                                      const Eigen::Vector2d& guess) {
   constexpr int most_steps = 8;
-  constexpr double converged = 1e-7;  // of the element; the next step would square it
+  constexpr double converged = 1e-7;  // of the element; the next step would square the error
   double s = guess.x(), t = guess.y();
   for (int step = 0; step < most_steps; ++step) {
     const double fs = s + (alpha - 1.0) * s * t - a, ft = t + (beta - 1.0) * s * t - b;

@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// One number per place, in ascending order of coordinates. What touches in the base has the same
-// bits there.
+// Numbers the places of the vertices in ascending order of coordinates. Vertices that touch in the
+// base have the same bits.
 std::vector<int> vertex_places(const PatchMesh& mesh) {
   std::vector<int> order(mesh.vertex_count());
   std::iota(order.begin(), order.end(), 0);
@@ -234,7 +234,7 @@ PatchPoint RefinedElements::inside(int vertex, double inset) const {
   return {v.element, v.position + inset * (center.position - v.position), center.normal};
 }
 
-// The vertices of a piece, on the side asked for and counter-clockwise there.
+// The vertices of a piece on the given side, counter-clockwise there.
 std::array<int, 4> RefinedElements::piece_vertices(int cell, int side,
                                                    const std::array<int, 4>& piece) {
   std::array<int, 4> c{-1, -1, -1, -1};
@@ -255,7 +255,7 @@ void RefinedElements::shrink_to_fit() {
   sides_.shrink_to_fit();
 }
 
-// Elements are numbered as mesh() does, leaf by leaf.
+// The tree over the base's elements, with the numbers that mesh() gives, leaf by leaf.
 ElementTree RefinedElements::tree(std::vector<int> first_element) const {
   ElementTree tree;
   tree.root.assign(cell_of_.size(), -1);
@@ -294,7 +294,7 @@ RefinedMesh RefinedElements::mesh() {
   PatchMesh& out = refined.mesh;
   std::vector<double> areas;
   std::vector<Vector3d> positions;
-  std::vector<int> number;  // in the mesh, by vertex here
+  std::vector<int> number;  // in the mesh, per vertex of the refinement
   std::vector<int> first(base_->element_count() + 1, 0);
   const auto count = static_cast<std::size_t>(element_count());
   areas.reserve(count);
@@ -341,7 +341,7 @@ RefinedMesh RefinedElements::mesh() {
         sum += areas.back();
       }
     });
-    // Exactly the element's, although rounding moves the middle of an edge off its line.
+    // Scaled to the exact area of the element; rounding moves the middle of an edge off its line.
     for (std::size_t i = first[e]; i < areas.size(); ++i) areas[i] *= base_->element_area[e] / sum;
   }
   first.back() = static_cast<int>(out.corners.size());

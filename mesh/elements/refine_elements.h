@@ -10,31 +10,32 @@
 
 namespace lightwell {
 
-/// A mesh made of RefinedElements, and what its parts are there.
+/// A mesh made of RefinedElements, and the origin of its elements and vertices.
 struct RefinedMesh {
   PatchMesh mesh{};
-  std::vector<int> cell{};    ///< per element; -1 on spheres
+  std::vector<int> cell{};    ///< per element, its cell; -1 on spheres
   std::vector<int> vertex{};  ///< per vertex, its number in RefinedElements
   std::shared_ptr<const ElementTree> tree{};
 };
 
-/// Elements of a base mesh, split where asked for: a tree over each. *Cells* are the elements and
-/// what they are split into, four alike each time (quadrilaterals along the lines between the
-/// middles of opposite edges); both sides of a sheet are one cell. Across an edge, of whatever
-/// facet and surface, cells that are not split differ by one level at most; where they differ the
-/// coarser is closed by triangles and quadrilaterals (see closure_pieces) that are not cells and
-/// are never split. So the meshes conform as the base does, and patches, facets and areas stay what
-/// they are.
+/// Adaptive refinement of the elements of a base mesh: a tree over each element.
 ///
-/// Vertices in the middle of an edge are shared as its ends are: not across contact lines; but
-/// along edges that lead to a reflex corner, where only the corner's own are several. Numbers of
-/// cells and vertices stay valid whatever is split and merged: what was found out for one can be
-/// kept. Those of the base mesh's vertices are the base's own.
+/// *Cells* are the elements and what these are split into, four similar children each time;
+/// quadrilaterals are split along the lines between the middles of opposite edges. The two sides of
+/// a sheet are one cell. Across an edge, of whatever facet and surface, leaves differ by one level
+/// at most. Where the levels differ, the coarser cell is closed by triangles and quadrilaterals
+/// (see closure_pieces()) that are not cells and are never split. So the meshes conform as the base
+/// does, and patches, facets and areas stay.
 ///
-/// No angle is less than a third of the least that the base's triangles have, and the triangles
-/// into which diagonals cut its parallelograms (Rosenberg & Stenger 1975 for halved triangles; a
-/// triangle with two angles a is halved into a third of a at worst). Elements of spheres stay what
-/// they are.
+/// A vertex in the middle of an edge is shared as the edge's ends are: not across contact lines.
+/// Along an edge to a reflex corner the middle is shared, and only the corner itself has several
+/// vertices. Numbers of cells and vertices stay valid through splits and merges, so results for a
+/// cell or vertex can be kept. The base mesh's vertices keep their numbers.
+///
+/// No angle is less than a third of the least angle of the base's triangles and of the triangles
+/// into which diagonals cut the base's parallelograms (Rosenberg & Stenger 1975 for halved
+/// triangles; a triangle with two angles a is halved into a third of a at worst). Elements of
+/// spheres are never split.
 ///
 /// Keeps a reference to the base; a copy is a refinement of its own.
 class RefinedElements {
@@ -43,39 +44,43 @@ class RefinedElements {
   explicit RefinedElements(PatchMesh&& base) = delete;
 
   const PatchMesh& base() const { return *base_; }
-  /// That are not split and not on spheres, in the base's order.
+  /// The cells that are neither split nor on spheres, in the base's order.
   std::vector<int> leaves() const;
   int level(int cell) const { return cells_[cell].level; }
-  /// What was split into this cell; -1 for an element of the base.
+  /// The cell that was split into this cell; -1 for an element of the base.
   int parent(int cell) const { return cells_[cell].parent; }
   bool is_split(int cell) const { return cells_[cell].is_split; }
   int corner_count(int cell) const { return cells_[cell].corner_count; }
   int side_count(int cell) const { return cells_[cell].side_count; }
-  /// Sides of all cells, those of a cell in a row: 0, 1, ... side_total() - 1.
+  /// Number of a cell's side among the sides of all cells, 0 .. side_total() - 1; the sides of a
+  /// cell are consecutive.
   int side_number(int cell, int side) const { return cells_[cell].first_side + side; }
   int side_total() const { return static_cast<int>(sides_.size()); }
-  /// The base's element on a side of the cell (0: front).
+  /// The base's element on a side of the cell (0: front, 1: back).
   int element(int cell, int side) const;
   double area(int cell) const;  ///< m^2, one side
   int cell_count() const { return static_cast<int>(cells_.size()); }
-  /// The first of the four it was split into, which are numbered in a row.
+  /// The first of the four children, which are numbered consecutively; -1 if the cell was never
+  /// split.
   int first_child(int cell) const { return cells_[cell].first_child; }
 
-  /// Splits leaves, and coarser neighbours as balance demands; what is split already is left out.
-  /// Returns all that were split, in an order whose reverse undoes it in merge().
+  /// Splits leaves, and coarser neighbours as balance demands; cells that are split already are
+  /// skipped. Returns all cells that were split, in an order whose reverse undoes the splits in
+  /// merge().
   std::vector<int> split(std::span<const int> cells);
-  /// Undoes the split of each cell that has only leaves below, where balance allows it. Returns how
-  /// many were.
+  /// Undoes the split of each cell whose children are all leaves, where balance allows. Returns the
+  /// number of merged cells.
   int merge(std::span<const int> cells);
 
-  /// Of mesh(), both sides, without making it.
+  /// Number of elements of mesh(), both sides, without making the mesh.
   std::int64_t element_count() const;
   RefinedMesh mesh();
-  /// Gives back memory for what was expected to be split further.
+  /// Releases memory reserved for further splits.
   void shrink_to_fit();
 
-  /// Numbers of vertices, by corner, edge (from corner i to the next), or in the middle. The latter
-  /// two are made when first asked for; they are in mesh() only once something is split there.
+  /// Vertices of a cell by corner, by edge (from corner i to the next), or in the middle. Edge and
+  /// centre vertices are made at the first call, and are in mesh() only once something is split
+  /// there.
   int corner_vertex(int cell, int side, int corner) const {
     return side_of(cell, side).vertex[corner];
   }
@@ -84,29 +89,31 @@ class RefinedElements {
 
   int vertex_count() const { return static_cast<int>(vertices_.size()); }
   Eigen::Vector3d position(int vertex) const { return vertices_[vertex].position; }
-  /// The vertices that this one was made half-way between (2 or 4, the rest -1): lower numbers.
-  /// None for the base's own.
+  /// The vertices half-way between which `vertex` was made (2 or 4, the rest -1), all of lower
+  /// numbers; none for a vertex of the base.
   std::array<int, 4> ends(int vertex) const;
-  /// A place next to a vertex, `inset` of the way to the middle of a base element that has it, and
-  /// that element and its normal; on spheres the vertex itself.
+  /// A place near a vertex: `inset` of the way to the middle of a base element that has the vertex,
+  /// with that element and its normal; on spheres the vertex itself.
   PatchPoint inside(int vertex, double inset) const;
 
  private:
-  // There are as many as elements, or several times as many: what one could do without is derived.
+  // Vertices and cells are as many as elements or several times as many, so values that can be
+  // derived are not stored.
   struct Vertex {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
-    int element = -1;  // of the base
-    // The ends of the edge that it is the middle of; or a side's number, from -2 downwards, whose
-    // centre it is; or none.
+    int element = -1;  // of the base mesh
+    // The ends of the edge whose middle the vertex is; or -2 - n if it is the centre of side number
+    // n; or -1.
     int from = -1, to = -1;
-    int next_middle = -1;  // of that edge, on other sides and sheets
+    int next_middle = -1;  // next middle vertex of the same edge, on other sides and sheets
   };
   struct Edge {
-    int first_half = -1;  // two in a row, from its start and from its end to the middle
+    // Edges from the start and from the end to the middle, numbered consecutively.
+    int first_half = -1;
     int parent = -1;
-    int splits = 0;         // split cells that it bounds
-    int first_user = -1;    // 4 cell + corner, and so on by Cell::next_user
-    int first_middle = -1;  // vertex, and so on by Vertex::next_middle
+    int splits = 0;         // number of split cells that the edge bounds
+    int first_user = -1;    // 4 cell + corner, the head of a list linked by Cell::next_user
+    int first_middle = -1;  // vertex, the head of a list linked by Vertex::next_middle
   };
   struct Side {
     std::array<int, 4> vertex{-1, -1, -1, -1};
@@ -114,7 +121,8 @@ class RefinedElements {
   };
   struct Cell {
     int base = 0, parent = -1, first_child = -1, first_side = -1;
-    // The number of sides itself: loops to a bit's `? 2 : 1` GCC 12.2 (-O3) ran past the end of.
+    // The side count is a number and not a bit: GCC 12.2 (-O3) ran past the end of loops to a bit's
+    // `? 2 : 1`.
     std::int8_t level = 0, corner_count = 4, side_count = 1;
     bool is_split : 1 = false, is_active : 1 = true;
     unsigned char backwards : 4 = 0;  // bit i: edge i goes from corner i + 1 to corner i
@@ -128,7 +136,7 @@ class RefinedElements {
   int add_cell(const Cell& cell);
   struct EdgeUse {
     int edge = -1;
-    bool is_backwards = false;  // from its end to its start
+    bool is_backwards = false;  // true if the cell passes the edge from its end to its start
   };
   void set_edge(int cell, int corner, EdgeUse use);
   EdgeUse half(int cell, int edge, int end) const;
@@ -146,11 +154,12 @@ class RefinedElements {
 
   const PatchMesh* base_;
   std::vector<Vertex> vertices_;
-  std::vector<int> reflex_;  // per base vertex, the lowest vertex of its reflex corner, or itself
+  // Per base vertex, the lowest vertex of its reflex corner, or the vertex itself.
+  std::vector<int> reflex_;
   std::vector<Edge> edges_;
   std::vector<Cell> cells_;
   std::vector<Side> sides_;
-  std::vector<int> cell_of_;  // per base element, fronts only; else -1
+  std::vector<int> cell_of_;  // per base element on a front, its cell; else -1
 };
 
 }  // namespace lightwell

@@ -1,4 +1,4 @@
-// How the cells of RefinedElements are split and joined again.
+// The part of RefinedElements that splits and merges cells.
 #include <utility>
 
 #include "mesh/elements/closure_pieces.h"
@@ -36,7 +36,7 @@ void RefinedElements::split_edge(int number) {
   edges_[first].parent = edges_[first + 1].parent = number;
 }
 
-// Of an edge of a cell, from the corner `end` to the middle.
+// The half of an edge of a cell from the corner `end` to the middle.
 RefinedElements::EdgeUse RefinedElements::half(int number, int edge, int end) const {
   const Cell& cell = cells_[number];
   const bool is_backwards = (cell.backwards >> edge & 1) != 0;
@@ -48,7 +48,7 @@ void RefinedElements::make_children(int number) {
   const Cell parent = cells_[number];
   const int n = parent.corner_count;
   for (int i = 0; i < n; ++i) split_edge(parent.edge[i]);
-  std::array<std::array<int, 9>, 2> vertex{};  // by node of closure_pieces
+  std::array<std::array<int, 9>, 2> vertex{};  // per side and node of closure_pieces
   for (int side = 0; side < side_count(number); ++side) {
     for (int i = 0; i < n; ++i) {
       vertex[side][i] = corner_vertex(number, side, i);
@@ -56,7 +56,8 @@ void RefinedElements::make_children(int number) {
     }
     if (n == 4) vertex[side][center_node] = center_vertex(number, side);
   }
-  // The edges inside: between middles in a triangle, from each middle to the centre in others.
+  // The inner edges: between middles in a triangle, from each middle to the centre in a
+  // quadrilateral.
   std::array<int, 4> inner{-1, -1, -1, -1};
   for (int i = 0; i < n; ++i) inner[i] = add_edge();
   const auto edge_between = [&](int a, int b) -> EdgeUse {
@@ -102,7 +103,8 @@ std::vector<int> RefinedElements::split(std::span<const int> cells) {
         open.pop_back();
         continue;
       }
-      // A leaf along the whole of what is half an edge of it would get two vertices there.
+      // A leaf along the whole of an edge of which this cell has a half would get two vertices
+      // there, so the leaf is split first.
       const std::size_t before = open.size();
       for (int i = 0; i < cell.corner_count; ++i) {
         const int whole = edges_[cell.edge[i]].parent;

@@ -14,7 +14,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Exact in a coordinate that both share, so that a wall at x = 1.9 has no vertex beyond it.
+// Interpolates between two points. A coordinate that both share stays exact, so a wall at x = 1.9
+// has no vertex beyond.
 Vector3d between(const Vector3d& a, const Vector3d& b, double t) {
   return a + t * (b - a);
 }
@@ -31,7 +32,8 @@ void make_element(const std::vector<int>& loop, const std::vector<Vector3d>& poi
   }
 }
 
-// A facet no larger than an element.
+// Makes a facet that is no larger than an element one element. False if the facet is larger,
+// contains lines, or has a bad angle.
 bool make_single_element(const FacetPlane& plane, const FacetOutline& outline,
                          const std::vector<Vector3d>& points, FacetMesh& mesh) {
   if (outline.loops.size() != 1 || outline.has_lines()) return false;
@@ -47,8 +49,8 @@ bool make_single_element(const FacetPlane& plane, const FacetOutline& outline,
   return true;
 }
 
-// The boundary of a four-sided facet as four chains of points, each without its last one; empty if
-// it is not four-sided or too oblique for a grid.
+// Returns the boundary of a four-sided facet as four chains of points, each without its last point.
+// Empty if the facet is not four-sided, too oblique for a grid, or divided too unevenly.
 std::vector<std::vector<int>> four_sides(const FacetPlane& plane, const std::vector<int>& loop,
                                          const std::vector<Vector3d>& points) {
   const int n = static_cast<int>(loop.size());
@@ -74,7 +76,7 @@ std::vector<std::vector<int>> four_sides(const FacetPlane& plane, const std::vec
       shortest = std::min(shortest, length);
       longest = std::max(longest, length);
     }
-    // One short piece on the boundary would make a row of slivers through the whole facet.
+    // A single short piece on the boundary would make a row of slivers through the whole facet.
     constexpr double uneven = 2.5;
     if (longest > uneven * shortest) return {};
   }
@@ -82,15 +84,15 @@ std::vector<std::vector<int>> four_sides(const FacetPlane& plane, const std::vec
   return sides;
 }
 
-// A grid over the unit square carried to the facet by the Coons map of its four sides (bilinear
-// where the sides are divided evenly).
+// Makes a grid over the unit square, mapped to the facet by the Coons patch of the four sides
+// (bilinear where the sides are divided evenly). False if the facet is not suited.
 bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
                const std::vector<Vector3d>& points, const CutSize& size, FacetMesh& mesh) {
   if (outline.loops.size() != 1 || outline.has_lines()) return false;
   const auto sides = four_sides(plane, outline.loops.front(), points);
   if (sides.empty()) return false;
   const int nx = static_cast<int>(sides[0].size()), ny = static_cast<int>(sides[1].size());
-  // Boundary points of column i or row j; sides 2 and 3 run backwards.
+  // The boundary points of column i or row j; sides 2 and 3 run backwards.
   const auto bottom = [&](int i) { return i < nx ? sides[0][i] : sides[1][0]; };
   const auto right = [&](int j) { return j < ny ? sides[1][j] : sides[2][0]; };
   const auto top = [&](int i) { return i > 0 ? sides[2][nx - i] : sides[3][0]; };
@@ -114,8 +116,8 @@ bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
   }
   const int k = size.elements_per_edge;
   const int columns = (nx + k - 1) / k, rows = (ny + k - 1) / k;
-  // Block c of m covers cells ceil(c n / m) .. ceil((c + 1) n / m) - 1: exactly k where k divides
-  // n.
+  // Block c of m covers the cells ceil(c n / m) .. ceil((c + 1) n / m) - 1. With m = ceil(n / k)
+  // these are exactly k cells where k divides n.
   const auto block = [](int c, int m, int n) { return (c * n + m - 1) / m; };
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < columns; ++c) {
@@ -146,8 +148,8 @@ bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
   return true;
 }
 
-// The elements add up to the polygon and none is folded up by points that lie off the plane by the
-// welding tolerance.
+// True if the elements add up to the polygon and none is folded up by points that lie off the plane
+// by the welding tolerance.
 bool is_sound(const FacetPlane& plane, const FacetMesh& mesh) {
   double area = 0.0;
   for (const auto& c : mesh.corners) {
@@ -160,13 +162,14 @@ bool is_sound(const FacetPlane& plane, const FacetMesh& mesh) {
       area += 0.5 * upright;
     }
   }
-  // Points that lie on the boundary to within the tolerance have become part of it.
+  // Points within the tolerance of the boundary were made part of the boundary, which changes the
+  // area.
   constexpr double rounding = 1e-9;
   const double moved = plane.weld_tolerance * plane.boundary_length();
   return std::abs(area - plane.area()) <= moved + rounding * plane.area();
 }
 
-// Smallest sine of an element's angle.
+// The smallest sine of all angles of the elements.
 double least_sine(const FacetPlane& plane, const FacetMesh& mesh) {
   double least = 1.0;
   for (const auto& c : mesh.corners) {
@@ -181,7 +184,8 @@ double least_sine(const FacetPlane& plane, const FacetMesh& mesh) {
   return least;
 }
 
-// With contact lines in fewer pieces, unless they then cross or nearly touch what they did not.
+// Meshes the facet with contact lines in fewer pieces. False if nothing was joined, or if joined
+// lines cross or nearly touch lines that the original ones do not.
 bool make_joined(const FacetPlane& plane, const FacetOutline& outline,
                  const std::vector<Vector3d>& points, const CutSize& size, FacetMesh& mesh) {
   if (outline.contacts.size() < 2) return false;
@@ -230,14 +234,14 @@ FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
     mesh.lacks_creases = true;
     return mesh;
   }
-  // First give up the contact lines, then the points other facets put on the boundary.
+  // The contact lines are given up first, then the points that other facets put on the boundary.
   const FacetOutline bare = bare_outline(plane);
   for (const FacetOutline& less : {FacetOutline{.loops = outline.loops}, bare}) {
     mesh = free_mesh(plane, less, points, size);
     mesh.is_flawed = true;
     if (is_sound(plane, mesh)) return mesh;
   }
-  // A needle of a triangle can only stay what it is.
+  // A triangle so thin that no mesh is sound stays one element.
   mesh = {};
   if (plane.is_triangle()) make_element(bare.loops.front(), points, mesh);
   return mesh;

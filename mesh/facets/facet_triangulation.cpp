@@ -28,8 +28,8 @@ LocalLines local_lines(const FacetPlane& plane, const FacetOutline& outline,
     }
     return entry->second;
   };
-  // A boundary that runs along one line forth and back (the bridge to a hole) has nothing outside
-  // there: an even number of passes is no border.
+  // A boundary may run along one line forth and back, as the bridge to a hole does. Both sides of
+  // the line are inside then, so a line passed an even number of times is no border.
   std::map<Pair, int> passes;
   for (const auto& loop : outline.loops) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -56,9 +56,9 @@ CellGrid cell_grid(const Eigen::AlignedBox2d& box, const CutSize& size) {
   return {box, size.pieces(box.sizes().x()), size.pieces(box.sizes().y())};
 }
 
-// Which triangles lie inside the polygon: every border line crossed on the way in from outside
-// changes sides. Combinatorial, so right even for the slivers that rounding leaves along a divided
-// edge, whose centres no geometric test can place.
+// Marks the triangles inside the polygon by parity: each border line crossed on the way in from
+// outside changes sides. Parity is combinatorial, hence right even for the slivers that rounding
+// leaves along a divided edge, whose centres no geometric test can place.
 std::vector<char> inside_by_parity(const PlanarTriangulation& t,
                                    const std::vector<Pair>& boundary) {
   const std::set<Pair> border(boundary.begin(), boundary.end());
@@ -91,7 +91,8 @@ std::vector<char> inside_by_parity(const PlanarTriangulation& t,
   return inside;
 }
 
-// The same by geometry, for the rare case that lines had to be cut where they cross by rounding.
+// Marks the triangles whose centres lie inside the polygon, for the rare case that lines had to be
+// cut because rounding makes them cross.
 std::vector<char> inside_by_place(const FacetPlane& plane, const PlanarTriangulation& t) {
   std::vector<char> inside;
   for (const auto& [a, b, c] : t.triangles) {
@@ -101,9 +102,10 @@ std::vector<char> inside_by_place(const FacetPlane& plane, const PlanarTriangula
   return inside;
 }
 
-// Decides the triangles on coordinates rounded to a billionth of an element: the corners of a
-// square then lie on one circle whatever rounding has done to them, so that the mesh is the same in
-// every unit and every place. Where that turns a triangle over, the true places decide.
+// Triangulates on coordinates rounded to 2^-30 = 1e-9 of an element. The corners of a square are
+// then exactly cocircular whatever rounding did before, so the mesh is the same in every unit and
+// at every place. Where the rounding turns a triangle over, the unrounded coordinates are
+// triangulated.
 PlanarTriangulation triangulate_places(const std::vector<Vector2d>& xy, const LocalLines& lines,
                                        double element_size) {
   const double unit = element_size * std::ldexp(1.0, -30);
@@ -124,11 +126,12 @@ PlanarTriangulation triangulate_places(const std::vector<Vector2d>& xy, const Lo
   return t;
 }
 
-// Each round lets triangles become about twice as large as those of the last.
+// Adds graded points in rounds; each round lets triangles become about twice as large as those of
+// the last.
 void grade(const LocalLines& lines, double element_size, PlanarTriangulation& triangulation,
            std::vector<char>& inside) {
   constexpr int most_rounds = 8;
-  std::size_t left = lines.point.size();  // twice the elements at most
+  std::size_t left = lines.point.size();  // limit on added points; the elements at most double
   for (int round = 0; round < most_rounds; ++round) {
     const auto added = graded_points(triangulation, inside, lines.all, element_size, left);
     if (added.empty()) return;
@@ -156,7 +159,7 @@ FacetTriangulation triangulate_facet(const FacetPlane& plane, const FacetOutline
   PlanarTriangulation& t = facet.triangulation;
   t = triangulate_places(xy, lines, size.element_size());
   facet.inside = t.is_as_given ? inside_by_parity(t, lines.boundary) : inside_by_place(plane, t);
-  // Creases lie as fine as they should.
+  // Creases are meant to be divided finely.
   if (t.is_as_given && lines.creases.empty()) grade(lines, size.element_size(), t, facet.inside);
   return facet;
 }

@@ -20,12 +20,12 @@ CellGrid patch_grid(const Eigen::AlignedBox2d& box, const CutSize& size) {
   return {box, size.patches(box.sizes().x()), size.patches(box.sizes().y())};
 }
 
-// The triangles inside, with vertices split so that only triangles connected without crossing a
-// line share one.
+// The triangles inside the facet, with split vertices: only triangles connected without crossing a
+// contact line share a vertex.
 struct SplitTriangles {
   std::vector<std::array<int, 3>> triangles{};
   std::vector<std::array<int, 3>> neighbor{};  // -1 across contact lines and the boundary
-  std::vector<std::array<int, 3>> partner{};   // the same, and -1 across creases
+  std::vector<std::array<int, 3>> partner{};   // the same, and -1 across creases too
   std::vector<int> source{};                   // point of the triangulation, per vertex
   std::vector<Vector2d> xy{};
 };
@@ -53,7 +53,7 @@ SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<ch
       partner[c] = is_crease ? -1 : neighbor[c];
     }
   }
-  // Corners (3 t + c) joined across every open edge: what stays joined is one fan, one vertex.
+  // Corners (3 t + c) are joined across every open edge. A fan of joined corners is one vertex.
   std::vector<int> parent(3 * count);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&parent](int i) {
@@ -89,7 +89,7 @@ SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<ch
   return split;
 }
 
-// Elements in the order of their patches, with all that FacetMesh wants.
+// Pairs the triangles into elements, groups these into patches, and orders them by patch.
 FacetMesh assemble(const FacetPlane& plane, const SplitTriangles& split, const LocalLines& lines,
                    const std::vector<Vector3d>& points, const CellGrid& patches) {
   const std::vector<int> partner = pair_triangles(split.xy, split.triangles, split.partner);
@@ -167,7 +167,7 @@ FacetMesh assemble(const FacetPlane& plane, const SplitTriangles& split, const L
 FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
                     const std::vector<Vector3d>& points, const CutSize& size) {
   const auto [lines, triangulation, inside] = triangulate_facet(plane, outline, points, size);
-  // A crease that had to be cut is not known by its ends.
+  // A crease that was cut is not found by its ends.
   if (!triangulation.is_as_given && !lines.creases.empty()) return {};
   const SplitTriangles split = split_at_lines(triangulation, inside, lines.creases);
   if (split.triangles.empty()) return {};

@@ -15,12 +15,14 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double one_degree = std::numbers::pi / 180.0;
-constexpr double least_edge = 0.01;  // of the element size
+constexpr double least_edge = 0.01;  // of the element size; shorter edges are ignored
 
 struct Candidate {
-  double rank = 0.0;  // of its edge's length, in millionths of an element: ties fall alike
+  // Length of the triangle's shortest edge in millionths of an element, so that rounding decides no
+  // ties.
+  double rank = 0.0;
   int triangle = 0;
-  double edge = 0.0;  // s
+  double edge = 0.0;  // s, the length of that edge, metres
   Vector2d at = Vector2d::Zero();
 };
 
@@ -82,7 +84,7 @@ class Grading {
     found.push_back({std::round(1e6 * shortest / element_size_), triangle, shortest, at});
   }
 
-  // Whether one comes from the triangle to the point without crossing a line.
+  // True if the straight way from the triangle to the point crosses no line.
   bool is_in_sight(int triangle, const Vector2d& at) const {
     constexpr int most_steps = 64;
     for (int step = 0; step < most_steps; ++step) {
@@ -102,7 +104,7 @@ class Grading {
   bool is_clear(const Vector2d& at, double edge) const {
     constexpr double of_edge = 0.5, of_line = 0.3;
     std::vector<int> near;
-    // No piece of a line is much longer than an element.
+    // No piece of a line is much longer than an element, which bounds the search.
     tree_.find_overlaps(box_about(at, at, std::max(of_edge * edge, of_line * element_size_)), near);
     return std::none_of(near.begin(), near.end(), [&](int i) {
       const Vector2d &a = t_.points[lines_[i][0]], &b = t_.points[lines_[i][1]];
@@ -126,7 +128,7 @@ std::vector<Vector2d> graded_points(const PlanarTriangulation& triangulation,
   std::vector<BoxTree::Box> boxes;
   for (const Candidate& c : candidates) boxes.push_back(box_about(c.at, c.at, 0.0));
   const BoxTree tree(std::move(boxes));
-  constexpr double apart = 1.5;  // edges
+  constexpr double apart = 1.5;  // times the edge's length
   std::vector<char> is_taken(candidates.size(), 0);
   std::vector<Vector2d> points;
   std::vector<int> near;

@@ -8,14 +8,19 @@
 
 namespace lightwell {
 
-/// Points that let triangles grow from a finely divided line to the size of the others: without
-/// them a lamp's round foot sends a fan of slivers over the whole floor. Each stands off the
-/// shortest edge, of length s, of a triangle with an angle below 15 degrees, where with it that
-/// angle would be 22 (off-centres; Ungor 2004, "Off-centers: a new type of Steiner points"), unless
-/// a line lies in between or nearer than s/2 or 3/10 of its piece; none comes nearer than 1.5 s to
-/// another. Angles between two lines are what they are, and edges below 1/100 of `element_size`
-/// are not worth the elements. One round: `lines` are the constraints of `triangulation`, `inside`
-/// says which triangles count. At most `most` points, those of the shortest edges first.
+/// Returns points that let triangles grow from a finely divided line to the size of the others
+/// (off-centres; Ungor 2004, "Off-centers: a new type of Steiner points"). Without such points a
+/// lamp's round foot sends a fan of slivers over the whole floor.
+///
+/// Each triangle with an angle below 15 degrees gives a point on the perpendicular bisector of its
+/// shortest edge, of length s, from which the edge appears at 22 degrees. There is no point
+/// - across a line from its edge, or nearer than s/2 or 3/10 of a line's piece to the piece;
+/// - nearer than 1.5 s to another point;
+/// - for the angle between two lines, which cannot change;
+/// - for an edge below `element_size` / 100 (metres), not worth the elements.
+///
+/// One round: `lines` are the constraints of `triangulation`, and `inside` marks the triangles that
+/// count. At most `most` points are returned, those of the shortest edges first.
 std::vector<Eigen::Vector2d> graded_points(const PlanarTriangulation& triangulation,
                                            const std::vector<char>& inside,
                                            const std::vector<std::array<int, 2>>& lines,

@@ -13,10 +13,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double most_facet = 0.5;   // of a patch's area: a larger facet is a patch of its own
-constexpr double reach = 0.7;        // of the patch size: a disc of 1.5 patches, cut by others
-constexpr double join_share = 0.5;   // of a patch's area: less is left over
-constexpr double most_extent = 2.5;  // of the reach
+constexpr double most_facet = 0.5;  // of a patch's area: a larger facet is a patch of its own
+// Of the patch size: a disc of this radius has the area of 1.5 patches.
+constexpr double reach = 0.7;
+constexpr double join_share = 0.5;   // of a patch's area: a smaller group joins a neighbour
+constexpr double most_extent = 2.5;  // of the reach: largest diagonal of two joined groups
 constexpr double most_area = most_group_area;
 
 class Grower {
@@ -40,16 +41,16 @@ class Grower {
     }
   }
 
-  /// A member of each patch's group, the same for all of them.
+  /// Returns for each patch a member of its group, equal for all members.
   std::vector<int> grow_all() {
     std::vector<int> order(patches_.size());
     std::iota(order.begin(), order.end(), 0);
-    // Rounded, so that equal facets fall alike in every unit and place.
+    // Rounded, so that equal facets keep their order in every unit and at every place.
     const auto share = [&](int i) { return std::round(1e6 * patches_[i].area / cell_area_); };
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share(a) > share(b); });
     members_.resize(patches_.size());
     area_.resize(patches_.size(), 0.0);
-    // What a group lets go of again begins one of its own later.
+    // A released patch is appended to `order` and later begins a group of its own.
     for (std::size_t k = 0; k < order.size(); ++k) {
       if (group_[order[k]] < 0) grow(order[k], order);
     }
@@ -85,7 +86,7 @@ class Grower {
     const FacetPatch& first = patches_[seed];
     if (!is_small(first)) return;
     const Vector3d center = first.box.center();
-    // In millionths of the reach, so that ties fall alike.
+    // The distance in whole millionths of the reach, so that rounding decides no ties.
     const auto distance = [&](int i) {
       return std::round(1e6 * (patches_[i].box.center() - center).norm() / reach_);
     };
@@ -112,7 +113,7 @@ class Grower {
       area += patches_[i].area;
       add_neighbours(i);
     }
-    // The seed stays: the mean is no farther from it than the members are.
+    // The seed is never released: the mean is no farther from the seed than the members are.
     for (bool is_settled = false; !is_settled;) {
       const Vector3d mean = mean_of(members);
       is_settled = std::erase_if(members, [&](int i) {
@@ -125,7 +126,7 @@ class Grower {
     area_[seed] = area_of(members);
   }
 
-  // What the groups around have left over joins the smallest of them that it fits.
+  // Joins a group that is left over with the smallest neighbour that has room.
   void join_neighbour(int g) {
     if (group_[g] != g || !is_small(patches_[g])) return;
     int best = -1;
@@ -177,7 +178,7 @@ std::vector<int> group_facets(const std::vector<FacetPatch>& patches,
                               const FacetGroupOptions& options) {
   std::vector<int> group = Grower(patches, contacts, options).grow_all();
   merge_small_groups(patches, options, group);
-  // Named by their lowest member.
+  // Groups are named by their lowest member.
   std::vector<int> lowest(patches.size(), -1);
   for (std::size_t i = 0; i < group.size(); ++i) {
     int& low = lowest[group[i]];

@@ -22,7 +22,7 @@ class Groups {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  // The lower number stays the root, so numbers do not depend on the order of joining.
+  // The lower number stays the root, so the roots do not depend on the order of joining.
   void join(int a, int b) {
     a = root(a), b = root(b);
     if (a == b) return;
@@ -57,7 +57,7 @@ std::vector<int> group_patches(const std::vector<PlacedElement>& elements,
   }
   constexpr double least_share = 0.15;
   const double least = least_share * cell_size.prod();
-  // Borders of every group, by the root of the group across.
+  // Border lengths of every group, by the root of the group across.
   std::vector<std::map<int, double>> border(count);
   for (const ElementContact& c : contacts) {
     const int a = groups.root(c.one), b = groups.root(c.other);
@@ -79,7 +79,7 @@ std::vector<int> group_patches(const std::vector<PlacedElement>& elements,
     if (group != i || !(groups.area(group) < least)) continue;
     int best = -1;
     double longest = 0.0;
-    constexpr double clearly = 1.0 + 1e-6;  // ties fall alike in every unit
+    constexpr double clearly = 1.0 + 1e-6;  // the first of equals wins, in every unit of length
     for (const auto& [other, length] : border[group]) {
       if (length > clearly * longest && groups.fit_together(group, groups.root(other))) {
         best = other;

@@ -5,22 +5,24 @@
 
 namespace lightwell {
 
-/// What grouping needs to know of an element.
+/// An element, as grouping needs it.
 struct PlacedElement {
-  int cell = 0;  ///< coarse grid cell of its centre
-  double area = 0.0;
+  int cell = 0;       ///< coarse grid cell of its centre
+  double area = 0.0;  ///< m^2
   Eigen::AlignedBox2d box{};
 };
 
-/// Two elements that share an edge no contact line runs along.
+/// Two elements that share an edge along which no contact line runs.
 struct ElementContact {
   int one = 0, other = 0;
-  double length = 0.0;
+  double length = 0.0;  ///< of the edge, metres
 };
 
-/// Groups elements into patches: connected elements of one cell. What a boundary leaves smaller
-/// than 15 % of a cell joins the neighbour it shares the longest border with, unless the two
-/// together would outgrow a cell by half. Patches are numbered by cell, then by first element.
+/// Groups the elements of a facet into patches: connected elements of one cell of a grid of cells
+/// of `cell_size` (metres). A group that the boundary leaves smaller than 15 % of a cell joins the
+/// neighbour with which it shares the longest border, unless the two together would be longer or
+/// wider than 1.5 cells. Returns the patch of each element; patches are numbered by cell, then by
+/// first element.
 std::vector<int> group_patches(const std::vector<PlacedElement>& elements,
                                const std::vector<ElementContact>& contacts,
                                const Eigen::Vector2d& cell_size);

@@ -19,10 +19,10 @@ struct CellGrid {
   int cell(const Eigen::Vector2d& q) const;
 };
 
-/// The points of a fine grid over the polygon's bounds that lie inside it and not too near to a
-/// line of the triangulation: what the inside of a facet is triangulated from. `boundary` are the
-/// pieces of the polygon's loops, `lines` those and the contact lines (pairs of indices of `xy`).
-/// Points may come nearer to `creases`: what lies between two of them is where light changes most.
+/// Returns the nodes of the grid that lie inside the polygon and at least half a spacing from its
+/// lines: the inner points of a facet's triangulation. `boundary` are the pieces of the polygon's
+/// loops; `lines` are the boundary and the contact lines (pairs of indices into `xy`). A distance
+/// of 0.3 spacings suffices to `creases`, because light changes most between two of them.
 std::vector<Eigen::Vector2d> inner_points(const CellGrid& grid,
                                           const std::vector<Eigen::Vector2d>& xy,
                                           const std::vector<std::array<int, 2>>& boundary,

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double least_share = 0.15;  // of a patch's area, as inside a facet
+constexpr double least_share = 0.15;  // of a patch's area; the same share as in group_patches.cpp
 
 class Joiner {
  public:
@@ -46,13 +46,13 @@ class Joiner {
         open.push_back(g);
       }
     }
-    // What a cluster lets go of again, each time fewer, begins others.
+    // Groups that clusters release, each time fewer, begin other clusters.
     while (!open.empty()) open = join(open);
   }
 
  private:
   struct Group {
-    std::vector<int> members{};  // patches
+    std::vector<int> members{};  // numbers of patches
     double area = 0.0;
     Vector3d normal = Vector3d::Zero(), center = Vector3d::Zero();  // times area
     bool may_join = true;
@@ -87,7 +87,7 @@ class Joiner {
     for (const int i : groups_[g].members) cluster.facets.insert(patches_[i].facet);
   }
 
-  // Fills clusters from the first group on; returns the groups that do not suit theirs.
+  // Fills clusters with the groups in order; returns the groups that were released.
   std::vector<int> join(const std::vector<int>& open) {
     std::map<CellKey, std::vector<Cluster>> filling;
     std::vector<int> let_go;
@@ -116,7 +116,8 @@ class Joiner {
     return let_go;
   }
 
-  // The seed stays whatever happens.
+  // Releases groups until all normals are within the angle of the mean, and names the rest by the
+  // seed, which always stays.
   void close(Cluster& cluster, std::vector<int>& let_go) {
     std::vector<int>& kept = cluster.groups;
     for (bool is_settled = false; !is_settled;) {

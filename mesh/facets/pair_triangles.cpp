@@ -22,7 +22,7 @@ std::array<int, 4> joined_corners(const std::array<int, 3>& t, const std::array<
 std::vector<int> pair_triangles(const std::vector<Eigen::Vector2d>& xy,
                                 const std::vector<std::array<int, 3>>& triangles,
                                 const std::vector<std::array<int, 3>>& neighbor) {
-  constexpr double least_quality = 0.55;            // angles between 33 and 147 degrees
+  constexpr double least_quality = 0.55;            // sine; angles between 33 and 147 degrees
   std::vector<std::tuple<double, int, int>> pairs;  // (-quality, t, other)
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     for (int i = 0; i < 3; ++i) {
@@ -30,7 +30,7 @@ std::vector<int> pair_triangles(const std::vector<Eigen::Vector2d>& xy,
       if (other <= t) continue;  // each pair once; -1 is out as well
       const auto q = joined_corners(triangles[t], triangles[other], i);
       const double quality = quad_quality(xy[q[0]], xy[q[1]], xy[q[2]], xy[q[3]]);
-      // Equal but for rounding is equal: then the numbers decide, in every unit alike.
+      // Qualities equal to rounding count as equal; then the numbers decide, in every unit.
       if (quality > least_quality) pairs.emplace_back(-std::round(1e6 * quality), t, other);
     }
   }

@@ -21,8 +21,8 @@ double corner_angle(const FacetMesh& mesh, const std::array<int, 4>& c, int corn
 }  // namespace
 
 std::vector<char> split_reflex_corners(FacetMesh& mesh) {
-  // Between straight on (180 degrees) and inside (360), with room for cells that are not quite
-  // flat.
+  // Bounds between a straight boundary (180 degrees) and an inner point (360), with room for cells
+  // that are not quite flat.
   constexpr double least = 200.0 * std::numbers::pi / 180.0;
   constexpr double most = 350.0 * std::numbers::pi / 180.0;
   std::vector<double> angle(mesh.position.size(), 0.0);

@@ -6,10 +6,10 @@
 
 namespace lightwell {
 
-/// At a reflex corner, the foot of a block or the inner corner of an L-shaped room, what a point
-/// sees depends on the direction in which the corner is approached: one side may be lit and the
-/// other in the block's shadow. No one value is right for all, so each element there gets a vertex
-/// of its own. Returns per vertex whether it is such a one.
+/// Gives every element at a reflex corner a vertex of its own. At such a corner, the foot of a
+/// block or the inner corner of an L-shaped room, the view depends on the direction of approach:
+/// one side may be lit and the other in the block's shadow, so no one value is right for all
+/// elements. Returns per vertex 1 if it lies at a reflex corner.
 std::vector<char> split_reflex_corners(FacetMesh& mesh);
 
 }  // namespace lightwell

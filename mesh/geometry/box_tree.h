@@ -7,36 +7,40 @@
 
 namespace lightwell {
 
-/// Finds which of many axis-aligned boxes meet a given one: a binary tree of boxes split at the
-/// median centre of the widest axis. O(n log n) to build, about O(log n + answers) a question.
+/// A binary tree of axis-aligned boxes, split at the median centre along the widest axis. Building
+/// takes O(n log n); a query takes about O(log n + boxes found).
 class BoxTree {
  public:
   using Box = Eigen::AlignedBox3d;
   explicit BoxTree(std::vector<Box> boxes);
 
-  /// Fills `found` with the boxes that meet `query` (touching counts), in ascending order.
+  /// Fills `found` with the indices of the boxes that meet `query` (touching counts), ascending.
   void find_overlaps(const Box& query, std::vector<int>& found) const;
-  /// Of those the ones that the plane (of unit normal) meets as well.
+  /// Fills `found` with the indices of the boxes that meet both `query` and `plane` (unit normal),
+  /// ascending.
   void find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
                      std::vector<int>& found) const;
-  /// Fills `found` with the boxes that reach further than `least` before every one of the planes
-  /// (of unit normals), in no order; `visits` and the result as for find_along.
+  /// Fills `found` with the indices of the boxes that reach more than `least` in front of every one
+  /// of the planes (unit normals), in no particular order. `visits` and the result are those of
+  /// find_along().
   bool find_before(std::span<const Eigen::Hyperplane<double, 3>> planes, double least,
                    std::int64_t& visits, std::vector<int>& found) const;
-  /// Fills `found` with the boxes that come within `reach` of the segment a-b, in no order; a few
-  /// that do not may be among them. `visits` is how many nodes may be looked at, and after the call
-  /// how many are left; false, and nothing found, if they were not enough.
+  /// Fills `found` with the indices of the boxes within `reach` of the segment a-b, in no
+  /// particular order; a few boxes slightly farther away may be among them. At most `visits` nodes
+  /// of the tree are visited, and `visits` is lowered by their number. Returns false, with `found`
+  /// empty, if `visits` did not suffice.
   bool find_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double reach,
                   std::int64_t& visits, std::vector<int>& found) const;
 
  private:
   struct Node {
     Box box{};
-    int begin = 0, end = 0;  ///< of order_; a leaf if `right` is 0
-    int right = 0;           ///< the left child follows its parent
+    int begin = 0, end = 0;  ///< a range of order_
+    int right = 0;  ///< index of the right child, 0 in a leaf; the left child follows its parent
   };
   int build(int begin, int end);
-  // False, with nothing found, when it would take more visits of nodes; counts them down.
+  // Fills `found` with the boxes for which meets(box) holds, in no particular order; `visits` and
+  // the result are those of find_along().
   template <class Meets>
   bool collect(const Meets& meets, std::int64_t& visits, std::vector<int>& found) const;
   template <class Meets>

@@ -16,8 +16,9 @@ void for_each_loop(const Facet& facet, Visit&& visit) {
   for (const auto& hole : facet.holes) visit(hole);
 }
 
-// Joining two ends of one edge, or the sides of a needle, would make a facet vanish; so a corner
-// reaches no further than these shares of its shortest edge and of its facets' thickness.
+// Joining the two ends of an edge, or the two sides of a needle, would make a facet vanish. So the
+// welding radius of a corner is at most these shares of the corner's shortest edge and of the
+// thickness of its facets.
 constexpr double weld_share_of_edge = 1e-3;
 constexpr double weld_share_of_thickness = 0.1;
 
@@ -35,8 +36,9 @@ void add_loop(FacetPlane& plane, const std::vector<int>& loop, const std::vector
   plane.loop_begin.push_back(plane.corner_count());
 }
 
-// The edge direction that, with its perpendicular, carries most of the boundary's length: the legs
-// of a right triangle win over its hypotenuse. Ties go to the first edge.
+// Returns the edge direction that, with its perpendicular, carries most of the boundary's length;
+// the first edge wins ties. In a right triangle the direction is that of a leg, not of the
+// hypotenuse.
 Vector3d frame_direction(const FacetPlane& plane) {
   constexpr double aligned = 0.01;  // radians
   Vector3d best = Vector3d::Zero();
@@ -64,7 +66,7 @@ Vector3d frame_direction(const FacetPlane& plane) {
 
 void set_frame(FacetPlane& plane) {
   const int boundary = plane.loop_begin[1];
-  // Relative to a corner: a coordinate that all corners share stays exactly what it is.
+  // The mean is taken relative to a corner, so a coordinate that all corners share stays exact.
   Vector3d mean = Vector3d::Zero();
   for (int i = 0; i < boundary; ++i) mean += (plane.corner[i] - plane.corner[0]) / boundary;
   plane.origin = plane.corner[0] + mean;

@@ -8,8 +8,8 @@
 
 namespace lightwell {
 
-/// A facet of the scene in its own plane: corners as welded points, and a 2-D frame whose axes
-/// follow as much of the boundary as possible, so that a rectangle is upright in it.
+/// A facet of the scene with a 2-D frame in the facet's plane. Corners are welded points. The
+/// frame's axes follow as much of the boundary as possible, so a rectangle is parallel to the axes.
 struct FacetPlane {
   int facet = 0;  ///< scene-wide number
   int surface = 0;
@@ -18,11 +18,11 @@ struct FacetPlane {
   Eigen::Vector3d axis_y = Eigen::Vector3d::UnitY();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the front
   Eigen::AlignedBox3d box{};
-  double weld_tolerance = 0.0;  ///< how far points of its boundary may have been moved, metres
+  double weld_tolerance = 0.0;  ///< largest displacement of a corner by welding, metres
 
   // Corners, one loop after another: the boundary, then the holes.
   std::vector<int> loop_begin{0};  ///< loop l is [loop_begin[l], loop_begin[l + 1])
-  std::vector<int> point{};        ///< index into the WeldedPoints
+  std::vector<int> point{};        ///< per corner, index into the WeldedPoints
   std::vector<Eigen::Vector3d> corner{};
   std::vector<Eigen::Vector2d> xy{};  ///< corners in the frame
 
@@ -51,20 +51,21 @@ struct FacetPlane {
   double area() const;
   /// Length of the boundary and of all holes, metres.
   double boundary_length() const;
-  /// Whether q lies inside the polygon, or within `tolerance` of its boundary.
+  /// True if q lies inside the polygon or within `tolerance` (metres) of the boundary.
   bool contains(const Eigen::Vector2d& q, double tolerance) const;
 };
 
-/// Distance of q from the segment a-b.
+/// Distance of q from the segment a-b, in the units of the arguments.
 double segment_distance(const Eigen::Vector2d& q, const Eigen::Vector2d& a,
                         const Eigen::Vector2d& b);
 
-/// How far each vertex may be moved to become one with another, metres: `tolerance`, but less where
-/// that would join the ends of an edge or the sides of a needle.
+/// The welding radius of each vertex, metres: `tolerance`, but at most 1e-3 of the shortest edge at
+/// the vertex and 0.1 of the thickness (2 area / boundary length) of each facet at the vertex. So
+/// welding joins neither the two ends of an edge nor the two sides of a needle.
 std::vector<double> weld_radii(const PolygonMesh& mesh, double tolerance);
 
-/// The planes of all polygon facets of the scene (spheres have none), in scene-wide order. Their
-/// corners are added to `points`.
+/// Returns the planes of all polygon facets of the scene, in scene-wide order (spheres have none),
+/// and adds the facets' corners to `points`.
 std::vector<FacetPlane> facet_planes(const Scene& scene, WeldedPoints& points);
 
 }  // namespace lightwell

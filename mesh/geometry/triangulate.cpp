@@ -23,9 +23,10 @@ using Delaunay =
 
 constexpr int unnumbered = -1;
 
-// Four points on one circle have two Delaunay triangulations, and which of them CGAL ends with
-// depends on where in memory its faces lie. The one kept is that whose diagonal ends in the lowest
-// of the four: a fan from the lowest of all points on the circle.
+// Makes the triangulation of cocircular points unique. Four points on a circle have two Delaunay
+// triangulations, and the choice of CGAL depends on where in memory its faces lie. Flips keep the
+// diagonal that ends in the lowest-numbered of the four points, so all points on a circle are
+// joined as a fan from the lowest.
 class CocircularFans {
  public:
   explicit CocircularFans(PlanarTriangulation& mesh) : mesh_(mesh) {}
@@ -62,7 +63,7 @@ class CocircularFans {
            CGAL::ON_ORIENTED_BOUNDARY;
   }
 
-  // (a, b, c) and (d, c, b) become (a, b, d) and (a, d, c).
+  // Flips the edge b-c: (a, b, c) and (d, c, b) become (a, b, d) and (a, d, c).
   void flip(int t, int i) {
     const int u = mesh_.neighbor[t][i], k = opposite(u, t);
     const auto at = [](int corner) { return corner % 3; };
@@ -87,7 +88,7 @@ class CocircularFans {
   PlanarTriangulation& mesh_;
 };
 
-// Triangles in the order of their corners, lowest first.
+// Rotates each triangle to begin with its lowest corner, then sorts the triangles by their corners.
 void put_in_order(PlanarTriangulation& mesh) {
   const std::size_t n = mesh.triangles.size();
   for (std::size_t t = 0; t < n; ++t) {

@@ -26,7 +26,8 @@ WeldCell weld_cell(const Eigen::Vector3d& p, double cell_size) {
 
 int WeldedPoints::add(const Eigen::Vector3d& point, double radius) {
   radius = std::min(radius, tolerance_);
-  // Cells of twice the tolerance: a point's neighbours lie in at most two cells along each axis.
+  // Cells are twice the tolerance wide, so a point's neighbours lie in at most two cells along each
+  // axis.
   const double cell_size = 2.0 * tolerance_;
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(tolerance_);
   const WeldCell low = weld_cell(point - reach, cell_size),

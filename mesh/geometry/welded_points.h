@@ -7,19 +7,20 @@
 
 namespace lightwell {
 
-/// The precision of single-precision files: corners closer than this share of a scene's diagonal
-/// are one.
+/// Distance below which corners are joined, as a share of the scene's diagonal: the precision of
+/// files with single-precision coordinates.
 inline constexpr double weld_share = 1e-7;
 
-/// Points in space in which nearly equal ones are one: what makes two facets that share an edge
-/// share its ends, whatever their files' rounding. Hashed on a grid; O(1) a point.
+/// A set of points in space in which nearly equal points are one, so that facets that share an edge
+/// share its two ends, whatever the rounding in their files. A hash grid finds a point in O(1).
 class WeldedPoints {
  public:
-  /// No two points further apart than `tolerance` (metres, > 0) are ever joined.
+  /// Points farther apart than `tolerance` (metres, > 0) are never joined.
   explicit WeldedPoints(double tolerance) : tolerance_(tolerance) {}
 
-  /// The number of the nearest point within both its radius and `radius` (at most the tolerance;
-  /// equal points always join), or of a new one.
+  /// Returns the number of the nearest known point whose distance from `point` is at most `radius`
+  /// and at most the radius given for the known point; without such a point, the number of a new
+  /// one. Radii are in metres and cut to the tolerance. Equal points always join.
   int add(const Eigen::Vector3d& point, double radius);
 
   const Eigen::Vector3d& operator[](int i) const { return points_[i]; }

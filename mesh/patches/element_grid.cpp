@@ -24,8 +24,8 @@ class Lattice {
     second_dual_ = (xx * rise - xy * step) / determinant;
   }
 
-  // (i, j) if the element goes once around the cell from there to (i + 1, j + 1),
-  // counter-clockwise as step and rise do.
+  // Returns (i, j) if the element's corners go once around that cell, counter-clockwise from `step`
+  // to `rise`.
   std::optional<Vector2i> cell(const PatchMesh& mesh, int element) const {
     if (mesh.corner_count(element) != 4) return {};
     std::array<Vector2i, 4> at;

@@ -7,8 +7,8 @@
 
 namespace lightwell {
 
-/// A flat patch whose elements are equal parallelograms side by side: cell (i, j) lies between
-/// origin + i step + j rise and origin + (i + 1) step + (j + 1) rise.
+/// A flat patch whose elements are equal parallelograms side by side. Cell (i, j) lies between
+/// origin + i step + j rise and origin + (i + 1) step + (j + 1) rise, metres.
 struct ElementGrid {
   int columns = 0, rows = 0;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
@@ -16,7 +16,8 @@ struct ElementGrid {
   std::vector<int> element{};  ///< of cell (i, j) at j * columns + i
 };
 
-/// Empty where the patch is anything else, to one part in 1e9 of an element.
+/// Returns the grid of a patch; empty where the patch is no such grid, to one part in 1e9 of an
+/// element.
 std::optional<ElementGrid> element_grid(const PatchMesh& mesh, int patch);
 
 }  // namespace lightwell

@@ -5,7 +5,7 @@
 
 namespace lightwell {
 
-/// The box about all vertices, m; empty, from infinity to minus infinity, without any.
+/// The box about all vertices, metres; without vertices, from infinity to minus infinity.
 Bounds mesh_bounds(const PatchMesh& mesh);
 
 }  // namespace lightwell

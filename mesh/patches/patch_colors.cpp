@@ -16,8 +16,9 @@ struct PatchEdge {
   int patch = 0;
 };
 
-// The sides of all front elements, in the order of their points: equal ones lie side by side.
-// Vertices do not do for it: where light may jump each side has its own.
+// The edges of all front elements, sorted by their points: equal edges lie side by side. Points and
+// not vertices are compared, because each side of a line where light may jump has vertices of its
+// own.
 std::vector<PatchEdge> front_edges(const PatchMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (int v = 0; v < mesh.vertex_count(); ++v) box.extend(mesh.position(v));

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Twice the area, along the normal; planar quadrilaterals and triangles.
+// Twice the area of a triangle, along the normal.
 Vector3d area_vector(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return (b - a).cross(c - a);
 }
@@ -35,7 +35,8 @@ const SphereGrid* sphere_of_element(const PatchMesh& mesh, int element) {
   return sphere_grid_of(mesh, mesh.facet[element]);
 }
 
-// Radial on spheres, inwards for inner elements; elsewhere the mean of the faces around.
+// Sets vertex normals: radial on spheres, inwards for inner elements; elsewhere the mean of the
+// faces around, weighted by area.
 void set_vertex_normals(PatchMesh& mesh, int vertex_count) {
   mesh.vertex_normal.assign(vertex_count, Vector3d::Zero());
   const int patches = mesh.patch_count();
@@ -57,7 +58,8 @@ void set_vertex_normals(PatchMesh& mesh, int vertex_count) {
   for (Vector3d& n : mesh.vertex_normal) n.normalize();
 }
 
-// Whether a face can be added: OpenMesh refuses as well, but with a message on standard error.
+// True if the face can be added. OpenMesh refuses other faces too, but with a message on standard
+// error.
 bool fits(const HalfedgeMesh& elements, const std::array<HalfedgeMesh::VertexHandle, 4>& face,
           std::size_t corner_count) {
   if (corner_count < 3) return false;
@@ -86,7 +88,8 @@ PatchPoint element_center(const PatchMesh& mesh, int element) {
 void build_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
   using Vertex = HalfedgeMesh::VertexHandle;
   mesh.elements->clear();
-  // Edges are as many as vertices and faces, less one for each part; one more for every hole.
+  // Euler: a connected mesh has one edge less than vertices and faces together, and one more for
+  // every hole.
   const std::size_t count = positions.size() + mesh.corners.size();
   mesh.elements->reserve(positions.size(), count + count / 16, mesh.corners.size());
   for (const Vector3d& p : positions) mesh.elements->add_vertex({p.x(), p.y(), p.z()});

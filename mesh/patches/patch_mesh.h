@@ -17,10 +17,10 @@ struct ElementMeshTraits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
   using Normal = OpenMesh::Vec3d;
 };
-/// A face is an element, a vertex is a point where radiosity is reconstructed.
+/// A half-edge mesh: a face is an element, a vertex is a point at which radiosity is reconstructed.
 using HalfedgeMesh = OpenMesh::PolyMesh_ArrayKernelT<ElementMeshTraits>;
 
-/// One that is handed on when it is moved, where OpenMesh would copy it; what it was moved from is
+/// A HalfedgeMesh that is moved without a copy, unlike OpenMesh's own; the mesh moved from is
 /// empty.
 class MovableHalfedgeMesh {
  public:
@@ -45,8 +45,8 @@ class MovableHalfedgeMesh {
   std::unique_ptr<HalfedgeMesh> mesh_;
 };
 
-/// The elements of one sphere's outside (or inside): a latitude-longitude grid about +z, so that a
-/// point of the exact sphere finds its element. Ring 0 touches the +z pole; sector 0 starts at
+/// The elements of one sphere's outside (or inside), for finding the element at a point of the
+/// exact sphere: a latitude-longitude grid about +z. Ring 0 touches the +z pole; sector 0 starts at
 /// longitude 0 (+x), turning towards +y.
 struct SphereGrid {
   int facet = 0;  ///< scene-wide facet number of the sphere
@@ -55,56 +55,62 @@ struct SphereGrid {
   std::vector<int> element{};  ///< outside element of (ring, sector) at ring * sectors + sector
 };
 
-/// Surfaces cut into *patches*, the sources of energy and unknowns of the solver, and each patch
-/// into *elements*, which receive and carry the gradient (Cohen, Greenberg, Immel & Brock 1986). A
-/// patch lies in one facet, or, where facets are small against it, reaches over many that face
-/// nearly alike (see group_facets).
-/// One array per quantity. Conforming: no vertex lies inside another element's edge, but for lines
-/// along which something much finer than an element crosses a facet's inside. Vertices are
-/// shared only where radiosity is continuous: within one side of one facet, or across facets of one
-/// surface whose normals, those at vertices where the surface has them (see FacetNormals), differ
-/// by less than MeshOptions::smooth_angle_degrees (build_patches.h); never across contact lines
-/// (D0; across D1 and D2 lines they are), and not at reflex corners, where each element has a
-/// vertex of its own.
+/// Surfaces cut into *patches*, the sources of energy and unknowns of the solver, and patches cut
+/// into *elements*, which receive light and carry its gradient (Cohen, Greenberg, Immel & Brock
+/// 1986). A patch lies in one facet, or, where facets are small against it, reaches over many
+/// facets that face nearly alike (see group_facets()). Each quantity has an array of its own.
+///
+/// The mesh conforms: no vertex lies inside the edge of another element, except along lines in
+/// which something much finer than an element crosses the inside of a facet.
+///
+/// Vertices are shared only where radiosity is continuous:
+/// - within one side of one facet, except across contact lines (D0) and at reflex corners, where
+///   each element has a vertex of its own; D1 and D2 lines do not part vertices;
+/// - across facets of one surface whose normals (those at vertices where the surface has such, see
+///   FacetNormals) differ by less than MeshOptions::smooth_angle_degrees (build_patches.h).
 struct PatchMesh {
   MovableHalfedgeMesh elements{};
 
   // Per element. The elements of patch i are first_element[i] .. first_element[i+1] - 1.
   std::vector<int> patch{};
   std::vector<int> facet{};  ///< scene-wide facet number (see scene_facets)
-  /// Vertices counter-clockwise seen from the side the element faces; [3] is -1 for a triangle. The
-  /// same as the half-edge mesh's faces, flat for inner loops.
+  /// Vertices, counter-clockwise seen from the side that the element faces; [3] is -1 for a
+  /// triangle. The same faces as those of `elements`, in a flat array for inner loops.
   std::vector<std::array<int, 4>> corners{};
-  Eigen::ArrayXd element_area{};  ///< m^2, > 0; exact on spheres, less holes that textures cut
-  std::vector<int> twin{};  ///< element on the other side of the same place; -1: behind it is black
+  /// Area, m^2, > 0; exact on spheres; without the holes that textures cut.
+  Eigen::ArrayXd element_area{};
+  /// The element on the other side of the same place; -1: the other side is black.
+  std::vector<int> twin{};
 
   // Per vertex.
   std::vector<Eigen::Vector3d> vertex_normal{};  ///< unit, on the side its elements face
-  /// 1: one of several at a reflex corner, each of one element. Empty if the mesh is from a file.
+  /// 1 for a vertex at a reflex corner, where each element has its own. Empty for a mesh from a
+  /// file.
   std::vector<char> at_reflex_corner{};
 
   // Per patch.
   std::vector<int> first_element{};  ///< patch_count + 1 entries
   Eigen::ArrayXd area{};             ///< A_i, m^2, > 0
-  BandArray reflectance{};           ///< rho_i, patches x bands; of a texture the mean over it
-  BandArray emission{};              ///< M_i, W/m^2, patches x bands
-  std::vector<int> surface{};        ///< index into Scene::surfaces
-  std::vector<int> material{};       ///< index into Scene::materials
-  std::vector<char> is_back{};       ///< 1: the patch faces away from its facets' fronts
+  /// Reflectance rho_i, patches x bands; the mean over the patch where a texture varies.
+  BandArray reflectance{};
+  BandArray emission{};         ///< M_i, W/m^2, patches x bands
+  std::vector<int> surface{};   ///< index into Scene::surfaces
+  std::vector<int> material{};  ///< index into Scene::materials
+  std::vector<char> is_back{};  ///< 1: the patch faces away from its facets' fronts
 
-  /// Factors of what free sources (see free_source_count) give, as relight() leaves them: sources x
-  /// bands. Empty: all 1.
+  /// Factors of the power of free sources (see free_source_count()), as relight() leaves them:
+  /// sources x bands. Empty: all 1.
   BandArray source_scale{};
 
   std::vector<SphereGrid> sphere_grids{};
-  /// The scene's, if it has any: rays go through holes. Null: nothing varies over facets.
+  /// The textures of the scene; rays pass through their holes. Null: nothing varies over facets.
   std::shared_ptr<const FacetTextures> textures{};
-  std::vector<std::string> notes{};  ///< what meshing had to leave out: one sentence each
+  std::vector<std::string> notes{};  ///< what meshing had to leave out, a sentence each
 
   int patch_count() const { return static_cast<int>(area.size()); }
   int element_count() const { return static_cast<int>(patch.size()); }
   int vertex_count() const { return static_cast<int>(vertex_normal.size()); }
-  /// The facet that holds all of a patch; -1: the patch reaches over several, and is not flat.
+  /// The facet that holds all of patch p; -1 for a patch over several facets, which is not flat.
   int facet_of(int p) const {
     const int first = facet[first_element[p]];
     for (int e = first_element[p] + 1; e < first_element[p + 1]; ++e) {
@@ -126,11 +132,14 @@ struct PatchPoint {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the side the patch faces
 };
 
-/// Mean of the element's corners (on spheres moved out to the exact sphere) and its unit normal.
+/// The mean of the element's corners (on spheres moved out to the exact sphere), with the unit
+/// normal there.
 PatchPoint element_center(const PatchMesh& mesh, int element);
 
-/// Rebuilds `elements` from `positions` and `corners`, and vertex normals from faces
-/// (area-weighted; exact on spheres): what makes a PatchMesh read from a file whole again.
+/// Rebuilds `elements` from `positions` (metres) and `corners`, and vertex normals from faces
+/// (weighted by area; exact on spheres): completes a PatchMesh read from a file. Throws
+/// std::runtime_error if an element names a vertex that does not exist or does not fit its
+/// neighbours.
 void build_topology(PatchMesh& mesh, const std::vector<Eigen::Vector3d>& positions);
 
 }  // namespace lightwell

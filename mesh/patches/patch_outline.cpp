@@ -26,8 +26,8 @@ struct OutlineEdge {
   }
 };
 
-// Edges of the elements that have no counterpart. Compared by place, for vertices are not shared
-// across contact lines.
+// The edges of the elements that have no counterpart. Edges are compared by position, because
+// vertices are not shared across contact lines.
 std::vector<OutlineEdge> free_edges(const PatchMesh& mesh, std::span<const int> elements) {
   std::vector<OutlineEdge> edges;
   for (const int e : elements) {
@@ -47,7 +47,7 @@ std::vector<OutlineEdge> free_edges(const PatchMesh& mesh, std::span<const int> 
   return free;
 }
 
-// Joins the edges end to end; sorted, so the next edge is found by where it starts.
+// Joins the edges end to end. Edges are sorted, so the next edge is found by its start.
 std::vector<std::vector<Vector3d>> chained(const std::vector<OutlineEdge>& edges) {
   std::vector<std::vector<Vector3d>> loops;
   std::vector<char> used(edges.size(), 0);
@@ -120,7 +120,7 @@ PatchOutline patch_outline(const PatchMesh& mesh, int patch) {
     std::vector<int> elements(mesh.first_element[patch + 1] - mesh.first_element[patch]);
     std::iota(elements.begin(), elements.end(), mesh.first_element[patch]);
     outline = polygon_outline(boundary_loops(mesh, elements));
-    // A patch may be in pieces, of which polygon_outline looks at the first.
+    // A patch may be in pieces, and polygon_outline sets the radius by the first alone.
     for (const auto& loop : outline.loops) {
       for (const Vector3d& v : loop) {
         outline.radius = std::max(outline.radius, (v - outline.center).norm());

@@ -14,12 +14,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// How far samples stay inside, as a share of the element or grid. A point nearer to a contact line
-// than float can tell lies, for a ray, on either side of what stands there, and would carry light
-// through it.
+// Share of the element or grid by which samples stay inside. A point nearer to a contact line than
+// single precision resolves may lie, for a ray, on the other side of what stands there, and would
+// carry light through.
 constexpr double inset = 1e-4;
 
-// Uniform over a sphere's element: even in longitude and in cos(theta) (Archimedes).
+// A direction uniform over a sphere's element: even in longitude and in cos(theta) (Archimedes).
 Vector3d direction_of_sphere(const PatchMesh& mesh, const SphereGrid& grid, int element, double u,
                              double v) {
   SphereGridPoint grid_point =
@@ -101,7 +101,8 @@ PatchPoint PatchSampler::point_beside_holes(double u, double v) const {
   PatchPoint point = any_point(u, v);
   const FacetTextures& textures = *mesh_.textures;
   const auto key = std::pair(std::bit_cast<std::uint64_t>(u), std::bit_cast<std::uint64_t>(v));
-  constexpr std::uint64_t most_tries = 64;  // a patch that has one point in twenty: 4 % miss it
+  // If one point in twenty is no hole, 4 % of the samples still end in a hole.
+  constexpr std::uint64_t most_tries = 64;
   for (std::uint64_t i = 0; i < most_tries; ++i) {
     const int facet = mesh_.facet[point.element];
     if (!textures.has_holes(facet) || !textures.is_hole(facet, point.position)) break;
@@ -113,7 +114,7 @@ PatchPoint PatchSampler::point_beside_holes(double u, double v) const {
 
 PatchPoint PatchSampler::point_on_part(double u, double v) const {
   const double area = u * area_;
-  // Parts are mostly of one size, so a guess saves the search.
+  // Parts are mostly of one size, so a first guess saves the search.
   std::size_t i =
       std::min(static_cast<std::size_t>(u * static_cast<double>(parts_.size())), parts_.size() - 1);
   while (i > 0 && area < parts_[i - 1].area_up_to) --i;
@@ -122,7 +123,7 @@ PatchPoint PatchSampler::point_on_part(double u, double v) const {
   const double before = i == 0 ? 0.0 : parts_[i - 1].area_up_to;
   u = std::clamp((area - before) / (part.area_up_to - before), 0.0, 1.0);
   if (!sphere_) {
-    // The square root keeps density even towards the corner.
+    // The square root makes the density even towards the corner.
     const double s = std::sqrt(u);
     return {.element = part.element,
             .position = part.corner + s * ((1.0 - v) * part.first_edge + v * part.second_edge),

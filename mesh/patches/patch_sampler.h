@@ -9,24 +9,24 @@
 
 namespace lightwell {
 
-/// Draws points of one patch. Keeps a reference to the mesh.
+/// Draws points of one patch, uniformly over its area. Keeps a reference to the mesh.
 class PatchSampler {
  public:
   PatchSampler(const PatchMesh& mesh, int patch);
-  /// Of one of its elements alone.
+  /// A sampler of one element of the patch alone.
   PatchSampler(const PatchMesh& mesh, int patch, int element);
 
-  /// Whether the normal is the same everywhere.
+  /// True if the normal is the same everywhere.
   bool is_flat() const { return is_flat_; }
 
-  /// Uniform over the patch's area for (u, v) uniform in [0,1)^2 (u also picks the element, in
-  /// proportion to area); on a sphere the point lies on the exact sphere. Linear in u and v where
-  /// the patch is a parallelogram, so that what is stratified stays so.
-  /// Never in a hole of the surface: another place that (u, v) decides is taken instead.
+  /// A point uniform over the patch's area for (u, v) uniform in [0,1)^2; u also picks the element,
+  /// in proportion to area. On a sphere the point lies on the exact sphere. The point is linear in
+  /// u and v where the patch is a parallelogram, so that stratified samples stay stratified. A
+  /// point in a hole of the surface is replaced by others that (u, v) determine, at most 64 times.
   PatchPoint point(double u, double v) const {
     return has_holes_ ? point_beside_holes(u, v) : any_point(u, v);
   }
-  /// Its position alone, for who draws very many.
+  /// The position of point(u, v) alone, metres, for callers that draw very many.
   Eigen::Vector3d position(double u, double v) const {
     if (has_holes_) return point_beside_holes(u, v).position;
     return grid_ ? position_on_grid(u, v) : point_on_part(u, v).position;
@@ -36,7 +36,7 @@ class PatchSampler {
   // A triangle of an element; an element of a sphere whole.
   struct Part {
     int element = -1;
-    double area_up_to = 0.0;  // of this and all parts before
+    double area_up_to = 0.0;  // of this part and all parts before, m^2
     Eigen::Vector3d corner = Eigen::Vector3d::Zero();
     Eigen::Vector3d first_edge = Eigen::Vector3d::Zero(), second_edge = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -65,15 +65,15 @@ class PatchSampler {
   bool has_holes_ = false;
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of a flat patch
   std::optional<ElementGrid> grid_;
-  // Of the grid, a little inside.
+  // The grid's corner and edges, shrunk a little.
   Eigen::Vector3d corner_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d along_row_ = Eigen::Vector3d::Zero(), across_ = Eigen::Vector3d::Zero();
   double area_ = 0.0;
   std::vector<Part> parts_;  // empty where there is a grid
 };
 
-/// A ray from a point of the mesh, about its normal with the density cos / pi for (u, v) uniform in
-/// [0,1)^2.
+/// A ray from a point of the mesh with a direction about its normal of density cos / pi, for (u, v)
+/// uniform in [0,1)^2.
 Ray cosine_ray(const PatchMesh& mesh, const PatchPoint& from, float u, float v);
 
 }  // namespace lightwell

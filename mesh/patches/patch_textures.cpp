@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int fewest_points = 4, most_points = 16;  // along an element
+constexpr int fewest_points = 4, most_points = 16;  // per direction of an element
 constexpr double least_cover = 1e-3;
 
-// A piece of an element, as the bilinear map of the unit square: a triangle ends in one corner
-// twice.
+// A piece of an element under the bilinear map of the unit square; a triangle repeats its last
+// corner.
 struct TextureCell {
   Vector3d middle;
   Eigen::Matrix<double, 3, 2> sides;
@@ -41,10 +41,10 @@ std::array<Vector3d, 4> corners_of(const PatchMesh& mesh, int element) {
   return {mesh.position(c[0]), mesh.position(c[1]), last, mesh.position(c[3])};
 }
 
-// Sums over what is no hole.
+// Sums over the part of an element that is no hole.
 struct Covered {
-  double area = 0.0, cover = 0.0;  // m^2: of the element, and of what is left of it
-  Eigen::ArrayXd reflected{};      // times area
+  double area = 0.0, cover = 0.0;  // m^2: the element, and the part that is no hole
+  Eigen::ArrayXd reflected{};      // sum of reflectance times area, m^2
 };
 
 Covered covered_light(const PatchMesh& mesh, const FacetTextures& textures, int element,
@@ -61,7 +61,7 @@ Covered covered_light(const PatchMesh& mesh, const FacetTextures& textures, int 
     }
     points = static_cast<int>(std::clamp<double>(std::ceil(longest), fewest_points, most_points));
   }
-  // The filter's own reach is half a cell more, so that what lies beside the element stays out.
+  // The filter itself reaches half a cell farther, so that texels beside the element stay out.
   constexpr double reach = 0.5;
   Covered sum{.reflected = Eigen::ArrayXd::Zero(bands)};
   for (int i = 0; i < points; ++i) {

@@ -4,18 +4,18 @@
 
 namespace lightwell {
 
-/// Puts what varies over the scene's facets into the mesh that was made of it. An element's area
-/// becomes that of what its holes leave, and a patch's reflectance the mean of its texture over
-/// what they leave, both from a grid of points on every element, 4 x 4 or as fine as the texels, 16
-/// x 16 at most, where there are holes always. What is holes throughout keeps a thousandth of its
+/// Sets areas and reflectances of a mesh of `scene` from textures and holes. An element's area
+/// becomes the part that holes leave, and a patch's reflectance the mean of its texture over that
+/// part. Both are sums over a grid of points on every element: from 4 x 4 to 16 x 16, as fine as
+/// the texels; 16 x 16 on facets with holes. An element that is all hole keeps a thousandth of its
 /// area, which no light meets.
 void lay_on_textures(const Scene& scene, PatchMesh& mesh);
 
-/// Gives a mesh that was read from a file the holes of its scene's facets.
+/// Sets the textures and holes of a mesh that was read from a file.
 void attach_textures(const Scene& scene, PatchMesh& mesh);
 
-/// Reflectance at vertices: of patches that share one, the mean by the area of their elements there
-/// (vertices x bands).
+/// Reflectance at vertices (vertices x bands): at a vertex of several patches, the mean weighted by
+/// the area of their elements there.
 BandArray vertex_reflectance(const PatchMesh& mesh);
 
 }  // namespace lightwell

@@ -10,7 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
-// First of n cells that block c of m covers: even blocks.
+// First of n cells in block c of m even blocks.
 int block(int c, int m, int n) {
   return static_cast<int>((static_cast<std::int64_t>(c) * n + m - 1) / m);
 }
@@ -23,7 +23,7 @@ double polar_angle(int ring, int rings) {
 
 SphereElements sphere_elements(const Sphere& sphere, const CutSize& size) {
   SphereElements s;
-  // At least two patches from pole to pole and four around: fewer are no picture of a sphere.
+  // At least two patches from pole to pole and four around; fewer do not resemble a sphere.
   const int patch_rows = std::max(2, size.patches(pi * sphere.radius));
   s.rings = std::max(patch_rows, size.pieces(pi * sphere.radius));
   s.sectors = std::max(4, size.pieces(2.0 * pi * sphere.radius));
@@ -50,7 +50,8 @@ SphereElements sphere_elements(const Sphere& sphere, const CutSize& size) {
                               ? 1.0
                               : std::max(std::sin(polar_angle(north, s.rings)),
                                          std::sin(polar_angle(south, s.rings)));
-    // As many whole sectors as fit into a patch's width, at least the usual number.
+    // As many whole sectors as fit into the width of a patch, but no fewer than elements along a
+    // patch edge.
     const double sector_width = dphi * sphere.radius * widest;
     const int fit = std::max(size.elements_per_edge,
                              static_cast<int>(size.patch_size / sector_width * (1.0 + 1e-9)));
@@ -86,7 +87,7 @@ SphereGridPoint sphere_grid_point(const SphereGrid& grid, const Eigen::Vector3d&
   const double across = std::hypot(direction.x(), direction.y());
   double phi = std::atan2(direction.y(), direction.x());
   if (phi < 0.0) phi += 2.0 * pi;
-  // Rounding may carry either to the very end of its range: the last cell's far edge.
+  // Rounding may carry x or y to the end of its range, which is the last cell's far edge.
   const double x = phi / (2.0 * pi) * grid.sectors;
   const double y = std::atan2(across, direction.z()) / pi * grid.rings;
   SphereGridPoint grid_point;

@@ -1,4 +1,3 @@
-#include "mesh/patches/patch_mesh.h"
 #include "mesh/build_patches.h"
 
 #include <gtest/gtest.h>
