@@ -1,0 +1,179 @@
+#include "radiosity/emitters/sky_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+using std::numbers::pi;
+
+// Number of a square along the Hilbert curve (Hilbert 1891) over a grid of 2^k squares each way.
+int on_hilbert_curve(int size, int x, int y) {
+  int distance = 0;
+  for (int s = size / 2; s > 0; s /= 2) {
+    const int right = (x & s) != 0, up = (y & s) != 0;
+    distance += s * s * ((3 * right) ^ up);
+    if (up == 0) {
+      if (right == 1) {
+        x = size - 1 - x;
+        y = size - 1 - y;
+      }
+      std::swap(x, y);
+    }
+  }
+  return distance;
+}
+
+// The point (u, v) of a cell in axes of north, east and up, of `rings` times `around` cells. The
+// rings have equal height, so that all cells have the same solid angle and the horizon lies between
+// two rings.
+Eigen::Vector3d dome_direction(int cell, int around, int rings, double u, double v) {
+  const double z = -1.0 + 2.0 * (cell / around + v) / rings;
+  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+  const double phi = 2.0 * std::numbers::pi * (cell % around + u) / around;
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+// Directions of a grid of n x n squares in each cell, cell after cell: the middles of the squares,
+// or the corners of the cells for n = 2.
+std::vector<Eigen::Vector3f> dome_grid(int around, int rings, int n) {
+  std::vector<Eigen::Vector3f> grid;
+  grid.reserve(static_cast<std::size_t>(around) * rings * n * n);
+  const auto at = [n](int i) { return n == 2 ? static_cast<double>(i) : (i + 0.5) / n; };
+  for (int c = 0; c < around * rings; ++c) {
+    for (int i = 0; i < n * n; ++i) {
+      grid.push_back(dome_direction(c, around, rings, at(i % n), at(i / n)).cast<float>());
+    }
+  }
+  return grid;
+}
+
+}  // namespace
+
+SkyCells::SkyCells(const Sky& sky, int bands) {
+  axes_ << sky.north, sky.north.cross(sky.up), sky.up;
+  std::iota(order_.begin(), order_.end(), 0);
+  std::sort(order_.begin(), order_.end(), [](int a, int b) {
+    return on_hilbert_curve(around, a % around, a / around) <
+           on_hilbert_curve(around, b % around, b / around);
+  });
+  radiance_.resize(static_cast<std::size_t>(count) * fine * fine);
+  row_cdf_.resize(static_cast<std::size_t>(count) * fine);
+  column_cdf_.resize(radiance_.size());
+  colour_ = BandArray::Ones(count, bands);
+  parallel_for(count, 16, [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) tabulate(sky, c);
+  });
+}
+
+Eigen::Vector3d SkyCells::direction(int cell, double u, double v) const {
+  return axes_ * dome_direction(cell, around, rings, u, v);
+}
+
+void SkyCells::tabulate(const Sky& sky, int c) {
+  constexpr int in_cell = fine * fine;
+  constexpr double fine_angle = 4.0 * pi / (static_cast<double>(count) * in_cell);
+  const int across = sky.kind == SkyKind::map ? 4 : 1;  // samples of a square, each way
+  const Eigen::Index bands = colour_.cols();
+  Cell& cell = cell_[static_cast<std::size_t>(c)];
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(bands);
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+  const std::size_t first = static_cast<std::size_t>(c) * in_cell;
+  for (int i = 0; i < in_cell; ++i) {
+    const int row = i / fine, column = i % fine;
+    Eigen::ArrayXd L = Eigen::ArrayXd::Zero(bands);
+    for (int k = 0; k < across * across; ++k) {
+      const double u = (column + (k % across + 0.5) / across) / fine;
+      const double v = (row + (k / across + 0.5) / across) / fine;
+      L += sky_radiance(sky, direction(c, u, v)).cast<double>() / (across * across);
+    }
+    radiance_[first + static_cast<std::size_t>(i)] = static_cast<float>(L.mean());
+    vector += L.mean() * fine_angle * direction(c, (column + 0.5) / fine, (row + 0.5) / fine);
+    sum += L * fine_angle;
+  }
+  cell.middle = direction(c, 0.5, 0.5).cast<float>();
+  cell.vector = vector.cast<float>();
+  cell.power = sum.mean();
+  if (cell.power > 0.0) colour_.row(c) = (sum / sum.mean()).cast<float>().transpose();
+  double rows = 0.0;
+  for (int row = 0; row < fine; ++row) {
+    double columns = 0.0;
+    for (int column = 0; column < fine; ++column) {
+      const std::size_t at = first + static_cast<std::size_t>(row * fine + column);
+      columns += static_cast<double>(radiance_[at]);
+      column_cdf_[at] = static_cast<float>(columns);
+    }
+    rows += columns;
+    row_cdf_[static_cast<std::size_t>(c * fine + row)] = static_cast<float>(rows);
+  }
+}
+
+SkyCells::Sample SkyCells::sample(int cell, double u, double v) const {
+  const auto pick = [](std::span<const float> cdf, double& x) {
+    const double wanted = x * static_cast<double>(cdf.back());
+    const auto at = std::upper_bound(cdf.begin(), cdf.end() - 1, static_cast<float>(wanted));
+    const double low = at == cdf.begin() ? 0.0 : static_cast<double>(*(at - 1));
+    const double step = static_cast<double>(*at) - low;
+    x = step > 0.0 ? std::clamp((wanted - low) / step, 0.0, 1.0) : 0.5;
+    return static_cast<int>(at - cdf.begin());
+  };
+  const auto c = static_cast<std::size_t>(cell);
+  const int row = pick(std::span(row_cdf_).subspan(c * fine, fine), v);
+  const std::size_t first = c * fine * fine;
+  const int column =
+      pick(std::span(column_cdf_).subspan(first + static_cast<std::size_t>(row * fine), fine), u);
+  const double L =
+      static_cast<double>(radiance_[first + static_cast<std::size_t>(row * fine + column)]);
+  return {.direction = direction(cell, (column + u) / fine, (row + v) / fine),
+          .density = L / cell_[c].power};
+}
+
+double SkyCells::irradiance(int c, const Eigen::Vector3f& normal) const {
+  const Cell& cell = cell_[static_cast<std::size_t>(c)];
+  if (!(cell.power > 0.0)) return 0.0;
+  // Sines of the largest angle between a cell's middle and its corners; the rings at the poles
+  // reach 20 degrees down.
+  constexpr float sine_of_reach = 0.087f, sine_at_pole = 0.36f;
+  const bool is_at_pole = c < around || c >= count - around;
+  const float reach = is_at_pole ? sine_at_pole : 1.5f * sine_of_reach;
+  const float height = cell.middle.dot(normal);
+  if (height < -reach) return 0.0;
+  const auto E = static_cast<double>(cell.vector.dot(normal));
+  if (height > reach) return E;
+  // Made once, for all points.
+  static const std::vector<Eigen::Vector3f> corners = dome_grid(around, rings, 2);
+  static const std::vector<Eigen::Vector3f> middles = dome_grid(around, rings, fine);
+  const Eigen::Vector3f n = axes_.transpose().cast<float>() * normal;
+  constexpr float rounding = 1e-6f;
+  const auto of_cell = corners.begin() + std::ptrdiff_t{4} * c;
+  const bool is_cut = std::any_of(of_cell, of_cell + 4, [&](const Eigen::Vector3f& corner) {
+    return corner.dot(n) < -rounding;
+  });
+  if (!is_cut) return E;
+  constexpr double fine_angle = 4.0 * pi / (static_cast<double>(count) * fine * fine);
+  const std::size_t first = static_cast<std::size_t>(c) * fine * fine;
+  double sum = 0.0;
+  for (std::size_t i = first; i < first + fine * fine; ++i) {
+    const float cosine = middles[i].dot(n);
+    if (cosine > 0.0f) sum += static_cast<double>(cosine * radiance_[i]);
+  }
+  return sum * fine_angle;
+}
+
+Spectrum SkyCells::unobstructed(const Eigen::Vector3d& normal) const {
+  const Eigen::Vector3f n = normal.cast<float>();
+  Eigen::ArrayXd E = Eigen::ArrayXd::Zero(colour_.cols());
+  for (int c = 0; c < count; ++c) {
+    E += irradiance(c, n) * colour(c);
+  }
+  return E.cast<float>();
+}
+
+}  // namespace lightwell

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "scene/bands.h"
+#include "scene/sky.h"
+
+namespace lightwell {
+
+/// The whole sphere of directions about a scene, cut into cells of equal solid angle (5.6 degrees
+/// wide), with the radiance of a Sky without its sun. Within each cell a grid of 0.7 degrees holds
+/// the radiance; maps are averaged over the grid's squares.
+class SkyCells {
+ public:
+  static constexpr int around = 64, rings = 32;
+  static constexpr int count = around * rings;
+
+  explicit SkyCells(const Sky& sky, int bands);
+
+  /// A direction, and its density within the cell, 1/sr, in proportion to radiance.
+  struct Sample {
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
+    double density = 0.0;
+  };
+  /// The direction for random numbers (u, v) in [0,1)^2.
+  Sample sample(int cell, double u, double v) const;
+  /// The unit direction of the point (u, v) of a cell, in [0,1]^2.
+  Eigen::Vector3d direction(int cell, double u, double v) const;
+
+  /// int L dw over the cell, W/m^2, mean of the bands.
+  double power(int cell) const { return cell_[static_cast<std::size_t>(cell)].power; }
+  /// Radiance of each band over the mean of the bands.
+  Eigen::ArrayXd colour(int cell) const { return colour_.row(cell).transpose().cast<double>(); }
+  /// int L cos dw over the part of a cell above the horizon of a unit normal, W/m^2, mean of the
+  /// bands.
+  double irradiance(int cell, const Eigen::Vector3f& normal) const;
+  /// Irradiance of an unobstructed point, W/m^2 per band: to 1e-4, and to 1e-6 for a uniform sky or
+  /// a horizontal surface.
+  Spectrum unobstructed(const Eigen::Vector3d& normal) const;
+
+  /// All cells in the order of a Hilbert curve: equal steps along the curve are spread evenly over
+  /// the sphere, as equal steps along rings are not.
+  const std::array<int, count>& order() const { return order_; }
+
+ private:
+  static constexpr int fine = 8;  // squares of the grid within a cell, each way
+  struct Cell {
+    Eigen::Vector3f middle = Eigen::Vector3f::Zero();  // unit
+    Eigen::Vector3f vector = Eigen::Vector3f::Zero();  // int L w dw, W/m^2, mean of the bands
+    double power = 0.0;
+  };
+  void tabulate(const Sky& sky, int c);
+
+  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // columns: north, east, up
+  std::array<Cell, count> cell_{};
+  std::array<int, count> order_{};
+  std::vector<float> radiance_{};    // of the fine grid, cell after cell, mean of the bands
+  std::vector<float> row_cdf_{};     // of the rows of each cell's fine grid
+  std::vector<float> column_cdf_{};  // within each of these rows
+  BandArray colour_{};               // cells x bands
+};
+
+}  // namespace lightwell

@@ -1,0 +1,252 @@
+#include "radiosity/emitters/sky_sites.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "mesh/patches/patch_sampler.h"
+#include "scene/parallel.h"
+#include "scene/random_purpose.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int most_sites = 4096, points_per_octant = 3;
+
+// The largest edge of a site, as a share of the scene's diagonal; smaller ones cost more rays.
+constexpr double cube_share = 1.0 / 32.0;
+
+// The eighth of its cube that a point lies in, 0 to 7.
+int octant_of(const Eigen::Vector3d& position, double cube) {
+  const Eigen::Array3d halves = (position.array() / (0.5 * cube)).floor();
+  int octant = 0;
+  for (int i = 0; i < 3; ++i) octant |= (static_cast<std::int64_t>(halves[i]) & 1) << i;
+  return octant;
+}
+
+std::uint64_t site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
+                       double cube) {
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  const auto at = [&](int i) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(position[i] / cube)));
+  };
+  return random_key(at(0), at(1), at(2), static_cast<std::uint64_t>(2 * axis + (normal[axis] > 0)));
+}
+
+}  // namespace
+
+// Points of the surfaces in each cube, about half a cube apart; of surfaces behind one another, as
+// a wall and the picture on it, points of each.
+struct SkySites::Collector {
+  explicit Collector(const PatchMesh& of) : mesh(of) {
+    for (const SphereGrid& grid : mesh.sphere_grids) spheres[grid.facet] = &grid.sphere;
+  }
+
+  // Returns false if there are too many sites.
+  bool collect(double edge) {
+    cube = edge;
+    points.clear();
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      if (!add_element(e)) return false;
+    }
+    return true;
+  }
+
+  // Adds points of a grid over the fan of the element's triangles about its first corner.
+  bool add_element(int e) {
+    const Eigen::Vector3d normal = element_center(mesh, e).normal;
+    const auto& corners = mesh.corners[static_cast<std::size_t>(e)];
+    const int n = mesh.corner_count(e);
+    double longest = 0.0;
+    for (int k = 0; k < n; ++k) {
+      longest = std::max(longest, (mesh.position(corners[static_cast<std::size_t>(k)]) -
+                                   mesh.position(corners[static_cast<std::size_t>((k + 1) % n)]))
+                                      .norm());
+    }
+    const int steps = std::clamp(static_cast<int>(std::ceil(2.0 * longest / cube)), 1, 128);
+    for (int k = 2; k < n; ++k) {
+      const Eigen::Vector3d a = mesh.position(corners[0]);
+      const Eigen::Vector3d b = mesh.position(corners[static_cast<std::size_t>(k - 1)]) - a;
+      const Eigen::Vector3d c = mesh.position(corners[static_cast<std::size_t>(k)]) - a;
+      for (int i = 0; i < steps; ++i) {
+        for (int j = 0; i + j < steps; ++j) {
+          add_point(a + (i + 1.0 / 3.0) / steps * b + (j + 1.0 / 3.0) / steps * c, normal, e);
+        }
+      }
+      if (points.size() > most_sites) return false;
+    }
+    return true;
+  }
+
+  void add_point(Eigen::Vector3d p, Eigen::Vector3d normal, int e) {
+    const int facet = mesh.facet[static_cast<std::size_t>(e)];
+    if (const auto of_facet = spheres.find(facet); of_facet != spheres.end()) {
+      const Sphere& sphere = *of_facet->second;  // chords lie inside it
+      normal = (p - sphere.center).normalized();
+      p = sphere.center + sphere.radius * normal;
+      const int patch = mesh.patch[static_cast<std::size_t>(e)];
+      if (mesh.is_back[static_cast<std::size_t>(patch)] != 0) normal = -normal;
+    }
+    Points& list = points[site_key(p, normal, cube)];
+    const int octant = octant_of(p, cube);
+    int in_octant = 0;
+    bool is_known = false;  // a point of the same plane is
+    for (const SurfacePoint& other : list) {
+      if (octant_of(other.position, cube) != octant) continue;
+      ++in_octant;
+      constexpr double thin = 1e-6;
+      is_known = is_known || std::abs(normal.dot(other.position - p)) < thin * cube;
+    }
+    if (!is_known && in_octant < points_per_octant) list.push_back({p, normal, facet});
+  }
+
+  const PatchMesh& mesh;
+  std::map<int, const Sphere*> spheres{};
+  std::map<std::uint64_t, Points> points{};  // ordered by key
+  double cube = 1.0;
+};
+
+SkySites::SkySites(const SkyCells& cells, const ClearPanes& panes, double scene_diagonal,
+                   const PatchMesh& mesh)
+    : cells_(cells), panes_(panes), cube_(cube_share * std::max(scene_diagonal, 1e-9)) {
+  Collector collector(mesh);
+  while (!collector.collect(cube_)) cube_ *= 1.5;
+  std::vector<const Points*> lists;
+  std::vector<std::uint64_t> keys;
+  for (const auto& [key, list] : collector.points) {
+    site_of_[key] = static_cast<int>(lists.size());
+    lists.push_back(&list);
+    keys.push_back(key);
+  }
+  const ElementCaster caster(mesh);
+  const auto count = static_cast<int>(lists.size());
+  std::vector<CellVisibility> visibilities(lists.size());
+  parallel_for(count, 4, [&](int begin, int end) {
+    for (int s = begin; s < end; ++s) {
+      const auto i = static_cast<std::size_t>(s);
+      visibilities[i] =
+          sample_cells(caster, *lists[i], random_key(keys[i], RandomPurpose::sky_site_rays));
+    }
+  });
+  sites_.resize(lists.size());
+  parallel_for(count, 16, [&](int begin, int end) {
+    for (int s = begin; s < end; ++s) {
+      const auto i = static_cast<std::size_t>(s);
+      const SurfacePoint& point = lists[i]->front();
+      std::vector<const CellVisibility*> beside;
+      for (int side = 0; side < 6; ++side) {
+        Eigen::Vector3d position = point.position;
+        position[side / 2] += side % 2 == 0 ? cube_ : -cube_;
+        const auto found = site_of_.find(site_key(position, point.normal, cube_));
+        if (found != site_of_.end()) {
+          beside.push_back(&visibilities[static_cast<std::size_t>(found->second)]);
+        }
+      }
+      sites_[i] = weights_of(visibilities[i], beside);
+    }
+  });
+}
+
+const SkySites::Weights* SkySites::find(const SurfacePoint& at) const {
+  const auto found = site_of_.find(site_key(at.position, at.normal, cube_));
+  return found == site_of_.end() ? nullptr : &sites_[static_cast<std::size_t>(found->second)];
+}
+
+SkySites::Weights SkySites::sample(const ElementCaster& caster, const SurfacePoint& at,
+                                   std::uint64_t key) const {
+  return weights_of(sample_cells(caster, {&at, 1}, key), {});
+}
+
+SkySites::CellVisibility SkySites::sample_cells(const ElementCaster& caster,
+                                                std::span<const SurfacePoint> points,
+                                                std::uint64_t key) const {
+  struct Sample {
+    int cell = 0;
+    std::size_t point = 0;
+    bool is_open = false;
+  };
+  // A ray through each cell, each from one of the points `from`, drawn at random.
+  const auto samples_from = [&](std::span<const std::size_t> from, std::uint64_t number) {
+    std::vector<Ray> rays;
+    std::vector<Sample> samples;
+    for (int c = 0; c < SkyCells::count; ++c) {
+      if (!(cells_.power(c) > 0.0)) continue;
+      const std::uint64_t ray_key = random_key(key, number, static_cast<std::uint64_t>(c));
+      const auto u = [&](std::uint64_t i) { return random_uniform(random_key(ray_key, i)); };
+      const std::size_t p = from[static_cast<std::size_t>(u(0) * static_cast<double>(from.size()))];
+      const SurfacePoint& point = points[p];
+      const Eigen::Vector3d direction = cells_.direction(c, u(1), u(2));
+      if (!(direction.dot(point.normal) > 0.0)) continue;
+      rays.push_back(
+          {.origin = point.position, .direction = direction, .origin_group = point.facet});
+      samples.push_back({.cell = c, .point = p});
+    }
+    std::vector<std::uint8_t> blocked(rays.size());
+    caster.occluded(rays, blocked);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      samples[i].is_open =
+          blocked[i] == 0 || (!panes_.empty() && (panes_.passed(caster, rays[i]) > 0.0f).any());
+    }
+    return samples;
+  };
+  CellVisibility visibility;
+  const auto count_in = [&](const Sample& sample) {
+    visibility.tried[static_cast<std::size_t>(sample.cell)] += 1.0f;
+    visibility.open[static_cast<std::size_t>(sample.cell)] += sample.is_open ? 1.0f : 0.0f;
+  };
+  std::vector<std::size_t> all(points.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::vector<Sample> first = samples_from(all, 0);
+  // A point without any sky, as on a wall behind a picture, says nothing about the others.
+  std::vector<std::uint8_t> sees(points.size());
+  for (const Sample& sample : first) sees[sample.point] |= sample.is_open ? 1 : 0;
+  std::vector<std::size_t> seeing;
+  std::ranges::copy_if(all, std::back_inserter(seeing),
+                       [&](std::size_t p) { return sees[p] != 0; });
+  for (const Sample& sample : first) {
+    if (seeing.empty() || sees[sample.point] != 0) count_in(sample);
+  }
+  for (const Sample& sample : samples_from(seeing.empty() ? all : seeing, 1)) count_in(sample);
+  return visibility;
+}
+
+// A cell is likely to be open if the cells around it are, or the same cell from the cubes beside,
+// whose points may see parts of the sky that the few points of this cube do not. The best weight of
+// a ray is the root of the probability that its cell is open: the standard deviation of light that
+// arrives or does not.
+SkySites::Weights SkySites::weights_of(const CellVisibility& own,
+                                       std::span<const CellVisibility* const> beside) {
+  constexpr int around = SkyCells::around, rings = SkyCells::rings;
+  constexpr float of_cube_beside = 0.25f, of_cell_beside = 0.125f;  // own rays count 1
+  // A smaller weight would save few rays, and leave bright dots in a picture where they get out.
+  constexpr float least = 0.3f;
+  CellVisibility all = own;
+  for (const CellVisibility* visibility : beside) {
+    for (std::size_t i = 0; i < SkyCells::count; ++i) {
+      all.tried[i] += of_cube_beside * visibility->tried[i];
+      all.open[i] += of_cube_beside * visibility->open[i];
+    }
+  }
+  Weights weights;
+  for (int c = 0; c < SkyCells::count; ++c) {
+    const int ring = c / around, column = c % around;
+    float tried = 0.0f, open = 0.0f;
+    for (int r = std::max(ring - 1, 0); r <= std::min(ring + 1, rings - 1); ++r) {
+      for (int p = column - 1; p <= column + 1; ++p) {
+        const auto i = static_cast<std::size_t>(r * around + (p + around) % around);
+        const float weight = r == ring && p == column ? 1.0f : of_cell_beside;
+        tried += weight * all.tried[i];
+        open += weight * all.open[i];
+      }
+    }
+    const float likely = tried > 0.0f ? open / tried : 1.0f;
+    weights[static_cast<std::size_t>(c)] =
+        likely > 0.0f ? std::max(least, std::sqrt(likely)) : 0.0f;
+  }
+  return weights;
+}
+
+}  // namespace lightwell

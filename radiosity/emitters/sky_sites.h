@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "mesh/elements/element_caster.h"
+#include "radiosity/emitters/sky_cells.h"
+#include "radiosity/visibility/clear_panes.h"
+#include "scene/surface_point.h"
+
+namespace lightwell {
+
+/// Visibility of the sky from *sites*: cubes of space, by the side that the surfaces in them face.
+/// Rays cast beforehand from surfaces of each site find through which cells of the sky rays get
+/// out, so that points near by can send their rays there.
+class SkySites {
+ public:
+  /// Per cell, the sampling weight of its rays beside its unobstructed irradiance; 0: no ray of the
+  /// site got out.
+  using Weights = std::array<float, SkyCells::count>;
+
+  /// Casts rays from the surfaces of `mesh`; the same bits for any number of threads.
+  SkySites(const SkyCells& cells, const ClearPanes& panes, double scene_diagonal,
+           const PatchMesh& mesh);
+
+  /// The site that holds a point; null: no surface lies there.
+  const Weights* find(const SurfacePoint& at) const;
+  /// Weights of a point that lies in no site, from rays of the point alone.
+  Weights sample(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key) const;
+
+ private:
+  /// Rays tried through each cell, and those that got out.
+  struct CellVisibility {
+    std::array<float, SkyCells::count> tried{}, open{};
+  };
+  using Points = std::vector<SurfacePoint>;
+  struct Collector;
+
+  CellVisibility sample_cells(const ElementCaster& caster, std::span<const SurfacePoint> points,
+                              std::uint64_t key) const;
+  static Weights weights_of(const CellVisibility& own,
+                            std::span<const CellVisibility* const> beside);
+
+  const SkyCells& cells_;
+  const ClearPanes& panes_;
+  double cube_ = 1.0;  // m, edge of a site
+  std::unordered_map<std::uint64_t, int> site_of_{};
+  std::vector<Weights> sites_{};
+};
+
+}  // namespace lightwell
