@@ -29,7 +29,8 @@ Loop loop_points(const PolygonMesh& mesh, const std::vector<int>& loop) {
   return points;
 }
 
-// A convex polygon is a fan, which keeps samples better stratified than the mesh's many elements.
+// True for a convex polygon: a fan of triangles keeps samples better stratified than the many
+// elements of the mesh.
 bool is_convex_emitter(const Loop& loop, const Eigen::Vector3d& normal) {
   const std::size_t n = loop.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -66,7 +67,7 @@ void tile(const PatchMesh& mesh, Emitter& emitter) {
   for (double& share : emitter.area_cdf) share /= sum;
 }
 
-// Shadow rays to samples of the emitter, and their shares of the unoccluded kernel.
+// A shadow ray to a sample point of a polygon; its weight is the sample's kernel cos cos / r^2.
 ShadowSample polygon_sample(const Emitter& emitter, const Eigen::Vector3d& point,
                             const Eigen::Vector3d& normal, double u, double v) {
   const Eigen::Vector3d to = emitter_point(emitter, u, v) - point;
@@ -76,7 +77,7 @@ ShadowSample polygon_sample(const Emitter& emitter, const Eigen::Vector3d& point
           .weight = cos_cos > 0.0 ? cos_cos / (r2 * r2) : 0.0};
 }
 
-// Uniform over the cone of directions that the sphere fills, seen from outside.
+// Samples are uniform over the cone of directions that the sphere fills, seen from outside.
 ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
                            const Eigen::Vector3d& normal, double u, double v) {
   const Eigen::Vector3d to_center = emitter.sphere.center - point;
@@ -98,7 +99,7 @@ ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
           .weight = std::max(0.0, direction.dot(normal))};
 }
 
-// The same of one that is near.
+// Samples of a polygon close by are uniform in solid angle, so the kernel is the cosine.
 ShadowSample solid_angle_sample(const SolidAngleSampler& sampler, const Eigen::Vector3d& point,
                                 const Eigen::Vector3d& normal, double u, double v) {
   const Eigen::Vector3d to = sampler.to_point(u, v);
@@ -117,22 +118,22 @@ ShadowSample shadow_sample(const Emitter& emitter, const SolidAngleSampler& samp
   return sample;
 }
 
-// A light in a point's sky: F with nothing in the way, and the effort to find how much is.
+// A light above a point's horizon: its unoccluded F, and the effort to find its visible share.
 struct LightShadow {
   const Emitter* emitter = nullptr;    // or
-  const FreeSource* source = nullptr;  // whose kernel F then is
+  const FreeSource* source = nullptr;  // F is then its kernel
   SolidAngleSampler sampler{};
   int index = 0;
   double F = 0.0;
   int channel = 0;
   std::uint64_t key = 0;
   int least = 0, most = 0;        // rays
-  std::optional<double> share{};  // seen, if no ray is needed
+  std::optional<double> share{};  // visible; empty: rays are needed
 
   const Spectrum& light() const { return emitter ? emitter->exitance : source->light; }
 };
 
-// The rays of all emitters go together. Where the share is known, the tally says just that.
+// Casts the rays of all lights together. A known share becomes the tally as it is.
 std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
                                       const ElementCaster& caster, const SobolPoints& sobol,
                                       const SurfacePoint& at, const ClearPanes* panes) {
@@ -163,10 +164,10 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
   return tallies;
 }
 
-// Stratified rays to a shadow's edge are off by n^(-3/4): the error of the sum over lights that
-// would give shares w of the light is least where each has as w^(4/5). Channels have light of their
-// own, since the others may be dimmed. A first look of fewer than 8 would often miss what hides a
-// part.
+// Stratified rays to a shadow's edge have an error of n^(-3/4), so the error of the sum over lights
+// with shares w of the light is least with rays in proportion to w^(4/5). Shares are taken within a
+// channel, since other channels may be dimmed. Fewer than 8 first rays would often miss an occluder
+// that hides only a part.
 void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOptions& options) {
   const auto light = [](const LightShadow& s) { return s.F * s.light().mean(); };
   std::vector<double> most_light(channels, 0.0);
@@ -187,14 +188,15 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
   }
 }
 
-// Polygons in the way of an exact share that are worth as many rays. One of n polygons takes the
-// time of about 16 + 8 n rays, of more than six polygons less; below 0: rays are better.
+// The number of occluding polygons up to which an exact share costs no more than `rays` rays; below
+// 0: rays are always cheaper. A share behind n polygons takes the time of about 16 + 8 n rays,
+// behind more than six polygons less.
 int pieces_worth(int rays) {
   constexpr int rays_with_none = 16, rays_of_a_piece = 4, most = 24;
   return rays < rays_with_none ? -1 : std::min(rays / rays_of_a_piece, most);
 }
 
-// What of the light's emitter is seen, if that is told without rays; else what rays need.
+// Finds the visible share of the light's emitter without rays, or else what its rays need.
 void find_share(const ExactShadows& exact, const ElementCaster& caster, const SurfacePoint& at,
                 LightShadow& shadow) {
   if (!caster.moves()) {
@@ -203,7 +205,7 @@ void find_share(const ExactShadows& exact, const ElementCaster& caster, const Su
   if (!shadow.share) shadow.sampler = SolidAngleSampler(*shadow.emitter, at.position);
 }
 
-// A patch of each facet's front; -1 where the mesh has none.
+// A patch on the front of each facet; -1: the mesh has none.
 std::vector<int> front_patches(const PatchMesh& mesh, std::size_t facet_count) {
   std::vector<int> front(facet_count, -1);
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -308,7 +310,7 @@ double DirectLight::unoccluded_form_factor(const Emitter& emitter, const Surface
     if (!(front > 0.0) && !(emitter.emits_both_sides && front < 0.0)) return 0.0;
     F = std::abs(point_to_polygon(point, normal, emitter.loops));
   }
-  // Below this the emitter grazes the horizon or is edge-on: rounding, not light.
+  // A smaller F is rounding: the emitter grazes the horizon or is seen edge-on.
   constexpr double nothing = 1e-12;
   return F > nothing ? F : 0.0;
 }
@@ -400,8 +402,8 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
                            .most = std::clamp(query.shadows.max_rays, 8, most_sky_rays)};
     const SkyGlow glow = sky_->irradiance(caster, query.at, dome->key, effort);
     add(dome->channel, dome->light(), glow.irradiance);
-    // Its penumbra is all that rays see: as if three times as much stood behind it, their noise is
-    // about that of a lamp's.
+    // The dome's rays see its penumbra alone, so their noise is about that of a lamp of three times
+    // the irradiance.
     constexpr double as_of_a_lamp = 3.0;
     if (visibility) {
       visibility->noisy +=

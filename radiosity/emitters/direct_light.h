@@ -21,10 +21,10 @@ namespace lightwell {
 
 class ExactShadows;
 
-/// An emitting facet whose light is computed by closed form times visibility, never left to chance.
+/// An emitting facet whose light is a closed form times visibility, never left to random rays.
 struct Emitter {
   int facet = 0;        ///< scene-wide facet number
-  Spectrum exitance{};  ///< M, W/m^2, as the mesh has it
+  Spectrum exitance{};  ///< M, W/m^2, from PatchMesh::emission
   double area = 0.0;    ///< m^2, one side
   bool emits_both_sides = false;
   bool is_sphere = false;
@@ -37,21 +37,21 @@ struct Emitter {
 
 constexpr int most_shadow_rays = 256;
 
-/// Shadow rays from a point to an emitter that would give all of its direct light: `min_rays`
-/// stratified ones first; where they disagree, `max_rays`. Emitters that would give less get fewer.
-/// Where ExactShadows tells without rays, in about the time of as many, none are cast.
+/// Shadow rays from a point to an emitter that gives all of the point's direct light: `min_rays`
+/// stratified rays first; if some are blocked and some not, `max_rays`. Emitters that give less
+/// light get fewer. No rays are cast where ExactShadows finds the visible share in less time.
 struct ShadowOptions {
   int min_rays = 16;
   int max_rays = 64;  ///< 1 to most_shadow_rays
 };
 
-/// What a point sees of the lights, by the shadows of its irradiance.
+/// Visibility of the lights from a point.
 struct EmitterVisibility {
-  /// sum M F with nothing in the way, mean of the bands, W/m^2, of lights whose shadow rays
-  /// disagreed: what their noise is a share of.
+  /// Unobstructed irradiance, sum M F, mean of the bands, W/m^2, of the lights whose shadow rays
+  /// were partly blocked; their noise is a share of this sum.
   double noisy = 0.0;
-  std::uint64_t whole = 0;   ///< bit i: all of light i is seen, of the first 64
-  std::uint64_t hidden = 0;  ///< bit i: nothing is
+  std::uint64_t whole = 0;   ///< bit i: light i is fully visible; the first 64 lights
+  std::uint64_t hidden = 0;  ///< bit i: light i is fully hidden
 };
 
 /// Lights that give a sum: all, free sources only, or sky and sun only.
@@ -65,23 +65,25 @@ struct LightQuery {
   Lights lights = Lights::all;
 };
 
-/// Light straight from the scene's emitters. Emitters are taken in order of falling exitance, all
-/// of one exitance together, while they add up to at most a quarter of the scene's area: those are
-/// small and bright, and a hemisphere of rays would find them by chance. What emits beyond that is
-/// large and is found by any hemisphere of rays. What counts for that is the scene's exitance; the
-/// light is that of the mesh, whose emission relight() may have scaled since.
+/// Direct light: closed form times visibility, for small bright emitters and for free sources.
 ///
-/// Free sources, lamps that are no surface, are here as well: nothing else sees them. *Lights* are
-/// the emitters and after them the free sources.
+/// Emitting facets are taken in order of falling exitance (all of one exitance together) while
+/// their areas add up to at most a quarter of the scene's area: a hemisphere of rays would meet
+/// these facets only by chance. Larger emitters are left to hemispheres of rays. The exitance of
+/// the scene decides this order; the light itself is PatchMesh::emission, which relight() may have
+/// scaled.
 ///
-/// Irradiance includes what goes straight through ClearPanes; form factors take those for opaque.
+/// Free sources (lamps without surface, sky and sun) are always direct light. *Lights* are the
+/// emitters, followed by the free sources.
 ///
-/// With `channels`, light of each is kept apart in columns of its own: channel c in those from
-/// c * bands on.
+/// Irradiance includes light that passes straight through ClearPanes; form factors take panes as
+/// opaque.
+///
+/// With `channels`, the light of channel c lies in the columns from c * bands on.
 class DirectLight {
  public:
-  /// `like`: another of the same scene and mesh, whose knowledge of the sky and of what casts
-  /// shadows is shared instead of learnt again.
+  /// `like`: direct light of the same scene and mesh, whose tables of the sky and of occluders are
+  /// shared instead of made again.
   DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels = {},
               const DirectLight* like = nullptr);
 
@@ -90,35 +92,35 @@ class DirectLight {
   /// The dome of the sky; null if there is none.
   const FreeSource* dome() const;
   int light_count() const { return static_cast<int>(emitters_.size() + free_sources_.size()); }
-  /// Whether emission of that side of a facet is accounted for here (and must not be counted again
-  /// by other rays). Of a sphere that is its outside: its inside sees itself all around.
+  /// True if the emission of that side of a facet is direct light, which other rays must not count
+  /// again. Only the outside of a sphere is; its inside sees itself all around.
   bool owns(int facet, bool is_back) const {
     return owned_[facet] == Owned::whole || (owned_[facet] == Owned::front && !is_back);
   }
-  /// 1 if light is not kept apart.
+  /// The number of channels; 1 without channels.
   int channel_count() const { return channel_count_; }
   int column_count() const { return channel_count_ * bands_; }
-  /// The first column of what a facet emits; 0 if it does not.
+  /// The first column of a facet's emission; 0 for a facet that does not emit.
   int first_column(int facet) const { return first_column_[facet]; }
 
   /// Form factor from a differential element to one of emitters(): the unoccluded closed form times
-  /// the visible share. That is exact where few polygons are in the way (see ExactShadows); else it
-  /// is the ratio of the cosine kernel over samples that see the point to that over all samples, so
-  /// that without an occluder, too, the result is exact. Throws std::invalid_argument for an
-  /// emitter that is not one of emitters().
+  /// the visible share. The share is exact where few polygons are occluders (see ExactShadows),
+  /// else the ratio of the cosine kernel summed over visible samples to the kernel summed over all
+  /// samples. Exact without occluders. Throws std::invalid_argument for an emitter that is not one
+  /// of emitters().
   double form_factor(const Emitter& emitter, const ElementCaster& caster,
                      const LightQuery& query) const;
 
-  /// The same with nothing in the way.
+  /// The closed form alone, without occluders.
   double unoccluded_form_factor(const Emitter& emitter, const SurfacePoint& at) const;
 
-  /// Whether a point sees the place (u, v), in [0,1)^2, of a light; empty if no light would come
-  /// from there.
+  /// True if the sample point (u, v), in [0,1)^2, of a light is visible; empty if it would give no
+  /// light.
   std::optional<bool> sees(int light, const ElementCaster& caster, const SurfacePoint& at, double u,
                            double v) const;
 
-  /// Share of light that a straight way to `ray.t_max` lets through, in each band: 1, 0, or what
-  /// clear panes pass.
+  /// Transmitted share of light along `ray` up to t_max, per band: 1, 0, or the transmittance of
+  /// clear panes.
   Spectrum passed(const ElementCaster& caster, const Ray& ray) const;
 
   /// Irradiance E = sum M F at a point, W/m^2 per band, all channels added.

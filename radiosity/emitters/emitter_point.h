@@ -6,7 +6,7 @@
 
 namespace lightwell {
 
-/// The place of a polygon that emits for (u, v) in [0,1)^2: evenly spread over its area.
+/// The sample point of an emitting polygon for (u, v) in [0,1)^2, uniform in area, metres.
 Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v);
 
 }  // namespace lightwell

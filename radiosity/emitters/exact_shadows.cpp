@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using Plane = Eigen::Hyperplane<double, 3>;
 
-// About the polygon in its plane.
+// The bounding rectangle of points in a plane, counter-clockwise about `normal`.
 std::vector<Vector3d> rectangle_about(std::span<const Vector3d> points, const Vector3d& normal) {
   Vector3d x, y;
   tangent_frame(normal, x, y);
@@ -37,7 +37,7 @@ ConvexPolygon reversed(ConvexPolygon polygon) {
   return polygon;
 }
 
-// What a thread works with, kept from one point to the next.
+// Buffers of a thread, kept from one point to the next.
 struct Scratch {
   std::vector<Plane> planes;
   std::vector<int> found;
@@ -91,7 +91,7 @@ ExactShadows::Target ExactShadows::target_of(const Emitter& emitter) const {
   }
   const ConvexPolygon hull = convex_hull(target.corners, emitter.normal);
   target.front.hull = {hull.corners().begin(), hull.corners().end()};
-  constexpr std::size_t few = 8;  // more planes do not pay
+  constexpr std::size_t few = 8;  // more planes cost more than they save
   if (target.front.hull.empty() || target.front.hull.size() > few) {
     target.front.hull = rectangle_about(target.corners, emitter.normal);
   }
@@ -109,7 +109,7 @@ ExactShadows::Target ExactShadows::target_of(const Emitter& emitter) const {
   return target;
 }
 
-// Whether another sheet lies in the target's plane, somewhere about it.
+// True if another sheet lies in the target's plane and overlaps its bounding box.
 bool ExactShadows::is_covered(const Target& target, int sheet) const {
   const double tolerance = occluders_->tolerance;
   BoxTree::Box box;
@@ -125,8 +125,8 @@ bool ExactShadows::is_covered(const Target& target, int sheet) const {
   });
 }
 
-// Whether a point of a sheet lies in another one as well, or in two pieces of its own (facets that
-// cover each other and share an edge are one sheet).
+// True if a point of a sheet lies in another sheet as well, or in two pieces of its own sheet
+// (facets that cover each other and share an edge are one sheet).
 bool ExactShadows::is_covered(const Vector3d& point, int sheet) const {
   const double tolerance = occluders_->tolerance;
   const Vector3d margin = Vector3d::Constant(tolerance);

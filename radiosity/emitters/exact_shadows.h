@@ -12,26 +12,27 @@
 
 namespace lightwell {
 
-/// How much of a polygon that emits a point sees, found by taking away what polygons hide of it
-/// (ShadowedPolygon) instead of by shadow rays: penumbras without noise, in the time of 16 to 100
-/// rays, as long as few polygons are in the way.
+/// The visible share of an emitting polygon from a point, by clipping away the parts that polygons
+/// hide (ShadowedPolygon) instead of by shadow rays: penumbrae without noise, in the time of 16 to
+/// 100 rays, while few polygons are occluders.
 class ExactShadows {
  public:
-  /// Occluders of a mesh in which nothing moves. Of meshes of more facets than most_facets nothing
-  /// is told: little of their shadows would be, and what to keep of them is large.
+  /// `mesh` must be free of moving bodies. Meshes of more than most_facets facets get no exact
+  /// shares: few of their shadows would be exact, and the table of occluders would be large.
   ExactShadows(const Scene& scene, const PatchMesh& mesh, std::span<const Emitter> emitters);
 
   static constexpr int most_facets = 50000;
 
-  /// The visible share of the form factor from a differential element to an emitter, [0, 1],
-  /// exactly 1 or 0 where all or nothing is seen. Empty where rays have to tell: where more than
-  /// `most_pieces` (below 0: none at all) convex polygons may be in the way, a sphere, a clear
-  /// pane, or a picture that cuts holes; to emitters that are no polygons, or have something lying
-  /// on them; and from points that lie under something.
+  /// The visible share of the form factor from a differential element to an emitter, [0, 1];
+  /// exactly 1 or 0 where all or nothing is visible. Empty, so that rays must decide, if
+  /// - more than `most_pieces` convex polygons may be occluders (below 0: always empty);
+  /// - a sphere, a clear pane or a texture with holes may be one;
+  /// - the emitter is no polygon, or another surface lies on it;
+  /// - another surface lies on the point.
   std::optional<double> share(int emitter, const SurfacePoint& at, int most_pieces) const;
 
  private:
-  // An emitter from one of its sides.
+  // One side of an emitter.
   struct Face {
     std::vector<ConvexPolygon> parts{};   // counter-clockwise seen from there
     std::vector<Eigen::Vector3d> hull{};  // the same, holds all parts

@@ -15,10 +15,11 @@
 namespace lightwell {
 namespace {
 
-// Of the diagonal of the scene: more than rays are rounded by, less than anyone hangs a lamp by.
+// Clearance as a share of the scene's diagonal: above the rounding of rays, below the gaps at which
+// lamps hang.
 constexpr double clearance_share = 1e-5;
 
-// shape(omega) cos / r^2 of a place of the lamp.
+// The kernel shape(omega) cos / r^2 of a sample point of the lamp.
 double point_kernel(const Lamp& lamp, const Eigen::Vector3d& on_lamp, const Eigen::Vector3d& point,
                     const Eigen::Vector3d& normal) {
   const Eigen::Vector3d to = on_lamp - point;
@@ -38,7 +39,7 @@ struct Part {
 
 double mean_kernel(const Lamp& lamp, const Part& part, int depth, const Eigen::Vector3d& point,
                    const Eigen::Vector3d& normal) {
-  // Parts no longer than half their distance: Gauss's rule of 3 x 3 is then good to 1e-4.
+  // Gauss's rule of 3 x 3 points is good to 1e-4 for parts no longer than half their distance.
   const double longest = 2.0 * std::max(part.a.norm(), part.b.norm());
   const double distance = (part.middle - point).norm() - part.a.norm() - part.b.norm();
   constexpr double small = 0.5;
@@ -66,7 +67,7 @@ double mean_kernel(const Lamp& lamp, const Part& part, int depth, const Eigen::V
   return sum;
 }
 
-// Gauss's rule of three points on even rings of equal area, and as many places around.
+// Gauss's rule of three points on rings of equal area, with equally spaced points around.
 double mean_kernel_of_disc(const Lamp& lamp, const Eigen::Vector3d& point,
                            const Eigen::Vector3d& normal) {
   const LampOpening& opening = lamp.opening;
@@ -101,7 +102,7 @@ double kernel(const LampLight& light, const Eigen::Vector3d& point, const Eigen:
                      0, point, normal);
 }
 
-// A share of the way, for rays whose direction is the whole of it.
+// The end t_max of a ray whose direction is the vector to the lamp: one less the clearance.
 double clear_share(const LampLight& light, double distance) {
   return std::max(1.0 - light.clearance / distance, 0.0);
 }
@@ -113,7 +114,7 @@ SourceRay ray_from(const LampLight& light, const Eigen::Vector3d& on_lamp,
       .weight = drawn.weight};
 }
 
-// Evenly over the disc of the sun, by two numbers in [0,1).
+// A direction towards the disc of the sun, uniform, for (u, v) in [0,1)^2.
 Eigen::Vector3d towards_sun(const Sun& sun, double u, double v) {
   const double half = 0.25 * sun.angle_degrees * std::numbers::pi / 180.0;
   const double height = 2.0 * std::pow(std::sin(half), 2);  // 1 - cos, without cancellation
@@ -124,7 +125,7 @@ Eigen::Vector3d towards_sun(const Sun& sun, double u, double v) {
   return sine * (std::cos(phi) * a + std::sin(phi) * b) + cosine * sun.direction;
 }
 
-// Through a disc about a place, from before the scene.
+// A ray of the sun through a disc about `center`, starting outside the scene.
 SourceRay sun_ray(const SunLight& light, const Eigen::Vector3d& on_lamp, double radius,
                   const Eigen::Array4f& u) {
   const Eigen::Vector3d direction = -towards_sun(light.sun, u[0], u[1]);
@@ -227,7 +228,7 @@ std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eige
   const Eigen::Vector3d on_lamp = opening_point(light.lamp, u[2], u[3]);
   const Eigen::Vector3d to = center - on_lamp;
   const double distance = to.norm();
-  // Near the ball, or within it, its cone is no better than all the light.
+  // Close to the sphere, or inside, its cone is no better than all directions.
   constexpr double widest_sine = 0.8;
   SourceRay sent;
   if (!(radius < widest_sine * distance)) {

@@ -9,7 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Van Oosterom & Strackee 1983, "The solid angle of a plane triangle".
+// The solid angle of a triangle (Van Oosterom & Strackee 1983, "The solid angle of a plane
+// triangle").
 double solid_angle_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return 2.0 * std::atan2(std::abs(a.dot(b.cross(c))), 1.0 + a.dot(b) + b.dot(c) + c.dot(a));
 }
@@ -31,7 +32,7 @@ SolidAngleSampler::SolidAngleSampler(const Emitter& emitter, const Vector3d& poi
   if (emitter.is_sphere || emitter.triangles.size() > most_triangles) return;
   normal_ = emitter.normal;
   height_ = (emitter.loops[0][0] - point).dot(normal_);
-  // Nothing of an area fills more than area / height^2.
+  // A polygon fills at most area / height^2 of solid angle.
   const double square = height_ * height_;
   if (large * square > emitter.area || square < in_plane * in_plane * emitter.area) return;
   double sum = 0.0;
@@ -55,7 +56,7 @@ Vector3d SolidAngleSampler::to_point(double u, double v) const {
   std::size_t i = 0;
   while (i + 1 < triangles_.size() && wanted >= triangles_[i].up_to) ++i;
   const Triangle& t = triangles_[i];
-  // Of the triangle's solid angle, what lies on b's side of the arc from b to a place on side ac.
+  // The part of the triangle's solid angle on b's side of the arc from b to a point on side ac.
   const double part =
       std::clamp(wanted - (i == 0 ? 0.0 : triangles_[i - 1].up_to), 0.0, t.solid_angle);
   const auto& [a, b, c] = t.corner;

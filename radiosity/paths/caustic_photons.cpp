@@ -46,7 +46,7 @@ SourcePoint source_point(const Source& source, double u, double v) {
   return {emitter.sphere.center + emitter.sphere.radius * normal, normal};
 }
 
-// Directions from a place into which light is sent at a target.
+// The cone of directions from a sample point towards a target.
 struct Aim {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   double height = 0.0;  // 1 - cos of the cone; 0: the whole hemisphere, by the cosine
@@ -55,7 +55,7 @@ struct Aim {
 Aim aim_at(const SpecularTarget& target, const Eigen::Vector3d& from) {
   const Eigen::Vector3d to = target.center - from;
   const double distance = to.norm();
-  // A cone that is nearly a hemisphere holds little cosine for its size.
+  // A cone close to a hemisphere has little cosine for its solid angle.
   constexpr double widest_sine = 0.8;
   if (!(target.radius < widest_sine * distance)) return {};
   const double sine = target.radius / distance;
@@ -67,7 +67,7 @@ struct AimedRay {
   double share;  // of a Lambertian emitter's light that the direction stands for
 };
 
-// Nothing where it would go below the emitter's horizon.
+// Empty if the direction lies below the emitter's horizon.
 std::optional<AimedRay> aimed_ray(const Aim& aim, const Eigen::Vector3d& normal, float u, float v) {
   Eigen::Vector3d a, b;
   if (!(aim.height > 0.0)) {
@@ -76,7 +76,7 @@ std::optional<AimedRay> aimed_ray(const Aim& aim, const Eigen::Vector3d& normal,
     return AimedRay{d.x() * a + d.y() * b + d.z() * normal, 1.0};
   }
   tangent_frame(aim.axis, a, b);
-  // Of the disk, the concentric map keeps stratification; equal areas of it are equal solid angles.
+  // The concentric map of the disk keeps stratification; equal areas are equal solid angles.
   const Eigen::Vector3d disk = cosine_direction(u, v);
   const double radius2 = std::min(1.0, disk.x() * disk.x() + disk.y() * disk.y());
   const double cosine = 1.0 - radius2 * aim.height;
@@ -87,7 +87,7 @@ std::optional<AimedRay> aimed_ray(const Aim& aim, const Eigen::Vector3d& normal,
   return AimedRay{direction, 2.0 * aim.height * cos_out};  // (cos / pi) times 2 pi height
 }
 
-// About the power that a source sends to a target, never 0 where it may send some.
+// An estimate of the power that a source sends to a target; never 0 if it may send some.
 double estimated_power(const Source& source, const SpecularTarget& target) {
   constexpr int points = 8;
   const SobolPoints sobol(points);
@@ -106,13 +106,13 @@ double estimated_power(const Source& source, const SpecularTarget& target) {
     const double sine = target.radius / distance;
     sum += sine * sine * std::max(height / distance, 0.0);
   }
-  // A sphere that emits turns to every side, whatever its eight places do.
+  // An emitting sphere faces every side, whatever its eight sample points do.
   constexpr double least = 0.01;
   const double share = sees || source.emitter->is_sphere ? std::max(sum / points, least) : 0.0;
   return share * source.emitter->exitance.sum() * source.emitter->area;
 }
 
-// The same of a source that is no surface, by rays towards the target.
+// The estimate for a source without surface, by rays towards the target.
 double estimated_power(const FreeSource& source, const SpecularTarget& target) {
   constexpr int points = 64;
   const SobolPoints sobol(points);
@@ -121,7 +121,7 @@ double estimated_power(const FreeSource& source, const SpecularTarget& target) {
     const auto sent = source_ray_towards(source, target.center, target.radius, sobol.point(i, 0));
     sum += sent ? sent->weight : 0.0;
   }
-  // A beam may be narrower than the places are close.
+  // A beam may be narrower than the spacing of the sample points.
   constexpr double least = 0.001;
   const double share = std::max(sum / points, least * total_weight(source));
   return share * source.light.sum();
@@ -160,8 +160,8 @@ std::vector<Beam> make_beams(const DirectLight& direct_light, const SpecularTarg
   return beams;
 }
 
-// Shares `count` out by power. A beam due less than a few takes a whole number by chance, and
-// each of its photons stands for what was due, so that the mean is right.
+// Distributes `count` photons by power. A beam whose share is below a few photons gets a random
+// whole number, and each of its photons carries the share's power, so that the mean is exact.
 void share_out(std::vector<Beam>& beams, int count) {
   const double all = std::accumulate(beams.begin(), beams.end(), 0.0,
                                      [](double sum, const Beam& b) { return sum + b.power; });
@@ -231,7 +231,7 @@ class PhotonGun {
   SobolPoints sobol_;
 };
 
-// A part of a beam's photons.
+// A range of a beam's photons.
 struct BeamPiece {
   int beam = 0, begin = 0, end = 0;
 };

@@ -11,28 +11,31 @@
 
 namespace lightwell {
 
-/// Places where light of DirectLight's emitters first meets something diffuse after mirrors and
-/// clear surfaces alone (paths L S+ D), and the power that arrives there.
+/// Points where light of DirectLight's lights first meets a diffuse surface after mirrors and clear
+/// surfaces alone (paths L S+ D), with the power that arrives.
 struct CausticPhotons {
   std::vector<Eigen::Vector3d> position{};  ///< m
-  std::vector<int> element{};               ///< that it lies on
+  std::vector<int> element{};               ///< of the mesh, that holds the point
   BandArray power{};                        ///< W, photons x bands
-  int sent = 0;                             ///< of which these arrived
+  int sent = 0;                             ///< photons sent, those that did not arrive included
 
   std::size_t count() const { return element.size(); }
 };
 
 constexpr int most_photons = 1 << 24;
 
-/// Sends about `count` photons, 1 to most_photons, towards what mirrors or is clear (Jensen 1996):
-/// pairs of an emitter and a specular surface share them by the power that the one would send to a
-/// sphere around the other. A photon starts at a place of the emitter, evenly spread over its area,
-/// into the cone which that sphere fills seen from there, by a scrambled Sobol sequence of the
-/// pair's own, and counts if that surface is the first it meets; so each path belongs to one
-/// pair, and the sum of powers has no bias. Surfaces are followed as LightPaths does, by smooth
-/// normals where there are any: a photon keeps its power, so that what a facet catches goes where
-/// the surface that it stands for sends it, all of it. Light that only goes straight through smooth
-/// thin panes is none of it: DirectLight has that.
+/// Sends about `count` photons, 1 to most_photons, towards specular surfaces (Jensen 1996).
+///
+/// - Pairs of an emitter and a specular target share the photons by the power that the emitter
+///   would send to a sphere around the target.
+/// - A photon starts at a sample point of the emitter, uniform in area, in a direction of the cone
+///   that the sphere fills, by a scrambled Sobol sequence of the pair's own. The photon counts if
+///   the target is the first surface it meets, so each path belongs to one pair and the sum of
+///   powers has no bias.
+/// - LightPaths follows the photon, by smooth normals where there are any. A photon keeps its
+/// power,
+///   so all light that a facet catches goes where the curved surface sends it.
+/// - Light that only passes straight through smooth thin panes is left out: it is direct light.
 ///
 /// The same photons for any number of threads. Throws std::invalid_argument if the count is out of
 /// range, Interrupted when progress says stop.

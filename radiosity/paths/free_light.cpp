@@ -18,7 +18,7 @@ namespace {
 
 constexpr int fewest_free_rays = 1 << 12, most_free_rays = 1 << 24;
 
-// What some rays of one source did, as weights.
+// The fate of some rays of one source, as sums of weights.
 struct Arrival {
   int patch = 0;
   double weight = 0.0;
@@ -84,7 +84,7 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
   return piece;
 }
 
-// The same over all rays of a source.
+// The fate of all rays of a source.
 struct Sums {
   Sums(const PatchMesh& mesh, Eigen::Index bands)
       : straight(Eigen::ArrayXd::Zero(mesh.patch_count())),
@@ -124,7 +124,7 @@ class Collector {
     const SobolPoints sobol(rays);
     const auto key =
         random_key(static_cast<std::uint64_t>(source.number), RandomPurpose::free_source_rays);
-    // Slices of pieces bound what waits to be added.
+    // Slices bound the memory of results that wait to be added in order.
     constexpr int piece_rays = 1 << 13, slice = 16;
     const int count = (rays + piece_rays - 1) / piece_rays;
     Sums sums(caster_.mesh(), bands_);
@@ -142,8 +142,8 @@ class Collector {
     if (sums.sent > 0.0) add(source, sums);
   }
 
-  // What comes from afar, at points all over each patch, and what counts as having entered: all
-  // that is not mirrored on, to be found again where it arrives.
+  // Light of sky and sun at points all over each patch. The emitted power includes all of it but
+  // mirrored light, which counts where it arrives.
   void receive(const Scene& scene, const DirectLight& direct_light, const Progress& progress) {
     const PatchMesh& mesh = caster_.mesh();
     const FreeSource* dome = direct_light.dome();
@@ -200,7 +200,7 @@ class Collector {
   }
 
  private:
-  // What the rays carry is scaled to the flux of the source, no more and no less.
+  // The power of the rays is scaled to exactly the flux of the source.
   void add(const FreeSource& source, const Sums& sums) {
     const Eigen::Index column = source.channel * bands_;
     const Eigen::ArrayXd watts = total_weight(source) / sums.sent * source.light.cast<double>();
@@ -216,7 +216,7 @@ class Collector {
     of(light_.absorbed) += watts * sums.absorbed;
   }
 
-  // Irradiance by the dome, by way of mirrors and glass.
+  // Irradiance from the dome through mirrors and glass.
   Spectrum sky_by_specular(const PatchSampler& sampler, const SobolPoints& sobol,
                            std::uint64_t key) const {
     Spectrum sum = Spectrum::Zero(bands_);

@@ -68,8 +68,8 @@ bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const Elemen
       random);
   media.cross(material_[hit.facet], material, sample, hit.from_back);
   through_panes_only = through_panes_only && sample.crosses && is_clear_pane(material);
-  // What a partly diffuse surface does not mirror was taken up by its diffuse side, where the
-  // caller counts it.
+  // Light that a partly diffuse surface does not mirror arrives at its diffuse side, which the
+  // caller counts.
   if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - sample.weight);
   throughput *= sample.weight;
   ray = {.origin = point,

@@ -11,55 +11,54 @@
 
 namespace lightwell {
 
-/// What happened to a ray's unit of light beyond the places where it arrived.
+/// The part of a ray's unit of light that arrived at no diffuse surface.
 struct PathLosses {
   Spectrum escaped{};   ///< left the scene or met a black back
-  Spectrum absorbed{};  ///< taken up by mirrors and by glass that is tinted or absorbs
-  Spectrum cut{};       ///< still under way when the depth limit was reached
-  /// Radiance of the sky's dome where it left the scene, times what of that would come back this
-  /// way, W/(m^2 sr); empty if it did not leave, by clear panes alone (that is direct light), or
-  /// there is no sky.
+  Spectrum absorbed{};  ///< by mirrors, and by glass that is tinted or absorbs
+  Spectrum cut{};       ///< left when the depth limit was reached
+  /// Radiance of the sky's dome in the direction of escape times the throughput of the path,
+  /// W/(m^2 sr). Empty if no light escaped, if it escaped through clear panes alone (direct light),
+  /// or if there is no sky.
   Spectrum sky{};
 };
 
-/// Where light arrives at something diffuse, behind mirrors and clear surfaces.
+/// An arrival of light at a diffuse surface behind mirrors and clear surfaces.
 struct LightArrival {
   const ElementHit& hit;
   const Spectrum& throughput;
   Eigen::Vector3d position;  ///< m
-  bool through_panes_only;   ///< it went straight on, through smooth thin panes and nothing else
+  bool through_panes_only;   ///< the path went straight on, through smooth thin panes alone
 };
 
-/// Which normals mirror and refract.
+/// Normals that mirror and refract.
 enum class PathNormals {
-  facets,  ///< of the polygons, so that what is reflected adds up facet by facet
-  smooth,  ///< of the surfaces they stand for, where files give those (see FacetNormals)
+  facets,  ///< of the polygons, so that reflected light adds up facet by facet
+  smooth,  ///< of the curved surfaces that facets stand for, where given (see FacetNormals)
 };
 
-/// Follows rays through mirrors and clear glass until something diffuse takes them up (extended
-/// form factors, Sillion & Puech 1989). At glass one branch is followed, picked with Fresnel's
-/// probability, and at rough surfaces one direction of their lobe (see sample_scattering), so that
-/// a ray stays a ray and the mean is exact. Bodies that absorb do so along the way, see Media.
+/// Follows rays through mirrors and clear glass to diffuse surfaces (extended form factors, Sillion
+/// & Puech 1989). One scattering sample continues each ray: a branch of glass with Fresnel's
+/// probability, a direction of a rough surface's lobe (see sample_scattering). The mean is exact.
+/// Absorbing bodies attenuate along the path (see Media).
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
              PathNormals normals = PathNormals::facets);
 
-  /// Whether the scene has any mirror or glass at all.
+  /// True if the scene has a mirror or glass.
   bool has_specular() const { return has_specular_; }
-  /// Whether light that meets this facet goes on undiffused (in part or whole).
+  /// True if the facet mirrors or transmits at least a part of the light.
   bool is_specular(int facet) const { return specular_[facet] != 0; }
-  /// Whether the facet's sides take part in diffuse exchange (reflect or emit diffusely).
+  /// True if the facet reflects or emits diffusely.
   bool is_diffuse(int facet) const { return diffuse_[facet] != 0; }
 
-  /// `arrive` is called for every diffuse arrival behind the specular facet that
-  /// `hit` of `ray` names (the facet's own diffuse share, if any, is the caller's). `key` picks
-  /// branches.
+  /// Calls `arrive` for every diffuse arrival behind the specular facet at `hit` of `ray`. The
+  /// facet's own diffuse share, if any, is left to the caller. `key` decides the branches.
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const LightArrival&)>& arrive) const;
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const;
-  /// The same by another caster of the same scene, such as ElementCaster::at() gives.
+  /// Follows rays of another caster of the same scene, such as ElementCaster::at().
   PathLosses follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                     std::uint64_t key,
                     const std::function<void(const LightArrival&)>& arrive) const;

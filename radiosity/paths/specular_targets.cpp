@@ -21,7 +21,7 @@ struct Box {
     high = high.cwiseMax(other.high);
   }
   Eigen::Vector3d center() const { return 0.5 * (low + high); }
-  /// Of the sphere around it, squared.
+  /// Squared radius of the sphere around the group.
   double radius2() const { return 0.25 * (high - low).squaredNorm(); }
 };
 
@@ -44,7 +44,7 @@ Box box_of(const Surface& surface) {
   return box;
 }
 
-// Halves the heap of surfaces along its longest side until there are `groups` of them.
+// Halves the set of surfaces along its longest side until there are `groups` groups.
 void divide(std::span<std::pair<int, Box>> surfaces, int groups, int first,
             std::vector<int>& group) {
   if (groups == 1 || surfaces.size() <= 1) {
@@ -65,8 +65,8 @@ void divide(std::span<std::pair<int, Box>> surfaces, int groups, int first,
   divide(surfaces.subspan(left), groups - groups / 2, first + groups / 2, group);
 }
 
-// Joins groups whose common sphere hides less of the view than theirs together, such as the faces
-// of a block: the best first.
+// Joins groups whose common sphere fills less solid angle than their spheres together, such as the
+// faces of a block, best pair first.
 void join_neighbours(std::vector<Box>& boxes, std::vector<int>& group) {
   for (;;) {
     double best = 1.0;
@@ -117,7 +117,7 @@ SpecularTargets::SpecularTargets(const Scene& scene) {
   for (const Box& box : boxes) {
     targets_.push_back({.center = box.center()});
   }
-  // No smaller than to the farthest point, and a hair more, since rays end in single precision.
+  // The distance to the farthest point, enlarged a little, since rays end in single precision.
   constexpr double hair = 1.0 + 1e-5;
   const auto reach = [&](SpecularTarget& target, const Surface& surface) {
     if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {

@@ -7,14 +7,14 @@
 
 namespace lightwell {
 
-/// A sphere around facets that are mirrors or clear.
+/// A sphere around specular facets (mirrors or clear surfaces).
 struct SpecularTarget {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0.0;  ///< m
 };
 
-/// What photons are aimed at: the scene's specular surfaces, each a target of its own while there
-/// are few; of many, neighbours are one.
+/// Targets of photons: the scene's specular surfaces, one target each while there are few;
+/// neighbours share a target where there are many.
 class SpecularTargets {
  public:
   static constexpr int most = 64;
@@ -23,7 +23,7 @@ class SpecularTargets {
 
   int count() const { return static_cast<int>(targets_.size()); }
   const SpecularTarget& target(int i) const { return targets_[static_cast<std::size_t>(i)]; }
-  /// The one a scene-wide facet belongs to; -1: it is not specular.
+  /// The target of a scene-wide facet; -1: the facet is not specular.
   int of_facet(int facet) const { return of_facet_[static_cast<std::size_t>(facet)]; }
 
  private:
