@@ -43,7 +43,8 @@ struct MeshOptions {
 /// element straddles an important bound of a shadow.
 ///
 /// Throws InputError for a scene without surfaces, for a polygon whose boundary crosses itself, for
-/// options out of range, and when the sizes ask for more than 20 million elements.
+/// options out of range, for too many contacts (see ContactEffort), and for sizes that would make
+/// more than 20 million elements.
 PatchMesh build_patches(const Scene& scene, const MeshOptions& options = {},
                         const Progress& progress = {});
 

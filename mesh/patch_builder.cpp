@@ -149,6 +149,39 @@ FacetPatch PatchBuilder::facet_patch(const Part& part) const {
   return patch;
 }
 
+std::vector<FacetPatchContact> PatchBuilder::part_contacts(const std::vector<int>& first_part,
+                                                           const std::vector<Side>& sides) const {
+  std::vector<FacetPatchContact> contacts;
+  // A facet of many patches: the two vertices of an edge identify the patch that has the edge.
+  std::unordered_map<std::uint64_t, int> part_at;
+  const auto key = [](int from, int to) {
+    return (static_cast<std::uint64_t>(from) << 32) | static_cast<std::uint64_t>(to);
+  };
+  for (int p = 0; p < static_cast<int>(pieces_.size()); ++p) {
+    const FacetMesh& mesh = pieces_[p].mesh;
+    for (int i = 0; i < mesh.patch_count() && mesh.patch_count() > 1; ++i) {
+      for (int e = mesh.first_element[i]; e < mesh.first_element[i + 1]; ++e) {
+        const int n = mesh.corners[e][3] < 0 ? 3 : 4, first = pieces_[p].first_vertex;
+        for (int c = 0; c < n; ++c) {
+          part_at[key(first + mesh.corners[e][c], first + mesh.corners[e][(c + 1) % n])] =
+              first_part[p] + i;
+        }
+      }
+    }
+  }
+  const auto part_of = [&](const Side& side) {
+    if (pieces_[side.piece].mesh.patch_count() == 1) return first_part[side.piece];
+    const auto found =
+        part_at.find(side.forward ? key(side.v_low, side.v_high) : key(side.v_high, side.v_low));
+    return found == part_at.end() ? -1 : found->second;
+  };
+  for_each_joint(sides, pieces_, [&](const Side& a, const Side& b) {
+    const int one = part_of(a), other = part_of(b);
+    if (one >= 0 && other >= 0) contacts.push_back({one, other});
+  });
+  return contacts;
+}
+
 std::vector<std::vector<std::vector<PatchBuilder::Part>>> PatchBuilder::patches_of_pieces(
     const std::vector<Side>& sides) const {
   std::vector<Part> parts;
@@ -162,35 +195,7 @@ std::vector<std::vector<std::vector<PatchBuilder::Part>>> PatchBuilder::patches_
   if (groups_.angle_degrees > 0.0) {
     std::vector<FacetPatch> patches;
     for (const Part& part : parts) patches.push_back(facet_patch(part));
-    std::vector<FacetPatchContact> contacts;
-    // A facet of many patches: the two vertices of an edge identify the patch that has the edge.
-    std::unordered_map<std::uint64_t, int> part_at;
-    const auto key = [](int from, int to) {
-      return (static_cast<std::uint64_t>(from) << 32) | static_cast<std::uint64_t>(to);
-    };
-    for (int p = 0; p < static_cast<int>(pieces_.size()); ++p) {
-      const FacetMesh& mesh = pieces_[p].mesh;
-      for (int i = 0; i < mesh.patch_count() && mesh.patch_count() > 1; ++i) {
-        for (int e = mesh.first_element[i]; e < mesh.first_element[i + 1]; ++e) {
-          const int n = mesh.corners[e][3] < 0 ? 3 : 4, first = pieces_[p].first_vertex;
-          for (int c = 0; c < n; ++c) {
-            part_at[key(first + mesh.corners[e][c], first + mesh.corners[e][(c + 1) % n])] =
-                first_part[p] + i;
-          }
-        }
-      }
-    }
-    const auto part_of = [&](const Side& side) {
-      if (pieces_[side.piece].mesh.patch_count() == 1) return first_part[side.piece];
-      const auto found =
-          part_at.find(side.forward ? key(side.v_low, side.v_high) : key(side.v_high, side.v_low));
-      return found == part_at.end() ? -1 : found->second;
-    };
-    for_each_joint(sides, pieces_, [&](const Side& a, const Side& b) {
-      const int one = part_of(a), other = part_of(b);
-      if (one >= 0 && other >= 0) contacts.push_back({one, other});
-    });
-    group = group_facets(patches, contacts, groups_);
+    group = group_facets(patches, part_contacts(first_part, sides), groups_);
   }
   std::vector<std::vector<std::vector<Part>>> of_piece(pieces_.size());
   std::vector<int> place(parts.size(), -1);

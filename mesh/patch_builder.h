@@ -52,6 +52,10 @@ class PatchBuilder {
   Eigen::Vector3d normal_at(int piece, int vertex) const;
   int root(int vertex);
   FacetPatch facet_patch(const Part& part) const;
+  /// Parts that share an edge at which nothing else stands. `first_part` is per piece its first
+  /// part.
+  std::vector<FacetPatchContact> part_contacts(const std::vector<int>& first_part,
+                                               const std::vector<Side>& sides) const;
   /// Per piece, the patches whose first part lies in the piece; a patch is a list of parts.
   std::vector<std::vector<std::vector<Part>>> patches_of_pieces(
       const std::vector<Side>& sides) const;

@@ -35,7 +35,7 @@ void ContactEffort::count(std::size_t pairs) {
 
 void ContactEffort::found(std::size_t contacts) {
   if ((contacts_ += static_cast<std::int64_t>(contacts)) <= most_contacts_) return;
-  refuse(scene_, fmt::format("its polygons touch, overlap or cross in more than {:.3g} million "
+  refuse(scene_, fmt::format("the polygons touch, overlap or cross in more than {:.3g} million "
                              "places",
                              static_cast<double>(most_contacts_) / 1e6));
 }

@@ -1,15 +1,12 @@
 #include "mesh/contacts/contact_graph.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace lightwell {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double whole = 1.0 - 1e-9;  // a length of 3.0000000001 patches is three patches
 
 std::uint64_t ends_key(int a, int b) {
   return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b);
@@ -23,15 +20,6 @@ std::vector<int> without_atoms(const std::vector<int>& all, const std::vector<in
 }
 
 }  // namespace
-
-int CutSize::patches(double length) const {
-  return std::max(1, static_cast<int>(std::ceil(length / patch_size * whole)));
-}
-
-int CutSize::pieces(double length) const {
-  if (length >= patch_size * whole) return elements_per_edge * patches(length);
-  return std::max(1, static_cast<int>(std::ceil(length / element_size() * whole)));
-}
 
 ContactGraph::ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes,
                            WeldedPoints points, const CutSize& size,

@@ -135,9 +135,8 @@ std::vector<CreaseSelection::Stop> CreaseSelection::stops(const Drawing& d, cons
 
 // True if the piece between two neighbouring stops keeps its distance and angle from everything
 // else.
-bool CreaseSelection::fits(const Drawing& d, const Vector2d& from_xy, const Vector2d& to_xy,
-                           const Stop& from, const Stop& to) const {
-  const Vector2d u = to_xy - from_xy;
+bool CreaseSelection::fits(const Drawing& d, const Stop& from, const Stop& to) const {
+  const Vector2d u = to.xy - from.xy;
   if (!(u.norm() > spacing_)) return false;
   const auto has = [](const Piece& piece, int point) {
     return point >= 0 && (piece.a == point || piece.b == point);
@@ -152,7 +151,7 @@ bool CreaseSelection::fits(const Drawing& d, const Vector2d& from_xy, const Vect
     if (has(piece, from.point) && has(piece, to.point)) return false;
     bool touches = false;
     for (const auto& [stop, at, out] :
-         {std::tuple(&from, from_xy, u), {&to, to_xy, Vector2d(-u)}}) {
+         {std::tuple(&from, from.xy, u), {&to, to.xy, Vector2d(-u)}}) {
       if (!has(piece, stop->point) && stop->piece != i) continue;
       touches = true;
       for (const Vector2d& end : {p, q}) {
@@ -160,11 +159,11 @@ bool CreaseSelection::fits(const Drawing& d, const Vector2d& from_xy, const Vect
       }
     }
     double s, t;
-    if (!touches && crossing(from_xy, to_xy, p, q, s, t)) return false;
+    if (!touches && crossing(from.xy, to.xy, p, q, s, t)) return false;
   }
   for (int p = 0; p < static_cast<int>(d.xy.size()); ++p) {
     if (p == from.point || p == to.point) continue;
-    if (segment_distance(d.xy[p], from_xy, to_xy) < 0.5 * spacing_) return false;
+    if (segment_distance(d.xy[p], from.xy, to.xy) < 0.5 * spacing_) return false;
   }
   return true;
 }
@@ -206,7 +205,7 @@ bool CreaseSelection::add_line(const CriticalLine& line) {
   bool is_kept = false;
   for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
     Stop &from = chain[k], &to = chain[k + 1];
-    if (!fits(d, from.xy, to.xy, from, to)) continue;
+    if (!fits(d, from, to)) continue;
     for (Stop* stop : {&from, &to}) {
       if (stop->point >= 0) continue;
       const int before = static_cast<int>(d.pieces.size());

@@ -78,8 +78,7 @@ class CreaseSelection {
   bool add_line(const CriticalLine& line);
   std::vector<Stop> stops(const Drawing& d, const Eigen::Vector2d& a,
                           const Eigen::Vector2d& b) const;
-  bool fits(const Drawing& d, const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Stop& from,
-            const Stop& to) const;
+  bool fits(const Drawing& d, const Stop& from, const Stop& to) const;
   int make_point(const FacetPlane& plane, Drawing& d, const Stop& stop);
 
   const std::vector<FacetPlane>& planes_;

@@ -257,7 +257,7 @@ ElementCaster::ElementCaster(const PatchMesh& mesh, const ElementCaster& base,
                              std::shared_ptr<const ElementTree> tree)
     : mesh_(mesh), still_(base.still_), tree_(std::move(tree)), hidden_(base.hidden_) {
   if (base.moves() || base.tree_)
-    throw std::invalid_argument("a caster of elements that are split");
+    throw std::invalid_argument("the base caster has split elements or surfaces that move");
   if (!tree_) return;
   std::vector<std::uint8_t> hidden(static_cast<std::size_t>(mesh_.element_count()), 0);
   for (std::size_t e = 0; e + 1 < tree_->first_element.size(); ++e) {

@@ -43,6 +43,24 @@ double fan_area(const std::array<int, 4>& c, const std::vector<Vector3d>& positi
   return 0.5 * sum.norm();
 }
 
+// Copies what refinement leaves unchanged. `first` is, per element of the base, its first element
+// in `out`.
+void copy_patches(const PatchMesh& base, const std::vector<int>& first, PatchMesh& out) {
+  for (const int e : base.first_element) out.first_element.push_back(first[e]);
+  out.area = base.area;
+  out.reflectance = base.reflectance;
+  out.emission = base.emission;
+  out.surface = base.surface;
+  out.material = base.material;
+  out.is_back = base.is_back;
+  out.sphere_grids = base.sphere_grids;
+  for (SphereGrid& grid : out.sphere_grids) {
+    for (int& e : grid.element) e = first[e];
+  }
+  out.textures = base.textures;
+  out.notes = base.notes;
+}
+
 }  // namespace
 
 RefinedElements::RefinedElements(const PatchMesh& base) : base_(&base) {
@@ -352,19 +370,7 @@ RefinedMesh RefinedElements::mesh() {
   }
   out.element_area =
       Eigen::Map<Eigen::ArrayXd>(areas.data(), static_cast<Eigen::Index>(areas.size()));
-  for (const int e : base_->first_element) out.first_element.push_back(first[e]);
-  out.area = base_->area;
-  out.reflectance = base_->reflectance;
-  out.emission = base_->emission;
-  out.surface = base_->surface;
-  out.material = base_->material;
-  out.is_back = base_->is_back;
-  out.sphere_grids = base_->sphere_grids;
-  for (SphereGrid& grid : out.sphere_grids) {
-    for (int& e : grid.element) e = first[e];
-  }
-  out.textures = base_->textures;
-  out.notes = base_->notes;
+  copy_patches(*base_, first, out);
   build_topology(out, positions);
   refined.tree = std::make_shared<const ElementTree>(tree(std::move(first)));
   return refined;

@@ -41,8 +41,8 @@ struct FacetMesh {
 FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
                      const std::vector<Eigen::Vector3d>& points, const CutSize& size);
 
-/// The smallest sine of the angles of a counter-clockwise quadrilateral: 1 for a rectangle, <= 0
-/// for a quadrilateral that is not convex.
+/// The smallest sine of the angles of a counter-clockwise quadrilateral (its scaled Jacobian): 1
+/// for a rectangle, <= 0 for a quadrilateral that is not convex.
 double quad_quality(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                     const Eigen::Vector2d& d);
 

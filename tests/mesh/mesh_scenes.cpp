@@ -120,7 +120,8 @@ Scene terrain(int n) {
   for (int j = 0; j <= n; ++j) {
     for (int i = 0; i <= n; ++i) {
       const double x = static_cast<double>(i) / n, y = static_cast<double>(j) / n;
-      // Ridges of several sizes, and a jump from point to point that no frame lines up with.
+      // Ridges of several sizes, and random steps from point to point that are aligned with no
+      // frame.
       const double jitter = std::sin(12.9898 * i + 78.233 * j) * 43758.5453;
       const double z = 0.1 * std::sin(9 * x) * std::cos(7 * y) + 0.02 * std::sin(40 * x + 31 * y) +
                        0.3 / n * (jitter - std::floor(jitter));
@@ -140,7 +141,8 @@ Scene terrain(int n) {
 
 namespace {
 
-// Whether two elements have an edge in common, judged by place: its ends may be split vertices.
+// True if two elements have an edge in common, compared by position: the ends may be split
+// vertices.
 bool share_an_edge(const PatchMesh& mesh, int e, int f) {
   int same_place = 0;
   for (int i = 0; i < mesh.corner_count(e); ++i) {
@@ -325,7 +327,8 @@ double side_area(const PatchMesh& mesh, int facet, bool back) {
 }
 
 int hanging_vertices(const PatchMesh& mesh) {
-  // Vertices in cells of the longest edge, so that an edge looks at the cells around its ends only.
+  // Vertices are hashed in cells of the longest edge, so that an edge is compared only with the
+  // cells around its ends.
   double longest = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const auto q = corner_positions(mesh, e);
@@ -340,9 +343,9 @@ int hanging_vertices(const PatchMesh& mesh) {
   };
   std::map<Cell, std::vector<int>> cells;
   for (int v = 0; v < mesh.vertex_count(); ++v) cells[cell_of(mesh.position(v))].push_back(v);
-  // Facets that lie on one another have inner vertices and edges of their own: only lines where a
-  // facet ends, or is cut, must agree with everything there. An edge is inner if the element across
-  // it has an end in common, or belongs to the same patch (both ends may be split reflex corners).
+  // Facets that overlap have inner vertices and edges of their own. Only lines where a facet ends,
+  // or is cut, must agree with everything there. An edge is inner if the element across has an end
+  // of it in common, or belongs to the same patch (both ends may be split reflex corners).
   using PointKey = std::array<double, 3>;
   const auto place = [&](int v) {
     const Vector3d p = mesh.position(v);

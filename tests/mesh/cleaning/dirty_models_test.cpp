@@ -1,4 +1,4 @@
-// What models from real programs have wrong with them, and what makes them hard.
+// Defects of models from real programs, and scenes that are hard to mesh.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,7 +52,8 @@ std::string refusal(const std::function<void()>& work) {
   return "";
 }
 
-// A rectangle cut in two, and its parts again: nearly every corner lies inside a neighbour's edge.
+// A rectangle cut in two, and so on with the parts: nearly every corner lies inside a neighbour's
+// edge.
 void cut_rectangle(double x0, double y0, double x1, double y1, int depth, Numbers& random,
                    const Eigen::AngleAxisd& turn, PolygonMesh& mesh) {
   if (depth > 0) {
@@ -73,8 +74,9 @@ void cut_rectangle(double x0, double y0, double x1, double y1, int depth, Number
   add_triangle(mesh, at(x0, y0), at(x1, y1), at(x0, y1));
 }
 
-// Single precision leaves corners beside the edges they lie in. The clean-up may move them by 1e-7
-// of the diagonal, and so change the area by that times the length of the edges.
+// Rounding to single precision moves corners off the edges in which they lie. The clean-up may move
+// corners by 1e-7 of the diagonal, and so change the area by that distance times the length of the
+// edges.
 TEST(DirtyModels, RectanglesThatMeetAtPartsOfEdgesBecomeOne) {
   for (std::uint32_t seed = 0; seed < 100; ++seed) {
     Numbers random(seed);
@@ -130,8 +132,8 @@ TEST(DirtyModels, VerticesInsideANeighboursEdgeAreSharedWhereTheSurfaceIsSmooth)
   }
 }
 
-// A railing of single precision in a hall of 30 m: its sides are planes to rounding, 1e-6 m, which
-// is far more than 5e-10 of their own area.
+// A railing in single precision in a hall of 30 m. Its sides are planes to the rounding, 1e-6 m,
+// which is far more than 5e-10 of their own area.
 TEST(DirtyModels, ThinBarsFarFromTheOriginHaveSixSides) {
   const Eigen::AngleAxisd turn(0.7, Vector3d(1, 2, 3).normalized());
   PolygonMesh bar;
@@ -165,8 +167,9 @@ TEST(DirtyModels, ThinBarsFarFromTheOriginHaveSixSides) {
   EXPECT_NEAR(report.area_after, report.area_before, 1e-7 * scene_bounds(scene).diagonal() * edges);
 }
 
-// Welding moves corners by 1e-7 of the diagonal at most, and puts points of others into edges that
-// lie that near: a facet gains or loses less than that times the length of its boundary.
+// Welding moves corners by 1e-7 of the diagonal at most, and puts points of other facets into edges
+// within that distance. A facet's area changes by less than that distance times the length of its
+// boundary.
 TEST(DirtyModels, AreaStaysWithinTheWeldingOfTheBoundary) {
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
     Scene scene = boxes_under_a_lamp(seed);
@@ -184,7 +187,7 @@ TEST(DirtyModels, AreaStaysWithinTheWeldingOfTheBoundary) {
                         .norm();
       }
       const double area = facet_area(polygons, facet);
-      // Sums of elements round: a share of 1e-12 at most.
+      // Rounding of the sum over elements: a share of 1e-12 at most.
       EXPECT_NEAR(side_area(mesh, f, false), area, moved * boundary + 1e-12 * area);
     }
   }
@@ -207,13 +210,14 @@ TEST(DirtyModels, RoundFootSendsNoSliversOverTheFloor) {
   expect_consistent(mesh);
   EXPECT_EQ(hanging_vertices(mesh), 0);
   const ElementQuality quality = element_quality(mesh);
-  // Two rows of about 32 and 16 points on either side of the 64.
+  // The 64 points of the foot, and on each side two rows of about 32 and 16 points.
   EXPECT_GT(quality.least_angle_degrees, 10.0);
   EXPECT_LT(quality.elements, 10 * 10 + 2 * 2 * (64 + 32 + 16));
 }
 
-// A ball of 4000 triangles sunk into a floor whose elements are as large as it is: the line keeps
-// to within 1/200 of an element, so its inside has the ball's area to that times its length.
+// A ball of 4000 triangles sunk into a floor with elements as large as the ball. The joined line
+// stays within 1/200 of an element of the cut, so the area inside equals the ball's section to that
+// distance times the length of the line.
 TEST(DirtyModels, FinelyDividedLinesAreJoinedInsideCoarseFacets) {
   Scene scene = triangle_ball(64, 1);
   add_polygon(scene, "floor", {{-4, -4, 0.01}, {4, -4, 0.01}, {4, 4, 0.01}, {-4, 4, 0.01}}, {}, 1);
@@ -229,12 +233,12 @@ TEST(DirtyModels, FinelyDividedLinesAreJoinedInsideCoarseFacets) {
     if (std::hypot(at.x(), at.y()) < 1.0) inside += mesh.element_area[e];
   }
   const double moved = 0.005 * 2.0, length = 2.0 * std::numbers::pi;
-  // The ball's own section, a polygon of 64 sides at a height of 0.01, is smaller than the disc.
+  // The section of the ball, a polygon of 64 sides at a height of 0.01, is smaller than the disc.
   constexpr double sides = 64.0, pi = std::numbers::pi;
   const double section = (1.0 - 0.01 * 0.01) * 0.5 * sides * std::sin(2.0 * pi / sides);
   EXPECT_NEAR(inside, section, moved * length);
-  EXPECT_LT(elements, 120);  // 64 cuts on either side would make twice as many
-  // Cuts inside a facet leave its boundary alone: rounding of the sum.
+  EXPECT_LT(elements, 120);  // 64 cuts on each side would make twice as many
+  // Cuts inside a facet do not change its boundary; the difference is rounding of the sum.
   EXPECT_NEAR(side_area(mesh, floor, false), 64.0, 64.0 * 1e-12);
 }
 
@@ -285,13 +289,13 @@ TEST(DirtyModels, HundredCopiesOfEveryFacetAreOne) {
   EXPECT_EQ(mesh_of(merge_planar_regions(scene_of(copies), &report)).facets.size(), 6u);
   EXPECT_EQ(report.duplicates, 6 * 99);
 
-  Scene apart = empty_scene();  // as surfaces of their own they stay
+  Scene apart = empty_scene();  // as separate surfaces the copies stay
   for (int k = 0; k < 100; ++k) add_box(apart, "box", {0, 0, 0}, {1, 2, 3});
   const PatchMesh mesh = build_patches(merge_planar_regions(apart), {.max_patch_size = 1.0});
   EXPECT_NEAR(mesh.area.sum(), 2 * 100 * 22.0, 1e-6);
 }
 
-// 3000 triangles on one another meet in 10 million places.
+// 3000 overlapping triangles meet in 10 million places.
 TEST(DirtyModels, HeapsWithTooManyCrossingsAreRefused) {
   Numbers random(1);
   PolygonMesh heap;

@@ -7,7 +7,7 @@
 namespace lightwell {
 namespace {
 
-// The unit cube seen from outside; face f turned inside out where `reversed` says so.
+// The unit cube with outward faces; face f is turned inside out if reversed[f].
 Scene cube(int reversed = -1) {
   PolygonMesh mesh;
   for (int i = 0; i < 8; ++i) mesh.vertices.emplace_back(i & 1, (i >> 1) & 1, (i >> 2) & 1);
@@ -66,7 +66,7 @@ TEST(FacetCheck, DuplicatesAndOppositesAreFoundWhateverCornerTheyBeginWith) {
 TEST(FacetCheck, CornersThatDifferByARoundingAreOne) {
   Scene scene = cube();
   PolygonMesh& mesh = mesh_of(scene);
-  // The lid on vertices of its own, as STL files have it.
+  // The lid with vertices of its own, as in STL files.
   std::vector<int> own;
   for (const int v : mesh.facets[1].boundary) {
     own.push_back(static_cast<int>(mesh.vertices.size()));

@@ -32,7 +32,7 @@ std::string square_name(int x, int y) {
   return fmt::format("square {} {}", x, y);
 }
 
-/// The square from 0 to n, in n^2 surfaces of their own names.
+/// The square from 0 to n, as n^2 surfaces with different names.
 Scene squares(int n, int material = 0) {
   Scene scene = empty_scene();
   for (int x = 0; x < n; ++x) {
@@ -61,8 +61,8 @@ TEST(JoinedSurfaces, SquaresOfOnePlaneBecomeOnePolygonAndKeepTheirNames) {
       EXPECT_EQ(scene.surfaces[s].name, square_name(x, y));
     }
   }
-  EXPECT_EQ(names->surface_at({0.5, 0.5, 0.0}, -Vector3d::UnitZ()), -1);  // its back
-  EXPECT_EQ(names->surface_at({0.5, 0.5, 0.1}, Vector3d::UnitZ()), -1);   // above it
+  EXPECT_EQ(names->surface_at({0.5, 0.5, 0.0}, -Vector3d::UnitZ()), -1);  // the back
+  EXPECT_EQ(names->surface_at({0.5, 0.5, 0.1}, Vector3d::UnitZ()), -1);   // above the square
   EXPECT_EQ(names->surface_at({n + 0.1, 0.5, 0.0}, Vector3d::UnitZ()), -1);
   EXPECT_EQ(scene_hash(names->apart(scene)), scene_hash(apart));
 }
@@ -106,12 +106,12 @@ TEST(JoinedSurfaces, WhatIsLitOtherwiseStaysApart) {
       scene.surfaces[s].material = static_cast<int>(scene.materials.size()) - 1;
     });
   };
-  EXPECT_TRUE(with_material([](Material&, int) {}));  // names alone
+  EXPECT_TRUE(with_material([](Material&, int) {}));  // only the names differ
   EXPECT_FALSE(with_material([](Material& m, int s) { m.reflectance *= 1.0f / (1.0f + s); }));
   EXPECT_FALSE(with_material([](Material& m, int s) {
     m.specular = Spectrum::Constant(3, 0.1f * static_cast<float>(s));
   }));
-  // Lamps are told apart by their names, and dimmed by them.
+  // Lamps are dimmed one by one, by name.
   EXPECT_FALSE(with_material([](Material& m, int) { m.emission = Spectrum::Ones(3); }));
   EXPECT_FALSE(with_material([](Material& m, int) { m.dielectric = Dielectric{}; }));
   EXPECT_FALSE(joins([](Scene& scene, int s) { scene.surfaces[s].motion = s; }));
@@ -146,7 +146,7 @@ TEST(JoinedSurfaces, WhatFillsAHoleStaysAnObjectOfItsOwn) {
   EXPECT_EQ(mesh_of(scene, 2).facets.size(), 0u);
 }
 
-// Squares that are cut otherwise than their neighbours meet those along parts of edges.
+// Squares divided differently from their neighbours meet these along parts of edges.
 TEST(JoinedSurfaces, EdgesMayMeetInParts) {
   Scene scene = empty_scene();
   add_polygon(scene, "left", rectangle(0, 0, 1, 3));
@@ -157,14 +157,15 @@ TEST(JoinedSurfaces, EdgesMayMeetInParts) {
   EXPECT_EQ(mesh_of(scene, 0).facets[0].boundary.size(), 4u);
 }
 
-// Of a surface that is joined in part the rest stays where it was.
+// The polygons of a surface that are not joined stay in their places.
 TEST(JoinedSurfaces, OtherPolygonsOfASurfaceStay) {
   Scene scene = empty_scene();
   add_box(scene, "left", {0, 0, 0}, {1, 1, 1});
   add_box(scene, "right", {1, 0, 0}, {2, 1, 1});
   const double area = scene_area(scene);
   ASSERT_TRUE(join_surfaces(scene));
-  // Four sides of both became one each; the two faces between them cover each other.
+  // Each of the four sides that both have became one polygon; the two faces in between cover each
+  // other.
   EXPECT_EQ(facet_count(scene), 8);
   EXPECT_DOUBLE_EQ(scene_area(scene), area);
   EXPECT_NO_THROW(build_patches(scene, {.max_patch_size = 0.5}));

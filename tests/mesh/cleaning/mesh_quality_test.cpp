@@ -41,7 +41,7 @@ TEST(MeshQuality, ThreeWingsOnOneEdgeAreNoManifold) {
   const MeshQuality quality =
       mesh_quality(scene_of({{a, b, {1, 0, 0}}, {a, b, {0, 1, 0}}, {b, a, {-1, -1, 0}}}));
   EXPECT_EQ(quality.non_manifold_edges, 1);
-  EXPECT_EQ(quality.inconsistent_edges, 1);  // two of the three run along it from a to b
+  EXPECT_EQ(quality.inconsistent_edges, 1);  // two of the three polygons pass the edge from a to b
   EXPECT_EQ(quality.open_edges, 6);
 }
 
@@ -60,7 +60,7 @@ TEST(MeshQuality, SliversAreNarrowerThanAHundredthOfTheirLength) {
   const auto strips = [](double width) {
     return mesh_quality(scene_of({{{0, 0, 0}, {1, 0, 0}, {1, width, 0}, {0, width, 0}}})).slivers;
   };
-  EXPECT_EQ(strips(0.0102), 0);  // the diagonal is its length
+  EXPECT_EQ(strips(0.0102), 0);  // the length of a strip is its diagonal
   EXPECT_EQ(strips(0.0099), 1);
 }
 
@@ -71,7 +71,7 @@ TEST(MeshQuality, HolesAddTriangles) {
   mesh.facets.push_back({.boundary = {0, 1, 2, 3}, .holes = {{4, 5, 6, 7}}});
   Scene scene;
   scene.surfaces.push_back({.name = "frame", .shape = mesh});
-  EXPECT_EQ(mesh_quality(scene).triangles, 8);  // of an annulus of 4 and 4 corners
+  EXPECT_EQ(mesh_quality(scene).triangles, 8);  // an annulus with 4 outer and 4 inner corners
 }
 
 }  // namespace

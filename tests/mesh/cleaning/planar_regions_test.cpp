@@ -42,14 +42,14 @@ Scene scene_of(PolygonMesh mesh, int material = 0) {
   return scene;
 }
 
-// Each triangle with corners of its own, as STL files have them.
+// Gives each triangle corners of its own, as in STL files.
 void add_triangle(PolygonMesh& mesh, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const int first = static_cast<int>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
   mesh.facets.push_back({.boundary = {first, first + 1, first + 2}});
 }
 
-// Cells of a grid that hang together over edges, some left out, whose corners are moved about.
+// Cells of a grid, some left out, connected over edges and with displaced corners.
 class CellPolygon {
  public:
   CellPolygon(int n, double share, Random& random) : n_(n), in_(n * n, 0) {
@@ -59,7 +59,7 @@ class CellPolygon {
     std::fill(in_.begin(), in_.end(), 0);
     for (int c : reached) in_[c] = 1;
     const Eigen::AngleAxisd turn(uniform(random, 0, 6), Vector3d::Random().normalized());
-    constexpr double jitter = 0.2;  // of a cell: less than 1/4 keeps the cells convex
+    constexpr double jitter = 0.2;  // of a cell; below 1/4 the cells stay convex
     for (int j = 0; j <= n; ++j) {
       for (int i = 0; i <= n; ++i) {
         const double x = i + uniform(random, -jitter, jitter);
@@ -68,7 +68,7 @@ class CellPolygon {
       }
     }
   }
-  // Two triangles a cell, over either diagonal, in any order.
+  // Two triangles per cell, along either diagonal, in random order.
   Scene triangles(Random& random) const {
     PolygonMesh mesh;
     std::vector<int> order(in_.size());
@@ -84,7 +84,8 @@ class CellPolygon {
     }
     return scene_of(mesh);
   }
-  // Parts of the outside, connected over edges, that do not reach the grid's border.
+  // Counts the parts of the outside, connected over edges, that do not reach the border of the
+  // grid.
   int holes() const {
     std::vector<char> seen(in_.size(), 0);
     int count = 0;
@@ -123,7 +124,7 @@ class CellPolygon {
   std::vector<Vector3d> corners_;
 };
 
-// Rounding of turned coordinates is 1e-16 of the distance from the origin; areas of some hundred
+// Rotated coordinates round to 1e-16 of the distance from the origin; areas of some hundred
 // triangles then agree to far less than 1e-9.
 TEST(PlanarRegions, PolygonsCutIntoTrianglesAreMadeWholeAgain) {
   Random random(1);
@@ -141,7 +142,7 @@ TEST(PlanarRegions, PolygonsCutIntoTrianglesAreMadeWholeAgain) {
     ASSERT_NO_THROW(validate(whole));
     holes += polygon.holes();
   }
-  EXPECT_GT(holes, 1000);  // the cases are what they are meant to be
+  EXPECT_GT(holes, 1000);  // the random cases do contain holes
 }
 
 TEST(PlanarRegions, WhatIsMergedCanBeMeshed) {
@@ -155,7 +156,7 @@ TEST(PlanarRegions, WhatIsMergedCanBeMeshed) {
   }
 }
 
-// n x n squares of two triangles over the unit square, row by row.
+// n x n squares of two triangles each over the unit square, row by row.
 PolygonMesh grid(int n, double height = 0.0) {
   PolygonMesh mesh;
   for (int j = 0; j < n; ++j) {
@@ -209,7 +210,7 @@ TEST(PlanarRegions, NeighboursShareTheCornersThatStay) {
 }
 
 TEST(PlanarRegions, VerticesThatOthersNeedStay) {
-  // One half is fine, the other a triangle's fan that is not in its plane.
+  // One half is finely divided; the other is a fan of triangles outside the plane.
   PolygonMesh mesh = grid(4);
   add_triangle(mesh, {1, 0, 0}, {2, 0.5, 1}, {1, 0.25, 0});
   const Scene scene = merge_planar_regions(scene_of(mesh));
@@ -274,7 +275,8 @@ TEST(PlanarRegions, WhatCannotBeKnownIsNotTurned) {
 }
 
 TEST(PlanarRegions, DuplicatesGoAndBacksWhereSidesAreAlike) {
-  for (const int material : {0, 1}) {  // alike on both sides; reflects on its front only
+  // Material 0 is alike on both sides, material 1 reflects on its front only.
+  for (const int material : {0, 1}) {
     PolygonMesh mesh;
     for (int k = 0; k < 3; ++k) add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     add_triangle(mesh, {0, 0, 0}, {0, 1, 0}, {1, 0, 0});
@@ -296,7 +298,8 @@ TEST(PlanarRegions, DustAndFoldedFacetsGo) {
 }
 
 TEST(PlanarRegions, NeedlesBetweenFacetsDoNotKeepThemApart) {
-  // A needle of area 1e-9 that stands up at 35 degrees: it hides what it is part of by 2e-10.
+  // A needle of area 1e-9 at an angle of 35 degrees to its neighbours; its area is 2e-10 more than
+  // its projection.
   PolygonMesh mesh;
   const Vector3d m(0.5, 0.5 + 2e-9, 1e-9);
   add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {1, 1, 0});
@@ -336,7 +339,7 @@ TEST(PlanarRegions, FacetsThatMeetAtPartsOfEdgesBecomeOne) {
   EXPECT_EQ(hanging_vertices(build_patches(scene, {.max_patch_size = 0.3})), 0);
 }
 
-// A flat ramp that winds round one and a half times covers places twice: no polygon does.
+// A flat spiral of one and a half turns covers places twice, which no polygon does.
 TEST(PlanarRegions, OverlappingWindingsAreCutWhereTheyOverlap) {
   PolygonMesh mesh;
   constexpr int n = 16;
@@ -349,7 +352,7 @@ TEST(PlanarRegions, OverlappingWindingsAreCutWhereTheyOverlap) {
     add_triangle(mesh, at(i, 1), at(i + 1, 2), at(i + 1, 1));
   }
   const Scene soup = scene_of(mesh), scene = merge_planar_regions(soup);
-  EXPECT_EQ(mesh_of(scene).facets.size(), 2u);  // a whole turn, and the rest
+  EXPECT_EQ(mesh_of(scene).facets.size(), 2u);  // one whole turn, and the rest
   EXPECT_NEAR(total_area(scene), total_area(soup), 1e-9);
   EXPECT_NO_THROW(build_patches(scene));
 }

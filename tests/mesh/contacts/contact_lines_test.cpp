@@ -18,8 +18,8 @@ using namespace lightwell::testing;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// > 0 inside a counter-clockwise convex polygon, 0 on its boundary: distance to the nearest edge's
-// line.
+// Distance to the nearest edge's line of a counter-clockwise convex polygon, m: > 0 inside, 0 on
+// the boundary.
 double depth_inside(const std::vector<Vector2d>& polygon, const Vector2d& q) {
   double depth = INFINITY;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -38,8 +38,8 @@ std::vector<int> elements_of(const PatchMesh& mesh, int facet, bool back = false
   return elements;
 }
 
-// No element and no patch of `facet` straddles the convex polygon, no vertex belongs to both sides,
-// and the covered part has the polygon's area.
+// Expects that no element and no patch of `facet` straddles the convex polygon, that no vertex
+// belongs to both sides, and that the covered part has the polygon's area.
 void expect_cut_by(const PatchMesh& mesh, int facet, const std::vector<Vector2d>& polygon,
                    double covered_area, int x, int y) {
   constexpr double rounding = 1e-9;
@@ -109,7 +109,7 @@ TEST(ContactLines, IntersectingBoxesCutEachOther) {
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.15});
   expect_consistent(mesh);
   EXPECT_EQ(hanging_vertices(mesh), 0);
-  // Depth inside a box: > 0 strictly inside.
+  // The depth inside a box, > 0 strictly inside.
   const auto depth = [](const Vector3d& p, const Vector3d& l, const Vector3d& h) {
     return std::min((p - l).minCoeff(), (h - p).minCoeff());
   };
@@ -128,13 +128,13 @@ TEST(ContactLines, IntersectingBoxesCutEachOther) {
       }
     }
   }
-  // The common box is [.43,1]x[.31,.83]x[.57,1]: of `one` its faces x = 1 and z = 1 are hidden
-  // inside `other`, and of `other` the four at its low and side planes inside `one`.
+  // The common box is [.43,1]x[.31,.83]x[.57,1]. The faces x = 1 and z = 1 of `one` are hidden
+  // inside `other`, and the four lower and side faces of `other` inside `one`.
   const double a = 0.57, b = 0.52, c = 0.43;
   EXPECT_NEAR(hidden, (b * c + a * b) + (b * c + 2 * a * c + a * b), 1e-12);
 }
 
-// How many mesh vertices stand at each place of a facet's front that lies on the line y = 0.5.
+// Per place on the line y = 0.5 of a facet's front, the number of mesh vertices.
 std::map<double, int> vertices_on_line(const PatchMesh& mesh, int facet) {
   std::set<int> seen;
   std::map<double, int> count;
@@ -212,7 +212,8 @@ TEST(ContactLines, WallStandingOnASmoothEdgeStopsSharingThere) {
       }
     }
   }
-  // 21 places, doubled where the wall stands: at 0, 0.05 ... 0.35, not at its free end 0.4.
+  // 21 places, doubled where the wall stands: at 0, 0.05 ... 0.35, but not at the wall's free end
+  // at 0.4.
   EXPECT_EQ(at_edge.size(), 21u + 8u);
 }
 
@@ -260,7 +261,7 @@ TEST(ContactLines, SphereRestingOnAFloorCutsNothing) {
 }
 
 // Boxes on a common lattice touch in every possible way: faces on faces, edges in faces, corners on
-// edges. Rounding their coordinates to single precision after a rotation makes all of it inexact.
+// edges. Rounding the coordinates to single precision after a rotation makes all contacts inexact.
 TEST(ContactLines, TouchingBoxesConformAfterRoundingToSinglePrecision) {
   for (int seed = 0; seed < 6; ++seed) {
     Scene scene = empty_scene();

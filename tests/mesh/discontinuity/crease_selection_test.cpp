@@ -98,7 +98,8 @@ double corner_factor(double a, double b, double c) {
   return (a / u * std::atan(b / u) + b / v * std::atan(a / v)) / (2.0 * std::numbers::pi);
 }
 
-// Of the lamp, from a point of the floor: through the half plane's edge it is seen from x = -x on.
+// Form factor from a point of the floor to the part of the lamp that is seen past the half plane's
+// edge: from x_lamp = -x on.
 double lamp_factor(double x, double y) {
   const double low = std::max(-0.3, -x) - x, high = 0.37 - x;
   if (!(low < high)) return 0.0;
@@ -113,8 +114,8 @@ struct ProfileError {
   double most = 0.0;
 };
 
-// Largest difference between the truth and what bilinear interpolation of true values at the
-// vertices of the floor makes of it.
+// Largest difference between the true form factors and bilinear interpolation from true values at
+// the floor's vertices.
 ProfileError profile_error(const MeshOptions& options) {
   const PatchMesh mesh = build_patches(half_plane_scene(), options);
   ProfileError error;
@@ -123,7 +124,7 @@ ProfileError profile_error(const MeshOptions& options) {
     ++error.elements;
     std::array<Vector3d, 4> p;
     std::array<double, 4> E{};
-    for (int i = 0; i < 4; ++i) {  // of a triangle the last corner twice
+    for (int i = 0; i < 4; ++i) {  // a triangle repeats its last corner
       p[i] = mesh.position(mesh.corners[e][i < mesh.corner_count(e) ? i : 2]);
       E[i] = lamp_factor(p[i].x(), p[i].y());
     }

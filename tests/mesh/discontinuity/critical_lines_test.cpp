@@ -41,7 +41,7 @@ std::vector<PlaneLine> lines_on(const Scene& scene, int facet, int x, int y) {
   return lines;
 }
 
-// How much of `line` (metres) the lines of its kind in `cover` leave uncovered.
+// The length of `line`, m, that the lines of its kind in `cover` leave uncovered.
 double uncovered(const PlaneLine& line, const std::vector<PlaneLine>& cover, bool any_kind,
                  double tolerance) {
   const Vector2d d = line.b - line.a;
@@ -63,10 +63,10 @@ double uncovered(const PlaneLine& line, const std::vector<PlaneLine>& cover, boo
   return missing + std::max(0.0, length - reached);
 }
 
-// Both lists hold the same lines, in whatever pieces.
+// Expects that both lists hold the same lines, however divided into pieces.
 void expect_same_lines(const std::vector<PlaneLine>& found, const std::vector<PlaneLine>& truth,
                        double size) {
-  // Rounding: the wedges' planes are known to some 1e-15, and reach over lines of `size`.
+  // Rounding: planes of wedges are known to some 1e-15, and lines have lengths of about `size`.
   const double tolerance = 1e-9 * size;
   for (const PlaneLine& line : truth) {
     EXPECT_LE(uncovered(line, found, false, tolerance), tolerance)
@@ -94,9 +94,9 @@ bool is_strictly_inside(const std::vector<Vector2d>& convex, const Vector2d& q, 
   return true;
 }
 
-// The shadow on z = 0 of a blocker at z = 1 that an emitter's corner e at z = 2 casts: b -> 2 b -
-// e. Every edge of the blocker gives a VE line per corner, every corner an EV line per emitter
-// edge.
+// An emitter's corner e at z = 2 casts the shadow b -> 2 b - e of a blocker at z = 1 onto z = 0.
+// Every edge of the blocker gives a VE line for each corner of the emitter, every corner an EV line
+// for each edge of the emitter.
 std::vector<PlaneLine> shadow_lines(const std::vector<Vector2d>& emitter,
                                     const std::vector<Vector2d>& blocker) {
   const auto is_parallel = [](const Vector2d& a, const Vector2d& b) {
@@ -123,7 +123,7 @@ std::vector<PlaneLine> shadow_lines(const std::vector<Vector2d>& emitter,
   return lines;
 }
 
-// Emitter facing down at z = 2, blocker at z = 1, floor at z = 0: facets 0, 1, 2.
+// An emitter facing down at z = 2, a blocker at z = 1 and a floor at z = 0: facets 0, 1, 2.
 Scene shadow_scene(const std::vector<Vector2d>& emitter, const std::vector<Vector2d>& blocker,
                    double scale = 1.0) {
   Loop light, sheet;
@@ -147,7 +147,8 @@ TEST(CriticalLines, TriangleOverSquareCastsEveryVertexEdgeLine) {
 
 TEST(CriticalLines, TriangleOverSquareBoundsUmbraAndPenumbra) {
   const auto lines = lines_on(shadow_scene(triangle, square), 2, 0, 1);
-  // Penumbra: convex hull of all corners' shadows; umbra: their intersection.
+  // The penumbra is the convex hull of the shadows of all corners, the umbra the intersection of
+  // these shadows.
   const std::vector<Vector2d> penumbra{{-1.1, -0.4}, {-0.65, -1.1}, {0.55, -1.1}, {1.0, -0.3},
                                        {1.0, 0.9},   {-0.2, 0.9},   {-1.1, 0.8}};
   const std::vector<Vector2d> umbra{{-0.2, -0.3}, {0.1, -0.3}, {0.1, 0.1}, {-0.2, 0.1}};
@@ -183,9 +184,9 @@ TEST(CriticalLines, AreTheSameInEveryUnit) {
   }
 }
 
-// The tall block of the Cornell box, alone on a large floor (mm): (x, z) of the lines it casts.
-// Shadow of a top corner t from a light corner v: k t - (k - 1) v with k = 548.8 / (548.8 - 330).
-// Two more edges touch the floor, but lie in the umbra: nothing changes across them.
+// The tall block of the Cornell box, alone on a large floor (mm): (x, z) of its critical lines. The
+// shadow of a top corner t from a light corner v is k t - (k - 1) v with k = 548.8 / (548.8 - 330).
+// Two more edges touch the floor but lie in the umbra, where nothing changes.
 const std::vector<PlaneLine> tall_block_lines{
     {{314.0, 456.0}, {265.0, 296.0}, LineDegree::d0, true},
     {{265.0, 296.0}, {423.0, 247.0}, LineDegree::d0, true},
@@ -318,9 +319,9 @@ Scene tall_block() {
 TEST(CriticalLines, BlockOnTheFloorCastsThoseOfItsSilhouettes) {
   const auto found = lines_on(tall_block(), 1, 0, 2);
   std::vector<PlaneLine> truth = tall_block_lines;
-  // The top corner (265, 296) leaves the outline where a light's edge comes before both of its
-  // sides: x = 213 meets the plane of the side to (423, 247), z = 227 that of the side to (314,
-  // 456).
+  // The top corner (265, 296) leaves the silhouette where the light's edge passes in front of both
+  // of its sides: x = 213 meets the plane of the side to (423, 247), z = 227 that of the side to
+  // (314, 456).
   const Vector2d t(265, 296);
   const double z = 296.0 - 52.0 * 49.0 / -158.0, x = 265.0 - 69.0 * 49.0 / 160.0;
   const double k = 548.8 / (548.8 - 330.0);
@@ -352,7 +353,7 @@ TEST(CriticalLines, BlockOnTheFloorBoundsUmbraAndPenumbra) {
                           1000.0);
 }
 
-// Random boxes, with visibility found the slow way: the line of sight against every polygon.
+// Random boxes, with visibility by brute force: the line of sight is tested against every polygon.
 struct BoxScene {
   explicit BoxScene(std::uint32_t seed)
       : scene(boxes_under_a_lamp(seed)),
@@ -370,7 +371,8 @@ struct BoxScene {
     }
     return true;
   }
-  // Whether looking past p from x some of the lamp's plane is hidden and some is not.
+  // True if p lies on the silhouette as seen from x: around the direction to p some of the lamp's
+  // plane is hidden and some is not.
   bool is_outlined(const Vector3d& x, const Vector3d& p) const {
     const Vector3d d = (p - x).normalized(), u = d.unitOrthogonal(), w = d.cross(u);
     bool hidden = false, seen = false;

@@ -21,7 +21,7 @@ Vector2d place(int corner_count, int node) {
 class Closure : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Corners, Closure, testing::Values(3, 4));
 
-// Of a square of area 1 or half of it: every patch of halves and quarters, in every turn.
+// The square of area 1, or the half of it, with every set of split edges.
 TEST_P(Closure, CoversTheElementOnceAndUsesEveryVertexOfItsBoundary) {
   const int n = GetParam();
   for (unsigned edges = 0; edges < (1U << n); ++edges) {

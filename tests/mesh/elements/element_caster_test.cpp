@@ -92,15 +92,15 @@ TEST(ElementCaster, EveryElementIsFoundFromItsOwnSide) {
     if (!mesh.sphere_grids.empty() && mesh.facet[e] == mesh.sphere_grids[0].facet) {
       continue;
     }
-    // At the mean of the corners all weigh the same in a parallelogram or triangle; in any
-    // element their combination is the centre.
+    // At the mean of the corners, all weights are equal in a parallelogram or triangle; in any
+    // element the weighted mean of the corners is the centre.
     Vector3d x = Vector3d::Zero();
     for (int i = 0; i < n; ++i) x += double(hits[e].weights[i]) * mesh.position(mesh.corners[e][i]);
     EXPECT_NEAR((x - element_center(mesh, e).position).norm(), 0.0, 1e-6);
   }
 }
 
-// Whatever is in front of it: an element's own weights, without a ray.
+// point_on_element() ignores what lies in front and casts no ray.
 TEST(ElementCaster, PlaceOnAnElementIsWhereARayMeetsIt) {
   Scene scene = cornell_with_oblique_facets();
   add_sphere(scene, "ball", {.center = {0.3, 0.48, 0.1}, .radius = 0.03});
@@ -121,7 +121,7 @@ TEST(ElementCaster, PlaceOnAnElementIsWhereARayMeetsIt) {
       EXPECT_EQ(place.facet, met.facet);
       EXPECT_EQ(place.from_back, met.from_back);
       const Spectrum value = interpolate(mesh, values, place);
-      // Rays know their place to float's 6e-8 of 0.5 m; as much again by weights and their sum.
+      // A hit is known to 6e-8 (float) of 0.5 m; the weights and their sum add as much again.
       EXPECT_LT((value - interpolate(mesh, values, met)).abs().maxCoeff(), 1.5e-7f);
       EXPECT_NEAR(place.weights.sum(), 1.0f, 1.2e-7f);  // four roundings of up to 3e-8
     }

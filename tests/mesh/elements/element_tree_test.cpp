@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Squares, other quads, triangles and a ball; sheets with two sides, and boxes with one.
+// Squares, other quadrilaterals, triangles and a ball; sheets with two sides, and boxes with one.
 Scene all_shapes() {
   Scene scene = cornell_box();
   Loop kite{{0.1, 0, 0.1}, {0.25, 0, 0.15}, {0.3, 0, 0.3}, {0.1, 0, 0.2}};
@@ -66,7 +66,7 @@ TEST(ElementTree, FindsElementsWhereACasterOfThemMeetsThem) {
       through_base.closest_elements({&ray, 1}, {&alone, 1});
       ASSERT_EQ(alone.element, found.element);
       ++places;
-      if (found.element != met.element) ++other_elements;  // on an edge
+      if (found.element != met.element) ++other_elements;  // possible on a common edge
       ASSERT_NEAR(found.weights.sum(), 1.0f, 1.2e-7f);     // four roundings of up to 3e-8
       ASSERT_GE(found.weights.minCoeff(), -2.4e-7f);
       if (refined.cell[e] < 0) {
@@ -83,8 +83,7 @@ TEST(ElementTree, FindsElementsWhereACasterOfThemMeetsThem) {
   }
   std::printf("%d places, %d in a neighbour, %.2g m off at most\n", places, other_elements, worst);
   EXPECT_LT(other_elements, 1e-4 * places);
-  // Rays know their place to float's 6e-8 of 0.5 m along each axis, and weights to as much of an
-  // element.
+  // A hit is known to 6e-8 (float) of 0.5 m along each axis, and weights to as much of an element.
   EXPECT_LT(worst, 2e-7);
   EXPECT_EQ(kinds.size(), 4u);
 }

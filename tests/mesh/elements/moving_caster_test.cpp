@@ -1,4 +1,4 @@
-// Rays at what moves: the same as at a mesh that was made where it is.
+// Rays at moving surfaces give the hits of a mesh that was made at their place.
 #include <gtest/gtest.h>
 
 #include "mesh/build_patches.h"
@@ -55,7 +55,7 @@ TEST(MovingCaster, MeetsWhatACasterOfTheMovedMeshDoes) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       same += got[i].facet == want[i].facet && std::abs(got[i].t - want[i].t) < 1e-4 &&
               got[i].from_back == want[i].from_back;
-      if (i % 7 == 0) rays[i].target_group = want[i].facet;  // not in the way of itself
+      if (i % 7 == 0) rays[i].target_group = want[i].facet;  // the target does not block itself
       rays[i].t_max = i % 2 == 0 ? 1.0 : 0.3;
     }
     EXPECT_GE(same, 2990) << "but where a ray grazes an edge";

@@ -22,7 +22,7 @@ double angle(const Vector3d& at, const Vector3d& a, const Vector3d& b) {
   return std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi;
 }
 
-// Least angle of the triangles, and of those into which diagonals cut the quadrilaterals.
+// The least angle of the triangles, and of those into which diagonals cut the quadrilaterals.
 double least_triangle_angle(const PatchMesh& mesh) {
   double least = 180.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -64,8 +64,8 @@ PointKey place(const Vector3d& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-// Levels of the cells that have an edge, whole or half, at one place of a facet. (Facets that lie
-// on one another have inner edges of their own, one of which may happen to be half of another.)
+// The levels of the cells that have an edge, whole or half, at one place of a facet. (Facets that
+// overlap have inner edges of their own, one of which may happen to be half of another.)
 void expect_balance(RefinedElements& refined) {
   std::map<std::tuple<int, PointKey, PointKey>, std::set<int>> whole, halves;
   for (const int cell : refined.leaves()) {
@@ -170,17 +170,17 @@ TEST_P(Refined, SameCellsSplitAlikeInAnyUnit) {
   int compared = 0;
   for (const double scale : {1e-3, 1024.0, 1e3}) {
     const Made other = refine(scale);
-    // A turned scene's rounding may move a mesh of the base; what is made of it then is another.
+    // In a rotated scene rounding may give another base mesh, which cannot be compared.
     if (other.base != mesh.base) continue;
     ++compared;
     ASSERT_EQ(other.corners, mesh.corners);
-    // Both are of 64-bit places that rounding moves by parts in 1e15.
+    // Positions in double precision differ by rounding, parts in 1e15.
     ASSERT_LT((other.element_area / (scale * scale) - mesh.element_area).abs().maxCoeff(), 1e-12);
   }
   EXPECT_GE(compared, seed % 5 == 0 ? 1 : 3);  // a power of two rounds nothing
 }
 
-// Floor, panel through it, and what a level of refinement makes of them.
+// A floor with a panel that crosses it.
 Scene floor_with_panel(double from, double to) {
   Scene scene = empty_scene();
   add_polygon(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
@@ -189,8 +189,8 @@ Scene floor_with_panel(double from, double to) {
   return scene;
 }
 
-// Vertices of a facet's front strictly between two places, and whether any is on both sides of the
-// line that they lie on.
+// Counts the vertices of facet 0's front strictly between two places, by the sides of the line on
+// which they have elements.
 struct OnLine {
   int left_alone = 0, right_alone = 0, both = 0;
 };
@@ -215,7 +215,7 @@ OnLine vertices_between(const PatchMesh& mesh, const Vector3d& a, const Vector3d
 }
 
 TEST(ContactLine, StaysSplitWhenItIsRefined) {
-  for (const double to : {1.0, 0.75}) {  // all across, and ending inside
+  for (const double to : {1.0, 0.75}) {  // a panel across the floor, and one that ends inside
     const PatchMesh base = build_patches(floor_with_panel(0.0, to), {.max_patch_size = 0.25});
     RefinedElements refined(base);
     for (int round = 0; round < 2; ++round) refined.split(refined.leaves());
@@ -226,7 +226,7 @@ TEST(ContactLine, StaysSplitWhenItIsRefined) {
   }
 }
 
-// A panel shorter than an element: both its ends are free.
+// A panel shorter than an element has two free ends.
 TEST(ContactLine, ShorterThanAnElementStaysSplitToo) {
   const PatchMesh base = build_patches(floor_with_panel(0.45, 0.55),
                                        {.max_patch_size = 0.25, .elements_per_patch_edge = 1});
@@ -290,7 +290,7 @@ TEST(CornellBox, StaysSoundThroughManyRounds) {
   Numbers numbers(7);
   RefinedElements refined(base);
   for (int round = 0; round < 6; ++round) {
-    // Ever deeper at one place, and here and there.
+    // Splits ever deeper at one place, and at random places.
     std::vector<int> marks = some(refined.leaves(), numbers, 100);
     for (const int cell : refined.leaves()) {
       const Vector3d at = refined.position(refined.corner_vertex(cell, 0, 0));

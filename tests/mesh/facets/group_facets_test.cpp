@@ -42,7 +42,8 @@ TEST(GroupFacets, BallHasAsManyPatchesAsItsAreaAsksFor) {
     const PatchMesh mesh = build_patches(scene, {.max_patch_size = size});
     expect_consistent(mesh);
     EXPECT_NEAR(mesh.area.sum(), area, 1e-12 * area);
-    // A patch is at least 15 % of a full one or the rest of its surroundings, at most 1.2 of one.
+    // A patch has at least 15 % of a full one, unless no neighbour has room, and at most 1.2 of
+    // one.
     const double full = area / (size * size);
     EXPECT_GT(mesh.patch_count(), full / 1.2);
     EXPECT_LT(mesh.patch_count(), 2.0 * full);
@@ -70,7 +71,7 @@ TEST(GroupFacets, NormalsStayWithinTheAngleOfThePatchsMean) {
   EXPECT_LT(mesh.patch_count(), 2 * 59);  // a cap of 15 degrees is 1/59 of the ball
 }
 
-// Leaves that face every way, in one cell.
+// Leaves that face in all directions, in one cell.
 TEST(GroupFacets, CrumbsStayWithinTheAngleToo) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -91,7 +92,7 @@ TEST(GroupFacets, CrumbsStayWithinTheAngleToo) {
     const PatchMesh mesh =
         build_patches(scene, {.max_patch_size = 1.0, .curve_angle_degrees = angle});
     EXPECT_LE(largest_angle_from_mean(mesh), angle + rounding);
-    // Seeds are the angle apart or more, so caps of half of it about them do not overlap.
+    // Seeds are at least the angle apart, so caps of half the angle about them do not overlap.
     const double caps = 2.0 / (1.0 - std::cos(0.5 * angle * M_PI / 180.0));
     EXPECT_LT(mesh.patch_count(), caps);
   }
@@ -156,7 +157,8 @@ TEST(GroupFacets, UnconnectedCrumbsOfOnePlaceAndDirectionShareAPatch) {
   EXPECT_EQ(mesh.element_count(), 1000);
 }
 
-// Of n points, those on an element are n A_e / A give or take 5 standard deviations of a binomial.
+// The number of n points that lie on an element is n A_e / A within 5 standard deviations of a
+// binomial.
 TEST(GroupFacets, SamplesAreEvenOverAPatchOfManyFacets) {
   const PatchMesh mesh = build_patches(triangle_ball(24, 1), {.max_patch_size = 0.7});
   int patch = 0;

@@ -81,7 +81,7 @@ TEST(PairTriangles, FlatPairsStayTriangles) {
 }
 
 TEST(Triangulate, OfPointsOnOneCircleTheLowestIsJoinedWithAll) {
-  // Corners of a regular polygon that floats hold exactly: 5^2 = 3^2 + 4^2, in an order of its own.
+  // Points on a circle with exact coordinates (5^2 = 3^2 + 4^2), in arbitrary order.
   const std::vector<Vector2d> circle{{3, 4},  {-5, 0}, {4, 3}, {0, -5},  {-3, 4}, {5, 0},
                                      {4, -3}, {-4, 3}, {0, 5}, {-4, -3}, {3, -4}, {-3, -4}};
   const auto fan = triangulate(circle, {});
@@ -97,7 +97,7 @@ TEST(Triangulate, OfPointsOnOneCircleTheLowestIsJoinedWithAll) {
       EXPECT_EQ(std::count(around.begin(), around.end(), static_cast<int>(t)), 1);
     }
   }
-  // A constraint stays, whatever its points.
+  // A constraint stays even if it does not end in the lowest point.
   const auto split = triangulate(circle, {{5, 1}});
   int fixed = 0;
   for (const auto& edges : split.constrained) fixed += edges[0] + edges[1] + edges[2];
@@ -109,13 +109,13 @@ PlacedElement element(int cell, double x, double width) {
 }
 
 TEST(GroupPatches, LeftoversJoinTheirNeighbourAndPartsStayApart) {
-  // A strip of unit cells 0, 1, 2: a leftover of 0.1 at the end, and a line between cells 0 and 1
-  // inside cell 1 that nothing connects across.
+  // A strip of unit cells 0, 1, 2 with a leftover of 0.1 at the end. No contact crosses a line
+  // inside cell 1.
   const std::vector<PlacedElement> elements{element(0, 0, 1), element(1, 1, 0.4),
                                             element(1, 1.4, 0.6), element(2, 2, 0.1)};
   const auto patch = group_patches(elements, {{0, 1, 1.0}, {2, 3, 1.0}}, Vector2d(1, 1));
   EXPECT_EQ(patch, (std::vector<int>{0, 1, 2, 2}));
-  // Not if the two would outgrow a cell by half.
+  // The leftover stays if the two together would be wider than 1.5 cells.
   const std::vector<PlacedElement> wide{element(0, 0, 1.45), element(1, 1.45, 0.1)};
   EXPECT_EQ(group_patches(wide, {{0, 1, 1.0}}, Vector2d(1, 1)), (std::vector<int>{0, 1}));
 }

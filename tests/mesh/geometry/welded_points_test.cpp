@@ -9,7 +9,7 @@ TEST(WeldedPoints, JoinsWithinTheToleranceAcrossCellBorders) {
   const double tolerance = 1e-3;
   WeldedPoints points(tolerance);
   for (int i = -50; i <= 50; ++i) {
-    // Every place within a hash cell, on either side of zero.
+    // Positions all over a hash cell, on both sides of zero.
     const Eigen::Vector3d p(0.01 * i + 1.37e-4 * i, 0.3, -0.2);
     const int id = points.add(p, tolerance);
     EXPECT_EQ(points.add(p + Eigen::Vector3d(0.99e-3, 0, 0), tolerance), id);

@@ -45,7 +45,7 @@ TEST(ElementShape, TrianglesHaveTheClosedForms) {
       element_shape(single_element({{0, 0, 1}, {1, 0, 1}, {0.5, height, 1}}), 0);
   EXPECT_NEAR(equal.aspect_ratio, 1.0, exact);
   EXPECT_NEAR(equal.least_angle_degrees, 60.0, 60.0 * exact);
-  // Legs of 1: sqrt(2) (2 + sqrt(2)) / (4 sqrt(3) / 2).
+  // A right triangle with legs of 1: sqrt(2) (2 + sqrt(2)) / (4 sqrt(3) / 2).
   const ElementShape half_square =
       element_shape(single_element({{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}), 0);
   EXPECT_NEAR(half_square.aspect_ratio, (1.0 + std::sqrt(2.0)) / std::sqrt(3.0), exact);
@@ -67,7 +67,7 @@ TEST(ElementShape, WithoutAreaTheAspectIsInfiniteAndTheAngleZero) {
 }
 
 TEST(ElementQuality, FrontsCoverTheSceneAndBacksAreNotCounted) {
-  for (const int material : {0, 1}) {  // seen from both sides, and from the front alone
+  for (const int material : {0, 1}) {  // with both sides, and with the front alone
     Scene scene = empty_scene();
     add_polygon(scene, "holed", {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}},
                 {{{1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}}}, material);

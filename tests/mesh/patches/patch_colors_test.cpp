@@ -15,8 +15,8 @@ namespace {
 
 using namespace lightwell::testing;
 
-// Patches of front elements by side, ends rounded to 1e-7 m: far above what positions of the
-// meter-sized scenes here are off by, far below their elements.
+// The patches of front elements by edge, with ends rounded to 1e-7 m: far above the rounding of
+// positions in these scenes of about a metre, far below the size of their elements.
 std::map<std::set<std::array<long, 3>>, std::set<int>> patches_at_sides(const PatchMesh& mesh) {
   const auto rounded = [&mesh](int vertex) {
     const Eigen::Vector3d p = mesh.position(vertex) * 1e7;

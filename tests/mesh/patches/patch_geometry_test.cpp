@@ -14,7 +14,7 @@ namespace {
 using namespace lightwell::testing;
 using Eigen::Vector3d;
 
-// Midpoints of an n x n division of the unit square.
+// The midpoints of an n x n division of the unit square.
 template <class Visit>
 void for_each_sample(int n, Visit&& visit) {
   for (int j = 0; j < n; ++j) {
@@ -30,7 +30,7 @@ TEST(PatchSampler, IsUniformByAreaOnAnyPatch) {
       build_patches(scene, {.max_patch_size = 1.0, .elements_per_patch_edge = 3});
   const int n = 200;
   for (int p = 0; p < mesh.patch_count(); ++p) {
-    // Exact centroid of the patch, from its elements split into triangles.
+    // The exact centroid of the patch, from its elements split into triangles.
     Vector3d centroid = Vector3d::Zero();
     for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
       const auto& c = mesh.corners[e];
@@ -50,7 +50,8 @@ TEST(PatchSampler, IsUniformByAreaOnAnyPatch) {
       share[point.element] += 1.0 / (n * n);
       mean += point.position / (n * n);
     });
-    // A midpoint rule of n strips: 1/n of the extent (1 m) at the jumps from element to element.
+    // Error of a midpoint rule of n strips: 1/n of the extent (1 m) at the jumps from element to
+    // element.
     EXPECT_NEAR((mean - centroid).norm(), 0.0, 1.0 / n);
     for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
       EXPECT_NEAR(share[e], mesh.element_area[e] / mesh.area[p], 1.0 / n);
@@ -58,7 +59,7 @@ TEST(PatchSampler, IsUniformByAreaOnAnyPatch) {
   }
 }
 
-// Of a patch that draws from a grid as of one that does not.
+// Tests elements of a patch that draws from a grid, and of one that does not.
 TEST(PatchSampler, OfOneElementIsUniformOnIt) {
   Scene scene = empty_scene();
   add_polygon(scene, "square", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {}, 1);
@@ -81,7 +82,7 @@ TEST(PatchSampler, OfOneElementIsUniformOnIt) {
       centroid += 0.5 * (b - a).cross(d - a).norm() * (a + b + d) / 3.0;
     }
     centroid /= mesh.element_area[e];
-    // A midpoint rule of n strips over half a metre at most.
+    // Error of a midpoint rule of n strips over half a metre at most.
     EXPECT_NEAR((mean - centroid).norm(), 0.0, 0.5 / n);
   }
 }
@@ -142,7 +143,7 @@ TEST(BuildTopology, RestoresAMeshFromItsArrays) {
   EXPECT_EQ(copy.elements->n_edges(), mesh.elements->n_edges());
 }
 
-// Moving hands the half-edge mesh on, and leaves an empty one that can be used again.
+// A move transfers the half-edge mesh and leaves an empty one that can be used again.
 TEST(PatchMesh, IsMovedWithoutACopy) {
   const Scene scene = cornell_box();
   PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.2});

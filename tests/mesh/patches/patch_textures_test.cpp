@@ -56,7 +56,7 @@ TEST(PatchTextures, APatchOverManyTexelsReflectsTheirMean) {
   put_picture(scene, 0, picture_of(64, 16, shares));
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 10.0});
   ASSERT_EQ(mesh.patch_count(), 2);
-  // 8 x 8 texels an element and a point on each, as 16 x 16 points fall.
+  // An element has 8 x 8 texels and a point on each, as 16 x 16 points fall.
   EXPECT_NEAR(mesh.reflectance(0, 0), sum / (64 * 16), 0.01 * sum / (64 * 16));
   EXPECT_NEAR(mesh.reflectance(1, 0), mesh.reflectance(0, 0), rounding);
 }
@@ -103,7 +103,7 @@ TEST(PatchTextures, PointsOfAPatchLieBesideItsHoles) {
     EXPECT_FALSE(mesh.textures->is_hole(0, at)) << at.transpose();
     left += at.x() < 2.0 ? 1 : 0;
   }
-  // Half of them were drawn anew at random: 3 standard deviations of a binomial count.
+  // Half of the points were drawn anew at random: 3 standard deviations of a binomial count.
   EXPECT_NEAR(left, grid * grid / 2, 3.0 * std::sqrt(grid * grid / 8.0));
 }
 
@@ -126,7 +126,7 @@ TEST(PatchTextures, RaysGoThroughHolesAndMeetTheRest) {
   std::vector<std::uint8_t> blocked(rays.size());
   caster.closest_hits(rays, hits);
   for (std::size_t i = 0; i < rays.size(); ++i) rays[i].t_max = i % 2 == 0 ? 2.5 : 10.0;
-  caster.occluded(rays, blocked);  // from above, of what stands over the floor
+  caster.occluded(rays, blocked);  // rays from above end above the floor
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool is_hole = static_cast<int>(rays[i].origin.x()) % 2 == 1;
     const int beyond = i % 2 == 0 ? 1 : -1;
@@ -146,7 +146,7 @@ TEST(PatchTextures, RaysThatStartOnTheirOwnSurfaceLeaveThroughNothing) {
   EXPECT_EQ(hit.facet, -1);
 }
 
-// Two triangles of one square: on the left the picture goes on, on the right it starts anew.
+// Two triangles of one square: on the left the picture continues, on the right it starts anew.
 TEST(PatchTextures, PolygonsAreJoinedOnlyWhereThePictureGoesOn) {
   Scene scene = plate();
   put_picture(scene, 0, picture_of(2, 1, {0.2f, 0.8f}));
@@ -158,7 +158,7 @@ TEST(PatchTextures, PolygonsAreJoinedOnlyWhereThePictureGoesOn) {
   mesh.uv_maps.push_back({});
   mesh.facets[1].uv_map = 1;
   EXPECT_EQ(scene_facets(merge_planar_regions(scene)).size(), 2u);
-  scene.surfaces[0].material = 0;  // no picture: nothing to keep apart
+  scene.surfaces[0].material = 0;  // without a picture nothing keeps the triangles apart
   EXPECT_EQ(scene_facets(merge_planar_regions(scene)).size(), 1u);
 }
 

@@ -1,4 +1,5 @@
-// Normals at vertices through cleaning and meshing: what is joined, and where vertices are shared.
+// Normals at vertices through cleaning and meshing: which facets are joined, and where vertices are
+// shared.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,8 +20,8 @@ using Eigen::Vector3d;
 
 enum class Given { nothing, smooth, hard };
 
-// Four chords of a quarter of a cylinder, two triangles each, with a flat strip that goes on from
-// its end.
+// Four chords of a quarter of a cylinder, of two triangles each, and a flat strip that continues
+// the last.
 Scene bent_sheet(Given given) {
   MeshBuilder mesh;
   const auto on_circle = [](double turn, double z) {
@@ -88,7 +89,7 @@ TEST(SmoothEdges, FacetsOnWhichNormalsDoNotGoOnStayApart) {
   EXPECT_EQ(polygons(merge_planar_regions(scene)).facets.size(), 1u);
 }
 
-// How many of the five facets' four inner edges share their vertices on one side.
+// The number of the four edges between the five facets whose vertices are shared on one side.
 int shared_edges(const Scene& scene) {
   const PatchMesh mesh = build_patches(merge_planar_regions(scene), {.max_patch_size = 4.0});
   std::array<std::set<int>, 5> vertices;

@@ -105,7 +105,7 @@ TEST(SphereGrid, WeightsSumToOneAndMeetAtCellBorders) {
         }
         return p;
       };
-      // 1e-6: weights are float.
+      // Weights are float, hence 1e-6.
       EXPECT_NEAR((value(0, 1.0) - value(1, 0.0)).norm(), 0.0, 1e-6);
       EXPECT_NEAR((value(grid.sectors - 1, 1.0) - value(0, 0.0)).norm(), 0.0, 1e-6);
     }
@@ -115,9 +115,9 @@ TEST(SphereGrid, WeightsSumToOneAndMeetAtCellBorders) {
 TEST(SphereGrid, PatchesAreAboutAsLargeAsAsked) {
   const double size = 0.25;
   const PatchMesh mesh = sphere_mesh(1.0, size, 2, 1);
-  // Sectors narrow towards the poles, so cells are shared by fewer patches there; rounding down to
-  // whole sectors of half a patch costs a third at most (2 of 2.99) and less on average. None is
-  // wider than asked.
+  // Sectors narrow towards the poles, where a patch spans more of them. Rounding down to whole
+  // sectors of half a patch costs a third at most (2 of 2.99) and less on average. No patch is
+  // wider than asked for.
   const double full = 4 * std::numbers::pi / (size * size);
   EXPECT_LT(mesh.patch_count(), 1.34 * full);
   EXPECT_LE(mesh.area.maxCoeff(), size * size);
