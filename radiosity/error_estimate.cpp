@@ -5,8 +5,7 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/refine/effort.h"
-#include "radiosity/refine/interpolation_error.h"
-#include "scene/random_purpose.h"
+#include "radiosity/refine/error_reference.h"
 #include "scene/sampling.h"
 
 namespace lightwell {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "radiosity/refine/interpolation_error.h"
+#include "radiosity/refine/error_reference.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "radiosity/gather/patch_power.h"
-#include "radiosity/refine/interpolation_error.h"
+#include "radiosity/refine/error_reference.h"
 
 namespace lightwell {
 

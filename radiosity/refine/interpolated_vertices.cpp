@@ -90,6 +90,17 @@ void combine_with_predictions(std::span<const VertexPrediction> predictions, con
   }
 }
 
+std::vector<int> places_without(std::span<const InterpolatedVertex> interpolated,
+                                std::size_t count) {
+  std::vector<char> is_interpolated(count, 0);
+  for (const InterpolatedVertex& t : interpolated) is_interpolated[t.vertex] = 1;
+  std::vector<int> others;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_interpolated[i]) others.push_back(static_cast<int>(i));
+  }
+  return others;
+}
+
 std::vector<double> vertex_areas(const PatchMesh& mesh) {
   std::vector<double> area(mesh.vertex_count(), 0.0);
   for (int e = 0; e < mesh.element_count(); ++e) {

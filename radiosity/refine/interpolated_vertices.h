@@ -45,6 +45,11 @@ void combine_with_predictions(std::span<const VertexPrediction> predictions, con
 /// Sets the rows of interpolated vertices, which come after all of their ends in the list.
 void interpolate_vertices(std::span<const InterpolatedVertex> interpolated, BandArray& values);
 
+/// Places in a list of `count` vertices that are not interpolated, in rising order; vertex numbers
+/// of `interpolated` are places in the list.
+std::vector<int> places_without(std::span<const InterpolatedVertex> interpolated,
+                                std::size_t count);
+
 /// Per vertex, m^2: the share of the elements around that is nearer to it than to their other
 /// corners.
 std::vector<double> vertex_areas(const PatchMesh& mesh);

@@ -10,7 +10,7 @@
 #include "mesh/build_patches.h"
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/error_estimate.h"
-#include "radiosity/refine/interpolation_error.h"
+#include "radiosity/refine/error_reference.h"
 #include "radiosity/solve.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"

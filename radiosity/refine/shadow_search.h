@@ -1,0 +1,55 @@
+#pragma once
+
+#include "mesh/elements/refine_elements.h"
+#include "radiosity/refine/vertex_gathers.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+
+/// A squared difference counts from this multiple of its noise on.
+constexpr double beyond_doubt = 2.0;
+
+/// The search for shadows and beams between the vertices of a cell, at which direct light is
+/// compared already.
+///
+/// - Small ones: 16 shadow rays run from points of the cell to each of the first 64 lights that all
+///   of the cell's vertices see whole, or that none sees. A ray that disagrees meets a shadow or a
+///   beam narrower than half the cell; direct light is gathered at its origin.
+/// - Edges through the middle: there the mean of the corners is right by chance. If some of the
+///   vertices see a light and others do not, and the vertices agree with the interpolation although
+///   the corners differ, direct light is gathered in the middles of the cell's four parts.
+class ShadowSearch {
+ public:
+  /// Keeps references to both.
+  ShadowSearch(RefinedElements& elements, const VertexGathers& gathers);
+
+  /// The mean squared error of interpolated direct light that the search adds to the one found at
+  /// the cell's vertices, mean of the bands, (W/m^2)^2. `at_vertices` is that one, and
+  /// `shadow_noise` the squared noise of shadow rays in it.
+  double error(int cell, int side, double at_vertices, double shadow_noise) const;
+
+ private:
+  // A point in the cell and the direct light interpolated there.
+  struct CellPoint {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Spectrum direct{};
+  };
+  CellPoint point_in(int cell, int side, double u, double v) const;
+  // The plane of a cell's side, with the facet that rays leave from.
+  struct Plane {
+    Eigen::Vector3d normal;
+    int facet;
+  };
+  Plane plane_of(int cell, int side) const;
+  double squared_error(const Plane& plane, const CellPoint& at, std::uint64_t key) const;
+  double direct_range(int cell, int side) const;
+  bool has_edge(int cell, int side) const;
+  double probed_error(int cell, int side) const;
+  double parts_error(int cell, int side) const;
+
+  RefinedElements& elements_;
+  const VertexGathers& gathers_;
+  SobolPoints probes_;
+};
+
+}  // namespace lightwell

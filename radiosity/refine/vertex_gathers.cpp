@@ -1,0 +1,262 @@
+#include "radiosity/refine/vertex_gathers.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "radiosity/gather/patch_power.h"
+#include "radiosity/refine/effort.h"
+#include "radiosity/refine/gather_noise.h"
+#include "radiosity/refine/refine_solution.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t pilot_replica = 1000;
+
+// Distance of vertices from their elements' corners, as a share of the way to the centre of an
+// element of the deepest level (see vertex_gather_points).
+constexpr double finest_inset = 0.02;
+
+// Rays of each of the two pilot gathers. A sixteenth of the final gather's rays suffices where its
+// noise has a goal; an eighth otherwise, since with half as many the predictions made of the pilot
+// gathers showed as faint blotches on walls.
+int pilot_rays(int rays, bool has_noise_goal) {
+  const int share = has_noise_goal ? 16 : 8;
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(1, rays / share))));
+}
+
+std::vector<int> vertices_of(const PatchMesh& mesh) {
+  std::vector<int> all(static_cast<std::size_t>(mesh.vertex_count()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+}  // namespace
+
+VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
+                             const BandArray& caustic, RefinedElements& elements,
+                             const GatherOptions& options, int deepest_level, double noise)
+    : scene_(lit.scene),
+      caster_(lit.caster),
+      direct_light_(lit.direct_light),
+      radiosity_(radiosity),
+      elements_(elements),
+      options_(options),
+      has_noise_goal_(noise > 0.0),
+      inset_(std::ldexp(finest_inset, -deepest_level)),
+      visibility_(lit.direct_light.light_count()) {
+  if (options.progress) {
+    options_.progress = [progress = options.progress](std::string_view, double share) {
+      return progress("refine", share);
+    };
+  }
+  share_pilot_rays();
+  sharpen_radiosity(caustic, noise);
+  gather_indirect_at(vertices_of(elements.base()));
+}
+
+// Vertices of small elements cast fewer rays, but a quarter at least: with fewer, noise would hide
+// the differences that the gathers are made for.
+void VertexGathers::share_pilot_rays() {
+  const int rays = pilot_rays(options_.rays, has_noise_goal_);
+  rays_ = share_rays(elements_.base(), {}, rays);
+  for (int& share : rays_) share = std::min(2 * share, rays);
+}
+
+GatherPoint VertexGathers::gather_point(int vertex) const {
+  const PatchPoint at = elements_.inside(vertex, inset_);
+  return {at.position, at.normal, elements_.base().facet[at.element]};
+}
+
+// With random numbers of the vertex's own.
+GatherPoint VertexGathers::keyed_point(int vertex) const {
+  GatherPoint point = gather_point(vertex);
+  point.key = static_cast<std::uint64_t>(vertex);
+  return point;
+}
+
+Spectrum VertexGathers::total(int vertex) const {
+  return (direct_.row(vertex) + 0.5f * (first_.row(vertex) + second_.row(vertex))).transpose();
+}
+
+void VertexGathers::make_room() {
+  const int count = elements_.vertex_count();
+  if (count > direct_.rows()) {
+    // Doubled, as a vector grows.
+    const Eigen::Index rows = std::max<Eigen::Index>(count, 2 * direct_.rows());
+    for (BandArray* values : {&direct_, &first_, &second_}) {
+      values->conservativeResize(rows, scene_.bands.count());
+    }
+  }
+  has_direct_.resize(count, 0);
+  indirect_.resize(count, Indirect::unknown);
+  // A new vertex casts as many rays as the ends between which it lies: with fewer, noise would hide
+  // the differences that decide over the next split.
+  for (int v = static_cast<int>(rays_.size()); v < count; ++v) {
+    int most = 0;
+    for (const int end : elements_.ends(v)) most = end < 0 ? most : std::max(most, rays_[end]);
+    rays_.push_back(most);
+  }
+  visibility_.resize(count);
+}
+
+void VertexGathers::shrink_to_fit() {
+  for (BandArray* values : {&direct_, &first_, &second_}) {
+    values->conservativeResize(elements_.vertex_count(), values->cols());
+  }
+  has_direct_.shrink_to_fit();
+  indirect_.shrink_to_fit();
+  rays_.shrink_to_fit();
+  visibility_.shrink_to_fit();
+}
+
+void VertexGathers::gather_direct_at(const std::vector<int>& vertices) {
+  std::vector<int> fresh;
+  std::vector<GatherPoint> points;
+  for (const int v : vertices) {
+    if (has_direct_[v]) continue;
+    has_direct_[v] = 1;
+    fresh.push_back(v);
+    points.push_back(keyed_point(v));
+  }
+  std::vector<EmitterVisibility> visibilities;
+  const BandArray direct =
+      gather_direct({scene_, caster_, direct_light_}, points, options_, &visibilities);
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    direct_.row(fresh[i]) = direct.row(static_cast<Eigen::Index>(i));
+    visibility_.set(fresh[i], visibilities[i]);
+  }
+  gathers_ += static_cast<std::int64_t>(points.size());
+}
+
+// One gather of indirect light, with the same random numbers all over a side of a surface.
+GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
+                                              std::uint64_t replica,
+                                              const BandArray& radiosity) const {
+  const PatchMesh& mesh = elements_.base();
+  std::vector<GatherPoint> points;
+  for (const int v : vertices) {
+    GatherPoint& point = points.emplace_back(gather_point(v));
+    const int patch = mesh.patch[elements_.inside(v, 0.0).element];
+    point.key = random_key(static_cast<std::uint64_t>(mesh.surface[patch]),
+                           mesh.is_back[patch] != 0 ? 1 : 0);
+    point.rays = rays_[static_cast<std::size_t>(v)];
+  }
+  GatherOptions options = options_;
+  options.rays = pilot_rays(options_.rays, has_noise_goal_);
+  options.replica = options_.replica + pilot_replica + replica;
+  return gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);
+}
+
+// Replaces the radiosity of patches, one value each, by what a gather finds at the base's vertices.
+// With `noise` above 0, that gather's own noise also decides over the rays of the final gather.
+void VertexGathers::sharpen_radiosity(const BandArray& caustic, double noise) {
+  const PatchMesh& mesh = elements_.base();
+  const std::vector<int> all = vertices_of(mesh);
+  make_room();
+  gather_direct_at(all);
+  GatheredIrradiance gathered = indirect_at(all, 2, radiosity_);
+  BandArray irradiance = direct_.topRows(mesh.vertex_count()) + gathered.indirect;
+  if (caustic.size() > 0) irradiance += caustic;
+  radiosity_ = with_pools(mesh, radiosity_, gatherable_radiosity(mesh, direct_light_, irradiance));
+  if (!(noise > 0.0)) return;
+  const Eigen::ArrayXf rays =
+      Eigen::Map<const Eigen::ArrayXi>(rays_.data(), mesh.vertex_count()).cast<float>();
+  const double found =
+      rms_noise(mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays));
+  options_.rays = rays_for_noise(pilot_rays(options_.rays, has_noise_goal_), found, noise);
+  share_pilot_rays();
+}
+
+void VertexGathers::gather_indirect_at(const std::vector<int>& vertices) {
+  std::vector<int> fresh;
+  for (const int v : vertices) {
+    if (indirect_[v] == Indirect::gathered) continue;
+    indirect_[v] = Indirect::gathered;
+    fresh.push_back(v);
+  }
+  const BandArray first = indirect_at(fresh, 0, radiosity_).indirect,
+                  second = indirect_at(fresh, 1, radiosity_).indirect;
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    first_.row(fresh[i]) = first.row(static_cast<Eigen::Index>(i));
+    second_.row(fresh[i]) = second.row(static_cast<Eigen::Index>(i));
+  }
+}
+
+void VertexGathers::interpolate_indirect(int vertex) {
+  if (indirect_[vertex] != Indirect::unknown) return;
+  indirect_[vertex] = Indirect::interpolated;
+  Eigen::RowVectorXf first = Eigen::RowVectorXf::Zero(first_.cols()), second = first;
+  int count = 0;
+  for (const int end : elements_.ends(vertex)) {
+    if (end < 0) continue;
+    interpolate_indirect(end);
+    first += first_.row(end).matrix();
+    second += second_.row(end).matrix();
+    ++count;
+  }
+  first_.row(vertex) = first.array() / static_cast<float>(count);
+  second_.row(vertex) = second.array() / static_cast<float>(count);
+}
+
+GatheredIrradiance VertexGathers::values(const std::vector<int>& vertices) const {
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  GatheredIrradiance result{.direct = BandArray(count, scene_.bands.count()),
+                            .indirect = BandArray(count, scene_.bands.count())};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    result.direct.row(i) = direct_.row(vertices[i]);
+    result.indirect.row(i) = 0.5f * (first_.row(vertices[i]) + second_.row(vertices[i]));
+  }
+  return result;
+}
+
+// The same as sharpen_radiosity, for the light of channels; `direct` begins with the base's
+// vertices.
+BandArray VertexGathers::sharpened_by_channel(const BandArray& direct,
+                                              const ChannelLight& light) const {
+  const PatchMesh& mesh = elements_.base();
+  BandArray irradiance = direct.topRows(mesh.vertex_count()) +
+                         indirect_at(vertices_of(mesh), 2, light.radiosity).indirect;
+  if (light.caustic.size() > 0) irradiance += light.caustic;
+  return with_pools(mesh, light.radiosity,
+                    gatherable_radiosity(mesh, light.direct_light, irradiance));
+}
+
+GatheredIrradiance VertexGathers::values_by_channel(
+    const std::vector<int>& vertices, std::span<const InterpolatedVertex> interpolated,
+    const ChannelLight& light) const {
+  // Direct light is gathered at the base's vertices, then at the others of the list.
+  std::vector<int> lit_vertices = vertices_of(elements_.base());
+  std::vector<int> row_of(elements_.vertex_count(), -1);
+  std::copy(lit_vertices.begin(), lit_vertices.end(), row_of.begin());
+  for (const int v : vertices) {
+    if (row_of[v] >= 0) continue;
+    row_of[v] = static_cast<int>(lit_vertices.size());
+    lit_vertices.push_back(v);
+  }
+  std::vector<GatherPoint> points;
+  for (const int v : lit_vertices) points.push_back(keyed_point(v));
+  const BandArray direct = gather_direct({scene_, caster_, light.direct_light}, points, options_);
+  const BandArray sharpened = sharpened_by_channel(direct, light);
+
+  const std::vector<int> gathered = places_without(interpolated, vertices.size());
+  std::vector<int> at;
+  for (const int index : gathered) at.push_back(vertices[index]);
+  const BandArray indirect =
+      0.5f * (indirect_at(at, 0, sharpened).indirect + indirect_at(at, 1, sharpened).indirect);
+  GatheredIrradiance result;
+  result.indirect.resize(static_cast<Eigen::Index>(vertices.size()), indirect.cols());
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    result.indirect.row(gathered[i]) = indirect.row(static_cast<Eigen::Index>(i));
+  }
+  interpolate_vertices(interpolated, result.indirect);
+  result.direct.resize(result.indirect.rows(), direct.cols());
+  for (Eigen::Index i = 0; i < result.direct.rows(); ++i) {
+    result.direct.row(i) = direct.row(row_of[vertices[static_cast<std::size_t>(i)]]);
+  }
+  return result;
+}
+
+}  // namespace lightwell

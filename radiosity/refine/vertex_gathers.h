@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/elements/refine_elements.h"
+#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/gather/final_gather.h"
+#include "radiosity/refine/emitter_visibility_list.h"
+#include "radiosity/refine/interpolated_vertices.h"
+
+namespace lightwell {
+
+struct ChannelLight;
+
+/// Pilot gathers at the vertices of refined elements, each made at most once.
+///
+/// - Direct light is gathered as for the final solution.
+/// - Indirect light is gathered twice, independently. Each gather casts an eighth of the final
+///   gather's rays (a sixteenth if the noise of that has a goal), rounded up to a power of two, and
+///   down to a quarter of that at the smallest elements of the start. The rays take the same
+///   directions all over a side of a surface, so that most of the noise is alike at neighbours and
+///   not in the difference between them.
+/// - The rays read the light at the base's vertices, which a gather of the same kind has sharpened
+///   before.
+///
+/// Vertices are numbered as in RefinedElements. Values are in W/m^2, vertices x bands.
+class VertexGathers {
+ public:
+  /// Gathers at the base's vertices. `radiosity` as gatherable_radiosity makes it, and `caustic`
+  /// irradiance (or an empty array), are at the base's vertices; the caster of `lit` is of the
+  /// base. Vertices lie inside the elements by 2 % of the size of a cell of level `deepest_level`.
+  /// With `noise` above 0 the first gather also chooses the rays of the final gather, so that its
+  /// RMS noise is that share of the mean irradiance. Keeps references to the parts of `lit` and to
+  /// `elements`. Throws Interrupted when progress says stop.
+  VertexGathers(const LitScene& lit, const BandArray& radiosity, const BandArray& caustic,
+                RefinedElements& elements, const GatherOptions& options, int deepest_level,
+                double noise);
+
+  LitScene lit() const { return {scene_, caster_, direct_light_}; }
+  /// Options of the final gather, with the rays chosen for `noise`; progress is that of "refine".
+  const GatherOptions& options() const { return options_; }
+
+  /// Makes room for all vertices that exist; needed before a gather at new ones.
+  void make_room();
+  /// Gathers direct light at the vertices that have none yet.
+  void gather_direct_at(const std::vector<int>& vertices);
+  /// Gathers indirect light, both times, at the vertices at which none was gathered yet.
+  void gather_indirect_at(const std::vector<int>& vertices);
+  /// Sets indirect light to the mean of the vertex's ends if it is unknown; so for the ends before.
+  void interpolate_indirect(int vertex);
+  bool has_gathered_indirect(int vertex) const { return indirect_[vertex] == Indirect::gathered; }
+
+  const BandArray& direct() const { return direct_; }
+  /// The two gathers of indirect light.
+  const BandArray& first() const { return first_; }
+  const BandArray& second() const { return second_; }
+  EmitterVisibility visibility(int vertex) const { return visibility_[vertex]; }
+  /// Direct light plus the mean of the two gathers of indirect light; without caustics.
+  Spectrum total(int vertex) const;
+
+  /// Direct and indirect light of a list of vertices, in the list's order.
+  GatheredIrradiance values(const std::vector<int>& vertices) const;
+  /// The same gathers made again with the light of channels: over channels the result sums to that
+  /// of values(). Indirect light of interpolated vertices (numbers are places in the list) is the
+  /// mean of their ends.
+  GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
+                                       std::span<const InterpolatedVertex> interpolated,
+                                       const ChannelLight& light) const;
+  /// Number of points at which direct light was gathered.
+  std::int64_t gathers() const { return gathers_; }
+  /// Gives back memory that was reserved for further vertices.
+  void shrink_to_fit();
+
+ private:
+  void share_pilot_rays();
+  void sharpen_radiosity(const BandArray& caustic, double noise);
+  GatherPoint gather_point(int vertex) const;
+  GatherPoint keyed_point(int vertex) const;
+  GatheredIrradiance indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
+                                 const BandArray& radiosity) const;
+  BandArray sharpened_by_channel(const BandArray& direct, const ChannelLight& light) const;
+
+  const Scene& scene_;
+  const ElementCaster& caster_;
+  const DirectLight& direct_light_;
+  BandArray radiosity_;  // at the base's vertices
+  RefinedElements& elements_;
+  GatherOptions options_;
+  bool has_noise_goal_;
+  double inset_;
+  // Per vertex.
+  std::vector<char> has_direct_;
+  enum class Indirect : char { unknown, interpolated, gathered };
+  std::vector<Indirect> indirect_;
+  std::vector<int> rays_;  // of each of the two gathers of indirect light
+  BandArray direct_, first_, second_;
+  EmitterVisibilityList visibility_;
+  std::int64_t gathers_ = 0;
+};
+
+}  // namespace lightwell
