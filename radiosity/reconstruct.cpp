@@ -187,43 +187,42 @@ void carry_over(const std::vector<int>& number, KeptGathers& kept) {
   kept.number = number;
 }
 
-// Has gather_indirect() look, at vertices that are not told, for what one in `one_in` of the rays
-// that are theirs would find, less those that are kept.
-void gather_more(const LitScene& lit, const BandArray& radiosity, GatherOptions options, int one_in,
-                 const PilotGather& pilot, KeptGather& kept) {
-  const PatchMesh& mesh = lit.mesh();
-  const int count = mesh.vertex_count();
-  std::vector<int> where, missing;
-  {
-    const std::vector<int> share_of = share_rays(mesh, pilot.interpolated, options.rays);
-    for (int v = 0; v < count; ++v) {
-      const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / one_in) : 0;
-      const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
-      if (more <= 0) continue;
-      where.push_back(v);
-      missing.push_back(more);
-    }
+// A gather of indirect light at the vertices of a pilot gather.
+struct VertexGatherTask {
+  const LitScene& lit;
+  const PilotGather& pilot;
+  GatherOptions options{};
+  int one_in = 1;  // the gather casts one in so many of the rays of `options`
+};
+
+// The vertices at which rays are missing, and how many.
+struct MissingRays {
+  std::vector<int> vertex{}, rays{};
+};
+
+// Each vertex wants one in `one_in` of the rays that share_rays() gives it, less those already
+// kept; interpolated vertices want none.
+MissingRays missing_rays(const VertexGatherTask& task, const KeptGather& kept) {
+  const PatchMesh& mesh = task.lit.mesh();
+  MissingRays missing;
+  const std::vector<int> share_of = share_rays(mesh, task.pilot.interpolated, task.options.rays);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / task.one_in) : 0;
+    const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
+    if (more <= 0) continue;
+    missing.vertex.push_back(v);
+    missing.rays.push_back(more);
   }
-  const VertexGatherPoints all(mesh);
-  const GatherPoints fresh(static_cast<int>(where.size()), [&](int i) {
-    GatherPoint at = all[where[i]];
-    at.key = static_cast<std::uint64_t>(where[i]);
-    at.rays = missing[i];
-    return at;
-  });
-  if (kept.count > 0) options.replica += later_replicas + kept.count;
-  ++kept.count;
-  const GatheredIrradiance found = gather_indirect(lit, radiosity, fresh, options);
-  if (kept.rays.empty()) {
-    kept.rays.assign(count, 0);
-    kept.indirect.setZero(count, radiosity.cols());
-    kept.variance.setZero(count);
-  }
-  for (std::size_t i = 0; i < where.size(); ++i) {
-    const int row = where[i];
+  return missing;
+}
+
+// Adds a gather to those kept: means weighted by rays.
+void add_gather(const MissingRays& cast, const GatheredIrradiance& found, KeptGather& kept) {
+  for (std::size_t i = 0; i < cast.vertex.size(); ++i) {
+    const int row = cast.vertex[i];
     const auto of_found = static_cast<Eigen::Index>(i);
-    const int sum = kept.rays[row] + missing[i];
-    const float share = static_cast<float>(missing[i]) / static_cast<float>(sum);
+    const int sum = kept.rays[row] + cast.rays[i];
+    const float share = static_cast<float>(cast.rays[i]) / static_cast<float>(sum);
     kept.indirect.row(row) =
         (1.0f - share) * kept.indirect.row(row) + share * found.indirect.row(of_found);
     kept.variance[row] = (1.0f - share) * (1.0f - share) * kept.variance[row] +
@@ -232,46 +231,87 @@ void gather_more(const LitScene& lit, const BandArray& radiosity, GatherOptions 
   }
 }
 
-// What gathers find at vertices, and the variance of one of a vertex's rays; interpolated ones have
-// the means of their ends. `rays` gets how many each vertex stands for, with what the pilot gather
-// adds to its own.
-GatheredIrradiance gather_once(const LitScene& lit, const BandArray& radiosity,
-                               const GatherOptions& gather, int one_in, const PilotGather& pilot,
-                               KeptGather& kept, Eigen::ArrayXf& rays) {
-  const PatchMesh& mesh = lit.mesh();
-  const int count = mesh.vertex_count();
-  gather_more(lit, radiosity, gather, one_in, pilot, kept);
-  GatheredIrradiance result{.indirect = kept.indirect, .variance = kept.variance};
-  rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>();
-  result.variance *= rays;
-  interpolate_vertices(pilot.interpolated, result.indirect);
-  for (const InterpolatedVertex& t : pilot.interpolated) {
+// Gathers indirect light with the rays that are missing, with random numbers of their own.
+void gather_more(const VertexGatherTask& task, const BandArray& radiosity, KeptGather& kept) {
+  const PatchMesh& mesh = task.lit.mesh();
+  const MissingRays missing = missing_rays(task, kept);
+  const VertexGatherPoints all(mesh);
+  const GatherPoints fresh(static_cast<int>(missing.vertex.size()), [&](int i) {
+    GatherPoint at = all[missing.vertex[i]];
+    at.key = static_cast<std::uint64_t>(missing.vertex[i]);
+    at.rays = missing.rays[i];
+    return at;
+  });
+  GatherOptions options = task.options;
+  if (kept.count > 0) options.replica += later_replicas + kept.count;
+  ++kept.count;
+  const GatheredIrradiance found = gather_indirect(task.lit, radiosity, fresh, options);
+  if (kept.rays.empty()) {
+    const int count = mesh.vertex_count();
+    kept.rays.assign(count, 0);
+    kept.indirect.setZero(count, radiosity.cols());
+    kept.variance.setZero(count);
+  }
+  add_gather(missing, found, kept);
+}
+
+// Indirect light at vertices, with the variance of one of a vertex's rays; `rays` is how many rays
+// each vertex stands for, with what predictions add to its own.
+struct VertexGather {
+  GatheredIrradiance found{};
+  Eigen::ArrayXf rays{};
+};
+
+// Gives interpolated vertices the means of their ends, and the rays that leave the same noise.
+void fill_interpolated(const std::vector<InterpolatedVertex>& interpolated, VertexGather& gather) {
+  interpolate_vertices(interpolated, gather.found.indirect);
+  for (const InterpolatedVertex& t : interpolated) {
     float inverse = 0.0f, variance = 0.0f;
     for (int i = 0; i < t.end_count(); ++i) {
-      inverse += 1.0f / rays[t.ends[i]];
-      variance += result.variance[t.ends[i]];
+      inverse += 1.0f / gather.rays[t.ends[i]];
+      variance += gather.found.variance[t.ends[i]];
     }
     const auto ends = static_cast<float>(t.end_count());
-    rays[t.vertex] = ends / inverse;
-    result.variance[t.vertex] = variance / ends;
+    gather.rays[t.vertex] = ends / inverse;
+    gather.found.variance[t.vertex] = variance / ends;
   }
-  // Two halves of a stratified set are off by more than the whole, see estimate_error(). Of one
-  // vertex they tell little more than a guess: a patch's tell it together.
-  constexpr double share_of_whole_set = 0.5;
+}
+
+// Joins each vertex's gather with the prediction of the pilot gather, and counts the rays that
+// leave the noise of both together.
+void join_predictions(const LitScene& lit, const PilotGather& pilot, VertexGather& gather) {
+  const PatchMesh& mesh = lit.mesh();
+  const int count = mesh.vertex_count();
+  // Half of the difference between a stratified set's two halves is more than the error of the
+  // whole set (see estimate_error). The variance found at one vertex is little more than a guess,
+  // so all vertices of a patch take the patch's mean.
+  constexpr double of_whole_set = 0.5;
   const std::vector<int> patch = vertex_patches(mesh);
-  const Eigen::ArrayXd of_patch = patch_integral(mesh, result.variance).col(0);
+  const Eigen::ArrayXd of_patch = patch_integral(mesh, gather.found.variance).col(0);
   Eigen::ArrayXf before(count);
   for (int v = 0; v < count; ++v) {
     const double area = mesh.area[patch[v]],
                  of_a_ray = area > 0.0 ? of_patch[patch[v]] / area : 0.0;
-    before[v] = static_cast<float>(share_of_whole_set * of_a_ray / double{rays[v]});
+    before[v] = static_cast<float>(of_whole_set * of_a_ray / double{gather.rays[v]});
   }
   Eigen::ArrayXf after = before;
   combine_with_predictions(pilot.predictions, pilot.indirect, patch, lit.scene.bands.count(),
-                           result.indirect, after);
-  // Where there is none there is nothing to compare.
-  rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
-  return result;
+                           gather.found.indirect, after);
+  // Without noise there is nothing to compare.
+  gather.rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
+}
+
+// Adds the missing rays to those kept, and joins the predictions of the pilot gather.
+VertexGather gather_once(const VertexGatherTask& task, const BandArray& radiosity,
+                         KeptGather& kept) {
+  gather_more(task, radiosity, kept);
+  VertexGather gather{.found = {.indirect = kept.indirect, .variance = kept.variance}};
+  const int count = task.lit.mesh().vertex_count();
+  gather.rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>();
+  gather.found.variance *= gather.rays;
+  fill_interpolated(task.pilot.interpolated, gather);
+  join_predictions(task.lit, task.pilot, gather);
+  return gather;
 }
 
 }  // namespace
@@ -372,63 +412,81 @@ PilotGather PilotGathers::Impl::refined(const SolveOptions& options) {
           .gather_rays = found.gather_rays};
 }
 
-void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGather& pilot,
-                 RadiositySolution& solution, KeptGathers* kept) {
-  const PatchMesh& mesh = lit.mesh();
-  const bool has_caustics = pilot.caustic.size() > 0;
-  const auto with_indirect = [&](const BandArray& indirect) -> BandArray {
-    BandArray irradiance = pilot.direct + indirect;
-    if (has_caustics) irradiance += pilot.caustic;
-    return irradiance;
-  };
-  for (BandArray* before : {&solution.direct_irradiance, &solution.indirect_irradiance}) {
-    before->resize(0, before->cols());
+namespace {
+
+BandArray with_indirect(const PilotGather& pilot, const BandArray& indirect) {
+  BandArray irradiance = pilot.direct + indirect;
+  if (pilot.caustic.size() > 0) irradiance += pilot.caustic;
+  return irradiance;
+}
+
+// Gathers in the light that `irradiance`, at vertices, makes; for refined elements with the power
+// that the patches' equations balanced.
+VertexGather gather_in(const VertexGatherTask& task, BandArray irradiance,
+                       const RadiositySolution& solution, KeptGather& kept) {
+  const PatchMesh& mesh = task.lit.mesh();
+  BandArray radiosity = gatherable_radiosity(mesh, task.lit.direct_light, irradiance);
+  irradiance.resize(0, 0);
+  if (task.pilot.tree) {
+    keep_power(mesh, task.lit.direct_light, unscaled_radiosity(solution), radiosity);
   }
-  const GatherOptions gather = gather_options(options);
-  BandArray irradiance = with_indirect(pilot.indirect);
-  Eigen::ArrayXf rays;
-  const auto gather_in = [&](BandArray of, int one_in, const GatherOptions& with,
-                             KeptGather& so_far) {
-    BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, of);
-    of.resize(0, 0);
-    if (pilot.tree) {
-      keep_power(mesh, lit.direct_light, unscaled_radiosity(solution), radiosity);
-    }
-    return gather_once(lit, radiosity, with, one_in, pilot, so_far, rays);
-  };
-  KeptGathers none;
-  KeptGathers& so_far = kept ? *kept : none;
-  carry_over(pilot.number, so_far);
-  solution.direct_irradiance = pilot.direct;
-  if (pilot.tree) {
-    GatherOptions first = gather;
-    first.replica += first_replicas;
-    // Rays of all around meet what it finds, so that its noise goes down in their mean: with a
-    // sixteenth to a half of the rays indirect light in the hall of docs/solvers.md is 0.67 to
-    // 0.65 % off, and 0.85 % where the pilot gather is read.
-    constexpr int few = 8;
-    irradiance =
-        with_indirect(gather_in(std::move(irradiance), few, first, so_far.of_pilot).indirect);
-  } else if (pilot.shadows.min_rays < gather.shadows.min_rays ||
-             pilot.shadows.max_rays < gather.shadows.max_rays) {
-    const VertexGatherPoints all(mesh);
-    const GatherPoints points(mesh.vertex_count(), [&](int v) { return all[v]; });
-    solution.direct_irradiance = gather_direct(lit, points, gather);
+  return gather_once(task, radiosity, kept);
+}
+
+// The pilot gather's direct light, or a new gather if that one cast fewer shadow rays.
+BandArray final_direct(const LitScene& lit, const GatherOptions& options,
+                       const PilotGather& pilot) {
+  if (pilot.tree || (pilot.shadows.min_rays >= options.shadows.min_rays &&
+                     pilot.shadows.max_rays >= options.shadows.max_rays)) {
+    return pilot.direct;
   }
-  GatheredIrradiance gathered = gather_in(std::move(irradiance), 1, gather, so_far.last);
-  irradiance = with_indirect(gathered.indirect);
-  solution.indirect_irradiance = std::move(gathered.indirect);
-  solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
-  solution.gather_noise = gather_noise(
-      mesh, channel_sum(std::move(irradiance), lit.scene.bands.count()), gathered.variance, rays);
-  if (has_caustics) solution.indirect_irradiance += pilot.caustic;
-  solution.caustic_irradiance = pilot.caustic;
-  solution.interpolation_error = pilot.interpolation_error;
+  const VertexGatherPoints all(lit.mesh());
+  const GatherPoints points(lit.mesh().vertex_count(), [&](int v) { return all[v]; });
+  return gather_direct(lit, points, options);
+}
+
+void split_by_channel(RadiositySolution& solution) {
   if (solution.channels.empty()) return;
   split_columns(solution.direct_irradiance, &LightChannel::direct_irradiance, solution.channels);
   split_columns(solution.indirect_irradiance, &LightChannel::indirect_irradiance,
                 solution.channels);
   split_columns(solution.caustic_irradiance, &LightChannel::caustic_irradiance, solution.channels);
+}
+
+}  // namespace
+
+void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGather& pilot,
+                 RadiositySolution& solution, KeptGathers* kept) {
+  for (BandArray* before : {&solution.direct_irradiance, &solution.indirect_irradiance}) {
+    before->resize(0, before->cols());
+  }
+  const GatherOptions gather = gather_options(options);
+  KeptGathers none;
+  KeptGathers& so_far = kept ? *kept : none;
+  carry_over(pilot.number, so_far);
+  solution.direct_irradiance = final_direct(lit, gather, pilot);
+  BandArray irradiance = with_indirect(pilot, pilot.indirect);
+  if (pilot.tree) {
+    // The final gather averages this one's noise over all directions. With a sixteenth to a half of
+    // the rays, indirect light in the hall of docs/solvers.md is off by 0.67 to 0.65 %; without
+    // this gather by 0.85 %.
+    constexpr int few = 8;
+    VertexGatherTask second{lit, pilot, gather, few};
+    second.options.replica += first_replicas;
+    const VertexGather found = gather_in(second, std::move(irradiance), solution, so_far.of_pilot);
+    irradiance = with_indirect(pilot, found.found.indirect);
+  }
+  VertexGather last = gather_in({lit, pilot, gather}, std::move(irradiance), solution, so_far.last);
+  irradiance = with_indirect(pilot, last.found.indirect);
+  solution.indirect_irradiance = std::move(last.found.indirect);
+  solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
+  solution.gather_noise =
+      gather_noise(lit.mesh(), channel_sum(std::move(irradiance), lit.scene.bands.count()),
+                   last.found.variance, last.rays);
+  if (pilot.caustic.size() > 0) solution.indirect_irradiance += pilot.caustic;
+  solution.caustic_irradiance = pilot.caustic;
+  solution.interpolation_error = pilot.interpolation_error;
+  split_by_channel(solution);
 }
 
 }  // namespace lightwell

@@ -55,6 +55,30 @@ double least_brightness(const PatchMesh& mesh, const Eigen::ArrayXd& mean) {
   return 0.0;
 }
 
+// Patches whose RMS brightness is above `least`, in rising order; `square` is the mean square of
+// each. If there are more than BrightPatches::most, those with the largest mean square times area,
+// which leave the most noise.
+std::vector<int> choose_bright(const Scene& scene, const PatchMesh& mesh,
+                               const Eigen::ArrayXd& square, double least) {
+  constexpr int most = BrightPatches::most;
+  std::vector<int> bright;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const Surface& surface = scene.surfaces[static_cast<std::size_t>(mesh.surface[p])];
+    if (std::holds_alternative<Sphere>(surface.shape) || surface.motion >= 0) continue;
+    if (std::sqrt(square[p]) > least) bright.push_back(p);
+  }
+  if (bright.size() > static_cast<std::size_t>(most)) {
+    const auto noisier = [&](int a, int b) {
+      const double of_a = square[a] * mesh.area[a], of_b = square[b] * mesh.area[b];
+      return std::pair(-of_a, a) < std::pair(-of_b, b);
+    };
+    std::nth_element(bright.begin(), bright.begin() + most, bright.end(), noisier);
+    bright.resize(static_cast<std::size_t>(most));
+    std::sort(bright.begin(), bright.end());
+  }
+  return bright;
+}
+
 }  // namespace
 
 BrightPatches::BrightPatches(const Scene& scene, const PatchMesh& mesh, const BandArray& radiosity)
@@ -74,56 +98,44 @@ BrightPatches::BrightPatches(const Scene& scene, const PatchMesh& mesh, const Ba
     mean[p] = area > 0.0 ? sum / area : 0.0;
     square[p] = area > 0.0 ? sum2 / area : 0.0;
   }
-  const double least = least_brightness(mesh, mean);
-  std::vector<int> bright;
-  for (int p = 0; p < count; ++p) {
-    const Surface& surface = scene.surfaces[static_cast<std::size_t>(mesh.surface[p])];
-    if (std::holds_alternative<Sphere>(surface.shape) || surface.motion >= 0) continue;
-    if (std::sqrt(square[p]) > least) bright.push_back(p);
-  }
-  if (bright.size() > static_cast<std::size_t>(most)) {
-    const auto noisier = [&](int a, int b) {
-      const double of_a = square[a] * mesh.area[a], of_b = square[b] * mesh.area[b];
-      return std::pair(-of_a, a) < std::pair(-of_b, b);
-    };
-    std::nth_element(bright.begin(), bright.begin() + most, bright.end(), noisier);
-    bright.resize(static_cast<std::size_t>(most));
-    std::sort(bright.begin(), bright.end());
-  }
+  const std::vector<int> bright = choose_bright(scene, mesh, square, least_brightness(mesh, mean));
   if (bright.empty()) return;
   of_element_.assign(of_element.size(), -1);
-  for (const int p : bright) {
-    Patch patch{.first = static_cast<int>(elements_.size())};
-    const bool is_flat = mesh.facet_of(p) >= 0;
-    if (is_flat) patch.normal = element_center(mesh, mesh.first_element[p]).normal;
-    for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
-      const auto [first, second] = triangle_areas(mesh, e);
-      const double area = first + second, power = area * of_element[static_cast<std::size_t>(e)];
-      patch.area += area;
-      patch.center += area * element_center(mesh, e).position;
-      if (!(power > 0.0)) continue;
-      patch.power += power;
-      of_element_[static_cast<std::size_t>(e)] = static_cast<int>(elements_.size());
-      patch_of_.push_back(static_cast<int>(patches_.size()));
-      elements_.push_back({.number = e,
-                           .up_to = patch.power,
-                           .share_per_area = of_element[static_cast<std::size_t>(e)],
-                           .normal = element_center(mesh, e).normal});
-    }
-    patch.center /= patch.area;
-    for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
-      for (int c = 0; c < mesh.corner_count(e); ++c) {
-        const Eigen::Vector3d to = mesh.position(mesh.corners[e][c]) - patch.center;
-        patch.radius2 = std::max(patch.radius2, to.squaredNorm());
-      }
-    }
-    patch.end = static_cast<int>(elements_.size());
-    for (int i = patch.first; i < patch.end; ++i) {
-      elements_[static_cast<std::size_t>(i)].up_to /= patch.power;
-      elements_[static_cast<std::size_t>(i)].share_per_area /= patch.power;
-    }
-    patches_.push_back(patch);
+  for (const int p : bright) add_patch(p, of_element);
+}
+
+void BrightPatches::add_patch(int p, const std::vector<double>& of_element) {
+  const PatchMesh& mesh = *mesh_;
+  Patch patch{.first = static_cast<int>(elements_.size())};
+  const bool is_flat = mesh.facet_of(p) >= 0;
+  if (is_flat) patch.normal = element_center(mesh, mesh.first_element[p]).normal;
+  for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+    const auto [first, second] = triangle_areas(mesh, e);
+    const double area = first + second, power = area * of_element[static_cast<std::size_t>(e)];
+    patch.area += area;
+    patch.center += area * element_center(mesh, e).position;
+    if (!(power > 0.0)) continue;
+    patch.power += power;
+    of_element_[static_cast<std::size_t>(e)] = static_cast<int>(elements_.size());
+    patch_of_.push_back(static_cast<int>(patches_.size()));
+    elements_.push_back({.number = e,
+                         .up_to = patch.power,
+                         .share_per_area = of_element[static_cast<std::size_t>(e)],
+                         .normal = element_center(mesh, e).normal});
   }
+  patch.center /= patch.area;
+  for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const Eigen::Vector3d to = mesh.position(mesh.corners[e][c]) - patch.center;
+      patch.radius2 = std::max(patch.radius2, to.squaredNorm());
+    }
+  }
+  patch.end = static_cast<int>(elements_.size());
+  for (int i = patch.first; i < patch.end; ++i) {
+    elements_[static_cast<std::size_t>(i)].up_to /= patch.power;
+    elements_[static_cast<std::size_t>(i)].share_per_area /= patch.power;
+  }
+  patches_.push_back(patch);
 }
 
 BrightPatches::View BrightPatches::view(const Eigen::Vector3d& from, const Eigen::Vector3d& normal,

@@ -78,6 +78,9 @@ class BrightPatches {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   };
 
+  // `of_element`: brightness of every element of the mesh.
+  void add_patch(int p, const std::vector<double>& of_element);
+
   const PatchMesh* mesh_ = nullptr;
   std::vector<Patch> patches_{};
   std::vector<Element> elements_{};

@@ -336,34 +336,70 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
   return B;
 }
 
-BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
-                             const RunControl& run) {
-  const PatchMesh& mesh = lit.mesh();
-  const LightPaths paths(lit.scene, lit.caster, max_specular_depth);
-  if (!paths.has_specular() || lit.direct_light.light_count() == 0) return {};
-  const int bands = lit.scene.bands.count();
-  BandArray power = BandArray::Zero(mesh.element_count(), lit.direct_light.column_count());
+namespace {
 
-  std::vector<int> emitter_of_facet;
-  for (int e = 0; e < static_cast<int>(lit.direct_light.emitters().size()); ++e) {
-    const int facet = lit.direct_light.emitters()[e].facet;
-    emitter_of_facet.resize(std::max<std::size_t>(emitter_of_facet.size(), facet + 1), -1);
-    emitter_of_facet[facet] = e;
+// Power that lights leave on elements by way of mirrors and glass, W, elements x columns of every
+// channel.
+class CausticPower {
+ public:
+  // `paths` is kept a reference to.
+  CausticPower(const LitScene& lit, const LightPaths& paths, int rays)
+      : lit_(lit),
+        paths_(paths),
+        rays_(rays),
+        bands_(lit.scene.bands.count()),
+        sobol_(rays),
+        power_(BandArray::Zero(lit.mesh().element_count(), lit.direct_light.column_count())) {
+    for (int e = 0; e < static_cast<int>(lit.direct_light.emitters().size()); ++e) {
+      const int facet = lit.direct_light.emitters()[e].facet;
+      emitter_of_facet_.resize(std::max<std::size_t>(emitter_of_facet_.size(), facet + 1), -1);
+      emitter_of_facet_[facet] = e;
+    }
   }
-  JournalPhase phase(run.journal, "caustics", [&](Fingerprint& print) {
-    print.add(mesh);
-    print.add(lit.direct_light.column_count());
-    print.add(rays);
-    print.add(max_specular_depth);
-  });
-  // Pieces deposit into lists that are added in order, so that the sum does not depend on threads.
+
+  BandArray& power() { return power_; }
+
+  // Each patch of an emitter sends rays in proportion to its area.
+  void add_patch(int p) {
+    const PatchMesh& mesh = lit_.mesh();
+    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches lie on one facet each
+    if (!lit_.direct_light.owns(facet, mesh.is_back[p] != 0) ||
+        !(mesh.emission.row(p) > 0.0f).any())
+      return;
+    const double share = mesh.area[p] / lit_.direct_light.emitters()[emitter_of_facet_[facet]].area;
+    const int count = std::clamp(static_cast<int>(std::lround(rays_ * share)), 1, rays_);
+    const Spectrum power_per_ray =
+        mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
+    const std::uint64_t key = random_key(static_cast<std::uint64_t>(p), caustic_rays);
+    const PatchSampler sampler(mesh, p);
+    send(count, key, lit_.direct_light.first_column(facet), [&](int r) {
+      const Eigen::Array4f u = sobol_.point(r, key);
+      const Ray ray = cosine_ray(mesh, sampler.point(u[0], u[1]), u[2], u[3]);
+      return std::pair(ray, power_per_ray);
+    });
+  }
+
+  void add_source(const FreeSource& source) {
+    if (!source.is_on() || source.is_dome()) return;
+    const std::uint64_t key =
+        random_key(static_cast<std::uint64_t>(source.number), caustic_rays_of_lamps);
+    send(rays_, key, source.channel * bands_, [&](int r) {
+      const SourceRay sent = source_ray(source, sobol_.point(r, key));
+      return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / rays_)));
+    });
+  }
+
+ private:
   struct Deposit {
     int element;
     Spectrum power;
   };
-  // Sends rays first(r) with watts per ray, r in [0, count), which deposit in columns from
-  // `column`.
-  const auto send = [&](int count, std::uint64_t key, int column, auto&& first) {
+
+  // Sends rays r = 0 ... count - 1; first(r) returns a ray and its power, W. The rays deposit in
+  // the columns from `column` on. Each piece of rays has a list of its own, and the lists are added
+  // in order, so that the sum does not depend on the number of threads.
+  template <class First>
+  void send(int count, std::uint64_t key, int column, First&& first) {
     constexpr int piece = 2048;
     std::vector<std::vector<Deposit>> deposits((count + piece - 1) / piece);
     parallel_for(count, piece, [&](int begin, int end) {
@@ -371,66 +407,32 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
       for (int r = begin; r < end; ++r) {
         const auto [ray, watts] = first(r);
         ElementHit hit;
-        lit.caster.closest_hits({&ray, 1}, {&hit, 1});
-        if (hit.facet < 0 || !paths.is_specular(hit.facet)) continue;
-        paths.follow(ray, hit,
-                     random_key(key, RandomPurpose::caustic_paths, static_cast<std::uint64_t>(r)),
-                     [&](const LightArrival& at) {
-                       if (at.through_panes_only) return;  // DirectLight has that
-                       list.push_back({at.hit.element, at.throughput * watts});
-                     });
+        lit_.caster.closest_hits({&ray, 1}, {&hit, 1});
+        if (hit.facet < 0 || !paths_.is_specular(hit.facet)) continue;
+        paths_.follow(ray, hit, random_key(key, caustic_branches, static_cast<std::uint64_t>(r)),
+                      [&](const LightArrival& at) {
+                        if (at.through_panes_only) return;  // direct light has that
+                        list.push_back({at.hit.element, at.throughput * watts});
+                      });
       }
     });
     for (const auto& list : deposits) {
       for (const Deposit& deposit : list) {
-        power.row(deposit.element).segment(column, bands) += deposit.power.transpose();
+        power_.row(deposit.element).segment(column, bands_) += deposit.power.transpose();
       }
     }
-  };
-
-  // Every lit patch sends rays in proportion to its area.
-  const SobolPoints sobol(rays);
-  const auto send_patch = [&](int p) {
-    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
-    if (!lit.direct_light.owns(facet, mesh.is_back[p] != 0) || !(mesh.emission.row(p) > 0.0f).any())
-      return;
-    const double share = mesh.area[p] / lit.direct_light.emitters()[emitter_of_facet[facet]].area;
-    const int count = std::clamp(static_cast<int>(std::lround(rays * share)), 1, rays);
-    const Spectrum power_per_ray =
-        mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
-    const std::uint64_t key =
-        random_key(static_cast<std::uint64_t>(p), RandomPurpose::caustic_rays);
-    const PatchSampler sampler(mesh, p);
-    send(count, key, lit.direct_light.first_column(facet), [&](int r) {
-      const Eigen::Array4f u = sobol.point(r, key);
-      const Ray ray = cosine_ray(mesh, sampler.point(u[0], u[1]), u[2], u[3]);
-      return std::pair(ray, power_per_ray);
-    });
-  };
-  const auto send_source = [&](const FreeSource& source) {
-    if (!source.is_on() || source.is_dome()) return;
-    const std::uint64_t key =
-        random_key(static_cast<std::uint64_t>(source.number), RandomPurpose::caustic_source_rays);
-    send(rays, key, source.channel * bands, [&](int r) {
-      const SourceRay sent = source_ray(source, sobol.point(r, key));
-      return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / rays)));
-    });
-  };
-  const auto& sources = lit.direct_light.free_sources();
-  const int patches = mesh.patch_count(), count = patches + static_cast<int>(sources.size());
-  int first = 0;
-  phase.recall_state(first, power);
-  for (int i = first; i < count; ++i) {
-    if (i < patches) {
-      send_patch(i);
-    } else {
-      send_source(sources[static_cast<std::size_t>(i - patches)]);
-    }
-    report(run.progress, "caustics", static_cast<double>(i) / count);
-    if (phase.is_state_due()) phase.keep_state(i + 1, power);
   }
-  phase.keep_state(count, power);
 
+  LitScene lit_;
+  const LightPaths& paths_;
+  int rays_, bands_;
+  SobolPoints sobol_;
+  std::vector<int> emitter_of_facet_{};  // -1: none
+  BandArray power_;
+};
+
+// The power of the elements around each vertex over their area: W/m^2, vertices x columns.
+BandArray vertex_irradiance(const PatchMesh& mesh, const BandArray& power) {
   BandArray vertex_power = BandArray::Zero(mesh.vertex_count(), power.cols());
   Eigen::ArrayXf vertex_area = Eigen::ArrayXf::Zero(mesh.vertex_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -440,6 +442,37 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
     }
   }
   return vertex_power.colwise() / vertex_area.max(1e-30f);
+}
+
+}  // namespace
+
+BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
+                             const Progress& progress, Journal* journal) {
+  const PatchMesh& mesh = lit.mesh();
+  const LightPaths paths(lit.scene, lit.caster, max_specular_depth);
+  if (!paths.has_specular() || lit.direct_light.light_count() == 0) return {};
+  JournalPhase phase(journal, "caustics", [&](Fingerprint& print) {
+    print.add(mesh);
+    print.add(lit.direct_light.column_count());
+    print.add(rays);
+    print.add(max_specular_depth);
+  });
+  CausticPower found(lit, paths, rays);
+  const auto& sources = lit.direct_light.free_sources();
+  const int patches = mesh.patch_count(), count = patches + static_cast<int>(sources.size());
+  int first = 0;
+  phase.recall_state(first, found.power());
+  for (int i = first; i < count; ++i) {
+    if (i < patches) {
+      found.add_patch(i);
+    } else {
+      found.add_source(sources[static_cast<std::size_t>(i - patches)]);
+    }
+    report(progress, "caustics", static_cast<double>(i) / count);
+    if (phase.is_state_due()) phase.keep_state(i + 1, found.power());
+  }
+  phase.keep_state(count, found.power());
+  return vertex_irradiance(mesh, found.power());
 }
 
 VertexGatherPoints::VertexGatherPoints(const PatchMesh& mesh)
