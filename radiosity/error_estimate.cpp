@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/refine/effort.h"
@@ -147,6 +148,96 @@ Spectrum excess_of_reflected(const Eigen::ArrayXd& weight, const BandArray& foun
   return excess;
 }
 
+// The solution at sample points: points x bands, W/m^2.
+struct SampledSolution {
+  std::vector<GatherPoint> points{};
+  std::vector<int> element{};
+  BandArray interpolated{}, caustic{};
+  Eigen::ArrayXd weight{};  // mean 1
+};
+
+SampledSolution read_solution(const PatchMesh& mesh, const RadiositySolution& solution,
+                              const BandArray& irradiance, const std::vector<ErrorSample>& drawn) {
+  const auto count = static_cast<Eigen::Index>(drawn.size());
+  SampledSolution sampled{.interpolated = BandArray(count, irradiance.cols()),
+                          .caustic = BandArray::Zero(count, irradiance.cols()),
+                          .weight = Eigen::ArrayXd(count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto& [point, share] = drawn[static_cast<std::size_t>(i)];
+    sampled.points.push_back({point.position, point.normal, mesh.facet[point.element]});
+    const ElementHit hit = point_on_element(mesh, point);
+    sampled.element.push_back(hit.element);
+    sampled.interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
+    if (solution.caustic_irradiance.size() > 0) {
+      sampled.caustic.row(i) = interpolate(mesh, solution.caustic_irradiance, hit).transpose();
+    }
+    sampled.weight[i] = share;
+  }
+  sampled.weight /= sampled.weight.mean();
+  return sampled;
+}
+
+// With more rays than the solution's gather and other random numbers; `wanted` as estimate_points()
+// returned it.
+GatherOptions independent_gather(const SolveOptions& options, const PatchMesh& mesh, int wanted,
+                                 int batch) {
+  GatherOptions gather = options.gather;
+  ShadowOptions& shadows = gather.shadows;
+  shadows.min_rays = std::max(shadows.min_rays, fewest_shadow_rays.min_rays);
+  shadows.max_rays = std::max(shadows.max_rays, fewest_shadow_rays.max_rays);
+  gather.rays = estimate_rays(options.gather.rays, mesh.vertex_count(), wanted);
+  gather.replica = options.gather.replica + 1 + batch_keys * static_cast<std::uint64_t>(batch);
+  gather.progress = options.progress;
+  gather.journal = options.journal;
+  return gather;
+}
+
+// Squared errors at sample points, relative to `reference`, and the squared noise of both gathers
+// in them.
+struct RelativeErrors {
+  Eigen::ArrayXd squares{}, noise{};
+};
+
+RelativeErrors relative_errors(const SampledSolution& sampled, const RadiositySolution& solution,
+                               const BandArray& truth, const Eigen::ArrayXf& variance,
+                               const Eigen::ArrayXd& reference) {
+  const Eigen::ArrayXd squares =
+      (sampled.interpolated - truth).cast<double>().square().rowwise().mean();
+  RelativeErrors errors{.squares = squares / reference.square(),
+                        .noise = Eigen::ArrayXd(squares.size())};
+  for (Eigen::Index i = 0; i < squares.size(); ++i) {
+    const int element = sampled.element[static_cast<std::size_t>(i)];
+    errors.noise[i] = variance[i] / (reference[i] * reference[i]) +
+                      std::pow(double{solution.gather_noise[element]}, 2);
+  }
+  return errors;
+}
+
+// The indicator times the factor by which its mean square is that of the errors beyond noise. Empty
+// if the indicator is 0 at all sample points.
+std::optional<Eigen::ArrayXf> scaled_indicator(const Eigen::ArrayXf& indicator,
+                                               const SampledSolution& sampled,
+                                               const RelativeErrors& errors) {
+  double square = 0.0;
+  for (Eigen::Index i = 0; i < sampled.weight.size(); ++i) {
+    const int element = sampled.element[static_cast<std::size_t>(i)];
+    square += sampled.weight[i] * std::pow(double{indicator[element]}, 2);
+  }
+  if (!(square > 0.0)) return std::nullopt;
+  const double excess = (sampled.weight * (errors.squares - errors.noise)).sum();
+  return static_cast<float>(std::sqrt(std::max(excess, 0.0) / square)) * indicator;
+}
+
+ErrorEstimate mean_estimate(const Eigen::ArrayXd& weight, const RelativeErrors& errors) {
+  const Eigen::ArrayXd squared = weight * errors.squares;
+  const double standard_error =
+      std::sqrt((squared - squared.mean() * weight).square().mean() /
+                static_cast<double>(std::max<Eigen::Index>(weight.size() - 1, 1)));
+  return {.square = squared.mean(),
+          .deviation = standard_error,
+          .noise = std::sqrt(of_whole_set * (weight * errors.noise).mean())};
+}
+
 }  // namespace
 
 ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
@@ -162,68 +253,27 @@ ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
       draw_samples(lit.scene, lit.caster, indicator, wanted, batch);
   if (drawn.empty()) return {};
 
-  const auto count = static_cast<Eigen::Index>(drawn.size());
-  std::vector<GatherPoint> points;
-  BandArray caustic = BandArray::Zero(count, lit.scene.bands.count());
-  BandArray interpolated(count, lit.scene.bands.count());
-  std::vector<int> element;
-  Eigen::ArrayXd weight(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const auto& [point, share] = drawn[static_cast<std::size_t>(i)];
-    points.push_back({point.position, point.normal, mesh.facet[point.element]});
-    const ElementHit hit = point_on_element(mesh, point);
-    element.push_back(hit.element);
-    interpolated.row(i) = interpolate(mesh, irradiance, hit).transpose();
-    if (solution.caustic_irradiance.size() > 0) {
-      caustic.row(i) = interpolate(mesh, solution.caustic_irradiance, hit).transpose();
-    }
-    weight[i] = share;
-  }
-  weight /= weight.mean();
-  GatherOptions gather_options = options.gather;
-  ShadowOptions& shadows = gather_options.shadows;
-  shadows.min_rays = std::max(shadows.min_rays, fewest_shadow_rays.min_rays);
-  shadows.max_rays = std::max(shadows.max_rays, fewest_shadow_rays.max_rays);
-  gather_options.rays = estimate_rays(options.gather.rays, mesh.vertex_count(), wanted);
-  gather_options.replica =
-      options.gather.replica + 1 + batch_keys * static_cast<std::uint64_t>(batch);
-  gather_options.run = options.run;
+  const SampledSolution sampled = read_solution(mesh, solution, irradiance, drawn);
   const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
   irradiance.resize(0, 0);
-  const GatheredIrradiance independent = gather_irradiance(lit, radiosity, points, gather_options);
-  const BandArray not_reflected = independent.direct + caustic;
+  const GatheredIrradiance independent = gather_irradiance(
+      lit, radiosity, sampled.points, independent_gather(options, mesh, wanted, batch));
+  const Eigen::ArrayXd& weight = sampled.weight;
+  const BandArray not_reflected = independent.direct + sampled.caustic;
   BandArray truth = not_reflected + independent.indirect;
   truth -= independent.indirect.rowwise() *
-           excess_of_reflected(weight, interpolated, not_reflected, truth).transpose();
+           excess_of_reflected(weight, sampled.interpolated, not_reflected, truth).transpose();
   const Eigen::ArrayXd own = truth.cast<double>().rowwise().mean();
   const double mean = (weight * own).mean();
   if (!(mean > 0.0)) return {};
   const Eigen::ArrayXd reference =
       own.unaryExpr([mean](double here) { return error_reference(mean, here); });
-  const Eigen::ArrayXd squares = (interpolated - truth).cast<double>().square().rowwise().mean();
-  const Eigen::ArrayXd relative = squares / reference.square();
-  Eigen::ArrayXd noise(count);  // squared
-  for (Eigen::Index i = 0; i < count; ++i) {
-    noise[i] = independent.variance[i] / (reference[i] * reference[i]) +
-               std::pow(double{solution.gather_noise[element[static_cast<std::size_t>(i)]]}, 2);
-  }
+  const RelativeErrors errors =
+      relative_errors(sampled, solution, truth, independent.variance, reference);
   if (of_elements) {
-    double square = 0.0;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      square += weight[i] * std::pow(double{indicator[element[static_cast<std::size_t>(i)]]}, 2);
-    }
-    const double excess = (weight * (relative - noise)).sum();
-    if (square > 0.0) {
-      *of_elements = static_cast<float>(std::sqrt(std::max(excess, 0.0) / square)) * indicator;
-    }
+    if (auto scaled = scaled_indicator(indicator, sampled, errors)) *of_elements = *scaled;
   }
-  const Eigen::ArrayXd squared = weight * relative;
-  const double standard_error =
-      std::sqrt((squared - squared.mean() * weight).square().mean() /
-                static_cast<double>(std::max<Eigen::Index>(count - 1, 1)));
-  return {.square = squared.mean(),
-          .deviation = standard_error,
-          .noise = std::sqrt(of_whole_set * (weight * noise).mean())};
+  return mean_estimate(weight, errors);
 }
 
 double ErrorEstimate::error() const {
