@@ -8,9 +8,11 @@
 namespace lightwell {
 namespace {
 
-// Both are independent, and what is compared with is noisy as well. Interpolation leaves between
-// half of the tolerance and all of it; where that turns out too much, a later attempt adds to what
-// the first has found.
+// Shares of the target error in the first attempt. The errors of interpolation and noise are
+// independent, so their squares add up, here to 1.2. That is more than the target allows, because
+// refinement ends between half of its tolerance and all of it; where the sum is too large, a later
+// attempt adds to the first. Both shares were set with whole solves in view (docs/figures.md:
+// "Rooms", "The error estimate").
 constexpr double share_of_interpolation = 0.95, share_of_noise = 0.55;
 constexpr int most_attempts = 6;
 
@@ -29,7 +31,6 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
     if (!(known > 0.0)) continue;
     const Eigen::ArrayXf reflected = (patch_radiosity.row(p) - mesh.emission.row(p)).transpose();
     Spectrum E = (rho > 0.0f).select(reflected / rho.max(1e-30f), 0.0f);
-    // A band that is absorbed tells nothing; others stand for it.
     const auto mean = static_cast<float>(E.cast<double>().sum() / known);
     E = (rho > 0.0f).select(E, mean);
     sum += mesh.area[p] * luminous(bands, E);
@@ -57,25 +58,25 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
   }
   const double without = std::sqrt(std::max(error * error - noise * noise, 0.0));
   if (!can_split && without >= target) return std::nullopt;
-  // Both together come to 0.95 of the target.
+  // The error left beside an independent `other` if both together are to be 0.95 of the target.
   const auto beside = [target](double other) {
     constexpr double goal = 0.95, least = 0.1;
     return std::sqrt(std::max(std::pow(goal * target, 2) - other * other, least * target * target));
   };
   Effort next = spent;
   const double noise_goal = can_split ? share_of_noise * target : beside(without);
-  constexpr int most_times = 16;  // what noise says of itself may be wrong by chance
+  constexpr int most_times = 16;  // the estimate of the noise may be far too high by chance
   if (noise > noise_goal) {
     next.gather_rays = std::min(rays_for_noise(spent.gather_rays, noise, noise_goal),
                                 most_times * spent.gather_rays);
   }
   const double goal = beside(std::min(noise, noise_goal));
   if (can_split && without > goal) {
-    // It may have gone below the tolerance by itself.
+    // The error of interpolation that refinement estimates, which may be below its tolerance.
     const double reached =
         std::clamp(refinement.estimate, 0.5 * spent.refine_tolerance, spent.refine_tolerance);
-    // What is off besides, such as places between two sheets, no splitting takes away: elements
-    // take the rest of what is allowed.
+    // The part of the error that no splitting reduces, such as at points between two sheets. The
+    // elements get the rest of the error that is allowed.
     const double besides = std::sqrt(std::max(without * without - reached * reached, 0.0));
     const double left = std::sqrt(std::max(goal * goal - besides * besides, 0.0));
     const double wanted = besides > 0.0 ? left : 0.95 * goal / without * reached;

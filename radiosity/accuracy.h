@@ -7,39 +7,42 @@
 
 namespace lightwell {
 
-/// How exact irradiance is to be: the RMS error that RadiositySolution::error_estimate is. One of
-/// both.
+/// The error of irradiance to reach, compared with RadiositySolution::error_estimate (RMS). Exactly
+/// one of the two is above 0.
 struct Accuracy {
-  double share = 0.0;  ///< of the mean irradiance
-  double lux = 0.0;
+  double share = 0.0;  ///< share of the mean irradiance
+  double lux = 0.0;    ///< lx
 };
 
-/// What the error of a solution depends on, the form factors of its patches apart.
+/// The settings that decide over the error of a solution, apart from the form factors.
 struct Effort {
-  double refine_tolerance = 0.0;  ///< 0: nothing is refined
-  int gather_rays = 0;
+  double refine_tolerance = 0.0;  ///< RefineOptions::tolerance; 0: nothing is refined
+  int gather_rays = 0;            ///< GatherOptions::rays
 
-  /// Shadow rays that leave about as much in penumbras as those rays leave elsewhere: a quarter
-  /// as many, 64 to 256, and first an eighth of that, 16 or more.
+  /// Shadow rays that leave about as much noise in penumbras as `gather_rays` leave elsewhere: at
+  /// most a quarter of `gather_rays` (64 to 256), at first an eighth of that (16 or more).
   ShadowOptions shadows() const;
 };
 
-/// Mean illuminance of the patches that reflect, lx.
+/// Mean illuminance of the patches that reflect in at least one band, weighted by area, lx.
+/// `patch_radiosity` is patches x bands, W/m^2. A band that a patch absorbs whole takes the mean
+/// irradiance of the patch's other bands.
 double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
                         const BandArray& patch_radiosity);
 
-/// For a target error relative to the mean irradiance: most of it is left to interpolation, and as
-/// many rays are cast as a room of white walls takes for the rest. `refines`: whether elements may
-/// be split.
+/// The effort of the first attempt at `target`, an error relative to the mean irradiance: 95 % of
+/// the target for the tolerance of refinement (0 if `refines` is false), and 1024 rays for 1 %,
+/// which suffices in a room of white walls; see rays_for_noise for other targets.
 Effort first_effort(double target, bool refines);
 
-/// What of a target error is left to the noise of the gather.
+/// The noise that the final gather may leave, relative to the mean irradiance: 55 % of `target`.
 double noise_share(double target);
 
-/// The effort after one that left an `error`, `noise` of it by rays, those of what it was compared
-/// with included, or nothing where more would not help: noise falls with rays, what interpolation
-/// leaves with the tolerance of refinement, as far as there may be elements. `attempt` counts from
-/// 0.
+/// The effort of the next attempt, after `spent` left an `error` of which `noise` is that of rays
+/// (both gathers of the error estimate); all relative to the mean irradiance. Empty if more would
+/// not help. Noise falls with the number of rays, the error of interpolation with the tolerance of
+/// refinement, as long as `refinement` has reached its tolerance and not a limit of elements.
+/// `attempt` counts from 0; there are six at most.
 std::optional<Effort> next_effort(const Effort& spent, double target, double error, double noise,
                                   const RefineReport& refinement, int attempt);
 

@@ -12,17 +12,18 @@
 namespace lightwell {
 namespace {
 
-// Between batches: more than the replicas that the gathers of one solution take (see reconstruct).
+constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
+// Distance of batches' keys: more than the replicas of one solution's gathers (see reconstruct).
 constexpr std::uint64_t batch_keys = 10000;
-// As usual where no accuracy is asked for.
+// The shadow rays of a solution without a requested accuracy.
 constexpr ShadowOptions fewest_shadow_rays{.min_rays = 32, .max_rays = 256};
-// Half of the difference between a stratified set's two halves is more than the whole set is off
-// by, since each half fills the other's gaps: squared, by 1.3 to 2 in rooms of 5 to 500 surfaces
-// with 64 to 1024 rays.
+// Variance of a stratified set over the square of half the difference between its two halves. Each
+// half fills the other's gaps, so the whole is better than two independent halves: measured, the
+// ratio is 1/1.3 to 1/2 in rooms of 5 to 500 surfaces with 64 to 1024 rays.
 constexpr double of_whole_set = 0.5;
 
-// Per element: what interpolation may miss there, up to a factor that all share. (Range of the
-// corners' irradiance over its reference, or what a shadow that no corner tells of may be.)
+// Per element, a number proportional to the error that interpolation may leave: the range of the
+// corners' irradiance over the reference, plus (in the square) 5 % for shadows that no corner sees.
 Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance) {
   const Eigen::ArrayXd reference = error_references(mesh, irradiance);
   Eigen::ArrayXf indicator = Eigen::ArrayXf::Zero(mesh.element_count());
@@ -44,19 +45,17 @@ Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance) {
 
 struct ErrorSample {
   PatchPoint point{};
-  double weight = 0.0;  // the share of the area over that of places
+  double weight = 0.0;  // inverse of the density of sample points, relative to a uniform one
 };
 
-// Draws places on all that reflects and is seen: half of them evenly over its area, half in
-// proportion to the squared error that elements are told to have (any multiple of it). That may sit
-// in few small ones, along the edges of shadows, which as many places spread evenly would hardly
-// meet.
+// Draws points on the area that reflects and is not covered: half of them uniformly, half in
+// proportion to the squared indicator of the elements. Errors may sit in few small elements along
+// the edges of shadows, which uniform points would hardly meet.
 class ErrorSampler {
  public:
   ErrorSampler(const ElementCaster& caster, const Eigen::ArrayXf& indicator)
       : mesh_(caster.mesh()), indicator_(indicator), counts_(mesh_.patch_count(), 0) {
     for (int p = 0; p < mesh_.patch_count(); ++p) {
-      // Nobody sees what another surface lies on.
       const bool is_seen = caster.hidden_elements(p) == 0;
       if (!is_seen || !(mesh_.reflectance.row(p) > 0.0f).any()) continue;
       counts_[p] = 1;
@@ -80,11 +79,11 @@ class ErrorSampler {
   }
 
  private:
-  // Of elements that count, m^2; and that times what is told, squared.
+  // Area of an element that counts, m^2, else 0; and the area times the squared indicator.
   double area(int e) const { return counts_[mesh_.patch[e]] ? mesh_.element_area[e] : 0.0; }
   double error(int e) const { return area(e) * std::pow(double{indicator_[e]}, 2); }
 
-  // Share of the places on an element.
+  // Probability that a sample point lies on the element.
   double density(int e) const {
     const double even = area(e) / total_area_;
     return total_error_ > 0.0 ? 0.5 * (even + error(e) / total_error_) : even;
@@ -94,11 +93,11 @@ class ErrorSampler {
   const Eigen::ArrayXf& indicator_;
   std::vector<char> counts_;  // per patch
   double total_area_ = 0.0, total_error_ = 0.0;
-  std::vector<double> up_to_{};  // densities of an element and all before
+  std::vector<double> up_to_{};  // running sum of densities, the element's included
 };
 
-// Those that are in no crack. Where another surface lies a hair above nobody sees a place, and what
-// light the crack lets in there the vertices around cannot tell.
+// The samples that lie in no crack: no other surface is nearer than `width`, metres, above them.
+// Such points are invisible, and the vertices around them do not sample the light in the crack.
 std::vector<ErrorSample> unenclosed_samples(const ElementCaster& caster, double width,
                                             const std::vector<ErrorSample>& samples) {
   std::vector<Ray> rays;
@@ -126,17 +125,18 @@ std::vector<ErrorSample> draw_samples(const Scene& scene, const ElementCaster& c
   const std::uint64_t key = static_cast<std::uint64_t>(RandomPurpose::error_points) +
                             batch_keys * static_cast<std::uint64_t>(batch);
   for (int i = 0; i < wanted; ++i) drawn.push_back(sampler.draw(sobol.point(i, key)));
-  constexpr double crack = 1e-4;  // of the scene
+  constexpr double crack = 1e-4;  // share of the scene's diagonal
   return unenclosed_samples(caster, crack * scene_bounds(scene).diagonal(), drawn);
 }
 
-// How much too much light is in what is reflected, of each band, if what is found at places is that
-// much off the light that its own reflections and the lamps make there. With e = E - E*, and T E
-// what is reflected of E, E - (M + T E) is e - T e: all over a scene T leaves the share of light
-// that is reflected, and the rest comes back in e.
+// Relative excess of reflected light in the solution, per band. With the solution E, the truth E*,
+// the error e = E - E* and the reflected light T E of E, the difference from a gather in the
+// solution's own light is E - (M + T E) = e - T e. Averaged over a scene T is the reflected share
+// of all light, so e is that difference times all light over the light straight from lamps. `found`
+// is E, `own` the gathered light, and `not_reflected` its part straight from lamps; points x bands.
 Spectrum excess_of_reflected(const Eigen::ArrayXd& weight, const BandArray& found,
                              const BandArray& not_reflected, const BandArray& own) {
-  constexpr double least = 0.02;  // of all light: noise would be taken more than fifty times
+  constexpr double least = 0.02;  // share of all light; less would amplify noise above fifty times
   Spectrum excess(found.cols());
   for (Eigen::Index k = 0; k < found.cols(); ++k) {
     const auto mean = [&](const BandArray& of) {

@@ -7,40 +7,43 @@
 
 namespace lightwell {
 
+/// An estimated error of interpolated irradiance, relative to error_reference().
 struct ErrorEstimate {
-  double square = 0.0;     ///< mean of the squared relative error over the places
-  double deviation = 0.0;  ///< that one's standard error
-  double noise =
-      0.0;          ///< in the error: what the rays of both gathers leave, as they tell themselves
-  int batches = 1;  ///< of places
+  double square = 0.0;     ///< mean squared error over the sample points
+  double deviation = 0.0;  ///< standard error of `square`
+  double noise = 0.0;      ///< RMS noise that the rays of both gathers leave in the error
+  int batches = 1;         ///< batches of sample points
 
-  double error() const;  ///< one standard error up
-  double least() const;  ///< and one down
+  double error() const;  ///< upper end: root of `square` plus one standard error
+  double least() const;  ///< lower end: root of `square` less one standard error
 };
 
-/// Relative RMS error of interpolated irradiance over the area that reflects: at random places,
-/// `options.error_points` or more (see estimate_points), against gathers with twice the rays of
-/// the solution's or more (see estimate_rays) and other random numbers. Those read the solution's
-/// own light: what is too much or too little of it in all, such as power that interpolation cuts
-/// off, comes back in them, by as much as reflections are of all light, and is reckoned with. The
-/// noise of both is left in, which makes up for the rest of what both have in common. Half of the
-/// places are spread evenly, half go by the squared error that refinement says is left in elements,
-/// or where nothing was refined by the range of their corners (importance sampling: few places tell
-/// of errors that sit in few). What is given is the upper end of what is known: the mean square and
-/// its standard error. What it is relative to, error_reference() says. `caster` is of the
-/// solution's mesh.
+/// Relative RMS error of interpolated irradiance over the area that reflects, compared with
+/// independent gathers at random sample points.
 ///
-/// `of_elements`, if given, gets the estimated RMS error of interpolation over each element, for
-/// solutions of which refinement tells none: it is in proportion to the range of the corners'
-/// irradiance, no less than 5 %, and in the mean square over the places what is off there beyond
-/// the noise of both gathers. (Unchanged if there is nothing to go by.)
+/// - Sample points: `options.error_points` or more (see estimate_points). Half are uniform over the
+///   area. Half are drawn in proportion to the squared error that refinement leaves in the
+///   elements, or, without refinement, to the squared range of the elements' corners (importance
+///   sampling).
+/// - Gathers: at least twice the rays of the solution's (see estimate_rays), and other random
+///   numbers.
+/// - Shared error: the gathers read the solution's own light. If all of it is too bright or too
+/// dim,
+///   for example since interpolation cuts peaks off, the gathers are so too, by the reflected share
+///   of all light. This part is corrected.
+/// - Noise of both gathers is left in, which makes up for the other errors that both share.
 ///
-/// Each `batch`, from 0, is of other places and rays.
+/// The caster of `lit` is of the solution's mesh. `of_elements`, if given, gets the estimated RMS
+/// error of interpolation over each element, for solutions that were not refined: proportional to
+/// the range of the corners' irradiance (plus 5 %, in the square), and scaled to the mean square of
+/// the errors beyond the noise of both gathers. `of_elements` is left unchanged if there are no
+/// sample points or no light. Each `batch`, from 0, has other sample points and rays. Throws
+/// Interrupted when progress says stop.
 ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
                              const RadiositySolution& solution,
                              Eigen::ArrayXf* of_elements = nullptr, int batch = 0);
 
-/// Of the places of both, batches being of as many each.
+/// The estimate by the sample points of both, whose batches have the same size.
 ErrorEstimate joined(const ErrorEstimate& a, const ErrorEstimate& b);
 
 }  // namespace lightwell

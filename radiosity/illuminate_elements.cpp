@@ -37,15 +37,17 @@ void require_finite(const Scene& scene, const RadiositySolution& solution) {
       scene.file.empty() ? "the scene" : scene.file.string(), odd, E.rows()));
 }
 
-// The options of a solve for an accuracy: deeper and more elements than by default.
+// The options of a solve; with a target error, elements may be split deeper and be more than by
+// default.
 SolveOptions effective_options(const SolveOptions& options, double target,
                                const SolvedScene& solved, int columns) {
   SolveOptions effective = options;
   if (target > 0.0) {
-    // In the end the edges of shadows are what is left, on whatever large elements they lie.
+    // Three levels more: at a tight accuracy the errors left are at the edges of shadows, some of
+    // them on large elements.
     constexpr int deeper = 3;
     effective.refine.max_level += deeper;
-    // An accuracy asks for as many elements as it takes; these take about 1 GB.
+    // A million elements take about 1 GB.
     constexpr std::int64_t plenty = 1000000;
     auto& most = effective.refine.max_elements;
     if (most == 0) most = std::max<std::int64_t>(plenty, 4 * solved.mesh.element_count());
@@ -116,7 +118,7 @@ class GatherAttempts {
     }
     caster_.emplace(pilot_gathers_->caster(solved_.mesh, *pilot_));
     if (!may_repeat()) pilot_gathers_.reset();
-    give_back_free_pages();  // splitting leaves many
+    give_back_free_pages();  // splitting elements leaves many
     if (pilot_->tree) spent_["refine"] += watch_.lap();
   }
 
@@ -136,9 +138,9 @@ class GatherAttempts {
   void estimate() {
     Eigen::ArrayXf& of_elements = solved_.solution.interpolation_error;
     estimate_ = estimate_batch(0, of_elements.size() == 0 ? &of_elements : nullptr);
-    // Where the target lies within the bounds of the estimate, more sample points cost less than
-    // another attempt: single ones may hold a fifth of the squared error. Four batches halve the
-    // bounds of one.
+    // If the target lies between the ends of the estimate, more sample points cost less than
+    // another attempt: a single point may hold a fifth of the squared error. Four batches halve the
+    // standard error of one.
     constexpr int most_batches = 4;
     for (int batch = 1;
          batch < most_batches && estimate_.least() < target_ && target_ < estimate_.error();

@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::uint64_t pilot_replica = 1000, later_replicas = 2000, first_replicas = 3000;
 
-// Patch radiosities less what DirectLight accounts for, patches x columns of its channels.
+// Patch radiosities without the emission that `direct_light` owns, patches x columns.
 BandArray without_owned_emission(const PatchMesh& mesh, const DirectLight& direct_light,
                                  const BandArray& patch_radiosity) {
   BandArray B = patch_radiosity;
   for (int p = 0; p < mesh.patch_count(); ++p) {
-    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches are of one
+    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches lie on one facet each
     if (!direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
     B.row(p).segment(direct_light.first_column(facet), mesh.emission.cols()) -=
         mesh.emission.row(p);
@@ -27,7 +27,7 @@ BandArray without_owned_emission(const PatchMesh& mesh, const DirectLight& direc
   return B;
 }
 
-// The mean of the patches around each vertex, by the area of their elements there.
+// The mean of the patches around each vertex, weighted by the area of their elements there.
 BandArray to_vertices(const PatchMesh& mesh, const BandArray& of_patches) {
   BandArray sum = BandArray::Zero(mesh.vertex_count(), of_patches.cols());
   Eigen::ArrayXf weight = Eigen::ArrayXf::Zero(mesh.vertex_count());
@@ -41,20 +41,25 @@ BandArray to_vertices(const PatchMesh& mesh, const BandArray& of_patches) {
   return sum.colwise() / weight.max(1e-30f);
 }
 
-// First guess for the gather: patch radiosities, smoothed to vertices.
+// The radiosity that the first gather reads: that of patches, smoothed to vertices.
 BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,
                           const BandArray& patch_radiosity) {
   return to_vertices(mesh, without_owned_emission(mesh, direct_light, patch_radiosity));
 }
 
-// Scales what is read at vertices (W/m^2 of reflected light, interpolated over elements, in columns
-// of every channel) to leave the scene with the power that the patches' equations balanced: between
-// vertices that are far apart interpolation cuts peaks off, and would lose it at each reflection.
-// One factor a band for the whole scene, since what a patch's own value is off by where light is
-// steep, in a corner or beside what stands on it, is more than what it would set right there. But
-// peaks that are cut by a notable share of the scene's light, such as the place that a spotlight
-// falls on, get it back themselves, or all other surfaces would shine with it. All light together
-// says how much, so that channels add up.
+// Scales the radiosity that gathers read (W/m^2, vertices x columns) to the power that the patches'
+// equations balanced. Interpolation between vertices that are far apart cuts peaks off, and their
+// power would be lost at each reflection.
+//
+// - One factor per band serves the whole scene. A factor for each patch would be worse: in a
+// corner,
+//   or beside an object that stands on the patch, the error of the patch's own value exceeds the
+//   power that the factor restores.
+// - A patch whose power is off by a notable share of the scene's light (see notable_share), such as
+//   the place that a spotlight falls on, has a factor of its own. Its light would otherwise be
+//   spread over all other surfaces.
+//
+// The factors follow from all channels together, so that channels still add up.
 void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
                 const BandArray& patch_radiosity, BandArray& radiosity) {
   const Eigen::Index bands = mesh.reflectance.cols();
@@ -66,7 +71,7 @@ void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
     wanted.row(p) = mesh.area[p] * balanced.row(p).cast<double>();
   }
   const Eigen::ArrayXXd found = patch_integral(mesh, read);
-  constexpr double most = 1.25;  // more, and elements are too large to tell
+  constexpr double most = 1.25;  // a larger factor means that elements are too large to trust it
   const auto ratio = [most](const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) -> Eigen::ArrayXd {
     return (b > 0.0).select(a / b.max(1e-300), 1.0).max(1.0 / most).min(most);
   };
@@ -99,8 +104,8 @@ BandArray caustics(const LitScene& lit, const SolveOptions& options) {
                             options.run);
 }
 
-// Caustics on elements of even size, from which vertices of all others take theirs: on small ones
-// there would be too few rays.
+// Caustics on elements of even size; vertices of refined elements interpolate them. Refined
+// elements would be too small for the number of rays.
 class EvenCaustics {
  public:
   EvenCaustics(const Scene& scene, const DirectLight& direct_light, const SolveOptions& options,
@@ -142,10 +147,10 @@ class EvenCaustics {
 
  private:
   BandArray values_{};
-  int known_ = 0;  // vertices; 0: there are no caustics
+  int known_ = 0;  // vertices of the even elements; 0: there are no caustics
 };
 
-// Of patches, with columns of every channel.
+// Patch radiosities, with columns of every channel at full scale.
 BandArray unscaled_radiosity(const RadiositySolution& solution) {
   if (solution.channels.empty()) return solution.patch_radiosity;
   return side_by_side(solution.channels, &LightChannel::patch_radiosity);
@@ -157,7 +162,7 @@ GatherOptions gather_options(const SolveOptions& options) {
   return gather;
 }
 
-// What is kept, in the rows given (-1: nothing).
+// Replaces row v by the old row[v], or by nothing gathered if that is -1.
 void take_rows(const std::vector<int>& row, KeptGather& kept) {
   if (kept.rays.empty()) return;
   const auto count = static_cast<Eigen::Index>(row.size());
@@ -174,7 +179,7 @@ void take_rows(const std::vector<int>& row, KeptGather& kept) {
   kept = std::move(taken);
 }
 
-// Goes on to the vertices of another pilot gather.
+// Brings kept gathers over to the vertices of another pilot gather, by their numbers.
 void carry_over(const std::vector<int>& number, KeptGathers& kept) {
   if (kept.number == number) return;
   int numbers = 0;
@@ -329,10 +334,10 @@ struct PilotGathers::Impl {
   ElementCaster caster;
   const DirectLight& direct_light;
   double noise;
-  BandArray radiosity{};     // at vertices, with columns of every channel
-  BandArray of_all_light{};  // the same of all channels together, if there are any
-  BandArray caustic{};
-  std::optional<DirectLight> all_light{};  // if channels are kept apart
+  BandArray radiosity{};     // at the base's vertices, with columns of every channel
+  BandArray of_all_light{};  // the sum of all channels; empty if light is not kept apart
+  BandArray caustic{};       // at the base's vertices
+  std::optional<DirectLight> all_light{};  // empty if light is not kept apart
   std::optional<RefinedElements> elements{};
   std::optional<EvenCaustics> even_caustics{};
   std::optional<SolutionRefinement> refinement{};
@@ -467,9 +472,10 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
   solution.direct_irradiance = final_direct(lit, gather, pilot);
   BandArray irradiance = with_indirect(pilot, pilot.indirect);
   if (pilot.tree) {
-    // The final gather averages this one's noise over all directions. With a sixteenth to a half of
-    // the rays, indirect light in the hall of docs/solvers.md is off by 0.67 to 0.65 %; without
-    // this gather by 0.85 %.
+    // The final gather averages the noise of this one over all directions, so few rays suffice.
+    // With a sixteenth to a half of the rays, the error of indirect light in the hall of 100 boxes
+    // (see docs/figures.md) is 0.67 to 0.65 %; if the final gather reads the first pilot gather,
+    // 0.85 %.
     constexpr int few = 8;
     VertexGatherTask second{lit, pilot, gather, few};
     second.options.replica += first_replicas;

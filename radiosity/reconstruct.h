@@ -10,46 +10,45 @@
 
 namespace lightwell {
 
-/// What a first, cheap gather finds at vertices. It sharpens what patches hold as one value each
-/// (the dark foot of a block): later gathers read it.
+/// A first, cheap gather at vertices. Later gathers read its light, which resolves what one value a
+/// patch does not (such as the dark foot of a block).
 struct PilotGather {
-  std::optional<PatchMesh> refined{};  ///< whose vertices are meant, if not the base's
-  /// Where its elements are in the base's, wherever it is moved to; null: nothing was refined.
+  std::optional<PatchMesh> refined{};  ///< the refined mesh; empty: the base is not refined
+  /// Finds the refined element at a point of a base element; null without refinement.
   std::shared_ptr<const ElementTree> tree{};
-  BandArray direct{}, indirect{};        ///< W/m^2, vertices x bands
-  ShadowOptions shadows{};               ///< that `direct` was gathered with
-  BandArray caustic{};                   ///< the same; empty if the scene has no mirrors or glass
+  BandArray direct{}, indirect{};        ///< W/m^2, vertices x columns
+  ShadowOptions shadows{};               ///< those of `direct`
+  BandArray caustic{};                   ///< W/m^2; empty if the scene has no mirrors or glass
   Eigen::ArrayXf interpolation_error{};  ///< see RadiositySolution; empty without refinement
   RefineReport refinement{};
-  std::vector<InterpolatedVertex> interpolated{};  ///< where later gathers leave indirect light out
-  std::vector<VertexPrediction>
-      predictions{};  ///< what `indirect` is good for beside the final gather
-  /// Per vertex, what it is called in later pilot gathers of the same elements too; empty without
+  std::vector<InterpolatedVertex> interpolated{};  ///< later gathers leave indirect light out here
+  std::vector<VertexPrediction> predictions{};     ///< joined with the final gather
+  /// Per vertex, its number in RefinedElements, which later pilot gathers share; empty without
   /// refinement.
   std::vector<int> number{};
-  int gather_rays = 0;  ///< that the final gather is to take
+  int gather_rays = 0;  ///< rays of the final gather
 };
 
-/// First gathers at the vertices of elements that are refined ever further.
+/// Pilot gathers at the vertices of elements, which each call may refine further.
 class PilotGathers {
  public:
-  /// Over patches whose radiosities `solution` has; `direct_light` keeps apart its channels, if
-  /// there are any, and what is gathered has columns for each. Elements are split as all light
-  /// together asks for. With `noise` above 0 pilot gathers of refined elements say how many rays
-  /// the final gather takes to leave no larger a share of the mean irradiance. Keeps references to
-  /// `scene` and `direct_light`.
+  /// For the patches of `base`, whose radiosities `solution` has. Gathered light has columns for
+  /// each channel of `direct_light`; all channels together decide which elements are split. With
+  /// `noise` above 0, pilot gathers of refined elements choose the rays with which the final
+  /// gather's noise is at most that share of the mean irradiance. Keeps references to `scene` and
+  /// `direct_light`.
   PilotGathers(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
                const RadiositySolution& solution, double noise = 0.0);
   ~PilotGathers();
 
-  /// Refines the elements, if options.refine says so, and gathers at their vertices. Called again,
-  /// with a smaller tolerance, it goes on where it ended.
+  /// Refines the elements if `options.refine` has a tolerance, and gathers at their vertices. A
+  /// further call with a smaller tolerance refines the same elements further. Throws InputError if
+  /// the base has more elements than allowed, Interrupted when progress says stop.
   PilotGather gather(const SolveOptions& options);
 
-  /// The mesh that pilot gathers without refinement are of; may be moved from after the last pilot
-  /// gather.
+  /// The mesh before refinement; may be moved from after the last pilot gather.
   PatchMesh& base();
-  /// Of the mesh that a pilot gather is of, wherever that was moved to.
+  /// A caster of the mesh of a pilot gather; `mesh` is that mesh, wherever it was moved to.
   ElementCaster caster(const PatchMesh& mesh, const PilotGather& pilot) const;
 
  private:
@@ -57,26 +56,32 @@ class PilotGathers {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What gathers have found so far at the vertices of a pilot gather, or nothing: more is added to
-/// it. Of indirect light, W/m^2, columns of every channel.
+/// Indirect light gathered so far at the vertices of a pilot gather, to which later gathers add.
+/// Empty before the first.
 struct KeptGather {
-  std::vector<int> rays{};  ///< 0: none there
-  BandArray indirect{};
-  Eigen::ArrayXf variance{};  ///< of it
-  std::uint64_t count = 0;    ///< of gathers
+  std::vector<int> rays{};    ///< per vertex; 0: nothing was gathered there
+  BandArray indirect{};       ///< W/m^2, vertices x columns
+  Eigen::ArrayXf variance{};  ///< of `indirect`, (W/m^2)^2
+  std::uint64_t count = 0;    ///< number of gathers
 };
 
-/// Of those that read the pilot gather, and of the final ones.
+/// The gathers that reconstruct() has made so far.
 struct KeptGathers {
-  std::vector<int> number{};  ///< the pilot gather's
-  KeptGather of_pilot{}, last{};
+  std::vector<int> number{};      ///< PilotGather::number of their vertices
+  KeptGather of_pilot{}, last{};  ///< the second pilot gather, and the final one
 };
 
-/// The final gather; `caster` is of the mesh whose vertices the pilot gather is for. The direct
-/// light of a refined mesh has been gathered for good; its indirect light was found in that of
-/// unrefined elements, and in the same few directions all over a surface. A gather with an eighth
-/// of the rays makes that good, and the final one reads it. With channels it is theirs that is
-/// filled in; their sum is left to relight(). What `kept` has is not gathered again.
+/// The final gather at the vertices of `pilot`; the caster of `lit` is of their mesh. Fills in the
+/// irradiances, gather noise and interpolation error of `solution`.
+///
+/// - Direct light is the pilot gather's, unless that cast fewer shadow rays than `options` ask for.
+/// - Indirect light of a refined mesh is gathered twice. The pilot gather read the light of
+///   unrefined elements, in the same few directions all over a surface. A second pilot gather with
+///   an eighth of the rays reads the first, and the final gather reads the second.
+/// - With channels, the light of each is filled in, and relight() forms the sum.
+///
+/// Work in `kept` (null: none) is not repeated, and new work is added to it. Throws Interrupted
+/// when progress says stop.
 void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGather& pilot,
                  RadiositySolution& solution, KeptGathers* kept = nullptr);
 

@@ -41,7 +41,7 @@ void require_no_start(const SolveOptions& options) {
       "use another, such as the default");
 }
 
-// Of patches; `seconds` of the result say what took how long.
+// Patch radiosities by progressive refinement, with `seconds` of the phases.
 RadiositySolution shoot(const LitScene& lit, const SolveOptions& options) {
   Stopwatch watch;
   const LightPaths paths(lit.scene, lit.caster, options.form_factors.max_specular_depth);
@@ -105,7 +105,9 @@ RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_a
   return solution;
 }
 
-// Where no way was asked for, and form factors cannot be kept: shooting. A note says so.
+// Options of shooting: the given ones, or the defaults if no method was chosen and form factors do
+// not fit into memory or onto disk, which a note of the mesh explains. Empty: form factors are
+// kept.
 std::optional<ProgressiveOptions> without_rows(const DirectLight& direct_light,
                                                const SolveOptions& options, PatchMesh& mesh) {
   if (options.progressive || options.start || options.solver_method != SolverMethod::automatic ||
@@ -141,7 +143,7 @@ void require_unit(const Scene& scene, const SolveOptions& options) {
       "the mean irradiance, such as 1%");
 }
 
-// Direct light by channel, where light is kept apart.
+// Direct light with columns of each channel; empty without channels.
 std::optional<DirectLight> light_by_channel(const Scene& scene, const PatchMesh& mesh,
                                             const DirectLight& all_light,
                                             const EmitterChannels& channels) {
@@ -149,7 +151,7 @@ std::optional<DirectLight> light_by_channel(const Scene& scene, const PatchMesh&
   return std::make_optional<DirectLight>(scene, mesh, channels, &all_light);
 }
 
-// What of a solution does not depend on the light.
+// Fills in the parts of a solution that do not depend on the light.
 void describe(const Scene& scene, RadiositySolution& solution) {
   solution.bands = scene.bands;
   solution.metres_per_unit = scene.metres_per_unit;
@@ -215,7 +217,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   const DirectLight& kept_apart = by_channel ? *by_channel : direct_light;
   seconds.push_back({"mesh", watch.lap()});
 
-  // What comes after rows has to fit as well, and is told before they are made.
+  // The memory of the gathers is reserved before rows of form factors take it.
   if (options.form_factors.memory) options.form_factors.memory->plan(bytes_to_gather(solved.mesh));
   SolveOptions exchange = options;
   exchange.progressive = without_rows(direct_light, options, solved.mesh);

@@ -16,65 +16,77 @@
 
 namespace lightwell {
 
+/// Options of the first pass, from the scene to a solution.
 struct SolveOptions {
   MeshOptions mesh{};
   FormFactorOptions form_factors{};
   SolverMethod solver_method = SolverMethod::automatic;
-  SolverOptions solver{};  ///< but for `progress`, `journal` and `name_of`
-  /// Patches shoot, with rows found on the fly and forgotten, instead of all form factors and a
-  /// solver: of the options above only `form_factors.max_specular_depth` then counts.
+  SolverOptions solver{};  ///< solve_scene sets `progress`, `journal` and `name_of` itself
+  /// Progressive refinement: patches shoot, and a row of form factors is computed for each shot and
+  /// not kept. Of the options of form factors and solver only `form_factors.max_specular_depth`
+  /// then counts. Empty: all form factors are kept, and a solver reads them.
   std::optional<ProgressiveOptions> progressive{};
   GatherOptions gather{.rays = 1024};
   RefineOptions refine{};
-  /// Chooses the rays of `gather` and, where elements are split, the tolerance of `refine`, and
-  /// tries again with more until the error estimate is below; a million elements, or four times
-  /// those of the start, if `refine` names no limit. Where it gives up, the outcome of the
-  /// solution says so.
+  /// The error to reach. Chooses the rays of `gather` and, if `refine` has a tolerance, that
+  /// tolerance, and raises both until the error estimate is below. If `refine` has no limit of
+  /// elements, the limit is a million or four times the elements at the start, whichever is more.
+  /// An accuracy that is out of reach gives Outcome::accuracy_missed.
   std::optional<Accuracy> accuracy{};
-  int caustic_rays = 1 << 19;  ///< per emitter, only cast where there are mirrors or glass
-  int free_rays = 1 << 20;     ///< from all lamps together to the patches, see cast_free_light
-  /// Whose light is kept apart, so that relight() can dim it; not with `progressive`.
+  int caustic_rays = 1 << 19;  ///< of each emitter, cast if the scene has mirrors or glass
+  int free_rays = 1 << 20;     ///< of all lamps together to the patches, see cast_free_light
+  /// Channels of emitters whose light is kept apart, so that relight() can dim each.
   EmitterChannels channels{};
-  /// A solution to start from, of the same patches: other reflectances or emission. Must outlive
-  /// the solving; not with `progressive`.
+  /// A solution with the same patches, whose radiosities the solver begins with; reflectances and
+  /// emission may differ. Must outlive the solve. Not with `progressive`.
   const SolvedScene* start = nullptr;
-  int error_points = 512;  ///< random points that the error estimate looks at
-  /// The journal must be of this scene. (The journal of another solve, whose form factors serve
-  /// where only reflectances or emission have changed, belongs into `form_factors`.)
-  RunControl run{};
+  int error_points = 512;  ///< sample points of the error estimate, see estimate_points
+  Progress progress{};
+  /// Collects finished work of this scene, so that a solve that was interrupted can be resumed with
+  /// the same bits. Null: none. (`form_factors` has a journal of its own: that of another solve,
+  /// whose form factors are read if only reflectances or emission have changed.)
+  Journal* journal = nullptr;
 };
 
-/// What the first pass found out besides the solution.
+/// Figures of the first pass that are not part of the solution.
 struct SolveReport {
   FormFactorReport form_factors{};
   RefineReport refinement{};
-  double accuracy = 0.0;  ///< what was asked for, of the mean irradiance; 0: nothing was
-  int gather_rays = 0;    ///< in force
+  double accuracy = 0.0;  ///< the requested share of the mean irradiance; 0: none was requested
+  int gather_rays = 0;    ///< rays of the last final gather
 };
 
-/// Whether elements start twice as long as asked for, and are split where that matters: unless
-/// nothing is refined, and unless a longest size is given or lines of discontinuity are drawn,
-/// which need the size asked for.
+/// Whether elements start at twice the given length, since refinement splits them. They do not if
+/// nothing is refined, if a longest element size is given, or with discontinuity meshing, whose
+/// lines need the given length.
 bool starts_coarse(const SolveOptions& options);
 
-/// The whole first pass: mesh, form factors, solver, refinement of the elements, final gather to
-/// their vertices, and an error estimate by independent gathers at random points (relative RMS
-/// difference from the interpolation; it holds the noise of both, so it errs on the high side).
-/// Throws InputError if nothing in the scene emits light or light never ends, if the start has
-/// other patches, and where the progressive solver cannot do what is asked; Interrupted when
-/// progress says stop; std::invalid_argument if the journal is of another scene.
+/// The whole first pass:
+///
+/// 1. mesh,
+/// 2. form factors and solver, or shooting,
+/// 3. refinement of the elements,
+/// 4. final gather to their vertices,
+/// 5. error estimate (see estimate_error).
+///
+/// Throws InputError if nothing in the scene emits light, if light never ends, if the start has
+/// other patches or is given to the progressive solver, if an accuracy in lux is requested of a
+/// scene without units, if the mesh has more elements than allowed, or if light is not finite.
+/// Throws Interrupted when progress says stop, and std::invalid_argument if the journal is of
+/// another scene.
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);
 
-/// The second half of solve_scene, for light that was found otherwise: `patches` has a mesh of the
-/// scene with patch_radiosity, energy, residual, outcome, history and seconds of its own; elements
-/// are refined as `options` say, light is gathered to vertices, and the rest of the solution filled
-/// in. `channels` must be empty. Throws Interrupted when progress says stop.
+/// Steps 3 to 5 of solve_scene, for patch radiosities that were computed elsewhere. `patches` has a
+/// mesh of the scene and a solution with patch_radiosity, energy, residual, outcome, history and
+/// seconds; the result has the refined mesh and the rest of the solution. `options.channels` must
+/// be empty. Throws InputError if light is not finite, Interrupted when progress says stop.
 SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches,
                                const SolveOptions& options = {}, SolveReport* report = nullptr);
 
-/// Where the light of patch radiosities B and of free sources went; `residual` =
-/// M + rho (E0 + F B) - B. Mirrors' share is taken from the scene's materials.
+/// Energy balance of patch radiosities B (patches x bands, W/m^2) and of the light of free sources.
+/// The unshot part is the residual M + rho (E0 + F B) - B. The share of mirrors follows from the
+/// scene's materials.
 EnergyBalance energy_balance(const Scene& scene, const PatchMesh& mesh,
                              const FormFactors& form_factors, const BandArray& B,
                              const FreeLight& free_light = {});

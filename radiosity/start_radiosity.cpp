@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-// Elements of one mesh may be split: what they cover is the same.
+// Bounding box of each patch's elements, whose union is the same however they are split.
 std::vector<Eigen::AlignedBox3d> patch_boxes(const PatchMesh& mesh) {
   std::vector<Eigen::AlignedBox3d> boxes(static_cast<std::size_t>(mesh.patch_count()));
   for (int e = 0; e < mesh.element_count(); ++e) {

@@ -4,13 +4,15 @@
 
 namespace lightwell {
 
-/// Patch radiosities of a solution, to start the solver of another from. Patches are compared one
-/// by one: where they lie, which way they face, their area and surface; elements may differ.
-/// Reflectances and emission do not matter. Throws InputError that says what differs.
+/// Patch radiosities of the solution `start`, patches x bands, W/m^2, from which the solver of
+/// another solve begins. Each patch of `start` must have the bounding box, side, area and surface
+/// of the patch of `mesh` with the same number; elements, reflectances and emission may differ.
+/// Throws InputError that names the first difference, or if a radiosity is not finite.
 BandArray start_radiosity(const PatchMesh& mesh, const SolvedScene& start);
 
-/// The same of channels that have the same names in the same order, channels * bands columns; empty
-/// if there are none such, or no start. The patches have been compared.
+/// Patch radiosities of the channels of `start`, patches x (channels * bands), W/m^2. Empty if
+/// `start` is null or its channels do not have the names of `channels` in the same order. The
+/// patches must be the same (see start_radiosity).
 BandArray start_by_channel(const SolvedScene* start, const EmitterChannels& channels);
 
 }  // namespace lightwell

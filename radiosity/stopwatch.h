@@ -4,10 +4,10 @@
 
 namespace lightwell {
 
-/// Wall time of the phases of a solve.
+/// Measures the wall time of the phases of a solve.
 class Stopwatch {
  public:
-  // Seconds since the last call.
+  /// Seconds since the last call, or since construction.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - last_).count();

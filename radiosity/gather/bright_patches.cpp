@@ -31,9 +31,9 @@ std::array<double, 2> triangle_areas(const PatchMesh& mesh, int element) {
   return area;
 }
 
-// How bright a patch must be. Backs of walls and rooms behind closed doors are no measure of what
-// is ordinary, so the median is that of the area which is lit; and where half of it is nearly dark,
-// the other half is not what rays miss.
+// The least brightness of a bright patch, W/m^2. The median is that of the lit area, so that backs
+// of walls and rooms behind closed doors do not lower it. The mean is a second bound: where half of
+// the lit area is nearly dark, the other half is not what rays miss.
 double least_brightness(const PatchMesh& mesh, const Eigen::ArrayXd& mean) {
   std::vector<int> lit;
   double area = 0.0, power = 0.0;
@@ -140,9 +140,11 @@ void BrightPatches::add_patch(int p, const std::vector<double>& of_element) {
 
 BrightPatches::View BrightPatches::view(const Eigen::Vector3d& from, const Eigen::Vector3d& normal,
                                         int rays) const {
-  // Of a patch that a few of the rays meet, those leave less noise than a few aimed ones would.
+  // Cosine-distributed rays that meet a patch, from which number on they leave less noise than
+  // aimed ones would.
   constexpr double few = 4.0;
-  // Of a patch's size: nearer to its plane it is seen from the edge.
+  // Least height of the point above the patch's plane, as a share of the patch's radius. From lower
+  // points the patch is seen edge-on.
   constexpr double least_height = 1e-4;
   View view;
   view.from_ = from;
@@ -153,8 +155,9 @@ BrightPatches::View BrightPatches::view(const Eigen::Vector3d& from, const Eigen
     const double distance2 = to.squaredNorm(), distance = std::sqrt(distance2),
                  radius = std::sqrt(patch.radius2);
     const double height = patch.normal.isZero() ? distance : -patch.normal.dot(to);
-    const double rise = to.dot(normal) + radius;  // of its highest point, at most
+    const double rise = to.dot(normal) + radius;  // bound for the patch's highest point
     if (height > least_height * radius && rise > 0.0) {
+      // Approximate solid angle, sr, and form factor from the point to the patch.
       const double solid = std::min(height + 0.1 * radius, distance + radius) * patch.area /
                            ((distance2 + patch.radius2) * (distance + radius));
       const double form_factor =
@@ -192,7 +195,7 @@ BrightPatches::Aim BrightPatches::draw(const View& view, double which, double u,
   const std::size_t i = is_second ? 2 : 1;
   const Eigen::Vector3d a = mesh_->position(corners[0]), b = mesh_->position(corners[i]),
                         c = mesh_->position(corners[i + 1]);
-  const double s = std::sqrt(along);  // keeps density even towards the corner
+  const double s = std::sqrt(along);  // uniform over the triangle
   const Eigen::Vector3d at = a + s * ((1.0 - u) * (b - a) + u * (c - a));
   return {.direction = (at - view.from_).normalized(), .element = found->number};
 }
@@ -205,7 +208,7 @@ double BrightPatches::density(const View& view, int element, const Eigen::Vector
   const auto p = static_cast<std::size_t>(patch_of_[static_cast<std::size_t>(number)]);
   const double chance = view.up_to_[p] - (p > 0 ? view.up_to_[p - 1] : 0.0f);
   const double cosine = std::abs(direction.dot(at.normal));
-  // Seen from the edge, what is drawn there is spread over no angle at all.
+  // Bounds the density where the element is seen edge-on and has no solid angle.
   constexpr double grazing = 1e-9;
   return chance * at.share_per_area * distance * distance / std::max(cosine, grazing);
 }

@@ -9,27 +9,28 @@
 
 namespace lightwell {
 
-/// Patches that reflect far more light per area than most, such as the place that a spotlight
-/// falls on or the inside of a lamp's shade. Rays over a hemisphere find what is small and bright
-/// by chance, which leaves blotches; so a gather draws some directions towards such patches as well
-/// and weighs both by the balance heuristic (Veach & Guibas 1995), which has no bias.
+/// Patches that reflect far more light per area than most, such as the place that a spotlight falls
+/// on or the inside of a lamp's shade. Rays over a hemisphere find small bright patches by chance,
+/// which leaves blotches. So a gather draws some directions towards them as well, and weighs both
+/// kinds of rays by the balance heuristic (Veach & Guibas 1995), which has no bias.
 class BrightPatches {
  public:
-  /// Of a patch's brightness, over the median and the mean of the area that is lit: with rays that
-  /// are spread by the cosine, anything dimmer adds less noise than the many patches of ordinary
-  /// brightness do.
+  /// Brightness from which on a patch is bright, over the median and the mean of the lit area.
+  /// Dimmer patches add less noise to cosine-distributed rays than the many patches of ordinary
+  /// brightness.
   static constexpr double times_median = 32.0, times_mean = 2.0;
-  static constexpr int most = 256;  ///< patches; those that would leave the most noise
+  static constexpr int most = 256;  ///< most bright patches: those that would leave the most noise
 
-  /// None.
+  /// No bright patches.
   BrightPatches() = default;
-  /// `radiosity` is vertices x columns, W/m^2: what rays read where they end. What moves is left
-  /// out, and spheres, which are met where they are round and not where their elements are.
+  /// `radiosity` is the light that rays read, vertices x columns, W/m^2. Moving surfaces are left
+  /// out, and so are spheres, since rays hit the sphere itself and not its elements. Keeps a
+  /// reference to the mesh.
   BrightPatches(const Scene& scene, const PatchMesh& mesh, const BandArray& radiosity);
 
   bool is_empty() const { return patches_.empty(); }
 
-  /// How likely each is to be drawn from one place.
+  /// The probability of each bright patch in draws from one point.
   class View {
    public:
     bool is_empty() const { return up_to_.empty(); }
@@ -37,39 +38,42 @@ class BrightPatches {
    private:
     friend class BrightPatches;
     Eigen::Vector3d from_ = Eigen::Vector3d::Zero();
-    std::vector<float> up_to_{};  // running sum of chances, which ends at 1; empty: none is seen
+    std::vector<float> up_to_{};  // running sum of probabilities, ends at 1; empty: none is seen
   };
-  /// From a place that faces along `normal`, unit, beside `rays` cosine-distributed rays: what
-  /// those find anyway is drawn less often.
+  /// The view from a point with unit normal `normal`, beside `rays` cosine-distributed rays. The
+  /// probability of a patch is proportional to its approximate unoccluded irradiance, and falls
+  /// with the number of those rays that meet the patch.
   View view(const Eigen::Vector3d& from, const Eigen::Vector3d& normal, int rays) const;
 
   struct Aim {
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
-    int element = -1;  ///< that it counts for: no other in its way
+    int element = -1;  ///< the ray counts only if it hits this element first
   };
-  /// Three numbers in [0,1); the view is not empty.
+  /// A direction by three random numbers in [0,1): `which` picks patch and element, u and v a
+  /// point. The view must not be empty.
   Aim draw(const View& view, double which, double u, double v) const;
-  /// Of draw()'s directions, 1/sr, towards a place on an element that is met `distance` metres away
-  /// in a unit direction; 0 if the element is of no bright patch.
+  /// Probability density q of draw()'s directions, 1/sr, for a unit direction that hits `element`
+  /// at `distance` metres; 0 if the element is not part of a bright patch.
   double density(const View& view, int element, const Eigen::Vector3d& direction,
                  double distance) const;
 
-  /// How many rays to aim beside `rays` cosine-distributed ones.
+  /// Number of aimed rays beside `rays` cosine-distributed ones.
   static int aimed(int rays) { return std::max(1, rays / 4); }
-  /// Of B where a ray ends, what counts of it in E = (1/N) sum B over both N = `rays`
-  /// cosine-distributed rays and aimed(N) others, for a ray of either kind: N p / (N p + aimed(N)
-  /// q), with the densities p = `cosine` / pi and q of its direction, which is a unit vector.
+  /// Balance-heuristic weight of a ray of either kind: N p / (N p + aimed(N) q) with N = `rays`,
+  /// the densities p = `cosine` / pi and q = density(). Irradiance is then E = (1/N) sum weight B
+  /// over the N cosine-distributed and the aimed(N) other rays. The direction of `ray` is a unit
+  /// vector.
   double share(const View& view, double cosine, int rays, const Ray& ray,
                const ElementHit& hit) const;
 
  private:
   struct Patch {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // zero: it is not flat
-    double radius2 = 0.0;                              // m^2, of a sphere around its corners
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // zero: the patch is not flat
+    double radius2 = 0.0;                              // m^2, of a sphere around the corners
     double area = 0.0;                                 // m^2
     double power = 0.0;                                // W, all columns
-    int first = 0, end = 0;                            // elements_
+    int first = 0, end = 0;                            // indices in elements_
   };
   struct Element {
     int number = -1;
@@ -84,8 +88,8 @@ class BrightPatches {
   const PatchMesh* mesh_ = nullptr;
   std::vector<Patch> patches_{};
   std::vector<Element> elements_{};
-  std::vector<int> of_element_{};  // in elements_; -1: none
-  std::vector<int> patch_of_{};    // of elements_, in patches_
+  std::vector<int> of_element_{};  // index in elements_ of each element of the mesh; -1: none
+  std::vector<int> patch_of_{};    // index in patches_ of each of elements_
 };
 
 }  // namespace lightwell

@@ -58,9 +58,9 @@ class HemisphereGather {
     }
   }
 
-  // E = (1/N) sum B over cosine-distributed rays, columns of `irradiance`, and a share of N more
-  // towards bright patches where there are any. The first half of a sequence and the second are
-  // stratified each.
+  // E = (1/N) sum B over N cosine-distributed rays and, if there are bright patches, aimed rays
+  // besides; B of both kinds is weighted by the balance heuristic. Writes the columns of
+  // `irradiance`. The first and the second half of the rays are each stratified.
   void gather(const GatherPoint& at, std::uint64_t key, float* irradiance, float& variance) const {
     const Eigen::Index columns = radiosity_.cols();
     std::array<Eigen::ArrayXd, 2> sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
@@ -99,7 +99,7 @@ class HemisphereGather {
   }
 
  private:
-  // Rays towards bright patches, each for light straight from the one it was drawn for.
+  // Adds rays towards bright patches; each counts only the light straight from its own element.
   void aim(const GatherPoint& at, const BrightPatches::View& view, std::uint64_t key,
            std::array<Eigen::ArrayXd, 2>& sum) const {
     const int rays = ray_count(at, options_);
@@ -128,7 +128,8 @@ class HemisphereGather {
     }
   }
 
-  // `share` is of the light that comes straight from the place of the hit.
+  // `share` is the weight of the light straight from the hit; light through mirrors and glass has
+  // weight 1.
   void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, std::uint64_t index,
            double share, Eigen::ArrayXd& sum) const {
     if (hit.facet < 0) return;
@@ -144,7 +145,7 @@ class HemisphereGather {
         (std::numbers::pi_v<float> * dome_ * losses.sky).cast<double>();
   }
 
-  // Bands go by the columns of one channel after the other.
+  // `throughput` has bands, and the columns are those of one channel after the other.
   void add_throughput(const ElementHit& hit, const Spectrum& throughput,
                       Eigen::ArrayXd& sum) const {
     if (hit.element < 0) return;
@@ -187,16 +188,16 @@ class HemisphereGather {
   LightPaths paths_;
   const GatherOptions& options_;
   Eigen::Index bands_;
-  Spectrum dome_{};  // factor of the sky's light; empty if there is none
+  Spectrum dome_{};  // scale of the sky's light per band; empty without a sky
   Eigen::Index dome_column_ = 0;
-  std::map<int, HemisphereSets> sets_;  // by the rays of each
+  std::map<int, HemisphereSets> sets_;  // by number of rays
   BrightPatches bright_;
-  std::map<int, SobolPoints> aims_;  // towards those, by the rays of sets_
+  std::map<int, SobolPoints> aims_;  // of aimed rays, by the number of rays in sets_
 };
 
-// All that decides what is gathered, but for the scene.
-void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPoints& points,
-                       const GatherOptions& options) {
+// Adds all inputs of a gather, apart from the scene, to the journal's fingerprint.
+void add_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPoints& points,
+                const GatherOptions& options) {
   print.add(mesh);
   for (int i = 0; i < points.size(); ++i) {
     const auto [position, normal, facet, key, rays] = points[i];
@@ -217,14 +218,14 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
   print.add(replica);
 }
 
-// Rows begin, begin + 1, ...
+// The values of rows begin to begin + size - 1.
 std::span<float> rows_of(BandArray& values, int begin, int size) {
   return {values.data() + begin * values.cols(), static_cast<std::size_t>(size * values.cols())};
 }
 
-// Calls body(i, point, key) for every point, with the key of its random numbers, unless `phase`
-// holds the `values(begin, size)` of its slice. Slices keep progress and interruption on this
-// thread: each a fraction of a second of rays.
+// Calls body(i, point, key) for every point, with the key of its random numbers. A slice of points
+// whose `values(begin, size)` are in the journal's `phase` is skipped. Slices are a fraction of a
+// second of rays, and between them this thread reports progress and may be interrupted.
 template <class Values, class Body>
 void for_each_point(const GatherPoints& points, const GatherOptions& options,
                     const JournalPhase& phase, Values values, Body&& body) {
@@ -483,24 +484,23 @@ VertexGatherPoints::VertexGatherPoints(const PatchMesh& mesh)
 }
 
 GatherPoint VertexGatherPoints::operator[](int vertex) const {
-  // Far enough in to clear the float rounding of a room-sized scene, near enough to stand for the
-  // vertex.
+  // Share of the way to the element's centre: far enough for the float rounding of a room-sized
+  // scene, and near enough to stand for the vertex.
   constexpr double inset = 0.02;
   const int e = element_[vertex];
   if (e < 0) return {};
   const PatchPoint center = element_center(mesh_, e);
   const Eigen::Vector3d p = mesh_.position(vertex), inwards = inset * (center.position - p);
-  // On a sphere the chord lies inside the ball: go back out to the surface, with the sphere's own
-  // normal.
+  // On a sphere the element is a chord inside the ball, so the point is moved out to the surface.
   if (const SphereGrid* grid = sphere_grid_of(mesh_, mesh_.facet[e])) {
     const Eigen::Vector3d out = (p + inwards - grid->sphere.center).normalized();
     return {.position = grid->sphere.center + grid->sphere.radius * out,
             .normal = mesh_.is_back[mesh_.patch[e]] ? Eigen::Vector3d(-out) : out,
             .facet = mesh_.facet[e]};
   }
-  // Where facets meet smoothly, light is measured about the normal of them all, from a point so far
-  // above them that none is in the way of what arrives from above its horizon. Lamps stay flat: a
-  // point before one would receive its light.
+  // Facets that meet smoothly have a common normal. The point lies so far above them that no facet
+  // hides light from above its horizon. Lamps are left out: a point before one would receive the
+  // lamp's own light.
   constexpr double flat = 1.0 - 4e-6;  // cosine of 0.16 degrees
   const Eigen::Vector3d& of_all = mesh_.vertex_normal[vertex];
   if (!(of_all.dot(center.normal) >= flat) && !(mesh_.emission.row(mesh_.patch[e]) > 0.0f).any()) {

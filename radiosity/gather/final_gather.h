@@ -17,20 +17,24 @@
 
 namespace lightwell {
 
-/// Where irradiance is asked for.
+class Journal;
+
+/// A point at which irradiance is gathered.
 struct GatherPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< metres
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< unit
-  int facet =
-      -1;  ///< scene-wide facet it lies on, whose plane it then does not see; -1: free space
-  /// Of the random numbers; else its place in the list. What points of one key have in common,
-  /// light from afar, has the same noise in all of them: it is not in their differences.
+  /// Scene-wide facet that the point lies on, whose plane its rays then do not meet; -1: free
+  /// space.
+  int facet = -1;
+  /// Key of the random numbers; empty: the point's place in the list. Points with the same key have
+  /// the same noise of light from afar, which is then not in the differences between them.
   std::optional<std::uint64_t> key{};
-  int rays = 0;  ///< hemisphere rays, if not as many as GatherOptions say
+  int rays = 0;  ///< hemisphere rays; 0: GatherOptions::rays
 };
 
-/// A list of them, which is kept a reference to; or each made when it is asked for, from many
-/// threads: to keep all vertices' takes several times the memory of what is gathered there.
+/// A list of gather points. Either a reference to a given list, or a function that makes each point
+/// on demand and is called from many threads. (A list of all vertices' points takes several times
+/// the memory of the light gathered there.)
 class GatherPoints {
  public:
   template <class List>
@@ -48,63 +52,73 @@ class GatherPoints {
   std::function<GatherPoint(int)> at_;
 };
 
+/// Options of a gather.
 struct GatherOptions {
   int rays = 512;  ///< hemisphere rays per point; a power of two stratifies best
   int max_specular_depth = 8;
   ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
   std::uint64_t replica = 0;  ///< another number gives an independent estimate
-  RunControl run{};           ///< the journal keeps gathered irradiance
+  Progress progress{};
+  Journal* journal = nullptr;  ///< keeps the gathered light, and gives back that of an earlier run
 };
 
-/// points x bands, W/m^2. Where light is kept apart by channels (see DirectLight), here and below
-/// the columns of bands of one channel follow those of another.
+/// Gathered irradiance, points x columns, W/m^2. The columns are the bands; if light is kept apart
+/// by channels (see DirectLight), the bands of one channel after those of another.
 struct GatheredIrradiance {
-  BandArray direct{};    ///< straight from DirectLight's emitters
-  BandArray indirect{};  ///< from everything else that reflects or emits, also by way of mirrors
-                         ///< and glass
-  /// Of the indirect light, channels added: the variance that its rays leave, mean of the bands,
-  /// (W/m^2)^2, as half of them against the other half tells. Of one point that is little more than
-  /// a guess; means over neighbours are good.
+  BandArray direct{};    ///< straight from the emitters of DirectLight
+  BandArray indirect{};  ///< from all other emitters and reflectors, also through mirrors and glass
+  /// Variance of the sum of channels of `indirect`, mean of the bands, (W/m^2)^2: the square of
+  /// half the difference between two halves of the rays. For one point little more than a guess;
+  /// means over neighbours are good.
   Eigen::ArrayXf variance{};
 };
 
-/// Irradiance at points of a solved scene: direct light by closed form times visibility, the rest
-/// by cosine-distributed rays that read the radiosity where they end, going on through mirrors and
-/// clear glass. Light that DirectLight's emitters send by way of mirrors and glass is left out,
-/// since rays from the receiver find it by chance only: see caustic_irradiance. That of the sky's
-/// dome they find well. `radiosity` is
-/// vertices x bands, as gatherable_radiosity makes it.
+/// Irradiance at points of a solved scene (final gather, Reichert 1992).
+///
+/// - Direct light: closed form times visibility.
+/// - Indirect light: E = (1/N) sum B over N cosine-distributed rays, which read the radiosity B
+/// where
+///   they end, and continue through mirrors and clear glass.
+/// - Light of DirectLight's emitters through mirrors and glass is left out, since rays from the
+///   receiver find it by chance only (see caustic_irradiance). Light of the sky's dome is included,
+///   since such rays find it well.
+///
+/// `radiosity` is vertices x columns, W/m^2, as gatherable_radiosity makes it. Throws Interrupted
+/// when progress says stop.
 GatheredIrradiance gather_irradiance(const LitScene& lit, const BandArray& radiosity,
                                      const GatherPoints& points, const GatherOptions& options = {});
 
-/// Only the direct light; `visibilities`, if given, gets one entry a point.
+/// The direct light alone, points x columns, W/m^2; `visibilities`, if given, gets one entry for
+/// each point. Throws Interrupted when progress says stop.
 BandArray gather_direct(const LitScene& lit, const GatherPoints& points,
                         const GatherOptions& options,
                         std::vector<EmitterVisibility>* visibilities = nullptr);
 
-/// Only the indirect light; `direct` is left empty.
+/// The indirect light alone; `direct` is empty. Throws Interrupted when progress says stop.
 GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosity,
                                    const GatherPoints& points, const GatherOptions& options);
 
-/// rho E, plus the emission of patches that `direct_light` does not own: what gather_irradiance
-/// reads. `irradiance` is vertices x bands.
+/// The radiosity that gather_irradiance reads, W/m^2: rho E, plus the emission of patches that
+/// `direct_light` does not own. `irradiance` E and the result are vertices x columns.
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
                                const BandArray& irradiance);
 
-/// Irradiance at every vertex (vertices x bands, W/m^2) from emitters by way of mirrors and glass:
-/// `rays` rays in all from each light of DirectLight leave their power on the elements where
-/// they end (after Heckbert 1990), and vertices take the mean of the elements around; but for what
-/// goes straight through ClearPanes, which is direct light. Empty if the scene has no mirrors or
-/// glass.
+/// Irradiance at every vertex (vertices x columns, W/m^2) from the lights of DirectLight through
+/// mirrors and glass. `rays` rays of each light leave their power on the elements where they end
+/// (after Heckbert 1990), and a vertex takes the power of the elements around it over their area.
+/// Light straight through ClearPanes is left out, since it is direct light, and so is that of the
+/// sky's dome. Empty if the scene has no mirrors or glass. Throws Interrupted when progress says
+/// stop.
 BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
                              const RunControl& run = {});
 
-/// For every vertex, a point a hair inside one of its elements, so that it lies on no edge, and
-/// that element's facet and normal; where facets that meet smoothly share it, a hair above them
-/// too, with the normal of them all, on no facet.
+/// A gather point for every vertex: 2 % of the way from the vertex to the centre of one of its
+/// elements, so that the point lies on no edge, with the facet and the normal of that element. If
+/// the vertex is shared by facets that meet smoothly, the point lies as far above them as well,
+/// with their common normal and no facet.
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
 
-/// The same, each made when it is asked for. Keeps a reference to the mesh.
+/// The points of vertex_gather_points, each made on demand. Keeps a reference to the mesh.
 class VertexGatherPoints {
  public:
   explicit VertexGatherPoints(const PatchMesh& mesh);
@@ -112,7 +126,7 @@ class VertexGatherPoints {
 
  private:
   const PatchMesh& mesh_;
-  std::vector<int> element_;  // per vertex, the first that has it
+  std::vector<int> element_;  // per vertex, the first element that has it; -1: none
 };
 
 }  // namespace lightwell

@@ -6,20 +6,22 @@
 
 namespace lightwell {
 
-/// Of each vertex, a patch that it is of: all are of one but where patches go on smoothly.
+/// A patch that each vertex belongs to. A vertex belongs to several patches only where patches meet
+/// smoothly.
 std::vector<int> vertex_patches(const PatchMesh& mesh);
 
-/// Integral over each patch, m^2, of what is interpolated between vertices: patches x columns. Of
-/// radiosity that is power, W.
+/// Integral over each patch of values interpolated between vertices (vertices x columns): patches x
+/// columns, in m^2 times the unit of the values. The integral of radiosity is power, W.
 Eigen::ArrayXXd patch_integral(const PatchMesh& mesh, const BandArray& vertex_values);
 
-/// Of all power, what matters where a single patch is off by it: 0.2 %, and several times what a
-/// patch holds in the mean, so that few patches do not all matter.
+/// The error of a single patch's power that matters, as a share of all power: 0.2 %, or four
+/// patches' mean share if that is more, so that not every patch of a few matters.
 double notable_share(const PatchMesh& mesh);
 
-/// Radiosity that was gathered at vertices, in columns of every channel. But a pool of light may
-/// lie between vertices, or on one of them: patches whose power is off by a notable share of all
-/// keep what is `even` over them, at all of their vertices.
+/// The `gathered` radiosity, but the radiosity `even` at all vertices of patches whose two powers
+/// differ by a notable share of all (see notable_share): in such a patch a pool of light may lie
+/// between vertices or on one of them. `even` follows from the patches' equations. Both are
+/// vertices x columns, W/m^2.
 BandArray with_pools(const PatchMesh& mesh, const BandArray& even, BandArray gathered);
 
 }  // namespace lightwell

@@ -4,30 +4,30 @@
 
 namespace lightwell {
 
-/// Rays of each patch's row of form factors for a target error relative to the mean irradiance:
-/// `most`, or as many fewer as the target is above half a percent, 64 at least; for no target (0)
-/// `most`. A gather reads very many patches, so that what their noise leaves of error is a small
-/// share of it. It has to be: no error estimate sees it.
+/// Form-factor rays of each patch for `target`, an error relative to the mean irradiance: 128 * 1 %
+/// / target, rounded up to a power of two, at least 64 and at most `most`; `most` if the target is
+/// 0. A gather averages very many patches, so the noise of their form factors is a small part of
+/// its error. The noise must be small, because no error estimate sees it.
 int form_factor_rays(double target, int most);
 
-/// Patches that light is exchanged between for such a target, where a scene decides their size:
-/// `most`, or as many fewer as the target is above one percent, 600 at least. What is read
-/// where gathered rays end is light at vertices, gathered itself, so that patches may be coarse.
+/// Number of patches for such a target, if the scene decides their size: 800 * 2 % / target, at
+/// least 600 and at most `most`; `most` if the target is 0. Patches may be coarse, because the rays
+/// of a gather read light at vertices, which was gathered itself.
 int patch_count_for(double target, int most);
 
-/// Rays of a gather that leave the share `target` of noise, where `rays` of them left `found`: a
-/// power of two, or five to seven eighths of one. Stratified rays' error in a room falls with about
-/// the power 2/3 of their number.
+/// Rays of a gather that leave the noise `target`, if `rays` of them left `found`; both relative to
+/// the mean irradiance. The error of stratified rays in a room falls with about the power 2/3 of
+/// their number. 128 to 2^15, a power of two or five to seven eighths of one, which stratify well.
 int rays_for_noise(int rays, double found, double target);
 
-/// Places that an error estimate looks at, for a solution that gathers at `vertices`: those `asked`
-/// for, or twice, four or eight times as many where that is a 32nd of the vertices at most. An
-/// estimate from more of them is surer by the square root.
+/// Sample points of an error estimate for a solution with so many `vertices`: `asked`, or two, four
+/// or eight times as many if that is at most a 32nd of the vertices. The standard error of the
+/// estimate falls with the square root of the number.
 int estimate_points(int asked, std::int64_t vertices);
 
-/// Rays of each of `places`, beside a solution of `rays` a vertex: twice as many, or four times
-/// where that is an eighth of the solution's work at most; 256 at least. Else the estimate would be
-/// mostly the noise of what it compares with.
+/// Rays of each of the sample points of an error estimate, for a solution with `rays` at each of
+/// `vertices`: twice as many, or four times if that is at most an eighth of the solution's work; at
+/// least 256. With fewer, most of the estimate would be the noise of its own gathers.
 int estimate_rays(int rays, std::int64_t vertices, int points);
 
 }  // namespace lightwell

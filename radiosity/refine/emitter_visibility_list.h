@@ -7,20 +7,21 @@
 
 namespace lightwell {
 
-/// Which of the first 64 lights places see, in a quarter of a byte for each light instead of
-/// EmitterVisibility's fixed size.
+/// A list of EmitterVisibility with a quarter of a byte for each of the first 64 lights that exist,
+/// instead of a fixed size.
 class EmitterVisibilityList {
  public:
   explicit EmitterVisibilityList(int lights);
 
+  /// New entries equal EmitterVisibility{}.
   void resize(int count);
   void shrink_to_fit();
   void set(int index, const EmitterVisibility& visibility);
-  /// Its `noisy` as a float has it.
+  /// The entry, with `noisy` rounded to float.
   EmitterVisibility operator[](int index) const;
 
  private:
-  int bytes_;  // for a bit of each light
+  int bytes_;  // that hold a bit of each light
   std::vector<float> noisy_{};
   std::vector<std::uint8_t> bits_{};  // whole, hidden, whole, ...
 };

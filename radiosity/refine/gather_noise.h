@@ -4,14 +4,15 @@
 
 namespace lightwell {
 
-/// Per element, the standard error that the rays of a gather to vertices leave in interpolated
-/// irradiance, see RadiositySolution::gather_noise. `irradiance` at vertices is what it is relative
-/// to; `ray_variance` is that of a single ray there, (W/m^2)^2: what one vertex says of it is
-/// little more than a guess, so that a patch's vertices say it together; `rays` how many each cast.
+/// Per element, the RMS error that the rays of a gather at vertices leave in interpolated
+/// irradiance, relative to error_references() of `irradiance` (vertices x bands, W/m^2); see
+/// RadiositySolution::gather_noise. `ray_variance` is the estimated variance of a single ray at
+/// each vertex, (W/m^2)^2. One vertex's value is little more than a guess, so the mean over each
+/// patch is used. `rays` is the number of rays of each vertex.
 Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
                             const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays);
 
-/// The RMS of such noise over all area that reflects.
+/// The RMS over all area that reflects of the noise of gather_noise().
 double rms_noise(const PatchMesh& mesh, const Eigen::ArrayXf& noise);
 
 }  // namespace lightwell

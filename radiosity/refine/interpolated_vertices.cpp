@@ -25,13 +25,14 @@ namespace {
 
 struct Prediction {
   Eigen::RowVectorXf value;
-  float variance = 0.0f;  // beside that of the ends
+  float variance = 0.0f;  // of the difference; the variance of the ends comes on top
 };
 
-// Of a vertex that is not told.
+// Prediction of a vertex that is not interpolated.
 Prediction predict(const VertexPrediction& b, const BandArray& pilot, const BandArray& values) {
   const float both = b.spread + b.noise;
-  const float weight = both > 0.0f ? b.spread / both : 0.0f;  // of the difference (Wiener 1949)
+  // Weight of the difference, by Wiener's filter (1949).
+  const float weight = both > 0.0f ? b.spread / both : 0.0f;
   return {mean_of_ends(b.at, values) +
               weight * (pilot.row(b.at.vertex).matrix() - mean_of_ends(b.at, pilot)),
           weight * b.noise};
@@ -41,8 +42,8 @@ bool is_predicted(const VertexPrediction& b) {
   return !b.is_interpolated && std::isfinite(b.spread) && std::isfinite(b.noise);
 }
 
-// Per group: how much further predictions are off, in the mean square, than noise explains. (The
-// pilot gather read light as it was before refinement.)
+// Per group, the mean squared error of predictions beyond the part that noise explains, (W/m^2)^2.
+// There is such an error because the pilot gather read the light of unrefined elements.
 Eigen::ArrayXd unexplained(std::span<const VertexPrediction> predictions, const BandArray& pilot,
                            const BandArray& values, const Eigen::ArrayXf& variance,
                            std::span<const int> group, int bands) {
@@ -74,7 +75,8 @@ void combine_with_predictions(std::span<const VertexPrediction> predictions, con
   const Eigen::ArrayXd more = unexplained(predictions, pilot, values, variance, group, bands);
   for (const VertexPrediction& b : predictions) {
     const int v = b.at.vertex;
-    float of_ends = 0.0f;  // as if their noise were all alike: some of it is
+    // The mean of the ends' variances, as if their noise were fully correlated; part of it is.
+    float of_ends = 0.0f;
     for (int i = 0; i < b.at.end_count(); ++i) of_ends += variance[b.at.ends[i]];
     of_ends /= static_cast<float>(b.at.end_count());
     if (b.is_interpolated) {
@@ -115,7 +117,8 @@ std::vector<int> share_rays(std::span<const double> area, int rays) {
   std::sort(sorted.begin(), sorted.end(), std::greater<>());
   const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
   double typical = 0.0, larger = 0.0;
-  constexpr double about_half = 0.47;  // no share that elements of a grid add up to
+  // About half; elements of a regular grid do not add up to this share, so rounding cannot decide.
+  constexpr double about_half = 0.47;
   for (std::size_t i = 0; i < sorted.size() && larger < about_half * total; ++i) {
     typical = sorted[i];
     larger += sorted[i];
@@ -123,8 +126,8 @@ std::vector<int> share_rays(std::span<const double> area, int rays) {
   std::vector<int> shares(area.size(), rays);
   if (!(typical > 0.0)) return shares;
   for (std::size_t v = 0; v < shares.size(); ++v) {
-    // sqrt(area / typical), to a power of two. It changes between the areas that a grid's vertices
-    // have, halves and quarters, so that rounding does not decide.
+    // sqrt(area / typical), to a power of two. The power changes between the areas that vertices of
+    // a grid have, which are halves and quarters, so that rounding does not decide.
     constexpr double between = 0.45;
     const double halvings = -0.5 * std::log2(std::max(area[v] / typical, 1e-6));
     const int shift = std::clamp(static_cast<int>(std::floor(halvings + between)), -1, 3);

@@ -10,7 +10,7 @@
 
 namespace lightwell {
 
-/// A vertex whose indirect light is interpolated from others: it is their mean, and nothing is
+/// A vertex that takes the mean indirect light of other vertices, its *ends*; no indirect light is
 /// gathered there. (Elements are mostly split for the edges of shadows, across which indirect light
 /// hardly changes.)
 struct InterpolatedVertex {
@@ -20,29 +20,33 @@ struct InterpolatedVertex {
   int end_count() const { return ends[2] < 0 ? 2 : 4; }
 };
 
-/// A vertex that a split made, and what a pilot gather says of its indirect light against the mean
-/// of its ends; (W/m^2)^2, mean of the bands, channels added.
+/// A vertex that a split made, and the difference that a pilot gather found between its indirect
+/// light and the mean of its ends. Squares are in (W/m^2)^2, mean of the bands, channels added.
 struct VertexPrediction {
   InterpolatedVertex at{};
-  bool is_interpolated = false;                           ///< taken for the mean
+  bool is_interpolated = false;                           ///< the vertex takes its ends' mean
   float spread = std::numeric_limits<float>::infinity();  ///< mean square of the difference
-  float noise =
-      std::numeric_limits<float>::infinity();  ///< of the pilot gather, left in the difference
+  float noise = std::numeric_limits<float>::infinity();   ///< squared noise in the difference
 };
 
-/// Puts what was gathered at vertices (rows of `values`, of variance `variance`, which becomes what
-/// is left of it) together with what the pilot gather predicts from their ends, each by how sure it
-/// is; interpolated ones have their ends' mean. The pilot gather's rays go the same ways from
-/// neighbours, so that little noise is in differences between them: small elements take their light
-/// from many rays at large ones, and keep what sets them apart. Where predictions of a `group` of
-/// vertices (such as a patch's) turn out worse than noise explains, they count for less. Entries
-/// come after all of their ends. Columns of `bands` for each channel; each is a sum of gathers,
-/// some of them less others, and may fall below 0 by their noise.
+/// Joins the light gathered at vertices with predictions, weighted by the inverse variance of each.
+///
+/// A prediction is the light of the vertex's ends plus the pilot gather's difference from these
+/// ends, shrunk by its noise (Wiener 1949). Pilot rays take the same directions at neighbours, so
+/// the difference has little noise. A small element thus takes its light from the many rays of
+/// large ones, and keeps its own difference. Interpolated vertices get their ends' mean.
+///
+/// Each entry of `predictions` must come after the entries of its ends. `pilot` and `values` are
+/// vertices x columns (`bands` for each channel), W/m^2. `variance` is that of `values`, (W/m^2)^2,
+/// and becomes the remaining one. Predictions for vertices of one `group` (such as a patch's) count
+/// for less if their errors are larger than noise explains. A joined value may be negative by
+/// noise.
 void combine_with_predictions(std::span<const VertexPrediction> predictions, const BandArray& pilot,
                               std::span<const int> group, int bands, BandArray& values,
                               Eigen::ArrayXf& variance);
 
-/// Sets the rows of interpolated vertices, which come after all of their ends in the list.
+/// Sets the rows of interpolated vertices to the mean of their ends' rows. Each entry must come
+/// after the entries of its ends.
 void interpolate_vertices(std::span<const InterpolatedVertex> interpolated, BandArray& values);
 
 /// Places in a list of `count` vertices that are not interpolated, in rising order; vertex numbers
@@ -50,18 +54,18 @@ void interpolate_vertices(std::span<const InterpolatedVertex> interpolated, Band
 std::vector<int> places_without(std::span<const InterpolatedVertex> interpolated,
                                 std::size_t count);
 
-/// Per vertex, m^2: the share of the elements around that is nearer to it than to their other
+/// Area that each vertex stands for, m^2: of every element around, its area over the number of its
 /// corners.
 std::vector<double> vertex_areas(const PatchMesh& mesh);
 
-/// What rays each vertex takes, by the area it stands for. They fall with its square root, which
-/// makes the mean noise over all area least for the work: `rays` where those are that make up half
-/// of all area, at most twice as many on still larger ones, at least an eighth anywhere; powers of
-/// two times that.
+/// Rays of each vertex by the area that the vertex stands for. Rays proportional to the square root
+/// of the area make the mean noise over all area least for the work. Vertices of typical area, the
+/// large ones that make up about half of all area, take `rays`; others take `rays` times a power of
+/// two from 1/8 to 2.
 std::vector<int> share_rays(std::span<const double> area, int rays);
 
-/// The same, with the areas of interpolated vertices added to their ends'; they themselves get 0
-/// rays.
+/// Rays of each vertex of a mesh. Interpolated vertices take 0 rays, and their area counts for
+/// their ends.
 std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedVertex> interpolated,
                             int rays);
 

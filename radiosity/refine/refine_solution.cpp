@@ -14,17 +14,18 @@
 namespace lightwell {
 namespace {
 
-// A split leaves a sixteenth of the squared error where light is smooth, and half of it along an
-// edge, where it has cells left that the edge runs through: that is what most are split for, not
-// all. Who may go on later ends by what is expected so; else all is measured that counts, or taken
-// to be as bad as what it was split from, and only the report expects something between.
+// The expected share of a cell's squared error that is left in its parts: a sixteenth in smooth
+// light, a half along the edge of a shadow, for which most cells (not all) are split. A refinement
+// that may continue later ends by this expectation. Otherwise cells that count are measured, or
+// taken to be as bad as their parents, and only the report expects a share, of a quarter.
 constexpr double of_a_split = 0.4, of_a_split_in_the_end = 0.25;
 
-// Cells of equal error, by a scene's symmetry, are split together: rounding must not choose.
+// Ratio from which on two errors count as equal. Symmetric cells are then split together, and
+// rounding does not choose between them.
 constexpr double about_equal = 0.999;
 
-// About as many as elements of a quarter of the edge everywhere would be, both sides; those that
-// are small already, leaves and crumbs, would stay what they are.
+// About the number of elements of a quarter of the edge everywhere, both sides counted. Elements
+// that are small already are not split.
 std::int64_t default_room(const RefinedElements& elements) {
   std::vector<double> areas;
   double total = 0.0;
@@ -33,7 +34,7 @@ std::int64_t default_room(const RefinedElements& elements) {
     total += elements.area(cell);
   }
   std::sort(areas.begin(), areas.end(), std::greater<>());
-  double typical = 0.0, larger = 0.0;  // half of all area lies in elements as large
+  double typical = 0.0, larger = 0.0;  // half of all area lies in elements of at least `typical`
   for (std::size_t i = 0; i < areas.size() && larger < 0.5 * total; ++i) {
     typical = areas[i];
     larger += areas[i];
@@ -69,7 +70,7 @@ class Refinement {
     }
   }
 
-  // Until the tolerance is reached; goes on from where it ended before.
+  // Splits until the tolerance or a limit is reached; a further call continues.
   RefineReport run(double tolerance) {
     options_.tolerance = report_.tolerance = tolerance;
     allowed_ = std::pow(tolerance, 2) * error_.area();
@@ -79,8 +80,8 @@ class Refinement {
     report_.outcome = RefineOutcome::off;
     while (report_.outcome == RefineOutcome::off) {
       std::vector<int> marks = cells_to_split();
-      // No more than there may be elements for, each split making three of them or more. (Bounds
-      // fall when they are measured, and others come to the front.)
+      // Measures no more cells than can be split, since each split adds at least three elements. (A
+      // measured error is below its bound, and other cells come to the front.)
       const std::int64_t room =
           std::max<std::int64_t>(max_elements_ - elements_.element_count(), 0);
       constexpr std::size_t at_once = 4096;
@@ -107,8 +108,7 @@ class Refinement {
     return report_;
   }
 
-  /// With half of what noise may hide: where it hides anything, that is something between nothing
-  /// and all of its square.
+  // Includes half of the squared error that noise may hide, which is between none and all of it.
   float relative_error(int cell, int side) const {
     const Square& square = squares_[elements_.side_number(cell, side)];
     const double expected = double{square.known} + 0.5 * double{square.hidden};
@@ -129,8 +129,8 @@ class Refinement {
     is_known_[cell] = 1;
   }
 
-  // The leaves with most of the squared error, the others holding at most half of what is allowed
-  // or being as small as may be; also finds the sum over all.
+  // The leaves with the largest squared errors, in falling order, so many that the others hold at
+  // most half of what the tolerance allows. Also sums over all leaves.
   std::vector<int> cells_to_split() {
     std::vector<std::pair<double, int>> by_error;
     sum_ = 0.0;
@@ -148,8 +148,8 @@ class Refinement {
     double last = 0.0;
     const double all = rest, fixed = sum_ - all;
     for (const auto& [minus_square, cell] : by_error) {
-      // In the last round no more than it takes, as far as that can be foreseen; what falls short
-      // takes one more, which is less than to split everywhere to be sure.
+      // The last round splits no more than the tolerance takes by expectation. A shortfall takes
+      // one more round, which costs less than additional splits in every case.
       constexpr double nearly = 0.95;
       const bool will_do = fixed + rest + of_children_ * (all - rest) <= nearly * allowed_;
       const bool is_enough = rest <= 0.5 * allowed_ || will_do;
@@ -161,9 +161,9 @@ class Refinement {
     return marks;
   }
 
-  // Squared error times area. What noise may hide in a cell is nothing for the most part; but where
-  // it could be a notable share of all that is allowed, the cell is split, and looked at again
-  // nearer by.
+  // Squared error times area. The error that noise may hide in a cell is nothing for the most part,
+  // and counts only if it could be a notable share of all that is allowed. Such a cell is split,
+  // and its parts are measured.
   double counted(int cell) const {
     constexpr double notable = 0.01;
     double known = 0.0, hidden = 0.0;
@@ -177,16 +177,17 @@ class Refinement {
     return hidden > notable * allowed_ ? known + hidden : known;
   }
 
-  // Whether it pays to choose anew after the worst are split: where no more elements are wanted
-  // than it takes, or where there may soon be none left. Else all at once are fewer rounds.
+  // Whether cells with smaller errors wait until the worst are split and measured. They do if
+  // refinement may continue later, or if the limit of elements is near. Otherwise all are split at
+  // once, in fewer rounds.
   bool may_wait(const std::vector<int>& marks) const {
     const auto made = 3 * static_cast<std::int64_t>(marks.size());
     return may_go_on_ || 2 * (elements_.element_count() + made) > max_elements_;
   }
 
-  // Of leaves in falling order of squared error, those that are above what the children of the
-  // first will be by expectation: whoever is below can wait for them. So elements go where they
-  // serve most, however few there may be.
+  // The first of the leaves, which are in falling order of squared error: those above the expected
+  // error of the first one's children. The others wait, so that elements go to the largest errors,
+  // however few there may be.
   std::vector<int> worst_of(std::vector<int> marks) const {
     constexpr double of_a_child = of_a_split / 4.0;
     const double least = about_equal * of_a_child * counted(marks.front());
@@ -199,7 +200,7 @@ class Refinement {
     return measured_[cell] || elements_.level(cell) == 0 ? 1.0 : in_the_end_;
   }
 
-  // Whether any of them had not been measured yet.
+  // Measures the cells that are not measured yet; returns whether there were any.
   bool measure(const std::vector<int>& cells) {
     std::vector<int> fresh;
     for (const int cell : cells) {
@@ -213,7 +214,7 @@ class Refinement {
     return !fresh.empty();
   }
 
-  // Splits them all, or as many of the first as there may be elements for.
+  // Splits all cells, or as many of the first as the limit of elements allows; returns whether all.
   bool split(const std::vector<int>& marks) {
     std::vector<int> done = elements_.split(marks);
     const bool all = elements_.element_count() <= max_elements_;
@@ -233,8 +234,8 @@ class Refinement {
       elements_.split({marks.data(), low});
     }
     resize();
-    // What children are expected to be until they are measured. (Their numbers may be old: what was
-    // merged is split into the same again.)
+    // Expected errors of the children, until they are measured. (A child may be known already: a
+    // cell that was merged is split into the same children again.)
     for (const int cell : elements_.leaves()) {
       if (is_known_[cell]) continue;
       for (int side = 0; side < elements_.side_count(cell); ++side) {
@@ -342,7 +343,8 @@ RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
     result.pilot = error.values_by_channel(result.refined.vertex, result.interpolated, *by_channel);
   } else {
     result.pilot = error.values(result.refined.vertex);
-    // Some were gathered before others told of them: as with channels, those have the last word.
+    // A vertex may have been gathered before its cell turned out to be even. As with channels, its
+    // ends decide.
     interpolate_vertices(result.interpolated, result.pilot.indirect);
   }
   const PatchMesh& mesh = result.refined.mesh;
