@@ -177,8 +177,8 @@ SampledSolution read_solution(const PatchMesh& mesh, const RadiositySolution& so
   return sampled;
 }
 
-// With more rays than the solution's gather and other random numbers; `wanted` as estimate_points()
-// returned it.
+// Options of a gather with more rays than the solution's and other random numbers; `wanted` is the
+// result of estimate_points().
 GatherOptions independent_gather(const SolveOptions& options, const PatchMesh& mesh, int wanted,
                                  int batch) {
   GatherOptions gather = options.gather;

@@ -14,8 +14,8 @@ struct ErrorEstimate {
   double noise = 0.0;      ///< RMS noise that the rays of both gathers leave in the error
   int batches = 1;         ///< batches of sample points
 
-  double error() const;  ///< upper end: root of `square` plus one standard error
-  double least() const;  ///< lower end: root of `square` less one standard error
+  double error() const;  ///< upper end: sqrt(square + deviation)
+  double least() const;  ///< lower end: sqrt(square - deviation), at least 0
 };
 
 /// Relative RMS error of interpolated irradiance over the area that reflects, compared with
@@ -27,10 +27,9 @@ struct ErrorEstimate {
 ///   sampling).
 /// - Gathers: at least twice the rays of the solution's (see estimate_rays), and other random
 ///   numbers.
-/// - Shared error: the gathers read the solution's own light. If all of it is too bright or too
-/// dim,
-///   for example since interpolation cuts peaks off, the gathers are so too, by the reflected share
-///   of all light. This part is corrected.
+/// - Shared error: the gathers read the solution's own light. If that light is too bright or too
+///   dim in all, for example since interpolation cuts peaks off, then so are the gathers, by the
+///   reflected share of all light. This part is corrected.
 /// - Noise of both gathers is left in, which makes up for the other errors that both share.
 ///
 /// The caster of `lit` is of the solution's mesh. `of_elements`, if given, gets the estimated RMS

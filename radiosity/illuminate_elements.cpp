@@ -19,7 +19,7 @@
 namespace lightwell {
 namespace {
 
-// The error allowed, relative to the mean irradiance; 0: no accuracy is asked for.
+// The allowed error, relative to the mean irradiance; 0: no accuracy is requested.
 double target_of(const Scene& scene, const SolveOptions& options, const SolvedScene& patches) {
   if (!options.accuracy) return 0.0;
   if (options.accuracy->share > 0.0) return options.accuracy->share;
@@ -151,7 +151,7 @@ class GatherAttempts {
     spent_["error_estimate"] += watch_.lap();
   }
 
-  // Returns false where the target is met, or more effort would not help.
+  // Returns false if the target is met, or if more effort would not help.
   bool raise_effort() {
     RadiositySolution& solution = solved_.solution;
     if (!may_repeat() || solution.error_estimate <= target_) return false;

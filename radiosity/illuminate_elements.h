@@ -13,7 +13,7 @@ struct DirectLightSums {
 
 /// Finds the irradiance at vertices from the radiosity of patches.
 ///
-/// 1. Splits elements, as `options.refine` says.
+/// 1. Splits elements by `options.refine`.
 /// 2. Gathers to their vertices.
 /// 3. Estimates the error.
 ///

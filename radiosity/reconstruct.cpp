@@ -51,10 +51,9 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 // equations balanced. Interpolation between vertices that are far apart cuts peaks off, and their
 // power would be lost at each reflection.
 //
-// - One factor per band serves the whole scene. A factor for each patch would be worse: in a
-// corner,
-//   or beside an object that stands on the patch, the error of the patch's own value exceeds the
-//   power that the factor restores.
+// - One factor per band serves the whole scene. A factor for each patch would be worse: in corners
+//   and beside objects that stand on a patch, the error of the patch's own value exceeds the power
+//   that the factor restores.
 // - A patch whose power is off by a notable share of the scene's light (see notable_share), such as
 //   the place that a spotlight falls on, has a factor of its own. Its light would otherwise be
 //   spread over all other surfaces.
@@ -472,10 +471,10 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
   solution.direct_irradiance = final_direct(lit, gather, pilot);
   BandArray irradiance = with_indirect(pilot, pilot.indirect);
   if (pilot.tree) {
-    // The final gather averages the noise of this one over all directions, so few rays suffice.
-    // With a sixteenth to a half of the rays, the error of indirect light in the hall of 100 boxes
-    // (see docs/figures.md) is 0.67 to 0.65 %; if the final gather reads the first pilot gather,
-    // 0.85 %.
+    // The final gather averages the noise of the second pilot gather over all directions, so few
+    // rays suffice. With a sixteenth to a half of the rays, the error of indirect light in the hall
+    // of 100 boxes (see docs/figures.md) is 0.67 to 0.65 %; if the final gather reads the first
+    // pilot gather, 0.85 %.
     constexpr int few = 8;
     VertexGatherTask second{lit, pilot, gather, few};
     second.options.replica += first_replicas;

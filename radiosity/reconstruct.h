@@ -10,8 +10,8 @@
 
 namespace lightwell {
 
-/// A first, cheap gather at vertices. Later gathers read its light, which resolves what one value a
-/// patch does not (such as the dark foot of a block).
+/// A first, cheap gather at vertices. Its light resolves details smaller than a patch (such as the
+/// dark foot of a block), and later gathers read that light.
 struct PilotGather {
   std::optional<PatchMesh> refined{};  ///< the refined mesh; empty: the base is not refined
   /// Finds the refined element at a point of a base element; null without refinement.

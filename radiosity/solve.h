@@ -56,8 +56,8 @@ struct SolveReport {
   int gather_rays = 0;    ///< rays of the last final gather
 };
 
-/// Whether elements start at twice the given length, since refinement splits them. They do not if
-/// nothing is refined, if a longest element size is given, or with discontinuity meshing, whose
+/// True if elements start at twice the given length, since refinement splits them. False if nothing
+/// is refined, if a longest element size is given, or with discontinuity meshing, whose
 /// lines need the given length.
 bool starts_coarse(const SolveOptions& options);
 

@@ -26,7 +26,7 @@ struct GatherPoint {
   /// Scene-wide facet that the point lies on, whose plane its rays then do not meet; -1: free
   /// space.
   int facet = -1;
-  /// Key of the random numbers; empty: the point's place in the list. Points with the same key have
+  /// Key of the random numbers; empty: the point's index in the list. Points with the same key have
   /// the same noise of light from afar, which is then not in the differences between them.
   std::optional<std::uint64_t> key{};
   int rays = 0;  ///< hemisphere rays; 0: GatherOptions::rays
@@ -76,12 +76,11 @@ struct GatheredIrradiance {
 /// Irradiance at points of a solved scene (final gather, Reichert 1992).
 ///
 /// - Direct light: closed form times visibility.
-/// - Indirect light: E = (1/N) sum B over N cosine-distributed rays, which read the radiosity B
-/// where
-///   they end, and continue through mirrors and clear glass.
+/// - Indirect light: E = (1/N) sum B over N cosine-distributed rays, which continue through mirrors
+///   and clear glass, and read the radiosity B where they end.
 /// - Light of DirectLight's emitters through mirrors and glass is left out, since rays from the
-///   receiver find it by chance only (see caustic_irradiance). Light of the sky's dome is included,
-///   since such rays find it well.
+///   receiver find it by chance only (see caustic_irradiance). Such light of the sky's dome is
+///   included, since the rays find it well.
 ///
 /// `radiosity` is vertices x columns, W/m^2, as gatherable_radiosity makes it. Throws Interrupted
 /// when progress says stop.
@@ -113,9 +112,9 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
                              const RunControl& run = {});
 
 /// A gather point for every vertex: 2 % of the way from the vertex to the centre of one of its
-/// elements, so that the point lies on no edge, with the facet and the normal of that element. If
-/// the vertex is shared by facets that meet smoothly, the point lies as far above them as well,
-/// with their common normal and no facet.
+/// elements, so that the point lies on no edge, with the facet and the normal of that element. On
+/// spheres the point lies on the surface. If the vertex is shared by facets that meet smoothly, the
+/// point lies as far above them as well, with their common normal and no facet.
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
 
 /// The points of vertex_gather_points, each made on demand. Keeps a reference to the mesh.

@@ -33,9 +33,9 @@ class CornerPredictions {
 
   /// `tolerance` as in RefineOptions. Keeps what was measured.
   void set_tolerance(double tolerance);
-  /// Whether the indirect light on the cell's side is interpolated: even in the cell's parent.
+  /// True if the indirect light on the cell's side is interpolated: if it is even in the parent.
   bool is_interpolated(int cell, int side) const;
-  /// Whether the cell was measured with interpolated light that a gather would now replace.
+  /// True if the cell was measured with interpolated light that a new measurement would gather.
   bool is_stale(int cell) const;
 
   /// Makes room for all cells that exist; needed before side() of a new one.
@@ -43,7 +43,7 @@ class CornerPredictions {
   CellSide& side(int cell, int side) { return sides_[elements_.side_number(cell, side)]; }
 
   /// A vertex of the list is interpolated unless some split cell with uneven indirect light needs a
-  /// gather there, or one of its ends is not in the list. Vertex numbers of the result are places
+  /// gather there, or one of its ends is not in the list. Vertex numbers of the result are indices
   /// in the list; entries come after their ends.
   std::vector<InterpolatedVertex> interpolated(const std::vector<int>& vertices) const;
   /// Predictions of the vertices whose ends are all in the list; `interpolated` as interpolated()
@@ -66,7 +66,7 @@ class CornerPredictions {
   std::vector<Largest> largest_errors(
       const std::function<double(int cell, int side)>& reference) const;
   // Calls visit(vertex, entry) for the vertices of the list whose ends are all in it, after their
-  // ends. The entry has places in the list.
+  // ends. The entry has indices in the list.
   template <class Visit>
   void for_each_with_ends(const std::vector<int>& vertices, Visit&& visit) const;
 

@@ -17,8 +17,8 @@ Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
     if (!(reference[e] > 0.0) || !(mesh.area[p] > 0.0)) continue;
     double of_corners = 0.0;
     for (int c = 0; c < n; ++c) of_corners += 1.0 / double{rays[mesh.corners[e][c]]} / n;
-    // Independent errors at the corners leave the mean, over the element, of the sum of squared
-    // interpolation weights.
+    // The mean over the element of the sum of squared interpolation weights: the share that is left
+    // of the variance of independent errors at the corners.
     const double interpolated = n == 4 ? 4.0 / 9.0 : 1.0 / 2.0;
     const double variance = of_patch[p] / mesh.area[p] * of_corners * interpolated;
     noise[e] = static_cast<float>(std::sqrt(variance) / reference[e]);

@@ -92,8 +92,8 @@ void combine_with_predictions(std::span<const VertexPrediction> predictions, con
   }
 }
 
-std::vector<int> places_without(std::span<const InterpolatedVertex> interpolated,
-                                std::size_t count) {
+std::vector<int> indices_without(std::span<const InterpolatedVertex> interpolated,
+                                 std::size_t count) {
   std::vector<char> is_interpolated(count, 0);
   for (const InterpolatedVertex& t : interpolated) is_interpolated[t.vertex] = 1;
   std::vector<int> others;

@@ -49,10 +49,10 @@ void combine_with_predictions(std::span<const VertexPrediction> predictions, con
 /// after the entries of its ends.
 void interpolate_vertices(std::span<const InterpolatedVertex> interpolated, BandArray& values);
 
-/// Places in a list of `count` vertices that are not interpolated, in rising order; vertex numbers
-/// of `interpolated` are places in the list.
-std::vector<int> places_without(std::span<const InterpolatedVertex> interpolated,
-                                std::size_t count);
+/// Indices in a list of `count` vertices that are not interpolated, in rising order; vertex numbers
+/// of `interpolated` are indices in the list.
+std::vector<int> indices_without(std::span<const InterpolatedVertex> interpolated,
+                                 std::size_t count);
 
 /// Area that each vertex stands for, m^2: of every element around, its area over the number of its
 /// corners.

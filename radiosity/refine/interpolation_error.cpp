@@ -106,7 +106,7 @@ void InterpolationError::gather(const std::vector<int>& vertices,
                                 std::span<const InterpolatedVertex> interpolated) {
   make_room();
   gathers_.gather_direct_at(vertices);
-  std::vector<int> others = places_without(interpolated, vertices.size());
+  std::vector<int> others = indices_without(interpolated, vertices.size());
   for (int& index : others) index = vertices[index];
   gathers_.gather_indirect_at(others);
   for (const int v : vertices) gathers_.interpolate_indirect(v);
@@ -136,7 +136,7 @@ double InterpolationError::reference(int cell, int side) const {
 // Differences count if they are beyond doubt; `hidden` gets what noise may hide otherwise.
 InterpolationError::Squares InterpolationError::beyond_noise(const Differences& differences,
                                                              double shadow_noise) {
-  // Of two independent gathers alone, the product over a cell would be off by about the noise.
+  // The product of only two gathers, over one cell, has an error of about the noise.
   const bool indirect_counts = differences.indirect > beyond_doubt * differences.noise;
   const double error = indirect_counts ? differences.both : differences.direct;
   const bool shadow_counts = error > beyond_doubt * shadow_noise;

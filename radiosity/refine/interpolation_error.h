@@ -44,12 +44,12 @@ class InterpolationError {
 
   /// Changes the tolerance; what was gathered is kept.
   void set_tolerance(double tolerance) { predictions_.set_tolerance(tolerance); }
-  /// Whether measure() would find more now than it did before set_tolerance().
+  /// True if measure() would find more now than before set_tolerance().
   bool is_stale(int cell) const { return predictions_.is_stale(cell); }
   /// Rays of the final gather.
   int rays() const { return gathers_.options().rays; }
 
-  /// Whether a side of an element of the base counts: it reflects and is not hidden.
+  /// True if a side of an element of the base counts: the side reflects and is not hidden.
   bool matters(int element) const { return matters_[element] != 0; }
   /// Area of the sides that count, m^2, and their mean irradiance, W/m^2.
   double area() const { return area_; }
@@ -68,7 +68,7 @@ class InterpolationError {
   std::vector<Measured> measure(const std::vector<int>& cells);
 
   /// Vertices of a mesh (numbers in RefinedElements) whose indirect light is interpolated from
-  /// others of the mesh. Vertex numbers of the result are places in the list.
+  /// others of the mesh. Vertex numbers of the result are indices in the list.
   std::vector<InterpolatedVertex> interpolated(const std::vector<int>& vertices);
   /// Predictions of the vertices whose ends are all in the list; `interpolated` as interpolated()
   /// returned it.
@@ -80,8 +80,8 @@ class InterpolationError {
   GatheredIrradiance values(const std::vector<int>& vertices) const {
     return gathers_.values(vertices);
   }
-  /// The same gathers, made again with the light of channels; over channels they sum to what
-  /// values() would return after gather().
+  /// The gathers of values() made again with the light of channels; over channels the columns sum
+  /// to the result of values() after gather().
   GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
                                        std::span<const InterpolatedVertex> interpolated,
                                        const ChannelLight& light) const {

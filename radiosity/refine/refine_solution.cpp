@@ -177,9 +177,9 @@ class Refinement {
     return hidden > notable * allowed_ ? known + hidden : known;
   }
 
-  // Whether cells with smaller errors wait until the worst are split and measured. They do if
-  // refinement may continue later, or if the limit of elements is near. Otherwise all are split at
-  // once, in fewer rounds.
+  // True if cells with smaller errors wait until the worst are split and measured: if refinement
+  // may continue later, or if the limit of elements is near. Otherwise all are split at once, in
+  // fewer rounds.
   bool may_wait(const std::vector<int>& marks) const {
     const auto made = 3 * static_cast<std::int64_t>(marks.size());
     return may_go_on_ || 2 * (elements_.element_count() + made) > max_elements_;

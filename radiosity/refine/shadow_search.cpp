@@ -43,8 +43,8 @@ double ShadowSearch::direct_range(int cell, int side) const {
   return high - low;
 }
 
-// Whether some vertices of the cell see the whole of a light and others do not, or some nothing of
-// a light and others something.
+// True if some vertices of the cell see the whole of a light and others do not, or some see nothing
+// of a light and others something.
 bool ShadowSearch::has_edge(int cell, int side) const {
   EmitterVisibility some, all{.whole = ~std::uint64_t{0}, .hidden = ~std::uint64_t{0}};
   for_each_vertex(elements_, cell, side, [&](int v) {

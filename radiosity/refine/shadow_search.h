@@ -23,9 +23,9 @@ class ShadowSearch {
   /// Keeps references to both.
   ShadowSearch(RefinedElements& elements, const VertexGathers& gathers);
 
-  /// The mean squared error of interpolated direct light that the search adds to the one found at
-  /// the cell's vertices, mean of the bands, (W/m^2)^2. `at_vertices` is that one, and
-  /// `shadow_noise` the squared noise of shadow rays in it.
+  /// Mean squared error of interpolated direct light between the cell's vertices, mean of the
+  /// bands, (W/m^2)^2. `at_vertices` is the mean squared error at the vertices, on top of which the
+  /// result comes, and `shadow_noise` is the squared noise of shadow rays in `at_vertices`.
   double error(int cell, int side, double at_vertices, double shadow_noise) const;
 
  private:

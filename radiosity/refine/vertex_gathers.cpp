@@ -70,7 +70,7 @@ GatherPoint VertexGathers::gather_point(int vertex) const {
   return {at.position, at.normal, elements_.base().facet[at.element]};
 }
 
-// With random numbers of the vertex's own.
+// A gather point with random numbers of the vertex's own.
 GatherPoint VertexGathers::keyed_point(int vertex) const {
   GatherPoint point = gather_point(vertex);
   point.key = static_cast<std::uint64_t>(vertex);
@@ -151,7 +151,7 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
 }
 
 // Replaces the radiosity of patches, one value each, by what a gather finds at the base's vertices.
-// With `noise` above 0, that gather's own noise also decides over the rays of the final gather.
+// With `noise` above 0, the noise of that gather also decides over the rays of the final gather.
 void VertexGathers::sharpen_radiosity(const BandArray& caustic, double noise) {
   const PatchMesh& mesh = elements_.base();
   const std::vector<int> all = vertices_of(mesh);
@@ -212,7 +212,7 @@ GatheredIrradiance VertexGathers::values(const std::vector<int>& vertices) const
   return result;
 }
 
-// The same as sharpen_radiosity, for the light of channels; `direct` begins with the base's
+// The radiosity of sharpen_radiosity() for the light of channels; `direct` begins with the base's
 // vertices.
 BandArray VertexGathers::sharpened_by_channel(const BandArray& direct,
                                               const ChannelLight& light) const {
@@ -241,7 +241,7 @@ GatheredIrradiance VertexGathers::values_by_channel(
   const BandArray direct = gather_direct({scene_, caster_, light.direct_light}, points, options_);
   const BandArray sharpened = sharpened_by_channel(direct, light);
 
-  const std::vector<int> gathered = places_without(interpolated, vertices.size());
+  const std::vector<int> gathered = indices_without(interpolated, vertices.size());
   std::vector<int> at;
   for (const int index : gathered) at.push_back(vertices[index]);
   const BandArray indirect =

@@ -48,7 +48,8 @@ class VertexGathers {
   void gather_direct_at(const std::vector<int>& vertices);
   /// Gathers indirect light, both times, at the vertices at which none was gathered yet.
   void gather_indirect_at(const std::vector<int>& vertices);
-  /// Sets indirect light to the mean of the vertex's ends if it is unknown; so for the ends before.
+  /// Sets the indirect light of a vertex to the mean of its ends, if the light is unknown. Unknown
+  /// light of the ends is set first, in the same way.
   void interpolate_indirect(int vertex);
   bool has_gathered_indirect(int vertex) const { return indirect_[vertex] == Indirect::gathered; }
 
@@ -62,9 +63,9 @@ class VertexGathers {
 
   /// Direct and indirect light of a list of vertices, in the list's order.
   GatheredIrradiance values(const std::vector<int>& vertices) const;
-  /// The same gathers made again with the light of channels: over channels the result sums to that
-  /// of values(). Indirect light of interpolated vertices (numbers are places in the list) is the
-  /// mean of their ends.
+  /// The gathers of values() made again with the light of channels, whose columns sum to values()
+  /// over channels. Indirect light of interpolated vertices (numbers are indices in the list) is
+  /// the mean of their ends.
   GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
                                        std::span<const InterpolatedVertex> interpolated,
                                        const ChannelLight& light) const;
