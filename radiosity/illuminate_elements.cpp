@@ -32,8 +32,8 @@ void require_finite(const Scene& scene, const RadiositySolution& solution) {
   const Eigen::Index odd = E.rows() - E.isFinite().rowwise().all().count();
   if (odd == 0 && solution.patch_radiosity.allFinite()) return;
   throw InputError(fmt::format(
-      "{}: its light is no finite number at {} of {} vertices; what emits 1e38 W/m2 is more than "
-      "can be counted. Check the units of its emission",
+      "{}: irradiance is not a finite number at {} of {} vertices; an exitance near 1e38 W/m2 is "
+      "more than single precision holds. Check the units of the scene's emission",
       scene.file.empty() ? "the scene" : scene.file.string(), odd, E.rows()));
 }
 

@@ -37,8 +37,8 @@ void require_light(const Scene& scene) {
 void require_no_start(const SolveOptions& options) {
   if (!options.progressive || !options.start) return;
   throw InputError(
-      "the solver 'progressive' starts from the emitters and cannot go on from another solution; "
-      "use another, such as the default");
+      "the solver 'progressive' starts from the emitters and cannot start from a solution; use "
+      "another solver, such as the default");
 }
 
 // Patch radiosities by progressive refinement, with `seconds` of the phases.
@@ -138,9 +138,9 @@ std::optional<ProgressiveOptions> without_rows(const DirectLight& direct_light,
 void require_unit(const Scene& scene, const SolveOptions& options) {
   if (!options.accuracy || options.accuracy->share > 0.0 || !scene.relative_units) return;
   throw InputError(
-      "the scene's light is in no known unit, so no accuracy in lux can be kept; ask for a share "
-      "of "
-      "the mean irradiance, such as 1%");
+      "the unit of the scene's light is unknown, so no accuracy in lux is possible; ask for a "
+      "share "
+      "of the mean irradiance, such as 1%");
 }
 
 // Direct light with columns of each channel; empty without channels.
@@ -200,8 +200,8 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   require_no_start(options);
   require_unit(scene, options);
   const std::uint64_t hash = scene_hash(scene);
-  if (options.run.journal && options.run.journal->of().scene_hash != hash) {
-    throw std::invalid_argument("the journal is of another scene");
+  if (options.journal && options.journal->of().scene_hash != hash) {
+    throw std::invalid_argument("the journal belongs to another scene");
   }
   SolvedScene solved;
   std::vector<PhaseSeconds> seconds;

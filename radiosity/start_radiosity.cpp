@@ -50,7 +50,7 @@ BandArray start_radiosity(const PatchMesh& mesh, const SolvedScene& start) {
                       (old_box.max() - box.max()).norm() <= rounding * size;
     if (!same) fail(fmt::format("has another patch {} than the scene", i));
   }
-  if (!start.solution.patch_radiosity.allFinite()) fail("has radiosities that are no numbers");
+  if (!start.solution.patch_radiosity.allFinite()) fail("has radiosities that are not finite");
   return start.solution.patch_radiosity;
 }
 

@@ -25,8 +25,8 @@ SolveOptions quick() {
   return options;
 }
 
-// At places spread evenly over the area of `where`: places x bands, as `solved` interpolates it.
-// `elements`, if given, gets those of `solved` that they lie on.
+// Irradiance that `solved` interpolates at points spread uniformly over the area of `where`: points
+// x bands. `elements`, if given, gets the element of `solved` at each point.
 BandArray irradiance_at_points(const SolvedScene& solved, const PatchMesh& where, int count,
                                std::vector<int>* elements = nullptr) {
   const ElementCaster caster(solved.mesh), hidden(where);
@@ -60,8 +60,8 @@ BandArray irradiance_at_points(const SolvedScene& solved, const PatchMesh& where
 // A refinement tolerance of 0 asks for elements of even size.
 constexpr double unrefined = 0.0;
 
-// Of two_lamps(), as nearly as may be: by many even elements, so that its errors lie elsewhere than
-// those of refinement.
+// A nearly exact solution of two_lamps(). Its many elements have the same size, so that its errors
+// lie elsewhere than those of refinement.
 const SolvedScene& known_light() {
   static const SolvedScene truth = [] {
     SolveOptions exact = quick();
@@ -76,7 +76,7 @@ const SolvedScene& known_light() {
 
 constexpr int points = 4096;
 
-// With odds of 19 to 1, whether refinement measured elements or the error estimate told of them.
+// Bounds hold with odds of 19 to 1, whether refinement or the error estimate found them.
 TEST(Accuracy, BoundsOfElementsHold) {
   const SolvedScene& truth = known_light();
   const BandArray E = irradiance_at_points(truth, truth.mesh, points);
@@ -98,10 +98,10 @@ TEST(Accuracy, BoundsOfElementsHold) {
       off += error * error / points;
       estimated += std::pow(bound[element[i]] / 2.0, 2) / points;
     }
-    std::printf("refined to %.2f: %.1f %% within their bounds, RMS %.4f, told %.4f\n", tolerance,
-                100.0 * held / points, std::sqrt(off), std::sqrt(estimated));
+    std::printf("refined to %.2f: %.1f %% within their bounds, RMS %.4f, estimated %.4f\n",
+                tolerance, 100.0 * held / points, std::sqrt(off), std::sqrt(estimated));
     EXPECT_GE(held, 0.95 * points);
-    // What the truth is off by itself comes on top of the error that is seen here.
+    // The error of the reference solution is part of the error seen here.
     EXPECT_LE(std::sqrt(estimated), 5.0 * std::sqrt(off));
   }
 }
@@ -124,17 +124,17 @@ TEST(Accuracy, IsKept) {
     EXPECT_EQ(solved.solution.outcome, Outcome::converged);
     EXPECT_LE(solved.solution.error_estimate, share);
     EXPECT_DOUBLE_EQ(report.accuracy, share);
-    // An RMS of 512 places, most of whose error is in the tenth that shadows' edges cross, is known
-    // to 1 / sqrt(2 * 51) = 10 %, twice that at worst; what the truth is off by itself comes on
-    // top.
+    // Most of the error of 512 sample points is in the tenth that shadows' edges cross, so its RMS
+    // is known to 1 / sqrt(2 * 51) = 10 %, twice that at worst. The error of the reference solution
+    // comes on top.
     EXPECT_LE(error, 1.2 * share + truth.solution.error_estimate / 2);
-    // Not at any price: the estimate is no more than five times the error.
+    // An estimate that is far too high would waste work: at most five times the error.
     EXPECT_LE(solved.solution.error_estimate, 5.0 * error);
   }
 }
 
-// Cut along shadows, or short already: elements are where an accuracy is found all the same, unless
-// they are to stay what they are.
+// Elements that are cut along shadows, or short already, are split as well, unless refinement is
+// off.
 TEST(Accuracy, SplitsWhateverElementsStartAs) {
   const auto refinement = [](const auto& change) {
     SolveOptions options = quick();
@@ -180,7 +180,7 @@ TEST(Accuracy, InLuxIsAShareOfTheMeanIlluminance) {
   EXPECT_THROW(solve_scene(scene, options), InputError);
 }
 
-// In a closed grey room B = M / (1 - rho) everywhere, and so is E.
+// In a closed grey room of reflectance rho and exitance M, B = E = M / (1 - rho) everywhere.
 TEST(Accuracy, MeanIlluminanceOfAFurnace) {
   Scene scene;
   const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 2.0f));
@@ -212,7 +212,7 @@ TEST(Accuracy, EffortFollowsTheError) {
   EXPECT_FALSE(next_effort(first, 0.01, 0.02, 0.013, reached, 20));
 }
 
-// Elements that may not be split interpolate as they do, however many rays there are.
+// More rays do not reduce the error of interpolation if elements may not be split.
 TEST(Accuracy, RaysAreNotCastWhereElementsAreTooLarge) {
   const Effort first = first_effort(0.03, false);
   EXPECT_FALSE(next_effort(first, 0.03, 0.2, 0.005, RefineReport{}, 0));
@@ -221,7 +221,7 @@ TEST(Accuracy, RaysAreNotCastWhereElementsAreTooLarge) {
   EXPECT_GT(noisy->gather_rays, first.gather_rays);
 }
 
-// Each batch is of places of its own, and what several say together is surer.
+// Each batch has sample points of its own, and several batches together are more certain.
 TEST(ErrorEstimate, BatchesJoin) {
   const Scene scene = test::two_lamps({.reflectance = 0.5f});
   const SolvedScene solved = solve_scene(scene);
@@ -243,21 +243,21 @@ TEST(ErrorEstimate, BatchesJoin) {
   double mean = 0.0, spread = 0.0;
   for (const double square : squares) mean += square / batches;
   for (const double square : squares) spread += std::pow(square - mean, 2) / (batches - 1);
-  // Each of the batches is joined by four operations at most, and summed here by two.
+  // joined() takes at most four operations for each batch, and the sums of the test take two.
   const double roundings = 6.0 * batches * std::numeric_limits<double>::epsilon();
   EXPECT_NEAR(all.square, mean, roundings * mean);
   EXPECT_NEAR(all.deviation, of_mean, roundings * of_mean);
   EXPECT_LT(all.least(), std::sqrt(mean));
   EXPECT_GT(all.error(), std::sqrt(mean));
-  // Batches spread by what they say of themselves, or less, since places are stratified. Squares of
-  // seven free differences exceed their mean three times once in 400.
-  std::printf("%.2e spread, %.2e told\n", std::sqrt(spread), deviation);
+  // Batches spread by their standard errors, or less, since sample points are stratified. The mean
+  // square of seven free differences exceeds three times its expectation once in 400.
+  std::printf("%.2e spread, %.2e estimated\n", std::sqrt(spread), deviation);
   EXPECT_LT(spread, 3.0 * deviation * deviation);
   EXPECT_GT(spread, 0.0);
 }
 
-// All light a few percent too dim, as if interpolation had cut peaks off: what is gathered in that
-// light for comparison is too dim as well, but for what comes straight from the lamps.
+// All light is 5 % too dim, as if interpolation had cut peaks off. The gathers of the estimate, in
+// that light, are too dim as well, but for the part straight from the lamps.
 TEST(ErrorEstimate, SeesWhatReflectionsHide) {
   const Scene scene = test::two_lamps({.reflectance = 0.9f});
   SolveOptions options;
@@ -272,7 +272,7 @@ TEST(ErrorEstimate, SeesWhatReflectionsHide) {
   const PatchMesh& mesh = solved.mesh;
   const BandArray E = element_mean(mesh, solved.solution.irradiance());
   const Eigen::ArrayXd reference = error_references(mesh, solved.solution.irradiance());
-  // Of what an element's light is relative to: the mean of its n-th power.
+  // The mean n-th power (n = 2 or 4) of light relative to error_references().
   const auto moment = [&](const BandArray& of, int n) {
     double sum = 0.0, area = 0.0;
     for (int e = 0; e < mesh.element_count(); ++e) {
@@ -291,8 +291,9 @@ TEST(ErrorEstimate, SeesWhatReflectionsHide) {
   solved.solution.indirect_irradiance *= 1.0f - missing;
   const double after = std::sqrt(std::pow(estimate(), 2) - std::pow(before, 2));
   std::printf("light %.4f off, %.4f of it not hidden: %.4f estimated\n", off, seen, after);
-  // A mean of squares over half of 2048 places has a standard error of sqrt(m4 - m2^2) / 32; the
-  // root half of that. The estimate lies one above what the places say, and those may be three off.
+  // A mean of squares over half of 2048 sample points has a standard error of sqrt(m4 - m2^2) / 32,
+  // and its root half of that. The estimate is one standard error above the sample points' value,
+  // which may be off by three.
   const double m2 = moment(E, 2), of_mean = std::sqrt(moment(E, 4) - m2 * m2) / 32.0;
   EXPECT_NEAR(after, off, 4.0 * 0.5 * of_mean / m2 * off);
 }

@@ -1,6 +1,6 @@
 // The shadow artefacts that radiosity pictures are known for (Baum, Mann, Smith & Winget 1991,
-// "Making radiosity usable"), each in a small scene at default sizes. Irradiance is read off the
-// mesh, as probes and pictures by interpolation read it, unless said otherwise.
+// "Making radiosity usable"), each in a small scene at default sizes. Unless a test gathers,
+// irradiance is read off the mesh, as by probes and by pictures with interpolation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,15 +58,16 @@ Contour shadow_edge(bool discontinuity) {
   return contour;
 }
 
-// Values at vertices are all or nothing; the half value of a cell with both lies within half a cell
-// of any line that parts its corners so. The penumbra adds half its width, 0.05 elements.
+// Values at vertices are the whole light or nothing. In a cell with both, the half value lies
+// within half a cell of any line that separates its lit from its dark corners. The penumbra adds
+// half its width, 0.05 elements.
 TEST(ShadowEdges, StayWithinHalfAnElementOfTheTruth) {
   const Contour contour = shadow_edge(false);
   EXPECT_EQ(contour.crossings, 101);
   EXPECT_LT(contour.farthest, 0.55);
 }
 
-// Vertices on both bounds of the penumbra, which is 0.09 elements wide: the half value lies
+// Vertices lie on both bounds of the penumbra, which is 0.09 elements wide, so the half value lies
 // between.
 TEST(ShadowEdges, FollowTheTruthWhereTheMeshIsCutAlongThem) {
   const Contour contour = shadow_edge(true);
@@ -93,22 +94,23 @@ TEST_P(Panel, NeitherDarkensTheLitSideNorLightensTheDarkOne) {
       const double truth = point_to_polygon(lit_place, Vector3d::UnitZ(), lamp);
       darkest = std::max(darkest, std::abs(lit.irradiance(lit_place) / truth - 1.0));
     }
-    if (std::abs(i - 50) > 40) continue;  // light comes round the ends
+    if (std::abs(i - 50) > 40) continue;  // light passes around the panel's ends
     const double leak = lit.irradiance(at - 0.02 * lit.element_size * out);
     brightest = std::max(brightest, leak / point_to_polygon(at, Vector3d::UnitZ(), lamp));
   }
   std::printf("panel %.1f m deep: lit side off by %.1e, dark side %.1e\n", GetParam(), darkest,
               brightest);
-  // Vertices lie 2 % of half an element's diagonal inside, 1.4 % of 3 cm, and light falls off by no
-  // more than 1.7 a metre: 7e-4. Interpolation adds h^2 / 8 (Exx + Eyy) / E, 3e-4. Mixed with the
-  // dark side it would be off by a half.
+  // Vertices lie 2 % of half an element's diagonal inside the element, 1.4 % of 3 cm, and light
+  // falls off by at most 1.7 a metre: 7e-4. Interpolation adds h^2 / 8 (Exx + Eyy) / E, 3e-4. A
+  // mixture with the dark side would be off by a half.
   EXPECT_LT(darkest, 1e-3);
   EXPECT_EQ(brightest, 0.0);
 }
 INSTANTIATE_TEST_SUITE_P(Depths, Panel, testing::Values(0.0, 0.1));
 
 // Floor and ceiling are one polygon each, under and over a partition without thickness that runs
-// askew to their mesh. What is beyond it sees nothing that shines or reflects light.
+// askew to their mesh. Surfaces beyond the partition see no emitter and nothing that reflects
+// light.
 TEST(LightLeaks, NothingPassesUnderAPartitionThatParts) {
   Scene scene;
   const int white = test::add_material(scene, test::diffuse(scene.bands, 0.7f));
@@ -136,8 +138,8 @@ TEST(LightLeaks, NothingPassesUnderAPartitionThatParts) {
   EXPECT_GT(least_lit, 0.1);
 }
 
-// A table leg of 2 cm or less, where elements are 5 cm and patches 10; `shift` moves it over the
-// mesh.
+// A table leg of 2 cm or less, on elements of 5 cm and patches of 10; `shift` moves the leg over
+// the mesh.
 struct Leg {
   explicit Leg(double shift, double thickness = 0.02)
       : low(0.307 + shift, 0.231 + 0.7 * shift, 0),
@@ -166,7 +168,7 @@ bool hides(const Leg& leg, const Vector3d& from, const Vector3d& to) {
   return enters < leaves;
 }
 
-// Irradiance of the floor by 64 x 64 rays to the lamp, with nothing of the program's.
+// Irradiance of the floor by 64 x 64 rays to the lamp, without any code of the library.
 double beside_leg(const Leg& leg, const Vector3d& at) {
   constexpr int n = 64;
   double sum = 0.0;
@@ -179,7 +181,8 @@ double beside_leg(const Leg& leg, const Vector3d& at) {
   return sum * std::pow(2.0 * leg.lamp_half / n, 2) / std::numbers::pi;
 }
 
-// Places a twentieth of its thickness from the two faces of the leg that look away from the lamp.
+// Points at a twentieth of the leg's thickness from the two faces that are turned away from the
+// lamp.
 std::vector<Vector3d> behind_foot(const Leg& leg) {
   std::vector<Vector3d> places;
   const double step = (leg.high.x() - leg.low.x()) / 20.0;
@@ -192,12 +195,12 @@ std::vector<Vector3d> behind_foot(const Leg& leg) {
 }
 
 struct LegShadow {
-  double true_behind = 0.0;  // the same in truth
+  double true_behind = 0.0;  // true value of `behind`
   double behind = 0.0;       // mean irradiance behind the foot, as a share of the unshadowed
   double before = 0.0;       // largest error on the lit side of the foot, as a share of the truth
   double least = 1e9,
          most = 0;     // of strips across the shadow: light taken, as a share of the truth
-  double whole = 0.0;  // the same for all strips together
+  double whole = 0.0;  // light taken by all strips together, as a share of the truth
 };
 
 LegShadow leg_shadow(const Leg& leg, bool discontinuity) {
@@ -249,21 +252,22 @@ INSTANTIATE_TEST_SUITE_P(Shifts, ThinLeg, testing::Values(0.0, 0.013, 0.029));
 
 TEST_P(ThinLeg, CastsAnUnbrokenShadowFromItsFoot) {
   const LegShadow shadow = leg_shadow(Leg(GetParam()), false);
-  // Along a dark face irradiance rises in a line from 0, at the last vertex that the leg shades, to
-  // at most all at the far corner, whose element looks past it: where the face is split in four, a
-  // half over a quarter of it. Without a contact line it would be about 1.
+  // Along a dark face irradiance rises linearly from 0, at the last vertex in the leg's shadow, to
+  // at most the whole light at the far corner, whose element lies beyond the leg. If the face is
+  // split in four, that is a half over a quarter of the face. Without a contact line it would be
+  // about 1.
   EXPECT_LT(shadow.behind, shadow.true_behind + 0.125);
-  // As beside a panel, with elements of 5 cm and 0.8 a metre.
+  // The bound beside a panel, with elements of 5 cm and 0.8 a metre.
   EXPECT_LT(shadow.before, 1e-3);
-  // Linear elements draw what one vertex sees two elements wide. The shadow is 2 to 6 elements of
-  // 1.2 cm wide, so strips may hold half more than the truth; a shadow broken into dots would have
-  // strips of 0.
+  // Linear elements spread the shadow at one vertex over two elements. The shadow is 2 to 6
+  // elements of 1.2 cm wide, so strips may hold half more than the truth; a shadow broken into dots
+  // would have strips of 0.
   EXPECT_GT(shadow.least, 0.75);
   EXPECT_LT(shadow.most, 1.5);
   EXPECT_NEAR(shadow.whole, 1.0, 0.1);
 }
 
-// Of a fifth of an element: the shadow is 1 to 5 elements of 1.2 cm wide, so that strips may hold
+// A leg of a fifth of an element: the shadow is 1 to 5 elements of 1.2 cm wide, so strips may hold
 // between half of the truth and twice as much.
 TEST_P(ThinLeg, OfOneCentimetreDoesSoToo) {
   const LegShadow shadow = leg_shadow(Leg(GetParam(), 0.01), false);
@@ -274,8 +278,8 @@ TEST_P(ThinLeg, OfOneCentimetreDoesSoToo) {
   EXPECT_NEAR(shadow.whole, 1.0, 0.1);
 }
 
-// Of a tenth of an element: what its shadow takes from the floor is below the tolerance but for its
-// foot. It is there all the same, and dark at the foot.
+// A leg of a tenth of an element: the light that its shadow takes from the floor is below the
+// tolerance except at the foot. The shadow must not be lost, and must be dark at the foot.
 TEST_P(ThinLeg, OfHalfACentimetreIsNotLost) {
   const LegShadow shadow = leg_shadow(Leg(GetParam(), 0.005), false);
   EXPECT_LT(shadow.behind, 0.5);
@@ -286,8 +290,8 @@ TEST_P(ThinLeg, OfHalfACentimetreIsNotLost) {
 
 TEST_P(ThinLeg, TouchesTheFloorWhereTheMeshIsCutAlongItsShadow) {
   const LegShadow shadow = leg_shadow(Leg(GetParam()), true);
-  // Vertices on the bounds of umbra and penumbra. Between an uncut bit at the corner and the dark
-  // remain 1 of 20 places on each face.
+  // Vertices lie on the bounds of umbra and penumbra. An uncut bit at the corner leaves 1 of 20
+  // points on each face.
   EXPECT_NEAR(shadow.behind, shadow.true_behind, 0.05);
   EXPECT_LT(shadow.before, 1e-3);
   EXPECT_GT(shadow.least, 0.75);
@@ -295,7 +299,7 @@ TEST_P(ThinLeg, TouchesTheFloorWhereTheMeshIsCutAlongItsShadow) {
   EXPECT_NEAR(shadow.whole, 1.0, 0.2);
 }
 
-// What pictures by gathering and probes see: light at the place itself, with no mesh between.
+// Pictures by gathering and probes compute light at the point itself, without the mesh.
 TEST_P(ThinLeg, IsDarkBehindItsFootWhereLightIsGathered) {
   const Leg leg(GetParam());
   const Scene scene = leg.scene();

@@ -42,7 +42,7 @@ Scene room(float rho) {
   return scene;
 }
 
-// Even elements: light is tested here, not where elements are put.
+// Elements of even size: the tests check light, not refinement.
 SolveOptions quick() {
   return {.form_factors = {.rays_per_patch = 256},
           .gather = {.rays = 128, .shadows = {.min_rays = 16, .max_rays = 128}},
@@ -53,12 +53,12 @@ SolveOptions quick() {
 void expect_balance(const SolvedScene& solved) {
   const EnergyBalance& energy = solved.solution.energy;
   EXPECT_GT(energy.emitted, 0.0);
-  // What surfaces hold is in floats, each off by up to 6e-8, and their errors are of either sign.
+  // Radiosities are floats, each off by up to 6e-8 of either sign.
   EXPECT_NEAR(energy.absorbed + energy.escaped + energy.unshot, energy.emitted,
               2e-7 * energy.emitted);
 }
 
-// What floats alone in an even light all around gets pi L from everywhere: B = rho pi L.
+// A body alone in light of the same radiance L from all around receives pi L: B = rho pi L.
 TEST(Daylight, ConvexBodyUnderAnEvenSkyIsAFurnace) {
   Scene scene;
   const int m = test::add_material(scene, test::diffuse(scene.bands, 0.6f));
@@ -81,7 +81,7 @@ TEST(Daylight, RoomWithAWindowBalancesAndItsDirectLightIsTheClosedForm) {
   const SolvedScene solved = solve_scene(scene, quick());
   expect_balance(solved);
   const std::vector<Vector3d> window = {{4, 1.2, 0.9}, {4, 1.2, 2.3}, {4, 2.8, 2.3}, {4, 2.8, 0.9}};
-  // What enters is pi L times the window's area.
+  // The light that enters is pi L times the window's area.
   EXPECT_NEAR(solved.solution.energy.emitted, 3.0 * 100.0 * pi * 1.6 * 1.4,
               0.01 * 3.0 * 100.0 * pi * 1.6 * 1.4);
   double squares = 0.0, of_truth = 0.0;
@@ -94,9 +94,10 @@ TEST(Daylight, RoomWithAWindowBalancesAndItsDirectLightIsTheClosedForm) {
     squares += (found - truth) * (found - truth);
     of_truth += truth * truth;
   }
-  // Of 16 + 128 rays a share p, an eighth to a half by how far the window is, find it: each vertex
-  // is off by sqrt((1 - p) / (144 p)), 0.22 to 0.08, of which the near and bright ones, with many,
-  // weigh most: sqrt(0.7 / (144 * 0.3)) = 0.127. A bias would show in what enters, above.
+  // A share p of the 16 + 128 rays finds the window, an eighth to a half by its distance. Each
+  // vertex is off by sqrt((1 - p) / (144 p)), 0.22 to 0.08. Near and bright vertices, with a large
+  // p, weigh most: sqrt(0.7 / (144 * 0.3)) = 0.127. A bias would show in the light that enters,
+  // above.
   EXPECT_LT(std::sqrt(squares / of_truth), 0.127);
 }
 
@@ -112,7 +113,7 @@ TEST(Daylight, ShootingAndSolvingAgree) {
   EXPECT_NEAR(shot.solution.irradiance().cast<double>().mean(), one, 1e-3 * one);
 }
 
-// The sun comes in level, seen from the window's middle: a patch of light on the far wall.
+// A horizontal sun draws the window as a bright patch on the far wall.
 TEST(Daylight, SunDrawsTheWindowOnTheWall) {
   Scene scene = room(0.0f);
   scene.sky = grey_sky(scene.bands, 0.0f, 0.0f);
@@ -130,14 +131,14 @@ TEST(Daylight, SunDrawsTheWindowOnTheWall) {
   EXPECT_NEAR(at(1.3, 2.2), 500.0, rounding);
   EXPECT_EQ(at(1.0, 1.5), 0.0);
   EXPECT_EQ(at(2.0, 2.6), 0.0);
-  // On its edge half of the disc is seen, by stratified rays to one of them or so; the penumbra is
-  // 4 m tan 0.533 degrees = 37 mm wide, of which 10 mm further in 0.83 of the disc is seen.
+  // On the edge half of the disc is seen, by stratified rays to within about one ray. The penumbra
+  // is 4 m tan 0.533 degrees = 37 mm wide; 10 mm further in, 0.83 of the disc is seen.
   EXPECT_NEAR(at(1.2, 1.5), 250.0, 500.0 / 16.0);
   EXPECT_GT(at(1.21, 1.5), 290.0);
   EXPECT_EQ(at(1.17, 1.5), 0.0);
 }
 
-// Beside an endless mirror the hidden half of the sky is seen in it.
+// Beside an endless mirror the hidden half of the sky is seen in the mirror.
 TEST(Daylight, MirrorGivesBackItsHalfOfTheSky) {
   Scene scene;
   const int ground = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
@@ -158,12 +159,12 @@ TEST(Daylight, MirrorGivesBackItsHalfOfTheSky) {
   const BandArray none = BandArray::Zero(mesh.vertex_count(), 3);
   const GatheredIrradiance E =
       gather_irradiance({scene, caster, light}, none, points, {.rays = 4096});
-  // The mirror ends at `far`: from 1 m all is seen of its half but 1 / far of its light at the
-  // most. That half is known but for cells beside its edge, a tenth at most, which 160 rays tell to
+  // Direct light: the mirror ends at `far`, so from 1 m its half of the sky lacks at most 1 / far
+  // of its light. Cells beside the edge of the half, at most a tenth, are known from 160 rays to
   // sqrt(0.1 * 0.9 / 160) = 0.024 of the light without strata, and the mean of 64 points to 0.003,
-  // about 1 / far; strata leave a third of that. Both come to 2 / far of the half, pi / far.
-  // Half of 4096 stratified rays meet the mirror, to some sqrt(4096) rays on its edge: 1 / 64 of
-  // the whole at worst.
+  // about 1 / far; strata leave a third of that. Both errors come to 2 / far of the half, pi / far.
+  // Indirect light: half of 4096 stratified rays meet the mirror, to within some sqrt(4096) rays on
+  // its edge: 1 / 64 of the whole at worst.
   EXPECT_NEAR(E.direct.col(0).mean(), 0.5 * pi, pi / far);
   EXPECT_NEAR(E.indirect.col(0).mean(), 0.8 * 0.5 * pi, pi / far);
 }

@@ -15,7 +15,7 @@
 namespace lightwell {
 namespace {
 
-// Patches of a room that are solved, to be drafted on.
+// A room with solved patches, for pilot gathers.
 struct Room {
   Scene scene = test::two_lamps();
   SolveOptions options{};
@@ -44,8 +44,8 @@ TEST(InterpolatedVertices, AreMeansOfTheirEnds) {
   EXPECT_FLOAT_EQ(values(4, 0), 2.75f);
 }
 
-// Two ends of 2 and 4, and between them a vertex whose rays said 9 with a variance of 8; the pilot
-// gather had 10, 12 and between them 13, two above their mean.
+// Two ends of 2 and 4, and between them a vertex whose gather is 9 with a variance of 8. The pilot
+// gather has 10 and 12 at the ends and 13 between them, two above their mean.
 class BetweenTwo : public testing::Test {
  protected:
   void join(float spread, float noise, bool is_interpolated = false) {
@@ -70,8 +70,8 @@ class BetweenTwo : public testing::Test {
 };
 
 TEST_F(BetweenTwo, WhatAPilotGatherKnowsWellCountsByHowSureItIs) {
-  // A difference known exactly predicts 3 + 2 with the ends' variance of 1. It is off by 4 where
-  // 8 + 2/4 are explained: by 7.5 more in the mean square.
+  // An exact difference predicts 3 + 2 with the ends' variance of 1. The prediction is off by 4,
+  // and 8 + 2/4 of the square are explained, so 7.5 are not.
   join(4.0f, 0.0f);
   const float predicted = 1.0f + 7.5f, share = 8.0f / (8.0f + predicted);
   EXPECT_FLOAT_EQ(values(2, 0), 9.0f + share * (5.0f - 9.0f));
@@ -79,8 +79,8 @@ TEST_F(BetweenTwo, WhatAPilotGatherKnowsWellCountsByHowSureItIs) {
 }
 
 TEST_F(BetweenTwo, ADifferenceLostInNoiseIsShrunk) {
-  // Half of the difference is believed: 3 + 1, with 1 + 0.5 * 4 and what is unexplained:
-  // 25 - (8 + 0.5 + 2).
+  // The weight of the difference is a half: the prediction is 3 + 1, with a variance of 1 + 0.5 * 4
+  // and an unexplained square of 25 - (8 + 0.5 + 2).
   join(4.0f, 4.0f);
   const float predicted = 1.0f + 2.0f + 14.5f, share = 8.0f / (8.0f + predicted);
   EXPECT_FLOAT_EQ(values(2, 0), 9.0f + share * (4.0f - 9.0f));
@@ -111,9 +111,9 @@ TEST(InterpolatedVertices, GiveTheirAreaToTheirEnds) {
   for (std::size_t v = 1; v < rays.size(); ++v) EXPECT_EQ(rays[v], 0);
 }
 
-// A finer pilot gather has the coarser one's vertices, by the same numbers and with the same light,
-// and gathers no more than one that was made at once. (But for the few that closed elements against
-// finer neighbours, and go when the elements are split themselves.)
+// A finer pilot gather has the vertices of the coarser one, with the same numbers and the same
+// light, and takes no more gathers than one made at once. (An exception are the few vertices that
+// close elements against finer neighbours, and vanish when the elements themselves are split.)
 TEST(PilotGathers, GoesOnWhereItEnded) {
   Room room(0.03);
   const DirectLight direct_light(room.scene, room.patches.mesh);
@@ -156,8 +156,8 @@ TEST(PilotGathers, GoesOnWhereItEnded) {
   EXPECT_LT(200 * gone, coarse.number.size());  // one in 1444 here
 }
 
-// Interpolated vertices lie between others of the mesh, which come first where they are
-// interpolated themselves.
+// Interpolated vertices lie between their ends, which are vertices of the mesh and come first if
+// they are interpolated themselves.
 TEST(PilotGathers, InterpolatesIndirectLightFromVerticesOfTheMesh) {
   Room room(0.02);
   room.options.gather.rays = 2048;
@@ -177,7 +177,7 @@ TEST(PilotGathers, InterpolatesIndirectLightFromVerticesOfTheMesh) {
       mean += pilot.refined->position(t.ends[i]) / t.end_count();
     }
     still_to_come.erase(t.vertex);
-    // In the room's 3 m, to the rounding of single precision.
+    // Rounding of single precision in a room of 3 m.
     EXPECT_LT((mean - pilot.refined->position(t.vertex)).norm(), 1e-6);
   }
 }
@@ -197,20 +197,20 @@ TEST(Reconstruct, AddsToWhatIsKept) {
   };
   const BandArray first = gather(64);
   const double noise = rms_noise(*pilot.refined, solution.gather_noise);
-  EXPECT_TRUE((gather(64) == first).all());  // nothing is missing
+  EXPECT_TRUE((gather(64) == first).all());  // no ray is missing
   const BandArray second = gather(128);
   EXPECT_FALSE((second == first).all());
-  // Two independent gathers of 64 rays: half of the variance, which some 1000 vertices tell to a
-  // few percent.
+  // Two independent gathers of 64 rays leave half of the variance, known from some 1000 vertices to
+  // a few percent.
   const double left = rms_noise(*pilot.refined, solution.gather_noise) / noise;
   std::printf("noise of twice the rays: %.3f of that of once\n", left);
   EXPECT_NEAR(left, std::sqrt(0.5), 0.07);
 }
 
-// In a closed grey room reflections bring rho / (1 - rho) times what a lamp brings, wherever that
-// falls: here into a pool of 0.4 m on a floor whose patches are larger, or as large, so that it
-// lies between their vertices or on one of them. It must neither be lost, nor shine from other
-// surfaces, nor be seen as large as a patch.
+// In a closed grey room reflections bring rho / (1 - rho) times the power of a lamp, wherever its
+// light falls: here into a pool of 0.4 m on a floor with patches of 0.25 to 0.5 m, so that the pool
+// lies between vertices or on one of them. The pool's light must neither be lost, nor be reflected
+// by other surfaces, nor fill a whole patch.
 class Pool : public testing::TestWithParam<double> {};
 
 TEST_P(Pool, GivesTheRoomItsLight) {
@@ -238,8 +238,8 @@ TEST_P(Pool, GivesTheRoomItsLight) {
               indirect, wanted, on_floor, solved.solution.error_estimate);
   // Refinement leaves 0.7 % of the mean irradiance.
   EXPECT_NEAR(indirect, wanted, 0.01 * wanted);
-  // The floor gets what walls and ceiling give back: 0.1563 W in 7588 elements of patches of 0.12
-  // m.
+  // Indirect light of the floor, from walls and ceiling: 0.1563 W with 7588 elements of patches of
+  // 0.12 m.
   EXPECT_NEAR(on_floor, 0.1563, 0.01 * 0.1563);
 }
 INSTANTIATE_TEST_SUITE_P(Sizes, Pool, testing::Values(0.25, 0.4, 0.5));

@@ -1,5 +1,5 @@
-// Smooth light must look smooth, whatever the mesh is like: no Mach bands, no streaks from slivers,
-// no jumps between elements, and the same light in any unit of length.
+// Smooth light must look smooth with any mesh: no Mach bands, no streaks from slivers, no jumps
+// between elements, and the same light in any unit of length.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 using test::direct_alone, test::even, test::lamp_loop, test::Lit, test::lit_floor;
 
-// Largest difference from those of the closed form, as a share of E, one element of even size
-// apart.
+// Largest error of second differences of irradiance at points one element of even size apart, as a
+// share of E.
 double second_differences_off(const SolveOptions& options) {
   const Loop lamp = lamp_loop({0.1, -0.2, 1.5}, 0.25);
   const Lit lit(lit_floor({-1, -1}, {1, 1}, lamp), options);
@@ -41,20 +41,20 @@ double second_differences_off(const SolveOptions& options) {
 }
 
 TEST(MachBands, SecondDifferencesAreThoseOfTheClosedForm) {
-  // Vertices are asked for a hundredth of an element to one side, which changes a second difference
+  // Vertices are gathered a hundredth of an element to one side, which changes a second difference
   // by h^3 (Exxx + Exxy) / 100, 1.7e-6 of E with h = 26 mm and third derivatives below 5 E. Four
   // floats add 2.4e-7. The second differences themselves are 1e-3 of E.
   EXPECT_LT(second_differences_off(even(direct_alone())), 2e-6);
 }
 
-// Where refinement leaves elements of twice the size, 5.2 cm, every other place is in the middle of
-// one: off by h^2 / 8 (Exx + Eyy), 1.4e-3 of E with 2 / m^2 each, and its neighbours by as much the
-// other way. What is seen is 1e-2.
+// In elements of twice the size, 5.2 cm, which refinement leaves, every other point is in the
+// middle of an element and off by h^2 / 8 (Exx + Eyy), 1.4e-3 of E with 2 / m^2 each; its
+// neighbours are off by as much the other way. Differences are visible from 1e-2.
 TEST(MachBands, OfRefinedElementsAreBelowWhatIsSeen) {
   EXPECT_LT(second_differences_off(direct_alone()), 2.8e-3);
 }
 
-// Noise of the gather makes bands too; people see changes of brightness from about one percent.
+// Noise of the gather makes bands too; changes of brightness are visible from about one percent.
 TEST(MachBands, GatheredLightKeepsThemBelowWhatIsSeen) {
   Scene scene;
   const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
@@ -66,7 +66,7 @@ TEST(MachBands, GatheredLightKeepsThemBelowWhatIsSeen) {
   const double h = 2.0 / n;
   double most = 0.0, squares = 0.0;
   int count = 0;
-  for (int i = 3; i <= n - 3; ++i) {  // light does change so near to the walls
+  for (int i = 3; i <= n - 3; ++i) {  // nearer to the walls light itself changes as much
     for (int k = 3; k <= n - 3; ++k, ++count) {
       const double x = -1 + i * h, y = -1 + k * h;
       const double E = lit.irradiance({x, y, 0});
@@ -86,7 +86,7 @@ Loop wall_lamp() {
   return lamp_loop({1.2, -1.5, 2.8}, 0.15);
 }
 
-// The wall y = 0 in so many slivers that fan out from one corner; 0: as one polygon.
+// The wall y = 0 as a fan of slivers from one corner; 0 slivers: one polygon.
 Scene walled(int slivers) {
   Scene scene = lit_floor({0, -3}, {3, 0}, wall_lamp());
   PolygonMesh wall{.vertices = {{0, 0, 0}}, .facets = {}};
@@ -102,12 +102,12 @@ Scene walled(int slivers) {
   return scene;
 }
 
-// Irradiance at 3000 places of the wall, all and straight from the lamp.
+// Irradiance at 3000 points of the wall: all light, and the light straight from the lamp.
 struct OnWall {
   std::vector<double> all{}, direct{};
 };
 
-// Elements of even size, so that what slivers do is not mixed with what refinement leaves.
+// Elements of even size, so that errors by slivers are not mixed with those of refinement.
 OnWall on_wall(const Scene& scene) {
   const Lit lit(scene, even({.error_points = 0}));
   OnWall E;
@@ -153,16 +153,16 @@ TEST(Slivers, LeaveNoStreaksMergedOrNot) {
     const Difference all = relative_difference(fan.all, polygon.all);
     std::printf("slivers%s: direct light off by %.1e, all against one polygon %.1e, rms %.1e\n",
                 merged ? ", merged" : "", direct.most, all.most, all.rms);
-    // Elements of 4 cm: h^2 / 8 (Exx + Ezz) / E where light falls off over 0.5 m, and 1.4 % of them
-    // to where vertices are asked for.
+    // Elements of 4 cm: h^2 / 8 (Exx + Ezz) / E with light that falls off over 0.5 m, and vertices
+    // that are gathered 1.4 % of an element inside.
     EXPECT_LT(direct.most, 4e-3);
-    // Elsewhere on the wall vertices fall, and their 1024 rays: the gather's noise of 2e-3 in both.
+    // Vertices lie elsewhere on the wall, so the noise of their 1024 rays, 2e-3, differs.
     EXPECT_LT(all.rms, 2.8e-3);
     EXPECT_LT(all.most, 0.015);
   }
 }
 
-// An edge by the places of its ends, in nanometres, lower end first.
+// An edge by the positions of its ends, in nanometres, lower end first.
 using PointKey = std::array<long long, 3>;
 using Edge = std::array<PointKey, 2>;
 
@@ -170,7 +170,7 @@ PointKey key_of(const Vector3d& p) {
   return {std::llround(p.x() * 1e9), std::llround(p.y() * 1e9), std::llround(p.z() * 1e9)};
 }
 
-// What each element along an edge says of irradiance at its ends.
+// Irradiance at the ends of each edge, from every element along the edge.
 std::map<Edge, std::vector<std::array<double, 2>>> edges_of(const Lit& lit, int surface) {
   const PatchMesh& mesh = lit.solved.mesh;
   std::map<Edge, std::vector<std::array<double, 2>>> edges;
@@ -195,7 +195,7 @@ bool is_on_rim(const Edge& edge) {
          (both_at(1, 0) && both_at(2, 0));
 }
 
-// Few rays, so that places with two vertices would differ by noise.
+// Few rays, so that two vertices at one position would differ by noise.
 class Reconstruction : public testing::TestWithParam<double> {};  // tolerance of refinement
 INSTANTIATE_TEST_SUITE_P(Refined, Reconstruction, testing::Values(0.0, 0.01, 0.002));
 
@@ -240,7 +240,7 @@ TEST(Scale, IrradianceIsThatOfTheSameRoomInAnyUnit) {
     const double share = (off > 1e-5).cast<double>().mean();
     std::printf("scale %g: off by at most %.1e, more than 1e-5 at a share of %.1e\n", scale,
                 off.maxCoeff(), share);
-    // Rounding may send one ray of 1024 past the block that would have met it, at few places.
+    // At few points, rounding may send one ray of 1024 past the block instead of into it.
     EXPECT_LT(share, 1e-3);
     EXPECT_LT(off.maxCoeff(), 1e-3);
     if (scale == 1024.0) {

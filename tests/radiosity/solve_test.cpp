@@ -16,8 +16,8 @@ namespace {
 
 class Furnace : public testing::TestWithParam<std::tuple<float, bool>> {};
 
-// Closed room, every surface emits M and reflects rho: B = M / (1 - rho) everywhere, whatever
-// stands in it.
+// In a closed room whose surfaces all emit M and reflect rho, B = M / (1 - rho) everywhere, with or
+// without a block inside.
 TEST_P(Furnace, RadiosityIsEmissionOverOneMinusRho) {
   const auto [rho, with_block] = GetParam();
   const Scene scene = test::furnace(rho, 2.0f, with_block);
@@ -80,9 +80,9 @@ TEST(SolveScene, EmittedIsAbsorbedPlusEscaped) {
   }
 }
 
-// What elements absorb, of what is emitted: patches balance it by construction, but interpolation
-// between the vertices of elements cuts the peaks of light off. What light reflected off elements
-// lost by that is made good before it is gathered, so that once is all that is lost.
+// Elements absorb nearly all that is emitted. Patches balance the power by construction, but
+// interpolation between the vertices of elements cuts peaks of light off. That loss is corrected
+// before reflected light is gathered, so that power is lost only once.
 TEST(SolveScene, ElementsAbsorbWhatIsEmitted) {
   SolveOptions options = quick();
   options.refine.tolerance = 0.02;
@@ -102,12 +102,12 @@ TEST(SolveScene, ElementsAbsorbWhatIsEmitted) {
   std::printf("elements absorb %.3f %% less than is emitted, receive %.3f %% less of it directly\n",
               100.0 * lost, 100.0 * lost_directly);
   EXPECT_GT(lost_directly, 0.0);
-  // Reflected light is smoother than direct light, and loses no more by being interpolated. (At
-  // each reflection anew it would come to 3.6 times as much.)
+  // Reflected light is smoother than direct light, and loses no more by interpolation. (A loss at
+  // each reflection anew would come to 3.6 times as much.)
   EXPECT_LT(lost, 2.0 * lost_directly);
 }
 
-// B = M / (1 - rho) is ten times what a float holds.
+// B = M / (1 - rho) is ten times the largest float.
 TEST(SolveScene, LightThatIsNoFiniteNumberIsRefused) {
   const Scene scene = test::furnace(0.9f, 3e38f, false);
   EXPECT_NE(message_of<InputError>([&] { solve_scene(scene, quick()); }), "");
@@ -127,7 +127,7 @@ TEST(SolveScene, MirrorsAndGlassKeepTheEnergyBalance) {
   EXPECT_NEAR((e.absorbed + e.escaped) / e.emitted, 1.0, 1e-4);
 }
 
-// A row whose mirrored light meets nothing more still says what it lost.
+// A row of form factors whose mirrored light leaves the scene still counts the escaped light.
 TEST(SolveScene, LightMirroredOutOfTheSceneEscapes) {
   Scene scene;
   Material glossy = test::diffuse(scene.bands, 0.3f);
@@ -135,7 +135,8 @@ TEST(SolveScene, LightMirroredOutOfTheSceneEscapes) {
   Material lamp = test::diffuse(scene.bands, 0.0f, 20.0f);
   const int floor = test::add_material(scene, glossy), panel = test::add_material(scene, lamp);
   test::add_polygon(scene, "floor", floor, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
-  // To the side: no ray goes from it by way of the floor back to it, nor to the floor again.
+  // The lamp stands to the side: no ray from it meets the lamp or the floor after a reflection at
+  // the floor.
   test::add_polygon(scene, "lamp", panel,
                     {{4.2, 1, 0.1}, {4.2, 1, 0.6}, {4.2, 3, 0.6}, {4.2, 3, 0.1}});
   std::swap(scene.surfaces[0], scene.surfaces[1]);
@@ -165,8 +166,8 @@ TEST(SolveScene, BitsDoNotDependOnTheNumberOfThreads) {
   }
 }
 
-// Two rooms that share floor and ceiling polygons, parted by a wall without thickness; the lamp is
-// in the first.
+// Two rooms that share floor and ceiling polygons, separated by a wall without thickness, with a
+// lamp in the first.
 TEST(SolveScene, NoLightLeaksThroughAWallWithoutThickness) {
   for (const double patch : {0.15, 0.35, 1.0}) {
     Scene scene;
@@ -194,7 +195,8 @@ TEST(SolveScene, NoLightLeaksThroughAWallWithoutThickness) {
   }
 }
 
-// Half of the ball's light stays inside: its walls there reflect a part of it and see nothing else.
+// Half of the ball's light stays inside the ball, whose inner side reflects a part of that light
+// and sees nothing else.
 TEST(SolveScene, ABallThatEmitsBothWaysLosesNothing) {
   Scene scene;
   Material lamp = test::diffuse(scene.bands, 0.4f, 10.0f);
@@ -208,7 +210,7 @@ TEST(SolveScene, ABallThatEmitsBothWaysLosesNothing) {
   const SolvedScene solved = solve_scene(scene, quick());
   const EnergyBalance& energy = solved.solution.energy;
   const double power = 2.0 * 3.0 * 10.0 * 4.0 * M_PI * 0.2 * 0.2;
-  // Elements have the sphere's area. Floats add up over some thousand patches.
+  // Elements have the sphere's area. Rounding of floats adds up over some thousand patches.
   EXPECT_NEAR(energy.emitted, power, 1e-5 * power);
   EXPECT_NEAR(energy.absorbed, power, 1e-5 * power);
   EXPECT_NEAR(energy.escaped, 0.0, 1e-5 * power);
@@ -219,8 +221,8 @@ TEST(SolveScene, ABallThatEmitsBothWaysLosesNothing) {
   }
 }
 
-// A unit that is a power of two apart changes exponents alone, so that every ray and every split is
-// the same unless a length somewhere is compared with a number.
+// A unit of length that differs by a power of two changes exponents alone, so every ray and every
+// split is the same, unless some code compares a length with a number.
 TEST(SolveScene, BitsDoNotDependOnTheUnitOfLength) {
   const auto solved_in_units = [](double scale) {
     Scene scene = lit_room();
@@ -289,9 +291,8 @@ TEST(SolveScene, ConvergedBoxesWithinDiscretisation) {
     }
     std::printf("%s: worst relative error of irradiance %.2e (estimate %.2e)\n",
                 c["id"].get<std::string>().c_str(), worst, solved.solution.error_estimate);
-    // 10 x 10 patches a face, constant over each while they exchange light, then 1024 gathered rays
-    // a vertex: the noise of 1024 stratified rays of a smooth function is about 2e-3, four of them
-    // 8e-3.
+    // 10 x 10 patches a face, then 1024 gathered rays a vertex. The noise of 1024 stratified rays
+    // of a smooth function is about 2e-3; four standard deviations are 8e-3.
     EXPECT_LT(worst, 8e-3) << c["id"];
     ++tested;
   }

@@ -26,8 +26,8 @@ TEST(StartRadiosity, OfTheSameSceneLeavesNothingToDo) {
   EXPECT_LE(again.solution.history.size(), 2u);
 }
 
-// Jacobi's error falls by about the mean reflectance a sweep: a start that is off by a tenth
-// instead of by all the reflected light saves the sweeps of that.
+// The error of Jacobi iteration falls by about the mean reflectance a sweep. A start that is off by
+// a tenth of the reflected light, instead of by all of it, saves the sweeps for that factor.
 TEST(StartRadiosity, OfOtherReflectancesSavesSweeps) {
   test::TwoLamps is;
   const SolvedScene old = solve_scene(test::two_lamps(is), jacobi());
@@ -37,7 +37,7 @@ TEST(StartRadiosity, OfOtherReflectancesSavesSweeps) {
   options.start = &old;
   const SolvedScene warm = solve_scene(test::two_lamps(is), options);
   EXPECT_LT(warm.solution.history.size() + 2, cold.solution.history.size());
-  // Both are within the tolerance of the solution; it bounds each relative to the largest B.
+  // Both solutions are within the tolerance, relative to the largest B, of the exact one.
   const double largest = cold.solution.patch_radiosity.maxCoeff();
   EXPECT_LE((warm.solution.patch_radiosity - cold.solution.patch_radiosity).abs().maxCoeff(),
             2e-5 * largest);

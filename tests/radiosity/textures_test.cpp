@@ -37,8 +37,8 @@ SolveOptions quick(double patch = 0.25) {
   return options;
 }
 
-// A floor whose picture is dark on one half is the same as two plain floors of those reflectances:
-// the patches and all rays are the same, and rho differs by the rounding of texels.
+// A floor whose picture is dark on one half equals two plain floors of those reflectances: patches
+// and rays are the same, and rho differs by the rounding of texels.
 TEST(Textures, ACheckeredFloorIsTwoPlainFloors) {
   constexpr float dark = 0.1f, bright = 0.8f;
   Scene pictured = room(0.5f);
@@ -50,8 +50,8 @@ TEST(Textures, ACheckeredFloorIsTwoPlainFloors) {
   test::add_polygon(plain, "dark", one, {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}});
   test::add_polygon(plain, "bright", other, {{1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}});
   const SolvedScene a = solve_scene(pictured, quick()), b = solve_scene(plain, quick());
-  // What the lower halves of the walls x = 0 and x = 2 receive; by symmetry the lamp gives both the
-  // same, so that they differ by what the floor's halves send them.
+  // Irradiance of the lower halves of the walls x = 0 and x = 2. By symmetry the lamp gives both
+  // the same, so they differ by the light from the floor's halves.
   const auto wall_light = [](const SolvedScene& s) {
     Eigen::Array2d power = Eigen::Array2d::Zero(), area = Eigen::Array2d::Zero();
     for (int p = 0; p < s.mesh.patch_count(); ++p) {
@@ -67,16 +67,16 @@ TEST(Textures, ACheckeredFloorIsTwoPlainFloors) {
   std::printf("light of the walls: %.4f %.4f, of plain floors %.4f %.4f\n", E[0], E[1], wanted[0],
               wanted[1]);
   EXPECT_GT(wanted_from_floor, 0.05 * wanted[0]) << "the bright half must matter to its wall";
-  // 32 patches of a wall with 512 rays each, of which the floor's other rays see what those miss:
-  // three standard deviations of counts are 2 %; of E they are the share that is not from lamps.
+  // 32 patches of a wall with 512 rays each: three standard deviations of counts are 2 %, of E
+  // less, since only the light that does not come straight from lamps depends on them.
   EXPECT_LT((E / wanted - 1.0).abs().maxCoeff(), 0.01);
   EXPECT_NEAR(from_floor / wanted_from_floor, 1.0, 0.1);
   EXPECT_NEAR(a.solution.energy.emitted, b.solution.energy.emitted, 1e-4);
   EXPECT_NEAR(a.solution.energy.absorbed / b.solution.energy.absorbed, 1.0, 1e-4);
 }
 
-// Every wall emits M; one shows a picture of mean rho, finer than its patches, and the others
-// reflect rho: B = M / (1 - rho) wherever the picture's mean over a patch is rho.
+// Every wall emits M; one wall shows a picture of mean rho, finer than its patches, and the others
+// reflect rho. So B = M / (1 - rho) if the picture's mean over each patch is rho.
 TEST(Textures, AFurnaceWithATexturedWallCloses) {
   constexpr float rho = 0.5f, M = 2.0f;
   Scene scene = test::furnace(rho, M, false);
@@ -88,13 +88,14 @@ TEST(Textures, AFurnaceWithATexturedWallCloses) {
   // The mean over a patch of 12 to 16 squares along, by 16 x 16 points on each of its elements.
   const double off = (solved.mesh.reflectance - rho).abs().maxCoeff();
   EXPECT_LT(off, 0.02);
-  // A patch's own B follows its rho, others' its mean.
+  // A patch's own B follows its own rho, and the B of others the mean rho.
   EXPECT_LT((solved.solution.patch_radiosity / B - 1.0).abs().maxCoeff(), 1e-4 + 2.0 * off);
   const EnergyBalance e = solved.solution.energy;
   EXPECT_NEAR((e.absorbed + e.escaped) / e.emitted, 1.0, 1e-4);
 }
 
-// A screen of which `left` columns of four are left parts a room that is bright on both sides.
+// A room with a screen across the middle, bright on both sides; `columns` is the mask of the
+// screen, 0 for holes.
 Scene parted_room(const std::vector<float>& columns) {
   Scene scene = test::furnace(0.5f, 1.0f, false);
   Material screen = test::diffuse(scene.bands, 0.5f);
@@ -113,8 +114,8 @@ double covered_area(const PatchMesh& mesh, int surface) {
   return area;
 }
 
-// Walls emit M and reflect rho, the screen reflects rho alone: with holes throughout it is not
-// there, and B = M / (1 - rho). However much is left of it, what is emitted is absorbed.
+// Walls emit M and reflect rho, and the screen reflects rho alone. A screen that is one hole has no
+// effect: B = M / (1 - rho). With any mask, all emitted light is absorbed.
 TEST(Textures, HolesLetLightThroughAndEnergyBalances) {
   SolveOptions options = quick(0.2);
   for (const auto method : {FormFactorMethod::automatic, FormFactorMethod::ray_cast,
@@ -137,9 +138,9 @@ TEST(Textures, HolesLetLightThroughAndEnergyBalances) {
   }
 }
 
-// A lamp so small and far that its shadows are sharp, over a plate of which two columns of four are
-// cut away: the floor has the lamp's light, L A / d^2, where the straight line goes through a hole,
-// and none elsewhere.
+// A lamp so small and far that its shadows are sharp, over a plate with holes in two columns of
+// four. The floor has the lamp's light, L A / d^2, where the straight line passes a hole, and none
+// elsewhere.
 TEST(Textures, ShadowsOfHolesAreTheHoles) {
   Scene scene;
   const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
@@ -155,7 +156,7 @@ TEST(Textures, ShadowsOfHolesAreTheHoles) {
   const double E_free = 1000.0 / std::numbers::pi * 0.02 * 0.02 / (101.0 * 101.0);
   for (int i = 0; i < 16; ++i) {
     const double x = (i + 0.5) / 16.0;
-    // From 101 m a line over x at the floor crosses the plate at 0.5 + (x - 0.5) 100/101.
+    // A line from the lamp at 101 m to x on the floor crosses the plate at 0.5 + (x - 0.5) 100/101.
     const double at_plate = 0.5 + (x - 0.5) * 100.0 / 101.0;
     const bool is_hole = static_cast<int>(4.0 * at_plate) % 2 == 1;
     const Spectrum E = light.irradiance(caster, {.at = {{x, 0.3, 0}, {0, 0, 1}, 0}, .key = 1});

@@ -1,4 +1,4 @@
-// Aimed rays find what is small and bright, and change nothing in the mean.
+// Aimed rays find small bright patches, and do not change the mean.
 #include "radiosity/gather/bright_patches.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 namespace lightwell {
 namespace {
 
-// A room of 4 m with a tile of `side` metres a little below the middle of its ceiling, and, where
-// asked for, a shelf that hides half of it from the floor.
+// A room of 4 m with a tile of `side` metres a little below the middle of its ceiling, and
+// optionally a shelf that hides half of the tile from the floor.
 struct Room {
   double side;
   bool with_shelf;
@@ -36,7 +36,7 @@ struct Room {
   ElementCaster caster{mesh};
   DirectLight direct_light{scene, mesh};
 
-  // Seen counter-clockwise from below.
+  // Counter-clockwise, seen from below.
   Loop tile() const {
     const double a = 2.0 - 0.5 * side, b = 2.0 + 0.5 * side, z = 3.9;
     return {{a, a, z}, {a, b, z}, {b, b, z}, {b, a, z}};
@@ -56,7 +56,7 @@ struct Statistics {
   double mean = 0.0, deviation = 0.0;
 };
 
-// Of the irradiance at a place of the floor.
+// Mean and deviation of the irradiance at a point of the floor.
 Statistics gathered(const Room& room, const BandArray& B, const Eigen::Vector3d& receiver, int rays,
                     int replicas) {
   const GatherPoint point{.position = receiver, .normal = {0, 0, 1}, .facet = 4};
@@ -91,14 +91,14 @@ TEST(BrightPatches, GiveWhatTheFormFactorSays) {
   std::printf("F %.2e, E %.4f, gathered %.4f, deviation %.4f\n", F, E, estimate.mean,
               estimate.deviation);
   EXPECT_NEAR(estimate.mean, E, 4.0 * estimate.deviation / std::sqrt(replicas));
-  // A cosine-distributed ray meets the tile by a chance of F, and the deviation of 256 that did so
-  // by themselves would be (bright - 1) sqrt(F / 256); of those that are aimed it is what the form
-  // factor's kernel varies by over the tile, 5 % at the most here, of its light.
+  // A cosine-distributed ray meets the tile with probability F, and 256 such rays alone would have
+  // a deviation of (bright - 1) sqrt(F / 256). Aimed rays have the variation of the form factor's
+  // kernel over the tile, here at most 5 % of the tile's light.
   EXPECT_LT(estimate.deviation, 0.05 * (E - 1.0));
   EXPECT_GT((bright - 1.0) * std::sqrt(F / 256.0), 10.0 * estimate.deviation);
 }
 
-// Near it the cosine-distributed rays are the better ones; both together have no bias.
+// Near the tile cosine-distributed rays are better than aimed ones; both together have no bias.
 TEST(BrightPatches, GiveTheSameNearBy) {
   const Room room{.side = 1.0, .with_shelf = false};
   constexpr float bright = 100.0f;
@@ -118,7 +118,7 @@ TEST(BrightPatches, GiveTheSameNearBy) {
       squares += estimate * estimate / replicas;
     }
     const double deviation = std::sqrt(std::max(0.0, squares - sum * sum));
-    // Float sums besides.
+    // The last term is rounding of float sums.
     EXPECT_NEAR(sum, E, 4.0 * deviation / std::sqrt(replicas) + 1e-6 * E) << z;
   }
 }
@@ -128,7 +128,7 @@ TEST(BrightPatches, AreHiddenByWhatStandsBefore) {
   constexpr float bright = 400.0f;
   const BandArray B = room.radiosity(bright);
   const Eigen::Vector3d receiver{2.0, 2.0, 0.0};
-  // The shelf's edge is in the plane above the place, so half of the tile is seen.
+  // The shelf's edge is in the vertical plane of the receiver, so half of the tile is seen.
   const Loop half = {{1.8, 1.8, 3.9}, {1.8, 2.2, 3.9}, {2, 2.2, 3.9}, {2, 1.8, 3.9}};
   const double E = 1.0 + (bright - 1.0) * point_to_polygon(receiver, {0, 0, 1}, half);
   constexpr int replicas = 200;
@@ -155,7 +155,7 @@ TEST(BrightPatches, HaveDirectionsOfTheStatedDensity) {
     sum += aim.direction.z() * std::numbers::inv_pi / density;
   }
   const double F = point_to_polygon(receiver, {0, 0, 1}, room.tile());
-  // Stratified points err by a few times 1 / count of what the summand varies by, about 1.
+  // Stratified points err by a few times 1 / count of the summand's variation, which is about 1.
   EXPECT_NEAR(sum / aims.count(), F, 3e-3 * F);
 }
 

@@ -24,8 +24,8 @@ TEST(Effort, LooseTargetsTakeLess) {
   EXPECT_EQ(patch_count_for(0.5, 1600), 600);
 }
 
-// The error of stratified rays falls with the power 2/3 of their number: 8 times as many, a
-// quarter. Some eighths of a power of two stratify nearly as well as it does.
+// The error of stratified rays falls with the power 2/3 of their number: 8 times as many rays leave
+// a quarter. Five to seven eighths of a power of two stratify nearly as well as the power itself.
 TEST(Effort, RaysFollowTheNoise) {
   EXPECT_EQ(rays_for_noise(128, 0.04, 0.01), 1024);
   EXPECT_EQ(rays_for_noise(128, 0.041, 0.01), 1280);  // 1063
@@ -36,7 +36,7 @@ TEST(Effort, RaysFollowTheNoise) {
   EXPECT_EQ(rays_for_noise(1 << 15, 1.0, 0.01), 1 << 15);
 }
 
-// Who asks for fewer than an accuracy would take gets those.
+// Given numbers that are lower than those for the accuracy are kept.
 TEST(Effort, NeverTakesMoreThanIsAskedFor) {
   EXPECT_EQ(form_factor_rays(0.001, 512), 512);
   EXPECT_EQ(form_factor_rays(0.5, 32), 32);
@@ -49,10 +49,10 @@ TEST(Effort, EstimateTakesMorePlacesAndRaysWhereTheyAreCheap) {
   EXPECT_EQ(estimate_points(asked, 6000), 512);
   EXPECT_EQ(estimate_points(asked, 32768), 1024);  // a 32nd
   EXPECT_EQ(estimate_points(asked, 32767), 512);
-  EXPECT_EQ(estimate_points(asked, 1000000), 4096);  // enough
-  EXPECT_EQ(estimate_points(0, 1000000), 0);         // nobody looks
+  EXPECT_EQ(estimate_points(asked, 1000000), 4096);  // eight times at most
+  EXPECT_EQ(estimate_points(0, 1000000), 0);         // no estimate is wanted
   EXPECT_EQ(estimate_rays(1024, 6000, asked), 2048);
-  EXPECT_EQ(estimate_rays(1024, 16384, asked), 4096);  // 4 x 512 are an eighth of the places
+  EXPECT_EQ(estimate_rays(1024, 16384, asked), 4096);  // 4 x 512 are an eighth of the vertices
   EXPECT_EQ(estimate_rays(1024, 16383, asked), 2048);
   EXPECT_EQ(estimate_rays(64, 8, asked), 256);  // the fewest
 }

@@ -1,4 +1,4 @@
-// What rays leave uncertain, as the solution tells it.
+// The noise of gathers, as the solution estimates it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -55,11 +55,11 @@ TEST(GatherNoise, IsWhatIndependentGathersDifferBy) {
     }
     const double mean = sum / replicas;
     const double variance = squares / replicas - mean * mean;
-    std::printf("%d rays: noise %.2e, told %.2e\n", rays, std::sqrt(variance),
+    std::printf("%d rays: noise %.2e, estimated %.2e\n", rays, std::sqrt(variance),
                 std::sqrt(estimated));
-    // 400 replicas know a variance to 7 %, here three times that. Halves are stratified less well
-    // than the whole, whose error falls with a power of rays between 1/2 and 1: their difference
-    // says up to twice its variance.
+    // The variance of 400 replicas is known to 7 %; the bounds allow three times that. The error of
+    // a stratified set falls with a power of the rays between 1/2 and 1, and halves are stratified
+    // less well than the whole, so the estimate from their difference is up to twice the variance.
     EXPECT_GT(estimated, 0.79 * variance);
     EXPECT_LT(estimated, 2.0 * 1.21 * variance);
   }
@@ -84,7 +84,7 @@ TEST(GatherNoise, OfASolutionFallsWithRays) {
     EXPECT_TRUE((error_bound(s) >= 2.0f * s.interpolation_error).all());
     return rms_noise(solved.mesh, s.gather_noise);
   };
-  // By 16^(1/2) for plain random rays, by 16 at most.
+  // Noise falls by 16^(1/2) for plain random rays, and by 16 at most.
   const double few = noise(64), many = noise(1024);
   EXPECT_GT(few, 4.0 * many);
   EXPECT_LT(few, 16.0 * many);

@@ -27,7 +27,7 @@ Loop small_lamp() {
   return lamp_loop({0.1, -0.2, 0.8}, 0.1);
 }
 
-// RMS difference from the closed form over its mean, at 80 x 80 places of the floor.
+// RMS difference from the closed form over its mean, at 80 x 80 points of the floor.
 double floor_error(const Lit& lit, const Loop& lamp) {
   double squares = 0.0, sum = 0.0;
   constexpr int n = 80;
@@ -52,15 +52,16 @@ TEST(Refinement, ReachesTheToleranceAndKnowsItsError) {
                 report.refinement.estimate, static_cast<long long>(report.refinement.elements));
     EXPECT_EQ(report.refinement.outcome, RefineOutcome::tolerance_reached);
     EXPECT_LE(report.refinement.estimate, tolerance);
-    // Five places of a cell tell the error of a smooth light's quadratic part exactly; that of what
-    // is left, and of bounds where nothing was measured, is within half of it.
+    // Five points of a cell give the error of the quadratic part of smooth light exactly. The rest
+    // of the light, and bounds of cells that were not measured, add at most a half.
     EXPECT_LT(error, 1.5 * report.refinement.estimate);
     EXPECT_LE(error, before);
     before = error;
   }
 }
 
-// Linear elements: the error falls as the number of elements, whatever they are spent on.
+// With linear elements the error falls as the inverse of their number, so that error times elements
+// compares meshes of different sizes.
 TEST(Refinement, NeedsFewerElementsThanEvenOnesForTheSameError) {
   const Scene scene = lit_floor({-1, -1}, {1, 1}, small_lamp());
   SolveOptions even_options = direct_alone();
@@ -72,8 +73,8 @@ TEST(Refinement, NeedsFewerElementsThanEvenOnesForTheSameError) {
   EXPECT_LT(work, 0.7 * even_work);
 }
 
-// A black square of a fifth of an element at the start, floating over the floor: no vertex, and no
-// place at which elements are compared, need lie in its shadow.
+// A black square over the floor, of a fifth of an element at the start. No vertex and no compared
+// point of an element need lie in its shadow.
 class SmallUmbra : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Shifts, SmallUmbra, testing::Values(0.0, 0.0171, 0.0313));
 
@@ -83,7 +84,7 @@ TEST_P(SmallUmbra, IsFound) {
   const Vector3d middle(0.183 + GetParam(), -0.267 + 0.6 * GetParam(), 0.03);
   test::add_polygon(scene, "flake", add_black(scene), lamp_loop(middle, 0.01));
   const Lit lit(scene, direct_alone());
-  // Straight behind it, seen from the lamp's middle; penumbras are 0.8 mm wide there.
+  // The point straight behind the square, seen from the lamp's middle; penumbras are 0.8 mm wide.
   const Vector3d from(0.05, 0.02, 2.0), way = middle - from;
   const Vector3d under = from + way * (from.z() / -way.z());
   const double open = point_to_polygon(under, Vector3d::UnitZ(), lamp);
@@ -94,10 +95,10 @@ TEST_P(SmallUmbra, IsFound) {
   EXPECT_NEAR(aside, 1.0, 0.05);  // the angle to the lamp changes by 1.5 degrees: cos^4, 3 %
 }
 
-// A screen whose shadow ends at x = 0, in the middle of the cells there: on that line light is the
-// mean of the corners', and the other places at which elements are compared see what corners do.
+// A screen whose shadow ends at x = 0, in the middle of cells. On that line light is the mean of
+// the corners' light, and the other compared points have the light of corners.
 TEST(Refinement, FindsAShadowThatEndsInTheMiddle) {
-  // So far away that light is even but for the shadow.
+  // The lamp is so far away that light is even but for the shadow.
   const Loop lamp = lamp_loop({0, 0, 20}, 0.05);
   Scene scene = lit_floor({-1, -1}, {1, 1}, lamp);
   test::add_polygon(scene, "screen", add_black(scene),
@@ -109,7 +110,7 @@ TEST(Refinement, FindsAShadowThatEndsInTheMiddle) {
   constexpr int n = 64;
   for (int i = 0; i < n; ++i) {
     const Vector3d at(-0.2 + 0.4 * (i + 0.5) / n, 0.3, 0);
-    // What is seen of the lamp's 0.1 m, through the mirror image of the penumbra.
+    // The visible share of the lamp's 0.1 m; the penumbra is as wide.
     const double seen = std::clamp(0.5 + at.x() / 0.1, 0.0, 1.0);
     const double E = point_to_polygon(at, Vector3d::UnitZ(), lamp);
     squares += std::pow(lit.irradiance(at) - seen * E, 2) / n;
@@ -117,7 +118,7 @@ TEST(Refinement, FindsAShadowThatEndsInTheMiddle) {
   }
   const double error = std::sqrt(squares) / open;
   std::printf("across the shadow's edge %.4f off\n", error);
-  // 0.7 % of the mean over the floor, half of the open's, all of it in this fifth.
+  // 0.7 % of the mean over the floor, which is half of the open floor's, all of it in this fifth.
   EXPECT_LT(error, 0.007 * 0.5 * std::sqrt(5.0));
 }
 
@@ -137,7 +138,7 @@ TEST(MostElements, AreNeverExceeded) {
   }
 }
 
-// What there is memory for is no wish, so that the start is kept where even that is more.
+// The limit by memory does not refuse a start with more elements.
 TEST(MostElements, AreThoseThatThereIsRoomFor) {
   const Scene scene = lit_floor({-1, -1}, {1, 1}, small_lamp());
   const int first = build_patches(scene, {.to_be_refined = true}).element_count();
@@ -188,7 +189,7 @@ TEST(Refinement, IsTheSameOnAnyNumberOfThreadsAndInUnitsOfPowersOfTwo) {
     EXPECT_TRUE((one.solution.irradiance() == other.solution.irradiance()).all());
     EXPECT_TRUE((one.solution.interpolation_error == other.solution.interpolation_error).all());
   }
-  // Rounding may turn one ray, and so a mark, here and there.
+  // Rounding may change single rays, and so the splits of single cells.
   for (const double scale : {1e-3, 1e3}) {
     const SolvedScene other = solve(2, scale);
     EXPECT_NEAR(other.mesh.element_count(), one.mesh.element_count(),
@@ -214,8 +215,8 @@ TEST(Refinement, StopsWhenAsked) {
   EXPECT_THROW(solve_scene(lit_floor({-1, -1}, {1, 1}, small_lamp()), options), Interrupted);
 }
 
-// A lamp over a mirror: caustics of the refined mesh are those of elements of even size where those
-// have a vertex, and means of them elsewhere.
+// A lamp over a mirror. Caustics of a refined mesh are those of elements of even size at their
+// vertices, and means of those elsewhere.
 TEST(Refinement, CarriesCausticsToItsVertices) {
   Scene scene;
   const int white = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
@@ -235,8 +236,8 @@ TEST(Refinement, CarriesCausticsToItsVertices) {
   EXPECT_GE(refined.minCoeff(), 0.0f);
 }
 
-// A mirror of a square centimetre, high over the floor, makes the program look for caustics; the
-// floor needs what it needs without.
+// A mirror of a square centimetre, high over the floor, causes a search for caustics, which must
+// not change the floor's elements.
 TEST(Refinement, IsNotMisledByTheSearchForCaustics) {
   const auto elements = [](bool with_mirror) {
     Scene scene = lit_floor({-1, -1}, {1, 1}, small_lamp());
