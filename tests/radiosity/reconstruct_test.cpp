@@ -86,7 +86,7 @@ TEST_F(BetweenTwo, ADifferenceLostInNoiseIsShrunk) {
   EXPECT_FLOAT_EQ(values(2, 0), 9.0f + share * (4.0f - 9.0f));
 }
 
-TEST_F(BetweenTwo, WhatNobodyMeasuredIsLeftAndWhatIsToldIsTheMean) {
+TEST_F(BetweenTwo, AnUnmeasuredVertexIsLeftAndAnInterpolatedOneIsTheMean) {
   join(std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
   EXPECT_EQ(values(2, 0), 9.0f);
   EXPECT_EQ(variance[2], 8.0f);

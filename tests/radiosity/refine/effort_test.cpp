@@ -44,7 +44,7 @@ TEST(Effort, NeverTakesMoreThanIsAskedFor) {
   EXPECT_EQ(patch_count_for(0.5, 100), 100);
 }
 
-TEST(Effort, EstimateTakesMorePlacesAndRaysWhereTheyAreCheap) {
+TEST(Effort, EstimateTakesMorePointsAndRaysWhereTheyAreCheap) {
   constexpr int asked = 512;
   EXPECT_EQ(estimate_points(asked, 6000), 512);
   EXPECT_EQ(estimate_points(asked, 32768), 1024);  // a 32nd
