@@ -7,12 +7,12 @@
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/error_reference.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t error_point_key = 20;  // purposes of random keys
 // Distance of batches' keys: more than the replicas of one solution's gathers (see reconstruct).
 constexpr std::uint64_t batch_keys = 10000;
 // The shadow rays of a solution without a requested accuracy.
@@ -187,8 +187,7 @@ GatherOptions independent_gather(const SolveOptions& options, const PatchMesh& m
   shadows.max_rays = std::max(shadows.max_rays, fewest_shadow_rays.max_rays);
   gather.rays = estimate_rays(options.gather.rays, mesh.vertex_count(), wanted);
   gather.replica = options.gather.replica + 1 + batch_keys * static_cast<std::uint64_t>(batch);
-  gather.progress = options.progress;
-  gather.journal = options.journal;
+  gather.run = options.run;
   return gather;
 }
 

@@ -289,14 +289,14 @@ void join_predictions(const LitScene& lit, const PilotGather& pilot, VertexGathe
   // Half of the difference between a stratified set's two halves is more than the error of the
   // whole set (see estimate_error). The variance found at one vertex is little more than a guess,
   // so all vertices of a patch take the patch's mean.
-  constexpr double of_whole_set = 0.5;
+  constexpr double share_of_whole_set = 0.5;
   const std::vector<int> patch = vertex_patches(mesh);
   const Eigen::ArrayXd of_patch = patch_integral(mesh, gather.found.variance).col(0);
   Eigen::ArrayXf before(count);
   for (int v = 0; v < count; ++v) {
     const double area = mesh.area[patch[v]],
                  of_a_ray = area > 0.0 ? of_patch[patch[v]] / area : 0.0;
-    before[v] = static_cast<float>(of_whole_set * of_a_ray / double{gather.rays[v]});
+    before[v] = static_cast<float>(share_of_whole_set * of_a_ray / double{gather.rays[v]});
   }
   Eigen::ArrayXf after = before;
   combine_with_predictions(pilot.predictions, pilot.indirect, patch, lit.scene.bands.count(),

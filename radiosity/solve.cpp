@@ -200,7 +200,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   require_no_start(options);
   require_unit(scene, options);
   const std::uint64_t hash = scene_hash(scene);
-  if (options.journal && options.journal->of().scene_hash != hash) {
+  if (options.run.journal && options.run.journal->of().scene_hash != hash) {
     throw std::invalid_argument("the journal belongs to another scene");
   }
   SolvedScene solved;

@@ -21,7 +21,7 @@ struct SolveOptions {
   MeshOptions mesh{};
   FormFactorOptions form_factors{};
   SolverMethod solver_method = SolverMethod::automatic;
-  SolverOptions solver{};  ///< solve_scene sets `progress`, `journal` and `name_of` itself
+  SolverOptions solver{};  ///< solve_scene sets `run` and `name_of` itself
   /// Progressive refinement: patches shoot, and a row of form factors is computed for each shot and
   /// not kept. Of the options of form factors and solver only `form_factors.max_specular_depth`
   /// then counts. Empty: all form factors are kept, and a solver reads them.
@@ -41,11 +41,9 @@ struct SolveOptions {
   /// emission may differ. Must outlive the solve. Not with `progressive`.
   const SolvedScene* start = nullptr;
   int error_points = 512;  ///< sample points of the error estimate, see estimate_points
-  Progress progress{};
-  /// Collects finished work of this scene, so that a solve that was interrupted can be resumed with
-  /// the same bits. Null: none. (`form_factors` has a journal of its own: that of another solve,
-  /// whose form factors are read if only reflectances or emission have changed.)
-  Journal* journal = nullptr;
+  /// The journal must belong to this scene. (`form_factors` has a journal of its own: that of
+  /// another solve, whose form factors serve where only reflectances or emission have changed.)
+  RunControl run{};
 };
 
 /// Figures of the first pass that are not part of the solution.

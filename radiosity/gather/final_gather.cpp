@@ -196,8 +196,8 @@ class HemisphereGather {
 };
 
 // Adds all inputs of a gather, apart from the scene, to the journal's fingerprint.
-void add_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPoints& points,
-                const GatherOptions& options) {
+void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPoints& points,
+                       const GatherOptions& options) {
   print.add(mesh);
   for (int i = 0; i < points.size(); ++i) {
     const auto [position, normal, facet, key, rays] = points[i];
@@ -371,7 +371,8 @@ class CausticPower {
     const int count = std::clamp(static_cast<int>(std::lround(rays_ * share)), 1, rays_);
     const Spectrum power_per_ray =
         mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
-    const std::uint64_t key = random_key(static_cast<std::uint64_t>(p), caustic_rays);
+    const std::uint64_t key =
+        random_key(static_cast<std::uint64_t>(p), RandomPurpose::caustic_rays);
     const PatchSampler sampler(mesh, p);
     send(count, key, lit_.direct_light.first_column(facet), [&](int r) {
       const Eigen::Array4f u = sobol_.point(r, key);
@@ -383,7 +384,7 @@ class CausticPower {
   void add_source(const FreeSource& source) {
     if (!source.is_on() || source.is_dome()) return;
     const std::uint64_t key =
-        random_key(static_cast<std::uint64_t>(source.number), caustic_rays_of_lamps);
+        random_key(static_cast<std::uint64_t>(source.number), RandomPurpose::caustic_source_rays);
     send(rays_, key, source.channel * bands_, [&](int r) {
       const SourceRay sent = source_ray(source, sobol_.point(r, key));
       return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / rays_)));
@@ -410,7 +411,8 @@ class CausticPower {
         ElementHit hit;
         lit_.caster.closest_hits({&ray, 1}, {&hit, 1});
         if (hit.facet < 0 || !paths_.is_specular(hit.facet)) continue;
-        paths_.follow(ray, hit, random_key(key, caustic_branches, static_cast<std::uint64_t>(r)),
+        paths_.follow(ray, hit,
+                      random_key(key, RandomPurpose::caustic_paths, static_cast<std::uint64_t>(r)),
                       [&](const LightArrival& at) {
                         if (at.through_panes_only) return;  // direct light has that
                         list.push_back({at.hit.element, at.throughput * watts});
@@ -448,11 +450,11 @@ BandArray vertex_irradiance(const PatchMesh& mesh, const BandArray& power) {
 }  // namespace
 
 BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
-                             const Progress& progress, Journal* journal) {
+                             const RunControl& run) {
   const PatchMesh& mesh = lit.mesh();
   const LightPaths paths(lit.scene, lit.caster, max_specular_depth);
   if (!paths.has_specular() || lit.direct_light.light_count() == 0) return {};
-  JournalPhase phase(journal, "caustics", [&](Fingerprint& print) {
+  JournalPhase phase(run.journal, "caustics", [&](Fingerprint& print) {
     print.add(mesh);
     print.add(lit.direct_light.column_count());
     print.add(rays);
@@ -469,7 +471,7 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
     } else {
       found.add_source(sources[static_cast<std::size_t>(i - patches)]);
     }
-    report(progress, "caustics", static_cast<double>(i) / count);
+    report(run.progress, "caustics", static_cast<double>(i) / count);
     if (phase.is_state_due()) phase.keep_state(i + 1, found.power());
   }
   phase.keep_state(count, found.power());

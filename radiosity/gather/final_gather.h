@@ -13,11 +13,8 @@
 #include "radiosity/emitters/lit_scene.h"
 #include "radiosity/journal/run_control.h"
 #include "radiosity/solution/solution.h"
-#include "scene/progress.h"
 
 namespace lightwell {
-
-class Journal;
 
 /// A point at which irradiance is gathered.
 struct GatherPoint {
@@ -58,8 +55,7 @@ struct GatherOptions {
   int max_specular_depth = 8;
   ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
   std::uint64_t replica = 0;  ///< another number gives an independent estimate
-  Progress progress{};
-  Journal* journal = nullptr;  ///< keeps the gathered light, and gives back that of an earlier run
+  RunControl run{};           ///< the journal keeps the gathered light
 };
 
 /// Gathered irradiance, points x columns, W/m^2. The columns are the bands; if light is kept apart

@@ -215,7 +215,7 @@ std::vector<InterpolationError::Measured> InterpolationError::measure(
   std::vector<Measured> measured(cells.size());
   constexpr int slice = 4096;  // cells between two reports of progress, which may stop the work
   for (int begin = 0; begin < count; begin += slice) {
-    report(gathers_.options().progress, "refine", static_cast<double>(begin) / count);
+    report(gathers_.options().run.progress, "refine", static_cast<double>(begin) / count);
     parallel_for(std::min(slice, count - begin), 16, [&](int low, int high) {
       for (int i = begin + low; i < begin + high; ++i) {
         for (int side = 0; side < elements_.side_count(cells[i]); ++side) {

@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "radiosity/refine/cell_vertices.h"
+#include "scene/random_purpose.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t probe_key = 30, parts_key = 31;  // purposes of random keys
 constexpr int probe_count = 16;
 
 }  // namespace
@@ -95,7 +95,8 @@ double ShadowSearch::squared_error(const Plane& plane, const CellPoint& at,
 // Mean over the middles of the four parts.
 double ShadowSearch::parts_error(int cell, int side) const {
   const Plane plane = plane_of(cell, side);
-  const std::uint64_t key = random_key(static_cast<std::uint64_t>(2 * cell + side), parts_key);
+  const std::uint64_t key =
+      random_key(static_cast<std::uint64_t>(2 * cell + side), RandomPurpose::refinement_quarters);
   double error = 0.0;
   for (int k = 0; k < 4; ++k) {
     const CellPoint at = point_in(cell, side, k % 2 == 0 ? 0.25 : 0.75, k < 2 ? 0.25 : 0.75);
@@ -115,7 +116,8 @@ double ShadowSearch::probed_error(int cell, int side) const {
   });
   const LitScene lit = gathers_.lit();
   const Plane plane = plane_of(cell, side);
-  const std::uint64_t key = random_key(static_cast<std::uint64_t>(2 * cell + side), probe_key);
+  const std::uint64_t key =
+      random_key(static_cast<std::uint64_t>(2 * cell + side), RandomPurpose::refinement_probes);
   double error = 0.0;
   const std::size_t lights =
       std::min<std::size_t>(static_cast<std::size_t>(lit.direct_light.light_count()), 64);

@@ -13,7 +13,7 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint64_t pilot_replica = 1000;
+constexpr std::uint64_t first_pilot_replica = 1000;
 
 // Distance of vertices from their elements' corners, as a share of the way to the centre of an
 // element of the deepest level (see vertex_gather_points).
@@ -47,8 +47,8 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
       has_noise_goal_(noise > 0.0),
       inset_(std::ldexp(finest_inset, -deepest_level)),
       visibility_(lit.direct_light.light_count()) {
-  if (options.progress) {
-    options_.progress = [progress = options.progress](std::string_view, double share) {
+  if (options.run.progress) {
+    options_.run.progress = [progress = options.run.progress](std::string_view, double share) {
       return progress("refine", share);
     };
   }
@@ -146,7 +146,7 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
   }
   GatherOptions options = options_;
   options.rays = pilot_rays(options_.rays, has_noise_goal_);
-  options.replica = options_.replica + pilot_replica + replica;
+  options.replica = options_.replica + first_pilot_replica + replica;
   return gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);
 }
 
