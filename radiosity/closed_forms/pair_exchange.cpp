@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Distances between centres, in sums of the radii, from which on the rules are good to 1e-5.
+// Distance between centres, in units of the sum of both radii, beyond which the rule of 2 x 2 (far)
+// or 3 x 3 (middle) points has a relative error below 1e-5.
 constexpr double far_from = 8.0, middle_from = 3.0;
 
 bool is_convex_outline(const std::vector<Vector3d>& loop, const Vector3d& normal) {
@@ -26,11 +27,12 @@ bool is_convex_outline(const std::vector<Vector3d>& loop, const Vector3d& normal
 
 }  // namespace
 
-// Gauss's points in (s, t), carried to the bilinear quadrilateral; a triangle is one with two
-// corners in one place.
+// Gauss points of the unit square (s, t), mapped bilinearly to the quadrilateral. A triangle is a
+// quadrilateral whose last two corners coincide.
 template <int N>
 PairExchange::Points<N> PairExchange::gauss_points(const std::vector<Vector3d>& loop) {
   constexpr int side = N == few ? 2 : 3;
+  // Nodes of the Gauss-Legendre rules: 1 / sqrt(3) and sqrt(3 / 5).
   constexpr double two = 0.57735026918962576, three = 0.77459666924148338;
   const std::array<double, 3> node =
       side == 2 ? std::array{-two, two, 0.0} : std::array{-three, 0.0, three};

@@ -6,30 +6,33 @@
 
 namespace lightwell {
 
-/// Unoccluded exchange areas S_ij = A_i F_ij of patches, by the cheapest way that is good enough
-/// for the pair: the double contour integral (polygon_exchange) where they are near or cut by each
-/// other's plane or no triangles or convex quadrilaterals, else the double area integral
+/// Unoccluded exchange areas S_ij = A_i F_ij of pairs of patches, by one of two methods:
+///   - the double contour integral (polygon_exchange) where the patches are close to each other,
+///     are cut by each other's plane, or are not triangles or convex quadrilaterals;
+///   - the double area integral otherwise,
 ///
-///   S_ij = int int cos(theta_i) cos(theta_j) / (pi r^2) dA_i dA_j
+///   S_ij = int int cos(theta_i) cos(theta_j) / (pi r^2) dA_i dA_j,
 ///
-/// by Gauss's rule with 2 x 2 or 3 x 3 points on each patch. Errors of the latter stay below 1e-5
-/// of the value.
+/// by Gauss's rule with 2 x 2 or 3 x 3 points on each patch. Relative errors of the area integral
+/// stay below 1e-5. Keeps a reference to the outlines.
 class PairExchange {
  public:
   explicit PairExchange(const std::vector<PatchOutline>& outlines);
 
-  /// Square metres; 0 for patches of spheres.
+  /// S_ij in square metres; 0 for patches of spheres.
   double between(int i, int j) const;
 
-  /// Whether any of the pair can see the other, nothing else being there.
+  /// True if some of each patch lies before the other's plane. False for patches of spheres.
   bool face_each_other(int i, int j) const;
 
  private:
-  /// Points with weights that sum to the area, in arrays that a processor can work on together.
+  /// Quadrature points, m, and weights, m^2, that sum to the area: one array per coordinate, so
+  /// that loops over points vectorise.
   template <int N>
   struct Points {
     std::array<double, N> x, y, z, weight;
   };
+  /// Points per patch of the 2 x 2 and the 3 x 3 rule.
   static constexpr int few = 4, more = 9;
 
   struct Patch {
@@ -41,11 +44,12 @@ class PairExchange {
   static Points<N> gauss_points(const std::vector<Eigen::Vector3d>& loop);
   template <int N>
   double area_integral(int i, int j, const Points<N>& from, const Points<N>& to) const;
-  /// 1: all of `other` lies before the plane of `plane`, -1: nothing does, 0: the plane cuts it.
+  /// Position of patch `other` relative to the plane of patch `plane`: 1: all before it, -1: none
+  /// before it, 0: cut by the plane.
   int side(int plane, int other) const;
 
   const std::vector<PatchOutline>& outlines_;
-  std::vector<double> offset_;  // of the planes
+  std::vector<double> offset_;  // of the planes, m
   std::vector<Patch> patches_;
 };
 

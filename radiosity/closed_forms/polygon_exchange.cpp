@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 using Loops = std::vector<std::vector<Vector3d>>;
 
-// The part of the loops on the side of the plane to which `normal` points. Where a loop falls apart
-// its pieces stay joined by edges that run to and fro, which cancel in the integral.
+// Clips the loops to the side of the plane to which `normal` points. Where a loop falls into
+// pieces, the pieces stay joined by pairs of opposite edges, which cancel in the contour integral.
 Loops clipped(const Loops& loops, const Vector3d& on_plane, const Vector3d& normal,
               double tolerance) {
   Loops result;
@@ -36,19 +36,19 @@ Loops clipped(const Loops& loops, const Vector3d& on_plane, const Vector3d& norm
   return result;
 }
 
-// int ln |x| over the segment from a to b, x from the point.
+// int ln |x - point| over the segment from a to a + length along.
 double log_integral(const Vector3d& point, const Vector3d& a, const Vector3d& along,
                     double length) {
   const Vector3d to_a = a - point;
   const double start = to_a.dot(along), end = start + length;
-  const double squared = (to_a - start * along).squaredNorm();  // keeps its digits near 0
+  const double squared = (to_a - start * along).squaredNorm();  // no cancellation near 0
   const double distance = std::sqrt(squared);
   const auto antiderivative = [&](double x) {
     const double r2 = x * x + squared;
     return (r2 > 0.0 ? 0.5 * x * std::log(r2) : 0.0) - x;
   };
   double value = antiderivative(end) - antiderivative(start);
-  // atan(end / d) - atan(start / d) in one.
+  // atan(end / d) - atan(start / d) as a single arc tangent.
   if (distance > 0.0) value += distance * std::atan2(distance * length, squared + start * end);
   return value;
 }
@@ -58,7 +58,7 @@ struct Node {
   double weight;
 };
 
-// Gauss and Legendre's rule with n nodes on [0, 1], by Newton's method on the polynomial.
+// Gauss-Legendre rule with n nodes on [0, 1]; nodes by Newton's method on the Legendre polynomial.
 std::vector<Node> gauss_legendre(int n) {
   std::vector<Node> nodes;
   for (int i = 0; i < n; ++i) {
@@ -79,7 +79,8 @@ std::vector<Node> gauss_legendre(int n) {
   return nodes;
 }
 
-// Double-exponential rule on [0, 1]: at home with t ln t at either end.
+// Double-exponential rule on [0, 1] (Takahasi & Mori 1974), which also converges for integrands
+// such as t ln t, singular at an end.
 std::vector<Node> double_exponential() {
   std::vector<Node> nodes;
   constexpr double step = 0.14, reach = 3.2;
@@ -96,7 +97,7 @@ struct Rules {
   std::vector<Node> far = gauss_legendre(3), middle = gauss_legendre(6), near = gauss_legendre(12),
                     touching = double_exponential();
 
-  // `gap`: distance of the other edge from the piece, in lengths of the piece.
+  // `gap`: distance between the piece and the other edge, in lengths of the piece.
   const std::vector<Node>& rule_for(double gap) const {
     if (gap > 6.0) return far;
     if (gap > 1.5) return middle;
@@ -111,17 +112,18 @@ double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d&
   return (a + t * along - p).norm();
 }
 
-// A bound from below on the distance of two segments that is sharp where they are far apart.
+// Lower bound of the distance between two segments, sharp where the segments are far apart.
 double gap_between(const Vector3d& a, const Vector3d& along, double length, const Vector3d& b,
                    const Vector3d& other_along, double other_length) {
   const Vector3d middle = a + 0.5 * length * along;
   return std::max(0.0, distance_to_segment(middle, b, other_along, other_length) - 0.5 * length);
 }
 
-// int int ln r ds dt.
+// int int ln r ds dt over two edges: quadrature along the first, closed form along the second.
 double edge_pair(const Rules& rules, const Vector3d& a, const Vector3d& along, double length,
                  const Vector3d& b, const Vector3d& other_along, double other_length) {
-  // The integrand is least smooth across from the other edge's ends.
+  // The integrand is least smooth opposite the ends of the other edge, so close edges are cut
+  // there.
   std::array<double, 4> cut = {0.0, (b - a).dot(along),
                                (b + other_length * other_along - a).dot(along), length};
   for (double& c : cut) c = std::clamp(c, 0.0, length);
@@ -164,21 +166,22 @@ std::vector<EdgeOf> edges_of(const Loops& loops) {
 double polygon_exchange(const PatchOutline& first, const PatchOutline& second) {
   if (!first.is_polygon() || !second.is_polygon()) return 0.0;
   static const Rules rules;
-  constexpr double on_plane = 1e-9;  // of the pair's size
+  constexpr double on_plane = 1e-9;  // relative to the pair's size
   const double tolerance =
       on_plane * (first.radius + second.radius + (first.center - second.center).norm());
   const Loops a = clipped(first.loops, second.loops[0][0], second.normal, tolerance);
   const Loops b = clipped(second.loops, first.loops[0][0], first.normal, tolerance);
   if (a.empty() || b.empty()) return 0.0;
   const std::vector<EdgeOf> edges = edges_of(a), others = edges_of(b);
-  // A unit of length of the pair's own size keeps digits: constants in ln r cancel around a loop.
+  // Lengths relative to the pair's size avoid cancellation. The unit does not matter: a constant
+  // added to ln r integrates to 0 around a loop.
   const double unit = first.radius + second.radius;
   double sum = 0.0;
   for (const EdgeOf& p : edges) {
     for (const EdgeOf& q : others) {
       const double cosine = p.along.dot(q.along);
       if (std::abs(cosine) < 1e-14) continue;
-      // Quadrature goes along the shorter edge.
+      // Quadrature along the shorter edge, closed form along the longer.
       const bool first_is_shorter = p.length <= q.length;
       const EdgeOf& outer = first_is_shorter ? p : q;
       const EdgeOf& inner = first_is_shorter ? q : p;

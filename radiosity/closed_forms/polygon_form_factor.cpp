@@ -8,9 +8,9 @@
 namespace lightwell {
 namespace {
 
-// Gamma_k . n of one edge between points a and b as seen from the origin: the angle it spans times
-// the unit normal of its plane. atan2 keeps digits for edges that span almost nothing or almost 180
-// degrees.
+// Gamma_k . n of the edge between points a and b as seen from the origin: the angle that the edge
+// subtends times the unit normal of the plane through edge and origin. atan2 is accurate for edges
+// that subtend almost nothing or almost 180 degrees.
 double edge_term(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                  const Eigen::Vector3d& normal) {
   const Eigen::Vector3d cross = a.cross(b);
@@ -19,8 +19,8 @@ double edge_term(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   return std::atan2(sine, a.dot(b)) * cross.dot(normal) / sine;
 }
 
-// Sum over the part of the loop above the horizon (Sutherland & Hodgman against one plane, without
-// storing it).
+// Sum of edge_term over the part of the loop above the horizon (Sutherland & Hodgman against one
+// plane, without storing the clipped loop).
 double loop_term(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                  std::span<const Eigen::Vector3d> loop) {
   double sum = 0.0;
@@ -57,7 +57,7 @@ double point_to_polygon(const Eigen::Vector3d& point, const Eigen::Vector3d& nor
                         std::span<const Loop> loops) {
   double sum = 0.0;
   for (const Loop& loop : loops) sum += loop_term(point, normal, loop);
-  // Counter-clockwise seen from the element winds about -n as seen from behind it.
+  // A loop that runs counter-clockwise seen from the element runs clockwise about n.
   return -sum / (2.0 * std::numbers::pi);
 }
 

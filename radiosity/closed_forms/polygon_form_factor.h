@@ -16,13 +16,13 @@ using Loop = std::vector<Eigen::Vector3d>;
 /// element, negative when clockwise. |F| <= 1. Relative error about 1e-12.
 double point_to_polygon(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                         std::span<const Loop> loops);
-/// The same for a polygon without holes.
+/// Form factor to a polygon without holes; otherwise as above.
 double point_to_polygon(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                         std::span<const Eigen::Vector3d> loop);
 
-/// Form factor from a differential element to an unoccluded sphere of `radius` about `center`, the
-/// part below the horizon taken off (Snyder 1996, "Area light sources for real-time graphics",
-/// spherical case). 0 from inside.
+/// Form factor from a differential element to an unoccluded sphere of `radius` about `center`,
+/// clipped to the element's horizon (Snyder 1996, "Area light sources for real-time graphics",
+/// spherical case). 0 for a point inside the sphere.
 double point_to_sphere(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                        const Eigen::Vector3d& center, double radius);
 

@@ -28,7 +28,7 @@ Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const
   Spectrum share = Spectrum::Ones(bands_);
   const Eigen::Vector3d direction = first.direction.normalized();
   Ray ray = first;
-  constexpr int most_panes = 64;  // what is left behind so many is nothing to speak of
+  constexpr int most_panes = 64;  // the transmittance of so many is negligible
   for (int i = 0; i < most_panes; ++i) {
     ElementHit hit;
     caster.closest_elements({&ray, 1}, {&hit, 1});

@@ -8,27 +8,27 @@
 
 namespace lightwell {
 
-/// Thin panes without roughness, such as windows, which shadow rays go straight through: light that
-/// a lamp sends through them is direct light, as sharp as any, and no caustic.
+/// Thin panes without roughness, such as windows, which shadow rays cross undeviated. Light of a
+/// luminaire through such panes counts as direct light, not as a caustic.
 class ClearPanes {
  public:
   explicit ClearPanes(const Scene& scene);
 
   bool empty() const { return panes_.empty(); }
 
-  /// The share of light that gets to the ray's t_max, or to its target group, which something is
-  /// in the way of: what all panes between pass, (1 - R) tint of each (see smooth_scattering); 0 in
-  /// all bands if anything else is.
+  /// Transmittance per band from the ray's origin to its t_max or its target group: the product of
+  /// (1 - R) tint over all panes crossed (see smooth_ways). 0 in all bands where anything but a
+  /// pane blocks the ray, and behind 64 panes.
   Spectrum passed(const ElementCaster& caster, const Ray& ray) const;
 
  private:
   struct Pane {
     Material material{};
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // zero for a sphere
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of a sphere
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();  // center of a sphere
   };
   std::vector<Pane> panes_{};
-  std::vector<int> of_facet_{};  // -1: it is none
+  std::vector<int> of_facet_{};  // pane of each facet; -1: the facet is no clear pane
   int bands_ = 0;
 };
 

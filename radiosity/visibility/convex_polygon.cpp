@@ -16,9 +16,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double thin = 1e-12;      // of the other side's depth
-constexpr int most_joined = 12;     // corners of a piece
-constexpr double straight = 1e-10;  // sine of a turn that still counts as convex
+// Thickness of an empty part, relative to the other part's depth.
+constexpr double thin = 1e-12;
+constexpr int most_joined = 12;     // most corners of a piece
+constexpr double straight = 1e-10;  // sine of a right turn that still counts as convex
 
 double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   const Vector2d in = b - a, out = c - b;
@@ -35,7 +36,7 @@ bool is_convex_loop(const std::vector<int>& loop, const std::vector<Vector2d>& p
   return true;
 }
 
-// A star turns the same way at every corner too, but more than once around.
+// A star polygon turns left at every corner, too, but by more than 2 pi in total.
 bool is_simple_and_convex(const std::vector<Vector2d>& points) {
   std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
@@ -48,7 +49,7 @@ bool is_simple_and_convex(const std::vector<Vector2d>& points) {
   return turned < 3.0 * std::numbers::pi && is_convex_loop(order, points);
 }
 
-// Which triangles lie inside an odd number of loops.
+// 1 for triangles inside an odd number of loops, 0 for all others.
 std::vector<char> inner_triangles(const PlanarTriangulation& mesh) {
   const std::size_t n = mesh.triangles.size();
   std::vector<char> side(n, -1);
@@ -73,7 +74,7 @@ std::vector<char> inner_triangles(const PlanarTriangulation& mesh) {
   return side;
 }
 
-// Takes out inner edges, longest first, while what they join is convex.
+// Removes inner edges, longest first, as long as the joined pieces stay convex.
 class Joiner {
  public:
   explicit Joiner(const PlanarTriangulation& mesh) : mesh_(mesh) {
@@ -116,7 +117,7 @@ class Joiner {
   void join(const Edge& edge) {
     const int left = piece(edge.left), right = piece(edge.right);
     if (left == right || pieces_[left].size() + pieces_[right].size() > most_joined + 2) return;
-    // From b once around the left piece to a, then from a around the right one to b.
+    // From b once around the left piece to a, then from a around the right piece to b.
     std::vector<int> joined = from(pieces_[left], edge.b);
     const std::vector<int> rest = from(pieces_[right], edge.a);
     if (joined.back() != edge.a || rest.back() != edge.b) return;
@@ -259,7 +260,7 @@ ConvexPolygon convex_hull(std::span<const Vector3d> points, const Vector3d& norm
   double size = 0.0;
   for (const Vector3d& p : points) size = std::max(size, (p - points[0]).norm());
   if (!(size > 0.0)) return result;
-  // On a grid of whole numbers, where nothing is nearly straight: it is or it is not.
+  // Points are rounded to an integer grid, on which orientation tests are exact.
   constexpr double cells = 1 << 29;
   struct GridPoint {
     std::int64_t x, y;

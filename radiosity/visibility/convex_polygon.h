@@ -8,7 +8,7 @@
 
 namespace lightwell {
 
-/// The points p with height(p) >= 0.
+/// Points p with height(p) = normal . p - offset >= 0. The normal need not have unit length.
 struct HalfSpace {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double offset = 0.0;
@@ -16,7 +16,8 @@ struct HalfSpace {
   HalfSpace opposite() const { return {-normal, -offset}; }
 };
 
-/// Whether all points are at most, or at least, this high; any of them higher, or lower.
+/// True if every point has at most (all_below) or at least (all_above) the given height over the
+/// plane; any_above and any_below are their negations.
 bool all_below(std::span<const Eigen::Vector3d> points, const HalfSpace& plane, double height);
 bool all_above(std::span<const Eigen::Vector3d> points, const HalfSpace& plane, double height);
 inline bool any_above(std::span<const Eigen::Vector3d> points, const HalfSpace& plane,
@@ -28,14 +29,15 @@ inline bool any_below(std::span<const Eigen::Vector3d> points, const HalfSpace& 
   return !all_above(points, plane, height);
 }
 
-/// A planar convex polygon of few corners that needs no memory of its own, to be cut many times.
+/// Planar convex polygon of at most 24 corners. The corners lie in the object itself, so clipping
+/// allocates no memory.
 struct ConvexPolygon {
   static constexpr int most_corners = 24;
   std::array<Eigen::Vector3d, most_corners> corner;
   int count = 0;
 
   ConvexPolygon() = default;
-  /// Of at most most_corners corners.
+  /// Precondition: at most most_corners corners.
   explicit ConvexPolygon(std::span<const Eigen::Vector3d> corners);
   ConvexPolygon(const ConvexPolygon& other) : ConvexPolygon(other.corners()) {}
   ConvexPolygon& operator=(const ConvexPolygon& other);
@@ -50,26 +52,27 @@ struct ConvexPolygon {
   double area() const;
 };
 
-/// What split() did.
+/// Result of split().
 enum class Cut { none_inside, all_inside, both };
 
-/// Cuts the polygon by the plane at height 0. Only for `both` are `inside` and `outside` filled;
-/// parts thinner than 1e-12 of the other side's depth are none. The polygon must have a corner to
-/// spare: count < most_corners.
+/// Splits the polygon at the plane height(p) = 0. `inside` and `outside` are filled only for
+/// Cut::both. A part thinner than 1e-12 of the other part's depth counts as empty. Precondition:
+/// count < most_corners.
 Cut split(const ConvexPolygon& polygon, const HalfSpace& half_space, ConvexPolygon& inside,
           ConvexPolygon& outside);
 
-/// The part inside; false if there is none.
+/// Clips the polygon to the half-space. Returns false if no part of the polygon lies inside.
 bool clip(ConvexPolygon& polygon, const HalfSpace& half_space);
 
 /// Convex polygons of at most 12 corners that tile a polygon with holes: a constrained Delaunay
-/// triangulation whose inner edges are taken out while what they join is convex (Hertel & Mehlhorn
-/// 1983). Counter-clockwise about `normal`. Empty if the loops cross each other.
+/// triangulation whose inner edges are removed, longest first, as long as the joined pieces stay
+/// convex (Hertel & Mehlhorn 1983). Counter-clockwise about `normal`. Empty if the loops cross each
+/// other.
 std::vector<ConvexPolygon> convex_pieces(const std::vector<std::vector<Eigen::Vector3d>>& loops,
                                          const Eigen::Vector3d& normal);
 
-/// Of points in one plane, counter-clockwise about `normal`, to 1e-9 of its size. Empty if they
-/// have no area, or if more than 16 of them are corners.
+/// Convex hull of coplanar points, counter-clockwise about `normal`, to 1e-9 of its size. Empty if
+/// the points have no area, or if more than 16 of them are corners of the hull.
 ConvexPolygon convex_hull(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& normal);
 
 }  // namespace lightwell

@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 constexpr int most_triangles = 1 << 12;  // bounds the work of a pair at some 10 ms
 
 // Radon's rule of degree 5 in barycentric coordinates: the centroid and two orbits of three points.
-// The centroid and either orbit alone make a rule of degree 2: two, for at a bend one of them may
-// agree by chance.
+// The centroid and either orbit alone make a rule of degree 2. Both of these rules are compared
+// with Radon's, since one alone may agree by chance where the integrand bends.
 struct TriangleRule {
   static constexpr int count = 7;
   std::array<Vector3d, count> at;
@@ -105,7 +105,7 @@ HiddenTriangle HiddenIntegral::over(const std::array<Vector3d, 3>& corner) {
   if (is_all_alike && met != 0) {
     result.error += area * change_at_corners(corner, result.is_all_hidden);
   }
-  // The edge of an umbra or penumbra runs through: no rule is to be believed beyond this.
+  // The edge of an umbra or penumbra crosses the triangle: closer agreement of the rules is chance.
   constexpr double bend = 0.01;
   if (!is_all_alike && is_any_whole) {
     result.least_error = bend * area * (most_hidden - least_hidden);
@@ -114,13 +114,14 @@ HiddenTriangle HiddenIntegral::over(const std::array<Vector3d, 3>& corner) {
   return result;
 }
 
-// Where all points of the rule see everything, or all nothing, what they miss begins at a corner:
-// the points from which one blocker hides all make a convex set. The points keep off the corners
-// by a fifth and off the edges by a tenth of the triangle, which bounds the part that is missed.
+// Error of F_hidden in a triangle where all points of the rule see everything, or all nothing. The
+// points from which one blocker hides everything make a convex set, so a region that the rule
+// misses begins at a corner. The points of the rule keep away from corners by a fifth and from
+// edges by a tenth of the triangle, which bounds the missed region.
 double HiddenIntegral::change_at_corners(const std::array<Vector3d, 3>& corner,
                                          bool is_all_hidden) {
   constexpr double part = 1.0 / 12.0;
-  constexpr double inwards = 1e-3;  // on edges, planes may meet
+  constexpr double inwards = 1e-3;  // planes of blockers may meet on edges
   const Vector3d middle = (corner[0] + corner[1] + corner[2]) / 3.0;
   double change = 0.0;
   for (const Vector3d& c : corner) {
@@ -130,8 +131,9 @@ double HiddenIntegral::change_at_corners(const std::array<Vector3d, 3>& corner,
   return part * change;
 }
 
-// Area from which blockers hide something that no point of the rule has met. What they hide grows
-// from nothing at the edge of their reach, so a strip of it counts little.
+// Area within reach of blockers that no point of the rule meets, times its share of the blocker's
+// whole reach. The hidden form factor grows from 0 at the edge of the reach, so a strip there has
+// little effect.
 double HiddenIntegral::missed_area(const std::array<Vector3d, 3>& corner, std::uint32_t met) const {
   if (blockers_.size() < 2) return 0.0;
   double missed = 0.0;
@@ -146,8 +148,8 @@ double HiddenIntegral::missed_area(const std::array<Vector3d, 3>& corner, std::u
 }
 
 void HiddenIntegral::refine(std::vector<HiddenTriangle>& triangles, double tolerance) {
-  // The difference of two rules is the error of the worse; how far a whole is from the sum of its
-  // halves shows what the better is off by, but may be small by chance.
+  // The difference of two rules is the error of the worse rule. The difference between a triangle
+  // and the sum of its halves shows the error of the better rule, but may be small by chance.
   constexpr double least_error_ratio = 0.1;
   const auto is_better = [](const HiddenTriangle& a, const HiddenTriangle& b) {
     return a.error < b.error;

@@ -10,30 +10,35 @@
 
 namespace lightwell {
 
-/// Integral over a triangle of F_hidden, the form factor from a point to what is hidden of a
+/// Integral over a triangle of F_hidden(x), the form factor from point x to the hidden part of a
 /// polygon.
 struct HiddenTriangle {
   std::array<Eigen::Vector3d, 3> corner;
   double hidden = 0.0;        ///< m^2
   double error = 0.0;         ///< estimated, m^2
-  double least_error = 0.0;   ///< below which no agreement of rules brings it
-  bool is_all_hidden = true;  ///< from all points of the rule
+  double least_error = 0.0;   ///< lower bound of `error` however well rules agree, m^2
+  bool is_all_hidden = true;  ///< all of the polygon is hidden from every point of the rule
 };
 
 double total_error(std::span<const HiddenTriangle> triangles);
 
 /// Integrates F_hidden over triangles of one polygon by Radon's rule (1948) of degree 5 with 7
-/// points. The error is estimated by two rules of degree 2 on some of the points, by what the
-/// corners see where all points see alike, and by the range of F_hidden where the edge of an umbra
-/// or penumbra runs through. Keeps references to the blockers and to the parts of `to`.
+/// points. Keeps references to the blockers and to the parts of `to`. Terms of the error estimate:
+///   - the larger difference from two rules of degree 2 on some of the points;
+///   - the area within reach of blockers that no point of the rule meets;
+///   - the change towards the corners where the points of the rule all see everything, or all
+///     nothing;
+///   - at least 1 % of area times range of F_hidden where the edge of an umbra or penumbra crosses
+///     the triangle.
 class HiddenIntegral {
  public:
   HiddenIntegral(const ShaftEnd& from, const ShaftEnd& to, std::span<const Blocker> blockers);
 
+  /// The integral over one triangle.
   HiddenTriangle over(const std::array<Eigen::Vector3d, 3>& corner);
 
-  /// Halves the worst triangle until the errors add up to `tolerance` (m^2) or there are 4096 of
-  /// them.
+  /// Halves the triangle of the largest error until the errors add up to at most `tolerance` (m^2)
+  /// or there are 4096 triangles.
   void refine(std::vector<HiddenTriangle>& triangles, double tolerance);
 
  private:

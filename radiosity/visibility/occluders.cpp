@@ -20,6 +20,7 @@ double area_of(const PatchMesh& mesh, const std::vector<int>& elements) {
   return area;
 }
 
+// Joins coplanar facets that share edges to sheets. A sheet has the number of one of its facets.
 class Sheets {
  public:
   explicit Sheets(const PatchMesh& mesh, double tolerance) : mesh_(mesh), tolerance_(tolerance) {
@@ -46,7 +47,7 @@ class Sheets {
   int facet_count() const { return static_cast<int>(elements_.size()); }
   bool is_polygon(int facet) const { return !elements_[facet].empty(); }
   int sheet(int facet) const { return sheet_[facet]; }
-  /// Of a sheet.
+  /// Facets of a sheet.
   const std::vector<int>& facets(int sheet) const { return facets_[sheet]; }
   const std::vector<int>& elements(int facet) const { return elements_[facet]; }
   const HalfSpace& plane(int facet) const { return plane_[facet]; }
@@ -74,7 +75,7 @@ class Sheets {
     });
   }
 
-  // Edges of elements, by place, so that two facets' meet.
+  // Edge of an element, compared by position, so that equal edges of two facets are found together.
   struct Edge {
     Vector3d low, high;
     int facet;
@@ -110,8 +111,9 @@ class Sheets {
     }
   }
 
-  // A sheet keeps the plane of its first facet, which holds all others, so that planes do not
-  // drift. The smaller one joins the larger: none is looked at more often than its sheet doubles.
+  // Joins the sheets of two facets if all facets of the smaller sheet lie in the larger sheet's
+  // plane. A sheet keeps the plane of its first facet, so planes do not drift. Since the smaller
+  // sheet joins the larger, a facet changes its sheet O(log n) times.
   void join(int a, int b) {
     int to = sheet(a), from = sheet(b);
     if (to == from) return;
@@ -128,10 +130,11 @@ class Sheets {
 
   const PatchMesh& mesh_;
   double tolerance_;
-  std::vector<std::vector<int>> elements_;  // of a facet's front
+  std::vector<std::vector<int>> elements_;  // per facet: elements of its front
   std::vector<HalfSpace> plane_;
   std::vector<int> sheet_;
-  std::vector<std::vector<int>> facets_;  // of a sheet, the one whose plane it has first
+  // per sheet; the facet whose plane is the sheet's is first
+  std::vector<std::vector<int>> facets_;
 };
 
 std::vector<ConvexPolygon> pieces_of(const PatchMesh& mesh, const std::vector<int>& elements,
@@ -142,7 +145,7 @@ std::vector<ConvexPolygon> pieces_of(const PatchMesh& mesh, const std::vector<in
   const double wanted = area_of(mesh, elements);
   constexpr double all_of_it = 1e-6;
   if (std::abs(area - wanted) <= all_of_it * wanted) return pieces;
-  // Parts that cover each other, or outlines that touch themselves.
+  // The areas differ where elements overlap or an outline touches itself: every element is a piece.
   pieces.clear();
   for (const int e : elements) {
     ConvexPolygon polygon;

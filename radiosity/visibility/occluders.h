@@ -8,26 +8,27 @@
 
 namespace lightwell {
 
-/// A convex piece of what stands in one plane.
+/// A convex piece of a sheet (see Occluders).
 struct Occluder {
   ConvexPolygon polygon{};  ///< counter-clockwise about the normal
-  HalfSpace plane{};        ///< of unit normal
+  HalfSpace plane{};        ///< unit normal
   Eigen::AlignedBox3d box{};
-  int sheet = 0;           ///< see Occluders::sheet_of_facet
-  bool has_holes = false;  ///< of a sheet that a picture cuts holes into
+  int sheet = 0;           ///< as in Occluders::sheet_of_facet
+  bool has_holes = false;  ///< a texture cuts holes into some facet of the sheet
 };
 
-/// All polygons of a mesh as occluders. Facets that lie in one plane, face one way and share edges
-/// are one *sheet*: the squares of a wall block together. A sheet is cut into as few convex pieces
-/// as convex_pieces() finds; pieces do not overlap. Every polygon blocks from both sides.
+/// The polygons of a mesh as occluders. Facets that lie in one plane, face the same way and share
+/// edges form one *sheet*, such as the squares of a wall. A sheet is split into the convex pieces
+/// that convex_pieces() finds. Pieces overlap only where elements overlap. Every polygon blocks
+/// from both sides.
 struct Occluders {
   explicit Occluders(const PatchMesh& mesh);
 
   std::vector<Occluder> pieces{};
   std::vector<int> sheet_of_facet{};  ///< per scene-wide facet; -1 for spheres
   std::vector<Sphere> spheres{};
-  /// What counts as touching, metres: 1e-7 of the diagonal of the mesh's bounds, which is what the
-  /// single precision of shadow rays resolves.
+  /// Distance that counts as touching, m: 1e-7 of the diagonal of the mesh's bounds, the resolution
+  /// of shadow rays in single precision.
   double tolerance = 0.0;
 };
 

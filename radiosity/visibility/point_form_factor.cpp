@@ -20,15 +20,16 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int points_at_once = 128;
-constexpr double nothing = 1e-12;  // below, the shooter is edge-on or at the horizon: rounding
+// Smaller F is rounding: the shooter is edge-on or at the horizon.
+constexpr double nothing = 1e-12;
 
-// Samples of one shooter, to be cast from points.
+// Stratified sample points of one shooter.
 class ShooterSamples {
  public:
   ShooterSamples(const PatchMesh& mesh, int patch, int most_samples)
       : mesh_(mesh), patch_(patch), sampler_(mesh, patch), sobol_(most_samples) {}
 
-  // cos cos / (pi r^2 + disc), the ray to sample s from the point.
+  // The shadow ray from a receiving point to sample s, weighted by cos cos / (pi r^2 + disc).
   ShadowSample sample(const ReceivingPoint& from, int s, double disc) const {
     const auto key =
         random_key(static_cast<std::uint64_t>(patch_), from.key, RandomPurpose::shooter_points);
@@ -91,7 +92,7 @@ void PointFormFactors::by_discs(int shooter, int n, std::span<const ReceivingPoi
   });
 }
 
-// F where no ray is needed, all but visibility where rays are.
+// F, without its visibility where shadow rays are needed.
 PointFormFactors::Unsampled PointFormFactors::without_rays(const ShaftEnd& target,
                                                            const ReceivingPoint& point) const {
   const Occluders& occluders = shafts_.occluders();

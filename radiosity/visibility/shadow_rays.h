@@ -10,24 +10,26 @@
 
 namespace lightwell {
 
-/// A shadow ray, and what it would carry if nothing were in its way.
+/// A shadow ray and its weight.
 struct ShadowSample {
   Ray ray{};
-  double weight = 0.0;  ///< of the unoccluded kernel; a sample of weight 0 is not cast
+  double weight = 0.0;  ///< unoccluded kernel; a sample of weight 0 is not cast
 };
 
-/// What the shadow rays of one point or pair found.
+/// Sums over the shadow rays of one point or pair.
 struct ShadowTally {
   double all = 0.0, seen = 0.0,
-         squares = 0.0;  ///< of weights, of those not blocked, of all squared
+         squares = 0.0;  ///< sums of weights, of weights of unblocked rays, of squared weights
 
-  double dimmed = 0.0;   ///< of those that reach through clear panes
-  Spectrum through{};    ///< what those carry; empty: there are none
-  bool blocked = false;  ///< something that is no pane is in the way of one
+  double dimmed = 0.0;  ///< sum of weights of rays that cross clear panes
+  /// Sum of weight times transmittance of rays through clear panes, per band; empty without such
+  /// rays.
+  Spectrum through{};
+  bool blocked = false;  ///< some ray meets more than clear panes
 
-  /// Visible share, weighted as the kernel is: exact where all rays agree. 0 without rays.
+  /// Visible share of the kernel: exact where all rays agree. 0 without rays.
   double share() const { return all > 0.0 ? seen / all : 0.0; }
-  /// Variance of share(), the rays taken as independent.
+  /// Variance of share() for independent rays.
   double variance() const {
     const double s = share();
     return all > 0.0 ? s * (1.0 - s) * squares / (all * all) : 0.0;
@@ -38,17 +40,17 @@ struct ShadowTally {
   }
 };
 
-/// Casts shadow rays of many tallies together, in batches that suit the ray caster. Tallies are
-/// added to in the order of add(), whatever the batches.
+/// Casts shadow rays of many tallies in batches that suit the ray caster. Tallies accumulate in the
+/// order of add(), independently of the batches.
 class ShadowBatch {
  public:
-  /// Rays that meet nothing but `panes`, if given, are dimmed and not blocked.
+  /// `panes`: panes that dim shadow rays instead of blocking them; null: none.
   ShadowBatch(const ElementCaster& caster, std::span<ShadowTally> tallies,
               const ClearPanes* panes = nullptr)
       : caster_(caster), tallies_(tallies), panes_(panes) {}
 
   void add(int tally, const ShadowSample& sample);
-  /// Casts what add() has left waiting; the tallies are complete only after it.
+  /// Casts all waiting rays. Tallies are complete only after flush().
   void flush();
 
  private:

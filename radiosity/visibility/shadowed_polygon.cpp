@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double flat_sine = 1e-12;   // sine of an angle that is none
-constexpr double same = 1.0 - 1e-14;  // cosine of one
+constexpr double flat_sine = 1e-12;   // sine of an angle that counts as 0
+constexpr double same = 1.0 - 1e-14;  // cosine of an angle that counts as 0
 
-// Planes through an edge of `edges` and one of `corners`, with `before` at heights >= 0, `behind`
-// at heights <= 0 and some of `points` at heights < 0.
+// Adds planes through an edge of `edges` and one of `corners`, with `before` at heights >= 0,
+// `behind` at heights <= 0 and some of `points` at heights < 0.
 void add_parting_planes(std::span<const Vector3d> edges, std::span<const Vector3d> corners,
                         std::span<const Vector3d> before, std::span<const Vector3d> behind,
                         std::span<const Vector3d> points, double slack,
@@ -42,7 +42,7 @@ void add_parting_planes(std::span<const Vector3d> edges, std::span<const Vector3
   }
 }
 
-// What lies behind either end is not between them.
+// Clips the occluder to the half-spaces of both ends and makes it clockwise seen from the points.
 bool cut_to_ends(const Occluder& occluder, int side, const HalfSpace& from, const HalfSpace& target,
                  Blocker& blocker) {
   blocker.polygon = occluder.polygon;
@@ -87,7 +87,7 @@ bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, cons
       flat_sine * (target.box.merged(from.box).merged(occluder.box)).diagonal().norm();
   const auto near = blocker.polygon.corners();
   blocker.reach.push_back(blocker.plane);
-  if (from.parts.empty()) return true;  // one point has no penumbra
+  if (from.parts.empty()) return true;  // a single point has no penumbra
   add_parting_planes(near, far_corners, near, far_corners, from.corners, slack, blocker.reach);
   for (const ConvexPolygon& part : far_parts) {
     add_parting_planes(part.corners(), near, near, far_corners, from.corners, slack, blocker.reach);
@@ -112,7 +112,7 @@ double ShadowedPolygon::take_away(const Blocker& blocker, const Vector3d& point,
   for (int k = 0; k < polygon.count; ++k) {
     const Vector3d a = polygon.corner[k] - point;
     const Vector3d b = polygon.corner[k + 1 < polygon.count ? k + 1 : 0] - point;
-    // Clockwise corners: the normal points into the pyramid.
+    // Corners run clockwise, so the normal points into the pyramid.
     const Vector3d across = a.cross(b);
     if (!(across.squaredNorm() > flat_sine * flat_sine * a.squaredNorm() * b.squaredNorm()))
       continue;
@@ -132,11 +132,11 @@ double ShadowedPolygon::take_away(const Blocker& blocker, const Vector3d& point,
       left_.push_back(fragment);
       continue;
     }
-    // Cut for good only where something is hidden: pieces that nothing hides would stay cut.
+    // A fragment is split only if some of it is hidden, which saves fragments.
     rest = fragment;
     bool is_any_hidden = true;
     for (int k = 0; k < planes && is_any_hidden; ++k) {
-      // A polygon of too many corners stays whole: what is hidden of it then counts as seen.
+      // A polygon of most_corners corners is not clipped: its hidden part counts as visible.
       is_any_hidden = rest.count < ConvexPolygon::most_corners && clip(rest, pyramid[k]);
     }
     if (!is_any_hidden) {

@@ -22,8 +22,8 @@ bool has_on_both_sides(const PatchMesh& mesh, const HalfSpace& plane, double tol
   return false;
 }
 
-// Faces of the hull of both ends through an edge of `a` and a corner of `b`; heights are positive
-// outside.
+// Adds faces of the hull of both ends through an edge of `a` and a corner of `b`. Heights are
+// positive outside the hull.
 void add_hull_faces(const ShaftEnd& a, const ShaftEnd& b, double slack,
                     std::vector<HalfSpace>& faces) {
   constexpr double flat = 1e-12;
@@ -46,7 +46,7 @@ void add_hull_faces(const ShaftEnd& a, const ShaftEnd& b, double slack,
   }
 }
 
-// Whether two coplanar convex polygons share more than a strip of `tolerance`.
+// True if two coplanar convex polygons share more than a strip of width `tolerance`.
 bool overlap(std::span<const Vector3d> a, std::span<const Vector3d> b, const Vector3d& normal,
              double tolerance) {
   const auto is_apart = [&](std::span<const Vector3d> p, std::span<const Vector3d> q) {
@@ -153,11 +153,11 @@ void Shafts::find_in(const Group& group, const ShaftEnd& a, const ShaftEnd& b,
 void Shafts::find(const ShaftEnd& a, const ShaftEnd& b, Between& between) const {
   between = {};
   find_in(inner_, a, b, between);
-  // Patches, and points on facets, have what they see on one side of the outer pieces.
+  // All that a patch, or a point on a facet, can see lies on one side of each outer piece's plane.
   if (a.sheet < 0 || b.sheet < 0) find_in(outer_, a, b, between);
   if (between.pieces.empty() && occluders_.spheres.empty()) return;
   const double tolerance = occluders_.tolerance;
-  constexpr double rounding = 1e-3;  // of the tolerance
+  constexpr double rounding = 1e-3;  // relative to the tolerance
   std::vector<HalfSpace> faces = {a.plane.opposite(), b.plane.opposite()};
   add_hull_faces(a, b, rounding * tolerance, faces);
   add_hull_faces(b, a, rounding * tolerance, faces);

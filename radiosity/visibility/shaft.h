@@ -11,50 +11,56 @@ namespace lightwell {
 
 /// One end of a shaft: a planar patch, or a point of a surface.
 struct ShaftEnd {
-  std::vector<Eigen::Vector3d> corners{};  ///< of all parts; one for a point
-  std::vector<ConvexPolygon> parts{};      ///< tile the patch, counter-clockwise; none for a point
-  HalfSpace plane{};                       ///< what the end can see, of unit normal
+  std::vector<Eigen::Vector3d> corners{};  ///< corners of all parts; a single one for a point
+  /// Tile the patch, each counter-clockwise; none for a point.
+  std::vector<ConvexPolygon> parts{};
+  HalfSpace plane{};  ///< half-space that the end can see; unit normal
   Eigen::AlignedBox3d box{};
-  int sheet = -1;  ///< of Occluders; -1: in free space
+  /// Sheet of the end's facet (see Occluders); -1: in free space or on several facets.
+  int sheet = -1;
 };
 
-/// What may stand between two ends.
+/// Candidate occluders between two ends.
 struct Between {
-  std::vector<int> pieces{};   ///< of Occluders::pieces
-  bool may_be_sphere = false;  ///< or a polygon with holes: both are left to rays
+  std::vector<int> pieces{};   ///< indices of Occluders::pieces
+  bool may_be_sphere = false;  ///< a sphere, or a polygon with holes, which only rays resolve
 
   bool is_nothing() const { return pieces.empty() && !may_be_sphere; }
 };
 
-/// Shaft culling (Haines & Wallace 1994): which facets may stand between two patches, or between a
-/// point and a patch. Never leaves out one that does.
+/// Shaft culling (Haines & Wallace 1994): facets that may stand between two patches, or between a
+/// point and a patch. Conservative: every facet that stands between is found.
 ///
-/// A facet can hide nothing unless it meets the box about both ends, reaches before both ends'
-/// planes, has the ends on different sides of its own plane, and meets their convex hull, whose
-/// faces run through an edge of one end and a corner of the other. What comes no further than
-/// Occluders::tolerance counts as outside, so facets that touch the ends, lie in their planes or
-/// share their edges are not found.
+/// A facet that hides something meets all these conditions:
+///   - it meets the bounding box of both ends;
+///   - it reaches before the planes of both ends;
+///   - it has the ends on different sides of its own plane;
+///   - it meets the convex hull of both ends, whose faces run through an edge of one end and a
+///     corner of the other.
+///
+/// Whatever reaches in by no more than Occluders::tolerance counts as outside. Facets that touch
+/// the ends, lie in the ends' planes or share the ends' edges are therefore not found.
 class Shafts {
  public:
   explicit Shafts(const PatchMesh& mesh);
 
   const Occluders& occluders() const { return occluders_; }
 
-  /// Empty (no parts) for an outline that is no polygon or crosses itself.
-  /// `facet`: of the patch; -1: of several.
+  /// Shaft end of a patch on `facet` (-1: on several facets). Without parts if the outline is no
+  /// polygon or crosses itself.
   ShaftEnd end(const PatchOutline& outline, int facet) const;
-  /// `facet`: on which the point lies; -1: in free space.
+  /// Shaft end of a point on `facet` (-1: in free space).
   ShaftEnd end(const SurfacePoint& at) const;
 
-  /// Whether a facet of another sheet lies on the end, face to face: it hides what it covers, which
-  /// no shaft shows.
+  /// True if a facet of another sheet lies on the end, face to face. Such a facet hides what it
+  /// covers, but is in no shaft.
   bool is_covered(const ShaftEnd& end) const;
 
-  /// Fills `between`; pieces in ascending order.
+  /// Fills `between` with the candidate occluders between a and b, pieces in ascending order.
   void find(const ShaftEnd& a, const ShaftEnd& b, Between& between) const;
 
  private:
-  /// Some pieces, to be found by their boxes.
+  /// Pieces and the tree of their bounding boxes.
   struct Group {
     std::vector<int> pieces{};
     BoxTree tree{{}};
@@ -62,7 +68,8 @@ class Shafts {
   void find_in(const Group& group, const ShaftEnd& a, const ShaftEnd& b, Between& between) const;
 
   Occluders occluders_;
-  Group inner_, outer_;  // pieces with parts of the mesh on both sides, and the others
+  // Pieces whose planes have parts of the mesh on both sides, and all other pieces.
+  Group inner_, outer_;
 };
 
 }  // namespace lightwell

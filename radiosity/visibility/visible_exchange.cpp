@@ -25,7 +25,6 @@ bool hides_all(const Blocker& blocker, const ShaftEnd& from, const ShaftEnd& to)
   return true;
 }
 
-// Cuts all cells by the plane.
 void cut_cells(std::vector<ConvexPolygon>& cells, const HalfSpace& plane) {
   const std::size_t count = cells.size();
   ConvexPolygon inside, outside;
@@ -37,7 +36,8 @@ void cut_cells(std::vector<ConvexPolygon>& cells, const HalfSpace& plane) {
   }
 }
 
-// The part of `from` from which something may be hidden, cut where that may jump.
+// The part of `from` from which something may be hidden, cut along the planes of blockers, at which
+// the hidden part may jump.
 std::vector<ConvexPolygon> cells_of(const ShaftEnd& from, const ShaftEnd& to,
                                     std::span<const Blocker> blockers) {
   std::vector<ConvexPolygon> cells;
@@ -60,7 +60,7 @@ std::vector<ConvexPolygon> cells_of(const ShaftEnd& from, const ShaftEnd& to,
   return cells;
 }
 
-// Planes through an edge of a blocker and a parallel edge of the target.
+// Cuts the cells by the planes through an edge of a blocker and a parallel edge of the target.
 void cut_where_edges_cover(std::vector<ConvexPolygon>& cells, const ShaftEnd& to,
                            std::span<const Blocker> blockers) {
   constexpr double parallel = 1e-6;
@@ -115,7 +115,7 @@ std::optional<VisibleExchange> visible_exchange(const Shafts& shafts, const Shaf
   HiddenIntegral integral(from, to, blockers);
   std::vector<ConvexPolygon> cells = cells_of(from, to, blockers);
   std::vector<HiddenTriangle> triangles = over_cells(cells, integral);
-  // A few points on both sides of a bend may agree by chance.
+  // The estimates of few points on both sides of a bend may be small by chance.
   constexpr double chance = 10.0;
   if (chance * total_error(triangles) > tolerance) {
     cut_where_edges_cover(cells, to, blockers);
@@ -131,7 +131,7 @@ std::optional<VisibleExchange> visible_exchange(const Shafts& shafts, const Shaf
     is_all_hidden = is_all_hidden && t.is_all_hidden;
   }
   const double error = total_error(triangles);
-  // Seen from nowhere, and what is left is the quadrature's.
+  // Hidden from every point of the rule: the remainder is quadrature error.
   if (is_all_hidden && unoccluded - hidden <= error) return VisibleExchange{};
   return VisibleExchange{std::clamp(unoccluded - hidden, 0.0, unoccluded), error};
 }

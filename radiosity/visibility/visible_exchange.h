@@ -6,26 +6,28 @@
 
 namespace lightwell {
 
-/// More convex pieces between two patches are left to rays, which are quicker then.
+/// Most convex pieces between two patches for exact visibility. With more, rays are faster.
 inline constexpr std::size_t most_pieces_between = 16;
 
 struct VisibleExchange {
   double value = 0.0;  ///< S_ij, m^2
-  double error = 0.0;  ///< estimated, m^2; above the tolerance where the work ran out
+  /// estimated, m^2; above the tolerance where the triangles ran out
+  double error = 0.0;
 };
 
-/// Exchange area S = A_i F_ij of two polygons with others between them,
+/// Exchange area S = A_i F_ij of two polygons behind occluders,
 ///
-///   S = S_unoccluded - int_{A_i} F_hidden(x) dA,
+///   S = S_unoccluded - int_{A_i} F_hidden(x) dA.
 ///
-/// F_hidden exact (ShadowedPolygon) and the integral over `from` adaptive (HiddenIntegral), until
-/// its estimated error is at most `tolerance` (m^2). Only the part of `from` is integrated over
-/// from which anything is hidden; it is cut first where the integrand may jump, along the planes of
-/// occluders, and, if it takes that, where it bends most, along the lines on which an edge of an
-/// occluder covers a parallel edge of `to`. 0 without an integral where one occluder hides all.
+/// F_hidden is exact (ShadowedPolygon). The integral over `from` is adaptive (HiddenIntegral), to
+/// an estimated error of at most `tolerance`, m^2. The domain is the part of `from` from which
+/// anything is hidden, cut along the planes of occluders, at which the integrand may jump. Where
+/// that misses the tolerance, the domain is also cut where the integrand bends most: along the
+/// lines on which an edge of an occluder covers a parallel edge of `to`. If one occluder hides
+/// everything, S = 0 without an integral.
 ///
-/// `pieces` of shafts.occluders() are what shafts.find() found. Nothing if they are more than this
-/// does quicker than rays.
+/// `pieces`: indices of shafts.occluders().pieces, as shafts.find() returns them. `unoccluded`:
+/// S_unoccluded, m^2. Empty if `pieces` are more than most_pieces_between or an end has no parts.
 std::optional<VisibleExchange> visible_exchange(const Shafts& shafts, const ShaftEnd& from,
                                                 const ShaftEnd& to, std::span<const int> pieces,
                                                 double unoccluded, double tolerance);

@@ -36,7 +36,7 @@ TEST(PolygonExchange, AgreesWithTheCatalogue) {
   for (const auto& c : test::view_factor_cases()) {
     if (!c.blockers.empty()) continue;
     const double F = form_factor(c.first, c.second);
-    // The quadrature's own aim.
+    // Error that the quadrature aims at.
     EXPECT_NEAR(F, c.F12, 1e-9) << c.name;
     ++count;
   }
@@ -60,7 +60,7 @@ TEST(PolygonExchange, IsTheSameFromBothEndsInEveryPlaceAndSize) {
 }
 
 TEST(PolygonExchange, PartsAddUp) {
-  // A square seen whole and in two halves, one of which has a hole that the rest fills.
+  // A square as a whole, and as a frame around a hole plus the square that fills the hole.
   const Loop floor = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   const Loop wall = {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};
   const Loop hole = {{0, 0.2, 0.3}, {0, 0.7, 0.3}, {0, 0.7, 0.6}, {0, 0.2, 0.6}};
@@ -89,7 +89,7 @@ TEST(PolygonExchange, OnlyWhatLiesBeforeThePlaneCounts) {
 
 TEST(PolygonExchange, BoxesCloseWhateverTheirShape) {
   for (std::uint64_t k = 0; k < 20; ++k) {
-    // From needles to slabs.
+    // Sides from 0.03 to 30: needles to slabs.
     const auto side = [&](std::uint64_t axis) {
       return std::pow(10.0, 3.0 * random_uniform(random_key(k, axis)) - 1.5);
     };

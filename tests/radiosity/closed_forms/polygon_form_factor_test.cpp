@@ -37,8 +37,7 @@ TEST(PointToPolygon, AgreesWithExactElementCases) {
 }
 
 TEST(PointToPolygon, IsPositiveForACounterClockwiseLoopAndNegativeForAClockwiseOne) {
-  // Seen from below the loop at z = 1 runs clockwise in x-y order to be counter-clockwise for the
-  // viewer.
+  // A loop at z = 1 that is counter-clockwise seen from below runs clockwise in x and y.
   const Loop loop = {{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}};
   const Loop reversed(loop.rbegin(), loop.rend());
   const double F = point_to_polygon({0, 0, 0}, {0, 0, 1}, {&loop, 1});
@@ -88,8 +87,7 @@ TEST(PointToPolygon, NothingBelowTheHorizonAndNothingFromItsOwnPlane) {
   EXPECT_EQ(point_to_polygon({0, 0, 0}, {0, 0, 1}, {&coplanar, 1}), 0.0);
 }
 
-// Midpoint rule over the cap of directions that meet the sphere: an independent route to the same
-// number.
+// Midpoint rule over the cap of directions that meet the sphere, independent of the closed form.
 double sphere_by_quadrature(double distance, double theta, double radius) {
   const double alpha = std::asin(radius / distance);
   constexpr int steps = 2000;
@@ -111,7 +109,7 @@ TEST(PointToSphere, AgreesWithQuadratureAboveAcrossAndBelowTheHorizon) {
   for (const double degrees : {0.0, 20.0, 50.0, 60.0, 80.0, 90.0, 100.0, 120.0, 126.0, 140.0}) {
     const double theta = degrees * std::numbers::pi / 180.0;
     const Eigen::Vector3d center(distance * std::sin(theta), 0, distance * std::cos(theta));
-    // The midpoint rule meets the kink at the horizon: its error there is of the order of one cell.
+    // The integrand has a kink at the horizon, where the midpoint rule errs by about one cell.
     EXPECT_NEAR(point_to_sphere({0, 0, 0}, {0, 0, 1}, center, radius),
                 sphere_by_quadrature(distance, theta, radius), 2e-6)
         << degrees << " degrees";

@@ -35,7 +35,7 @@ void add_square(Scene& scene, const Material& material, double z, double half, b
                     {{-x, -half, z}, {x, -half, z}, {x, half, z}, {-x, half, z}});
 }
 
-// A small lamp 2 m over a floor.
+// A lamp of 2 mm side, 2 m above a floor.
 Scene lamp_over_floor() {
   Scene scene;
   add_square(scene, test::diffuse(scene.bands, 0.5f), 0.0, 4.0);
@@ -55,7 +55,7 @@ struct Lit {
   }
 };
 
-// What one pane leaves at the angle under which a place x from below sees the lamp.
+// Transmittance of one pane at the angle at which the floor at x sees the lamp.
 double passed(double x) {
   const double cosine = 2.0 / std::hypot(2.0, x);
   return 1.0 - pane_reflectance(cosine, double{index_of_glass});
@@ -76,7 +76,7 @@ TEST_P(BehindPanes, LightOfALampIsWhatTheyPass) {
       const double tint = double{pane(scene.bands).dielectric->tint[k]};
       const double expected =
           double{without[k]} * std::pow(passed(x) * tint, static_cast<double>(GetParam()));
-      // The lamp is a millimetre wide: the angle differs by 5e-4 over it. Floats.
+      // The lamp is a millimetre wide, over which the angle differs by 5e-4; single precision.
       EXPECT_NEAR(double{with[k]}, expected, 1e-3 * expected);
     }
     EXPECT_EQ(visibility.whole, 1u);
@@ -110,8 +110,9 @@ TEST(ClearPanes, RoughPanesAndBodiesOfGlassAreNone) {
   EXPECT_TRUE(ClearPanes(thick).empty());
 }
 
-// Light that goes straight through is direct light, and is not a caustic as well: below the pane
-// nothing of it is left for photons, or for the solve's rays; above there is what it reflects.
+// Light straight through a pane is direct light and must not be counted as a caustic again. Below
+// the pane, photons and rays of the solver bring none of the lamp's light; above the pane, the
+// reflected light.
 TEST(ClearPanes, WhatTheyPassIsNoCaustic) {
   Scene scene = lamp_over_floor();
   add_square(scene, pane(scene.bands), 1.0, 4.0);

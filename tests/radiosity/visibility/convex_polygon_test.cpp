@@ -54,7 +54,7 @@ TEST(ConvexPolygon, IsLeftWholeByPlanesThatOnlyTouchIt) {
   ConvexPolygon inside, outside;
   EXPECT_EQ(split(square(), {Vector3d::UnitX(), 0.0}, inside, outside), Cut::all_inside);
   EXPECT_EQ(split(square(), {Vector3d::UnitX(), 1.0}, inside, outside), Cut::none_inside);
-  // A sliver that only rounding makes.
+  // A sliver of the size of rounding.
   EXPECT_EQ(split(square(), {Vector3d::UnitX(), 1e-14}, inside, outside), Cut::all_inside);
 }
 
@@ -71,7 +71,7 @@ TEST(ConvexPieces, TileWhatTheyAreCutFrom) {
   EXPECT_NEAR(total_area(of_wall), 11.0, rounding);
   EXPECT_LE(of_wall.size(), 5u);  // 4 at best
 
-  // Twice around one centre: turns left everywhere, but is not convex.
+  // The star runs twice around its centre: left turns everywhere, but not convex.
   Loop star;
   for (int k = 0; k < 5; ++k) {
     const double angle = 0.8 * std::numbers::pi * k;
@@ -112,7 +112,7 @@ TEST(ConvexHull, HoldsAllPointsThoughManyLieOnItsEdges) {
     points.push_back((a + noise(0)) * x + (b + noise(1)) * y);
   }
   const ConvexPolygon hull = convex_hull(points, up);
-  EXPECT_NEAR(hull.area(), 1.0, 1e-8);  // places are good to 1e-9
+  EXPECT_NEAR(hull.area(), 1.0, 1e-8);  // rounding of points is 1e-9
   EXPECT_TRUE(is_convex(hull, up));
 }
 

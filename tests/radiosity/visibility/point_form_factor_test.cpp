@@ -19,7 +19,7 @@ using test::Corners;
 using test::Polygons;
 
 constexpr double pi = std::numbers::pi;
-// Of a few atan2 and of corners that were recentred.
+// Rounding of a few atan2, and of corners moved to the mesh's centre and back.
 constexpr double rounding = 1e-12;
 
 // Element below the corner of a parallel a x b rectangle at distance h (Howell's catalogue, B-3).
@@ -68,7 +68,7 @@ TEST(PointFormFactor, UnoccludedIsTheClosedForm) {
 TEST(PointFormFactor, ByDiscsConvergesWithTheirNumber) {
   const Rig rig({lamp(-0.5, 0.5, -0.5, 0.5, 0.6)});
   const double exact = 4 * corner_above(0.5, 0.5, 0.6);
-  // Discs are too dark by A / (n pi r^2) and less, r >= h; samples' own noise falls faster.
+  // Relative bias of discs: -A / (n pi r^2) at most, r >= h. The noise of samples falls faster.
   double before = 1.0;
   for (const int n : {4, 16, 64, 256, 1024, 4096}) {
     constexpr int points = 32;
@@ -85,12 +85,12 @@ TEST(PointFormFactor, ByDiscsConvergesWithTheirNumber) {
 }
 
 TEST(PointFormFactor, BehindTheEdgeOfAPlaneIsExact) {
-  // A half plane at half height hides the lamp beyond x = 0.2, seen from the origin: twice 0.1.
+  // A half plane at half height, seen from the origin, hides the lamp beyond x = 0.2: twice 0.1.
   const Corners half_plane = {{0.1, -9, 0.4}, {9, -9, 0.4}, {9, 9, 0.4}, {0.1, 9, 0.4}};
   const Rig rig({lamp(-0.5, 0.5, -0.5, 0.5, 0.8), half_plane});
   const double exact = 2 * (corner_above(0.5, 0.5, 0.8) + corner_above(0.2, 0.5, 0.8));
   EXPECT_NEAR(rig.closed_form({}), exact, 1e-10);
-  // The disc form sees the same edge, by rays: error of n points along one line, about n^-3/4.
+  // The disc form finds the same edge by rays: error of n points along a line about n^-3/4.
   constexpr int n = 4096;
   EXPECT_NEAR(rig.discs({}, n), exact, 4.0 * std::pow(n, -0.75));
   // Exactly half.
@@ -109,7 +109,7 @@ TEST(PointFormFactor, BehindASphereIsSampledToTheTarget) {
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 1e3});
   const ElementCaster caster(mesh);
   const PointFormFactors F(caster);
-  // Many points in one place, so that their mean is known better than any of them.
+  // Many points at one position, whose mean is more accurate than any of them.
   constexpr int count = 400;
   constexpr double target = 2e-3;
   std::vector<ReceivingPoint> points(count);
@@ -124,7 +124,7 @@ TEST(PointFormFactor, BehindASphereIsSampledToTheTarget) {
   }
   for (int i = 0; i < count; ++i) square += (values[i] - mean) * (values[i] - mean) / count;
   EXPECT_LT(std::sqrt(square), target);
-  // The ball itself shoots by discs.
+  // Patches of the ball shoot as discs.
   int ball = 0;
   while (mesh.surface[ball] == 0) ++ball;
   const ReceivingPoint below{.position = {0.3, 0.0, 0.0}};
@@ -135,7 +135,7 @@ TEST(PointFormFactor, BehindASphereIsSampledToTheTarget) {
   }
 }
 
-// A wall from floor to ceiling parts a room; points at its foot see nothing of the other side.
+// A wall from floor to ceiling divides a room; points at its foot see nothing of the other side.
 TEST(PointFormFactor, DoesNotLeakUnderAWallThatTouches) {
   Scene scene;
   const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
@@ -167,14 +167,14 @@ TEST(PointFormFactor, DoesNotLeakUnderAWallThatTouches) {
     for (std::size_t i = 0; i < hidden.size(); ++i) {
       touching += std::abs(hidden[i].position.x() - 0.9) < 1e-3;
       EXPECT_EQ(values[i], 0.0);
-      // Rays in single precision: one that grazes the floor may slip under the wall, with next to
-      // nothing.
+      // In single precision a ray that grazes the floor may pass under the wall, of negligible
+      // weight.
       EXPECT_LT(discs[i], 1e-6);
     }
   }
   EXPECT_GT(touching, 0);
-  // What a point sees of its own half, wall included, is all: closure to rounding but for the
-  // shooters in its own plane, which it does not see.
+  // A point sees all of its own half, wall included: closure to rounding, shooters in the point's
+  // own plane contributing 0.
   double worst = 0.0;
   std::vector<double> sum(left.size(), 0.0), values(left.size());
   for (int shooter = 0; shooter < mesh.patch_count(); ++shooter) {
@@ -195,7 +195,7 @@ TEST(PointFormFactor, OnTheShootersPlaneIsNothingAndAtItsEdgeFinite) {
     EXPECT_EQ(rig.closed_form({.position = at, .normal = up}), 0.0) << at.transpose();
     EXPECT_EQ(rig.discs({.position = at, .normal = up}, 64), 0.0) << at.transpose();
   }
-  // Half of what is above the floor at the foot of a wall, from any distance not 0.
+  // At the foot of a wall F is 1/2, at any distance other than 0.
   for (const double away : {1e-2, 1e-4, 1e-6}) {
     const ReceivingPoint point{.position = {away, 0.5, 0}, .normal = up};
     EXPECT_NEAR(rig.closed_form(point), 0.5, 2.0 * away);

@@ -30,7 +30,7 @@ Between between(const std::vector<Corners>& polygons) {
 TEST(Shaft, HoldsWhatStandsBetween) {
   const Corners screen = {{0.2, 0.2, 0.5}, {0.4, 0.2, 0.5}, {0.4, 0.4, 0.5}, {0.2, 0.4, 0.5}};
   EXPECT_EQ(between({floor_square, ceiling, screen}).pieces.size(), 1u);
-  // From behind as well.
+  // Facets block from behind as well.
   EXPECT_EQ(between({floor_square, ceiling, {screen.rbegin(), screen.rend()}}).pieces.size(), 1u);
 }
 
@@ -65,14 +65,15 @@ TEST(Shaft, TakesAWallOfManyFacetsAsOne) {
   EXPECT_EQ(between(polygons).pieces.size(), 1u);
 }
 
-// A bent strip of a millimetre lies in either plane as far as can be told; the floor does not.
+// A strip of a millimetre continues the slope of the floor. The strip rises by only 1e-6 m, so it
+// nearly lies in the plane of the level strip beyond, in which the floor does not.
 TEST(Shaft, KeepsAWallInItsOwnPlaneWhateverStripsItMeets) {
   constexpr double bend = 1e-3, mm = 1e-3;
   const auto strip = [](double x, double width, double low, double high) -> Corners {
     return {{x, 0, low}, {x + width, 0, high}, {x + width, 5, high}, {x, 5, low}};
   };
   const double edge = 5.0 * bend, next = edge + mm * bend;
-  // The strip that goes on level comes first, then the bent one, then the floor in its plane.
+  // Order of input: level strip, sloping strip, floor.
   const Polygons p(
       {strip(5.0 + mm, mm, next, next), strip(5.0, mm, edge, next), strip(0.0, 5.0, 0.0, edge)});
   const Occluders occluders(p.mesh);
@@ -100,7 +101,7 @@ TEST(Shaft, KnowsWhatIsCoveredFaceToFace) {
   }
 }
 
-// Whatever the geometry, a ray that is blocked between two patches has its occluder in their shaft.
+// If a ray between two patches is blocked, the occluder is in the patches' shaft.
 TEST(Shaft, NeverMissesWhatBlocksARay) {
   const auto number = [](std::uint64_t a, std::uint64_t b) {
     return random_uniform(random_key(a, b, 5));
@@ -134,7 +135,7 @@ TEST(Shaft, NeverMissesWhatBlocksARay) {
         const Eigen::Array4f u = sobol.point(s, random_key(i, j));
         const PatchPoint a = from.point(u[0], u[1]), b = to.point(u[2], u[3]);
         const Vector3d way = b.position - a.position;
-        // Points that see each other with their fronts: where nothing is found, nothing may block.
+        // Only points that face each other: where the shaft is empty, nothing may block.
         constexpr double grazing = 1e-3;
         if (a.normal.dot(way) < grazing || -b.normal.dot(way) < grazing) continue;
         const Ray ray{.origin = a.position,

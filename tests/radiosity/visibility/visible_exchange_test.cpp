@@ -18,7 +18,7 @@ using test::Polygons;
 
 constexpr double tolerance = 1e-7;  // m^2; the patches have about 1 m^2
 
-// S of polygons 0 and 1 of the scene, integrated over one of them.
+// S of polygons 0 and 1 of the scene, integrated over polygon `over`.
 VisibleExchange exchange(const std::vector<Corners>& polygons, int over = 0,
                          double asked = tolerance) {
   const Polygons p(polygons);
@@ -52,7 +52,7 @@ std::vector<Corners> box(const Vector3d& low, const Vector3d& high) {
   return faces;
 }
 
-// The worked example of docs/view-factors.md; its value was found by clipping, to 13 digits.
+// The worked example of docs/view-factors.md. Its value was found by clipping, to 13 digits.
 TEST(VisibleExchange, OfPlatesWithABoxBetweenThemIsTheKnownValue) {
   std::vector<Corners> scene = {below, above};
   for (const Corners& face : box({0.3, 0.35, 0.2}, {0.6, 0.75, 0.6})) scene.push_back(face);
@@ -61,7 +61,8 @@ TEST(VisibleExchange, OfPlatesWithABoxBetweenThemIsTheKnownValue) {
   EXPECT_LE(S.error, tolerance);
 }
 
-// What passes a screen and what passes the hole it would leave in a wall add up to everything.
+// Exchange past a screen, and through the hole of the screen's shape in a wall, adds up to the
+// unoccluded exchange.
 TEST(VisibleExchange, PastAScreenAndThroughItsHoleAddsUp) {
   const double all = exchange({below, above}).value;
   const Corners tilted = {{0.2, 0.3, 0.4}, {0.7, 0.2, 0.4}, {0.8, 0.6, 0.4}, {0.5, 0.9, 0.4}};
@@ -95,7 +96,7 @@ TEST(VisibleExchange, IsTheSameFromBothEnds) {
       scene.push_back(triangle);
     }
     const VisibleExchange a = exchange(scene, 0, 1e-6), b = exchange(scene, 1, 1e-6);
-    // Two estimates, each up to about its own error off.
+    // Each of the two values is off by about its own estimated error.
     EXPECT_NEAR(a.value, b.value, 2.0 * (a.error + b.error)) << "scene " << k;
     EXPECT_GE(a.value, 0.0);
     EXPECT_LE(a.value, exchange({below, above}).value);
@@ -104,7 +105,7 @@ TEST(VisibleExchange, IsTheSameFromBothEnds) {
 
 TEST(VisibleExchange, TakesWhatTwoScreensBothHideOnce) {
   const double one = exchange({below, above, rectangle(0.2, 0.8, 0.3, 0.7, 0.5)}).value;
-  // In one plane, overlapping by a strip; and the same again a hair above.
+  // Two screens in one plane that overlap by a strip; then two equal screens 1e-6 apart.
   const double cut = exchange({below, above, rectangle(0.2, 0.55, 0.3, 0.7, 0.5),
                                rectangle(0.45, 0.8, 0.3, 0.7, 0.5)})
                          .value;
@@ -117,20 +118,20 @@ TEST(VisibleExchange, TakesWhatTwoScreensBothHideOnce) {
 }
 
 TEST(VisibleExchange, IsNothingBehindWhatHidesAll) {
-  // To the last bit: by one screen of the patches' own size, and by a box's sides together.
+  // Exactly 0: behind one screen of the patches' own size, and behind the sides of a box together.
   EXPECT_EQ(exchange({below, above, rectangle(0, 1, 0, 1, 0.5)}).value, 0.0);
   std::vector<Corners> scene = {below, above};
   for (const Corners& face : box({-0.5, -0.5, 0.3}, {1.5, 1.5, 0.6})) scene.push_back(face);
   EXPECT_EQ(exchange(scene).value, 0.0);
 }
 
-// Against the exact 2-D value: strips that see each other over a screen are, if very long, F = (sum
-// of crossed strings - sum of uncrossed strings) / 2 a (Hottel 1954).
+// Exact in 2-D: very long strips that see each other over a screen have F = (sum of crossed strings
+// - sum of uncrossed strings) / 2 a (Hottel 1954).
 TEST(VisibleExchange, OfLongStripsIsHottelsCrossedStrings) {
   constexpr double length = 2e4;
   const Corners high = turned(rectangle(0, 1, 0, length, 1));
   const Corners screen = {{0.5, 0, 0}, {0.5, 0, 0.6}, {0.5, length, 0.6}, {0.5, length, 0}};
-  // Standing on the floor at x = 0.5, it cuts the floor in two: take the left half.
+  // The screen stands at x = 0.5 and divides the floor; `left` is the left half.
   const Corners left = rectangle(0, 0.5, 0, length, 0);
   const VisibleExchange S = exchange({left, high, screen}, 0, 1e-5 * length);
   // Strings from the half strip (0,0)-(0.5,0) to (0,1)-(1,1) past the screen's top (0.5, 0.6):
@@ -138,12 +139,12 @@ TEST(VisibleExchange, OfLongStripsIsHottelsCrossedStrings) {
   const double to_top = std::hypot(0.5, 0.6), from_top = std::hypot(0.5, 0.4);
   const double crossed = to_top + from_top + std::hypot(0.5, 1.0);
   const double uncrossed = 1.0 + 0.6 + from_top;
-  // Ends of the strips take off a share of about width / length.
+  // The ends of the strips reduce F by a share of about width / length.
   EXPECT_NEAR(S.value / length, 0.5 * (crossed - uncrossed), 1e-5 + 2.0 / length);
 }
 
-// Occluders that touch a patch, share its edge or hang at it: never below 0 or above unoccluded,
-// and the same from both ends.
+// Occluders that touch a patch, share its edge or hang from it: 0 <= S <= unoccluded S, and S is
+// the same integrated over either patch.
 TEST(VisibleExchange, StaysInBoundsUnderTouchingOccluders) {
   const Corners wall = {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};
   const double tiny = 1e-9;
@@ -178,8 +179,7 @@ TEST(VisibleExchange, StaysInBoundsUnderTouchingOccluders) {
   }
 }
 
-// The estimate is of the size of the error: asked for less and less, the value moves by no more
-// than a few times what was estimated.
+// The value at every tolerance lies within twice its estimated error of the best value.
 TEST(VisibleExchange, KnowsItsError) {
   const Corners screen = {{0.2, 0.3, 0.4}, {0.7, 0.25, 0.55}, {0.6, 0.8, 0.5}};
   const double best = exchange({below, above, screen}, 0, 1e-9).value;
