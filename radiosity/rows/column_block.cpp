@@ -23,7 +23,7 @@ ColumnBlock::ColumnBlock(const RecordStore& rows, int first, int last)
   std::vector<std::size_t> at(begin_.begin(), begin_.end() - 1);
   const int first_row = is_below(rows) ? first : 0;
   const int last_row = is_below(rows) ? rows.row_count() : last;
-  // Each thread has columns of its own, and all walk down the same rows.
+  // Each thread fills columns of its own, and all threads walk down the same rows.
   const int stripe = (last - first + thread_count() - 1) / thread_count();
   constexpr int rows_at_once = 512;
   for (int begin = first_row; begin < last_row; begin += rows_at_once) {

@@ -8,8 +8,8 @@
 
 namespace lightwell {
 
-/// Columns [first, last) of the triangle of a RecordStore that it counts, ordered by row: a block
-/// of its transpose. A record's patch becomes the row it comes from.
+/// Columns [first, last) of the triangle that a RecordStore counts, each ordered by row: a block of
+/// the transpose. The patch of a record in a column is the record's row.
 class ColumnBlock {
  public:
   ColumnBlock(const RecordStore& rows, int first, int last);
@@ -29,17 +29,18 @@ class ColumnBlock {
   std::vector<std::byte> records_;
 };
 
-/// Ranges of columns, each of which makes a ColumnBlock of about `bytes`. Those of a triangle below
-/// the diagonal rise, those above fall: so that, block by block, rows [first, last) are not needed
-/// for later ones.
+/// Ranges of columns, each for a ColumnBlock of about `bytes`. Ranges ascend for a triangle below
+/// the diagonal and descend for one above. In either order, once a block is done, later blocks do
+/// not need its rows [first, last).
 struct ColumnRange {
   int first = 0, last = 0;
 };
 std::vector<ColumnRange> column_ranges(const RecordStore& rows, std::int64_t bytes);
 
-/// Visits pairs (i, j), j >= i, of a symmetric matrix of which both triangles were found out apart:
-/// row i and, from column i, what rows j > i say. `visit(j, own, other)` gets the two records;
-/// nullptr: there is none. The diagonal's record is both.
+/// Visits pairs (i, j), j >= i, of a symmetric matrix whose triangles were computed independently.
+/// `row` is row i; `column` holds the records of column i in rows j > i. `visit(j, own, other)`
+/// gets the record of row i and the one of row j, nullptr for a missing record. On the diagonal
+/// both are the same record.
 template <class Visit>
 void for_each_pair(int i, RecordSpan row, RecordSpan column, Visit visit) {
   constexpr int none = std::numeric_limits<int>::max();

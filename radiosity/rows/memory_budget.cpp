@@ -18,7 +18,7 @@ namespace lightwell {
 namespace {
 
 constexpr std::int64_t kibibyte = 1 << 10, mebibyte = 1 << 20;
-// With less room than this rows would be moved to and fro a page at a time.
+// With less room, rows would be moved to and fro page by page.
 constexpr std::int64_t least_room = 16 * mebibyte;
 constexpr std::int64_t largest_chunk = 4 * mebibyte, largest_block = 64 * mebibyte;
 
@@ -29,7 +29,8 @@ std::int64_t in_megabytes(std::int64_t bytes) {
 }  // namespace
 
 ResidentMemory resident_memory() {
-  // Unlike getrusage's figure this one does not begin with what the parent process had.
+  // VmHWM is the peak of this process alone; the peak of getrusage starts with the parent process's
+  // memory.
   std::ifstream status("/proc/self/status");
   ResidentMemory memory;
   for (std::string word; status >> word;) {
@@ -95,7 +96,7 @@ void MemoryBudget::share_out(std::int64_t resident, std::int64_t other) {
   chunk_ = std::clamp(room / 64 / page * page, page, largest_chunk);
   block_ = std::clamp(room / 8, page, largest_block);
   window_ = block_;
-  // A block, what is mapped of the file, and the chunks that are being filled.
+  // A block, the mapped part of the file, and the chunks being filled.
   headroom_ = other + block_ + window_ + 4 * chunk_;
 }
 

@@ -11,26 +11,26 @@ namespace lightwell {
 class SpillFile;
 
 struct MemoryOptions {
-  /// Bytes that the process may have resident. 0: three quarters of what the machine or, in a
-  /// container, the container has.
+  /// Most resident bytes of the process. 0: three quarters of the memory of the machine or of its
+  /// container.
   std::int64_t limit = 0;
-  /// Of these, bytes of rows at most; below 0: as many as the limit leaves room for.
+  /// Most resident bytes of rows within `limit`; below 0: as many as the limit leaves room for.
   std::int64_t rows = -1;
-  /// Where the file goes that holds the rest of the rows; empty: the working folder. A folder that
-  /// is itself kept in memory (often /tmp) saves nothing.
+  /// Folder of the file that holds the other rows; empty: the working folder. A folder that is
+  /// itself kept in memory (often /tmp) saves nothing.
   std::filesystem::path folder{};
 };
 
-/// Where rows were kept, in bytes at once.
+/// Storage of rows, in bytes at one time.
 struct StorageReport {
   std::int64_t limit = 0;
   std::int64_t most_in_memory = 0, most_on_disk = 0;
   std::filesystem::path folder{};
 };
 
-/// Decides what rows are kept in memory and what goes to disk. Shared by all that store rows while
-/// a scene's form factors are computed and used. What is where changes no result. Safe to use from
-/// many threads, but for plan().
+/// Decides which rows stay in memory and which go to disk. Shared by all that store rows while form
+/// factors of a scene are computed and used. Results do not depend on where rows are stored. Safe
+/// to use from many threads, except for plan().
 class MemoryBudget {
  public:
   explicit MemoryBudget(MemoryOptions options = {});
@@ -38,21 +38,23 @@ class MemoryBudget {
   MemoryBudget(const MemoryBudget&) = delete;
   MemoryBudget& operator=(const MemoryBudget&) = delete;
 
-  /// Says that `other` bytes beside rows are still to come, before the first row does. Throws
-  /// InputError, with the amount that is needed, if a limit was given and what is resident already,
-  /// `other` and a slice of rows do not fit into it.
+  /// Reserves `other` bytes beside rows. To be called before the first row is stored. Throws
+  /// InputError with the required amount if a limit was given and resident memory, `other` and a
+  /// slice of rows exceed the limit.
   void plan(std::int64_t other);
 
-  /// Rows are kept and moved in pieces of about this size.
+  /// Approximate bytes of the chunks in which rows are stored and moved.
   std::size_t chunk_bytes() const { return static_cast<std::size_t>(chunk_); }
-  /// What a block of a transposed matrix may take (see ColumnBlock).
+  /// Most bytes of a block of a transposed matrix (see ColumnBlock).
   std::int64_t block_bytes() const { return block_; }
 
-  /// Whether `bytes` of rows, resident already, may stay so. Give them back afterwards.
+  /// True if `bytes` of rows that are already resident may stay resident. Give the bytes back
+  /// afterwards.
   bool take(std::int64_t bytes);
   void give_back(std::int64_t bytes);
 
-  /// Made when it is first asked for; throws std::runtime_error if that fails.
+  /// The file for rows on disk, made at the first call. Throws std::runtime_error if the file
+  /// cannot be made.
   SpillFile& spill_file();
 
   StorageReport report() const;
@@ -69,16 +71,16 @@ class MemoryBudget {
   std::unique_ptr<SpillFile> spill_file_;
 };
 
-/// Bytes of this process that are in memory now, and at most up to now.
+/// Resident bytes of this process: at present, and the peak so far.
 struct ResidentMemory {
   std::int64_t now = 0, most = 0;
 };
 ResidentMemory resident_memory();
 
-/// Gives back pages in which nothing is kept any more, if the C library has them still.
+/// Returns free pages that the C library still holds to the system.
 void give_back_free_pages();
 
-/// Bytes of memory that the machine has or that the process's control group may use.
+/// Bytes of memory of the machine or, if less, the limit of the process's control group.
 std::int64_t usable_memory();
 
 }  // namespace lightwell

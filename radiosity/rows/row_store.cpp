@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-// Memory straight from the system: the allocator would keep what is freed.
+// Memory mapped directly from the system, since an allocator may keep freed memory.
 class Pages {
  public:
   Pages() = default;
@@ -32,7 +32,7 @@ class Pages {
   }
   std::byte* data() const { return data_; }
   std::size_t size() const { return size_; }
-  // Gives back what lies beyond.
+  // Frees all pages beyond `bytes`.
   void trim(std::size_t bytes) {
     const std::size_t kept = whole_pages(bytes);
     if (kept >= size_) return;
@@ -51,15 +51,15 @@ class Pages {
 
 struct RowRange {
   int chunk = -1;
-  std::uint32_t first = 0, count = 0;  // in records, of the chunk
+  std::uint32_t first = 0, count = 0;  // in records of the chunk
 };
 
-// In memory or in the file; neither once its rows are released.
+// Rows in memory or in the file; neither once all are released.
 struct Chunk {
   Pages memory{};
   std::unique_ptr<SpillFile::Piece> piece{};
   std::size_t used = 0;
-  std::int64_t taken = 0;  // from the budget
+  std::int64_t taken = 0;  // bytes taken from the budget
   int rows = 0;
 };
 
@@ -79,8 +79,8 @@ std::size_t RecordSpan::lower_bound(int patch) const {
 }
 
 struct RecordStore::Impl {
-  std::shared_ptr<MemoryBudget> budget;  // outlives what computed the rows
-  SpillFile* file = nullptr;             // the budget's, once it is needed
+  std::shared_ptr<MemoryBudget> budget;  // outlives the assembly of the rows
+  SpillFile* file = nullptr;             // the budget's file, null before its first use
   std::size_t record_bytes = 0;
   Count count = Count::none;
   std::mutex mutex{};
@@ -88,7 +88,7 @@ struct RecordStore::Impl {
   std::vector<int> column_sizes{};
   std::vector<Chunk> chunks{};
   std::int64_t records = 0;
-  bool is_filling = false;  // the last chunk
+  bool is_filling = false;  // true while rows are added to the last chunk
 
   ~Impl() {
     for (Chunk& chunk : chunks) drop(chunk);
@@ -100,7 +100,7 @@ struct RecordStore::Impl {
     is_filling = true;
   }
 
-  // The chunk will not grow any more: it stays, or goes to disk.
+  // Ends the last chunk, which stays in memory or goes to disk.
   void close_chunk() {
     if (!is_filling) return;
     is_filling = false;

@@ -11,7 +11,7 @@
 
 namespace lightwell {
 
-/// Some records of a row, ordered by the patch that each begins with.
+/// Records of a row, in ascending order of the patch number at the start of each record.
 class RecordSpan {
  public:
   RecordSpan() = default;
@@ -21,9 +21,9 @@ class RecordSpan {
   std::size_t size() const { return count_; }
   const std::byte* operator[](std::size_t k) const { return data_ + k * record_bytes_; }
   int patch(std::size_t k) const { return *reinterpret_cast<const int*>((*this)[k]); }
-  /// The first record of a patch not below this one.
+  /// Index of the first record whose patch number is at least `patch`.
   std::size_t lower_bound(int patch) const;
-  /// Where they are what a store of `Record` holds.
+  /// The records as an array. Precondition: the store holds records of type Record.
   template <class Record>
   std::span<const Record> as() const {
     assert(count_ == 0 || record_bytes_ == sizeof(Record));
@@ -35,39 +35,40 @@ class RecordSpan {
   std::size_t count_ = 0, record_bytes_ = 0;
 };
 
-/// Rows of records that begin with the number of a patch (an int) and are multiples of 4 bytes
-/// long. Rows are added in any order, each at most once, then only read. They are kept in memory as
-/// far as the budget allows and in its file else, in chunks that no row straddles.
+/// Rows of records. A record begins with the number of a patch (an int) and is a multiple of 4
+/// bytes long. Each row is added at most once, in any order. After close() rows are only read. Rows
+/// stay in memory as far as the budget allows, otherwise in the budget's file, in chunks that no
+/// row straddles.
 class RecordStore {
  public:
-  /// Of which triangle of the matrix the records of every column are counted.
+  /// Triangle of the matrix in which the records of each column are counted.
   enum class Count { none, below_diagonal, above_diagonal };
 
-  /// `budget`: null for one of its own.
+  /// `budget`: null: a budget of the store's own.
   RecordStore(std::shared_ptr<MemoryBudget> budget, int rows, std::size_t record_bytes,
               Count count = Count::none);
   RecordStore(RecordStore&&) noexcept;
   RecordStore& operator=(RecordStore&&) noexcept;
   ~RecordStore();
 
-  /// Adds row i; from many threads if need be. Throws std::runtime_error if the disk is full.
+  /// Adds row i. Safe to call from many threads. Throws std::runtime_error if the disk is full.
   void append(int i, const void* records, std::size_t count);
-  /// All rows are in; from now on they may be read.
+  /// Ends the adding of rows. Rows may be read from then on.
   void close();
 
   int row_count() const;
   std::size_t record_bytes() const;
-  /// Records of all rows.
+  /// Number of records of all rows.
   std::int64_t record_count() const;
   std::size_t row_size(int i) const;
-  /// Valid until the row is released. Empty for rows that were not added.
+  /// Row i, valid until release(i). Empty for rows that were not added.
   RecordSpan row(int i) const;
-  /// Row i is not needed any more. Memory is given back once that is true of all of a chunk. Not
-  /// from two threads at a time.
+  /// Gives up row i. Memory is freed once all rows of a chunk are released. Not safe from several
+  /// threads at once.
   void release(int i);
 
   Count counted() const;
-  /// Records of column j in the triangle that is counted.
+  /// Number of records of column j in the counted triangle.
   int column_size(int j) const;
   MemoryBudget& budget() const;
 
@@ -76,7 +77,7 @@ class RecordStore {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A RecordStore of one kind of record.
+/// A RecordStore of records of one type.
 template <class Record>
 class RowStore {
  public:

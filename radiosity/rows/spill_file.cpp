@@ -50,8 +50,8 @@ std::unique_ptr<SpillFile::Piece> SpillFile::write(std::span<const std::byte> by
     used_ += size;
     most_used_ = std::max(most_used_, used_);
   }
-  // Room for all of it first: a page that the disk has no room for, read or written by way of a
-  // mapping, would be a signal and not an error.
+  // Reserves the disk space first: access to a mapped page without disk space raises a signal, not
+  // an error.
   int error = EINTR;
   while (error == EINTR) error = ::posix_fallocate(file_, piece->offset_, size);
   if (error != 0) fail(error, size);
@@ -86,7 +86,7 @@ void SpillFile::bring_in(Piece& piece) {
     recent_.pop_front();
     resident_ -= static_cast<std::int64_t>(oldest.size_);
     oldest.is_resident_ = false;
-    // The mapping stays, and so does what it holds: whoever reads on gets its pages back.
+    // The mapping and its contents remain: reading on brings pages back.
     ::madvise(const_cast<std::byte*>(oldest.data_), oldest.size_, MADV_DONTNEED);
   }
 }
@@ -94,8 +94,8 @@ void SpillFile::bring_in(Piece& piece) {
 void SpillFile::erase(std::unique_ptr<Piece> piece) {
   ::munmap(const_cast<std::byte*>(piece->data_), piece->size_);
 #ifdef FALLOC_FL_PUNCH_HOLE
-  // What is not needed again need not reach the disk. Not all file systems can; then it is only
-  // used again.
+  // Spares writing erased pages to disk. On file systems that cannot punch holes the space is only
+  // reused.
   [[maybe_unused]] const int ignored =
       ::fallocate(file_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, piece->offset_,
                   static_cast<off_t>(piece->size_));

@@ -13,15 +13,15 @@
 
 namespace lightwell {
 
-/// `bytes`, rounded up to the pages of memory they take.
+/// `bytes` rounded up to whole pages of memory.
 std::size_t whole_pages(std::size_t bytes);
 
-/// A file for what does not fit into memory. It has no name once it is made, so nothing is left of
-/// it however the process ends. Pieces are mapped for reading and stay where they are; pages of
-/// those that were not touched for long leave memory. Safe to use from many threads.
+/// A file for rows that do not fit into memory. The file has no name once made, so the system frees
+/// the disk space however the process ends. Pieces are mapped for reading at fixed addresses; pages
+/// of the pieces brought in longest ago leave memory. Safe to use from many threads.
 class SpillFile {
  public:
-  /// `most_resident`: bytes of pieces that are kept in memory at once, and one piece more. Throws
+  /// `most_resident`: most bytes of pieces resident at a time, plus one piece. Throws
   /// std::runtime_error naming the folder if no file can be made there.
   SpillFile(std::filesystem::path folder, std::int64_t most_resident);
   ~SpillFile();
@@ -40,16 +40,17 @@ class SpillFile {
     std::atomic<bool> is_resident_ = false;
   };
 
-  /// Keeps a copy of `bytes`. Throws std::runtime_error, naming the folder and the system's reason,
-  /// if the disk does not take it.
+  /// Writes a copy of `bytes`. Throws std::runtime_error, naming the folder and the system's
+  /// reason, if the disk does not take the bytes.
   std::unique_ptr<Piece> write(std::span<const std::byte> bytes);
-  /// To be called before a piece is read; what was read before may be read on.
+  /// Makes a piece resident. To be called before a piece is read; pieces touched earlier remain
+  /// readable.
   void touch(Piece& piece) {
     if (!piece.is_resident_.load(std::memory_order_relaxed)) bring_in(piece);
   }
   void erase(std::unique_ptr<Piece> piece);
 
-  /// Bytes held at once, at most.
+  /// Peak of bytes in the file.
   std::int64_t most_used() const;
 
  private:

@@ -7,15 +7,16 @@
 
 namespace lightwell {
 
-/// Reads a symmetric matrix S of which `upper` holds the diagonal and what lies above it, so that y
-/// = S x can be added up: `own(i, row)` for y_i += S_ij x_j over the whole row, and `below(i, k,
-/// row)` for y_j += S_ij x_i, j = row.patch(k) > i. Both add to element after element in the order
-/// of the rows, whatever the number of threads; no element is added to from two threads at a time,
-/// if own and below add to different arrays.
+/// Reads a symmetric matrix S whose diagonal and upper triangle are `upper`, to compute y = S x:
+///   - `own(i, row)` adds y_i += S_ij x_j over the whole row;
+///   - `below(i, k, row)` adds y_j += S_ij x_i for j = row.patch(k) > i.
+///
+/// Both add to each element of y in the order of rows, whatever the number of threads. No element
+/// is added to from two threads at a time if own and below add to different arrays.
 template <class Own, class Below>
 void read_symmetric(const RecordStore& upper, Own own, Below below) {
   const int n = upper.row_count();
-  // What own has read is still in the processor's cache when below reads it.
+  // Rows that `own` has read are still in the processor's cache when `below` reads them.
   constexpr std::size_t bytes_at_once = 1 << 20;
   for (int begin = 0, end = 0; begin < n; begin = end) {
     std::size_t bytes = 0;
@@ -39,8 +40,9 @@ void read_symmetric(const RecordStore& upper, Own own, Below below) {
   }
 }
 
-/// Whole rows of that matrix, the last ones first: `visit(i, below, upper)` gets what lies left of
-/// the diagonal and the rest, from many threads. Rows are released as they are passed.
+/// Visits the whole rows of the symmetric matrix in `upper`, last rows first. `visit(i, below,
+/// upper)` gets the records left of the diagonal and all others. Called from many threads. Rows are
+/// released block by block.
 template <class Visit>
 void unfold_symmetric(RecordStore& upper, Visit visit) {
   for (const ColumnRange range : column_ranges(upper, upper.budget().block_bytes())) {
@@ -54,9 +56,10 @@ void unfold_symmetric(RecordStore& upper, Visit visit) {
   }
 }
 
-/// Both triangles of a matrix, found out apart, made one: `join(i, row, column)` gets row i and
-/// what rows j > i hold in column i, see for_each_pair. From many threads; rows are released as
-/// they are passed, and `passed(i)` is told so.
+/// Joins both triangles of a matrix whose triangles were computed independently. `join(i, row,
+/// column)` gets row i and the records of column i in rows j > i, see for_each_pair. `join` is
+/// called from many threads. Rows are released block by block, and `passed(i)` is called after the
+/// release of row i.
 template <class Join, class Passed>
 void fold_symmetric(RecordStore& directed, Join join, Passed passed) {
   for (const ColumnRange range : column_ranges(directed, directed.budget().block_bytes())) {

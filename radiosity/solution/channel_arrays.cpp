@@ -19,7 +19,7 @@ void add_columns(vtkFieldData* data, const std::string& name, const BandArray& v
   add_values(data, name, values.data(), values.rows(), static_cast<int>(values.cols()));
 }
 
-// Light is a finite number; and so each sum with finite scales is one.
+// Finite irradiances and radiosities; their sums with finite scales are then finite, too.
 BandArray finite_bands(const SolutionArrays& in, vtkFieldData* data, const std::string& name,
                        int rows, int bands) {
   BandArray values = in.bands(data, name.c_str(), rows, bands);

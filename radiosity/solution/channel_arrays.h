@@ -8,12 +8,12 @@ namespace lightwell {
 
 class SolutionArrays;
 
-/// The channels of a solution as arrays of its file: names, scales and energy, and for channel
-/// number c its light with scale 1 as `channel_c_...`. Nothing for a solution without channels.
+/// Adds the channels of a solution as arrays: names, scales and energies, and the light of channel
+/// c with scale 1 as `channel_c_...`. Adds nothing for a solution without channels.
 void add_channels(vtkPolyData* poly, const RadiositySolution& solution);
 
-/// Reads them back, if there are any; bands and mesh have been read. Throws InputError if an array
-/// is missing, of another size, or holds what no channel can.
+/// Reads the channels, if there are any. Precondition: bands and mesh are read. Throws InputError
+/// if an array is missing, of another size, or holds values that no channel can have.
 void read_channels(const SolutionArrays& in, const PatchMesh& mesh, RadiositySolution& solution);
 
 }  // namespace lightwell

@@ -16,7 +16,7 @@ namespace {
   throw InputError(scene.file.empty() ? what : fmt::format("{}: {}", scene.file.string(), what));
 }
 
-// What can belong to a channel: a surface, or after all of those a free source.
+// A surface or, after all surfaces, a free source: a possible member of a channel.
 struct Light {
   std::string name{};
   std::string material{};  // empty: a free source
@@ -57,7 +57,7 @@ void require_few(const Scene& scene, const EmitterChannels& channels) {
 }
 
 [[noreturn]] void fail_without_match(const Scene& scene, const ChannelPattern& pattern) {
-  std::vector<std::string> names;  // of emitters, with those of their materials
+  std::vector<std::string> names;  // of emitters and their materials
   std::string dark;
   for (const Light& light : lights_of(scene)) {
     if (light.shines) {
@@ -84,7 +84,7 @@ void require_few(const Scene& scene, const EmitterChannels& channels) {
                           is_long ? " and more" : "", help));
 }
 
-// Surfaces first, as lights_of() has them.
+// `of_light`: channel per light in the order of lights_of(), surfaces first.
 EmitterChannels as_channels(const Scene& scene, std::vector<std::string> names,
                             const std::vector<int>& of_light) {
   const auto surfaces = static_cast<std::ptrdiff_t>(scene.surfaces.size());

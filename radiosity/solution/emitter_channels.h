@@ -8,38 +8,42 @@
 
 namespace lightwell {
 
-/// Which emitters are dimmed and recoloured together. Empty: light is not kept apart.
+/// Partition of emitters into channels that are dimmed and recoloured together. Empty: one solution
+/// for all light.
 struct EmitterChannels {
   std::vector<std::string> names{};  ///< all different
-  std::vector<int> of_surface{};     ///< of each Scene surface, into names; -1: it does not emit
-  std::vector<int> of_source{};      ///< of each free source (see free_source_count), into names
+  /// Index into `names` per surface of the Scene; -1: no emitter.
+  std::vector<int> of_surface{};
+  std::vector<int> of_source{};  ///< index into `names` per free source (see free_source_count)
 
   bool empty() const { return names.empty(); }
 };
 
-/// Emitters whose surface or material, and lamps which have a name like `glob` go to `channel`. In
-/// a glob, `*` stands for any text, `?` for one character and `[ab]` for one of several, as in a
+/// Assigns emitters to `channel` whose surface, material or lamp name matches `glob`. In a glob,
+/// `*` stands for any text, `?` for one character and `[ab]` for one of several characters, as in a
 /// shell.
 struct ChannelPattern {
   std::string channel{}, glob{};
 };
 
-/// What no pattern names goes here.
+/// Channel of emitters that match no pattern.
 inline constexpr const char* rest_channel = "rest";
 
-/// Each channel has a solution of its own in memory and in the file.
+/// Most channels. Each channel has a solution of its own in memory and in the file.
 inline constexpr int most_channels = 256;
 
-/// Every emitter and free source belongs to exactly one channel: that of the patterns its surface
-/// or material or its own name matches, or rest_channel. Channels are in the order of their first
-/// patterns, `rest` last.
+/// Channels by pattern. Every emitter and free source belongs to exactly one channel: the channel
+/// of the patterns that match its surface, material or name, otherwise rest_channel. Channels are
+/// in the order of their first patterns, `rest` last.
 ///
-/// Throws InputError if a pattern matches no emitter or two channels claim one, and if there are
-/// more than most_channels.
+/// Throws InputError in these cases:
+///   - a pattern matches no emitter;
+///   - patterns of two channels match the same emitter;
+///   - there are more than most_channels channels.
 EmitterChannels channels_by_pattern(const Scene& scene, std::span<const ChannelPattern> patterns);
 
-/// A channel for each name among the surfaces that emit and the free sources, called after it.
-/// Throws InputError if those are more than most_channels.
+/// One channel per name of emitting surfaces and free sources, with that name. Throws InputError
+/// for more than most_channels channels.
 EmitterChannels channels_per_luminaire(const Scene& scene);
 
 }  // namespace lightwell

@@ -8,36 +8,37 @@
 
 namespace lightwell {
 
-/// Where light went, W of each band: rows emitted, absorbed, escaped and unshot.
+/// Energy balance, W per band: rows emitted, absorbed, escaped and unshot.
 using BandEnergy = Eigen::Array<double, 4, Eigen::Dynamic>;
 
-/// Of free sources (see free_source_count) alone, W of each band: rows emitted, and missed, which
-/// is what of it left the scene without having met anything. Both are in BandEnergy as well.
+/// Energy of free sources (see free_source_count), W per band: rows emitted and missed. Missed
+/// light left the scene without meeting anything. BandEnergy includes both.
 using FreeEnergy = Eigen::Array<double, 2, Eigen::Dynamic>;
 
-/// Light of emitters that are dimmed and recoloured together. Light is linear in emission:
-/// B = sum_c s_c B_c, so these need to be found only once.
+/// Light of emitters that are dimmed and recoloured together. Light is linear in emission, B =
+/// sum_c s_c B_c, so each B_c needs to be computed only once.
 struct LightChannel {
   std::string name{};
-  std::vector<std::string> surfaces{};  ///< names of those that emit, and of lamps
-  Spectrum scale{};                     ///< s_c in force: factor of its emission per band, >= 0
+  std::vector<std::string> surfaces{};  ///< names of emitting surfaces, and of lamps
+  Spectrum scale{};                     ///< s_c: factor of the channel's emission per band, >= 0
 
-  // As in RadiositySolution, with every scale at 1.
+  // As in RadiositySolution, with all scales 1.
   BandArray patch_radiosity{};
   BandArray direct_irradiance{}, indirect_irradiance{}, caustic_irradiance{};
   BandEnergy energy{};
-  FreeEnergy free_energy{};  ///< empty where there are no free sources
+  FreeEnergy free_energy{};  ///< empty without free sources
 };
 
 /// Columns of all channels side by side, channel after channel: `rows` x (channels * bands).
 BandArray side_by_side(const std::vector<LightChannel>& channels,
                        BandArray LightChannel::*quantity);
 
-/// The opposite; moves nothing if `columns` is empty.
+/// Splits columns of all channels side by side into the channels. Does nothing if `columns` is
+/// empty.
 void split_columns(const BandArray& columns, BandArray LightChannel::*quantity,
                    std::vector<LightChannel>& channels);
 
-/// Columns of all channels added: `rows` x bands.
+/// Sum of the channels in columns side by side: `rows` x bands.
 BandArray channel_sum(BandArray columns, int bands);
 
 }  // namespace lightwell

@@ -26,7 +26,7 @@ std::vector<int> elements_of(const PatchMesh& mesh, MeshSides sides) {
   return elements;
 }
 
-// Adds value(element) for each of them.
+// Adds the column of value(e) over `elements`.
 template <class Value>
 void add_column(vtkFieldData* cells, const char* name, const std::vector<int>& elements,
                 Value&& value) {
@@ -36,8 +36,8 @@ void add_column(vtkFieldData* cells, const char* name, const std::vector<int>& e
   add_values(cells, name, values.data(), static_cast<std::ptrdiff_t>(values.size()));
 }
 
-// Okabe & Ito 2008, "Color universal design": told apart with any colour vision. What needs more
-// numbers than colours gets them darker.
+// Palette of Okabe & Ito 2008, "Color universal design", distinguishable with any colour vision.
+// Numbers beyond the palette get its colours again, darker.
 std::vector<unsigned char> palette_colors(const std::vector<int>& numbers) {
   constexpr std::array<std::array<int, 3>, 8> palette = {{{86, 180, 233},
                                                           {230, 159, 0},

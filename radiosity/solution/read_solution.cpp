@@ -146,7 +146,7 @@ PatchMesh read_mesh(const SolutionArrays& in, int band_count) {
   read_patches(in, band_count, mesh);
   read_sphere_grids(in, mesh);
   build_topology(mesh, positions);
-  // The stored normals have the last bit right, whatever the rebuilt ones round to.
+  // Stored normals replace the rebuilt ones, which may differ in the last bit.
   const auto normal = in.required<double>(in.points(), "normal", vertex_count, 3);
   mesh.vertex_normal.resize(positions.size());
   for (int v = 0; v < vertex_count; ++v) {
@@ -160,7 +160,7 @@ void read_light(const SolutionArrays& in, const PatchMesh& mesh, RadiositySoluti
   s.patch_radiosity = in.bands(in.field(), "patch_radiosity", mesh.patch_count(), K);
   s.direct_irradiance = in.bands(in.points(), "direct_irradiance", mesh.vertex_count(), K);
   s.indirect_irradiance = in.bands(in.points(), "indirect_irradiance", mesh.vertex_count(), K);
-  if (in.points()->GetAbstractArray("caustic_irradiance")) {  // only where mirrors or glass are
+  if (in.points()->GetAbstractArray("caustic_irradiance")) {  // absent without mirrors and glass
     s.caustic_irradiance = in.bands(in.points(), "caustic_irradiance", mesh.vertex_count(), K);
   }
   const auto of_elements = [&](const char* name, Eigen::ArrayXf& values) {
@@ -168,14 +168,15 @@ void read_light(const SolutionArrays& in, const PatchMesh& mesh, RadiositySoluti
     const auto read = in.required<float>(in.cells(), name, mesh.element_count());
     values = Eigen::Map<const Eigen::ArrayXf>(read.data, read.rows);
   };
-  of_elements("interpolation_error", s.interpolation_error);  // only where elements were refined
+  // Absent in solutions without an estimate.
+  of_elements("interpolation_error", s.interpolation_error);
   of_elements("gather_noise", s.gather_noise);
 }
 
 void read_record(const SolutionArrays& in, RadiositySolution& s) {
   s.metres_per_unit = in.number("metres_per_unit");
   s.unit_name = in.text("unit_name");
-  const auto light = in.strings("light");  // files of before do not say
+  const auto light = in.strings("light");  // absent in files of earlier versions
   s.relative_units = !light.empty() && light.front() == "relative";
   const auto history = in.optional<double>(in.field(), "history_residual_seconds", 2);
   for (int i = 0; i < history.rows; ++i) {
@@ -196,7 +197,7 @@ void read_record(const SolutionArrays& in, RadiositySolution& s) {
       in.required<double>(in.field(), "energy_emitted_absorbed_escaped_unshot", 1, 4).data;
   s.energy = {energy[0], energy[1], energy[2], energy[3]};
   const auto of_lamps = in.optional<double>(in.field(), "energy_from_lamps_missed", 2);
-  if (of_lamps.rows > 0) {  // only where lamps are
+  if (of_lamps.rows > 0) {  // absent without lamps
     s.energy.from_lamps = of_lamps.data[0];
     s.energy.missed = of_lamps.data[1];
   }

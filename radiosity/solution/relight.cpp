@@ -58,8 +58,8 @@ Eigen::Array3f parse_colour(std::string_view text, std::string_view whole) {
   return colour;
 }
 
-// out = sum_c s_c in_c. Rows are taken several at a time, so that the loop over a few bands becomes
-// one that processors do in packets.
+// out = sum_c s_c in_c. Several rows at a time make the short loop over bands long enough for SIMD
+// instructions.
 void add_up(const std::vector<LightChannel>& channels, BandArray LightChannel::*quantity,
             BandArray& out) {
   const BandArray& first = channels.front().*quantity;
@@ -127,7 +127,8 @@ Spectrum channel_scale(const LightChannel& channel, const Bands& bands,
   const Spectrum flux = channel.energy.row(0).transpose().cast<float>();
   const Spectrum colour = *setting.colour;
   const double before = luminous(bands, flux), after = luminous(bands, colour * flux);
-  constexpr double nothing = 1e-6;  // of the light; the rest would be raised a million times
+  // Share of the light; a lesser rest would be raised over a million times.
+  constexpr double nothing = 1e-6;
   if (!(after > nothing * before * colour.maxCoeff())) {
     throw InputError(fmt::format(
         "channel '{}': its light has nothing of that colour, so that no flux would be left; choose "

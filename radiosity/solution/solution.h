@@ -10,7 +10,7 @@
 
 namespace lightwell {
 
-/// accuracy_missed: it converged, but the accuracy asked for was out of reach.
+/// Reason for the end of a solve. accuracy_missed: converged, but short of the requested accuracy.
 enum class Outcome { converged, max_sweeps_reached, accuracy_missed };
 
 struct StepRecord {
@@ -18,19 +18,19 @@ struct StepRecord {
   double seconds = 0.0;   ///< since the solver started
 };
 
-/// Watts (relative where the scene's light is), all bands added. emitted = absorbed + escaped +
-/// unshot.
+/// Energy balance in watts (relative if the scene's light is), sum of all bands: emitted = absorbed
+/// + escaped + unshot.
 struct EnergyBalance {
   double emitted = 0.0;
   double absorbed = 0.0;  ///< by diffuse surfaces and, on the way, by mirrors and glass
   double escaped = 0.0;   ///< out of an open scene, or onto black backs
-  double unshot = 0.0;    ///< what the solver left undistributed
+  double unshot = 0.0;    ///< left undistributed by the solver
 
-  double from_lamps = 0.0;  ///< of `emitted`: by lamps and the sky, which are no surfaces
-  double missed = 0.0;      ///< of `escaped`: theirs that met nothing at all
+  double from_lamps = 0.0;  ///< part of `emitted`: by lamps and the sky, which are no surfaces
+  double missed = 0.0;      ///< part of `escaped`: light of lamps and the sky that met nothing
 };
 
-/// All bands added.
+/// Sum over all bands.
 EnergyBalance total(const BandEnergy& by_band, const FreeEnergy& free = {});
 
 struct PhaseSeconds {
@@ -39,45 +39,47 @@ struct PhaseSeconds {
 };
 
 struct Provenance {
-  std::string version{};  ///< program version that made it
+  std::string version{};  ///< version of the program
   std::string scene_file{};
   std::uint64_t scene_hash = 0;
-  std::string options{};     ///< the command-line equivalent of what was in force
-  std::string refinement{};  ///< why the elements are no finer and no coarser; empty: not refined
+  std::string options{};     ///< effective options, as on the command line
+  std::string refinement{};  ///< reason for the fineness of the elements; empty: not refined
 };
 
-/// A view-independent solution on a PatchMesh; also what is saved.
+/// A view-independent solution on a PatchMesh, as in a solution file.
 struct RadiositySolution {
   Bands bands{};
-  double metres_per_unit = 1.0;  ///< of the scene file, for coordinates shown to people
+  double metres_per_unit = 1.0;  ///< unit of the scene file, for coordinates shown to users
   std::string unit_name = "m";
-  /// Light is in no known unit: watts and lux here and in what is made of this are relative.
+  /// True if light has no known unit: watts and lux of the solution, and of all derived from it,
+  /// are relative.
   bool relative_units = false;
 
   BandArray patch_radiosity{};  ///< B_i, W/m^2, patches x bands
 
-  // Per mesh vertex, W/m^2, vertices x bands, reconstructed by a final gather.
-  BandArray direct_irradiance{};    ///< straight from DirectLight's lights
-  BandArray indirect_irradiance{};  ///< everything else, caustics included
-  /// The part of indirect_irradiance that DirectLight's lights send by way of mirrors and glass.
+  // Irradiance per mesh vertex, W/m^2, vertices x bands, reconstructed by a final gather.
+  BandArray direct_irradiance{};    ///< directly from the lights of DirectLight
+  BandArray indirect_irradiance{};  ///< all other light, caustics included
+  /// Part of indirect_irradiance that arrives from the lights of DirectLight through mirrors and
+  /// glass.
   BandArray caustic_irradiance{};
 
-  /// Per element: estimated RMS error of interpolated irradiance over it, with half of what the
-  /// noise of its estimate may hide (in the square), of the mean irradiance or a quarter of the
-  /// element's own, whichever is more. Empty if nobody estimated it.
+  /// Per element: estimated RMS error of interpolated irradiance over the element, relative to the
+  /// mean irradiance or a quarter of the element's own, whichever is more. The square includes half
+  /// of the squared error that noise of the estimate may hide. Empty without an estimate.
   Eigen::ArrayXf interpolation_error{};
-  /// Per element: estimated RMS error that the rays of the final gather leave in it, relative to
-  /// the same. Empty in files of earlier versions.
+  /// Per element: estimated RMS error from the rays of the final gather, relative to the same
+  /// reference. Empty in files of earlier versions.
   Eigen::ArrayXf gather_noise{};
 
-  /// The light above by who emits it (see relight.h); empty: it was not kept apart.
+  /// The light above by emitter (see relight.h); empty: not kept by channel.
   std::vector<LightChannel> channels{};
-  // Only with channels.
-  std::vector<int> patch_channel{};   ///< whose light a patch emits; -1: none
-  std::vector<int> source_channel{};  ///< of each free source (see free_source_count)
-  BandArray full_emission{};          ///< M_i with every scale at 1, W/m^2, patches x bands
+  // Only with channels:
+  std::vector<int> patch_channel{};   ///< channel of each patch's emission; -1: none
+  std::vector<int> source_channel{};  ///< channel of each free source (see free_source_count)
+  BandArray full_emission{};          ///< M_i with all scales 1, W/m^2, patches x bands
 
-  std::string solver{};  ///< the method that found it, or the methods; empty if read from a file
+  std::string solver{};  ///< name of the solver or solvers; empty if read from a file
   std::vector<StepRecord> history{};
   Outcome outcome = Outcome::converged;
   double residual = 0.0;
@@ -92,21 +94,21 @@ struct RadiositySolution {
   BandArray irradiance() const { return direct_irradiance + indirect_irradiance; }
 };
 
-/// A mesh and the light on it.
+/// A mesh and its solution.
 struct SolvedScene {
   PatchMesh mesh{};
   RadiositySolution solution{};
 };
 
-/// Per element: what irradiance anywhere in it is off by at most, with odds of about 19 to 1, mean
-/// of the bands, relative as interpolation_error is: twice the root of both errors' squares. Empty
-/// unless both are known.
+/// Per element: bound of the error of irradiance anywhere in the element, mean of the bands, with
+/// odds of about 19 to 1: 2 sqrt(interpolation_error^2 + gather_noise^2), relative to the same
+/// reference. Empty unless both are known.
 Eigen::ArrayXf error_bound(const RadiositySolution& solution);
 
 /// B = M + rho E at every vertex, W/m^2 (each vertex belongs to patches of one material).
 BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution);
 
-/// Mean over each element's corners: elements x bands.
+/// Mean over the corners of each element: elements x bands.
 BandArray element_mean(const PatchMesh& mesh, const BandArray& vertex_values);
 
 }  // namespace lightwell

@@ -25,8 +25,8 @@ struct Values {
   std::vector<T> to_vector() const { return {data, data + std::ptrdiff_t{rows} * columns}; }
 };
 
-/// The arrays of a file whose seal holds, but which need not have been written by us: nothing in
-/// them is trusted before it is checked.
+/// The arrays of a file with a valid seal. The file may come from another program, so every value
+/// is checked before use. Failed checks throw InputError that names the file.
 class SolutionArrays {
  public:
   SolutionArrays(const std::filesystem::path& path, vtkPolyData* poly) : path_(path), poly_(poly) {}
@@ -38,7 +38,7 @@ class SolutionArrays {
     if (!holds) reject(what_is_wrong);
   }
 
-  /// Values of an array, or none if it is absent.
+  /// Values of an array; none if the array is absent.
   template <class T>
   Values<T> optional(vtkFieldData* data, const char* name, int columns) const {
     vtkAbstractArray* abstract = data->GetAbstractArray(name);
@@ -60,7 +60,7 @@ class SolutionArrays {
             fmt::format("its array '{}' has {} rows instead of {}", name, values.rows, rows));
     return values;
   }
-  /// Integers that must lie in [low, high).
+  /// Integers, all of which must lie in [low, high).
   std::vector<int> integers(vtkFieldData* data, const char* name, int rows, int low,
                             int high) const {
     std::vector<int> values = required<int>(data, name, rows).to_vector();

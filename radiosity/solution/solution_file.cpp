@@ -21,7 +21,7 @@
 namespace lightwell {
 namespace {
 
-/// Puts the preamble before the XML's root element.
+/// Writer that puts the preamble before the XML's root element.
 class SealedWriter : public vtkXMLPolyDataWriter {
  public:
   static SealedWriter* New() {
@@ -45,7 +45,7 @@ void add_bands(vtkFieldData* data, const char* name, const BandArray& values, co
   auto* array =
       add_values(data, name, values.data(), values.rows(), static_cast<int>(values.cols()));
   for (int k = 0; array && k < bands.count(); ++k) {
-    // VTK writes the label into an XML attribute as it is. The true name is in 'band_names'.
+    // VTK writes the label unescaped into an XML attribute. The true name is in 'band_names'.
     std::string label = bands.names[k];
     std::replace_if(
         label.begin(), label.end(),
@@ -66,8 +66,8 @@ void add_geometry(vtkPolyData* poly, const PatchMesh& mesh) {
       add_values(poly->GetPointData(), "normal", normals.data(), mesh.vertex_count(), 3));
 }
 
-/// 8-bit sRGB that shows the room at once: x / (1 + x), where x = 1 is twice the mean luminance of
-/// the light leaving the surfaces; no colour can clip, however bright the emitters are.
+/// 8-bit sRGB of the tone curve x / (1 + x), where x = 1 is twice the mean luminance of the light
+/// leaving the surfaces by reflection. No colour clips, however bright the emitters are.
 std::vector<unsigned char> display_colors(const PatchMesh& mesh, const BandArray& B,
                                           const Bands& bands) {
   const BandArray element_B = element_mean(mesh, B);
@@ -84,7 +84,7 @@ std::vector<unsigned char> display_colors(const PatchMesh& mesh, const BandArray
   for (Eigen::Index v = 0; v < B.rows(); ++v) {
     const Eigen::Array3f x = scale * linear_rgb(bands, B.row(v).transpose()).max(0.0f);
     for (const float value : x) {
-      // Written so that an infinite value is white and one that is not a number is black.
+      // Infinity becomes white, NaN black.
       const float linear = value > 1e6f ? 1.0f : value >= 0.0f ? value / (1.0f + value) : 0.0f;
       const float srgb =
           linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
@@ -219,7 +219,7 @@ const char* how_it_ended(Outcome outcome) {
   return "converged";
 }
 
-/// What a person wants to know first, for the top of the file.
+/// Summary for readers, at the top of the file.
 std::string summary(const SolvedScene& solved) {
   const PatchMesh& mesh = solved.mesh;
   const RadiositySolution& s = solved.solution;

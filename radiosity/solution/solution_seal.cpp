@@ -48,7 +48,7 @@ std::string seal_text(std::uint64_t checksum) {
   return fmt::format("{}{:016x}{}", seal_start, checksum, seal_end);
 }
 
-/// The version the file says it has; rejects what is not a solution file at all.
+/// Version in the file's first line. Rejects files that are not solutions.
 int read_format(const std::filesystem::path& path, std::ifstream& file) {
   std::array<char, 64> start{};
   file.read(start.data(), start.size());

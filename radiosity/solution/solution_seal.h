@@ -6,12 +6,12 @@
 
 namespace lightwell {
 
-/// The version of the arrays inside a solution file. Raised whenever a reader of the older version
-/// could misread the newer.
+/// Version of the arrays inside a solution file. Raised whenever a reader of an older version could
+/// misread a newer file.
 inline constexpr int solution_format = 1;
 
-/// The processing instruction a solution file begins with, so that `head` tells a person what it
-/// is: `summary` is free text, one "name: value" line each.
+/// The processing instruction at the beginning of a solution file, readable with `head`. `summary`:
+/// free text, one "name: value" line each.
 std::string solution_preamble(const std::string& summary);
 
 /// FNV-1a over all bytes (64 bits; Fowler, Noll & Vo). Throws std::runtime_error if unreadable.
@@ -21,8 +21,9 @@ std::uint64_t file_checksum(const std::filesystem::path& path);
 /// Throws std::runtime_error naming the file.
 void seal_solution(const std::filesystem::path& path);
 
-/// Throws InputError, with the reason, unless the file is a whole solution file of this version:
-/// missing, a folder, foreign, another version, torn, or changed since it was sealed.
+/// Checks that the file is a complete solution file of this version. Throws InputError with the
+/// reason for a file that is missing, a folder, of another kind, of another version, torn, or
+/// changed since sealed.
 void check_seal(const std::filesystem::path& path);
 
 }  // namespace lightwell

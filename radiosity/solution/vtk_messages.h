@@ -9,8 +9,8 @@
 
 namespace lightwell {
 
-/// Catches what VTK would print on standard error while this lives, so that a library call stays
-/// silent and one exception says what is wrong.
+/// Catches VTK's messages on standard error during the object's lifetime, so that library calls
+/// stay silent and one exception describes the error.
 class VtkMessages {
  public:
   VtkMessages()

@@ -63,7 +63,7 @@ void set_element_polygons(vtkPolyData* poly, const PatchMesh& mesh, std::span<co
 
 std::string write_appended(vtkXMLPolyDataWriter* writer, vtkPolyData* poly,
                            const std::filesystem::path& path) {
-  // VTK does not say why a file cannot be opened.
+  // VTK does not report why a file cannot be opened.
   if (!std::ofstream(path, std::ios::binary)) return std::strerror(errno);
   const VtkMessages messages;
   writer->SetFileName(path.c_str());

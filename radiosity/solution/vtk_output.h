@@ -18,7 +18,8 @@ class vtkXMLPolyDataWriter;
 
 namespace lightwell {
 
-/// VTK's files cannot hold arrays without values: none is added, and a null pointer returned.
+/// Adds an array of `rows` x `columns` values. VTK files cannot hold empty arrays: an empty array
+/// is not added, and nullptr is returned.
 template <class T>
 vtkAOSDataArrayTemplate<T>* add_values(vtkFieldData* data, const std::string& name, const T* values,
                                        std::ptrdiff_t rows, int columns = 1) {
@@ -32,18 +33,19 @@ vtkAOSDataArrayTemplate<T>* add_values(vtkFieldData* data, const std::string& na
   return array;
 }
 
-/// Text for people and for readers; nothing for no values.
+/// Adds an array of strings. An empty array is not added.
 void add_strings(vtkFieldData* data, const std::string& name,
                  const std::vector<std::string>& values);
 
-/// The mesh's vertices, in double precision, and one polygon per element.
+/// Sets the mesh's vertices, in double precision, and one polygon per element.
 void set_element_polygons(vtkPolyData* poly, const PatchMesh& mesh);
 
-/// One polygon for each of `elements`, and only the vertices that those have, in the mesh's order.
+/// Sets one polygon for each of `elements`, and only the vertices of these elements, in the mesh's
+/// order.
 void set_element_polygons(vtkPolyData* poly, const PatchMesh& mesh, std::span<const int> elements);
 
-/// Writes raw appended data with 64-bit headers. Returns why it failed, in the system's words;
-/// nothing where it did not.
+/// Writes raw appended data with 64-bit headers. Returns the system's reason if writing failed,
+/// otherwise an empty string.
 std::string write_appended(vtkXMLPolyDataWriter* writer, vtkPolyData* poly,
                            const std::filesystem::path& path);
 

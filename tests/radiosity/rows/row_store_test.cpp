@@ -1,4 +1,4 @@
-// Rows come back as they were put in, wherever they are kept.
+// Rows read back equal the rows added, in memory or on disk.
 #include "radiosity/rows/row_store.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::int64_t megabyte = 1 << 20;
 
-// The thread sanitizer keeps notes, several bytes a byte.
+// The thread sanitizer uses several bytes of shadow memory per byte.
 #ifdef __SANITIZE_THREAD__
 constexpr bool memory_is_our_own = false;
 #else
@@ -33,7 +33,7 @@ std::shared_ptr<MemoryBudget> budget_of(std::int64_t rows, const TemporaryFolder
   return std::make_shared<MemoryBudget>(MemoryOptions{.rows = rows, .folder = folder / ""});
 }
 
-// Some rows empty, some of a few records, some longer than a chunk of 4096 bytes; columns rise.
+// Test row: empty, of a few records, or longer than a chunk of 4096 bytes; columns ascend.
 std::vector<FormFactor> row_of(int i, int n) {
   const auto key = static_cast<std::uint64_t>(i);
   const double share = i % 7 == 0 ? 0.0 : i % 11 == 0 ? 0.9 : 0.05;
@@ -54,7 +54,7 @@ void expect_same(std::span<const FormFactor> found, const std::vector<FormFactor
   }
 }
 
-// How many bytes of rows may stay in memory: all, some, none.
+// Bytes of rows that may stay in memory: all, some, none.
 class RowsKept : public testing::TestWithParam<std::int64_t> {};
 
 TEST_P(RowsKept, ComeBackAsTheyWereInAnyOrder) {
@@ -99,14 +99,14 @@ TEST_P(RowsKept, StayReadableWhileOthersAreReleased) {
     EXPECT_TRUE(rows.row(i).empty());
   }
   expect_same(last, row_of(n - 1, n), n - 1);
-  // What was released has room for the same again, on disk as in memory.
+  // The space of released rows is reused, on disk as in memory.
   const StorageReport before = budget->report();
   RowStore<FormFactor> again(budget, n);
   for (int i = 0; i < n; ++i) again.append(i, row_of(i, n));
   again.close();
   for (int i = 0; i < n; ++i) expect_same(again.row(i), row_of(i, n), i);
   expect_same(rows.row(n - 1), row_of(n - 1, n), n - 1);
-  constexpr std::int64_t last_chunks = 64 << 10;  // one is still in use, one more is needed
+  constexpr std::int64_t last_chunks = 64 << 10;  // one chunk is still in use, one more is needed
   EXPECT_LE(budget->report().most_on_disk, before.most_on_disk + last_chunks);
 }
 
@@ -124,7 +124,7 @@ TEST_P(RowsKept, ManyThreadsMayAddThem) {
   });
 }
 
-// The transpose, block by block, of either triangle.
+// Columns of either triangle, block by block, equal the transpose.
 TEST_P(RowsKept, ColumnsAreWhatRowsSay) {
   constexpr int n = 400;
   using Count = RecordStore::Count;
@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Bytes, RowsKept, testing::Values(-1, 100000, 0), [](con
   return tested.param < 0 ? "AllInMemory" : tested.param > 0 ? "Some" : "AllOnDisk";
 });
 
-// y = S x from one triangle, for numbers of which no sum is rounded, so that order does not matter.
+// y = S x from one triangle. All sums are exact in these numbers, so their order does not matter.
 TEST(SymmetricRows, MultiplyAsTheWholeMatrixDoes) {
   constexpr int n = 300;
   const TemporaryFolder folder;
@@ -194,7 +194,7 @@ TEST(SymmetricRows, MultiplyAsTheWholeMatrixDoes) {
   });
 }
 
-// Pages of what was read long ago leave memory: 64 MB are read through a window of 16 MB / 8.
+// Pages read long ago leave memory: 64 MB are read through a window of 16 MB / 8.
 TEST(SpilledRows, DoNotStayResidentOnceRead) {
   const TemporaryFolder folder;
   RowStore<FormFactor> rows(budget_of(16 * megabyte, folder), 1000);
@@ -203,13 +203,13 @@ TEST(SpilledRows, DoNotStayResidentOnceRead) {
   for (int i = 0; i < 1000; ++i) rows.append(i, row);
   rows.close();
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(rows.row(i)[8191].value, 0.5f);
-  // 16 MB of rows, the window, the chunk that is being filled; and what else the process does.
+  // 16 MB of rows, the window, the chunk being filled, and some memory for the rest of the process.
   if (memory_is_our_own) {
     EXPECT_LT(resident_memory().now - before, 24 * megabyte);
   }
 }
 
-/// While it lives, files may not grow beyond a size: the disk is full.
+/// A full disk: limits the size of files during the object's lifetime.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -260,10 +260,10 @@ TEST(MemoryBudget, OneThatIsTooSmallSaysWhatIsNeeded) {
   EXPECT_TRUE(says(message, "a memory budget of 1 MB is too small"));
   EXPECT_TRUE(says(message, "work 100 MB more"));
   MemoryBudget unlimited;
-  unlimited.plan(std::int64_t{1} << 50);  // nobody asked for a limit: it does what it can
+  unlimited.plan(std::int64_t{1} << 50);  // without a limit any amount is accepted
 }
 
-// What is resident counts, whoever uses it.
+// All resident memory of the process counts, whoever allocated it.
 TEST(MemoryBudget, LeavesRoomForWhatElseIsThere) {
   const std::int64_t limit = resident_memory().now + 40 * megabyte;
   MemoryBudget budget({.limit = limit});

@@ -22,7 +22,7 @@ BandArray light(int rows, int bands, int seed) {
   return values;
 }
 
-// Two channels on the small solution's two patches, of which the second is dark.
+// Two channels on the two patches of the small solution; the second patch emits nothing.
 SolvedScene two_channels(int bands = 3, bool with_caustics = true) {
   SolvedScene solved = small_solution(bands);
   RadiositySolution& s = solved.solution;
@@ -69,7 +69,7 @@ TEST_P(ChannelBands, AreRestoredBitForBit) {
       ASSERT_EQ(a.caustic_irradiance.size(), b.caustic_irradiance.size());
       EXPECT_TRUE((a.caustic_irradiance == b.caustic_irradiance).all());
     }
-    // The sum is what any reader sees.
+    // Readers without channels use the sum.
     EXPECT_TRUE((s.indirect_irradiance == t.indirect_irradiance).all());
     EXPECT_TRUE((solved.mesh.emission == again.mesh.emission).all());
     EXPECT_EQ(s.energy.absorbed, t.energy.absorbed);

@@ -11,7 +11,7 @@ namespace {
 using Patterns = std::vector<ChannelPattern>;
 using Names = std::vector<std::string>;
 
-// Emitters: "desk 1", "desk 2" (of "bulb"), "panel" (of "tube"). "desk top" is dark.
+// Emitters: "desk 1", "desk 2" (material "bulb"), "panel" (material "tube"). "desk top" is dark.
 Scene office() {
   Scene scene;
   const int dark = test::add_material(scene, test::diffuse(scene.bands, 0.5f));

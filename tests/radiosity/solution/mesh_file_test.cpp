@@ -29,7 +29,7 @@ TEST_F(MeshFile, AFailedWriteNamesTheFileAndLeavesNothing) {
 
 TEST_F(MeshFile, ADiskThatFillsUpLeavesTheOldFile) {
   std::ofstream(file("M.vtp")) << "old";
-  // /dev/full stands for the disk: the temporary is a link to it.
+  // The temporary file is a link to /dev/full, which acts as a full disk.
   fs::create_symlink("/dev/full", file("M.vtp." + std::to_string(::getpid()) + ".part"));
   const std::string message = failure_of(file("M.vtp"));
   EXPECT_NE(message.find("M.vtp"), std::string::npos) << message;

@@ -23,21 +23,21 @@ Spectrum even(float factor) {
   return Spectrum::Constant(3, factor);
 }
 
-// A float holds 2^-24 = 6e-8 of itself. From patches by way of vertices, pilot gather and final
-// gather some ten roundings follow each other, of values that are no larger than the largest;
-// caustics add up some hundred floats at a vertex, with ten times the rounding of one. Twice that.
+// Relative rounding of a float is 2^-24 = 6e-8. About ten roundings follow each other from patches
+// through vertices, pilot and final gather, of values no larger than the largest. Caustics add some
+// hundred floats at a vertex, with ten times the rounding of one. The bound is twice that.
 constexpr double rounding = 1.2e-6;
-// Where elements were refined, gathers are joined with a pilot gather's predictions by weights that
-// go by their variances. Those are squares of differences of a percent or two, in which some four
-// roundings of 6e-8 are 1e-5 or 2e-5, and twice that when squared; what predictions are off beyond
-// them is the small difference of several, good to 1e-4. A weight off by that moves a value by as
-// much of what gather and prediction are apart: a tenth of the light at most.
+// Refined elements combine gathers with predictions of pilot gathers by weights from their
+// variances. Variances are squares of differences of a percent or two, in which about four
+// roundings of 6e-8 are 1e-5 to 2e-5, and twice that when squared. The excess error of a prediction
+// is a small difference of several variances, accurate to 1e-4. An error of a weight acts on the
+// difference between gather and prediction: a tenth of the light at most.
 constexpr double weighted = 1e-5;
-// What is joined so is read by the final gather, which aims a quarter as many rays more at bright
-// patches: which of them is drawn from running sums of their light. One of 1e5 draws goes elsewhere
-// for a sum that is off by 1e-5. 5000 vertices draw 16 to 128 times each, so that some five see
-// another place; four times that are allowed, since it is chance. Such a ray is a 64th of the light
-// at a vertex at most, and may be twice as bright as the rest.
+// The final gather aims a quarter more rays at bright patches, drawn from running sums of the
+// combined light. One of 1e5 draws changes for a sum that is off by 1e-5. 5000 vertices draw 16 to
+// 128 times each, so about five vertices see another sample point; four times as many are allowed
+// for chance. Such a ray carries at most a 64th of the light at a vertex and may be twice as bright
+// as the rest.
 constexpr double redrawn = 0.004, one_ray = 0.03;
 
 void expect_same_light(const BandArray& a, const BandArray& b, const char* what) {
@@ -118,12 +118,12 @@ TEST(Relight, EqualsASolveWithThatEmission) {
   is.panel *= warm;
   expect_same_light(relit, [&] {
     SolvedScene fresh = solve_scene(test::two_lamps(is), test::exact_and_even());
-    fresh.solution.error_estimate = relit.solution.error_estimate;  // stays that of the solve
+    fresh.solution.error_estimate = relit.solution.error_estimate;  // unchanged by relight()
     return fresh;
   }());
 }
 
-// Irradiance that `count` rays from the middle of the room meet.
+// Irradiance where `count` rays from the middle of the room end.
 BandArray seen(const SolvedScene& solved, int count) {
   const ElementCaster caster(solved.mesh);
   const BandArray E = solved.solution.irradiance();
@@ -202,8 +202,9 @@ TEST(Relight, EnergyIsThatOfTheEmissionInForce) {
   EXPECT_NEAR((e.absorbed + e.escaped + e.unshot) / e.emitted, 1.0, 1e-5);
 }
 
-// A wall that shines is no emitter of DirectLight beside brighter lamps; with those off it would be
-// the first in line. What is direct and what is indirect must stay as it was solved.
+// A luminous wall is no emitter of DirectLight beside brighter lamps, but would be its first
+// emitter with the lamps off. The division into direct and indirect light must remain that of the
+// solve.
 TEST(Relight, DirectLightTracedAfreshIsThatOfTheFileWhateverIsOff) {
   const Scene scene = test::two_lamps({.wall = 3.0f});
   SolvedScene relit = solve_by_channel(scene);
@@ -270,7 +271,7 @@ TEST(ChannelSetting, ColourKeepsTheLuminousFlux) {
   for (const Spectrum& flux : {Spectrum(Spectrum::Constant(3, 5.0f)),
                                Spectrum((Spectrum(3) << 9.0f, 4.0f, 1.0f).finished())}) {
     const Spectrum scale = channel_scale(lamp_of(flux), bands, channel_setting("#ff8000"));
-    // A few floats are rounded.
+    // Rounding of a few floats.
     EXPECT_NEAR(luminous(bands, scale * flux) / luminous(bands, flux), 1.0, 1e-6);
     const float half = std::pow((128.0f / 255.0f + 0.055f) / 1.055f, 2.4f);  // IEC 61966-2-1
     EXPECT_NEAR(scale[1] / scale[0], half, 1e-6f);

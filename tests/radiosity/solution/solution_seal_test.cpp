@@ -22,8 +22,7 @@ void put(const fs::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/// What read_solution says about a file it must refuse; also checks that it is the only one to
-/// speak.
+/// Message of read_solution for a file that must be refused. Also checks that nothing else prints.
 std::string refusal(const fs::path& path) {
   testing::internal::CaptureStderr();
   std::string message;
@@ -82,7 +81,7 @@ TEST_F(SolutionSeal, ForeignFilesAreRefusedWithTheReason) {
   expect_refused(file("newer.vtp"), "solution format 2");
 }
 
-/// Someone who knows the format seals a file again after a change: its numbers are still checked.
+/// Files changed and sealed again: values are checked in spite of a valid seal.
 class ResealedSolution : public SolutionFile {
  protected:
   fs::path changed(const std::function<void(vtkPolyData*)>& change) {
