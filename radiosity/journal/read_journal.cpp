@@ -54,9 +54,10 @@ class Reader {
       reject_journal(path_, fmt::format("cannot be read: {}", std::strerror(errno)));
     }
     if (!text.starts_with(journal_first_words)) {
-      reject_journal(path_, text.empty()
-                                ? "is an empty file; remove it, or give another name"
-                                : "is none: the file is something else; give another name");
+      reject_journal(path_,
+                     text.empty()
+                         ? "is an empty file; remove it, or give another name"
+                         : "holds no checkpoint: the file is something else; give another name");
     }
     int format = 0;
     std::from_chars(text.data() + journal_first_words.size(), text.data() + text.size(), format);

@@ -23,7 +23,8 @@ void add_columns(vtkFieldData* data, const std::string& name, const BandArray& v
 BandArray finite_bands(const SolutionArrays& in, vtkFieldData* data, const std::string& name,
                        int rows, int bands) {
   BandArray values = in.bands(data, name.c_str(), rows, bands);
-  in.require(values.allFinite(), fmt::format("its array '{}' holds what is no number", name));
+  in.require(values.allFinite(),
+             fmt::format("its array '{}' holds a value that is not finite", name));
   return values;
 }
 
@@ -37,7 +38,7 @@ void read_names(const SolutionArrays& in, RadiositySolution& s) {
       in.integers(in.field(), "channel_of_surface", static_cast<int>(surfaces.size()), 0, count);
   for (const std::string& name : names) {
     in.require(!name.empty() && std::count(names.begin(), names.end(), name) == 1,
-               fmt::format("its channel name '{}' is empty or not the only one", name));
+               fmt::format("its channel name '{}' is empty or used twice", name));
     s.channels.push_back({.name = name});
   }
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -52,7 +53,7 @@ void read_patch_channels(const SolutionArrays& in, const PatchMesh& mesh, Radios
   for (int i = 0; i < n; ++i) {
     in.require((s.full_emission.row(i) >= 0.0f).all() &&
                    (s.patch_channel[i] >= 0 || (s.full_emission.row(i) == 0.0f).all()),
-               fmt::format("patch {} emits less than nothing, or in no channel", i));
+               fmt::format("patch {} has negative emission, or emits in no channel", i));
   }
 }
 
@@ -105,12 +106,12 @@ void read_channels(const SolutionArrays& in, const PatchMesh& mesh, RadiositySol
   in.require((scale >= 0.0f).all(), "its array 'channel_scale' holds a negative number");
   s.source_channel = in.optional<int>(in.field(), "lamp_channel", 1).to_vector();
   for (const int channel : s.source_channel) {
-    in.require(0 <= channel && channel < count, "a lamp of it is in no channel");
+    in.require(0 <= channel && channel < count, "a lamp is in no channel");
   }
   const auto free_energy = in.optional<double>(in.field(), "channel_energy_from_lamps_missed", 2);
-  in.require(
-      free_energy.rows == 0 || free_energy.rows == count * K,
-      "its array 'channel_energy_from_lamps_missed' has not one row for each channel and band");
+  in.require(free_energy.rows == 0 || free_energy.rows == count * K,
+             "its array 'channel_energy_from_lamps_missed' does not have one row for each channel "
+             "and band");
   const auto energy = in.required<double>(
       in.field(), "channel_energy_emitted_absorbed_escaped_unshot", count * K, 4);
   for (int c = 0; c < count; ++c) {
@@ -120,11 +121,11 @@ void read_channels(const SolutionArrays& in, const PatchMesh& mesh, RadiositySol
     };
     channel.scale = scale.row(c).transpose();
     channel.energy = Eigen::Map<const BandEnergy>(energy.data + std::ptrdiff_t{4} * K * c, 4, K);
-    in.require(channel.energy.allFinite(), "its channels' energy is no number");
+    in.require(channel.energy.allFinite(), "the energy of a channel is not finite");
     if (free_energy.rows > 0) {
       channel.free_energy =
           Eigen::Map<const FreeEnergy>(free_energy.data + std::ptrdiff_t{2} * K * c, 2, K);
-      in.require(channel.free_energy.allFinite(), "its lamps' energy is no number");
+      in.require(channel.free_energy.allFinite(), "the energy of a lamp is not finite");
     }
     channel.patch_radiosity = read(in.field(), "patch_radiosity", mesh.patch_count());
     channel.direct_irradiance = read(in.points(), "direct_irradiance", mesh.vertex_count());

@@ -51,7 +51,7 @@ int channel_of(std::vector<std::string>& names, const std::string& name) {
 
 void require_few(const Scene& scene, const EmitterChannels& channels) {
   if (channels.names.size() <= most_channels) return;
-  fail(scene, fmt::format("{} channels of light are asked for, and {} are the most there may be; "
+  fail(scene, fmt::format("{} channels of light are requested, and at most {} are possible; "
                           "put more emitters into one channel by a pattern",
                           channels.names.size(), most_channels));
 }

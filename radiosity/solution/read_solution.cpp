@@ -105,7 +105,7 @@ void read_patches(const SolutionArrays& in, int band_count, PatchMesh& mesh) {
   for (int e = 0; e < element_count; ++e) {
     const int i = mesh.patch[e];
     in.require(first[i] <= e && e < first[i + 1],
-               fmt::format("element {} names patch {}, whose elements are others", e, i));
+               fmt::format("element {} names patch {}, which does not include the element", e, i));
   }
 }
 

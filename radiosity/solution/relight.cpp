@@ -52,8 +52,8 @@ Eigen::Array3f parse_colour(std::string_view text, std::string_view whole) {
     colour[k] = linear(value);
   }
   if (!(colour > 0.0f).any()) {
-    throw std::invalid_argument(fmt::format(
-        "'{}' names black, which keeps no light to give a colour to; write off", whole));
+    throw std::invalid_argument(
+        fmt::format("'{}' is black, which leaves no light of any colour; write off", whole));
   }
   return colour;
 }
@@ -120,8 +120,8 @@ Spectrum channel_scale(const LightChannel& channel, const Bands& bands,
   if (!setting.colour) return constant_spectrum(bands, factor);
   if (!bands.wavelengths_nm.empty() || bands.count() != 3) {
     throw InputError(fmt::format(
-        "channel '{}': the solution has {} bands of wavelength, and a colour does not say how much "
-        "of each; give a factor alone",
+        "channel '{}': the solution has {} spectral bands, whose factors an RGB colour does not "
+        "determine; give a factor alone",
         channel.name, bands.count()));
   }
   const Spectrum flux = channel.energy.row(0).transpose().cast<float>();
@@ -131,7 +131,7 @@ Spectrum channel_scale(const LightChannel& channel, const Bands& bands,
   constexpr double nothing = 1e-6;
   if (!(after > nothing * before * colour.maxCoeff())) {
     throw InputError(fmt::format(
-        "channel '{}': its light has nothing of that colour, so that no flux would be left; choose "
+        "channel '{}': its light has no part of that colour, so no flux would be left; choose "
         "another colour",
         channel.name));
   }
