@@ -13,13 +13,9 @@ namespace lightwell {
 
 struct PatchMesh;
 
-/// A number of 64 bits that all that is added decides, in its order: equal for equal input, and for
-/// other input as good as never. The steps are those by which XXH64 takes in 8 bytes (Collet 2012).
-/// Against accidents, not against forgery.
-///
-/// Inputs that are structs are taken apart by a structured binding that names all of their fields,
-/// so that a new field does not compile until somebody has decided whether it belongs to the
-/// fingerprint.
+/// 64-bit hash of a sequence of values: equal for equal input, and different for different input
+/// with a probability of nearly 1. The steps are those by which XXH64 takes in 8 bytes (Collet
+/// 2012). Protects against accidents, not against forgery.
 class Fingerprint {
  public:
   void add_bytes(std::span<const std::byte> bytes);
@@ -31,22 +27,23 @@ class Fingerprint {
   template <class Number>
   requires std::is_arithmetic_v<Number>
   void add(const std::vector<Number>& numbers) { add_bytes(std::as_bytes(std::span(numbers))); }
-  /// Sizes and numbers.
+  /// Adds the sizes, then the numbers.
   template <class Derived>
   void add(const Eigen::PlainObjectBase<Derived>& numbers) {
     add(numbers.rows());
     add(numbers.cols());
     add_bytes(std::as_bytes(std::span(numbers.data(), static_cast<std::size_t>(numbers.size()))));
   }
-  /// What of a mesh decides the light on it.
+  /// Adds all of the mesh that affects its light.
   void add(const PatchMesh& mesh);
-  /// Only where its patches and elements are, and which material they are of.
+  /// Adds the geometry of patches and elements, their materials' numbers, and the holes of
+  /// textures.
   void add_geometry(const PatchMesh& mesh);
 
   std::uint64_t value() const { return state_; }
 
  private:
-  // One to one in the word and in the state: one changed word is always found out.
+  // One-to-one in the word and in the state: one changed word always changes the hash.
   void step(std::uint64_t word) {
     constexpr std::uint64_t p1 = 0x9e3779b185ebca87u, p2 = 0xc2b2ae3d27d4eb4fu,
                             p4 = 0x85ebca77c2b2ae63u;

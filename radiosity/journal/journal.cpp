@@ -50,7 +50,7 @@ class Descriptor {
   int number_ = -1;
 };
 
-// Header and name are on the disk before any work is: a power loss leaves no torn beginning.
+// Header and directory entry are on disk before any work is, so a power loss leaves no torn header.
 void make_file(const fs::path& file, const Provenance& of) {
   const std::string header = journal_header(of);
   AtomicFile atomic(file);
@@ -62,7 +62,7 @@ void make_file(const fs::path& file, const Provenance& of) {
   atomic.commit();
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const Descriptor names(folder, O_RDONLY | O_DIRECTORY);
-  if (names.number() >= 0) ::fsync(names.number());  // some file systems cannot
+  if (names.number() >= 0) ::fsync(names.number());  // not possible on some file systems
 }
 
 }  // namespace
@@ -71,7 +71,8 @@ struct Journal::Impl {
   Impl(fs::path path, const Provenance& provenance, double seconds)
       : name(std::move(path)), every(seconds), file(open(name, provenance)) {
     if (file.number() < 0) fail_to_write(name, errno);
-    // Not by two at a time; nor may one have put a new file in this one's place.
+    // The file must not be open in two processes, nor replaced by another process since it was
+    // opened.
     const bool is_locked = ::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     struct stat opened {
     }, named{};
@@ -96,7 +97,7 @@ struct Journal::Impl {
     writer.emplace(file.number(), contents.end, std::move(slots), every);
   }
 
-  // To read from alone.
+  // Opens the file read-only.
   Impl(fs::path path, const std::string& version)
       : name(std::move(path)), every(forever), file(name, O_RDONLY) {
     if (file.number() < 0) {
@@ -131,10 +132,10 @@ struct Journal::Impl {
   const fs::path name;
   const double every;
   Descriptor file;
-  JournalContents contents{};  // as they were at first
+  JournalContents contents{};  // contents at the time of opening
   std::mutex mutex{};
   std::map<std::pair<std::string, std::uint64_t>, int> numbers{};  // of phases
-  std::optional<JournalWriter> writer{};                           // none where nothing is kept
+  std::optional<JournalWriter> writer{};                           // none for a read-only journal
   std::atomic<std::int64_t> recalled{0};
 };
 
@@ -197,7 +198,7 @@ std::int64_t Journal::size() const {
 }
 
 int Journal::phase(std::string_view name, std::uint64_t fingerprint) {
-  // Until it is in the writer's hands, or a block of it could come before it.
+  // The lock lasts until the writer has the record: no block of the phase may precede it.
   const std::lock_guard lock(impl_->mutex);
   const auto [at, is_new] =
       impl_->numbers.try_emplace({std::string(name), fingerprint}, impl_->numbers.size());

@@ -13,7 +13,7 @@
 namespace lightwell {
 namespace {
 
-// "--rays 512 --discontinuity" by option.
+// Values by option in text such as "--rays 512 --discontinuity".
 std::map<std::string, std::string> by_option(const std::string& text) {
   std::map<std::string, std::string> options;
   std::istringstream words(text);
@@ -94,7 +94,7 @@ std::uint64_t state_checksum(const StateHead& head, std::span<const std::byte> b
 }
 
 std::string journal_header(const Provenance& of) {
-  // Names of files may hold line ends.
+  // File names may contain line breaks.
   const auto one_line = [](std::string text) {
     for (char& c : text) {
       if (static_cast<unsigned char>(c) < 0x20) c = ' ';

@@ -15,12 +15,12 @@
 
 namespace lightwell {
 
-/// One phase of a solve in a journal. Without one it recalls nothing and keeps nothing, and costs
-/// nothing. Values are what Packed takes.
+/// One phase of a solve in a journal. Without a journal nothing is recalled or kept, at no cost.
+/// Values are of the types that Packed takes.
 class JournalPhase {
  public:
   JournalPhase() = default;
-  /// `print(Fingerprint&)` adds all that decides the phase's result.
+  /// `print(Fingerprint&)` adds all that affects the phase's result.
   template <class Print>
   JournalPhase(Journal* journal, std::string_view name, Print print) : journal_(journal) {
     if (!journal) return;
@@ -31,8 +31,8 @@ class JournalPhase {
 
   bool is_kept() const { return journal_ != nullptr; }
 
-  /// Whether a block was kept before; if so, `values` are as they were then, else they may be
-  /// anything. From many threads.
+  /// Recalls a block. Returns false if the block was not kept; `values` are undefined then. Safe to
+  /// call from many threads.
   template <class... T>
   bool recall(int block, T&&... values) const {
     if (!journal_) return false;
@@ -47,8 +47,8 @@ class JournalPhase {
     journal_->keep(phase_, block, packed.bytes());
   }
 
-  /// The same for the state of an iteration, of which the latest is kept. Throws
-  /// std::runtime_error rather than take one that does not fit.
+  /// Recalls the latest state of an iteration. Returns false if there is none. Throws
+  /// std::runtime_error if the state does not fit `values`.
   template <class... T>
   bool recall_state(T&&... values) {
     if (!journal_) return false;
@@ -67,13 +67,14 @@ class JournalPhase {
     has_state_ = true;
     last_state_ = std::chrono::steady_clock::now();
   }
-  /// Whether it is time for the next one: the journal's interval has passed since the last.
+  /// True if the journal's interval has passed since the last state.
   bool is_state_due() const {
     return journal_ &&
            std::chrono::duration<double>(std::chrono::steady_clock::now() - last_state_).count() >=
                journal_->every();
   }
-  /// Whether any was kept or recalled. The end of an iteration that took so long is worth keeping.
+  /// True if any state was kept or recalled. The end of an iteration that took so long is worth
+  /// keeping.
   bool has_state() const { return has_state_; }
 
  private:
@@ -93,9 +94,9 @@ class JournalPhase {
   std::chrono::steady_clock::time_point last_state_ = std::chrono::steady_clock::now();
 };
 
-/// parallel_for in slices of [0, count), which are blocks of a phase: those that were kept are
-/// recalled, the others done by `body(begin, end)` and kept. `values(begin, size)` is a tuple of
-/// what a slice fills. `before(begin)` is called before each, from this thread.
+/// parallel_for over [0, count) in slices, which are blocks of a phase. Kept slices are recalled;
+/// others are computed by `body(begin, end)` and kept. `values(begin, size)` is a tuple of all that
+/// a slice fills. `before(begin)` is called before each slice, from the calling thread.
 template <class Values, class Before, class Body>
 void for_each_slice(const JournalPhase& phase, int count, int slice, int grain, Values values,
                     Before before, Body body) {

@@ -11,7 +11,7 @@
 namespace lightwell {
 namespace {
 
-// Enough that the disk is not asked for every row, little enough to be lost by a kill.
+// Large enough to avoid a write per row, small enough that a kill loses little.
 constexpr std::size_t written_at_once = 1 << 18;
 constexpr std::chrono::milliseconds longest_unwritten{500};
 
@@ -30,7 +30,8 @@ int write_at(int file, std::int64_t offset, std::span<const std::byte> bytes) {
 
 int confirm(int file) {
   while (::fdatasync(file) != 0) {
-    if (errno != EINTR) return errno == EINVAL ? 0 : errno;  // EINVAL: nothing to wait for here
+    // EINVAL: the file does not support syncing.
+    if (errno != EINTR) return errno == EINVAL ? 0 : errno;
   }
   return 0;
 }
@@ -85,7 +86,7 @@ void JournalWriter::write_on() {
   room_.notify_all();
 }
 
-// What has come together, or what is left; false after that.
+// Writes all buffered records and states. Returns false after the last ones.
 bool JournalWriter::write_some() {
   std::unique_lock lock(mutex_);
   work_.wait_until(lock, std::min(next_confirmation_, Clock::now() + longest_unwritten), [this] {
@@ -110,7 +111,7 @@ bool JournalWriter::write_some() {
 }
 
 JournalWriter::Clock::duration JournalWriter::interval() const {
-  constexpr double longest = 1e8;  // years, and no overflow
+  constexpr double longest = 1e8;  // years, without overflow
   return std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(std::min(every_, longest)));
 }
@@ -129,7 +130,7 @@ int JournalWriter::confirm_all() {
   const auto upto = static_cast<std::uint64_t>(end_);
   const int error = append_to_file(journal_record({.kind = RecordKind::mark, .size = sizeof upto},
                                                   std::as_bytes(std::span(&upto, 1))));
-  is_unconfirmed_ = false;  // but for the mark, which nothing depends on
+  is_unconfirmed_ = false;  // except for the mark, on which nothing depends
   return error;
 }
 
@@ -149,12 +150,12 @@ int JournalWriter::write_state(int phase, std::span<const std::byte> state) {
 }
 
 int JournalWriter::make_slots(int phase, StateSlots& at, std::size_t state) {
-  const std::uint64_t half = sizeof(StateHead) + state + state / 2;  // states may grow
+  const std::uint64_t half = sizeof(StateHead) + state + state / 2;  // room for growth
   const RecordHead head{
       .kind = RecordKind::slots, .phase = static_cast<std::uint32_t>(phase), .size = 2 * half};
   if (const int error = append_to_file(journal_record(head, {}))) return error;
   at.place = {end_, head.size};
-  // Zeros that take no room yet.
+  // Zeros that take no disk space yet.
   if (::ftruncate(file_, end_ + static_cast<std::int64_t>(head.size)) != 0) return errno;
   end_ += static_cast<std::int64_t>(head.size);
   return 0;

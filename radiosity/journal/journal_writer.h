@@ -15,34 +15,34 @@
 
 namespace lightwell {
 
-/// Two places in a journal's file that states go to in turn.
+/// Two slots in a journal's file for alternating states.
 struct StateSlots {
   JournalRange place{};
-  std::uint64_t number = 0;  ///< of the latest state
+  std::uint64_t number = 0;  ///< number of the latest state
 };
 
-/// Writes to a journal's file from a thread of its own, and asks the disk to confirm every so
-/// often. After the first error nothing is written any more. Safe to use from many threads, but for
-/// close().
+/// Writes to a journal's file from a thread of its own, and syncs to disk at intervals. Nothing is
+/// written after the first error. Safe to use from many threads, except for close().
 class JournalWriter {
  public:
-  /// Appends from `end` on, and replaces states in `slots`, by phase. `every`: seconds.
+  /// Appends from offset `end` on, and replaces states in `slots`, by phase. `every`: seconds
+  /// between syncs.
   JournalWriter(int file, std::int64_t end, std::map<int, StateSlots> slots, double every);
   ~JournalWriter() { close(); }
   JournalWriter(const JournalWriter&) = delete;
   JournalWriter& operator=(const JournalWriter&) = delete;
 
-  /// A record. Waits while `most_buffered` bytes or more have not been written yet.
+  /// Appends a record. Blocks while `most_buffered` bytes or more are unwritten.
   void append(std::span<const std::byte> record);
   void keep_state(int phase, std::span<const std::byte> state);
 
   bool has_failed() const { return has_failed_; }
-  /// The system's reason.
+  /// The system's reason for the first error.
   std::string failure() const;
-  /// Of what is written.
+  /// End of the written records, bytes.
   std::int64_t end() const { return end_; }
 
-  /// Writes what is left and waits until the disk has confirmed it.
+  /// Writes all remaining data and waits until the data are on disk.
   void close();
 
   static constexpr std::size_t most_buffered = 4 << 20;
@@ -69,7 +69,7 @@ class JournalWriter {
   std::atomic<bool> has_failed_ = false;
   std::string failure_;
 
-  // The thread's own.
+  // Used by the writing thread alone.
   std::atomic<std::int64_t> end_;
   std::map<int, StateSlots> slots_;
   bool is_unconfirmed_ = false;
@@ -77,9 +77,9 @@ class JournalWriter {
   std::thread thread_;
 };
 
-/// 0, or the error.
+/// Writes `bytes` at `offset`. Returns 0 or the error number.
 int write_at(int file, std::int64_t offset, std::span<const std::byte> bytes);
-/// Waits until all that was written is on the disk; 0, or the error.
+/// Waits until all written data are on disk. Returns 0 or the error number.
 int confirm(int file);
 
 }  // namespace lightwell

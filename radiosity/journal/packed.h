@@ -17,9 +17,9 @@ concept EigenArray = requires {
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !EigenArray<T>;
 
-/// Values as bytes, one after another: numbers and plain structs, vectors and spans of such, Eigen
-/// arrays, and tuples of these. For the program that wrote them to read again: sizes and byte order
-/// are the machine's.
+/// Values as bytes, one after another: numbers and plain structs, vectors and spans of these, Eigen
+/// arrays, and tuples of all these. Only the program that wrote the bytes can read them: sizes and
+/// byte order are the machine's.
 class Packed {
  public:
   template <Plain T>
@@ -56,8 +56,8 @@ class Packed {
   std::vector<std::byte> bytes_;
 };
 
-/// Takes values out again in the order they were added. Each `take` says whether they were there;
-/// a span has to have the size it had.
+/// Takes values out in the order of adding. `take` returns false if the bytes do not hold the
+/// value; a span must have the size of the span that was added.
 class Unpacked {
  public:
   explicit Unpacked(std::span<const std::byte> bytes) : left_(bytes) {}

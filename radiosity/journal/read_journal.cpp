@@ -26,7 +26,7 @@ constexpr std::uint32_t most_blocks = 1U << 30U;
                              offset));
 }
 
-// Goes through a file's records.
+// Reads the records of a file in order.
 class Reader {
  public:
   Reader(int file, const std::filesystem::path& path) : file_(file), path_(path) {
@@ -91,7 +91,7 @@ class Reader {
     contents_.end = static_cast<std::int64_t>(lines.size() + seal.size());
   }
 
-  // The next record, if it is whole.
+  // Reads the next record. Returns false if the record is not whole.
   bool read_record() {
     RecordHead head;
     const std::int64_t at = contents_.end + static_cast<std::int64_t>(sizeof head);
@@ -106,7 +106,7 @@ class Reader {
     return true;
   }
 
-  // Keeps the first piece.
+  // Adds the bytes of a record to its checksum, and keeps the first piece in beginning_.
   bool add_file(RecordChecksum& checksum, std::int64_t at, std::uint64_t size) {
     for (std::uint64_t done = 0; done < size; done += piece) {
       buffer_.resize(std::min<std::uint64_t>(piece, size - done));
@@ -145,7 +145,7 @@ class Reader {
     return true;
   }
 
-  // Up to where marks behind `begin` say that the disk has confirmed.
+  // Offset up to which marks behind `begin` state that the file is on disk.
   std::int64_t last_mark(std::int64_t begin) {
     struct Mark {
       RecordHead head;

@@ -34,7 +34,7 @@ std::vector<std::byte> bytes_of(const std::string& text) {
   return {bytes.begin(), bytes.end()};
 }
 
-// A block of phase p: something of a length of its own.
+// Bytes of a block: of a length of its own for every phase and block.
 std::vector<std::byte> block_bytes(int phase, int block) {
   return bytes_of(std::string(static_cast<std::size_t>(5 * block + phase), 'a' + block) + "!");
 }
@@ -49,7 +49,7 @@ std::vector<std::byte> state_bytes(int number) {
   return bytes_of("state " + std::to_string(number));
 }
 
-// What the tests damage: blocks of two phases and the second state of one of them.
+// File for the tests to damage: blocks of two phases and the second state of one phase.
 std::string small_journal(const TemporaryFolder& folder) {
   const fs::path file = folder / "small";
   Journal journal(file, some_solve(), never);
@@ -65,7 +65,7 @@ std::string small_journal(const TemporaryFolder& folder) {
   return content_of(file);
 }
 
-// Blocks that are there; they are what was put in.
+// Number of blocks that can be recalled, each checked against its content.
 int right_blocks(Journal& journal) {
   int found = 0;
   std::vector<std::byte> bytes;
@@ -80,7 +80,7 @@ int right_blocks(Journal& journal) {
   return found;
 }
 
-// The state's number; 0: none is there.
+// Number of the recalled state; 0: none.
 int right_state(Journal& journal) {
   std::vector<std::byte> bytes;
   if (!journal.recall_state(phase_of(journal, 1), bytes)) return 0;
@@ -100,7 +100,7 @@ TEST(Journal, GivesBackWhatWasKept) {
   EXPECT_EQ(journal.torn(), 0);
   std::vector<std::byte> bytes;
   EXPECT_FALSE(journal.recall(phase_of(journal, 0), block_count, bytes));
-  // Another fingerprint is another phase, of which nothing is known.
+  // Another fingerprint means another phase, of which nothing was kept.
   EXPECT_FALSE(journal.recall(journal.phase("rays", 1), 0, bytes));
 }
 
@@ -125,7 +125,7 @@ TEST(Journal, HoldsWorkOnceABlockIsKept) {
   EXPECT_TRUE(Journal::holds_work(file));
 }
 
-// Whatever moment the process ended at: what lies before is there, and going on makes it whole.
+// A process may end at any moment: all work before remains, and the resumed journal becomes whole.
 TEST(Journal, CutOffAnywhereItHoldsWhatLiesBefore) {
   TemporaryFolder folder;
   const std::string whole = small_journal(folder);
@@ -166,8 +166,8 @@ TEST(Journal, CutOffInItsFirstLinesItIsRefused) {
   }
 }
 
-// Nothing wrong is ever taken from a file with one bit turned. Where the disk had confirmed it, in
-// records, the file is refused; a state's older half serves.
+// A file with one flipped bit never yields wrong data. In records synced to disk, the file is
+// refused; in a state, the older slot serves.
 TEST(Journal, OneTurnedBitIsFoundOut) {
   TemporaryFolder folder;
   const std::string whole = small_journal(folder);
@@ -186,7 +186,7 @@ TEST(Journal, OneTurnedBitIsFoundOut) {
     }
   }
   std::printf("%d of %zu turned bits refused, %d harmless\n", refused, whole.size(), went_on);
-  // All but what is in the room of the states and in the last mark.
+  // All bits except those in the slots and in the last mark.
   const std::size_t states = 2 * (sizeof(StateHead) + state_bytes(1).size() * 3 / 2);
   const std::size_t mark = sizeof(RecordHead) + sizeof(std::uint64_t);
   EXPECT_GE(static_cast<std::size_t>(refused), whole.size() - states - mark);
@@ -200,7 +200,7 @@ TEST(Journal, SizesBeyondTheFileAreATornEnd) {
     for (const std::uint64_t size :
          {std::uint64_t{1}, std::uint64_t{1} << 40U, std::uint64_t{1} << 63U, ~std::uint64_t{0},
           ~std::uint64_t{0} - 31}) {
-      // Its checksum is right where only the head has one.
+      // The checksum is valid for kinds whose checksum covers the head alone.
       const auto record = journal_record({.kind = kind, .phase = 1, .size = size}, {});
       const fs::path file = folder.write(
           "huge", whole + std::string(reinterpret_cast<const char*>(record.data()), record.size()));
@@ -211,7 +211,7 @@ TEST(Journal, SizesBeyondTheFileAreATornEnd) {
   }
 }
 
-// After a power loss the end of a file may be anything, even with whole records far behind.
+// After a power loss the end of a file may hold anything, even whole records far behind.
 TEST(Journal, GarbageThatWasNeverConfirmedIsCutOff) {
   TemporaryFolder folder;
   const std::string whole = small_journal(folder);
@@ -242,7 +242,7 @@ TEST(Journal, OnlyTheLatestStateTakesRoom) {
     journal.close();
     if (number == 1) first_size = journal.size();
   }
-  const std::size_t mark = sizeof(RecordHead) + sizeof(std::uint64_t);  // one each time
+  const std::size_t mark = sizeof(RecordHead) + sizeof(std::uint64_t);  // one mark per process
   EXPECT_EQ(fs::file_size(file), static_cast<std::size_t>(first_size) + 199 * mark);
 }
 
@@ -285,7 +285,7 @@ TEST(Journal, ManyThreadsKeepAndRecall) {
   });
 }
 
-// Larger than what waits in memory at once, and larger than what a checksum takes at a time.
+// Blocks larger than the buffer, and larger than the pieces of a checksum.
 TEST(Journal, BlocksMayBeLarge) {
   TemporaryFolder folder;
   std::vector<std::byte> large(3 * Journal::most_buffered + 5);
@@ -364,7 +364,7 @@ TEST(Journal, AFolderThatIsNotThereIsSaidAtOnce) {
   EXPECT_THROW(Journal(folder / "C", some_solve(), 0.0), std::invalid_argument);
 }
 
-// As on a full disk, but for this process alone.
+// A full disk, for this process alone.
 class LimitedFiles {
  public:
   explicit LimitedFiles(rlim_t bytes) {
@@ -475,7 +475,8 @@ TEST(Fingerprint, EveryBitAndTheOrderCount) {
       ++count;
     }
   }
-  // Two signs: the highest bits, which multiplication alone would keep apart from all others.
+  // Two flipped signs: the highest bits, which multiplication alone would keep separate from all
+  // others.
   found.insert(of({-1.0, 2.0, 3.0, 4.0}));
   found.insert(of({1.0, -2.0, -3.0, -4.0}));
   found.insert(of({-1.0, -2.0, -3.0, 4.0}));

@@ -56,7 +56,7 @@ TEST(Packed, IsNotTakenFromFewerBytes) {
   }
 }
 
-// Sizes that no memory would hold are seen to be wrong before room is made for them.
+// Impossible sizes are refused before memory is allocated.
 TEST(Packed, SizesBeyondTheBytesAreRefused) {
   for (const std::size_t size : {std::size_t{9}, std::size_t{1} << 40U, ~std::size_t{0}}) {
     Packed packed;

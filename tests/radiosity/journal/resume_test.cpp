@@ -1,4 +1,4 @@
-// A solve that is ended and gone on with gives the bits of one that is not.
+// A resumed solve gives the same bits as an uninterrupted one.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -16,7 +16,7 @@ namespace lightwell {
 namespace {
 namespace fs = std::filesystem;
 
-// A block under a lamp; the room has a mirror, and a glass ball throws a caustic, if asked for.
+// A block under a lamp; optionally a mirror, and a glass ball with a caustic.
 Scene room(bool with_specular) {
   Scene scene;
   const int white = test::add_material(scene, test::diffuse(scene.bands, 0.7f));
@@ -132,7 +132,7 @@ class Resumed : public testing::TestWithParam<std::tuple<Case, double>> {
   double every() const { return std::get<1>(GetParam()); }
   TemporaryFolder folder;
 
-  // Solves until progress has been called `calls` times. Nothing: it was stopped.
+  // Solves until progress has been called `calls` times. Returns nullopt if stopped.
   std::optional<SolvedScene> solve(Journal* journal, int calls, int* called = nullptr) {
     SolveOptions asked = options();
     int count = 0;
@@ -166,7 +166,7 @@ TEST_P(Resumed, SolveHasTheBitsOfOneThatWasNotStopped) {
   constexpr int rounds = 3;
   for (int round = 0; round < rounds; ++round) {
     fs::remove(file);
-    // Each goes a random part of the way; what the first ones did, those that follow recall.
+    // Each attempt stops at a random point; later attempts recall the work of earlier ones.
     std::optional<SolvedScene> solved;
     for (int attempt = 0; !solved; ++attempt) {
       const ThreadLimit limit(attempt % 2 == 0 ? 1 : 3);
@@ -175,7 +175,7 @@ TEST_P(Resumed, SolveHasTheBitsOfOneThatWasNotStopped) {
       solved = solve(&journal, stop);
       if (!solved) ++stops;
       if (round == 0 && attempt == 1) {
-        // And after a kill: the file ends anywhere.
+        // A kill may truncate the file anywhere.
         journal.close();
         const auto header = static_cast<std::int64_t>(content_of(file).find("checksum: ") + 27);
         fs::resize_file(file, static_cast<std::uintmax_t>(
@@ -203,14 +203,15 @@ TEST_P(Resumed, AFinishedSolveIsRecalledAsAWhole) {
   second = solve(&journal, to_the_end);
   journal.close();
   expect_same_solve(*first, *second);
-  // Marks come with time, states go where the last one was; a block would be more. Passes and
-  // states that depend on the time may be new.
+  // Marks are written at intervals and states replace earlier ones; a block would be larger than
+  // the margin. Passes and states that depend on time may be new.
   constexpr double hour = 3600.0;
   if (every() < hour) return;
   EXPECT_LE(journal.size(), size + 200);
 }
 
-// Once with every state and pass kept at once, once with those that never take so long.
+// With an interval of 1e-9 s, which keeps every state and pass at once, and with 1e6 s, within
+// which none is kept.
 INSTANTIATE_TEST_SUITE_P(Solves, Resumed,
                          testing::Combine(testing::ValuesIn(cases), testing::Values(1e-9, 1e6)),
                          [](const auto& each) {
@@ -227,8 +228,7 @@ TEST(Resume, AJournalOfAnotherSceneIsRefused) {
   EXPECT_THROW(solve_scene(scene, options), std::invalid_argument);
 }
 
-// Options that a journal's text does not tell are in the fingerprints: nothing is taken for
-// something else.
+// Options absent from the header are in the fingerprints, so no block serves other options.
 TEST(Resume, OtherOptionsTakeNothingFromAJournal) {
   TemporaryFolder folder;
   const Scene scene = room(true);
@@ -249,14 +249,14 @@ TEST(Resume, OtherOptionsTakeNothingFromAJournal) {
   expect_same_solve(found, solve_scene(scene, options));
 }
 
-// Leaves the journal of a whole solve.
+// Writes the journal of a whole solve.
 void keep_solve(const std::filesystem::path& file, const Scene& scene, SolveOptions options) {
   Journal journal(file, {.version = "1", .scene_hash = scene_hash(scene)}, 1.0);
   options.run.journal = &journal;
   solve_scene(scene, options);
 }
 
-// Form factors do not depend on how much surfaces reflect and lamps emit.
+// Form factors do not depend on the reflectance of surfaces or the emission of lamps.
 TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
   TemporaryFolder folder;
   Scene scene = room(true);
@@ -275,7 +275,7 @@ TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
   expect_same_solve(reused, solve_scene(scene, options));
   EXPECT_EQ(std::filesystem::file_size(folder / "C"), size);  // nothing was written
 
-  // Mirrors are in the form factors.
+  // Mirrors affect the form factors.
   for (Material& material : scene.materials) material.specular *= 0.9f;
   const auto other = Journal::of_another_solve(folder / "C", "1");
   options.form_factors.run.journal = other.get();
@@ -283,7 +283,7 @@ TEST(Resume, AnotherSolveOfTheSameGeometryTakesItsFormFactors) {
   EXPECT_EQ(other->recalled(), 0);
 }
 
-// What a mirror throws is not in form factors alone.
+// A mirror affects more than form factors.
 TEST(Resume, AnotherMirrorTakesNothing) {
   TemporaryFolder folder;
   Scene scene = room(true);
@@ -301,7 +301,7 @@ TEST(Resume, AnotherMirrorTakesNothing) {
   expect_same_solve(found, solve_scene(scene, options));
 }
 
-// Emitters are numbered by their brightness, in the journal as well.
+// Emitters are numbered by brightness, in the journal as well.
 TEST(Resume, FormFactorsOfLampsAreNotMistakenForThoseOfOthers) {
   TemporaryFolder folder;
   Scene scene = test::two_lamps();
@@ -331,7 +331,7 @@ TEST(Resume, AnotherSolvesJournalMustBeOfThisVersion) {
     EXPECT_THROW(Journal::of_another_solve(folder / "C", "1"), InputError);
   }
   const auto first = Journal::of_another_solve(folder / "C", "1");
-  const auto second = Journal::of_another_solve(folder / "C", "1");  // readers do not mind
+  const auto second = Journal::of_another_solve(folder / "C", "1");  // several readers are allowed
   EXPECT_TRUE(first->is_read_only());
 }
 
