@@ -19,11 +19,11 @@ using Eigen::Vector3d;
 // Powers of 4, so that no goal straddles two sets.
 constexpr int few_rays = 16, points_in_set = 1 << 14, most_rays = 1 << 18;
 constexpr double usual_target = 1e-3;
-constexpr double exact_target = 1e-6;  // of F, where visibility is exact
+constexpr double exact_target = 1e-6;  // error of F where visibility is exact
 
 struct Visibility {
   double share = 1.0;
-  double variance = 0.0;  // of the share
+  double variance = 0.0;  // variance of the share
 };
 
 class PairVisibility {
@@ -39,7 +39,8 @@ class PairVisibility {
     for (int i = 0; i < mesh_.patch_count(); ++i) samplers_.emplace_back(mesh_, i);
   }
 
-  // None needed, exact or sampled: whichever is the first that does. S: unoccluded exchange.
+  // Visibility of a pair by the first method that applies: empty shaft, exact, sampled. S:
+  // unoccluded exchange area.
   Visibility between(int i, int j, double S) const {
     if (shafts_.is_hidden(i) || shafts_.is_hidden(j)) return {.share = 0.0};
     const double largest_form_factor = S / std::min(mesh_.area[i], mesh_.area[j]);
@@ -53,8 +54,8 @@ class PairVisibility {
   }
 
  private:
-  // Kernel-weighted share of point pairs that see each other; more pairs while they leave F_ij more
-  // uncertain than asked.
+  // Kernel-weighted share of unblocked point pairs, with more pairs while the standard error of
+  // F_ij is above the target.
   Visibility sampled(int i, int j, double largest_form_factor) const {
     ShadowTally tally;
     ShadowBatch batch(caster_, {&tally, 1});
@@ -64,8 +65,8 @@ class PairVisibility {
       for (; count < goal; ++count) batch.add(0, sample(i, j, count));
       batch.flush();
       if (!(tally.all > 0.0)) break;
-      // Rays that all agree may all have missed the rest: the spread of a share of which n draws of
-      // n came out alike (Laplace's rule of succession).
+      // If all n rays agree, the standard error is that of Laplace's rule of succession, 1 / (n +
+      // 2): some part may have been missed.
       const double unanimous = 1.0 / (count + 2.0);
       found = {tally.share(), std::max(tally.variance(), unanimous * unanimous)};
       if (largest_form_factor * std::sqrt(found.variance) <= target_) break;
@@ -73,7 +74,7 @@ class PairVisibility {
     return found;
   }
 
-  // A pair that matters little need not be looked at closely before it is found to be mixed.
+  // Pairs of small form factors start with fewer rays.
   static int first_count(double largest_form_factor) {
     constexpr double matters = 0.01;
     return largest_form_factor > matters ? 4 * few_rays : few_rays;
@@ -116,12 +117,12 @@ void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutli
   const int n = mesh.patch_count();
   const PairVisibility visibility(caster, outlines, target_error);
   const PairExchange closed_form(outlines);
-  // What visibility's noise does to S, by pair.
+  // entries: S_ij; error: standard error of S_ij from the visibility.
   struct Row {
     std::vector<FormFactor> entries;
     std::vector<float> error;
   };
-  // Rows are as long as there are patches; of many, few are kept at a time.
+  // A row has up to n entries, so the slices of many patches are short.
   const int slice = std::clamp((1 << 21) / std::max(n, 1), 4, 64);
   for (int begin = 0; begin < n; begin += slice) {
     // Row i has n - i pairs.

@@ -7,7 +7,7 @@
 namespace lightwell {
 namespace {
 
-// One step of one column; returns the error before it.
+// One step of one column. Returns the largest relative error before the step.
 double improve(Eigen::Ref<Eigen::ArrayXd> d, const Eigen::ArrayXd& sum,
                const Eigen::ArrayXd& target) {
   double worst = 0.0;

@@ -35,7 +35,7 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
   const auto emitter_count = static_cast<int>(direct_light_.emitters().size());
   exchange_.setZero(2 * emitter_count, mesh_.patch_count());
   const SobolPoints sobol(options.emitter_points);
-  // A fraction of a second each, shadow rays included.
+  // A fraction of a second per slice, shadow rays included.
   constexpr int form_factors_per_slice = 1 << 17;
   const int each = std::max(1, options.emitter_points * emitter_count);
   const int slice = std::max(16, form_factors_per_slice / each);
@@ -70,12 +70,12 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
   for_each_slice(phase, mesh_.patch_count(), slice, 16, columns, report_progress, fill);
 }
 
-// An emitter's light is even, so its patches share it in proportion to their area.
+// Emitters have uniform radiosity, so each patch has a share in proportion to its area.
 double EmitterExchange::share_of_emitter(int patch) const {
   return mesh_.area[patch] / direct_light_.emitters()[emitter_of_[patch]].area;
 }
 
-// Of patches of which one or both are emitters'.
+// S_ij of two patches, at least one of which belongs to an emitter.
 double EmitterExchange::between(int i, int j) const {
   const auto from = [&](int patch, int lit) {
     return exchange_(2 * emitter_of_[lit] + mesh_.is_back[lit], patch) * share_of_emitter(lit);
@@ -83,7 +83,7 @@ double EmitterExchange::between(int i, int j) const {
   if (emitter_of_[i] == emitter_of_[j]) return 0.0;
   if (emitter_of_[i] < 0) return from(i, j);
   if (emitter_of_[j] < 0) return from(j, i);
-  return 0.5 * (from(i, j) + from(j, i));  // both ends were computed, keep them equal
+  return 0.5 * (from(i, j) + from(j, i));  // computed from both ends; the mean keeps S symmetric
 }
 
 void EmitterExchange::add_row(int i, std::vector<FormFactor>& row) const {

@@ -5,22 +5,22 @@
 
 namespace lightwell {
 
-/// What patches exchange with the emitters that `direct_light` owns, from closed form times
-/// visibility averaged over points of the receiving patch. Small and bright, emitters are what
-/// sampling finds by chance.
+/// Exchange areas of patches with the emitters that `direct_light` owns: closed form times
+/// visibility, averaged over points of the receiving patch. Rays hit small bright emitters only by
+/// chance.
 class EmitterExchange {
  public:
   EmitterExchange(const ElementCaster& caster, const DirectLight& direct_light);
 
-  /// Number of the emitter on whose lit side a patch lies; -1: none.
+  /// Emitter on whose lit side the patch lies; -1: none.
   int emitter_of(int patch) const { return emitter_of_[patch]; }
 
-  /// Computes what row() takes from. `receives[i]`: whether patch i takes part in diffuse exchange
-  /// at all. What `phase` holds is not computed again.
+  /// Computes the exchange areas for add_row(). `receives[i]`: patch i takes part in diffuse
+  /// exchange. Slices that `phase` holds are recalled.
   void compute(const std::vector<char>& receives, const FormFactorOptions& options,
                const JournalPhase& phase = {});
 
-  /// Appends S_ij with patches j > i where i or j is an emitter's, j rising.
+  /// Appends S_ij with patches j > i where i or j belongs to an emitter, in ascending order of j.
   void add_row(int i, std::vector<FormFactor>& row) const;
 
  private:
@@ -31,7 +31,7 @@ class EmitterExchange {
   const ElementCaster& caster_;
   const DirectLight& direct_light_;
   std::vector<int> emitter_of_;
-  std::vector<int> lit_;      // patches of emitters, rising
+  std::vector<int> lit_;      // patches of emitters, ascending
   Eigen::ArrayXXd exchange_;  // (2 e + side, i): from patch i to the front or back of emitter e
 };
 

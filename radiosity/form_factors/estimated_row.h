@@ -7,25 +7,26 @@
 
 namespace lightwell {
 
-/// What one method alone found out about the form factors of patch i, before it is joined with what
-/// the patches at the other ends found out. Shares of what leaves the patch; in all they are 1.
+/// Estimate of the form factors of patch i by one method, before it is joined with the estimates of
+/// the patches at the other ends. Shares of what leaves the patch; their sum is 1.
 struct EstimatedRow {
-  /// How much S_ij = A_i F_ij from this row counts against S_ji from the other end: the inverse of
-  /// its variance, up to a factor common to all rows of a method. 0: the row is empty.
+  /// Weight of S_ij = A_i F_ij of this row against S_ji from the other end: the inverse of its
+  /// variance, up to a factor common to all rows of a method. 0: the row is empty.
   double inverse_variance = 0.0;
   std::vector<FormFactor> shares{};  ///< first arrivals at diffuse patches, ordered by patch
-  /// Per share, if asked for: rays that would have met the front of the patch, had nothing stood
-  /// before it.
+  /// Per share, with look_behind: rays that would have met the front of the patch without
+  /// occluders. Otherwise empty.
   std::vector<int> hidden{};
-  double escaped = 0.0;               ///< met nothing or a black back at once
-  double specular = 0.0;              ///< first met something that is purely mirror or glass
-  std::vector<int> specular_patch{};  ///< reached by way of mirrors and glass, ordered
-  BandArray specular_share{};         ///< one row per specular_patch
-  Spectrum specular_escaped{}, absorbed{}, cut{};  ///< lost behind mirrors and glass
-  double rays = 0.0;                               ///< cast in all, for the report
+  double escaped = 0.0;  ///< rays that met nothing or a black back at once
+  /// Rays that first met a purely specular surface (mirror or glass).
+  double specular = 0.0;
+  std::vector<int> specular_patch{};  ///< patches reached through mirrors and glass, ascending
+  BandArray specular_share{};         ///< one row per entry of specular_patch
+  Spectrum specular_escaped{}, absorbed{}, cut{};  ///< lost behind mirrors and glass, per band
+  double rays = 0.0;                               ///< number of rays, for the report
 };
 
-/// What of a row is needed after `hidden` was looked at.
+/// The parts of a row that a journal keeps: all but `hidden`.
 inline auto kept_parts(EstimatedRow& row) {
   return std::tie(row.inverse_variance, row.shares, row.escaped, row.specular, row.specular_patch,
                   row.specular_share, row.specular_escaped, row.absorbed, row.cut, row.rays);

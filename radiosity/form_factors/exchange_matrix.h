@@ -13,8 +13,8 @@
 
 namespace lightwell {
 
-/// An exchange area S_ij = A_i F_ij and how it was found. Closed forms are told from samples by the
-/// sign of the number, which is not needed for anything else.
+/// An exchange area S_ij = A_i F_ij >= 0 and its kind: sampled or a closed form. The sign bit of
+/// the stored number holds the kind.
 class Exchange {
  public:
   enum Kind { sampled = 0, known = 1 };
@@ -32,23 +32,24 @@ class Exchange {
   float signed_value_ = 0.0f;
 };
 
-/// A number for each patch and kind of exchange.
+/// One number per patch and kind of exchange: patches x 2.
 using PerKind = Eigen::Array<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-/// The symmetric matrix of exchange areas of all patches. Only one of S_ij and S_ji is kept.
+/// The symmetric matrix of exchange areas of all patches, of which only one of S_ij and S_ji is
+/// stored.
 class ExchangeMatrix {
  public:
   ExchangeMatrix(std::shared_ptr<MemoryBudget> budget, int patches);
 
-  /// S_ij, j >= i, of row i, columns rising. From many threads.
+  /// Adds row i: S_ij for j >= i, in ascending order of j. Safe to call from many threads.
   void append(int i, std::span<const Exchange> row) { upper_.append(i, row.data(), row.size()); }
   void close() { upper_.close(); }
 
-  /// y_i = sum_j S_ij x_j, of sampled and of known exchange apart.
+  /// y_i = sum_j S_ij x_j, separately for sampled and known exchange.
   PerKind product(const PerKind& x) const;
 
-  /// `visit(i, row)` for every row, complete and in order, from many threads; the last rows come
-  /// first. The matrix is empty afterwards.
+  /// Calls `visit(i, row)` for every row, complete and in ascending order of j, from many threads;
+  /// last rows first. The matrix is empty afterwards.
   template <class Visit>
   void consume(Visit visit) {
     unfold_symmetric(upper_, [&](int i, RecordSpan below, RecordSpan upper) {

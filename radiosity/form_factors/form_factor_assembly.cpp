@@ -59,11 +59,11 @@ class Assembly {
   }
 
  private:
-  static constexpr double join_share = 0.3;  // of the time, roughly
+  static constexpr double join_share = 0.3;  // approximate share of the time
 
   bool is_whole(int i) const { return known_.is_whole[static_cast<std::size_t>(i)] != 0; }
 
-  // Both ends of a pair estimate S; the sum that gives each its trust has the least variance.
+  // Both ends of a pair estimate S. The mean weighted by inverse variances has the least variance.
   void join() {
     const auto weight = [&](int i) {
       return static_cast<float>(rows_.inverse_variance(i) * mesh_.area[i]);
@@ -103,9 +103,9 @@ class Assembly {
     return reinterpret_cast<const FormFactor*>(record)->value;
   }
 
-  // Sampled and known exchange of every row, as scaled up to now, with patches that count `x`.
+  // Row sums of sampled and of known exchange at the present scaling, where patch j counts x_j.
   PerKind sums(const ArrayXd& x) {
-    constexpr double most = 3 * 200;  // steps that the scalings may take
+    constexpr double most = 3 * 200;  // most steps of the three scalings
     report(progress_, "balance", join_share + (1.0 - join_share) * std::min(1.0, ++steps_ / most));
     return weight_ * S_.product(weight_.colwise() * x);
   }
@@ -124,8 +124,8 @@ class Assembly {
     found.mean_closure_correction = counted > 0 ? total / counted : 0.0;
   }
 
-  // A row of closed forms alone; one factor per patch closes it. Patches of that kind that see each
-  // other share the correction.
+  // Closes rows that consist of closed forms alone, by one factor per patch. The correction of a
+  // pair of such patches is shared between both.
   void close_whole_rows() {
     ArrayXd whole(n_);
     for (int i = 0; i < n_; ++i) whole[i] = is_whole(i) ? 1.0 : 0.0;
@@ -139,14 +139,15 @@ class Assembly {
         fixed, wanted, phase_of_("balance of closed forms"));
   }
 
-  // What closed forms leave of a row is what its samples are scaled to.
+  // Scales the samples of a row to the part that closed forms leave.
   void close_sampled_rows() {
     const PerKind sum = sums(ArrayXd::Ones(n_));
     ArrayXd left = target_ - sum.col(Exchange::known), open = open_;
     for (int i = 0; i < n_; ++i) {
       if (is_whole(i)) left[i] = open[i] = 0.0;
     }
-    // What little was sampled must not be stretched to fill a gap that closed forms left.
+    // A bound on the scaling: few samples must not be stretched to fill a gap that closed forms
+    // left.
     constexpr double most_stretch = 2.0;
     const ArrayXd has = open + sum.col(Exchange::sampled);
     left = left.max(has / most_stretch).min(has * most_stretch);
@@ -180,7 +181,7 @@ class Assembly {
         if (!(F > 0.0f)) continue;
         factors.push_back({j, F});
         sum += F;
-        // Row j computes it from the same S.
+        // Row j computes its F_ji from the same S.
         const auto back = static_cast<float>(S / mesh_.area[j]);
         const double difference = std::abs(mesh_.area[i] * F - mesh_.area[j] * back);
         reciprocity_error[i] =
@@ -216,8 +217,8 @@ class Assembly {
   const PhaseOf& phase_of_;
   int steps_ = 0;
   ExchangeMatrix S_;
-  PerKind weight_;         // S_ij is scaled by those of i and j
-  ArrayXd target_, open_;  // what a row is to add up to; what of it leaves the scene
+  PerKind weight_;         // S_ij is scaled by weight_ of i and of j
+  ArrayXd target_, open_;  // wanted row sum, and its part that leaves the scene, both times A_i
 };
 
 }  // namespace

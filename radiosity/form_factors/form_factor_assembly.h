@@ -10,24 +10,24 @@
 
 namespace lightwell {
 
-/// Exchange areas S_ij = A_i F_ij that closed forms give. They take the place of what the rows
-/// estimate for those pairs.
+/// Exchange areas S_ij = A_i F_ij from closed forms, which replace the rows' estimates of those
+/// pairs.
 struct KnownExchange {
   KnownExchange(std::shared_ptr<MemoryBudget> budget, int patches)
       : S(std::move(budget), patches), is_whole(static_cast<std::size_t>(patches), 0) {}
 
-  RowStore<FormFactor> S;  ///< of pairs j > i, in row i, columns rising
-  /// Per patch: 1 if they are all that the patch exchanges with any other, 0 if only some pairs.
+  RowStore<FormFactor> S;  ///< pairs j > i in row i, in ascending order of j
+  /// Per patch: 1 if S holds all exchange of the patch, 0 if only some pairs.
   std::vector<char> is_whole;
 };
 
-/// The phase of a journal that has this name.
+/// Phase of a journal by name.
 using PhaseOf = std::function<JournalPhase(std::string_view name)>;
 
-/// Joins the two estimates of every pair, puts known exchange in its place, closes the rows if
-/// asked (what was sampled first, then everything), and stores the result. What it is given is
-/// given up piece by piece while the result grows. `phase_of` names where scalings keep their
-/// states.
+/// Joins the two estimates of every pair, replaces pairs by known exchange, and stores the result.
+/// With `enforce_closure` rows are closed by scaling: sampled exchange first, then all exchange.
+/// `rows` and `known` are released piece by piece while the result grows. `phase_of` gives the
+/// phases that keep the states of the scalings.
 std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, RowEstimates rows,
                                                    KnownExchange known, bool enforce_closure,
                                                    std::shared_ptr<MemoryBudget> budget,

@@ -24,7 +24,7 @@ namespace {
   throw std::runtime_error(fmt::format("{}: could not be written: {}", path.string(), reason));
 }
 
-/// Text that goes to a file in large pieces.
+/// Text output in large pieces, to a temporary file.
 class TextOutput {
  public:
   explicit TextOutput(const std::filesystem::path& target)
@@ -46,7 +46,7 @@ class TextOutput {
 
  private:
   void flush() {
-    errno = 0;  // the stream does not say why it fails
+    errno = 0;  // streams give no reason for a failure
     stream_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
     buffer_.clear();
     check();
@@ -95,7 +95,7 @@ void write_view3d(const std::filesystem::path& path, const ViewFactors& view_fac
                     path.string(), n, 9e-9 * n * n, most_view3d_rows));
   }
   TextOutput out(path);
-  // Readers of the format take the first 30 characters, whatever they are padded with.
+  // Readers of the format take the first 30 characters, whatever the padding.
   const std::string first = fmt::format("{} {} 0 {} 0 {}", header.program, header.version,
                                         header.is_enclosure ? 1 : 0, n);
   out.add("{:<30}\n", first);

@@ -25,19 +25,18 @@
 namespace lightwell {
 namespace {
 
-// What a method finds out before the rows are joined.
+// Estimate of one method, before the two ends of each pair are joined.
 struct Estimate {
   RowEstimates rows;
   KnownExchange known;
   std::vector<float> row_error{};
 };
 
-// All that decides what form factors come out: not how much surfaces reflect and emit, as long as
-// it is the same ones that do.
+// Adds all inputs on which form factors depend. Of reflectance and emission only the signs matter.
 void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const DirectLight& direct_light,
                             const PatchMesh& mesh, const FormFactorOptions& options) {
   print.add_geometry(mesh);
-  // Which of them are found by closed form, and in what order, goes by their brightness.
+  // Brightness determines which emitters have closed forms, and their order.
   for (const Emitter& emitter : direct_light.emitters()) print.add(emitter.facet);
   for (const Material& material : scene.materials) {
     print.add((material.reflectance > 0.0f).any());
@@ -104,15 +103,16 @@ class Estimator {
   }
 
  private:
-  // Where an accuracy is asked for, closed forms of all pairs beat rays up to a few thousand
+  // With a target error, closed forms of all pairs are faster than rays up to a few thousand
   // patches.
   bool all_pairs_are_cheap() const {
-    constexpr double pair_in_rays = 16.0;  // what a pair costs
+    constexpr double pair_in_rays = 16.0;  // cost of a pair, in rays
     return options_.target_error > 0.0 &&
            0.5 * pair_in_rays * mesh_.patch_count() < 4.0 * base_rays();
   }
 
-  // As many as the target takes in rows where nothing is partly hidden.
+  // Initial rays per patch: with a target error, as many as rows without partly hidden patches
+  // need.
   int base_rays() const {
     const int asked = std::max(1, options_.rays_per_patch);
     if (!(options_.target_error > 0.0)) return asked;
@@ -127,7 +127,7 @@ class Estimator {
                                        : patch_rays;
   }
 
-  // Emitters cast more where mirrors and glass throw what they cast.
+  // Rays per patch: more for emitters in scenes with mirrors or glass.
   std::vector<int> rays_of(const EmitterExchange& emitters, int base) const {
     std::vector<int> counts(static_cast<std::size_t>(mesh_.patch_count()), base);
     if (!paths_.has_specular()) return counts;
@@ -148,8 +148,8 @@ class Estimator {
             .known = KnownExchange(budget_, n)};
   }
 
-  // Casts each row, with four times the rays while `error_of(i, row)` is above the target.
-  // It may leave pairs, which `done(i, pairs)` gets when there are enough.
+  // Casts each row, with four times the rays while `error_of(i, row, pairs)` is above the target.
+  // `error_of` may fill `pairs`, which `done(i, pairs)` gets with the final number of rays.
   template <class ErrorOf, class Done>
   void cast(Estimate& estimate, const std::vector<int>& rays_of, bool count_hidden,
             ErrorOf error_of, Done done) const {
@@ -176,8 +176,8 @@ class Estimator {
     });
     estimate.rows.close();
   }
-  // `is_count(i, j)`: whether F_ij remains what the rays say. Counts are binomial at worst;
-  // stratified points do better.
+  // `is_count(i, j)`: true if F_ij remains the rays' count. The error is that of a binomial count,
+  // an upper bound for stratified points.
   template <class IsCount>
   void cast_counts(Estimate& estimate, const std::vector<int>& rays_of, IsCount is_count) const {
     const auto error_of = [&](int i, const EstimatedRow& row, auto&) {
@@ -244,8 +244,8 @@ class Estimator {
   }
   static bool by_patch(const FormFactor& a, const FormFactor& b) { return a.patch < b.patch; }
 
-  // Rays still find what escapes, what goes by way of mirrors and glass, and what curved patches
-  // exchange.
+  // Rays still find the light that escapes, the light through mirrors and glass, and the exchange
+  // of curved patches.
   Estimate closed_forms_alone() const {
     const EmitterExchange emitters(caster_, direct_light_);
     const std::vector<PatchOutline> outlines = patch_outlines(mesh_);

@@ -13,7 +13,7 @@
 namespace lightwell {
 namespace {
 
-// Adds up one patch's row from what its hemicube's cells see.
+// Sums the row of one patch over the items of its hemicube's cells.
 class Tally {
  public:
   Tally(const ElementCaster& caster, const LightPaths& paths, const HemicubeCells& cells)
@@ -40,7 +40,7 @@ class Tally {
   }
 
  private:
-  // Neighbouring cells of a row that see the same.
+  // A run of neighbouring cells in a row with the same item.
   void add_run(const HemicubeEye& eye, int item, int face, int row, int first, int last) {
     const PatchMesh& mesh = caster_.mesh();
     const int facet = hemicube_item::facet(mesh, item);
@@ -56,8 +56,8 @@ class Tally {
     }
   }
 
-  // The ray decides what the cell sees, so that nothing is lost where a flat element and the exact
-  // sphere differ.
+  // Follows the ray of a cell that sees a specular surface. The ray determines what the cell sees,
+  // so nothing is lost where a flat element and the exact sphere differ.
   void follow(const HemicubeEye& eye, int face, int row, int column) {
     const PatchMesh& mesh = caster_.mesh();
     const Ray ray{.origin = eye.position,
@@ -117,7 +117,7 @@ class Tally {
   const ElementCaster& caster_;
   const LightPaths& paths_;
   const HemicubeCells& cells_;
-  std::vector<double> share_;  // per patch; many small terms
+  std::vector<double> share_;  // per patch; double because many small terms add up
   std::vector<int> touched_;
   std::map<int, Eigen::ArrayXd> by_way_of_specular_;
   Eigen::ArrayXd specular_escaped_, absorbed_, cut_;  // double, as share_
@@ -134,14 +134,15 @@ void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
   const PatchMesh& mesh = caster.mesh();
   const HemicubeCells cells(options.resolution);
   const HemicubeScan scan(caster);
-  // What lies on a patch is all that it sees, a different part of it from every place: one place
-  // says nothing about the others.
+  // A surface on a patch hides all the rest, and a different part at every point: one point does
+  // not represent the others.
   constexpr int rays_where_covered = 1024;
   const RowCaster row_caster(caster, paths, rays_where_covered);
   const bool any_holes = mesh.textures && mesh.textures->has_holes();
   const bool by_rays = any_holes || options.back_end == HemicubeOptions::BackEnd::rays;
   const int patches = mesh.patch_count();
-  // Slices keep progress and interruption on this thread, each a fraction of a second of work.
+  // Progress and interruption are handled between slices, on this thread; each takes a fraction of
+  // a second.
   const int cells_per_slice = by_rays ? 1 << 20 : 1 << 24;
   const int slice =
       std::clamp(cells_per_slice / cells.cell_count(), 2, std::max(64, patches / 100));

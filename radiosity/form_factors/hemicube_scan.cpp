@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Planes that bound the five faces' pyramids, as bits of "the vertex is beyond". A polygon all of
-// whose vertices are beyond one bounding plane of a face does not show on it.
+// Planes that bound the pyramids of the five faces, one bit each: the vertex is beyond the plane. A
+// polygon whose vertices are all beyond one bounding plane of a face is invisible on that face.
 enum Beyond : std::uint16_t {
   below_horizon = 1,
   x_above_z = 1 << 1,
@@ -25,7 +25,7 @@ enum Beyond : std::uint16_t {
   z_above_minus_y = 1 << 8,
   x_above_y = 1 << 9,
   y_above_x = 1 << 10,
-  sum_positive = 1 << 11,  // x above -y, and y above -x
+  sum_positive = 1 << 11,  // x > -y, and y > -x
   sum_negative = 1 << 12,
 };
 constexpr std::array<std::uint16_t, HemicubeCells::face_count> beyond_face = {
@@ -46,8 +46,8 @@ std::uint16_t beyond(const Vector3d& p) {
       bit(x + y < 0, sum_negative));
 }
 
-// Normal of the plane through the eye and an edge. Its negative, to the last bit, for the edge the
-// other way round: neighbours must agree on which side a cell lies, whatever the compiler fuses.
+// Normal of the plane through the eye and an edge. The reversed edge gives exactly the negative, so
+// that neighbours agree on the side of every cell, even with fused multiply-add.
 Vector3d edge_plane(const Vector3d& from, const Vector3d& to) {
   const bool in_order =
       std::lexicographical_compare(from.data(), from.data() + 3, to.data(), to.data() + 3);
@@ -55,17 +55,17 @@ Vector3d edge_plane(const Vector3d& from, const Vector3d& to) {
   return -to.cross(from);
 }
 
-// The smallest whole number that is not less, held within [0, count].
+// Smallest integer that is not less than x, clamped to [0, count].
 int first_cell_from(double x, int count) {
   x = std::min(std::max(x, 0.0), static_cast<double>(count));
   const int whole = static_cast<int>(x);
   return whole < x ? whole + 1 : whole;
 }
 
-// Nearer by less than this counts as equally near: surfaces that coincide then show as one, the
-// first of them, instead of a speckle of rounding errors.
+// Factor of inverse distance that counts as nearer. Coincident surfaces then show as one, the first
+// drawn, instead of a speckle of rounding errors.
 constexpr float nearer = 1.0f + 1e-6f;
-// Inverse distance of what lies on the eye.
+// Inverse distance of a surface that lies on the eye.
 constexpr float covered = std::numeric_limits<float>::infinity();
 
 void paint_span(float* inverse_distance, int* items, int count, float first, float step, int item) {
@@ -79,7 +79,7 @@ void paint_span(float* inverse_distance, int* items, int count, float first, flo
 
 }  // namespace
 
-// Paints one hemicube.
+// Draws one hemicube.
 class HemicubeScan::Painter {
  public:
   Painter(const HemicubeScan& scan, const HemicubeEye& eye, const HemicubeCells& cells,
@@ -114,7 +114,7 @@ class HemicubeScan::Painter {
     }
     if (distance < 0.0 ? polygon.front_hidden : polygon.back_hidden) return;
     if ((outside & below_horizon) != 0 || distance == 0.0) return;
-    // The pyramid's inside is where d . edge plane has the sign that its own axis gives it.
+    // A direction d is inside the pyramid where inwards * (d . edge plane) > 0 for all edges.
     const double inwards = distance < 0.0 ? -1.0 : 1.0;
     std::array<Vector3d, 4> planes;
     for (int k = 0; k < polygon.corner_count; ++k) {
@@ -129,7 +129,7 @@ class HemicubeScan::Painter {
     }
   }
 
-  // Another surface on the eye's own plane. One that lies on it is all the eye sees (the floor
+  // A polygon in the eye's own plane. If it lies on the eye, the eye sees nothing else (the floor
   // under a block).
   void paint_coplanar(const Polygon& polygon, int facet, double normal_z) {
     const Vector3d upwards = eye_.frame.col(2);
@@ -153,7 +153,7 @@ class HemicubeScan::Painter {
     std::fill(scratch_.inverse_distance.begin(), scratch_.inverse_distance.end(), covered);
   }
 
-  // Cells from `first` up to, not including, `last`.
+  // Cells from `first` to `last` - 1.
   struct Range {
     int first, last;
   };
@@ -161,7 +161,7 @@ class HemicubeScan::Painter {
     Range rows, columns;
   };
 
-  // The cells that the polygon's corners span; all, if one of them is beside or behind the eye.
+  // Cells spanned by the polygon's corners; all cells if a corner is beside or behind the eye.
   Bounds bounds(int f, const Polygon& polygon) const {
     const HemicubeCells::Face& face = HemicubeCells::face(f);
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -177,8 +177,8 @@ class HemicubeScan::Painter {
       left = std::min(left, p[face.column_axis] * scale);
       right = std::max(right, p[face.column_axis] * scale);
     }
-    // Which of the cells within is covered the edges decide; bounds must only not be too narrow.
-    constexpr double rounding = 1e-6;  // of a cell, far more than a division's
+    // Bounds must not be too narrow; the edges then decide which cells are covered.
+    constexpr double rounding = 1e-6;  // of a cell; far above the rounding of a division
     const auto range = [&](double low, double high, double offset, int count) -> Range {
       const double zero = offset / cells_.step();
       return {first_cell_from(low - zero - rounding, count),
@@ -188,9 +188,9 @@ class HemicubeScan::Painter {
             range(left, right, cells_.column_offset(), column_count)};
   }
 
-  // Where an edge crosses the rows: column = start + slope * row. A cell is left of it or right of
-  // it; one whose centre is on it belongs to the polygon on the right, in an edge along the rows to
-  // the one on the higher side.
+  // Crossing of an edge with the rows: column = start + slope * row. A cell whose centre lies on
+  // the edge belongs to the polygon on the right, for an edge along the rows to the polygon on the
+  // higher side.
   struct Crossing {
     double start, slope;
   };
@@ -206,7 +206,7 @@ class HemicubeScan::Painter {
     for (int k = 0; k < polygon.corner_count; ++k) {
       const double a = planes[k][face.column_axis], b = planes[k][face.row_axis];
       const double c = face.outward_sign * planes[k][face.outward_axis];
-      // Crossings of less would overflow; they are far beyond every column.
+      // Crossings of edges nearly along the rows overflow, and lie far beyond every column.
       constexpr double along_rows = 1e-200;
       if (std::abs(a) < along_rows) {
         const auto inside = [&](int row) {
@@ -250,12 +250,12 @@ HemicubeScan::HemicubeScan(const ElementCaster& caster) : caster_(caster) {
   const PatchMesh& mesh = caster.mesh();
   Eigen::AlignedBox3d box;
   for (int v = 0; v < mesh.vertex_count(); ++v) box.extend(mesh.position(v));
-  // As RayCaster: what float coordinates of the scene cannot tell apart.
+  // As RayCaster: planes that float coordinates of the scene cannot distinguish.
   constexpr double roundings = 16.0;
   if (!box.isEmpty()) {
     coplanar_ = roundings * 0.5 * box.diagonal().norm() * std::numeric_limits<float>::epsilon();
   }
-  constexpr int group_size = 32;  // elements: small enough to be rejected, large enough to pay
+  constexpr int group_size = 32;  // elements: few enough to be rejected together, enough to pay
   for (int p = 0; p < mesh.patch_count();) {
     const int first = mesh.first_element[p], facet = mesh.facet_of(p);
     if (mesh.is_back[p] != 0) {
@@ -320,7 +320,7 @@ void HemicubeScan::add_facet_elements(int first_element, int last_element) {
     whole += area;
     polygons_.push_back(polygon);
   }
-  if (!sphere_grid_of(mesh, group.facet)) {  // a sliver's own normal is a poor one
+  if (!sphere_grid_of(mesh, group.facet)) {  // the normal of a sliver is inaccurate
     const Vector3d normal = whole.normalized();
     for (auto p = group.first_polygon; p < static_cast<int>(polygons_.size()); ++p) {
       polygons_[p].normal = normal;

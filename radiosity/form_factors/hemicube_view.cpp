@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Area centroid of a flat element, by its triangles.
+// Area centroid of a flat element, from its triangles.
 Vector3d centroid(const PatchMesh& mesh, int element) {
   const auto& c = mesh.corners[element];
   const Vector3d a = mesh.position(c[0]);
@@ -31,7 +31,8 @@ Vector3d centroid(const PatchMesh& mesh, int element) {
 }
 
 bool contains(const PatchMesh& mesh, int element, const Vector3d& normal, const Vector3d& point) {
-  constexpr double rounding = 1e-12;  // of the element's area: a point on an edge is in
+  // Relative to the element's area: points on an edge are inside.
+  constexpr double rounding = 1e-12;
   const int n = mesh.corner_count(element);
   for (int k = 0; k < n; ++k) {
     const Vector3d a = mesh.position(mesh.corners[element][k]);
@@ -68,8 +69,8 @@ PatchPoint point_on_polygon(const PatchMesh& mesh, int patch) {
   for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
     PatchPoint eye_point = element_center(mesh, e);
     if (!contains(mesh, e, eye_point.normal, middle)) continue;
-    // A hair inside the element, as PatchSampler: the centroid of an L may be its inner corner,
-    // where something else may stand.
+    // Slightly inside the element, as in PatchSampler: the centroid of an L may be its inner
+    // corner, where another surface may stand.
     constexpr double inset = 1e-4;
     eye_point.position = middle + inset * (eye_point.position - middle);
     return eye_point;
@@ -95,7 +96,7 @@ PatchPoint point_on_sphere(const PatchMesh& mesh, int patch, const SphereGrid& g
   return center_nearest_to(mesh, patch, grid.sphere.center + middle);
 }
 
-// Down from the exact sphere onto the flat element.
+// Moves the point from the exact sphere onto the flat element.
 void drop_onto_element(const PatchMesh& mesh, PatchPoint& eye_point) {
   const auto& c = mesh.corners[eye_point.element];
   const int n = mesh.corner_count(eye_point.element);

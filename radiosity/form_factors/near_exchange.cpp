@@ -9,13 +9,13 @@
 namespace lightwell {
 namespace {
 
-// Rays that a pair should expect to be worth a closed form.
+// Expected rays of a pair from which a closed form pays.
 constexpr int fewest_near_rays = 12;
-// As many that the count itself may decide.
+// Counted rays from which the count alone decides for a closed form.
 constexpr int plenty_of_rays = 128;
 
-// Of a disk of the same area, seen from centre to centre; rather too large where one reaches beyond
-// the other's plane.
+// Form factor to a disc of the same area, between centres; too large rather than too small where
+// one patch reaches behind the other's plane.
 double rough_form_factor(const PatchOutline& from, const PatchOutline& to, double area_to) {
   const Eigen::Vector3d way = to.center - from.center;
   const double squared = way.squaredNorm();
@@ -36,7 +36,7 @@ NearExchange::NearExchange(const ElementCaster& caster, double target_error)
   if (target_error > 0.0) shafts_.emplace(caster, outlines_);
 }
 
-// Whether counts leave too much variance in F_ij, and polygons can be clipped instead.
+// True if counts leave too much variance in F_ij and the pair can be clipped exactly.
 bool NearExchange::is_exact_due(int i, int j, double variance, Between& between) const {
   if (!shafts_ || !(variance > target_error_ * target_error_)) return false;
   if (shafts_->is_covered(i) || shafts_->is_covered(j)) return false;
@@ -52,8 +52,8 @@ double NearExchange::find_pairs(int patch, const EstimatedRow& row,
     const int j = row.shares[k].patch;
     const int first = static_cast<int>(std::lround(row.shares[k].value * row.rays));
     const bool polygons = outlines_[patch].is_polygon() && outlines_[j].is_polygon();
-    // Geometry picks the pairs. If counts did, those that came out high by chance would be put
-    // right and those that came out low would not, and all rows would be too small.
+    // Pairs are chosen by geometry. A choice by counts would correct counts that are high by chance
+    // but not those that are low, and bias all rows downwards.
     const bool is_worth_it =
         polygons && (first >= plenty_of_rays ||
                      row.rays * rough_form_factor(outlines_[patch], outlines_[j], area_[j]) >=
@@ -64,7 +64,7 @@ double NearExchange::find_pairs(int patch, const EstimatedRow& row,
     }
     const int hidden = row.hidden.empty() ? 0 : row.hidden[k];
     const int all = first + hidden;
-    // U^2 V (1 - V) / all with U = all / rays.
+    // U^2 V (1 - V) / all with U = all / rays and V = first / all.
     const double variance = static_cast<double>(first) * hidden / (all * row.rays * row.rays);
     if (!is_exact_due(patch, j, variance, between)) {
       worst_variance = std::max(worst_variance, variance);
@@ -95,7 +95,7 @@ void NearExchange::add_row(const PairExchange& closed_form, int i, RecordSpan ro
       if (exact) S = exact->value;
     }
     // Patches that lie on each other, face to face, have no closed form; their counts are exact. A
-    // pair known to see nothing of each other is known all the same.
+    // known exchange of 0 is stored, too.
     if (unoccluded > 0.0) exchange.push_back({j, static_cast<float>(S)});
   });
 }
@@ -107,7 +107,7 @@ void NearExchange::exchange(RecordStore pairs, const Progress& progress,
   const int n = pairs.row_count();
   for (const ColumnRange range : column_ranges(pairs, pairs.budget().block_bytes())) {
     const ColumnBlock block(pairs, range.first, range.last);
-    constexpr int slice = 256;  // of rows: a fraction of a second
+    constexpr int slice = 256;  // rows; a fraction of a second
     for (int begin = range.first; begin < range.last; begin += slice) {
       report(progress, "closed forms", static_cast<double>(begin) / n);
       const int size = std::min(slice, range.last - begin);

@@ -13,37 +13,42 @@
 
 namespace lightwell {
 
-/// Closed forms times fractional visibility for the pairs that a row's rays meet often: those that
-/// are near or large.
+/// Closed forms times fractional visibility for pairs that many rays of a row meet: near or large
+/// patches.
 ///
-/// Of a row's rays, `all` cross the polygon of another patch from its front, whatever stands
-/// between, and `first` of them meet it first. Their ratio estimates the visible part, weighted as
-/// the form factor is, so F_ij = (closed form) first / all: exact where nothing stands between, and
-/// never noisier than first / rays, the plain count. Where it is noisier than a wanted accuracy and
-/// only a few polygons stand between, their shadow is clipped off instead (visible_exchange).
+/// Of the rays of a row, `all` cross the front of another patch's polygon, whatever stands between,
+/// and `first` of them meet it first. The ratio estimates the visible share, weighted by the kernel
+/// of the form factor:
+///
+///   F_ij = (closed form) first / all
+///
+/// The estimate is exact without occluders, and never noisier than the plain count, first / rays.
+/// Where the noise exceeds a wanted accuracy and only few polygons stand between, the hidden part
+/// is clipped instead (visible_exchange).
 class NearExchange {
  public:
-  /// `target_error`: wanted standard error of F_ij; 0: what the rays give.
+  /// `target_error`: wanted standard error of F_ij; 0: as the rays give.
   NearExchange(const ElementCaster& caster, double target_error);
 
-  /// Rays that a row starts with, times the error wanted: what leaves a count of the fewest rays
-  /// that make a closed form worth it uncertain by that error. Larger counts, of patches that are
-  /// neither near nor polygons, ask for more.
+  /// Initial rays of a row times the target error. A count of fewer than `fewest_rays` = 12 rays,
+  /// too few for a closed form, has a standard error of at most sqrt(11) / rays. Larger counts, of
+  /// patches that are neither near nor polygons, need more rays.
   static constexpr double worst_count_error = 3.32;
 
-  /// What a row says of patch j: how many of its rays cross it, and how many meet it first.
+  /// Counts of a row for patch j: rays that cross the patch (`all`), and rays that meet the patch
+  /// first.
   struct Pair {
     int patch = 0;
     int first = 0, all = 0;
   };
 
-  /// Adds the pairs of a row that was cast with `count_hidden`. Returns the standard error of its
-  /// worst F_ij, those that remain counts included. Safe to call from many threads.
+  /// Adds the pairs of a row that was cast with `look_behind`. Returns the standard error of the
+  /// row's worst F_ij, including those that remain counts. Safe to call from many threads.
   double find_pairs(int patch, const EstimatedRow& row, std::vector<Pair>& pairs) const;
 
-  /// Takes rows of pairs, kept so that columns below the diagonal are counted. `take(i, row)` gets
-  /// the exchange of patch i with patches j > i, one row after another; both ends' counts of a pair
-  /// are added. Rows that `phase` holds are not computed again.
+  /// Exchange areas from the rows of pairs. Precondition: `pairs` counts columns below the
+  /// diagonal. Counts from both ends of a pair are added. `take(i, row)` gets the exchange of patch
+  /// i with patches j > i, row after row. Rows that `phase` holds are recalled.
   void exchange(RecordStore pairs, const Progress& progress,
                 const std::function<void(int, std::vector<FormFactor>&)>& take,
                 const JournalPhase& phase = {}) const;

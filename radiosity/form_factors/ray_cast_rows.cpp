@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t row_batch = 64;
 
-// Longer rows are made of several sets.
+// Rows of more rays consist of several sets.
 constexpr int longest_set = 1 << 16;
 
 int set_size(int most_rays) {
@@ -24,7 +24,7 @@ int set_size(int most_rays) {
   return std::min(static_cast<int>(std::bit_ceil(wanted)), longest_set);
 }
 
-// The rays that leave one patch.
+// Rays from one patch.
 class PatchRays {
  public:
   PatchRays(const PatchMesh& mesh, int patch)
@@ -35,7 +35,7 @@ class PatchRays {
     draw_ = draw;
     if (sampler_.is_flat()) frame_ = draw.frame(sampler_.point(0.5, 0.5).normal);
   }
-  // Of the block that begins at `first`.
+  // Rays of `points` in the block that begins at `first`.
   void aim(int first, std::span<const HemispherePoint> points, std::span<Ray> rays) {
     for (std::size_t r = 0; r < points.size(); ++r) {
       const HemispherePoint& point = points[r];
@@ -67,7 +67,7 @@ class PatchRays {
 RowCaster::Scratch::Scratch(const PatchMesh& mesh)
     : first_(static_cast<std::size_t>(mesh.patch_count())), hidden_(first_) {}
 
-// Counts in shares of `rays`; empties the counters.
+// Moves the counts, as shares of `rays`, into the row, and clears the counters.
 void RowCaster::Scratch::take(int rays, bool with_hidden, EstimatedRow& row) {
   row.shares.reserve(first_.size());
   first_.take([&](int patch, int count) {
@@ -135,7 +135,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   return row;
 }
 
-// A ray that met a mirror or glass, which may scatter a share of its own besides.
+// Follows a ray that met a mirror or glass. The surface may also scatter a share diffusely.
 void RowCaster::pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch,
                         Scratch& scratch, EstimatedRow& row,
                         std::map<int, Spectrum>& by_way_of_specular) const {
@@ -155,7 +155,7 @@ void RowCaster::pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t bra
   row.cut += losses.cut;
 }
 
-// Sends the rays on through what they met, again and again, until they leave the scene.
+// Continues the rays through all surfaces they meet, until they leave the scene.
 void RowCaster::count_hidden(std::span<Ray> rays, std::span<ElementHit> hits,
                              Scratch& scratch) const {
   constexpr int most_layers = 256;
@@ -179,12 +179,12 @@ void RowCaster::count_hidden(std::span<Ray> rays, std::span<ElementHit> hits,
 void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& progress,
                   const std::function<void(int, RowCaster::Scratch&)>& work) {
   const int patches = mesh.patch_count();
-  // Slices keep progress and interruption on this thread: each a fraction of a second of rays. At
-  // the end of each the threads wait for each other, so they should be few.
+  // Progress and interruption are handled between slices, on this thread; each takes a fraction of
+  // a second. Threads wait for each other at the end of a slice, so slices should be few.
   constexpr int rays_per_slice = 1 << 21;
   const int slice = std::max(2, rays_per_slice / std::max(rays_per_patch, 1));
   const int grain = std::clamp(slice / 16, 1, 16);
-  // Scratch grows with the mesh, so it is handed on and not made again.
+  // Scratch memory is proportional to the mesh, so it is reused.
   std::mutex mutex;
   std::vector<std::unique_ptr<RowCaster::Scratch>> idle;
   const auto borrow = [&] {

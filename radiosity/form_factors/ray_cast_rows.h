@@ -14,7 +14,7 @@
 
 namespace lightwell {
 
-/// How often each of many patches was met, emptied in the time it took to fill.
+/// Hit counts of many patches, cleared in time proportional to the number of patches hit.
 class PatchCounts {
  public:
   explicit PatchCounts(std::size_t patches)
@@ -28,7 +28,7 @@ class PatchCounts {
     words_[p / word_bits] |= bit(p);
     met_words_[p / word_bits / word_bits] |= bit(p / word_bits);
   }
-  /// How many patches were met.
+  /// Number of patches hit.
   std::size_t size() const {
     std::size_t sum = 0;
     for (const std::uint64_t word : words_) sum += static_cast<std::size_t>(std::popcount(word));
@@ -36,7 +36,7 @@ class PatchCounts {
   }
   int count(int patch) const { return count_[static_cast<std::size_t>(patch)]; }
 
-  /// Calls `visit(patch, count)` for those that were met, in order, and forgets them.
+  /// Calls `visit(patch, count)` for all patches hit, in ascending order, and clears the counts.
   template <class Visit>
   void take(Visit visit) {
     for_each_bit(met_words_, 0, met_words_.size(), [&](std::size_t w) {
@@ -61,17 +61,17 @@ class PatchCounts {
   }
 
   std::vector<int> count_;
-  std::vector<std::uint64_t> words_;      // a bit per patch: met
-  std::vector<std::uint64_t> met_words_;  // a bit per word: not 0
+  std::vector<std::uint64_t> words_;      // one bit per patch: hit
+  std::vector<std::uint64_t> met_words_;  // one bit per word of words_: not 0
 };
 
-/// Casts the rays of one row after another.
+/// Casts the rays of rows.
 class RowCaster {
  public:
-  /// `most_rays`: what a row will be asked for at most.
+  /// `most_rays`: most rays of any row.
   RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays);
 
-  /// What one thread uses again from row to row.
+  /// Memory that one thread reuses from row to row.
   class Scratch {
    public:
     explicit Scratch(const PatchMesh& mesh);
@@ -84,9 +84,9 @@ class RowCaster {
     std::vector<HemispherePoint> points_;
   };
 
-  /// `rays` cosine-distributed rays from all over the patch. Empty for patches that take no part in
-  /// diffuse exchange. `count_hidden`: rays go on through whatever they meet, to fill
-  /// EstimatedRow::hidden.
+  /// Casts `rays` cosine-distributed rays from all over the patch (Malley's method). The row is
+  /// empty for patches that take no part in diffuse exchange. `look_behind`: rays continue through
+  /// all surfaces, to fill EstimatedRow::hidden.
   EstimatedRow cast(int patch, int rays, Scratch& scratch, bool count_hidden = false) const;
 
  private:
@@ -100,7 +100,7 @@ class RowCaster {
 };
 
 /// Calls `work(i, scratch)` for each patch i, in parallel, with progress between slices.
-/// `rays_per_patch`: about how many rays one call casts.
+/// `rays_per_patch`: approximate rays of one call.
 void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& progress,
                   const std::function<void(int, RowCaster::Scratch&)>& work);
 

@@ -7,13 +7,13 @@
 
 namespace lightwell {
 
-/// The estimated rows of all patches: their shares in stores that a memory budget governs, what is
-/// one number a row as arrays.
+/// The estimated rows of all patches: shares in stores that a memory budget governs, single numbers
+/// per row in arrays.
 class RowEstimates {
  public:
   RowEstimates(const std::shared_ptr<MemoryBudget>& budget, int patches, int bands);
 
-  /// Row i, at most once. From many threads.
+  /// Adds row i, each at most once. Safe to call from many threads.
   void add(int i, const EstimatedRow& row);
   void close();
 
@@ -22,17 +22,17 @@ class RowEstimates {
   double inverse_variance(int i) const { return inverse_variance_[i]; }
   bool is_measured(int i) const { return inverse_variance_[i] > 0.0; }
   double escaped(int i) const { return escaped_[i]; }
-  double specular(int i) const { return specular_[i]; }  ///< first met a mirror or glass
+  double specular(int i) const { return specular_[i]; }  ///< rays that first met a mirror or glass
   double rays(int i) const { return rays_[i]; }
 
-  /// First arrivals: FormFactor records.
+  /// First arrivals, as FormFactor records.
   RecordStore& shares() { return shares_; }
 
-  /// Whether any row met mirrors or glass. What follows may be asked for only then.
+  /// True if any row met mirrors or glass. Precondition of all functions below.
   bool has_specular() const { return has_specular_; }
-  /// Arrivals by way of mirrors and glass: the patch and a float for each band.
+  /// Arrivals through mirrors and glass: records of the patch and one float per band.
   RecordStore& specular_shares() { return specular_shares_; }
-  /// Sum of these of row i, per band.
+  /// Sum of the specular shares of row i, per band.
   auto specular_sum(int i) const { return specular_sum_.row(i); }
   auto specular_escaped(int i) const { return specular_escaped_.row(i); }
   auto absorbed(int i) const { return absorbed_.row(i); }
@@ -44,9 +44,10 @@ class RowEstimates {
   int bands_ = 0;
   RecordStore shares_, specular_shares_;
   Eigen::ArrayXd inverse_variance_, escaped_, specular_, rays_;
-  std::unique_ptr<std::mutex> specular_mutex_ = std::make_unique<std::mutex>();  // to be moved
+  // On the heap, to make the class movable.
+  std::unique_ptr<std::mutex> specular_mutex_ = std::make_unique<std::mutex>();
   bool has_specular_ = false;
-  Eigen::ArrayXXd specular_sum_;  // patches x bands, as those below
+  Eigen::ArrayXXd specular_sum_;  // patches x bands, as the arrays below
   BandArray specular_escaped_, absorbed_, cut_;
 };
 

@@ -10,12 +10,12 @@ namespace {
 
 using Values = Eigen::Map<const Eigen::Array<float, 1, Eigen::Dynamic>>;
 
-// What follows a record's patch.
+// Values per band of a record.
 Values values_of(const std::byte* record, int bands) {
   return {reinterpret_cast<const float*>(record + sizeof(int)), bands};
 }
 
-// S_ij, j >= i, per band: the sum that gives each end its trust.
+// S_ij, j >= i, per band: the mean of both ends weighted by inverse variance.
 RecordStore joined_records(const PatchMesh& mesh, RowEstimates& rows,
                            const std::shared_ptr<MemoryBudget>& budget) {
   const int bands = rows.bands();
@@ -46,7 +46,7 @@ RecordStore joined_records(const PatchMesh& mesh, RowEstimates& rows,
   return S;
 }
 
-// S x, each band by itself.
+// S x, per band.
 Eigen::ArrayXXd product(const RecordStore& S, const Eigen::ArrayXXd& x) {
   const int bands = static_cast<int>(x.cols());
   using RowMajor = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -69,8 +69,8 @@ Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const R
                         const PhaseOf& phase_of) {
   Eigen::ArrayXXd target = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
   for (int i = 0; i < rows.patch_count(); ++i) target.row(i) = mesh.area[i] * rows.specular_sum(i);
-  // A row's few own rays may have found nothing of what others sent it, and some wishes exclude
-  // each other: factors that fulfilled them would grow without bound.
+  // Bounds on the scaling: few rays of a row may have missed what others sent to the row, and
+  // targets may contradict each other. Factors would then grow without bound.
   constexpr double most_stretch = 2.0, largest_factor = 4.0;
   constexpr int most_iterations = 50;
   const Eigen::ArrayXXd has = product(S, Eigen::ArrayXXd::Ones(target.rows(), target.cols()));
@@ -113,7 +113,7 @@ void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_c
   });
   for (int i = 0; i < rows.patch_count(); ++i) {
     if (!rows.is_measured(i)) continue;
-    // What balancing took from a row, or gave it, is set off against its losses: rows add up to 1.
+    // The change by balancing is offset against the row's losses, so that rows sum to 1.
     const auto as_row = [](const auto& spectrum) {
       return spectrum.template cast<double>().eval();
     };

@@ -4,7 +4,7 @@
 
 namespace lightwell {
 
-// A row's records are taken apart, all patches before all values, as SpecularRow wants them.
+// A row holds all patches before all values, as SpecularRow needs them.
 void StoredFormFactors::append_specular(int i, std::span<const int> patches,
                                         std::span<const float> values) {
   std::vector<std::byte> row(patches.size_bytes() + values.size_bytes());

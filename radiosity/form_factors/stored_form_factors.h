@@ -5,7 +5,7 @@
 
 namespace lightwell {
 
-/// Form factors that are all there, in stores that a memory budget governs.
+/// Form factors stored in full, in stores that a memory budget governs.
 class StoredFormFactors final : public FormFactors {
  public:
   StoredFormFactors(const std::shared_ptr<MemoryBudget>& budget, int patches, int bands)
@@ -21,7 +21,7 @@ class StoredFormFactors final : public FormFactors {
   Spectrum absorbed_by_specular(int i) const override { return absorbed_share.row(i).transpose(); }
   void release(int i) override;
 
-  /// Keeps row i, band by band: patches, then values with all bands of a patch together. From many
+  /// Adds row i: patches, then values with all bands of a patch together. Safe to call from many
   /// threads.
   void append_specular(int i, std::span<const int> patches, std::span<const float> values);
 

@@ -16,7 +16,7 @@ namespace lightwell {
 namespace {
 
 constexpr std::int64_t mebibyte = 1 << 20;
-// A slice of rows in memory, without which they would be moved to and fro a page at a time.
+// Least slice of rows in memory; with less, rows would be moved to and fro page by page.
 constexpr std::int64_t least_slice = 16 * mebibyte;
 
 std::string size_text(std::int64_t bytes) {
@@ -74,8 +74,8 @@ std::int64_t most_row_bytes(int patches, const FormFactorOptions& options) {
 
 std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
                                const FormFactorOptions& options) {
-  // Outlines and their quadratures, places in stores, balance's vectors; a solver's vectors;
-  // scratch of a row.
+  // Per patch: outlines with quadrature points, entries of stores, vectors of the scaling. Per
+  // band: vectors of a solver. Per thread: scratch of a row.
   constexpr std::int64_t per_patch = 900, per_band = 128, per_thread = 48, per_emitter = 16;
   const std::int64_t bands = mesh.reflectance.cols();
   std::int64_t each =
@@ -89,20 +89,24 @@ std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
 }
 
 std::int64_t bytes_to_shoot(const PatchMesh& mesh, int most_rays) {
-  // What was shot, what is unshot, what arrives and what goes with it, in floats and doubles; 16
-  // rows at a time, each with a number and a place for every ray.
+  // Per band: shot, unshot and arriving light with its bookkeeping, in floats and doubles. Per ray:
+  // a number and a position in each of 16 rows at a time.
   constexpr std::int64_t per_band = 48, per_ray = 16, rows_at_once = 16;
   return mesh.patch_count() * per_band * mesh.reflectance.cols() +
          rows_at_once * per_ray * most_rays;
 }
 
 std::int64_t bytes_to_gather(const PatchMesh& mesh) {
-  // Direct, indirect and caustic light, its draft and its noise; places and rays of gathers.
+  // Per band: direct, indirect and caustic light, its pilot gather and its noise. Per element:
+  // sample points and rays of gathers.
   constexpr std::int64_t per_element = 100, per_band = 50;
   return mesh.element_count() * (per_element + per_band * mesh.reflectance.cols());
 }
 
 std::int64_t elements_in(std::int64_t bytes, std::int64_t columns) {
+  // Solves with refinement were measured at 550 to 750 bytes per element. The estimate for three
+  // columns is 650 + 3 * 50 = 800. `per_column`: as `per_band` in bytes_to_gather. The test
+  // Memory.NoMoreElementsAreMadeThanFit bounds the peak of a whole solve by 1.15 budgets.
   constexpr std::int64_t per_element = 650, per_column = 50;
   const std::int64_t count =
       std::max<std::int64_t>(bytes, 0) / (per_element + per_column * columns);

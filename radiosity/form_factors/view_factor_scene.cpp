@@ -13,7 +13,7 @@ Material plain(const Bands& bands, bool one_sided) {
           .one_sided = one_sided};
 }
 
-// The vertices a facet uses, in a mesh of its own.
+// The facet with only its own vertices.
 PolygonMesh alone(const PolygonMesh& mesh, const Facet& facet) {
   PolygonMesh result;
   const auto copy = [&](const std::vector<int>& loop) {

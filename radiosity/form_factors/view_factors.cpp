@@ -32,7 +32,7 @@ PatchesOfRows sort_patches(const std::vector<int>& row_of_patch, int row_count) 
   return rows;
 }
 
-/// Sums of one row, emptied in the time it took to fill them.
+/// Sums of one row, cleared in time proportional to the number of entries.
 class RowSum {
  public:
   explicit RowSum(int row_count) : power_(static_cast<std::size_t>(row_count), 0.0) {}
@@ -45,7 +45,7 @@ class RowSum {
     std::sort(touched_.begin(), touched_.end());
     for (const int row : touched_) {
       double& power = power_[static_cast<std::size_t>(row)];
-      // The sum of floats may pass 1 by a rounding.
+      // The sum of floats may exceed 1 by rounding.
       const auto value = static_cast<float>(std::min(power / area, 1.0));
       if (value > 0.0f) factors.push_back({row, value});
       power = 0.0;

@@ -31,7 +31,7 @@ struct RecordHead {
   RecordKind kind = RecordKind::block;
   std::uint32_t phase = 0, block = 0;
   std::uint64_t size = 0;  ///< bytes after the head
-  /// Of the fields above and the bytes; for slots, of the fields alone.
+  /// Checksum of the fields above and the bytes; for slots, of the fields alone.
   std::uint64_t checksum = 0;
 
   static constexpr std::uint32_t right_magic = 0x4a574c1f;
