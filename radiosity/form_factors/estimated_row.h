@@ -14,11 +14,11 @@ struct EstimatedRow {
   /// variance, up to a factor common to all rows of a method. 0: the row is empty.
   double inverse_variance = 0.0;
   std::vector<FormFactor> shares{};  ///< first arrivals at diffuse patches, ordered by patch
-  /// Per share, with look_behind: rays that would have met the front of the patch without
+  /// Per share, with count_hidden: rays that would have met the front of the patch without
   /// occluders. Otherwise empty.
   std::vector<int> hidden{};
-  double escaped = 0.0;  ///< rays that met nothing or a black back at once
-  /// Rays that first met a purely specular surface (mirror or glass).
+  double escaped = 0.0;  ///< share that met nothing or a black back at once
+  /// Share that first met a purely specular surface (mirror or glass).
   double specular = 0.0;
   std::vector<int> specular_patch{};  ///< patches reached through mirrors and glass, ascending
   BandArray specular_share{};         ///< one row per entry of specular_patch

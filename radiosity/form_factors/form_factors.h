@@ -120,7 +120,7 @@ struct FormFactorReport {
 ///     mirrors and glass, by rays alone.
 ///   - i -> j and j -> i estimate the same A_i F_ij and are joined with weights of inverse
 ///     variance.
-///   - Facets that `direct_light` owns are small and bright. Except for `ray_cast` and `hemicube`,
+///   - Facets that DirectLight owns are small and bright. Except for `ray_cast` and `hemicube`,
 ///     closed forms replace their sampled exchange.
 ///   - Rows are closed by symmetric diagonal scaling (Sinkhorn & Knopp 1967; Knight, Ruiz & Ucar
 ///     2014), which keeps reciprocity: sampled exchange first, closed forms only for the remaining

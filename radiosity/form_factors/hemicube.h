@@ -34,10 +34,10 @@ struct HemicubeOptions {
 ///   - in scenes with holes every cell is sampled by a ray;
 ///   - rows of patches that do not exchange light diffusely are empty.
 ///
-/// One row per patch, closed up to rounding. `trust` = 1 / A_i: the view from a single point is
-/// more accurate for a smaller patch, so the smaller patch's estimate of an exchange area has more
-/// weight. The same bits for any number of threads. Throws std::invalid_argument for a resolution
-/// out of range, and Interrupted.
+/// One row per patch, closed up to rounding. `inverse_variance` = 1 / A_i: the view from a single
+/// point is more accurate for a smaller patch, so the smaller patch's estimate of an exchange area
+/// has more weight. The same bits for any number of threads. Throws std::invalid_argument for a
+/// resolution out of range, and Interrupted.
 ///
 /// `take(i, row)` gets finished rows, from many threads. Rows that `phase` holds are recalled.
 void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,

@@ -30,9 +30,9 @@ class NearExchange {
   /// `target_error`: wanted standard error of F_ij; 0: as the rays give.
   NearExchange(const ElementCaster& caster, double target_error);
 
-  /// Initial rays of a row times the target error. A count of fewer than `fewest_rays` = 12 rays,
-  /// too few for a closed form, has a standard error of at most sqrt(11) / rays. Larger counts, of
-  /// patches that are neither near nor polygons, need more rays.
+  /// Initial rays of a row times the target error. A count of fewer than `fewest_near_rays` = 12
+  /// rays, too few for a closed form, has a standard error of at most sqrt(11) / rays. Larger
+  /// counts, of patches that are neither near nor polygons, need more rays.
   static constexpr double worst_count_error = 3.32;
 
   /// Counts of a row for patch j: rays that cross the patch (`all`), and rays that meet the patch
@@ -42,7 +42,7 @@ class NearExchange {
     int first = 0, all = 0;
   };
 
-  /// Adds the pairs of a row that was cast with `look_behind`. Returns the standard error of the
+  /// Adds the pairs of a row that was cast with `count_hidden`. Returns the standard error of the
   /// row's worst F_ij, including those that remain counts. Safe to call from many threads.
   double find_pairs(int patch, const EstimatedRow& row, std::vector<Pair>& pairs) const;
 

@@ -85,7 +85,7 @@ class RowCaster {
   };
 
   /// Casts `rays` cosine-distributed rays from all over the patch (Malley's method). The row is
-  /// empty for patches that take no part in diffuse exchange. `look_behind`: rays continue through
+  /// empty for patches that take no part in diffuse exchange. `count_hidden`: rays continue through
   /// all surfaces, to fill EstimatedRow::hidden.
   EstimatedRow cast(int patch, int rays, Scratch& scratch, bool count_hidden = false) const;
 

@@ -22,7 +22,8 @@ class RowEstimates {
   double inverse_variance(int i) const { return inverse_variance_[i]; }
   bool is_measured(int i) const { return inverse_variance_[i] > 0.0; }
   double escaped(int i) const { return escaped_[i]; }
-  double specular(int i) const { return specular_[i]; }  ///< rays that first met a mirror or glass
+  /// Share that first met a purely specular surface.
+  double specular(int i) const { return specular_[i]; }
   double rays(int i) const { return rays_[i]; }
 
   /// First arrivals, as FormFactor records.

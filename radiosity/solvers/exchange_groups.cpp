@@ -13,13 +13,13 @@ ExchangeGroups::ExchangeGroups(const FormFactors& form_factors) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  int apart = 0;  // groups of patches that see anything
+  int apart = 0;  // remaining groups of patches that see any other
   std::vector<char> sees(static_cast<std::size_t>(n), 0);
   for (int i = 0; i < n; ++i) {
     sees[i] = !form_factors.row(i).empty() || !form_factors.specular_row(i).patch.empty();
     apart += sees[i];
   }
-  for (int i = 0; i < n && apart > 1; ++i) {  // most often a few rows say that all are one
+  for (int i = 0; i < n && apart > 1; ++i) {  // a few rows usually join all patches
     int own = root(i);
     const auto join = [&](int j) {
       if (parent[j] == own) return;

@@ -6,8 +6,8 @@
 
 namespace lightwell {
 
-/// Which patches exchange light with each other at all, directly or by way of others: rooms without
-/// a door between them stay apart. Groups are numbered from 0 in the order of their first patches.
+/// Groups of patches that exchange light, directly or through other patches. Rooms without a common
+/// opening are separate groups. Groups are numbered from 0 in the order of their first patches.
 struct ExchangeGroups {
   explicit ExchangeGroups(const FormFactors& form_factors);
 

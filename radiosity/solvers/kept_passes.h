@@ -6,9 +6,9 @@
 
 namespace lightwell {
 
-/// The passes of one solver over the rows, in their order. Most solvers are done in a moment and
-/// simply run again; once one has taken as long as the journal's interval, all that its passes find
-/// is kept, so that whoever goes on does with them what the solver did, without the rows.
+/// The passes of a solver over the rows, in order. Most solvers take a moment and simply run again.
+/// Once a solver has taken as long as the journal's interval, the results of its passes are kept,
+/// and a resumed solver recalls them without reading the rows.
 class KeptPasses {
  public:
   KeptPasses(JournalPhase phase, double every) : phase_(phase), every_(every) {}

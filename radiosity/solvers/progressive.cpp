@@ -24,7 +24,7 @@ constexpr int fewest_round_rays = 16, least_round = 16;
 
 enum Energy { emitted_row, absorbed_row, escaped_row, unshot_row };  // rows of BandEnergy
 
-// Of all bands, without regard to sign.
+// Power of a patch, W: absolute values summed over all bands.
 double power(const PatchMesh& mesh, const BandArray& radiosity, int patch) {
   return mesh.area[patch] * radiosity.row(patch).abs().cast<double>().sum();
 }
@@ -35,7 +35,8 @@ ShotRows cast_shots(const ElementCaster& caster, const LightPaths& paths, int mo
   struct Casting {
     RowCaster rows;
     std::mutex mutex{};
-    std::vector<std::unique_ptr<RowCaster::Scratch>> idle{};  // grows with the mesh: handed on
+    // Reused, since its size is that of the mesh.
+    std::vector<std::unique_ptr<RowCaster::Scratch>> idle{};
   };
   const auto casting = std::make_shared<Casting>(RowCaster(caster, paths, most_rays));
   const PatchMesh& mesh = caster.mesh();
@@ -97,7 +98,7 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
   }
   if (!free_light.empty()) take_in(free_light);
   emitted_ = energy_.row(emitted_row).sum();
-  // A room that loses nothing would add up without end.
+  // A bound on the sum of reflections in a room without losses.
   constexpr double most_reflected = 0.99;
   reflections_ = (1.0 / (1.0 - (reflected / mesh.area.sum()).min(most_reflected))).cast<float>();
 }
@@ -202,7 +203,7 @@ bool ProgressiveRadiosity::step(int most) {
   return true;
 }
 
-// Most unshot power first, and of equals the first.
+// Patches of most unshot power first; equal ones in ascending order.
 std::vector<int> ProgressiveRadiosity::choose(int most) const {
   std::vector<std::pair<double, int>> order;
   for (int i = 0; i < mesh_.patch_count(); ++i) {
@@ -229,7 +230,7 @@ int ProgressiveRadiosity::rays_of(int patch) const {
 void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
   const Eigen::ArrayXd watts = mesh_.area[shot.patch] * shot.radiosity.cast<double>();
   const Eigen::Index columns = unshot_.cols(), bands = mesh_.emission.cols();
-  // share_of(k): of what leaves the shooter in band k.
+  // share_of(band): share of the shot light that arrives at patch j.
   const auto arrive = [&](int j, auto&& share_of) {
     const Spectrum& specular = scene_.materials[mesh_.material[j]].specular;
     for (Eigen::Index k = 0; k < columns; ++k) {

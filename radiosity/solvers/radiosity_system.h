@@ -5,8 +5,8 @@
 
 namespace lightwell {
 
-/// B = M + rho F B of a mesh with all its bands side by side; where light E0 arrives from
-/// elsewhere, M stands for M + rho E0.
+/// The linear system B = M + rho F B of a mesh, all bands side by side. With arriving light E0 from
+/// elsewhere, M is M + rho E0.
 class RadiositySystem : public RowGather {
  public:
   /// Keeps references to mesh and form_factors; `pause` as in RowGather. `arriving` is E0, patches
@@ -24,8 +24,8 @@ class RadiositySystem : public RowGather {
   /// (I - rho F) x: one pass.
   LightVector product(const LightVector& x) const;
 
-  /// `pass` of a solver over the rows, which fills `results` anew: they are recalled instead, where
-  /// they were kept.
+  /// Runs a solver's `pass` over the rows, which overwrites `results`; a kept pass is recalled
+  /// instead.
   template <class Pass, class... Results>
   void pass(Pass pass, Results&... results) const {
     if (passes_) {
@@ -34,18 +34,18 @@ class RadiositySystem : public RowGather {
       pass();
     }
   }
-  /// From now on; keeps the pointer. Null: no more.
+  /// Keeps all further passes in `passes`, null: none. Keeps the pointer.
   void keep_passes(KeptPasses* passes) { passes_ = passes; }
 
-  /// How far F is from reciprocal: about the root mean square of A_i F_ij - A_j F_ji over that of
-  /// A_i F_ij, in the worst band. Two passes, with random vectors.
+  /// Deviation of F from reciprocity: approximately the root mean square of A_i F_ij - A_j F_ji
+  /// over that of A_i F_ij, in the worst band. Two passes, with random vectors.
   double asymmetry() const;
 
  private:
   KeptPasses* passes_ = nullptr;
 };
 
-/// sum_i w_i a_i b_i in each lane; added up patch after patch.
+/// sum_i w_i a_i b_i per lane, added in the order of patches.
 LaneArray weighted_dot(const Eigen::ArrayXd& w, const LightVector& a, const LightVector& b);
 LaneArray weighted_dot(const LightVector& w, const LightVector& a, const LightVector& b);
 

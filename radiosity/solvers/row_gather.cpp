@@ -9,17 +9,17 @@
 namespace lightwell {
 namespace {
 
-constexpr int packet = 4;  // lanes that are computed together
+constexpr int packet = 4;  // lanes computed together
 
-// Left to itself a processor waits for each row's start to come from memory; asked for it so much
-// earlier it does a pass in half the time (solver_bench).
+// Prefetch distance. Without prefetch the processor waits for each row's start to come from memory;
+// with it a pass takes half the time (solver_bench).
 constexpr int bytes_ahead = 4096;
 
 void fetch_ahead(const FormFactor* at) {
   __builtin_prefetch(reinterpret_cast<const char*>(at) + bytes_ahead);
 }
 
-// As the compiler knows it: one register where the processor has such long ones, else two.
+// GCC vector type: one register on processors with AVX, otherwise two.
 using Packet [[gnu::vector_size(packet * sizeof(double))]] = double;
 
 template <class Values>
@@ -27,7 +27,7 @@ template <class Values>
   std::memcpy(&values, from, sizeof values);
 }
 
-// Terms are added by turns to a few sums, for one addition need not wait for the other then.
+// Terms are added to several sums in turn, so that one addition need not wait for the previous one.
 template <class Values, int Sums>
 [[gnu::always_inline]] inline void gather_straight(std::span<const FormFactor> row, const double* B,
                                                    double* E) {
@@ -59,7 +59,7 @@ void gather_packet(std::span<const FormFactor> row, const double* B, double* E) 
 }
 
 #if defined(__x86_64__)
-// Products and sums are rounded as above: no fused ones, so that all machines find the same bits.
+// No fused multiply-add: all machines compute the same bits.
 [[gnu::target("avx2")]] void gather_packet_avx2(std::span<const FormFactor> row, const double* B,
                                                 double* E) {
   gather_straight<Packet, 2>(row, B, E);

@@ -8,17 +8,17 @@
 
 namespace lightwell {
 
-/// One value per patch and band, as solvers compute with them: patches x lanes. A lane is a band,
-/// or, so that processors can take several at once, one that is 0 throughout.
+/// One value per patch and lane: patches x lanes. A lane is a band, or a column of zeros that fills
+/// up a SIMD packet.
 using LightVector = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// One value per lane.
 using LaneArray = Eigen::Array<double, 1, Eigen::Dynamic>;
 
-/// Products F B with the rows of F, extended form factors included: one pass serves all bands.
+/// Products F B with the rows of F, extended form factors included. One pass serves all bands.
 class RowGather {
  public:
-  /// Keeps a reference. `pause` is called now and then during a pass and may throw, which ends it.
+  /// Keeps a reference. `pause` is called repeatedly during a pass and may throw to end the pass.
   RowGather(const FormFactors& form_factors, int bands, std::function<void()> pause = {});
 
   int lanes() const { return lanes_; }
@@ -28,7 +28,7 @@ class RowGather {
 
   /// E_i = sum_j F_ij B_j of one patch, lanes() values.
   void row(int i, const LightVector& B, double* E) const;
-  /// F B: one pass over the rows, in order, by all threads.
+  /// F B, in one pass over the rows, in order, by all threads.
   LightVector all(const LightVector& B) const;
 
   void pause() const {

@@ -5,10 +5,10 @@
 namespace lightwell {
 namespace {
 
-// Form factors are floats, and solvers get no closer than those allow.
+// Limit of solvers, because form factors are floats.
 constexpr double least_tolerance = 1e-7;
 
-// What solvers look at: the patches without their elements.
+// The patches without their elements, which is all that solvers need.
 PatchMesh patches_of(const PatchMesh& mesh) {
   PatchMesh patches;
   patches.area = mesh.area;
@@ -25,7 +25,7 @@ BandArray emission_of(const PatchMesh& mesh, const std::vector<int>& patch_chann
   return M;
 }
 
-// Of each patch; -1: it does not emit.
+// Channel of each patch; -1: no emission.
 std::vector<int> channels_of_patches(const PatchMesh& mesh, const EmitterChannels& channels) {
   std::vector<int> channel;
   for (int p = 0; p < mesh.patch_count(); ++p) {
@@ -90,7 +90,7 @@ void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors
   part.tolerance =
       std::max(options.tolerance / count, std::min(options.tolerance, least_tolerance));
   part.observer = {};
-  double residual = 0.0;  // of the sum, at most; W/m^2
+  double residual = 0.0;  // upper bound of the sum's residual, W/m^2
   PatchMesh lit = patches_of(mesh);
   for (int c = 0; c < count; ++c) {
     lit.emission = emission_of(mesh, solution.patch_channel, c);

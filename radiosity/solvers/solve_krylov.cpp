@@ -1,7 +1,7 @@
-// The solvers that look for B in the span of what bounces make of the first residual. Eigen has
-// them too, but for one right-hand side at a time: each of K bands, whose matrices differ by
-// reflectance and tint, would read all rows by itself. Here every band has its own scalars and all
-// share a pass.
+// Krylov solvers: B lies in the span of repeated bounces of the first residual. Eigen's solvers
+// take one right-hand side at a time, so each of K bands, whose matrices differ by reflectance and
+// tint, would read all rows separately. Here every band has its own scalars, and all bands share a
+// pass.
 #include <Eigen/QR>
 #include <cmath>
 #include <vector>
@@ -12,12 +12,12 @@
 namespace lightwell {
 namespace {
 
-// Bands that are solved, or dark, have 0 / 0 and stay as they are.
+// a / b per band; 0 for b = 0, so that solved and dark bands (0 / 0) stay unchanged.
 LaneArray quotient(const LaneArray& a, const LaneArray& b) {
   return (b != 0.0).select(a / b, 0.0);
 }
 
-// y += a x, band by band.
+// y += a x, per band.
 void add(LightVector& y, const LaneArray& a, const LightVector& x) {
   for (Eigen::Index i = 0; i < y.rows(); ++i) y.row(i) += a * x.row(i);
 }
@@ -30,10 +30,11 @@ void scale_and_add(LightVector& y, const LaneArray& a, const LightVector& x) {
 }  // namespace
 
 // In the inner product sum_i (A_i / rho_i) a_i b_i the matrix I - rho F is symmetric, because A_i
-// F_ij is, and positive definite: plain conjugate gradients with it are those on (A / rho) B - A F
-// B, preconditioned by the diagonal A / rho. Where rho_i = 0, B_i = M_i from the start: no residual
-// or direction ever has anything there. Uniform light is deflated (Saad, Yeung, Erhel & Guyomarc'h
-// 2000): it costs a pass and saves a few, and every iterate balances its power.
+// F_ij is, and positive definite. Conjugate gradients in that inner product equal those on (A /
+// rho) B - A F B, preconditioned by the diagonal A / rho. Where rho_i = 0, B_i = M_i from the
+// start, and residuals and directions are 0 throughout. Uniform light is deflated (Saad, Yeung,
+// Erhel & Guyomarc'h 2000), which costs a pass and saves a few, and balances the power of every
+// iterate.
 LightVector solve_by_conjugate_gradients(SolverRun& run) {
   const RadiositySystem& system = run.system;
   LightVector weight = (system.rho > 0.0).select(1.0 / system.rho, 0.0);
@@ -55,15 +56,15 @@ LightVector solve_by_conjugate_gradients(SolverRun& run) {
       rr = weighted_dot(weight, r, r);
       scale_and_add(p, quotient(rr, before), r);
       uniform.deflate(weight, r, p);
-      // Where a tolerance is asked for that rounding does not allow, directions lose their meaning
-      // and a band's B would run away.
+      // With a tolerance below rounding, directions become meaningless, and B of a band would
+      // diverge.
       constexpr double grown = 1e4;
       least = least.min(rr);
       is_astray = (rr > grown * least).any();
       should_continue = run.should_continue(SolverMethod::conjugate_gradients, B, r);
     }
     if (!should_continue && run.outcome() != Outcome::converged) break;
-    r = system.residual(B);  // r was carried along, with rounding
+    r = system.residual(B);  // the recurrence for r accumulates rounding
     uniform.correct(r, B);
   }
   return B;
@@ -96,7 +97,7 @@ LightVector solve_by_bicgstab(SolverRun& run) {
       should_continue = run.should_continue(SolverMethod::bicgstab, B, r);
       const LaneArray next = dot(shadow, r);
       scale_and_add(p, quotient(next, rho) * quotient(alpha, omega), r);
-      // Once the residual is at right angles to the first one there is no way on from here.
+      // The method breaks down once the residual is orthogonal to the first residual.
       constexpr double right_angle = 1e-14;
       is_stuck = (next.square() < right_angle * right_angle * first * dot(r, r)).any();
       rho = next;
@@ -109,7 +110,7 @@ LightVector solve_by_bicgstab(SolverRun& run) {
 
 namespace {
 
-// The least-squares answer to H y = first e_1.
+// Least-squares solution y of H y = first e_1.
 Eigen::VectorXd shortest_residual(const Eigen::MatrixXd& H, double first) {
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(H.rows());
   rhs[0] = first;
@@ -126,7 +127,7 @@ LightVector solve_by_gmres(SolverRun& run) {
   };
   LightVector B = run.start(), r = system.residual(B);
   while (run.should_continue(SolverMethod::gmres, B, r)) {
-    // Arnoldi: A V_m = V_m+1 H, each band with an H of its own.
+    // Arnoldi: A V_m = V_m+1 H, with one H per band.
     std::vector<Eigen::MatrixXd> H(static_cast<std::size_t>(lanes),
                                    Eigen::MatrixXd::Zero(most + 1, most));
     const LaneArray first = size(r);

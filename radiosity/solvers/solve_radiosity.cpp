@@ -12,17 +12,17 @@
 namespace lightwell {
 namespace {
 
-// What estimates of both ends are joined to, and what stores round: far more than the rounding of
-// floats, far less than what would mislead.
+// Tolerance for reciprocity: far above the rounding of floats in joined estimates and stores, far
+// below an asymmetry that would affect results.
 constexpr double most_asymmetry = 1e-4;
 
-// Rows of patches that see no mirrors keep reciprocity by promise; others are looked at.
+// Without mirrors and glass, FormFactors guarantees reciprocity; otherwise reciprocity is measured.
 double asymmetry(const RadiositySystem& system) {
   return system.has_specular_rows() ? system.asymmetry() : 0.0;
 }
 
-// The method to use, which works here: measured on rooms from dull to all but closed and white,
-// conjugate gradients take the fewest passes over the rows (solver_bench).
+// The effective method. Measured on rooms from dark to nearly closed and white, conjugate gradients
+// take the fewest passes over the rows (solver_bench).
 SolverMethod chosen(const SolverRun& run, SolverMethod asked) {
   const bool needs_reciprocity = asked == SolverMethod::automatic ||
                                  asked == SolverMethod::conjugate_gradients ||
@@ -51,7 +51,7 @@ LightVector solve(SolverRun& run, SolverMethod method) {
       return solve_by_sor(run);
     case SolverMethod::southwell:
       return solve_by_southwell(run);
-    case SolverMethod::automatic:  // chosen() leaves none
+    case SolverMethod::automatic:  // never returned by chosen()
     case SolverMethod::conjugate_gradients:
       return solve_by_conjugate_gradients(run);
     case SolverMethod::bicgstab:

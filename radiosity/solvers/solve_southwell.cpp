@@ -8,7 +8,7 @@
 namespace lightwell {
 namespace {
 
-// The largest of n values, kept up to date while they change: a tournament, leaves last.
+// Largest of n changing values: a tournament tree, leaves last.
 class Largest {
  public:
   explicit Largest(int n) : leaves_(std::bit_ceil(static_cast<unsigned>(std::max(n, 1)))) {
@@ -20,7 +20,7 @@ class Largest {
     while (at > 1) {
       at /= 2;
       const double winner = std::max(values_[2 * at], values_[2 * at + 1]);
-      if (winner == values_[at]) return;  // as it is from here up
+      if (winner == values_[at]) return;  // unchanged from here up
       values_[at] = winner;
     }
   }
@@ -46,7 +46,7 @@ class SouthwellShooter {
         rho_per_area_(system.rho.colwise() / system.area),
         unshot_(system.patch_count()) {}
 
-  // As many shots as read `factors` of F.
+  // Shoots until `factors` entries of F are read.
   void shoot_for(std::size_t factors) {
     for (int i = 0; i < system_.patch_count(); ++i) unshot_.set(i, unshot_power(i));
     constexpr int shots_between_pauses = 1024;
@@ -58,11 +58,11 @@ class SouthwellShooter {
   }
 
  private:
-  // A_i |r_i|, bands added.
+  // A_i |r_i|, summed over bands.
   double unshot_power(int i) const { return system_.area[i] * r_.row(i).abs().sum(); }
 
-  // B_i += r_i, and r_j += rho_j F_ji r_i with column i of F taken from row i by reciprocity,
-  // F_ji = A_i F_ij / A_j. Returns how many factors that took.
+  // B_i += r_i, and r_j += rho_j F_ji r_i, with column i of F taken from row i by reciprocity, F_ji
+  // = A_i F_ij / A_j. Returns the number of entries read.
   std::size_t shoot(int i) {
     power_ = system_.area[i] * r_.row(i);
     B_.row(i) += r_.row(i);
@@ -117,7 +117,7 @@ LightVector solve_by_southwell(SolverRun& run) {
   SouthwellShooter shooter(run.system, B, r);
   while (run.should_continue(SolverMethod::southwell, B, r)) {
     run.system.pass([&] { shooter.shoot_for(factors); }, B, r);
-    r = run.system.residual(B);  // reciprocity holds but for rounding
+    r = run.system.residual(B);  // reciprocity holds up to rounding
   }
   return B;
 }

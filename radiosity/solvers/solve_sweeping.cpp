@@ -1,4 +1,4 @@
-// The solvers that go from patch to patch: Jacobi, Gauss-Seidel, SOR.
+// Stationary solvers: Jacobi, Gauss-Seidel, SOR (Cohen & Wallace 1993, section 5.3).
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace lightwell {
 namespace {
 
-// B_i += omega (M_i + rho_i sum_j F_ij B_j - B_i), patch after patch.
+// B_i += omega (M_i + rho_i sum_j F_ij B_j - B_i), one patch after another.
 void sweep(const RadiositySystem& system, double omega, LightVector& B) {
   constexpr int rows_between_pauses = 4096;
   LaneArray E(system.lanes());
@@ -19,14 +19,15 @@ void sweep(const RadiositySystem& system, double omega, LightVector& B) {
   }
 }
 
-// Young's omega = 2 / (1 + sqrt(1 - q)), for Gauss-Seidel whose residual falls by q a sweep. It is
-// the best one for matrices that radiosity's are not, so what it does is watched.
+// Young's omega = 2 / (1 + sqrt(1 - q)), where q is the factor of Gauss-Seidel's residual per
+// sweep. The formula is optimal for consistently ordered matrices, which radiosity's are not, so
+// its effect is monitored.
 class Relaxation {
  public:
   explicit Relaxation(double given) : omega_(given > 0.0 ? given : 1.0), is_given_(given > 0.0) {}
   double omega() const { return omega_; }
 
-  // After a sweep that left a residual of this size.
+  // Notes the residual's size after a sweep, and adapts omega.
   void see(double size) {
     const double rate = last_ > 0.0 ? size / last_ : 1.0;
     last_ = size;

@@ -11,7 +11,8 @@
 namespace lightwell {
 namespace {
 
-// Rows add up to 1 within float rounding, so less absorption than this cannot be told from none.
+// Rows sum to 1 within the rounding of floats, so smaller absorption is indistinguishable from
+// none.
 constexpr double least_absorption = 1e-6;
 
 const PatchMesh& checked(const PatchMesh& mesh, const SolverOptions& options) {
@@ -61,7 +62,7 @@ SolverRun::SolverRun(const PatchMesh& mesh, const FormFactors& form_factors,
 
 void SolverRun::keep_passes(SolverMethod method) {
   if (!options.run.journal) return;
-  // A pass tells other form factors from these.
+  // A product with F is part of the fingerprint, so other form factors have another fingerprint.
   const LightVector E = system.product(system.rho + system.M);
   const JournalPhase phase(options.run.journal, "passes", [&](Fingerprint& print) {
     print.add(method);
@@ -77,7 +78,8 @@ void SolverRun::keep_passes(SolverMethod method) {
   system.keep_passes(&*passes_);
 }
 
-// Where the light of each group ends: |B's error| <= |residual| / (1 - rho_max).
+// Error bound of each group and band, |error of B| <= |residual| / (1 - rho_max). Throws InputError
+// where a lit group absorbs nothing.
 void SolverRun::find_ends() {
   const LightVector &M = system.M, &rho = system.rho;
   LightVector rho_max = LightVector::Zero(groups.count, system.lanes());
@@ -91,7 +93,7 @@ void SolverRun::find_ends() {
       (emission > 0.0).select((rho_max < 1.0).select(1.0 / (1.0 - rho_max), 1.0), 0.0);
   if (!(error_per_residual_ > 0.0 && rho_max > 1.0 - least_absorption).any()) return;
 
-  // Uniform light: what of it is lost at its first reflection.
+  // Loss of uniform light at its first reflection.
   const LightVector uniform = (rho > 0.0).cast<double>();
   const LightVector lost = system.product(uniform);
   LightVector loss = LightVector::Zero(groups.count, system.lanes()), area = loss;
@@ -133,7 +135,7 @@ bool SolverRun::should_continue(SolverMethod method, const LightVector& B,
   for (int i = 0; i < system.patch_count(); ++i) {
     const auto r = residual.row(i).abs();
     is_finite = is_finite && B.row(i).allFinite() && residual.row(i).allFinite();
-    // Not B alone, which may start from nothing; it is never below M.
+    // M is included because B may start at 0 and is never below M.
     largest = std::max({largest, B.row(i).abs().maxCoeff(), system.M.row(i).maxCoeff()});
     worst = std::max(worst, r.maxCoeff());
     bound = std::max(bound, (r * error_per_residual_.row(groups.group_of[i])).maxCoeff());

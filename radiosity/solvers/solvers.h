@@ -4,7 +4,8 @@
 
 namespace lightwell {
 
-// One function for each SolverMethod: from B to a better one, until the run says enough.
+// One function per SolverMethod. Each iterates from run.start() until SolverRun::should_continue
+// returns false, and returns B.
 
 LightVector solve_by_jacobi(SolverRun& run);
 LightVector solve_by_gauss_seidel(SolverRun& run);

@@ -7,7 +7,7 @@ UniformLight::UniformLight(const SolverRun& run)
   drain_ = sums([&](Eigen::Index i) { return run_.system.area[i] * drained_.row(i); });
 }
 
-// Of values(i) over each group.
+// Sums of values(i) over each group.
 template <class Values>
 LightVector UniformLight::sums(Values values) const {
   LightVector sum = LightVector::Zero(run_.groups.count, run_.system.lanes());

@@ -4,22 +4,22 @@
 
 namespace lightwell {
 
-/// The part of the error that decays slowest in a bright room: the same irradiance everywhere, B =
-/// rho. One unknown per group of patches that exchange light, and per band, is solved for directly:
-/// a two-level correction (or, within conjugate gradients, deflation). Afterwards the residual of
-/// each group adds up to nothing, sum_i A_i r_i = 0: no power is missing.
+/// Correction for the slowest part of the error in a bright room: the same irradiance everywhere, B
+/// = rho. One unknown per band and group of patches that exchange light is solved for directly: a
+/// two-level correction or, within conjugate gradients, deflation. Afterwards the residual of each
+/// group sums to zero, sum_i A_i r_i = 0: the power balances.
 class UniformLight {
  public:
-  /// One pass over the rows.
+  /// Makes one pass over the rows.
   explicit UniformLight(const SolverRun& run);
 
-  /// B += alpha rho with the alpha that makes the power of `residual` 0, and the residual of that.
-  /// Dark groups have no residual and so stay exactly dark.
+  /// B += alpha rho, with the alpha for which the power of `residual` becomes 0, and updates
+  /// `residual`. Groups without light have no residual and stay exactly 0.
   void correct(LightVector& residual, LightVector& B) const;
 
-  /// What keeps it so along a direction of conjugate gradients: direction -= c rho, with the c that
-  /// makes r - c rho conjugate to rho in the inner product with weights A / rho. What `direction`
-  /// holds besides r has to be so already.
+  /// Deflates a direction of conjugate gradients, which keeps the power of residuals at 0:
+  /// direction -= c rho, with the c for which r - c rho is conjugate to rho in the inner product
+  /// with weights A / rho. Precondition: the part of `direction` other than r is conjugate to rho.
   void deflate(const LightVector& weight, const LightVector& r, LightVector& direction) const;
 
  private:
@@ -29,7 +29,7 @@ class UniformLight {
 
   const SolverRun& run_;
   LightVector drained_;  // (I - rho F) rho
-  LightVector drain_;    // power that uniform light loses: groups x lanes
+  LightVector drain_;    // power lost by uniform light: groups x lanes
 };
 
 }  // namespace lightwell

@@ -32,7 +32,8 @@ VertexLight::VertexLight(const ElementCaster& caster, const DirectLight& direct_
 
 void VertexLight::receive(std::span<const ProgressiveRadiosity::Shot> shots) {
   for (const auto& shot : shots) {
-    // Lamps make the shadows that are seen; what a single patch reflects is one of very many.
+    // Lamps cast the visible shadows; the light that a single patch reflects is one of very many
+    // terms.
     const bool is_lamp = direct_light_.owns(mesh_.facet[mesh_.first_element[shot.patch]],
                                             mesh_.is_back[shot.patch] != 0);
     form_factors_.by_closed_form(

@@ -9,20 +9,25 @@
 
 namespace lightwell {
 
-/// Light that reaches the vertices of elements while patches shoot (patches shoot, elements
-/// receive: Cohen, Greenberg, Immel & Brock 1986; at vertices: Wallace, Elmquist & Haines 1989), so
-/// that a picture can be shown after every round. Form factors are closed forms, visibility exact
-/// where little stands between and else by shadow rays: many for the emitters that DirectLight
-/// owns, one for all others. Free sources are there from the start. Light by way of mirrors and
-/// glass is left to the patches. Keeps references to caster and direct_light.
+/// Light that reaches the vertices of elements while patches shoot, for a picture after every
+/// round. Patches shoot, elements receive (Cohen, Greenberg, Immel & Brock 1986), at vertices
+/// (Wallace, Elmquist & Haines 1989).
+///   - Form factors are closed forms.
+///   - Visibility is exact behind few occluders, otherwise by shadow rays: many for the emitters
+///     that DirectLight owns, one for all others.
+///   - Free sources are included from the start.
+///   - Light through mirrors and glass is left to the patches.
+///
+/// Keeps references to caster and direct_light.
 class VertexLight {
  public:
-  /// The shots have the columns of `direct_light`.
+  /// Precondition: shots have the columns of `direct_light`.
   VertexLight(const ElementCaster& caster, const DirectLight& direct_light);
 
+  /// Adds the irradiance that the shots bring to every vertex.
   void receive(std::span<const ProgressiveRadiosity::Shot> shots);
 
-  /// vertices x columns, W/m^2.
+  /// Irradiance so far: vertices x columns, W/m^2.
   const BandArray& irradiance() const { return irradiance_; }
 
  private:

@@ -27,7 +27,7 @@ TEST(SymmetricScaling, ClosesEveryRowOfANoisySymmetricMatrix) {
     double sum = 0.0;
     for (int j = 0; j < n; ++j) sum += d[i] * S(i, j) * d[j];
     EXPECT_NEAR(sum / area[i], 1.0, 1e-7);
-    EXPECT_NEAR(d[i], 1.0, 0.2);  // noise of 15 % at most calls for corrections of that order
+    EXPECT_NEAR(d[i], 1.0, 0.2);  // noise of at most 15 % needs corrections of that order
   }
 }
 
@@ -46,7 +46,7 @@ TEST(SymmetricScaling, EmptyRowsStayAsTheyAre) {
   EXPECT_EQ(d[1], 1.0);
 }
 
-// What a column comes to must not depend on its neighbours, one of which takes longer.
+// The result of a column must not depend on its neighbours, one of which needs more iterations.
 TEST(SymmetricScaling, ColumnsDoNotTouchEachOther) {
   const Eigen::ArrayXXd S = (Eigen::ArrayXXd(2, 2) << 0.1, 0.7, 0.7, 0.2).finished();
   Eigen::ArrayXXd open(2, 2), target(2, 2);

@@ -18,7 +18,7 @@
 namespace lightwell {
 namespace {
 
-/// A form-factor matrix given outright; rows close with what escapes.
+/// A given matrix of form factors, whose rows close by the escaped share.
 class GivenFactors : public FormFactors {
  public:
   explicit GivenFactors(std::vector<std::vector<FormFactor>> rows) : rows_(std::move(rows)) {}
@@ -38,7 +38,7 @@ class GivenFactors : public FormFactors {
   std::vector<std::vector<FormFactor>> rows_;
 };
 
-// Patches 0 and 1, of areas 1 and 3, see patch 2, of area 2; patch 3, of area 1, belongs to nobody.
+// Patches 0 and 1, of areas 1 and 3, see patch 2, of area 2; patch 3, of area 1, belongs to no row.
 // A_i F_ij: 0.25 between 0 and 2, 0.75 between 1 and 2, 0.5 between 2 and 3.
 PatchMesh mesh_of_areas() {
   PatchMesh mesh;
@@ -51,7 +51,7 @@ GivenFactors given() {
       {{{2, 0.25f}}, {{2, 0.25f}}, {{0, 0.125f}, {1, 0.375f}, {3, 0.25f}}, {{2, 0.5f}}});
 }
 
-/// View factors given outright.
+/// Given view factors.
 ViewFactors view_factors(const std::vector<double>& area,
                          const std::vector<std::vector<FormFactor>>& rows) {
   ViewFactors F(static_cast<int>(area.size()));
@@ -77,7 +77,7 @@ TEST(ViewFactors, PatchesOfARowAreAddedByArea) {
 }
 
 TEST(ViewFactors, ErrorsOfClosureAndReciprocityAreSeen) {
-  // A_0 F_01 = 1 and A_1 F_10 = 1, but for what is added to the first.
+  // A_0 F_01 = 1 and A_1 F_10 = 1, apart from the error added to the first.
   ViewFactors F = view_factors({4.0, 2.0}, {{{1, 0.25f + 0.125f}}, {{0, 0.5f}}});
   F.open = {0.75, 0.5};
   EXPECT_NEAR(closure_error(F), 0.125, 1e-7);
@@ -102,7 +102,7 @@ std::string content(const std::filesystem::path& path) {
   return text.str();
 }
 
-// Numbers that no short decimal holds.
+// Numbers without a short decimal form.
 ViewFactors thirds() {
   return view_factors({1.0, 2.0, 0.0, 0.5}, {{{1, 2.0f / 3.0f}, {3, 1e-30f}},
                                              {{0, 1.0f / 3.0f}, {3, std::nextafter(0.1f, 1.0f)}},
@@ -224,7 +224,7 @@ TEST(FormFactorFiles, AFailedWriteNamesTheFileAndLeavesNothing) {
 TEST(FormFactorFiles, ADiskThatFillsUpLeavesTheOldFile) {
   const TemporaryFolder folder;
   folder.write("F.mtx", "old");
-  // /dev/full stands for the disk: the temporary is a link to it.
+  // The temporary file is a link to /dev/full, which acts as a full disk.
   const auto part = folder / ("F.mtx." + std::to_string(::getpid()) + ".part");
   std::filesystem::create_symlink("/dev/full", part);
   const std::string message =

@@ -1,4 +1,4 @@
-// All methods against the catalogue and the laws.
+// All methods against the catalogue, and against closure and reciprocity.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ void expect_laws(const Computed& c, std::string_view name) {
   EXPECT_LT(c.report.max_reciprocity_error, 1e-6) << name;
 }
 
-// It takes many patches, so it meets one case of each sort.
+// The hemicube needs many patches, so it is tested on one case of each kind.
 bool is_for_hemicube(std::string_view name) {
   constexpr const char* names[] = {
       "par_unit_squares", "par_squares_d0_1",       "par_offset_disjoint", "perp_unit_common_edge",
@@ -97,15 +97,15 @@ TEST_P(Catalogue, IsMet) {
     const bool hemicube = method == FormFactorMethod::hemicube;
     if (hemicube && !is_for_hemicube(c.name)) continue;
     const Scene scene = scene_of(c);
-    // The hemicube looks from patches' centres, so those must be small.
+    // The eye of a hemicube stands at the patch's centre, so patches must be small.
     const double patch = hemicube ? cut_size(scene, {.auto_patch_count = 1600}).patch_size : 1e3;
     const Computed computed = compute(scene, patch, options);
     expect_laws(computed, c.name);
     const double error = std::abs(between(computed, 0, 1) - c.F12);
     (c.blockers.empty() ? worst : worst_occluded) =
         std::max(c.blockers.empty() ? worst : worst_occluded, error);
-    // Closed forms are exact where nothing stands between, and good to 1e-6 where polygons do. Rays
-    // and cells are judged by what they are asked for.
+    // Closed forms are exact without occluders, and good to 1e-6 behind polygons. The bounds of
+    // rays and hemicube cells are their options' target and resolution.
     const bool exact =
         method == FormFactorMethod::analytic || method == FormFactorMethod::automatic;
     const double allowed = exact ? 1e-6 : c.blockers.empty() && cast ? 1e-3 : 2e-3;
@@ -134,8 +134,8 @@ TEST_P(Room, WithABlockClosesAndSeesNothingThroughIt) {
   }
 }
 
-// Every surface has two sides, as thin walls do. A box in the corner of one room lies on its floor
-// and on two of its walls, cut otherwise than those; the next room has a wall in common with it.
+// Every surface has two sides, as thin walls have. A box in the corner of one room stands on its
+// floor and touches two of its walls, with other subdivisions; the next room shares a wall.
 TEST_P(Room, WithATouchingBoxAndARoomNextDoorClosesAndLeaksNothing) {
   const auto [name, method] = GetParam();
   Scene scene;
@@ -147,8 +147,8 @@ TEST_P(Room, WithATouchingBoxAndARoomNextDoorClosesAndLeaksNothing) {
   add_box(scene, {1.0, 0, 0}, {1.8, 1.2, 0.9}, all, true);
   add_box(scene, {0, 0, 0}, {0.4, 0.5, 0.3}, all, false);
   const Computed c = compute(scene, 0.17, {.method = method});
-  // Rays leak nothing. A cell of a hemicube may look at an edge where all that meets there is as
-  // far away, and a closed form misses its tolerance of 1e-6 of what is hidden by a part of that.
+  // Rays leak nothing. The centre of a hemicube's cell may lie on an edge at which all surfaces are
+  // equally far. A closed form may use a part of its tolerance of 1e-6.
   const double cell = 4.0 / (std::numbers::pi * 256 * 256);
   const double leak = method == FormFactorMethod::hemicube   ? cell
                       : method == FormFactorMethod::analytic ? 1e-7
@@ -189,7 +189,7 @@ TEST_P(Room, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(results[0], results[2]) << name;
 }
 
-// A sphere's patches have no closed form, so rays are added until they meet the target too.
+// Patches of spheres have no closed form, so rays are added until they meet the target, too.
 TEST(AnalyticFormFactors, MeetATargetWithSpheres) {
   constexpr double target = 4e-3;
   Scene scene = test::furnace(0.5f, 1.0f, false);
@@ -201,7 +201,8 @@ TEST(AnalyticFormFactors, MeetATargetWithSpheres) {
   EXPECT_GT(worst, 0.0);
   EXPECT_LE(worst, target);
   EXPECT_GT(c.report.rays / c.mesh.patch_count(), FormFactorOptions{}.rays_per_patch);
-  // All that leaves the ball arrives at the walls: by reciprocity its share of their rows is known.
+  // All light that leaves the ball arrives at the walls, so the ball's share of their rows follows
+  // from reciprocity.
   const int ball = static_cast<int>(scene.surfaces.size()) - 1;
   double to_ball = 0.0, area = 0.0;
   for (int i = 0; i < c.mesh.patch_count(); ++i) {
@@ -216,8 +217,8 @@ TEST(AnalyticFormFactors, MeetATargetWithSpheres) {
   EXPECT_NEAR(to_ball / area, 1.0, target);
 }
 
-// Too many patches for closed forms of all pairs; partly hidden near ones must not ask for ever
-// more rays.
+// Too many patches for closed forms of all pairs. Partly hidden near pairs must not need ever more
+// rays.
 TEST(AutomaticFormFactors, MeetATargetWithFewRaysWherePolygonsHideEachOther) {
   const Scene scene = test::furnace(0.5f, 1.0f, true);
   constexpr double target = 5e-3, patch = 0.09;
@@ -241,9 +242,10 @@ TEST(AutomaticFormFactors, MeetATargetWithFewRaysWherePolygonsHideEachOther) {
   }
   const double rms = std::sqrt(squares / (static_cast<double>(n) * n));
   std::printf("auto against analytic, %d patches: RMS %.1e, worst %.1e\n", n, rms, worst);
-  EXPECT_LT(rms, 0.2 * target);            // few pairs are as uncertain as the worst
-  EXPECT_LT(worst, 5.0 * target);          // of 1e6 normal draws of the worst kind
-  EXPECT_NEAR(signed_sum / n, 0.0, 1e-6);  // both close
+  EXPECT_LT(rms, 0.2 * target);  // few pairs are as uncertain as the worst
+  // The largest of 1e6 normal draws with the worst variance.
+  EXPECT_LT(worst, 5.0 * target);
+  EXPECT_NEAR(signed_sum / n, 0.0, 1e-6);  // both matrices close
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Room, testing::ValuesIn(form_factor_methods),

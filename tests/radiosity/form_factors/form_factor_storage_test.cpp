@@ -1,4 +1,4 @@
-// Where form factors are kept changes none of their bits.
+// Form factors have the same bits wherever they are stored.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -20,8 +20,8 @@ using test::add_material;
 using test::add_polygon;
 using test::diffuse;
 
-// Walls, a lamp of its own rows, a floor that both mirrors and scatters, a tinted mirror, a block
-// of glass and a ball that sees itself: all that makes rows differ in kind.
+// Walls, a lamp with rows of its own, a floor that both mirrors and scatters, a tinted mirror, a
+// block of glass and a ball that sees itself: all kinds of rows.
 Scene room_of_everything() {
   Scene scene;
   const int wall = add_material(scene, diffuse(scene.bands, 0.5f));
@@ -40,7 +40,7 @@ Scene room_of_everything() {
   return scene;
 }
 
-// Every number of a result.
+// All numbers of a result.
 std::vector<float> bits_of(const FormFactors& F) {
   std::vector<float> bits;
   for (int i = 0; i < F.patch_count(); ++i) {
@@ -104,8 +104,8 @@ void expect_same(const Computed& a, const Computed& b) {
 
 TEST_P(Storage, ChangesNoBit) {
   const Scene scene = room_of_everything();
-  // With an error asked for, so many patches are still few enough for all closed forms; without
-  // one, "auto" mixes rays, near pairs and the lamp's rows.
+  // With a target error this number of patches is small enough for closed forms of all pairs.
+  // Without one, "auto" mixes rays, near pairs and the lamp's rows.
   const Computed in_memory = compute(scene, -1, 2, 0.0);
   EXPECT_EQ(in_memory.storage.most_on_disk, 0);
   for (const auto& [rows, threads] : {std::pair{0, 1}, std::pair{80000, 3}}) {
@@ -120,8 +120,7 @@ TEST_P(Storage, ChangesNoBit) {
 INSTANTIATE_TEST_SUITE_P(Methods, Storage, testing::ValuesIn(form_factor_methods),
                          test::name_of_method);
 
-// Reciprocity as it is stored, not as it was computed; and again once rows that are one patch each
-// have been taken over one by one.
+// Reciprocity of the stored factors; also of the view factors whose rows are one patch each.
 TEST_P(Storage, KeepsBothEndsOfEveryPair) {
   const Scene scene = test::furnace(0.5f, 1.0f, false);
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.2});

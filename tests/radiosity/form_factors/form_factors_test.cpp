@@ -57,9 +57,9 @@ double worst_reciprocity(const Solved& s) {
 
 TEST(FormFactors, ClosedRoomClosesAndIsReciprocal) {
   const Solved s = cast(test::furnace(0.5f, 1.0f, true), {.rays_per_patch = 256});
-  EXPECT_LT(worst_closure(s), 1e-6);                 // a few hundred float entries a row
+  EXPECT_LT(worst_closure(s), 1e-6);                 // a few hundred float entries per row
   EXPECT_LT(worst_reciprocity(s), 1e-6);             // two float roundings
-  EXPECT_GT(s.report.max_closure_correction, 1e-4);  // the raw estimate was a real, noisy one
+  EXPECT_GT(s.report.max_closure_correction, 1e-4);  // the raw estimate was noisy
 }
 
 TEST(FormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
@@ -74,8 +74,8 @@ TEST(FormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
       F(s.mesh.facet_of(i), s.mesh.facet_of(f.patch)) += s.mesh.area[i] * f.value;
     }
   }
-  // 16 patches a face, each end casts: 4 standard errors of a binomial share of 0.2, an upper bound
-  // for stratified rays.
+  // 16 patches per face, rays from each end: 4 standard errors of a binomial share of 0.2, an upper
+  // bound for stratified rays.
   const double se = std::sqrt(0.2 * 0.8 / (16.0 * rays));
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) {
@@ -87,7 +87,7 @@ TEST(FormFactors, CubeFacesSeeEachOtherAsTheClosedFormSays) {
   }
 }
 
-// Inside of a ball of triangles, in patches of many facets that see themselves: of a sphere
+// The inside of a ball of triangles, in patches of many facets that see themselves. On a sphere
 // F_ij = A_j / A.
 TEST(FormFactors, PatchesOfManyFacetsSeeThemselvesAndTheRoomCloses) {
   Scene scene;
@@ -121,7 +121,7 @@ TEST(FormFactors, PatchesOfManyFacetsSeeThemselvesAndTheRoomCloses) {
     for (int i = 0; i < s.mesh.patch_count(); ++i) {
       if (s.mesh.facet_of(i) >= 0) continue;
       const Eigen::Vector3d here = element_center(s.mesh, s.mesh.first_element[i]).position;
-      // A facet does not see itself; what of the patch it does see it sees as on a sphere.
+      // A facet does not see itself; the rest of the patch has the form factor of a sphere.
       EXPECT_GT(form_factor(s, i, i), 0.0);
       EXPECT_LT(form_factor(s, i, i), 2.0 * s.mesh.area[i] / A);
       double far = 0.0, far_area = 0.0;
@@ -154,7 +154,7 @@ TEST(FormFactors, OpenTopLetsOutWhatTheClosedFormSays) {
   EXPECT_LT(worst_closure(s), 1e-6);
 }
 
-// A small lamp under the ceiling: its entries come from the closed form, and its own row closes
+// A small lamp under the ceiling: its entries come from the closed form, and its own row closes,
 // too.
 TEST(FormFactors, SmallEmitterIsExactAndCloses) {
   Scene scene;
@@ -181,12 +181,12 @@ TEST(FormFactors, SmallEmitterIsExactAndCloses) {
   }
 }
 
-// Opposite a perfect mirror a patch sees the room's image: every ray comes back.
+// Opposite a perfect mirror a patch sees the room's image: every ray returns.
 TEST(FormFactors, PerfectMirrorPassesEverythingOn) {
   const Scene scene = test::room_with_mirror(1.0f);
   const Solved s = cast(scene, {.rays_per_patch = 1024});
   EXPECT_LT(worst_closure(s), 1e-5);
-  // Face x1 sees x0 under F = 0.19982..., all of which returns; the image of x1 itself is the
+  // Face x1 sees x0 with F = 0.19982..., all of which returns; the image of x1 itself is the
   // opposed unit square at distance 2: F = 0.06858959... (parallel unit squares, closed form).
   double back = 0.0, area = 0.0;
   for (int i = 0; i < s.mesh.patch_count(); ++i) {
@@ -207,7 +207,7 @@ TEST(FormFactors, PerfectMirrorPassesEverythingOn) {
   EXPECT_NEAR(back / area, exact, 4 * std::sqrt(exact * (1 - exact) / (16.0 * 1024)));
 }
 
-// Rows of so few rays ask for what others' rows exclude; nothing may grow without bound.
+// Rows of few rays have contradictory targets; no factor may grow without bound.
 TEST(FormFactors, FewRaysAmongMirrorsStayFiniteShares) {
   int m = 0;
   Scene scene = test::room_with_mirror(0.9f, &m);
@@ -219,7 +219,7 @@ TEST(FormFactors, FewRaysAmongMirrorsStayFiniteShares) {
       if (row.patch.empty()) continue;
       ASSERT_TRUE(row.value.allFinite()) << "patch " << i;
       ASSERT_GE(row.value.minCoeff(), 0.0f) << "patch " << i;
-      // Twice what the two ends measured, at most 1, is what balancing may make of a share.
+      // Balancing may at most double the measured share of both ends, which is at most 1.
       ASSERT_LE(row.value.maxCoeff(), 2.0f) << "patch " << i;
       ASSERT_GE(s.form_factors->absorbed_by_specular(i).minCoeff(), 0.0f) << "patch " << i;
       ASSERT_GE(s.form_factors->escaped(i).minCoeff(), 0.0f) << "patch " << i;

@@ -41,7 +41,7 @@ TEST_P(HemicubeCellsOfSize, BlockOfCellsIsThePolygonItCovers) {
       for (int row = row0; row < row1; ++row) {
         sum += cells.delta_form_factor(f, row, column0, column1);
       }
-      // Corners of cells lie half a cell before and behind their centres.
+      // Corners of cells lie half a cell before and after their centres.
       const auto corner = [&](int row, int column) -> Eigen::Vector3d {
         const Eigen::Vector3d at = cells.direction(f, row, column);
         const Eigen::Vector3d before = cells.direction(f, row - 1, column - 1);
@@ -58,8 +58,8 @@ TEST_P(HemicubeCellsOfSize, BlockOfCellsIsThePolygonItCovers) {
 
 INSTANTIATE_TEST_SUITE_P(Resolution, HemicubeCellsOfSize, testing::Values(2, 6, 64, 256, 1000));
 
-// Cohen & Greenberg's table. Over a cell of width h the mean of the kernel k differs from its value
-// in the centre by h^2/24 |laplace k|; laplace k / k is at most 8 on the top, 16 on the sides.
+// Cohen & Greenberg's table. Over a cell of width h the mean of the kernel k differs from k in the
+// centre by h^2/24 |laplace k|; laplace k / k is at most 8 on the top, 16 on the sides.
 TEST(HemicubeCells, DeltaFormFactorIsTheKernelTimesTheCellsArea) {
   const int n = 128;
   const HemicubeCells cells(n);

@@ -59,7 +59,7 @@ bool sees_something(int item) {
   return item != hemicube_item::nothing;
 }
 
-// The whole facet one element, as far as its shape allows.
+// One element per facet, where its shape allows.
 PatchMesh coarse_mesh(const Scene& scene) {
   return build_patches(scene, {.max_patch_size = 1e3, .elements_per_patch_edge = 1});
 }
@@ -75,8 +75,8 @@ Vector3d vector_of(const nlohmann::json& value) {
   return Vector3d(value[0], value[1], value[2]);
 }
 
-// The catalogue's differential element to polygon and sphere; 2e-3 is what the default resolution
-// promises. Polygons reach below the horizon and around the hemicube's corners.
+// The catalogue's differential element to polygon and sphere. 2e-3 is the error of the default
+// resolution. Polygons reach below the horizon and around the hemicube's corners.
 TEST(HemicubeScan, ElementToPolygonIsTheCataloguesAtAnyTurn) {
   std::ifstream file(LIGHTWELL_TEST_DATA "/analytic/viewfactors.json");
   const HemicubeCells cells(256);
@@ -101,13 +101,13 @@ TEST(HemicubeScan, ElementToPolygonIsTheCataloguesAtAnyTurn) {
   EXPECT_GE(cases, 5);
 }
 
-// Rays meet the exact sphere; its elements, inscribed, cover less, by a share that falls with the
+// Rays meet the exact sphere. Its inscribed elements cover less, by a share in proportion to the
 // square of their size.
 TEST(HemicubeScan, SphereIsExactInRaysAndInscribedInScanConversion) {
   const HemicubeCells cells(256);
   const double exact = 0.140625;  // (0.75 / 2)^2, the sphere straight above
   constexpr std::uint64_t eyes = 16;
-  std::array<double, 2> missing{};  // mean over places around the sphere
+  std::array<double, 2> missing{};  // mean over eyes around the sphere
   for (int level = 0; level < 2; ++level) {
     Scene scene;
     const int m = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
@@ -124,14 +124,14 @@ TEST(HemicubeScan, SphereIsExactInRaysAndInscribedInScanConversion) {
           (exact - share_where(cells, scanned(mesh, eye, cells), sees_something)) / eyes;
     }
   }
-  // Some 2e-4 of aliasing an eye, on 1e-3 of missing: 5 %. How an outline runs over the grid of
-  // elements varies as much again.
+  // About 2e-4 of aliasing per eye, relative to a missing share of 1e-3, averages to 5 %. The
+  // outline on the grid of elements adds as much again.
   EXPECT_GT(missing[1], 0.0);
   EXPECT_NEAR(missing[0] / missing[1], 4.0, 0.8);
 }
 
-// A wall from far below the horizon to far above, wider than the hemicube: a strip of each of its
-// faces. Every corner of it is beside, behind or below some face.
+// A wall from far below the horizon to far above, wider than the hemicube: a strip of each face.
+// Every corner of the wall is beside, behind or below some face.
 TEST(HemicubeScan, HugeWallsAreCutAtHorizonAndCorners) {
   const HemicubeCells cells(128);
   const PatchMesh mesh =
@@ -139,13 +139,14 @@ TEST(HemicubeScan, HugeWallsAreCutAtHorizonAndCorners) {
   for (double turn = 0.0; turn < 6.28; turn += 0.13) {
     const HemicubeEye eye = free_eye(Vector3d::Zero(), Vector3d::UnitZ(), turn);
     const double share = share_where(cells, scanned(mesh, eye, cells), sees_something);
-    // Half of the hemisphere, but for what ends 1e4 away: 0.5 / 1e4. The edge runs through the
-    // middle of the top, n cells of delta 4/(pi n^2): half of each, at worst all to one side.
+    // Half of the hemisphere, except beyond the wall's end 1e4 away: 0.5 / 1e4. The edge crosses n
+    // cells in the middle of the top, of delta 4/(pi n^2): half of each, in the worst case all on
+    // one side.
     EXPECT_NEAR(share, 0.5, 0.5e-4 + 0.5 * 4.0 / (3.14 * 128)) << turn;
   }
 }
 
-// Cell by cell, not only in their sum: two triangles share an edge and make a quadrilateral.
+// Compared cell by cell: two triangles with a common edge equal their quadrilateral.
 TEST(HemicubeScan, NeighboursNeitherGapNorOverlap) {
   const HemicubeCells cells(64);
   int covered = 0;
@@ -155,7 +156,7 @@ TEST(HemicubeScan, NeighboursNeitherGapNorOverlap) {
     };
     const Vector3d center = 1.2 * Vector3d(u(0), u(1), u(2));
     const Vector3d first(u(3), u(4), u(5)), second(u(6), u(7), u(8));
-    // Planar and convex: its diagonals cross in `center`.
+    // Planar and convex: the diagonals cross in `center`.
     const std::array<Vector3d, 4> p = {center - first, center - (0.6 + 0.4 * u(9)) * second,
                                        center + (0.6 + 0.4 * u(10)) * first, center + second};
     const HemicubeEye eye =
@@ -170,10 +171,10 @@ TEST(HemicubeScan, NeighboursNeitherGapNorOverlap) {
       covered += sees_something(whole[i]);
     }
   }
-  EXPECT_GT(covered, 10000);  // the polygons were there to be seen
+  EXPECT_GT(covered, 10000);  // the polygons were visible
 }
 
-// Edges along the rows, through the cells' very centres.
+// Edges along rows and columns, through the centres of cells.
 TEST(HemicubeScan, CentresOnASharedEdgeBelongToOneSide) {
   const int n = 16;
   const HemicubeCells cells(n);
@@ -194,7 +195,7 @@ TEST(HemicubeScan, CentresOnASharedEdgeBelongToOneSide) {
       highs += sees_something(high[i]);
     }
     EXPECT_EQ(lows + highs, n * n);
-    EXPECT_EQ(std::abs(highs - lows), 0);  // the line itself went to the higher side
+    EXPECT_EQ(std::abs(highs - lows), 0);  // the cells on the line belong to the higher side
   }
 }
 
@@ -213,7 +214,7 @@ TEST(HemicubeScan, ClosedRoomLeavesNoCellEmpty) {
   }
 }
 
-// The cell whose pyramid holds a direction of the hemicube's frame; -1 below the horizon.
+// Cell whose pyramid holds a direction of the hemicube's frame; -1 below the horizon.
 int cell_of(const HemicubeCells& cells, const Vector3d& d) {
   int best = -1;
   for (int f = 0; f < HemicubeCells::face_count; ++f) {
@@ -229,7 +230,7 @@ int cell_of(const HemicubeCells& cells, const Vector3d& d) {
   return best;
 }
 
-// Whether one of the eight cells around, across the hemicube's edges too, holds `item`.
+// True if one of the eight cells around, across the hemicube's edges too, holds `item`.
 bool is_beside(const HemicubeCells& cells, const std::vector<int>& items, int f, int row,
                int column, int item) {
   for (int r = row - 1; r <= row + 1; ++r) {
@@ -280,8 +281,8 @@ TEST(HemicubeScan, AgreesWithRaysButForCellsAtEdges) {
       }
     }
   }
-  // Rays are float: an edge is where it is to 1e-6 of the room, a cell is 1e-2 wide, and less than
-  // a fifth of the cells have an edge in them.
+  // Rays are in single precision, so edges are accurate to 1e-6 of the room. A cell is 1e-2 wide,
+  // and less than a fifth of the cells contain an edge.
   EXPECT_LT(differing, 1 + 0.2 * 1e-4 * eyes * cells.cell_count());
 }
 
@@ -321,7 +322,7 @@ TEST(HemicubeScan, NearerSurfaceHidesTheFartherWhateverTheirOrder) {
     const Loop loop = {{-0.5, -0.5, 1}, {-0.5, 0.5, 1}, {0.5, 0.5, 1}, {0.5, -0.5, 1}};
     const double exact =
         std::abs(point_to_polygon(Vector3d::Zero(), Vector3d::UnitZ(), {&loop, 1}));
-    EXPECT_NEAR(seen, exact, 4e-3);  // 128 cells of its outline, 3e-4 each, at random
+    EXPECT_NEAR(seen, exact, 4e-3);  // 128 cells of the outline, 3e-4 each, at random
   }
 }
 

@@ -51,7 +51,7 @@ TEST_P(Hemicube, RowsOfAClosedRoomSumToOne) {
     EXPECT_EQ(row.escaped, 0.0);
     EXPECT_EQ(row.specular, 0.0);
     EXPECT_DOUBLE_EQ(row.inverse_variance, 1.0 / rows.mesh.area[i]);
-    // Entries are rounded to float each: in all at most half a float digit of 1.
+    // Each entry is rounded to float: in total at most half a float digit of 1.
     EXPECT_NEAR(sum_of_shares(row), 1.0, 6e-8 + 1e-12);
     int before = -1;
     for (const FormFactor& f : row.shares) {
@@ -72,12 +72,12 @@ TEST_P(Hemicube, OpenRoomLosesWhatTheOpeningSubtends) {
   for (int i = 0; i < rows.mesh.patch_count(); ++i) {
     const HemicubeEye eye = hemicube_eye(rows.mesh, i, true);
     const double exact = std::abs(point_to_polygon(eye.position, eye.frame.col(2), {&opening, 1}));
-    EXPECT_NEAR(rows.row[i].escaped, exact, 2e-3);  // what 256 cells promise
+    EXPECT_NEAR(rows.row[i].escaped, exact, 2e-3);  // error of 256 cells
     EXPECT_NEAR(sum_of_shares(rows.row[i]) + rows.row[i].escaped, 1.0, 1e-7);
   }
 }
 
-// Black from behind, it still keeps light from what is beyond.
+// The plate is black from behind, but blocks light from beyond.
 TEST_P(Hemicube, BlackBackBlocks) {
   Scene scene = test::furnace(0.5f, 1.0f, false);
   const Loop plate = {
@@ -108,7 +108,7 @@ TEST_P(Hemicube, PerfectMirrorPassesEverythingOn) {
       continue;
     }
     EXPECT_NEAR(sum_of_shares(row) + row.specular, 1.0, 1e-7);
-    // All that meets the mirror arrives. Float entries, a few hundred.
+    // All light that meets the mirror arrives. A few hundred float entries.
     EXPECT_NEAR(row.specular_share.col(0).sum(), row.specular, 1e-6);
     if (rows.mesh.facet_of(i) != 1) continue;
     for (std::size_t e = 0; e < row.specular_patch.size(); ++e) {
@@ -117,13 +117,13 @@ TEST_P(Hemicube, PerfectMirrorPassesEverythingOn) {
       }
     }
   }
-  // The image of x1 itself: opposed unit squares at distance 2, in closed form. 16 rows of 64 cells
-  // (4e-3 each, at random), and 16 midpoints for the mean over the square.
+  // The image of x1 itself: opposed unit squares at distance 2, in closed form. Error of 16 rows of
+  // 64 cells (4e-3 each, at random), and of 16 midpoints for the mean over the square.
   EXPECT_NEAR(back, 0.06859, 2e-3);
 }
 
-// From any place inside a sphere F_ij = A_j / A, the occluder-free closed form; the flat elements
-// of scan conversion see one another alike, but for the share by which they differ from the sphere.
+// From any point inside a sphere F_ij = A_j / A, the closed form without occluders. The flat
+// elements of scan conversion differ by the share by which they differ from the sphere.
 TEST_P(Hemicube, InsideOfASphereSeesEachPatchByItsArea) {
   Scene scene;
   Material paint = test::diffuse(scene.bands, 0.5f, 1.0f);
@@ -143,7 +143,7 @@ TEST_P(Hemicube, InsideOfASphereSeesEachPatchByItsArea) {
     EXPECT_EQ(rows.row[i].escaped, 0.0);
     for (const FormFactor& f : rows.row[i].shares) {
       EXPECT_EQ(rows.mesh.is_back[f.patch], 1);
-      // Own and touching patches are nearly in the horizon, where flat elements differ most.
+      // The patch itself and its neighbours lie near the horizon, where flat elements differ most.
       const HemicubeEye from = hemicube_eye(rows.mesh, i, false);
       const HemicubeEye to = hemicube_eye(rows.mesh, f.patch, false);
       if ((from.position - to.position).norm() < 1.5) continue;
@@ -181,10 +181,10 @@ double least_distance(const std::vector<Vector3d>& a, const std::vector<Vector3d
   return least;
 }
 
-// Polygon to polygon, with and without something between: the mean over polygon1's patches. These
-// are a sixteenth of the polygon, and at most a third of the gap between the two, so that the
-// midpoint rule and a shadow's edges across a patch (proximity and visibility: Baum, Rushmeier &
-// Winget 1989) stay within what is promised.
+// Polygon to polygon, with and without occluders: the mean over the patches of polygon1. Patches
+// are a sixteenth of the polygon, and at most a third of the gap between both polygons. The errors
+// of the midpoint rule and of shadow edges across a patch (proximity and visibility: Baum,
+// Rushmeier & Winget 1989) then stay within the bound.
 TEST(HemicubeRows, PolygonToPolygonIsTheCatalogues) {
   std::ifstream file(LIGHTWELL_TEST_DATA "/analytic/viewfactors.json");
   int cases = 0;
@@ -225,7 +225,7 @@ TEST(HemicubeRows, PolygonToPolygonIsTheCatalogues) {
   EXPECT_GE(cases, 20);
 }
 
-// The error of one polygon's share over many turns falls at least as fast as the cells get smaller.
+// The error of one polygon's share over many turns falls at least in proportion to the cell size.
 TEST(HemicubeRows, AliasingFallsWithTheResolution) {
   Scene scene;
   const int m = test::add_material(scene, test::diffuse(scene.bands, 0.5f, 1.0f));
@@ -268,7 +268,7 @@ TEST(HemicubeRows, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-// Two patches of one wall look in one direction, but do not hold their cells alike.
+// Hemicubes of two patches of one wall have the same normal, but different turns.
 TEST(HemicubeRows, EachPatchTurnsItsHemicube) {
   const PatchMesh mesh = build_patches(test::furnace(0.5f, 1.0f, false), {.max_patch_size = 0.5});
   const HemicubeEye first = hemicube_eye(mesh, 0, true), second = hemicube_eye(mesh, 1, true);

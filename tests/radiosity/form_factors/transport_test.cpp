@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t megabyte = 1 << 20;
 
-/// 100 MB are taken, and 50 go to work beside rows.
+/// 100 MB are resident, and 50 MB are needed beside rows.
 TransportChoice choose(std::int64_t rows, std::int64_t disk, std::int64_t limit = 500 * megabyte) {
   return choose_transport({.patches = 4000,
                            .rows = rows,
@@ -47,7 +47,7 @@ TEST(Transport, PatchesShootWhereRowsCannotBeKept) {
   EXPECT_EQ(slow.transport, Transport::shooting);
   EXPECT_TRUE(says(slow.reason, "more than a disk can be read through in time (8.0 GB)"));
 
-  // 16 MB are the least slice of rows.
+  // The least slice of rows is 16 MB.
   const TransportChoice narrow = choose(351 * megabyte, most_rows_on_disk, 165 * megabyte);
   EXPECT_EQ(narrow.transport, Transport::shooting);
   EXPECT_TRUE(says(narrow.reason, "not even room for a part of them"));
@@ -72,8 +72,7 @@ TEST(Transport, AFolderThatIsNoneHasNoRoom) {
   EXPECT_EQ(room_on_disk(folder / "missing"), 0);
 }
 
-// A folder that is none has no room for rows. The budget holds what shooting takes, and not the
-// rows.
+// A missing folder has no room for rows. The budget suffices for shooting, but not for rows.
 TEST(Transport, ASolveThatCannotKeepRowsShoots) {
   const Scene scene = test::furnace(0.5f, 1.0f, true);
   SolveOptions options{.mesh = {.auto_patch_count = 4000, .elements_per_patch_edge = 1},
@@ -102,7 +101,7 @@ TEST(Transport, ASolveThatCannotKeepRowsShoots) {
 }
 
 TEST(Transport, ElementsGoByWhatIsLeft) {
-  // 650 bytes and 50 a column each; down to a whole sixteenth of a power of two.
+  // 650 bytes per element and 50 per column; rounded down to a sixteenth of a power of two.
   EXPECT_EQ(elements_in(800 * 16384, 3), 16384);
   EXPECT_EQ(elements_in(800 * 16384 + 800 * 1023, 3), 16384);
   EXPECT_EQ(elements_in(800 * 16384 + 800 * 1024, 3), 17408);

@@ -17,7 +17,7 @@ using test::add_box;
 using test::add_material;
 using test::diffuse;
 
-// A room with a lamp under its ceiling, a block, and a mirror on one wall if asked.
+// A room with a lamp under its ceiling, a block, and optionally a mirror as one wall.
 Scene lamp_room(float rho, bool with_mirror) {
   Scene scene;
   const int wall = add_material(scene, diffuse(scene.bands, rho));
@@ -81,9 +81,9 @@ TEST(Progressive, ToTheEndIsWhatGaussSeidelFinds) {
     ProgressiveRadiosity progressive(room.scene, room.mesh, stored_shots(*F), {.tolerance = 1e-6});
     run(progressive);
     EXPECT_TRUE(progressive.has_converged());
-    // Extended form factors are not reciprocal, so shooting along rows and gathering along rows
-    // differ by what sampling left open, and energy closes as well as the assembly closed them.
-    // Without a mirror float rounding of many small additions is left.
+    // Extended form factors are not reciprocal, so shooting and gathering along rows differ by the
+    // sampling error, and energy closes as well as the assembly closed them. Without a mirror the
+    // only difference is float rounding of many small additions.
     EXPECT_LT(rms(room.mesh, progressive.radiosity(), wanted), with_mirror ? 5e-3 : 1e-5);
     if (!with_mirror) expect_balanced(progressive.energy(), 1e-5);
   }
@@ -98,7 +98,7 @@ TEST(Progressive, RowsCastOnTheFlyFindTheSameLight) {
                                    cast_shots(room.caster, room.paths, most_rays),
                                    {.rays = 1200000, .most_rays = most_rays});
   run(progressive);
-  // One ray in 300 of 1.2 million arrives at a patch, so 4 000, and 1.6 % if they were random.
+  // Of 1.2 million rays one in 300 arrives at a patch: 4000 rays, or 1.6 % if they were random.
   EXPECT_LT(rms(room.mesh, progressive.radiosity(), wanted), 0.016);
   expect_balanced(progressive.energy(), 1e-5);
 }
@@ -119,7 +119,7 @@ TEST(Progressive, EnergyIsBalancedAfterEveryShotInAnOpenRoomToo) {
   EXPECT_GT(progressive.energy().escaped, 0.0);
 }
 
-// Everything shines and reflects alike, so what is foreseen is what comes: B = M / (1 - rho).
+// All surfaces have equal emission and reflectance, so the prediction is exact: B = M / (1 - rho).
 TEST(Progressive, TheAmbientTermOfAFurnaceIsRightFromTheBeginning) {
   constexpr float rho = 0.7f, M = 2.0f;
   const Solved room(test::furnace(rho, M, true));
@@ -167,7 +167,7 @@ TEST(VertexLight, SeesShadowsAfterTheFirstRoundAndAllLightInTheEnd) {
   VertexLight light(room.caster, room.direct_light);
   const GatherOptions many_rays{.rays = 4096};
   const std::vector<GatherPoint> points = vertex_gather_points(room.mesh);
-  // The lamp has few patches: all have shot after a round.
+  // The lamp has few patches: all of them shoot in the first round.
   ASSERT_TRUE(progressive.step());
   light.receive(progressive.last_shots());
   const BandArray nothing = BandArray::Zero(room.mesh.vertex_count(), 3);
@@ -182,11 +182,11 @@ TEST(VertexLight, SeesShadowsAfterTheFirstRoundAndAllLightInTheEnd) {
   const BandArray B = gatherable_radiosity(room.mesh, room.direct_light, light.irradiance());
   const GatheredIrradiance all =
       gather_irradiance({room.scene, room.caster, room.direct_light}, B, points, many_rays);
-  // One ray a shooter, and shooters of one value each: 300 patches are few.
+  // One ray per shooter, and one value per shooter, in only 300 patches.
   EXPECT_LT(relative(light.irradiance(), all.direct + all.indirect), 0.03);
 }
 
-/// The same shots bring the light of every channel, and that is what each would be alone.
+/// The same shots carry the light of all channels, each of which equals the channel's light alone.
 TEST(Progressive, KeepsChannelsApart) {
   Scene scene = lamp_room(0.6f, true);
   const int second = add_material(scene, diffuse(scene.bands, 0.0f, 4.0f));
@@ -240,7 +240,7 @@ TEST(Progressive, IsTheSameForAnyNumberOfThreads) {
 TEST(Progressive, SolvesASceneAsTheEquationsDo) {
   for (const bool with_mirror : {false, true}) {
     const Scene scene = lamp_room(0.6f, with_mirror);
-    // Even elements: refined ones would be others for each.
+    // Uniform elements: refined elements would differ between the two solutions.
     SolveOptions options{.mesh = {.auto_patch_count = 300}, .refine = {.tolerance = 0.0}};
     const SolvedScene by_equations = solve_scene(scene, options);
     options.progressive = {.tolerance = 1e-5, .overshooting = Overshooting::ambient};
@@ -249,14 +249,13 @@ TEST(Progressive, SolvesASceneAsTheEquationsDo) {
     EXPECT_EQ(by_shots.solution.outcome, Outcome::converged);
     expect_balanced(by_shots.solution.energy, 1e-5);
     const BandArray a = by_shots.solution.irradiance(), b = by_equations.solution.irradiance();
-    // Both gather anew from 300 patches, each with a noise of 1 to 2 %, of which a gather sees
-    // many.
+    // Both gather anew from 300 patches with a noise of 1 to 2 % each; a gather averages over many.
     EXPECT_LT(std::sqrt((a - b).square().cast<double>().mean()) / b.cast<double>().mean(), 5e-3);
   }
 }
 
-/// One at a time, each is the brightest there is then: what is left unshot falls with every shot
-/// of a scene without mirrors, by what the shooter held less what its receivers reflect.
+/// Shooters one at a time are the brightest at that moment. In a scene without mirrors every shot
+/// reduces the unshot power, by the shooter's power less the part that receivers reflect.
 TEST(Progressive, ShootsOneByOneWhenAsked) {
   const Solved room(lamp_room(0.5f, false));
   ProgressiveRadiosity progressive(room.scene, room.mesh,
@@ -275,7 +274,7 @@ TEST(Progressive, ShootsOneByOneWhenAsked) {
   }
 }
 
-/// Shots of one's own, gathered, are the solution that solve_scene makes of them, bit for bit.
+/// Shooting and gathering in separate calls equal solve_scene, bit for bit.
 TEST(Progressive, GatheringCanBeHadForItself) {
   const Scene scene = lamp_room(0.5f, true);
   SolveOptions options;

@@ -1,4 +1,4 @@
-// Every solver on matrices whose solution is known.
+// Every solver on matrices with known solutions.
 #include "radiosity/solvers/solve_radiosity.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 using test::GivenFormFactors;
 using test::patches;
 
-// Bounces decay slowly where nearly all is reflected; that some methods follow each is no mistake.
+// Bounces decay slowly at high reflectance; the slow methods follow every bounce.
 constexpr int many_sweeps = 20000;
 
 class Solver : public testing::TestWithParam<NamedSolverMethod> {
@@ -35,7 +35,7 @@ class Solver : public testing::TestWithParam<NamedSolverMethod> {
   }
 };
 
-// Inside of a sphere cut into n equal patches: F_ij = A_j / A_sphere = 1/n exactly, so that the
+// The inside of a sphere in n equal patches: F_ij = A_j / A_sphere = 1/n exactly, so that the
 // solution is uniform.
 TEST_P(Solver, RadiosityInASphereIsEmissionOverOneMinusRho) {
   for (const float rho : {0.0f, 0.5f, 0.8f, 0.95f, 0.99f}) {
@@ -44,7 +44,7 @@ TEST_P(Solver, RadiosityInASphereIsEmissionOverOneMinusRho) {
         patches(Eigen::ArrayXd::Ones(n), Eigen::ArrayXf::Constant(n, rho), Eigen::ArrayXf::Ones(n));
     const auto s = solve(mesh, GivenFormFactors(Eigen::ArrayXXd::Constant(n, n, 1.0 / n)), 1e-6);
     const double B = 1.0 / (1.0 - static_cast<double>(rho));
-    // The bound that ended the solver, and B's rounding to float.
+    // The bound at which the solver ended, plus the rounding of B to float.
     const double bound = (1e-6 + 6e-8) * B;
     EXPECT_LT((s.patch_radiosity.cast<double>() - B).abs().maxCoeff(), bound) << rho;
   }
@@ -94,7 +94,7 @@ struct Enclosure {
   Eigen::ArrayXd B{};
 };
 
-// Zones of a sphere, or two surfaces that are lit uniformly: each one patch, exactly.
+// Zones of a sphere, or two uniformly lit surfaces: one patch each is exact.
 std::vector<Enclosure> exact_enclosures() {
   std::ifstream file(LIGHTWELL_TEST_DATA "/analytic/enclosures.json");
   std::vector<Enclosure> cases;
@@ -147,7 +147,7 @@ TEST_P(Solver, SolvesSpheresAndPlatesExactly) {
   ASSERT_GE(cases.size(), 7u);
   for (const Enclosure& e : cases) {
     const auto s = solve(patches(e.area, e.rho, e.M), GivenFormFactors(e.F));
-    // Reflectances and factors are floats, and light meets up to 1 / (1 - 0.95) of them.
+    // Reflectances and form factors are floats, and light is reflected up to 1 / (1 - 0.95) times.
     constexpr double bound = 20 * 1.2e-7;
     for (Eigen::Index i = 0; i < e.B.size(); ++i) {
       EXPECT_NEAR(s.patch_radiosity(i, 0), e.B[i], bound * e.B.maxCoeff()) << e.id << " " << i;
@@ -192,7 +192,7 @@ TEST_P(Solver, BandsDoNotTouchEachOther) {
                                                 .matrix();
       const Eigen::ArrayXd B =
           A.partialPivLu().solve(room.mesh.emission.col(k).cast<double>().matrix()).array();
-      // The tolerance, and rounding to float.
+      // The tolerance, plus rounding to float.
       EXPECT_LT((s.patch_radiosity.col(k).cast<double>() - B).abs().maxCoeff(),
                 (1e-7 + 6e-8) * room.mesh.emission.maxCoeff() * 4.0)
           << bands << " bands, band " << k;
@@ -220,8 +220,8 @@ TEST_P(Solver, ObserverSeesEverySweepAndItsRadiosities) {
   ASSERT_EQ(seen.size(), s.history.size());
   ASSERT_GE(seen.size(), 2u);
   EXPECT_TRUE((last == s.patch_radiosity).all());
-  // Each of these shrinks the largest residual at every sweep; Krylov's methods shrink another
-  // norm, so only that they end lower holds for all.
+  // These methods reduce the largest residual in every sweep. Krylov methods reduce another norm,
+  // so for all methods only the last residual is below the first.
   const bool is_contraction = GetParam().method == SolverMethod::jacobi ||
                               GetParam().method == SolverMethod::gauss_seidel ||
                               GetParam().method == SolverMethod::southwell;
@@ -244,8 +244,8 @@ TEST_P(Solver, FuseIsReported) {
   EXPECT_GT(s.residual, 1e-12);
 }
 
-// Rows are floats: a residual of 1e-16 is out of reach, and what is tried below rounding must not
-// lead away from what was found.
+// Rows are floats, so a residual of 1e-16 is out of reach. Iterations below rounding must not lead
+// away from the solution.
 TEST_P(Solver, StaysWhereRoundingEndsIt) {
   const RandomRoom room(60, 3);
   const GivenFormFactors F(room.F);
@@ -270,13 +270,13 @@ TEST_P(Solver, GoesOnFromWhatItIsGiven) {
   options.start = BandArray::Zero(50, 3);
   const auto afresh = solve(brighter, F, options);
   EXPECT_EQ(resumed.outcome, Outcome::converged);
-  // Each is within the tolerance of the truth.
+  // Each solution is within the tolerance of the true one.
   EXPECT_LT((resumed.patch_radiosity - afresh.patch_radiosity).abs().maxCoeff(),
             2.2e-6 * afresh.patch_radiosity.maxCoeff());
 }
 
-// Rooms a (lit) and b (dark), each the inside of a sphere, and a patch that sees nothing. All of b
-// reflects everything.
+// Rooms a (lit) and b (dark), each the inside of a sphere, and a patch that sees nothing. All
+// surfaces of b have reflectance 1.
 struct TwoRooms {
   static constexpr int n = 12;
   TwoRooms() : F(Eigen::ArrayXXd::Zero(2 * n + 1, 2 * n + 1)) {
@@ -304,7 +304,7 @@ TEST_P(Solver, ADarkRoomStaysDarkWhateverItReflects) {
     const auto s = solve(rooms.mesh, GivenFormFactors(rooms.F), options);
     EXPECT_EQ(s.outcome, Outcome::converged);
     EXPECT_EQ(s.patch_radiosity.block(n, 0, n, 3).abs().maxCoeff(), 0.0f);
-    // The mean of M is 1, half of it is given back each time.
+    // The mean of M is 1, and half of the light is reflected each time.
     EXPECT_NEAR(s.patch_radiosity(0, 0), 1.0, 1e-5);
     EXPECT_NEAR(s.patch_radiosity(3, 1), n + 1.0, 1e-5 * n);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(s.patch_radiosity(2 * n, k), 7.0, 1e-5);
@@ -313,7 +313,7 @@ TEST_P(Solver, ADarkRoomStaysDarkWhateverItReflects) {
 
 TEST_P(Solver, SaysWhereLightNeverEnds) {
   TwoRooms rooms;
-  rooms.mesh.emission(TwoRooms::n, 2) = 1.0f;  // into the room that reflects all, in one band
+  rooms.mesh.emission(TwoRooms::n, 2) = 1.0f;  // emission in the room of reflectance 1, in one band
   rooms.mesh.reflectance.row(2 * TwoRooms::n) = 0.5f;
   SolverOptions options{.name_of = [](int i) { return "the wall of patch " + std::to_string(i); }};
   try {
@@ -325,10 +325,10 @@ TEST_P(Solver, SaysWhereLightNeverEnds) {
     EXPECT_NE(what.find("band 3"), std::string::npos) << what;
     EXPECT_NE(what.find("reflectance below 1"), std::string::npos) << what;
   }
-  // One black patch in it is an end.
+  // One black patch in the room absorbs the light.
   rooms.mesh.reflectance.row(TwoRooms::n + 5) = 0.0f;
   const auto s = solve(rooms.mesh, GivenFormFactors(rooms.F));
-  // What is emitted, 1, is what the black patch takes up: E = 1 everywhere there.
+  // The black patch absorbs the emitted power, 1: E = 1 everywhere in the room.
   EXPECT_NEAR(s.patch_radiosity(TwoRooms::n + 1, 2), 1.0, 1e-4);
 }
 
@@ -380,16 +380,16 @@ TEST(Solvers, UnknownNamesAreToldTheKnownOnes) {
   }
 }
 
-// Some rooms of reflectance 1 that see each other through narrow gaps, and one that absorbs: a mode
-// for each room hardly decays, and Gauss-Seidel corrects but one.
+// Rooms of reflectance 1 that see each other through narrow gaps, and one that absorbs: one mode
+// per room hardly decays, and Gauss-Seidel corrects only one mode.
 TEST(Solvers, AutomaticCopesWithBrightCavities) {
   constexpr int rooms = 6, each = 8, n = rooms * each;
   Eigen::ArrayXXd F = Eigen::ArrayXXd::Zero(n, n);
-  constexpr double gap = 1.0 / 1024.0;  // rows add up to 1 as floats, too
+  constexpr double gap = 1.0 / 1024.0;  // rows sum to 1 in floats, too
   for (int r = 0; r < rooms; ++r) {
     F.block(r * each, r * each, each, each) = 1.0 / each;
     if (r == 0) continue;
-    const int a = (r - 1) * each, b = r * each;  // one patch of each sees a patch of the next
+    const int a = (r - 1) * each, b = r * each;  // one patch of each room sees one of the next
     F(a, b) = F(b, a) = gap;
     F(a, a) -= gap;
     F(b, b) -= gap;
@@ -405,16 +405,16 @@ TEST(Solvers, AutomaticCopesWithBrightCavities) {
   const auto s = solve_radiosity(SolverMethod::automatic, mesh, GivenFormFactors(F), options);
   EXPECT_EQ(s.outcome, Outcome::converged);
   EXPECT_LT(s.history.size(), 100u);
-  // Nothing ends in the bright rooms, so as much comes in as goes out, and all is as bright as what
-  // lights the first gap. A residual is multiplied by how often light bounces there before it
-  // finds a way out, each / gap = 8192 times, and again in each of 5 rooms.
+  // Nothing is absorbed in the bright rooms, so as much light enters as leaves, and all rooms are
+  // as bright as the patch at the first gap. A residual is multiplied by the number of bounces
+  // before light leaves a room, each / gap = 8192, once more in each of 5 rooms.
   constexpr double bound = 1e-11 * rooms * rooms * each / gap + 1.2e-7;
   for (int i = each; i < n; ++i) {
     EXPECT_NEAR(s.patch_radiosity(i, 0) / s.patch_radiosity(0, 0), 1.0, bound) << i;
   }
 }
 
-// What passes a mirror one way only is no physics, but a matrix still.
+// Light through a mirror in one direction only is unphysical, but a valid matrix.
 TEST(Solvers, ThoseThatNeedReciprocityLookForIt) {
   const RandomRoom room(30, 3);
   Eigen::ArrayXXd one_way = Eigen::ArrayXXd::Zero(30, 30);
@@ -439,7 +439,7 @@ TEST(Solvers, ThoseThatNeedReciprocityLookForIt) {
     EXPECT_LT((s.patch_radiosity - reference.patch_radiosity).abs().maxCoeff(),
               2.2e-6 * reference.patch_radiosity.maxCoeff());
   }
-  // The same both ways is welcome.
+  // The same exchange in both directions is accepted.
   Eigen::ArrayXXd both_ways = one_way;
   both_ways(7, 3) = one_way(3, 7) * room.mesh.area[3] / room.mesh.area[7];
   both_ways(8, 4) = one_way(4, 8) * room.mesh.area[4] / room.mesh.area[8];

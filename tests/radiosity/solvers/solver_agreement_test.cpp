@@ -1,5 +1,5 @@
-// All solvers on the form factors of real scenes: the same answer, wherever rows are kept, and the
-// same bits for any number of threads.
+// All solvers on the form factors of real scenes: the same solution wherever rows are stored, and
+// the same bits for any number of threads.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -45,7 +45,8 @@ void add_lamp(Scene& scene, const Eigen::Vector3d& at, float exitance) {
   add_polygon(scene, "lamp", add_material(scene, lamp), {at, at + y, at + x + y, at + x});
 }
 
-// A tinted mirror for a wall, a floor that both mirrors and scatters, a block of glass.
+// A room with a tinted mirror as a wall, a floor that both mirrors and scatters, and a block of
+// glass.
 Scene mirror_room() {
   Scene scene;
   Material red = diffuse(scene.bands, 0.8f);
@@ -60,8 +61,7 @@ Scene mirror_room() {
   return scene;
 }
 
-// A lit room, one that nothing lights and that reflects all, and a small one lit a millionth as
-// much.
+// A lit room, an unlit room of reflectance 1, and a small room with a millionth of the light.
 Scene rooms_apart() {
   Scene scene;
   const int grey = add_material(scene, diffuse(scene.bands, 0.6f)),
@@ -83,8 +83,8 @@ RadiositySolution solve(const Solvable& s, SolverMethod method) {
   return solution;
 }
 
-// Both answers are within the tolerance of the true one, and rounded to float. `closure_error`: of
-// the rows.
+// Both solutions are within the tolerance of the true one, and rounded to float. `closure_error`:
+// closure error of the rows.
 void expect_agreement(const Solvable& s, double closure_error) {
   const BandArray B = solve(s, SolverMethod::gauss_seidel).patch_radiosity;
   ASSERT_GT(B.maxCoeff(), 0.0f);
@@ -109,8 +109,8 @@ TEST(SolverAgreement, InARoomOfMirrorsAndGlass) {
   std::size_t specular = 0;
   for (int i = 0; i < s.mesh.patch_count(); ++i) specular += s.F->specular_row(i).patch.size();
   ASSERT_GT(specular, 1000u);
-  expect_agreement(s, 1e-3);  // of what mirrors and glass pass on, from 256 rays
-  // What goes by way of mirrors is stored as reciprocal as what goes straight.
+  expect_agreement(s, 1e-3);  // error of the light through mirrors and glass, from 256 rays
+  // Stored exchange through mirrors is as reciprocal as direct exchange.
   EXPECT_EQ(solve(s, SolverMethod::automatic).solver, "cg");
 }
 
