@@ -6,11 +6,11 @@ namespace lightwell {
 
 class Journal;
 
-/// How a run is watched, kept and stopped. Decides no bit of its result.
+/// Progress, interruption and journal of a run. The result does not depend on any of them.
 struct RunControl {
   Progress progress{};
-  /// Collects finished work, and gives it back to a run that resumes an interrupted one. Of the
-  /// same scene. Null: nothing is kept.
+  /// Journal of the same scene, which keeps finished work and recalls it in a resumed run. Null:
+  /// nothing is kept.
   Journal* journal = nullptr;
 };
 
