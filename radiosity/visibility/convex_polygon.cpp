@@ -104,7 +104,7 @@ class Joiner {
 
  private:
   struct Edge {
-    int left, right;  // triangles; the edge runs from a to b in the left one
+    int left, right;  // triangles; the edge runs from a to b in the left triangle
     int a, b;
     double length;
   };

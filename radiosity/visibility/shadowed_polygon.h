@@ -51,7 +51,8 @@ class ShadowedPolygon {
   static constexpr int most_blockers = 32;
 
   ShadowedPolygon() = default;  ///< empty until set()
-  /// `parts` tile the polygon, counter-clockwise seen from the points. Both are kept by reference.
+  /// `parts` tile the polygon, counter-clockwise seen from the points. Keeps references to
+  /// parts and blockers.
   ShadowedPolygon(std::span<const ConvexPolygon> parts, std::span<const Blocker> blockers)
       : parts_(parts), blockers_(blockers) {}
   /// Replaces polygon and blockers, reusing memory.
