@@ -36,12 +36,16 @@ Loops clipped(const Loops& loops, const Vector3d& on_plane, const Vector3d& norm
   return result;
 }
 
-// int ln |x - point| over the segment from a to a + length along.
-double log_integral(const Vector3d& point, const Vector3d& a, const Vector3d& along,
-                    double length) {
-  const Vector3d to_a = a - point;
-  const double start = to_a.dot(along), end = start + length;
-  const double squared = (to_a - start * along).squaredNorm();  // no cancellation near 0
+struct EdgeOf {
+  Vector3d from, along;  // start, unit direction
+  double length;
+};
+
+// int ln |x - point| over the edge.
+double log_integral(const Vector3d& point, const EdgeOf& edge) {
+  const Vector3d to_start = edge.from - point;
+  const double start = to_start.dot(edge.along), end = start + edge.length;
+  const double squared = (to_start - start * edge.along).squaredNorm();  // no cancellation near 0
   const double distance = std::sqrt(squared);
   const auto antiderivative = [&](double x) {
     const double r2 = x * x + squared;
@@ -49,7 +53,7 @@ double log_integral(const Vector3d& point, const Vector3d& a, const Vector3d& al
   };
   double value = antiderivative(end) - antiderivative(start);
   // atan(end / d) - atan(start / d) as a single arc tangent.
-  if (distance > 0.0) value += distance * std::atan2(distance * length, squared + start * end);
+  if (distance > 0.0) value += distance * std::atan2(distance * edge.length, squared + start * end);
   return value;
 }
 
@@ -106,28 +110,26 @@ struct Rules {
   }
 };
 
-double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& along,
-                           double length) {
-  const double t = std::clamp((p - a).dot(along), 0.0, length);
-  return (a + t * along - p).norm();
+double distance_to_edge(const Vector3d& p, const EdgeOf& edge) {
+  const double t = std::clamp((p - edge.from).dot(edge.along), 0.0, edge.length);
+  return (edge.from + t * edge.along - p).norm();
 }
 
-// Lower bound of the distance between two segments, sharp where the segments are far apart.
-double gap_between(const Vector3d& a, const Vector3d& along, double length, const Vector3d& b,
-                   const Vector3d& other_along, double other_length) {
-  const Vector3d middle = a + 0.5 * length * along;
-  return std::max(0.0, distance_to_segment(middle, b, other_along, other_length) - 0.5 * length);
+// Lower bound of the distance between two edges, sharp where the edges are far apart.
+double gap_between(const EdgeOf& edge, const EdgeOf& other) {
+  const Vector3d middle = edge.from + 0.5 * edge.length * edge.along;
+  return std::max(0.0, distance_to_edge(middle, other) - 0.5 * edge.length);
 }
 
 // int int ln r ds dt over two edges: quadrature along the first, closed form along the second.
-double edge_pair(const Rules& rules, const Vector3d& a, const Vector3d& along, double length,
-                 const Vector3d& b, const Vector3d& other_along, double other_length) {
+double edge_pair(const Rules& rules, const EdgeOf& edge, const EdgeOf& other) {
+  const auto& [a, along, length] = edge;
   // The integrand is least smooth opposite the ends of the other edge, so close edges are cut
   // there.
-  std::array<double, 4> cut = {0.0, (b - a).dot(along),
-                               (b + other_length * other_along - a).dot(along), length};
+  std::array<double, 4> cut = {0.0, (other.from - a).dot(along),
+                               (other.from + other.length * other.along - a).dot(along), length};
   for (double& c : cut) c = std::clamp(c, 0.0, length);
-  const bool is_close = gap_between(a, along, length, b, other_along, other_length) < 1.5 * length;
+  const bool is_close = gap_between(edge, other) < 1.5 * length;
   if (!is_close) cut[1] = cut[2] = 0.0;
   std::sort(cut.begin(), cut.end());
   double sum = 0.0;
@@ -135,19 +137,17 @@ double edge_pair(const Rules& rules, const Vector3d& a, const Vector3d& along, d
     const double part = cut[piece + 1] - cut[piece];
     if (!(part > 1e-12 * length)) continue;
     const Vector3d start = a + cut[piece] * along;
-    const double gap = gap_between(start, along, part, b, other_along, other_length);
+    const double gap = gap_between({start, along, part}, other);
     for (const Node& node : rules.rule_for(gap / part)) {
-      sum += node.weight * part *
-             log_integral(start + node.at * part * along, b, other_along, other_length);
+      sum += node.weight * part * log_integral(start + node.at * part * along, other);
     }
   }
   return sum;
 }
 
-struct EdgeOf {
-  Vector3d from, along;
-  double length;
-};
+EdgeOf in_units(const EdgeOf& edge, double unit) {
+  return {edge.from / unit, edge.along, edge.length / unit};
+}
 
 std::vector<EdgeOf> edges_of(const Loops& loops) {
   std::vector<EdgeOf> edges;
@@ -185,8 +185,7 @@ double polygon_exchange(const PatchOutline& first, const PatchOutline& second) {
       const bool first_is_shorter = p.length <= q.length;
       const EdgeOf& outer = first_is_shorter ? p : q;
       const EdgeOf& inner = first_is_shorter ? q : p;
-      sum += cosine * edge_pair(rules, outer.from / unit, outer.along, outer.length / unit,
-                                inner.from / unit, inner.along, inner.length / unit);
+      sum += cosine * edge_pair(rules, in_units(outer, unit), in_units(inner, unit));
     }
   }
   return std::max(0.0, sum * unit * unit / (2.0 * std::numbers::pi));
