@@ -28,14 +28,13 @@ struct Visibility {
 
 class PairVisibility {
  public:
-  PairVisibility(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
-                 double target_error)
-      : mesh_(caster.mesh()),
-        caster_(caster),
-        target_(target_error > 0.0 ? target_error : usual_target),
+  explicit PairVisibility(const PolygonPairs& pairs)
+      : mesh_(pairs.caster.mesh()),
+        caster_(pairs.caster),
+        target_(pairs.target_error > 0.0 ? pairs.target_error : usual_target),
         sobol_(points_in_set),
-        shafts_(caster, outlines) {
-    samplers_.reserve(outlines.size());
+        shafts_(pairs.caster, pairs.outlines) {
+    samplers_.reserve(pairs.outlines.size());
     for (int i = 0; i < mesh_.patch_count(); ++i) samplers_.emplace_back(mesh_, i);
   }
 
@@ -106,22 +105,40 @@ class PairVisibility {
   std::vector<PatchSampler> samplers_;
 };
 
+// Exchange of patch i with patches j > i.
+struct AnalyticRow {
+  std::vector<FormFactor> entries{};  // S_ij
+  std::vector<float> error{};         // standard error of S_ij from the visibility
+};
+
+AnalyticRow analytic_row(const PolygonPairs& pairs, const PairExchange& closed_form,
+                         const PairVisibility& visibility, int i) {
+  AnalyticRow row;
+  const int n = static_cast<int>(pairs.outlines.size());
+  for (int j = i + 1; j < n; ++j) {
+    if (!pairs.receives[j] || !pairs.outlines[j].is_polygon()) continue;
+    const double unoccluded = closed_form.between(i, j);
+    if (!(unoccluded > 0.0)) continue;
+    const Visibility seen = visibility.between(i, j, unoccluded);
+    if (!(seen.share > 0.0)) continue;
+    const auto S = static_cast<float>(unoccluded * seen.share);
+    if (!(S > 0.0f)) continue;
+    row.entries.push_back({j, S});
+    row.error.push_back(static_cast<float>(unoccluded * std::sqrt(seen.variance)));
+  }
+  return row;
+}
+
 }  // namespace
 
-void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
-                       const std::vector<char>& receives, double target_error,
-                       const Progress& progress, std::vector<float>& row_error,
+void analytic_exchange(const PolygonPairs& pairs, const Progress& progress,
+                       std::vector<float>& row_error,
                        const std::function<void(int, std::vector<FormFactor>&)>& take,
                        const JournalPhase& phase) {
-  const PatchMesh& mesh = caster.mesh();
+  const PatchMesh& mesh = pairs.caster.mesh();
   const int n = mesh.patch_count();
-  const PairVisibility visibility(caster, outlines, target_error);
-  const PairExchange closed_form(outlines);
-  // entries: S_ij; error: standard error of S_ij from the visibility.
-  struct Row {
-    std::vector<FormFactor> entries;
-    std::vector<float> error;
-  };
+  const PairVisibility visibility(pairs);
+  const PairExchange closed_form(pairs.outlines);
   // A row has up to n entries, so the slices of many patches are short.
   const int slice = std::clamp((1 << 21) / std::max(n, 1), 4, 64);
   for (int begin = 0; begin < n; begin += slice) {
@@ -129,29 +146,18 @@ void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutli
     const double left = static_cast<double>(n - begin) / n;
     report(progress, "form factors", 1.0 - left * left);
     const int size = std::min(slice, n - begin);
-    std::vector<Row> rows(static_cast<std::size_t>(size));
+    std::vector<AnalyticRow> rows(static_cast<std::size_t>(size));
     parallel_for(size, 1, [&](int low, int high) {
       for (int k = low; k < high; ++k) {
         const int i = begin + k;
-        if (!receives[i] || !outlines[i].is_polygon()) continue;
+        if (!pairs.receives[i] || !pairs.outlines[i].is_polygon()) continue;
         if (phase.recall(i, rows[k].entries, rows[k].error)) continue;
-        rows[k] = {};
-        for (int j = i + 1; j < n; ++j) {
-          if (!receives[j] || !outlines[j].is_polygon()) continue;
-          const double unoccluded = closed_form.between(i, j);
-          if (!(unoccluded > 0.0)) continue;
-          const Visibility seen = visibility.between(i, j, unoccluded);
-          if (!(seen.share > 0.0)) continue;
-          const auto S = static_cast<float>(unoccluded * seen.share);
-          if (!(S > 0.0f)) continue;
-          rows[k].entries.push_back({j, S});
-          rows[k].error.push_back(static_cast<float>(unoccluded * std::sqrt(seen.variance)));
-        }
+        rows[k] = analytic_row(pairs, closed_form, visibility, i);
         phase.keep(i, rows[k].entries, rows[k].error);
       }
     });
     for (int k = 0; k < size; ++k) {
-      Row& row = rows[k];
+      AnalyticRow& row = rows[k];
       for (std::size_t e = 0; e < row.entries.size(); ++e) {
         for (const int end : {begin + k, row.entries[e].patch}) {
           const float error = row.error[e] / static_cast<float>(mesh.area[end]);

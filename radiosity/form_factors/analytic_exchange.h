@@ -8,6 +8,14 @@
 
 namespace lightwell {
 
+/// Patches whose pairs exchange light, and the accuracy of their visibility.
+struct PolygonPairs {
+  const ElementCaster& caster;
+  const std::vector<PatchOutline>& outlines;
+  const std::vector<char>& receives;  ///< per patch: takes part in diffuse exchange
+  double target_error = 0.0;          ///< wanted standard error of F_ij; 0: 1e-3
+};
+
 /// Exchange areas S_ij = A_i F_ij of all pairs of polygons: the closed form times the visibility of
 /// the pair. Methods for the visibility:
 ///   - 1 where the shaft between the patches (Shafts) is empty;
@@ -22,9 +30,8 @@ namespace lightwell {
 /// one entry per patch, is raised to the standard error of the row's worst F_ij. `take(i, row)`
 /// gets the exchange of patch i with patches j > i, row after row. Rows that `phase` holds are
 /// recalled.
-void analytic_exchange(const ElementCaster& caster, const std::vector<PatchOutline>& outlines,
-                       const std::vector<char>& receives, double target_error,
-                       const Progress& progress, std::vector<float>& row_error,
+void analytic_exchange(const PolygonPairs& pairs, const Progress& progress,
+                       std::vector<float>& row_error,
                        const std::function<void(int, std::vector<FormFactor>&)>& take,
                        const JournalPhase& phase = {});
 

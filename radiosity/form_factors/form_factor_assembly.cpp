@@ -14,17 +14,14 @@ using Eigen::ArrayXd;
 
 class Assembly {
  public:
-  Assembly(const PatchMesh& mesh, RowEstimates rows, KnownExchange known, bool enforce_closure,
-           std::shared_ptr<MemoryBudget> budget, const Progress& progress, const PhaseOf& phase_of)
+  Assembly(const PatchMesh& mesh, RowEstimates rows, KnownExchange known,
+           const AssemblyOptions& options)
       : mesh_(mesh),
         n_(mesh.patch_count()),
         rows_(std::move(rows)),
         known_(std::move(known)),
-        enforce_closure_(enforce_closure),
-        budget_(std::move(budget)),
-        progress_(progress),
-        phase_of_(phase_of),
-        S_(budget_, n_),
+        options_(options),
+        S_(options.budget, n_),
         weight_(PerKind::Ones(n_, 2)),
         target_(ArrayXd::Zero(n_)),
         open_(target_) {
@@ -36,23 +33,21 @@ class Assembly {
   }
 
   std::unique_ptr<FormFactors> build(FormFactorReport* report) {
-    auto result = std::make_unique<StoredFormFactors>(budget_, n_, rows_.bands());
+    auto result = std::make_unique<StoredFormFactors>(options_.budget, n_, rows_.bands());
     FormFactorReport found;
     found.closed_forms = known_.S.record_count();
     join();
     note_corrections(found);
-    if (enforce_closure_) {
+    if (options_.enforce_closure) {
       close_whole_rows();
       close_sampled_rows();
       close_all_rows();
     }
     store(*result, found);
-    if (rows_.has_specular()) {
-      assemble_specular(mesh_, rows_, enforce_closure_, budget_, phase_of_, *result);
-    }
+    if (rows_.has_specular()) assemble_specular(mesh_, rows_, options_, *result);
     result->rows.close();
     result->specular.close();
-    lightwell::report(progress_, "balance", 1.0);
+    lightwell::report(options_.progress, "balance", 1.0);
     note_rays(found);
     if (report) *report = std::move(found);
     return result;
@@ -95,7 +90,7 @@ class Assembly {
         },
         [&](int i) {
           known_.S.release(i);
-          report(progress_, "balance", join_share * i / n_);
+          report(options_.progress, "balance", join_share * i / n_);
         });
     S_.close();
   }
@@ -106,7 +101,8 @@ class Assembly {
   // Row sums of sampled and of known exchange at the present scaling, where patch j counts x_j.
   PerKind sums(const ArrayXd& x) {
     constexpr double most = 3 * 200;  // most steps of the three scalings
-    report(progress_, "balance", join_share + (1.0 - join_share) * std::min(1.0, ++steps_ / most));
+    report(options_.progress, "balance",
+           join_share + (1.0 - join_share) * std::min(1.0, ++steps_ / most));
     return weight_ * S_.product(weight_.colwise() * x);
   }
 
@@ -136,7 +132,7 @@ class Assembly {
         [&](const ArrayXd& x) -> Eigen::ArrayXXd {
           return whole * sums(whole * x).col(Exchange::known);
         },
-        fixed, wanted, phase_of_("balance of closed forms"));
+        fixed, wanted, options_.phase_of("balance of closed forms"));
   }
 
   // Scales the samples of a row to the part that closed forms leave.
@@ -153,7 +149,7 @@ class Assembly {
     left = left.max(has / most_stretch).min(has * most_stretch);
     weight_.col(Exchange::sampled) = symmetric_scaling(
         [&](const ArrayXd& x) -> Eigen::ArrayXXd { return sums(x).col(Exchange::sampled); }, open,
-        left, phase_of_("balance of samples"));
+        left, options_.phase_of("balance of samples"));
     for (int i = 0; i < n_; ++i) {
       if (!is_whole(i)) open_[i] *= weight_(i, Exchange::sampled);
     }
@@ -162,7 +158,7 @@ class Assembly {
   void close_all_rows() {
     const ArrayXd d = symmetric_scaling(
         [&](const ArrayXd& x) -> Eigen::ArrayXXd { return sums(x).rowwise().sum(); }, open_,
-        target_, phase_of_("balance"));
+        target_, options_.phase_of("balance"));
     weight_.colwise() *= d;
     open_ *= d;
   }
@@ -211,10 +207,7 @@ class Assembly {
   int n_ = 0;
   RowEstimates rows_;
   KnownExchange known_;
-  bool enforce_closure_ = true;
-  std::shared_ptr<MemoryBudget> budget_;
-  const Progress& progress_;
-  const PhaseOf& phase_of_;
+  const AssemblyOptions& options_;
   int steps_ = 0;
   ExchangeMatrix S_;
   PerKind weight_;         // S_ij is scaled by weight_ of i and of j
@@ -224,14 +217,10 @@ class Assembly {
 }  // namespace
 
 std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, RowEstimates rows,
-                                                   KnownExchange known, bool enforce_closure,
-                                                   std::shared_ptr<MemoryBudget> budget,
-                                                   const Progress& progress,
-                                                   const PhaseOf& phase_of,
+                                                   KnownExchange known,
+                                                   const AssemblyOptions& options,
                                                    FormFactorReport* report) {
-  return Assembly(mesh, std::move(rows), std::move(known), enforce_closure, std::move(budget),
-                  progress, phase_of)
-      .build(report);
+  return Assembly(mesh, std::move(rows), std::move(known), options).build(report);
 }
 
 }  // namespace lightwell

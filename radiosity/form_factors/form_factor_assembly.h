@@ -24,15 +24,19 @@ struct KnownExchange {
 /// Phase of a journal by name.
 using PhaseOf = std::function<JournalPhase(std::string_view name)>;
 
-/// Joins the two estimates of every pair, replaces pairs by known exchange, and stores the result.
-/// With `enforce_closure` rows are closed by scaling: sampled exchange first, then all exchange.
-/// `rows` and `known` are released piece by piece while the result grows. `phase_of` gives the
-/// phases that keep the states of the scalings.
+struct AssemblyOptions {
+  bool enforce_closure = true;             ///< close rows by scaling
+  std::shared_ptr<MemoryBudget> budget{};  ///< storage of the result
+  Progress progress{};
+  PhaseOf phase_of{};  ///< phases that keep the states of the scalings
+};
+
+/// Joins the two estimates of every pair, replaces pairs by known exchange, closes the rows
+/// (sampled exchange first, then all exchange), and stores the result. `rows` and `known` are
+/// released piece by piece while the result grows.
 std::unique_ptr<FormFactors> assemble_form_factors(const PatchMesh& mesh, RowEstimates rows,
-                                                   KnownExchange known, bool enforce_closure,
-                                                   std::shared_ptr<MemoryBudget> budget,
-                                                   const Progress& progress,
-                                                   const PhaseOf& phase_of,
+                                                   KnownExchange known,
+                                                   const AssemblyOptions& options,
                                                    FormFactorReport* report);
 
 }  // namespace lightwell

@@ -256,7 +256,7 @@ class Estimator {
     Estimate estimate = nothing_yet();
     cast_counts(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)), is_count);
     analytic_exchange(
-        caster_, outlines, receives_, options_.target_error, options_.run.progress,
+        {caster_, outlines, receives_, options_.target_error}, options_.run.progress,
         estimate.row_error,
         [&](int i, std::vector<FormFactor>& row) { estimate.known.S.append(i, row); },
         phase_of("all pairs"));
@@ -307,8 +307,11 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
             }};
   };
   auto result = assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
-                                      options.enforce_closure, budget, options.run.progress,
-                                      phase_of, report);
+                                      {.enforce_closure = options.enforce_closure,
+                                       .budget = budget,
+                                       .progress = options.run.progress,
+                                       .phase_of = phase_of},
+                                      report);
   if (report) report->row_error = std::move(estimate.row_error);
   return result;
 }

@@ -85,12 +85,11 @@ Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const R
 
 }  // namespace
 
-void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_closure,
-                       const std::shared_ptr<MemoryBudget>& budget, const PhaseOf& phase_of,
+void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, const AssemblyOptions& options,
                        StoredFormFactors& result) {
-  RecordStore S = joined_records(mesh, rows, budget);
+  RecordStore S = joined_records(mesh, rows, options.budget);
   Eigen::ArrayXXd d = Eigen::ArrayXXd::Ones(rows.patch_count(), rows.bands());
-  if (enforce_closure) d = balance(mesh, rows, S, phase_of);
+  if (options.enforce_closure) d = balance(mesh, rows, S, options.phase_of);
   Eigen::ArrayXXd kept = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
   unfold_symmetric(S, [&](int i, RecordSpan below, RecordSpan upper) {
     std::vector<int> patches;
@@ -118,7 +117,7 @@ void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_c
       return spectrum.template cast<double>().eval();
     };
     const Eigen::Array<double, 1, Eigen::Dynamic> change =
-        enforce_closure
+        options.enforce_closure
             ? Eigen::Array<double, 1, Eigen::Dynamic>(as_row(rows.specular_sum(i)) - kept.row(i))
             : Eigen::Array<double, 1, Eigen::Dynamic>::Zero(rows.bands());
     const Eigen::Array<double, 1, Eigen::Dynamic> absorbed =

@@ -7,10 +7,9 @@
 namespace lightwell {
 
 /// Joins both ends' estimates of the exchange through mirrors and glass, per band, and adds the
-/// exchange and its losses to `result`. With `enforce_closure` the exchange of each band is scaled
-/// symmetrically until every row passes on the share that its own rays measured.
-void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, bool enforce_closure,
-                       const std::shared_ptr<MemoryBudget>& budget, const PhaseOf& phase_of,
+/// exchange and its losses to `result`. With options.enforce_closure the exchange of each band is
+/// scaled symmetrically until every row passes on the share that its own rays measured.
+void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, const AssemblyOptions& options,
                        StoredFormFactors& result);
 
 }  // namespace lightwell
