@@ -15,12 +15,17 @@ using Eigen::Vector3d;
 constexpr double flat_sine = 1e-12;   // sine of an angle that counts as 0
 constexpr double same = 1.0 - 1e-14;  // cosine of an angle that counts as 0
 
-// Adds planes through an edge of `edges` and one of `corners`, with `before` at heights >= 0,
-// `behind` at heights <= 0 and some of `points` at heights < 0.
-void add_parting_planes(std::span<const Vector3d> edges, std::span<const Vector3d> corners,
-                        std::span<const Vector3d> before, std::span<const Vector3d> behind,
-                        std::span<const Vector3d> points, double slack,
-                        std::vector<HalfSpace>& planes) {
+// Two convex sets to be separated by planes that have some of `points` at heights < 0.
+struct Parting {
+  std::span<const Vector3d> before, behind;  // at heights >= 0 and <= 0
+  std::span<const Vector3d> points;
+  double slack;  // m, tolerance of heights
+};
+
+// Adds the separating planes through an edge of `edges` and one of `corners`.
+void add_parting_planes(const Parting& parting, std::span<const Vector3d> edges,
+                        std::span<const Vector3d> corners, std::vector<HalfSpace>& planes) {
+  const double slack = parting.slack;
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const Vector3d edge = edges[(k + 1) % edges.size()] - edges[k];
     for (const Vector3d& corner : corners) {
@@ -30,8 +35,9 @@ void add_parting_planes(std::span<const Vector3d> edges, std::span<const Vector3
       for (const double sign : {1.0, -1.0}) {
         HalfSpace plane{sign / length * across, 0.0};
         plane.offset = plane.normal.dot(edges[k]);
-        const bool parts = any_below(points, plane, 0.0) && !any_below(before, plane, -slack) &&
-                           !any_above(behind, plane, slack) &&
+        const bool parts = any_below(parting.points, plane, 0.0) &&
+                           !any_below(parting.before, plane, -slack) &&
+                           !any_above(parting.behind, plane, slack) &&
                            std::none_of(planes.begin(), planes.end(), [&](const HalfSpace& known) {
                              return known.normal.dot(plane.normal) > same &&
                                     std::abs(known.offset - plane.offset) < slack;
@@ -88,9 +94,10 @@ bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, cons
   const auto near = blocker.polygon.corners();
   blocker.reach.push_back(blocker.plane);
   if (from.parts.empty()) return true;  // a single point has no penumbra
-  add_parting_planes(near, far_corners, near, far_corners, from.corners, slack, blocker.reach);
+  const Parting parting{near, far_corners, from.corners, slack};
+  add_parting_planes(parting, near, far_corners, blocker.reach);
   for (const ConvexPolygon& part : far_parts) {
-    add_parting_planes(part.corners(), near, near, far_corners, from.corners, slack, blocker.reach);
+    add_parting_planes(parting, part.corners(), near, blocker.reach);
   }
   return true;
 }
