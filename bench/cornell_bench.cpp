@@ -1,5 +1,4 @@
-// How fast the two passes are, against what plain Embree does with the same rays in the same
-// process.
+// Speed of the two passes, beside plain Embree with the same rays in the same process.
 //
 //   lightwell_bench [SCENE.toml]     default: the diffuse Cornell box
 //
@@ -27,7 +26,7 @@ namespace {
 
 using namespace lightwell;
 
-// The median of some runs: machines are shared and noisy.
+// Median seconds of several runs, since machines are shared and noisy.
 double median_seconds(int runs, const std::function<void()>& work) {
   std::vector<double> seconds;
   for (int i = 0; i < runs; ++i) seconds.push_back(seconds_of(work));
@@ -89,7 +88,7 @@ int main(int argc, char** argv) {
   const Scene scene = read_scene(argc > 1 ? argv[1] : LIGHTWELL_CORNELL "/cornell.toml");
   fmt::print("scene {}, {} threads\n", scene.file.string(), thread_count());
 
-  // End to end first, so that peak memory is the product's own.
+  // The end-to-end run comes first: peak memory is then that of the program alone.
   SolvedScene solved;
   const double solve_seconds = seconds_of([&] { solved = solve_scene(scene); });
   const PatchMesh& mesh = solved.mesh;
@@ -111,7 +110,7 @@ int main(int argc, char** argv) {
              render_seconds, solve_seconds + render_seconds,
              static_cast<double>(resident_memory().most) / (1 << 20));
 
-  // Rows are cast before elements are split.
+  // Rows of form factors are cast on the mesh before refinement.
   constexpr int rays_per_patch = 512, runs = 5;
   const PatchMesh even = build_patches(scene);
   const ElementCaster even_caster(even);

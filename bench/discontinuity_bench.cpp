@@ -1,12 +1,14 @@
-// What cutting receivers along critical lines gains: error of direct light over elements.
+// Error of direct light over the number of elements, with and without receivers cut along critical
+// lines.
 //
 //   discontinuity_bench [PLOT.svg]
 //
 // A rectangular lamp over a half plane (lines of first degree), a triangular lamp over a square
-// (second degree alone) and the Cornell box: the largest and the RMS difference between the true
-// form factor of the lamp and what interpolation of true values at the vertices makes of it, on
-// the floor, for even elements and for elements cut along the lines. Truth is by clipping, without
-// samples. With PLOT.svg it draws the profile across the half plane's penumbra and the errors.
+// (second degree alone) and the Cornell box: the largest and the RMS difference on the floor
+// between the true form factor of the lamp and the interpolation of true values at the vertices,
+// for even elements and for elements cut along the lines. True values are found by clipping,
+// without samples. With PLOT.svg the program draws the errors and their profile across the half
+// plane's penumbra.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +42,7 @@ void add_polygon(Scene& scene, const std::string& name, int material,
   scene.surfaces.push_back({.name = name, .material = material, .shape = std::move(mesh)});
 }
 
-// Floor (facet 0), lamp at z = 2 (facet 1, given clockwise seen from above) and screen at z = 1.
+// Floor (facet 0), lamp at z = 2 (facet 1, clockwise as seen from above) and screen at z = 1.
 Scene shadow_scene(const std::vector<Vector3d>& lamp, const std::vector<Vector3d>& screen) {
   Scene scene = grey_scene();
   Material light = scene.materials[0];
@@ -73,8 +75,8 @@ struct Quality {
   std::vector<std::array<double, 2>> profile{};  // x, and error of F there, along one line
 };
 
-// True form factors from points of the receiver to all emitting patches, clipped exactly: the
-// emitter is not cut up, so one patch is one facet.
+// True form factors from points of the receiver to all emitting patches by exact clipping. Patches
+// are larger than the scene, so that every patch of the emitter is a whole facet.
 class Truth {
  public:
   explicit Truth(const Scene& scene)
@@ -101,7 +103,7 @@ class Truth {
   std::vector<int> emitters_;
 };
 
-// Errors along a line through the floor's middle that runs along no mesh line.
+// Errors along a line beside the floor's middle that coincides with no mesh line.
 std::vector<std::array<double, 2>> profile(const PatchMesh& mesh, const Truth& truth,
                                            const Eigen::ArrayX4d& corner_F) {
   Eigen::AlignedBox3d box;
@@ -132,7 +134,8 @@ std::vector<std::array<double, 2>> profile(const PatchMesh& mesh, const Truth& t
   return errors;
 }
 
-// Corners as the solver places them, then 16 points inside, of every element of facet 0.
+// Errors on facet 0: in each element the corners, where the solver places them, are interpolated at
+// 16 inner points.
 Quality quality(const Scene& scene, const Truth& truth, const MeshOptions& options) {
   Quality result;
   const auto start = std::chrono::steady_clock::now();
@@ -144,7 +147,7 @@ Quality quality(const Scene& scene, const Truth& truth, const MeshOptions& optio
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (mesh.facet[e] != 0 || mesh.is_back[mesh.patch[e]] != 0) continue;
     elements.push_back(e);
-    for (int i = 0; i < 4; ++i) {  // of a triangle the last corner twice
+    for (int i = 0; i < 4; ++i) {  // a triangle repeats its last corner
       points.push_back(receiving_corner(mesh, e, std::min(i, mesh.corner_count(e) - 1)));
     }
     for (int k = 0; k < inside; ++k) {
@@ -187,7 +190,7 @@ struct Row {
   Quality cut, even;
 };
 
-// Even elements of about as many, never fewer.
+// Cut elements beside even ones of about the same number, never fewer.
 std::vector<Row> compare(const Scene& scene, const std::string& name, double unit,
                          const std::vector<double>& sizes) {
   const Truth truth(scene);

@@ -1,11 +1,11 @@
-// The four form-factor methods side by side: how far off at what cost.
+// Error and cost of the four form-factor methods.
 //
 //   form_factor_bench [PLOT.svg]
 //
-// A closed box of 600 patches (where every pair has an exact closed form) and the same with a block
-// in it (where the reference is the analytic method with many shadow rays). Prints, per method and
-// effort: seconds per row, RMS and worst error of F_ij; closed forms per second; and time and
-// memory of cities of growing size. With PLOT.svg it draws error over rays or cells per row.
+// A closed box of 600 patches (every pair has an exact closed form) and the box with a block in it
+// (the reference is the analytic method with many shadow rays). Prints, per method and effort:
+// seconds per row, RMS and worst error of F_ij; closed forms per second; and time and memory of
+// cities of growing size. With PLOT.svg the program draws error over rays or cells per row.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -111,7 +111,7 @@ std::vector<Curve> measure_all(const Prepared& p, const Eigen::MatrixXd& referen
   return curves;
 }
 
-// Logarithmic axes, one line per curve.
+// Draws one line per curve on logarithmic axes.
 void draw(const std::string& file, const std::vector<Curve>& curves) {
   constexpr double left = 70, top = 20, width = 520, height = 340;
   constexpr double low_x = 1.5, high_x = 5.5, low_y = -7.0, high_y = -1.5;  // powers of ten
@@ -176,7 +176,7 @@ void count_pairs(const Prepared& p) {
              0.5e-6 * n * n / seconds);
 }
 
-// A city of n x n blocks on a plain, in triangles.
+// A city of n x n blocks on a plain, made of triangles.
 Scene city(int n) {
   Scene scene = grey_scene();
   PolygonMesh mesh;

@@ -1,11 +1,11 @@
-// How quickly the window draws, beside VTK alone.
+// Frame rate of the window, beside plain VTK.
 //
 //   xvfb-run -a frame_bench [ELEMENTS ...]
 //
-// For each number of elements (100 000 and 1 000 000) of a room: frames a second of the walk's
-// window as the eye turns, and of a bare VTK window that draws the same triangles with the same
-// colours, 1280 x 720, by turns in one run, and their ratio. Then how long a change of exposure and
-// of the light of a channel takes, up to the next picture.
+// For each number of elements (100 000 and 1 000 000) of a room: frames per second of the walk's
+// window while the eye turns, and of a plain VTK window with the same triangles and colours, both
+// of 1280 x 720 pixels, frame by frame in one run; and their ratio. Then the time from a change of
+// exposure, and from a change of a channel's scale, to the next picture.
 #include <fmt/format.h>
 #include <vtkActor.h>
 #include <vtkCamera.h>
@@ -67,7 +67,7 @@ Scene empty_room() {
   return scene;
 }
 
-/// Any light will do, in two channels.
+/// A mesh of the room with arbitrary light in two channels.
 SolvedScene lit_room(const Scene& scene, int elements) {
   const double size = std::sqrt(room_area / elements);
   SolvedScene lit{.mesh = build_patches(scene, {.max_element_size = size})};
@@ -92,7 +92,7 @@ SolvedScene lit_room(const Scene& scene, int elements) {
   return lit;
 }
 
-/// The same triangles in a window with nothing else.
+/// A plain VTK window with the triangles of `solved`.
 class BareWindow {
  public:
   BareWindow(const SolvedScene& solved, const Look& look) {
@@ -174,9 +174,9 @@ void measure(const Scene& scene, int elements) {
     const std::size_t at = text.find("renderer string");
     fmt::print("{}\n", text.substr(at, text.find('\n', at) - at));
   }
-  // By turns, so that other work on the machine falls on both.
+  // The windows alternate, so that other work on the machine slows both.
   double ours = 0.0, theirs = 0.0;
-  constexpr int pixels = 32;  // of a drag: 120 degrees over the width, so 3 degrees
+  constexpr int pixels = 32;  // per drag: 3 degrees, since the width is 120 degrees
   for (int i = 0; i < frames; ++i) {
     ours += seconds_of([&] {
       window.drag(pixels, 0);

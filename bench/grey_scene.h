@@ -8,7 +8,7 @@
 
 namespace lightwell {
 
-/// Without surfaces yet; material 0 reflects half, from its front.
+/// A scene without surfaces; material 0 is one-sided and reflects half.
 inline Scene grey_scene() {
   Scene scene;
   Material grey;
@@ -29,7 +29,8 @@ inline void add_rectangle(Scene& scene, int material, const Eigen::Vector3d& cor
                             .facets = {{.boundary = {0, 1, 2, 3}}}}});
 }
 
-/// Of material 0, from `low` on; facing inwards, a room, or outwards.
+/// Adds a box of material 0 with its lowest corner at `low`; `inwards`: a room, whose faces are
+/// seen from inside.
 inline void add_box(Scene& scene, const Eigen::Vector3d& low, const Eigen::Vector3d& size,
                     bool inwards) {
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,12 +1,14 @@
-// What a hemicube costs and how wrong it is.
+// Cost and errors of hemicubes.
 //
 //   hemicube_bench [SCENE.toml]     default: the diffuse Cornell box
 //
-// Prints, for meshes of several sizes and hemicubes of several resolutions: milliseconds for a row
-// by scan conversion (all of it, from painting to shares per patch), for its rays through
-// ElementCaster, and for the same rays through plain Embree in coherent packets, all on one thread,
-// and the ratios; how many cells the two back ends see differently; and the three errors of the
-// hemicube against closed forms: aliasing, proximity, visibility from one point.
+// Prints, for meshes of several sizes and hemicubes of several resolutions, on one thread:
+// - milliseconds for a row by scan conversion (from painting to form factors per patch), for the
+//   rays of its cells through ElementCaster, for the same rays through plain Embree in coherent
+//   packets, and the ratios;
+// - the share of cells in which scan conversion and rays see different elements;
+// - the three errors of the hemicube against closed forms: aliasing, proximity, visibility from one
+//   point.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +34,8 @@ namespace {
 using namespace lightwell;
 using Eigen::Vector3d;
 
-// The cells of a hemicube in packets of 16 along the rows: Embree's fastest way to answer them.
+// Traces the cells of a hemicube in packets of 16 along its rows, the fastest query of Embree for
+// such rays. Returns the number of hits.
 int trace_packets(RTCScene scene, const HemicubeEye& eye, const HemicubeCells& cells) {
   constexpr int lanes = 16;
 #if RTC_VERSION_MAJOR >= 4
@@ -133,7 +136,8 @@ std::vector<Vector3d> points_of(const nlohmann::json& polygon) {
   return points;
 }
 
-// Differential element to polygon, the catalogue's cases at many turns.
+// Aliasing: form factors of a differential element to a polygon, the cases of the catalogue with
+// the hemicube turned about the normal.
 void print_aliasing(const nlohmann::json& catalogue) {
   fmt::print("\nAliasing: element to polygon, error over the catalogue and 32 turns\n");
   fmt::print("  cells        rms      worst    rms before / rms\n");
@@ -184,7 +188,7 @@ void print_aliasing(const nlohmann::json& catalogue) {
   }
 }
 
-// F from polygon1 of a scene, in patches, to polygon2.
+// F_12 of polygon1, cut into patches of `size`, to polygon2.
 double mesh_form_factor(const Scene& scene, double size) {
   const PatchMesh mesh =
       build_patches(scene, {.max_patch_size = size, .elements_per_patch_edge = 1});
@@ -201,7 +205,8 @@ double mesh_form_factor(const Scene& scene, double size) {
   return F / area;
 }
 
-// Patches of one size against the gap between them, and against the shadow of something between.
+// Errors of F_12 over the number of patches: of the catalogue's unoccluded pairs (proximity) and of
+// the occluded ones (visibility from one point per patch).
 void print_patch_errors(const nlohmann::json& catalogue) {
   constexpr std::array<int, 5> cuts = {1, 2, 4, 8, 16};
   for (const bool occluded : {false, true}) {

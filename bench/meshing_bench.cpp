@@ -1,6 +1,9 @@
-// Triangles into patches: what cleaning, merging and meshing take, of a million triangles in walls,
-// of a million in curved surfaces, of a million that lie on one another (which is refused) or are
-// copies, and of the scenes named on the command line.
+// Time and memory of cleaning, merging and meshing triangles.
+//
+//   meshing_bench [SCENE...]
+//
+// Without scenes, four of about a million triangles each: walls, curved surfaces, copies of a wall,
+// and triangles that overlap in one plane (refused).
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -42,8 +45,8 @@ void add_triangle(PolygonMesh& mesh, const Vector3d& a, const Vector3d& b, const
   mesh.facets.push_back({.boundary = {first, first + 1, first + 2}});
 }
 
-// Two triangles for each of columns x rows cells of a surface over the unit square, no vertex
-// shared.
+// Adds two triangles for each of columns x rows cells of a surface over the unit square. No two
+// triangles share a vertex.
 void add_grid(PolygonMesh& mesh, int columns, int rows,
               const std::function<Vector3d(double, double)>& at) {
   for (int j = 0; j < rows; ++j) {
@@ -115,7 +118,7 @@ Scene heap(int count) {
   return scene_of(std::move(mesh));
 }
 
-// The walls of a coarse room, `copies` times.
+// A slightly curved wall of 9800 triangles, `copies` times.
 Scene copied(int copies) {
   PolygonMesh mesh;
   for (int k = 0; k < copies; ++k) {

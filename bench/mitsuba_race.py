@@ -3,13 +3,13 @@
 
   PYTHON bench/mitsuba_race.py SCENE.toml REFERENCE-A.exr REFERENCE-B.exr PICTURE.exr SECONDS [SAMPLES]
 
-PYTHON has Mitsuba 3, numpy and tomllib (PyPI: mitsuba, numpy; Python 3.11). SCENE.toml is one of cornell/; the references are two
-independent pictures of it, or one given twice; PICTURE.exr is Lightwell's, and SECONDS what solving and rendering it took of all
-processors together (user and system, as `time` tells). Mitsuba renders SAMPLES (64) per pixel. The error of a picture P is
-sqrt(mean (P - A)(P - B)) / mean of the references, outside the light and three pixels around it: pixel by pixel where the references are as
-large as the picture, else in means over squares. A path tracer's error falls as 1 / sqrt(samples), and its time grows as the samples, so that
-the time to Lightwell's error is its time x (its error / Lightwell's)^2: that is what is printed, as a ratio. Kernels are compiled before
-the clock starts.
+PYTHON is a Python 3.11 with Mitsuba 3 and numpy (PyPI: mitsuba, numpy). SCENE.toml is one of cornell/. The references are two
+independent pictures of the scene, or one picture given twice. PICTURE.exr is Lightwell's picture, and SECONDS the processor seconds of
+solving and rendering (user and system, see time(1)). Mitsuba renders SAMPLES (64) per pixel. The error of a picture P is
+sqrt(mean (P - A)(P - B)) / mean of the references, without the light and three pixels around the light: pixel by pixel if the references are
+as large as the picture, otherwise in means over squares. A path tracer's error falls as 1 / sqrt(samples) and its time grows as the samples:
+its time to Lightwell's error is its time x (its error / Lightwell's)^2. The printed factor is the ratio of that time to SECONDS. Kernels are
+compiled before the clock starts.
 """
 import os
 import resource

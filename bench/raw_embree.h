@@ -1,6 +1,6 @@
 #pragma once
 
-// What the programs compare with: plain Embree over the same elements.
+// Plain Embree over the elements of a mesh, the baseline of the benchmarks.
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -12,7 +12,8 @@
 
 namespace lightwell {
 
-/// The fronts of a mesh as Embree itself would have them. `configuration`: of rtcNewDevice.
+/// The front elements of a mesh as Embree quadrilaterals. `configuration` is the argument of
+/// rtcNewDevice.
 struct RawScene {
   RTCDevice device;
   RTCScene scene;
@@ -32,7 +33,7 @@ struct RawScene {
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, fronts));
     for (int e = 0; e < mesh.element_count(); ++e) {
       if (mesh.is_back[mesh.patch[e]] != 0) continue;
-      const auto& c = mesh.corners[e];  // a repeated last corner is Embree's way to say triangle
+      const auto& c = mesh.corners[e];  // a repeated last corner makes an Embree triangle
       for (int k = 0; k < 4; ++k) *index++ = static_cast<unsigned>(c[k] < 0 ? c[2] : c[k]);
     }
     rtcCommitGeometry(geometry);

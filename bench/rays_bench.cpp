@@ -1,11 +1,12 @@
-// How fast the rays of the second pass are, against plain Embree with the same rays and the same
-// elements in the same process, on one thread.
+// Speed of the second pass's rays, beside plain Embree with the same rays and elements in the same
+// process, on one thread.
 //
 //   rays_bench [SCENE.toml]     default: the diffuse Cornell box
 //
-// Prints millions of rays per second: eye rays of a picture of 512 x 512, with element and weights
-// at the hit; and shadow rays from where those end to 16 places of the lamp, past the facets they
-// start and end on, beside single rays and packets of 16 of Embree's own.
+// Prints millions of rays per second:
+// - eye rays of a picture of 512 x 512, with element and weights at the hit;
+// - shadow rays from the hits of the eye rays to 16 points of the lamp, which ignore the facets at
+//   both ends, beside Embree's single rays and packets of 16.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +29,7 @@ using namespace lightwell;
 
 constexpr int shadow_rays = 16;
 
-// The median of some runs: machines are shared and noisy.
+// Median seconds of several runs, since machines are shared and noisy.
 double median_seconds(const std::function<void()>& work) {
   constexpr int runs = 7;
   std::vector<double> seconds;
@@ -144,7 +145,7 @@ int main(int argc, char** argv) {
   const double eye_seconds = median_seconds([&] { caster.closest_hits(eye, hits); });
   report("eye rays", eye.size(), eye_seconds,
          median_seconds([&] { trace_single(embree.scene, raw, raw_hits); }));
-  // As the second pass asks: one ray, whose tree goes on before the next.
+  // The second pass traces rays one at a time, each with its tree of reflections and refractions.
   const double one_by_one = median_seconds([&] {
     for (std::size_t i = 0; i < eye.size(); ++i) caster.closest_hits({&eye[i], 1}, {&hits[i], 1});
   });
@@ -155,8 +156,9 @@ int main(int argc, char** argv) {
   const std::vector<Ray> shadow = rays_to_lamp(eye, hits, direct_light.emitters()[0]);
   std::vector<std::uint8_t> blocked(shadow.size());
   raw.clear();
-  constexpr float off =
-      1e-4f;  // of the ray: what keeps plain Embree off its own surface and the lamp
+  // Share of a ray that is cut off at both ends, where plain Embree would hit the surface of the
+  // origin or the lamp.
+  constexpr float off = 1e-4f;
   for (const Ray& ray : shadow) {
     raw.push_back(raw_ray(ray, off));
     raw.back().tfar = 1.0f - off;

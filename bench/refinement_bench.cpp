@@ -1,12 +1,13 @@
-// What refinement by the solution gains: error of irradiance over elements and over time.
+// Error of irradiance over the number of elements and over time, with and without refinement by the
+// solution.
 //
 //   refinement_bench [SCENE.toml [PLOT.svg]]     default: the diffuse Cornell box
 //
-// Even elements of falling size and refined ones of falling tolerance, all with the same patch
-// size: RMS difference of the irradiance they interpolate from irradiance gathered with many rays,
-// at random places of all that reflects, over the mean. Also what refining costs: the work of
-// refining and of the final gather, against that of all. Seconds are those of all cores together,
-// which other work on the machine does not change. With PLOT.svg it draws error over elements.
+// Even elements of falling size and refined elements of falling tolerance, all with the same patch
+// size: RMS difference over the mean between interpolated irradiance and irradiance gathered with
+// many rays, at random points of reflecting surfaces; and the time of refinement as a share of all
+// other phases. Seconds are processor seconds, which do not depend on other work on the machine.
+// With PLOT.svg the program draws error over elements.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -118,7 +119,7 @@ Row measure(const Scene& scene, const Truth& truth, const SolveOptions& options,
 const std::string even_colour = "#c0392b", refined_colour = "#2471a3";
 constexpr double width = 560, height = 300, left = 70, top = 40;
 
-// Elements from 10^3 to 10^5 and errors from 0.1 to 10 %, both logarithmic.
+// Point of the plot: elements from 10^3 to 10^5 and errors from 0.1 to 10 %, both logarithmic.
 std::array<double, 2> place(double elements, double error) {
   constexpr double decades = 2.0;
   return {left + width * (std::log10(elements) - 3.0) / decades,

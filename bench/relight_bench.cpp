@@ -1,11 +1,10 @@
-// What light channels cost, and what relighting takes.
+// Cost of light channels, and time of relighting.
 //
 //   relight_bench
 //
-// The diffuse Cornell box with its light cut into 4, solved with all light together and with 4
-// channels: seconds of all cores together, which other work on the machine does not change. Then
-// the weighted sum of 4 channels on a mesh of 100 000 elements, against a plain copy in memory of
-// the same arrays.
+// The diffuse Cornell box with its light cut into 4, solved without channels and with 4 channels,
+// in processor seconds, which do not depend on other work on the machine. Then the weighted sum of
+// 4 channels on a mesh of 100 000 elements, beside a plain copy of the same arrays in memory.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +24,7 @@ using namespace lightwell;
 
 constexpr int channel_count = 4;
 
-// The surface "light", a quadrilateral, in quarters.
+// The Cornell box with the surface "light", a quadrilateral, cut into quarters.
 Scene cornell_with_quartered_light() {
   Scene scene = read_scene(LIGHTWELL_CORNELL "/cornell.toml");
   const auto light = std::ranges::find(scene.surfaces, "light", &Surface::name);
@@ -68,7 +67,7 @@ BandArray ramp(int rows, int bands) {
   return values;
 }
 
-// Any light will do: what counts is how much of it there is.
+// A mesh with arbitrary light: relighting time depends on the size of the arrays alone.
 SolvedScene lit_mesh(const Scene& scene, double patch_size) {
   SolvedScene lit{.mesh = build_patches(scene, {.max_patch_size = patch_size})};
   RadiositySolution& s = lit.solution;

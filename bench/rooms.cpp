@@ -18,7 +18,7 @@ int add_lamp(Scene& scene, float exitance) {
   return static_cast<int>(scene.materials.size()) - 1;
 }
 
-// Lines from 0 to 1: those given, or even ones.
+// Lines from 0 to 1: the `given` ones for `cells` 0, otherwise `cells` + 1 even ones.
 std::vector<double> lines(const std::vector<double>& given, int cells) {
   if (cells == 0) return given;
   std::vector<double> even(cells + 1);
@@ -30,7 +30,8 @@ struct Rectangle {
   Eigen::Vector3d corner, u, v;
 };
 
-// Cut along lines of u and v, shares of their lengths; material_of(middle) may say -1: none.
+// Adds the rectangle `whole` cut along lines at shares of u and v. material_of(middle) is the
+// material of a piece; -1 leaves the piece out.
 template <class MaterialOf>
 void add_cut(Scene& scene, const Rectangle& whole, const std::vector<double>& u,
              const std::vector<double>& v, MaterialOf material_of) {
@@ -68,7 +69,7 @@ void add_block(Scene& scene, const Block& block, int cells) {
   }
 }
 
-// All of a material in one surface: what a modeller's file holds.
+// `scene` with one surface per material, as in files of modelling programs.
 Scene one_object_each(Scene scene) {
   std::vector<Surface> joined(scene.materials.size());
   for (std::size_t m = 0; m < joined.size(); ++m) {
@@ -115,7 +116,7 @@ Scene room_of_polygons(int cells, bool own_names) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
                         z = Eigen::Vector3d::UnitZ(), origin = Eigen::Vector3d::Zero();
   const auto grey = [](const Eigen::Vector3d&) { return 0; };
-  // What blocks stand on is no surface: it would be closed off.
+  // The floor has holes below the blocks, where no light could arrive.
   add_cut(scene, {origin, x, y}, lines({0, 0.2, 0.5, 0.6, 0.9, 1}, cells),
           lines({0, 0.2, 0.5, 0.8, 1}, cells), [&](const Eigen::Vector3d& p) {
             return blocks[0].covers(p) || blocks[1].covers(p) ? -1 : 0;

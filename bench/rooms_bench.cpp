@@ -1,15 +1,18 @@
-// How exact a solve is after how much time, and whether it matters how a scene arrives cut up.
+// Error of a solve over its time, and its dependence on the tessellation of the scene.
 //
 //   rooms_bench
 //
-// Two scenes that radiosity programs were measured with before: a furnished room of 41 polygons,
-// the same in 708 and in 2832, also as a surface each; and 30 000 patches with 2000 shots (Cohen,
-// Chen, Wallace & Greenberg 1988, "A progressive refinement approach to fast radiosity image
-// generation", whose hall took five hours), here a room of 100 boxes. The error is that of
-// irradiance interpolated at 2000 random points, against gathers of 8192 rays each in a solution
-// made last, many times as exact as the others (of whose light only what is reflected again
-// counts); peak memory is the process's while a solve ran, or where the system cannot forget what
-// came before (Linux can), up to then.
+// Two scenes of sizes that radiosity programs were measured with before:
+// - a furnished room of 41 polygons, cut into 708 and into 2832 polygons, also with one surface per
+//   polygon;
+// - 30 000 patches with 2000 shots (Cohen, Chen, Wallace & Greenberg 1988, "A progressive
+// refinement
+//   approach to fast radiosity image generation", whose hall took five hours), here a room of 100
+//   boxes.
+// The error is that of irradiance interpolated at 2000 random points. The reference is a gather of
+// 8192 rays at each point, which read reflected light from a solution many times as exact as the
+// others. Peak memory is that of the process during a solve on Linux, where the
+// peak can be reset; on other systems, since the start.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -46,17 +49,18 @@ struct Result {
   BandArray irradiance{};
 };
 
+// Resets the process's peak memory; does nothing but on Linux.
 void forget_peak_memory() {
   give_back_free_pages();
   std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): sets VmHWM to VmRSS
 }
 
 double peak_megabytes() {
-  constexpr double megabyte = 1 << 20;  // as the command line counts
+  constexpr double megabyte = 1 << 20;
   return static_cast<double>(resident_memory().most) / megabyte;
 }
 
-// On all that reflects and can be seen, as likely on any area as on any other.
+// Random points on reflecting surfaces that are not hidden, uniform by area.
 std::vector<Probe> random_places(const Scene& scene, int count) {
   const PatchMesh mesh = build_patches(scene);
   const ElementCaster caster(mesh);
@@ -79,7 +83,7 @@ std::vector<Probe> random_places(const Scene& scene, int count) {
   return places;
 }
 
-// The whole of a solve, from polygons as they arrive.
+// Times a whole solve, from raw polygons to the solution.
 Result measure(const Scene& scene, const Case& what, const std::vector<Probe>& places) {
   Result result{.name = what.name};
   forget_peak_memory();
@@ -124,7 +128,7 @@ SolveOptions to(double accuracy) {
   return {.accuracy = Accuracy{.share = accuracy}};
 }
 
-// As few patches as the room's light bounces between, and elements along the bounds of shadows.
+// Large patches, few rays, and elements cut along the bounds of shadows.
 SolveOptions coarse_room() {
   return {.mesh = {.max_patch_size = 0.14, .elements_per_patch_edge = 3, .discontinuity = true},
           .form_factors = {.rays_per_patch = 32},

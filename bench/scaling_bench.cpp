@@ -1,11 +1,12 @@
-// Time and memory of a solve over the number of elements.
+// Time and peak memory of a solve over the number of elements.
 //
 //   scaling_bench [MOST_ELEMENTS [PLOT.svg]]     default: 100000
 //
 // A room with a lamp and 100 boxes on its floor, cut into even elements of falling size: the whole
-// first pass as by `lightwell solve --max-element-size L --refine off --accuracy 3%` (refinement
-// would choose elements of its own). Seconds are those of all cores together; peak memory is the
-// process's, which only grows, as the scenes do. With PLOT.svg it draws both.
+// first pass of `lightwell solve --max-element-size L --refine off --accuracy 3%` (with refinement,
+// the number of elements would not be given). Seconds are processor seconds. Peak memory is that of
+// the process since its start; meshes grow from solve to solve. With PLOT.svg the program draws
+// both.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -58,7 +59,7 @@ Row measure(const Scene& scene, double element_size) {
   return row;
 }
 
-// Of seconds (or megabytes) over elements, from one row to the next.
+// Exponent p of seconds (or megabytes) ~ elements^p between two rows.
 double exponent(const Row& a, const Row& b, double Row::*what) {
   return std::log(b.*what / a.*what) / std::log(static_cast<double>(b.elements) / a.elements);
 }

@@ -1,11 +1,11 @@
-// The solvers side by side: sweeps and seconds to the default tolerance, and how near a pass over
-// the rows comes to what memory can do.
+// Sweeps and seconds of the solvers to the default tolerance, and the bandwidth of a pass over the
+// rows beside that of memory.
 //
 //   solver_bench [PLOT.svg] [SCENE...]    default: the Cornell box, a furnished room, a bright room
 //
-// Prints, per scene and method: sweeps, seconds, the residual left and the largest difference from
-// a solution to 1e-10; then passes over the rows of the room in gigabytes a second, beside a plain
-// sum over the same memory. With PLOT.svg it draws residual over seconds for the last scene.
+// Prints, per scene and method: sweeps, seconds, the final residual and the largest difference from
+// a solution to 1e-10; then gigabytes per second of passes over the rows, beside a plain sum over
+// the same memory. With PLOT.svg the program draws residual over seconds for the last scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace {
 
 using namespace lightwell;
 
-// A room with tables' worth of blocks and a panel of light under its ceiling.
+// A room with twelve blocks and a luminous panel under its ceiling.
 Scene furnished_room(float reflectance) {
   Scene scene = grey_scene();
   scene.materials[0].reflectance = constant_spectrum(scene.bands, reflectance);
@@ -100,7 +100,7 @@ std::vector<Curve> compare_solvers(const Solvable& s, int max_sweeps) {
   return curves;
 }
 
-// The least seconds of some runs: others use the machine too.
+// Least seconds of 15 runs, since machines are shared.
 double least_seconds(const std::function<void()>& work) {
   double least = seconds_of(work);
   for (int run = 1; run < 15; ++run) least = std::min(least, seconds_of(work));
@@ -112,7 +112,7 @@ void measure_passes(const Solvable& s) {
   const RadiositySystem system(s.mesh, F);
   const double bytes = gigabytes(F);
   std::vector<double> sums(static_cast<std::size_t>(F.patch_count()), 0.0);
-  // Nothing but reading, as plain numbers that are added to several sums at once.
+  // The plain sum reads the rows as floats; Eigen adds them to several partial sums at once.
   const auto read_all = [&] {
     parallel_for(F.patch_count(), 64, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
@@ -134,7 +134,7 @@ void measure_passes(const Solvable& s) {
   }
 }
 
-// Logarithmic axes, one line per method.
+// Draws one line per method on logarithmic axes.
 void draw(const std::string& file, const std::vector<Curve>& curves) {
   constexpr double left = 70, top = 20, width = 520, height = 340;
   constexpr int low = -7, high = 0;  // powers of ten

@@ -5,6 +5,7 @@
 
 namespace lightwell {
 
+/// Wall-clock seconds of `work`.
 inline double seconds_of(const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
   work();

@@ -9,7 +9,6 @@
 
 #include "cli/memory_size.h"
 #include "cli/refinement.h"
-#include "mesh/build_patches.h"
 #include "radiosity/effective_options.h"
 #include "radiosity/paths/caustic_photons.h"
 #include "scene/errors.h"
@@ -19,7 +18,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int largest_picture_edge = 32768;  // as in scene files
+constexpr int largest_picture_edge = 32768;  // pixels; the limit of scene files
 
 std::optional<double> parsed_number(const std::string& text) {
   double value = 0.0;
@@ -32,9 +31,8 @@ CLI::Validator finite() {
   return CLI::Validator(
       [](std::string& text) -> std::string {
         const auto value = parsed_number(text);
-        return value && std::isfinite(*value)
-                   ? std::string()
-                   : fmt::format("a number is needed, and '{}' is none", text);
+        return value && std::isfinite(*value) ? std::string()
+                                              : fmt::format("'{}' is not a number", text);
       },
       std::string{});
 }
@@ -56,7 +54,7 @@ std::pair<int, int> parse_size(const std::string& text) {
                             text, largest_picture_edge));
 }
 
-// Not one of solver_methods: it needs no form factors.
+// Progressive refinement stores no form factors and is not among solver_methods.
 constexpr std::string_view progressive = "progressive";
 
 }  // namespace
@@ -103,9 +101,8 @@ CLI::Validator one_of(std::string what, std::vector<std::string> known) {
   return CLI::Validator(
       [what, known](std::string& given) -> std::string {
         if (std::find(known.begin(), known.end(), given) != known.end()) return {};
-        return fmt::format("there is no {} '{}' in this version; there {}: {}.{}", what, given,
-                           known.size() == 1 ? "is one" : "are", fmt::join(known, ", "),
-                           did_you_mean(given, known));
+        return fmt::format("there is no {} '{}'; choose from: {}.{}", what, given,
+                           fmt::join(known, ", "), did_you_mean(given, known));
       },
       std::string{});
 }
@@ -156,7 +153,7 @@ void add_size(CLI::App& command, std::optional<std::pair<int, int>>& size) {
 void add_exposure(CLI::App& command, double& exposure_ev) {
   command
       .add_option("--exposure", exposure_ev,
-                  "stops brighter (or darker, if negative) than automatic")
+                  "exposure correction in stops, negative for darker (default 0: automatic)")
       ->type_name("EV")
       ->check(finite());
 }
@@ -198,8 +195,8 @@ void refuse_beside(const CLI::App& command, const char* option,
                    const std::vector<const char*>& others) {
   for (const char* other : others) {
     if (command.get_option(other)->count() == 0) continue;
-    throw CLI::ValidationError(option,
-                               fmt::format("it decides instead of {}; give one of them", other));
+    throw CLI::ValidationError(
+        option, fmt::format("cannot be combined with {}; give only one of the two", other));
   }
 }
 
@@ -212,7 +209,7 @@ void MeshArguments::add_to(CLI::App& command, const std::string& group) {
       ->group(group);
   command
       .add_option("--elements-per-patch-edge", mesh.elements_per_patch_edge,
-                  "detail of shadows within a patch (default 2)")
+                  "elements along a patch edge, for the detail of shadows (default 2)")
       ->type_name("N")
       ->check(whole_number(1, 64))
       ->group(group);
@@ -229,7 +226,7 @@ void MeshArguments::add_to(CLI::App& command, const std::string& group) {
       ->group(group);
   command
       .add_flag("--discontinuity", mesh.discontinuity,
-                "cut receivers along the bounds of umbra and penumbra")
+                "cut receivers along discontinuity lines, the bounds of umbra and penumbra")
       ->group(group);
 }
 
@@ -254,15 +251,15 @@ void SolveArguments::add_to(CLI::App& command) {
   mesh.add_to(command, group);
   command
       .add_option("--form-factors", form_factors,
-                  "how form factors are found: auto (default), ray-cast, hemicube, analytic")
+                  "form-factor method: auto (default), ray-cast, hemicube, analytic")
       ->type_name("METHOD")
       ->check(one_of("form-factor method", form_factor_method_names()))
       ->group(group);
   add_hemicube_resolution(command, solve.form_factors.hemicube_resolution)->group(group);
   command
       .add_option("--solver", solver,
-                  "how the equations are solved: auto (default), gauss-seidel, jacobi, sor, "
-                  "southwell, cg, bicgstab, gmres; progressive: without form factors in advance")
+                  "solver: auto (default), gauss-seidel, jacobi, sor, southwell, cg, bicgstab, "
+                  "gmres; progressive: progressive refinement, without stored form factors")
       ->type_name("METHOD")
       ->check(one_of("solver", solver_names()))
       ->group(group);
@@ -289,7 +286,7 @@ void SolveArguments::add_to(CLI::App& command) {
       ->group(group);
   command
       .add_option("--max-sweeps", solve.solver.max_sweeps,
-                  "sweeps after which the solver gives up (default 500)")
+                  "most sweeps of the solver (default 500)")
       ->type_name("N")
       ->check(whole_number(1, 1000000))
       ->group(group);
@@ -339,8 +336,8 @@ void RenderArguments::add_to(CLI::App& command) {
   for (const char* name : {"--size", "--exposure"}) command.get_option(name)->group(group);
   command
       .add_option("--pass", pass,
-                  "direct: exact shadows per pixel (default); gather: indirect light anew at "
-                  "every pixel too; interpolate: the solution as it is")
+                  "direct: direct light anew at every pixel (default); gather: indirect light "
+                  "anew too; interpolate: all light from the solution")
       ->type_name("PASS")
       ->check(one_of("pass", {"interpolate", "direct", "gather"}))
       ->group(group);
@@ -352,27 +349,25 @@ void RenderArguments::add_to(CLI::App& command) {
       ->group(group);
   command
       .add_option("--gather-samples", gather_samples,
-                  "rays over the hemisphere of a point, for --pass gather (default 256)")
+                  "final-gather rays per point, for --pass gather (default 256)")
       ->type_name("N")
       ->check(whole_number(1, most_gather_rays))
       ->group(group);
   command
       .add_option("--photons", photons,
-                  "sent through mirrors and glass, where there are any, to find what they focus "
-                  "(default 524288); 0: as coarse as the mesh")
+                  "photons for the caustics of mirrors and glass (default 524288); 0: caustics "
+                  "from the solution's mesh")
       ->type_name("N")
       ->check(whole_number(0, most_photons))
       ->group(group);
-  command
-      .add_option("--depth", depth,
-                  "mirrors and glass behind one another that are followed (default 10)")
+  command.add_option("--depth", depth, "most mirrors and glass surfaces along a path (default 10)")
       ->type_name("N")
       ->check(whole_number(0, deepest_tree))
       ->group(group);
   command
       .add_option("--samples", samples,
-                  "most samples per pixel (default: 256 where there is gloss or a lens; else "
-                  "edges alone are sampled)")
+                  "most samples per pixel (default: 256 with gloss or a lens; otherwise only "
+                  "edges are supersampled)")
       ->type_name("N")
       ->check(whole_number(1, SampleOptions::limit))
       ->group(group);
@@ -384,13 +379,13 @@ void RenderArguments::add_to(CLI::App& command) {
             if (!share) {
               throw CLI::ValidationError(
                   "--noise",
-                  fmt::format("'{}' is no noise to stop at; write a share of a pixel's light from "
+                  fmt::format("'{}' is not a relative error; write a share of a pixel's light from "
                               "0.001% to 100%, such as 2%",
                               text));
             }
             noise = *share;
           },
-          "stop sampling a pixel when its standard error is below (default 2%)")
+          "relative standard error at which the sampling of a pixel stops (default 2%)")
       ->type_name("ERROR")
       ->group(group);
 }

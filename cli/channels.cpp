@@ -12,7 +12,9 @@
 namespace lightwell {
 namespace {
 
-// At the first '=' or the last: patterns may hold one, values never do.
+// Splits `text` at the '=' at index `at`: the first '=' before a pattern, which may hold another
+// '='; the last before a value, which never does. Throws CLI::ValidationError that describes the
+// `wanted` form if one side is empty.
 std::pair<std::string, std::string> split(const char* option, const std::string& text,
                                           std::size_t at, const char* wanted) {
   if (at == std::string::npos || at == 0 || at + 1 == text.size()) {
@@ -21,16 +23,23 @@ std::pair<std::string, std::string> split(const char* option, const std::string&
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
-void add_each(CLI::App& command, const std::string& name, const std::string& help,
-              const std::function<void(const std::string&)>& take, const std::string& type) {
+struct RepeatedOption {
+  const char* name;
+  const char* help;
+  const char* type;
+};
+
+// Adds an option whose values are given to `take` one by one.
+void add_each(CLI::App& command, const RepeatedOption& option,
+              const std::function<void(const std::string&)>& take) {
   command
       .add_option_function<std::vector<std::string>>(
-          name,
+          option.name,
           [take](const std::vector<std::string>& words) {
             for (const std::string& word : words) take(word);
           },
-          help)
-      ->type_name(type)
+          option.help)
+      ->type_name(option.type)
       ->type_size(1)
       ->allow_extra_args(false);
 }
@@ -39,26 +48,27 @@ void add_each(CLI::App& command, const std::string& name, const std::string& hel
 
 void ChannelArguments::add_to(CLI::App& command, const std::string& group) {
   add_each(
-      command, "--channels",
-      "keep light apart for 'relight': per-luminaire, or NAME=PATTERN of emitters, which may be "
-      "repeated (default off)",
-      [this](const std::string& text) { add(text); }, "WHICH");
+      command,
+      {.name = "--channels",
+       .help = "light channels for 'relight': per-luminaire, or NAME=PATTERN of emitters, which "
+               "may be repeated (default off)",
+       .type = "WHICH"},
+      [this](const std::string& text) { add(text); });
   command.get_option("--channels")->group(group);
 }
 
 void ChannelArguments::add(const std::string& text) {
   const char* const option = "--channels";
   if (per_luminaire || is_off || (!patterns.empty() && text.find('=') == std::string::npos)) {
-    throw CLI::ValidationError(option,
-                               "give off, per-luminaire or patterns, and only one kind of them");
+    throw CLI::ValidationError(option, "give off, per-luminaire or patterns, but only one kind");
   }
   is_off = text == "off";
   per_luminaire = text == "per-luminaire";
   if (is_off || per_luminaire) return;
   const auto [channel, glob] =
       split(option, text, text.find('='),
-            "off, per-luminaire or NAME=PATTERN, such as desk='desk lamp*': a channel and what its "
-            "emitters or their materials are called");
+            "off, per-luminaire or NAME=PATTERN, such as desk='desk lamp*': a channel and a "
+            "pattern for the names of its emitters or their materials");
   patterns.push_back({channel, glob});
 }
 
@@ -77,8 +87,11 @@ std::string ChannelArguments::text() const {
 
 void add_channel_settings(CLI::App& command, ChannelSettings& settings) {
   add_each(
-      command, "--channel",
-      "factor (0.3, off, on), colour (#ffd9b0) or both (0.3,#ffd9b0) of a channel; may be repeated",
+      command,
+      {.name = "--channel",
+       .help = "factor (0.3, off, on), colour (#ffd9b0) or both (0.3,#ffd9b0) of a channel; may be "
+               "repeated",
+       .type = "NAME=VALUE"},
       [&settings](const std::string& text) {
         const auto [name, value] =
             split("--channel", text, text.rfind('='),
@@ -93,8 +106,7 @@ void add_channel_settings(CLI::App& command, ChannelSettings& settings) {
         } catch (const std::invalid_argument& error) {
           throw CLI::ValidationError("--channel", error.what());
         }
-      },
-      "NAME=VALUE");
+      });
 }
 
 std::vector<Spectrum> channel_scales(const RadiositySolution& solution,

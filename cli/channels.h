@@ -11,33 +11,35 @@
 
 namespace lightwell {
 
-/// Which light a solution keeps apart, as asked for on the command line.
+/// Light channels that a solution keeps apart.
 struct ChannelArguments {
-  bool is_off = false;  ///< said so
+  bool is_off = false;  ///< "--channels off" was given
   bool per_luminaire = false;
   std::vector<ChannelPattern> patterns{};
 
   void add_to(CLI::App& command, const std::string& group);
-  /// Throws InputError where the scene has no such emitters.
+  /// Channels of the scene's emitters. Throws InputError if a pattern matches no emitter.
   EmitterChannels channels(const Scene& scene) const;
-  /// The command line that repeats it, with a space before it; nothing by default.
+  /// Command-line options that repeat the channels, after a space; "" without channels.
   std::string text() const;
 
  private:
   void add(const std::string& text);
 };
 
-/// Channels by name with their settings: --channel NAME=VALUE, which may be repeated.
+/// Names of channels with their settings.
 using ChannelSettings = std::vector<std::pair<std::string, ChannelSetting>>;
+
+/// Adds --channel NAME=VALUE, which may be repeated.
 void add_channel_settings(CLI::App& command, ChannelSettings& settings);
 
-/// For relight(): what is not named stays as it is. Throws InputError that names the `file` of the
-/// solution where it has no such channel.
+/// Scale per channel and band for relight(); a channel without a setting keeps its scale. Throws
+/// InputError that names `file`, the solution's, if a setting names an unknown channel.
 std::vector<Spectrum> channel_scales(const RadiositySolution& solution,
                                      const ChannelSettings& settings, const std::string& file);
 
-/// For JSON: of each channel its name, flux with its scale in force (watts and lumens, or power
-/// where light is relative), scale per band and surfaces.
+/// Channels for JSON, an object each: name, emitted flux times the scale (watts and lumens; power
+/// in a scene of relative units), scale per band, names of its surfaces and lamps.
 Json channels_json(const RadiositySolution& solution);
 
 }  // namespace lightwell

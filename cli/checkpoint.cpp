@@ -56,14 +56,14 @@ std::optional<double> parse_seconds(const std::string& text) {
 void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on, const std::string& group) {
   const std::string more = help_on == HelpOn::all ? group : std::string();  // CLI11: hidden
   command
-      .add_option(
-          "--checkpoint", file,
-          help_on == HelpOn::all
-              ? "keep finished work there, so that --resume can go on with it"
-              : "keep finished work there; 'lightwell solve --help' shows what belongs to it")
+      .add_option("--checkpoint", file,
+                  help_on == HelpOn::all
+                      ? "file that keeps finished work, for --resume"
+                      : "file that keeps finished work; 'lightwell solve --help' shows its options")
       ->type_name("FILE")
       ->group(group);
-  command.add_flag("--resume", resume, "go on with the checkpoint, if there is one")->group(more);
+  command.add_flag("--resume", resume, "continue from the checkpoint, if there is one")
+      ->group(more);
   CLI::Option* const time =
       command
           .add_option_function<std::string>(
@@ -81,7 +81,7 @@ void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on, const std::s
               "time after which finished work is safe on the disk (default 10s)")
           ->type_name("TIME")
           ->group(more);
-  command.add_flag("--keep-checkpoint", keep, "do not remove it when the result is written")
+  command.add_flag("--keep-checkpoint", keep, "keep the checkpoint when the result is written")
       ->group(more);
   command.parse_complete_callback([this, time] {
     if (!file.empty()) return;
@@ -96,9 +96,9 @@ void CheckpointArguments::add_to(CLI::App& command, HelpOn help_on, const std::s
 void CheckpointArguments::add_reuse_to(CLI::App& command, HelpOn help_on) {
   command
       .add_option("--reuse", reuse,
-                  "form factors of an earlier solve of the same geometry: its kept checkpoint")
+                  "kept checkpoint of an earlier solve of the same geometry, for its form factors")
       ->type_name("FILE")
-      ->check(CLI::ExistingFile)
+      ->check(CLI::ExistingFile.description(""))  // no ":FILE" in --help
       ->excludes(command.get_option("--checkpoint"))
       ->group(help_on == HelpOn::all ? "How the light is solved" : "");
 }
@@ -119,7 +119,7 @@ Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& o
   if (exists && !arguments.resume) {
     if (Journal::holds_work(file)) {
       throw InputError(fmt::format(
-          "the checkpoint '{}' holds finished work already; add --resume to go on with it, or "
+          "the checkpoint '{}' holds finished work already; add --resume to continue from it, or "
           "remove it to start again",
           file.string()));
     }
@@ -131,14 +131,14 @@ Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& o
   }
   journal_ = std::make_unique<Journal>(file, of, arguments.every);
   if (journal_->found() > 0) {
-    console.say(fmt::format("going on with '{}': {} of finished work", file.string(),
+    console.say(fmt::format("resuming from '{}': {} of finished work", file.string(),
                             bytes_text(journal_->found())));
   }
   if (journal_->torn() > 0) {
     console.say(
-        fmt::format("note: behind that, {} were left unfinished by a sudden end; they are "
-                    "computed again",
-                    bytes_text(journal_->torn())));
+        fmt::format("note: the last {} of '{}' are incomplete, since the program was ended; this "
+                    "work is repeated",
+                    bytes_text(journal_->torn()), file.string()));
   }
 }
 
@@ -149,7 +149,8 @@ Progress Checkpoint::watched(Progress progress) {
     if (!failure.empty()) {
       has_warned_ = true;
       console_.say(fmt::format(
-          "warning: {}. The work goes on; what it holds up to now stays usable", failure));
+          "warning: {}. The work continues; what the checkpoint holds so far stays usable",
+          failure));
     }
     return progress(phase, share);
   };
@@ -163,15 +164,15 @@ void Checkpoint::rethrow_stopped() {
     throw;
   } catch (const Interrupted&) {
     console_.finish_phase();
-    throw InterruptedWith(fmt::format("interrupted; what was done is in '{}' ({}). To go on:\n  {}",
-                                      file, bytes_text(journal_->size()),
-                                      command_to_resume(console_.options())));
+    throw InterruptedWith(
+        fmt::format("interrupted; finished work is in '{}' ({}). To resume:\n  {}", file,
+                    bytes_text(journal_->size()), command_to_resume(console_.options())));
   } catch (...) {
-    // A file that holds nothing would only be in the way of the next start.
+    // An empty checkpoint would only be refused at the next start without --resume.
     if (!Journal::holds_work(arguments_.file)) {
       journal_->remove();
     } else {
-      console_.say(fmt::format("note: what was done is in '{}' ({}); --resume goes on with it",
+      console_.say(fmt::format("note: finished work is in '{}' ({}); --resume continues from it",
                                file, bytes_text(journal_->size())));
     }
     throw;
@@ -186,8 +187,8 @@ void Checkpoint::finish(Report& report, const std::string& key) {
                           {"mb", static_cast<double>(journal_->recalled()) / megabyte}});
     if (journal_->recalled() == 0) {
       console_.say(fmt::format(
-          "warning: nothing in '{}' could be used: it is of other geometry, mirrors, glass or "
-          "lamps, or of other options for form factors",
+          "warning: nothing in '{}' could be used: the geometry, mirrors, glass, lamps or "
+          "form-factor options differ",
           arguments_.reuse.string()));
     } else {
       console_.say_verbose(fmt::format("used {} of '{}'", bytes_text(journal_->recalled()),
@@ -213,14 +214,14 @@ void Checkpoint::finish(Report& report, const std::string& key) {
 
 std::optional<SolvedScene> finished_solution(const CheckpointArguments& arguments,
                                              const Provenance& of, const fs::path& output,
-                                             Console& console, bool pictures_follow) {
+                                             Console& console) {
   std::error_code error;
   if (!arguments.resume || !fs::exists(output, error)) return std::nullopt;
   std::optional<SolvedScene> solved;
   try {
     solved = read_solution(output);
   } catch (const InputError&) {
-    return std::nullopt;  // whatever it is, it will be replaced
+    return std::nullopt;  // the file is not a solution and will be replaced
   }
   const Provenance& found = solved->solution.provenance;
   if (found.version != of.version || found.scene_hash != of.scene_hash ||
@@ -230,13 +231,13 @@ std::optional<SolvedScene> finished_solution(const CheckpointArguments& argument
   console.say(fmt::format("'{}' is finished: it was solved from this scene with these options",
                           output.string()));
   if (!arguments.keep && fs::exists(arguments.file, error)) {
-    // Left by an end between the last two steps.
+    // The earlier run ended after it wrote the solution and before it removed the checkpoint.
     try {
       Journal(arguments.file, of).remove();
       console.say(fmt::format("removed the checkpoint '{}', which is not needed any more",
                               arguments.file.string()));
     } catch (const std::runtime_error& other) {
-      if (!pictures_follow) console.say(fmt::format("note: {}", other.what()));
+      if (!arguments.pictures_follow) console.say(fmt::format("note: {}", other.what()));
     }
   }
   return solved;

@@ -13,41 +13,49 @@
 
 namespace lightwell {
 
-/// Whether and where finished work is kept, as asked for on the command line.
+/// Options of checkpoints.
 struct CheckpointArguments {
-  std::filesystem::path file{};  ///< empty: nowhere
-  double every = 10.0;           ///< seconds
+  std::filesystem::path file{};  ///< empty: no checkpoint
+  double every = 10.0;           ///< seconds after which finished work is safe on the disk
   bool resume = false, keep = false;
   std::filesystem::path reuse{};  ///< the kept checkpoint of another solve; empty: none
+  bool pictures_follow = false;   ///< pictures of the solution will use the same file
 
+  enum class HelpOn { all, first };  ///< whether --help shows all options or --checkpoint alone
   /// Adds --checkpoint FILE, --every TIME, --resume and --keep-checkpoint.
-  enum class HelpOn { all, first };  ///< which of them --help shows
   void add_to(CLI::App& command, HelpOn help_on,
               const std::string& group = "How the light is solved");
-  /// Adds --reuse FILE, after those.
+  /// Adds --reuse FILE. To be called after add_to().
   void add_reuse_to(CLI::App& command, HelpOn help_on);
 };
 
-/// Seconds: "10s", "2 min", "1.5h", "90"; nothing for what is none or not from 0.1 s to a day.
+/// Seconds in `text`: "10s", "2 min", "1.5h", "90". Empty if `text` is not a time from 0.1 s to a
+/// day.
 std::optional<double> parse_seconds(const std::string& text);
 
-/// What is left of a solve or a picture that is stopped, and how people hear of it.
+/// The journal of a solve or of pictures, from its opening to its removal, with the messages about
+/// the checkpoint on the console.
 class Checkpoint {
  public:
-  /// Opens what was asked for, or does nothing. Throws InputError if a file is there and was not
-  /// asked to be gone on with, or does not serve; std::runtime_error if it cannot be written.
+  /// Opens the checkpoint of `arguments`, or nothing without --checkpoint and --reuse. Throws
+  /// - InputError if a file of `outputs` is the checkpoint, if the checkpoint holds work and
+  ///   --resume was not given, or if Journal refuses the file (damaged, in use, of another scene,
+  ///   other options or another version);
+  /// - std::runtime_error if the file cannot be written.
   Checkpoint(const CheckpointArguments& arguments, const Provenance& of,
              const std::vector<std::filesystem::path>& outputs, Console& console);
 
-  /// Null if none was asked for.
+  /// Null without --checkpoint and --reuse.
   Journal* journal() { return journal_.get(); }
-  /// Also says, once, if the checkpoint cannot be written any more.
+  /// `progress` with one warning on the console if writing the checkpoint fails.
   Progress watched(Progress progress);
 
-  /// After an exception of the work: closes the file. Says where the work is kept, and rethrows
-  /// what was thrown; an Interrupted says how to go on.
+  /// To be called while an exception of the work is handled. Closes the checkpoint, names its file
+  /// on the console and rethrows the exception; an Interrupted becomes an InterruptedWith that
+  /// holds the command to resume.
   [[noreturn]] void rethrow_stopped();
-  /// The result is written: removes the file, or says that it stays. `key` is its place in JSON.
+  /// To be called once the result is written. Removes the checkpoint unless --keep-checkpoint was
+  /// given, and adds its size to the report under `key`.
   void finish(Report& report, const std::string& key = "checkpoint");
 
  private:
@@ -57,15 +65,15 @@ class Checkpoint {
   bool has_warned_ = false;
 };
 
-/// The solution in `output`, if it was asked to go on and there is nothing left to do: it is of the
-/// same scene, options and version. Then no checkpoint of it is needed any more, and it is removed;
-/// where `pictures_follow`, the file may be theirs, and then it stays.
+/// The solution in the file `output` if --resume was given and the solution has the scene, options
+/// and version of `of`; empty otherwise. Removes a checkpoint of that solve, unless
+/// --keep-checkpoint was given. With `pictures_follow`, a checkpoint that does not belong to the
+/// solve is taken for one of its pictures, and is kept without a note.
 std::optional<SolvedScene> finished_solution(const CheckpointArguments& arguments,
                                              const Provenance& of,
-                                             const std::filesystem::path& output, Console& console,
-                                             bool pictures_follow = false);
+                                             const std::filesystem::path& output, Console& console);
 
-/// The command as it was typed, with --resume.
+/// The command line with --resume, quoted for a shell.
 std::string command_to_resume(const CommonOptions& options);
 
 }  // namespace lightwell

@@ -7,21 +7,22 @@
 
 namespace lightwell {
 
-/// How the program ends.
+/// Exit codes of the program.
 enum ExitCode {
   exit_done = 0,
   exit_failed = 1,
   exit_wrong_usage = 2,
   exit_bad_input = 3,
-  exit_not_accurate = 4,  ///< the solver stopped before the asked accuracy; what it has is written
+  exit_not_accurate = 4,  ///< the results are written, but the solver stopped above the tolerance
+                          ///< or the estimated error is above --accuracy
   exit_interrupted = 130,
 };
 
-/// What a sub-command does once its arguments are parsed; returns an ExitCode.
+/// Runs a sub-command whose arguments are parsed, and returns an ExitCode.
 using Action = std::function<int(Console& console)>;
 
-// Each adds the sub-command's arguments, description and example to `command`, and returns what it
-// does.
+// Each function adds the sub-command's arguments, description and example to `command`, and returns
+// the sub-command's action.
 Action add_run(CLI::App& command);
 Action add_solve(CLI::App& command);
 Action add_mesh(CLI::App& command);

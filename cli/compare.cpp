@@ -22,7 +22,8 @@ struct CompareArguments {
   std::optional<double> fail_above;
 };
 
-// NaN and infinity are no JSON: a difference from black is relative to nothing.
+// `value`, or null if it is not finite: JSON has no NaN and no infinity, and a relative difference
+// from black is one of them.
 Json json_number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -84,7 +85,7 @@ void print_difference(const ImageDifference& difference) {
 }
 
 void print_difference(const HalvesDifference& difference) {
-  fmt::print("relative RMSE   {:.4f} % of the reference's mean, its noise taken away\n",
+  fmt::print("relative RMSE   {:.4f} % of the reference's mean, without the references' noise\n",
              100.0 * difference.relative_rmse);
   fmt::print("RMSE            {:.6g} W/(m^2 sr)\n", difference.rmse);
   fmt::print("mean square     {:.6g}{}\n", difference.mean_square,
@@ -96,7 +97,7 @@ void print_difference(const HalvesDifference& difference) {
   print_excluded(difference.excluded);
 }
 
-// The reference's mean is what shows white a share of.
+// Writes the difference picture; white is `full_scale` times the reference's mean.
 void write_difference(const CompareArguments& arguments, const Image& a, const Image& b,
                       double mean) {
   const double white = arguments.full_scale * mean;
@@ -117,7 +118,8 @@ int verdict(const CompareArguments& arguments, double relative_rmse, Console& co
 }
 
 template <class Difference>
-int report(const Difference& difference, const CompareArguments& arguments, Console& console) {
+int print_result(const Difference& difference, const CompareArguments& arguments,
+                 Console& console) {
   if (console.options().json) {
     Json json = json_of(difference);
     if (arguments.fail_above) {
@@ -142,7 +144,7 @@ int compare(const CompareArguments& arguments, Console& console) {
   if (arguments.second_half.empty()) {
     const ImageDifference difference = compare_images(a, b, arguments.compare);
     if (!arguments.output.empty()) write_difference(arguments, a, b, difference.mean_b);
-    return report(difference, arguments, console);
+    return print_result(difference, arguments, console);
   }
   const Image second = read_exr(arguments.second_half);
   const HalvesDifference difference = compare_with_halves(a, b, second, arguments.compare);
@@ -151,7 +153,7 @@ int compare(const CompareArguments& arguments, Console& console) {
     mean.radiance = 0.5f * (b.radiance + second.radiance);
     write_difference(arguments, a, mean, difference.mean_reference);
   }
-  return report(difference, arguments, console);
+  return print_result(difference, arguments, console);
 }
 
 }  // namespace
@@ -159,12 +161,12 @@ int compare(const CompareArguments& arguments, Console& console) {
 Action add_compare(CLI::App& command) {
   const auto arguments = std::make_shared<CompareArguments>();
   command.description(
-      "How much a picture differs from a reference of the same size, or from two noisy ones.");
+      "Compares a picture with a reference of the same size, or with two noisy references.");
   command.add_option("picture", arguments->picture, "EXR file")->required()->type_name("A.exr");
   command.add_option("reference", arguments->reference, "EXR file")->required()->type_name("B.exr");
   command
       .add_option("second_half", arguments->second_half,
-                  "a second reference with noise of its own: the noise of both is taken away")
+                  "a second reference with independent noise, to exclude the noise of both")
       ->type_name("B2.exr");
   command.add_option("-o,--output", arguments->output, "picture of the differences, .png")
       ->type_name("FILE")
@@ -176,7 +178,7 @@ Action add_compare(CLI::App& command) {
       ->check(positive());
   command
       .add_option("--exclude-above", arguments->compare.exclude_above,
-                  "leave out pixels whose reference is above that, such as lamps, W/(m^2 sr)")
+                  "leave out pixels whose reference is brighter, such as lamps, W/(m^2 sr)")
       ->type_name("L")
       ->check(positive());
   constexpr int largest_block = 4096;
@@ -196,7 +198,7 @@ Action add_compare(CLI::App& command) {
                   fmt::format("'{}' is no share from 0.001% to 100%, such as 1%", text));
             }
           },
-          "exit with code 1 if the relative RMSE is above, such as 1%")
+          "exit with code 1 if the relative RMSE is above this error, such as 1%")
       ->type_name("ERROR");
   command.footer(
       "Example: lightwell compare mine.exr reference.exr --exclude-above 5 -o difference.png");

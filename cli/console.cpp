@@ -12,9 +12,10 @@ namespace lightwell {
 namespace {
 
 constexpr double redraw_seconds = 0.1;  // faster flickers and costs time
-// Before that much is done, a guess at the time left jumps about.
+// An estimate of the time left is unstable below this share of a phase.
 constexpr double least_share_for_guess = 0.02;
-// What is done so soon was recalled from a checkpoint, and does not tell how fast the rest goes.
+// Work that is done within this time may come from a checkpoint, so its speed is not that of the
+// rest.
 constexpr double recall_seconds = 0.5;
 
 double seconds_between(std::chrono::steady_clock::time_point a,
@@ -69,7 +70,7 @@ void Console::show(std::string_view phase, double share) {
     const double left_seconds = (seconds - start_.seconds) * (1.0 - share) / done;
     left = fmt::format(", {:.0f} s left", std::ceil(left_seconds));
   }
-  // Back to the line's start, and clear to its end.
+  // Carriage return, then the ANSI sequence that clears to the end of the line.
   fmt::print(stderr, "\r\033[K{}: {:.0f} %{}", phase_, std::floor(100.0 * share), left);
   std::fflush(stderr);
 }

@@ -12,25 +12,27 @@ namespace lightwell {
 
 /// The switches that every sub-command has.
 struct CommonOptions {
-  bool quiet = false;    ///< no progress, no notes, no report; errors and asked-for values only
+  bool quiet = false;    ///< no progress, notes or report; errors and requested values only
   bool json = false;     ///< standard output is one JSON object
-  bool verbose = false;  ///< also say which options are in force
+  bool verbose = false;  ///< print the effective options
   int threads = 0;       ///< 0: one per core
-  std::vector<std::string> command_line{};  ///< all words as they were typed
+  std::vector<std::string> command_line{};  ///< argv
 };
 
-/// Seconds since it was made, or since the last lap.
+/// A clock that starts with its construction.
 class Stopwatch {
  public:
+  /// Seconds since the start.
   double seconds() const;
+  /// Seconds since the start, and starts again.
   double lap();
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Talk: progress and messages, on standard error. A terminal gets one line that redraws itself
-/// (phase, percent, time left), anything else one line per finished phase.
+/// Progress and messages on standard error. A terminal shows one line that is redrawn (phase,
+/// percent, time left); a file or pipe gets one line per finished phase.
 class Console {
  public:
   explicit Console(const CommonOptions& options);
@@ -39,16 +41,16 @@ class Console {
   Console& operator=(const Console&) = delete;
 
   const CommonOptions& options() const { return options_; }
-  /// Shows what it is called with, and says stop once an interrupt has arrived. Valid while the
-  /// console lives.
+  /// A callback that shows the phase and share, and returns false once an interrupt has arrived.
+  /// The callback is valid during the console's life.
   Progress progress();
   /// Ends the progress line, if one is being drawn.
   void finish_phase();
-  /// A line for people; silent with --quiet.
+  /// Prints a line, unless --quiet was given.
   void say(std::string_view line);
-  /// What the reader assumed, repaired or dropped.
+  /// Prints the reader's notes: assumptions, repairs and dropped parts of the scene file.
   void say_notes(const Scene& scene);
-  /// With --verbose only.
+  /// Prints a line if --verbose was given.
   void say_verbose(std::string_view line);
 
  private:
@@ -62,7 +64,7 @@ class Console {
   struct Start {
     double share = 0.0, seconds = 0.0;
   };
-  Start start_{};  // from where on work is done at its own pace
+  Start start_{};  // of the time-left estimate; work recalled from a checkpoint lies before
 };
 
 }  // namespace lightwell

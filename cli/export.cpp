@@ -28,7 +28,7 @@ struct ExportArguments {
   LightmapOptions light{};
 };
 
-/// The solution with the scene and the model that are made of it.
+/// A solution, its scene (empty without --scene) and the model baked from both.
 struct Exported {
   const Scene& scene;
   const SolvedScene& solved;
@@ -42,7 +42,8 @@ SolvedScene read_alone(const std::string& file, Console& console, Report& report
   report.add("light", light_name(solved.solution.relative_units));
   report.add_phase("read_solution", watch.seconds());
   console.say(
-      "note: a solution alone names no surfaces, cameras, mirrors or glass; '--scene SCENE' does.");
+      "note: a solution has no names of surfaces, no cameras, mirrors or glass; '--scene SCENE' "
+      "does.");
   return solved;
 }
 
@@ -52,7 +53,7 @@ void require_all_writable(const ExportArguments& arguments) {
     if (lower_extension(file) == ".obj") {
       require_writable(std::filesystem::path(file).replace_extension(".mtl"));
     }
-    // How many there will be is not known yet; there is a first.
+    // The number of lightmaps is not known yet; the first always exists.
     if (arguments.lightmap && lower_extension(file) == ".glb") {
       require_writable(lightmap_files(file, 1).front());
     }
@@ -60,7 +61,8 @@ void require_all_writable(const ExportArguments& arguments) {
 }
 
 void write_lightmap(const std::filesystem::path& file, const Exported& exported,
-                    const ExportArguments& arguments, Console& console, Report& report) {
+                    const ExportArguments& arguments, const Feedback& feedback) {
+  const auto& [console, report] = feedback;
   LightmapOptions options = arguments.light;
   options.pass = arguments.lightmap_pass == "interpolate" ? Pass::interpolate
                  : arguments.lightmap_pass == "gather"    ? Pass::gather
@@ -77,12 +79,13 @@ void write_lightmap(const std::filesystem::path& file, const Exported& exported,
 }
 
 void write_file(const std::filesystem::path& file, const Exported& exported,
-                const ExportArguments& arguments, Console& console, Report& report) {
+                const ExportArguments& arguments, const Feedback& feedback) {
+  Report& report = feedback.report;
   const std::string kind = lower_extension(file);
   const BakedModel& model = exported.model;
   const Stopwatch watch;
   if (kind == ".glb" && arguments.lightmap) {
-    write_lightmap(file, exported, arguments, console, report);
+    write_lightmap(file, exported, arguments, feedback);
   } else if (kind == ".glb") {
     write_gltf(file, model);
   } else if (kind == ".ply") {
@@ -118,7 +121,7 @@ int export_model(const ExportArguments& arguments, Console& console) {
   report.add_phase("bake", watch.seconds());
   stop_if_interrupted();
   for (const std::string& file : arguments.outputs) {
-    write_file(file, exported, arguments, console, report);
+    write_file(file, exported, arguments, {console, report});
     stop_if_interrupted();
   }
   report.print();
@@ -130,9 +133,10 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
   LightmapOptions& light = arguments.light;
   CLI::Option* lightmap =
       command
-          .add_flag("--lightmap", arguments.lightmap,
-                    "the .glb has its light in textures instead of in its vertices, and its\n"
-                    "numbers beside it, FILE-lightmap-1.exr, ...")
+          .add_flag(
+              "--lightmap", arguments.lightmap,
+              "light of the .glb in textures instead of vertex colours; their values go into\n"
+              "FILE-lightmap-1.exr, ... beside it")
           ->group(group);
   command
       .add_option("--lightmap-size", light.size,
@@ -142,20 +146,20 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
       ->needs(lightmap);
   command
       .add_option("--texels-per-metre", light.texels_per_metre,
-                  "how fine, in several lightmaps if need be (default: what fits into one)")
+                  "resolution, in several lightmaps if necessary (default: what fits into one)")
       ->check(positive())
       ->group(group)
       ->needs(lightmap);
   command
       .add_option("--lightmap-padding", light.padding,
-                  "texels around a chart that continue it (default 4)")
+                  "texels of padding around a chart (default 4)")
       ->check(whole_number(1, 64))
       ->group(group)
       ->needs(lightmap);
   command
       .add_option("--lightmap-pass", arguments.lightmap_pass,
-                  "light of a texel: interpolate (the solution), direct (shadows traced anew) or\n"
-                  "gather (all of it anew)")
+                  "light of a texel: interpolate (from the solution), direct (direct light anew)\n"
+                  "or gather (indirect light anew too)")
       ->check(one_of("pass", {"interpolate", "direct", "gather"}))
       ->group(group)
       ->needs(lightmap);
@@ -171,7 +175,7 @@ void check(const ExportArguments& arguments) {
   const bool has_glb = std::ranges::any_of(
       arguments.outputs, [](const std::string& file) { return lower_extension(file) == ".glb"; });
   if (!has_glb) {
-    throw CLI::ValidationError("--lightmap", "is of a .glb; ask for one with '-o FILE.glb'");
+    throw CLI::ValidationError("--lightmap", "needs a .glb output; add '-o FILE.glb'");
   }
   if (arguments.scene.empty() && arguments.lightmap_pass != "interpolate") {
     throw CLI::ValidationError("--lightmap-pass",
@@ -199,7 +203,7 @@ Action add_export(CLI::App& command) {
       ->check(with_extension({".glb", ".ply", ".obj", ".html"}));
   command
       .add_option("--scene", arguments->scene,
-                  "the scene it was made from: names, cameras, mirrors and glass")
+                  "the solution's scene, for names, cameras, mirrors and glass")
       ->type_name("SCENE");
   add_exposure(command, arguments->exposure_ev);
   add_lux_range(command, arguments->range);

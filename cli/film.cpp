@@ -48,7 +48,7 @@ bool holds(const std::vector<Layer>& layers, Layer layer) {
   return std::find(layers.begin(), layers.end(), layer) != layers.end();
 }
 
-// "albedo,normal": what each word names is added to `film`.
+// Adds the layers named by `words` ("albedo,normal") to `film`.
 void add_layers(const std::string& words, FilmArguments& film) {
   std::vector<std::string> known = {"all"};
   for (const NamedLayer& layer : named_layers) known.emplace_back(layer.name);
@@ -91,7 +91,7 @@ ImageMetadata metadata(const Picture& picture, const FilmArguments& film, bool i
       {"toneMap", film.tones_text(picture.exposure_ev)},
       {"exposureScale", scale}};
   if (!solution.relative_units) {
-    // Of the pixel value 1, which in a PNG is white.
+    // Luminance of the pixel value 1, in a PNG white, cd/m^2.
     const double white = solution.bands.lumens_per_watt;
     all.emplace_back("whiteLuminance", is_png ? white / scale : white);
     all.emplace_back("ev100", ev100_of_scale(scale, solution.bands));
@@ -151,8 +151,8 @@ void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn h
           [this](const std::vector<std::string>& given) {
             for (const std::string& words : given) add_layers(words, *this);
           },
-          "also into the .exr: albedo, normal, depth, direct, indirect, specular, emission, "
-          "luminance, illuminance, patch (with commas), or all")
+          "more layers of the .exr, with commas: albedo, normal, depth, direct, indirect, "
+          "specular, emission, luminance, illuminance, patch; or all")
       ->type_name("NAMES")
       ->type_size(1)
       ->allow_extra_args(false)
@@ -166,12 +166,13 @@ void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn h
               if (name == known) exr.compression = compression;
             }
           },
-          "of the .exr: none, rle, zips, zip (default), piz")
+          "compression of the .exr: none, rle, zips, zip (default), piz")
       ->type_name("KIND")
       ->check(one_of("compression", names_of(compressions)))
       ->group(more);
   command
-      .add_option("--tone-map", tone_map, "of the .png: auto (default), linear, reinhard, filmic")
+      .add_option("--tone-map", tone_map,
+                  "tone curve of the .png: auto (default), linear, reinhard, filmic")
       ->type_name("CURVE")
       ->check(one_of("tone mapping", names_of(tone_curves)))
       ->group(more);
@@ -182,12 +183,13 @@ void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn h
             constexpr double least = -20.0, most = 40.0;
             if (!(ev >= least && ev <= most)) {
               throw CLI::ValidationError(
-                  "--ev100", fmt::format("an exposure value lies between {} and {}; {} does not",
-                                         least, most, ev));
+                  "--ev100", fmt::format("an exposure value from {} to {} is needed, not {}", least,
+                                         most, ev));
             }
             ev100 = ev;
           },
-          "expose the .png as a camera would: white is 1.2 * 2^EV cd/m^2 (default: by the picture)")
+          "exposure value at ISO 100 of the .png: white is 1.2 * 2^EV cd/m^2 (default: by the "
+          "picture)")
       ->type_name("EV")
       ->group(more);
 }
@@ -197,7 +199,8 @@ void FilmArguments::add_false_colour_to(CLI::App& command, const std::string& gr
                           .add_option_function<std::string>(
                               "--false-colour,--false-color",
                               [this](const std::string& name) { false_colour = layer_named(name); },
-                              "the .png shows luminance (cd/m^2) or illuminance (lx) with a scale")
+                              "quantity that the .png shows in false colours: luminance (cd/m^2) "
+                              "or illuminance (lx)")
                           ->type_name("WHAT")
                           ->check(one_of("quantity", {"luminance", "illuminance"}))
                           ->group(group);

@@ -15,33 +15,36 @@
 
 namespace lightwell {
 
-/// What pictures hold and how they show it, as asked for on the command line.
+/// Options of picture files: layers and pixel format of EXR, tone mapping or false colours of PNG.
 struct FilmArguments {
   std::vector<Layer> layers{};  ///< of EXR files
-  bool all_layers = false;      ///< all that the scene's light has
+  bool all_layers = false;      ///< every layer that the scene's units allow
   ExrOptions exr{};
   std::string tone_map = "auto";
   std::optional<double> ev100{};
-  std::optional<Layer> false_colour{};  ///< what PNG files show instead of the picture
-  std::optional<LuxRange> range{};      ///< of that
+  std::optional<Layer> false_colour{};  ///< layer that PNG files show in false colours
+  std::optional<LuxRange> range{};      ///< of the false colours; unset: of the picture's values
 
+  enum class HelpOn { shown, hidden };  ///< whether --help shows the options
   /// Adds --layers, --half, --compression, --tone-map and --ev100.
-  enum class HelpOn { shown, hidden };  ///< whether --help shows them
   void add_to(CLI::App& command, const std::string& group, HelpOn help_on);
   /// Adds --false-colour and --range.
   void add_false_colour_to(CLI::App& command, const std::string& group);
 
-  /// Throws InputError that says what does not go with the scene's light or with the files: before
-  /// the work, not after it.
+  /// Throws InputError if an option needs
+  /// - a PNG or EXR file that is not among `files`,
+  /// - photometric units in a scene of relative units, or
+  /// - the viewer in a program built without it.
+  /// To be called before the work.
   void check(const Scene& scene, const std::vector<std::filesystem::path>& files) const;
-  /// What must be rendered for all that.
+  /// Layers to render: `layers`, all layers if `all_layers`, and the one of `false_colour`.
   std::vector<Layer> rendered_layers(const Scene& scene) const;
   ToneMapping tones(double exposure_ev) const;
-  /// The command line that repeats what PNG files show.
+  /// Command-line options that repeat the tone mapping of PNG files.
   std::string tones_text(double exposure_ev) const;
 };
 
-/// A picture and how it came about.
+/// A picture with its metadata.
 struct Picture {
   const Image& image;
   const RadiositySolution& solution;
@@ -50,7 +53,7 @@ struct Picture {
   double exposure_ev = 0.0;
 };
 
-/// Writes it as the file's extension says, .exr or .png.
+/// Writes the picture in the format of the file's extension, .exr or .png.
 void write_picture(const std::filesystem::path& file, const Picture& picture,
                    const FilmArguments& film);
 

@@ -13,7 +13,6 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/view_factor_rows.h"
-#include "mesh/build_patches.h"
 #include "radiosity/form_factors/form_factor_file.h"
 #include "radiosity/form_factors/view_factor_scene.h"
 #include "scene/errors.h"
@@ -37,7 +36,7 @@ struct FormFactorArguments {
 };
 
 std::string FormFactorArguments::text() const {
-  // Without the option there is a row for each facet, which no size says.
+  // No value of --max-patch-size stands for one row per facet.
   return fmt::format(
       "--method {}{} --target-error {:g}{}{}", method, hemicube_text(method, hemicube_resolution),
       target_error,
@@ -50,9 +49,9 @@ fs::path FormFactorArguments::row_file() const {
   return fs::path(output).replace_extension(fmt::format(".row{}.vtp", show_row));
 }
 
-/// How facets are cut when each is to be one row. Rays find all of a facet; what a hemicube sees
-/// from one place, or what few shadow rays say about two whole facets, is better summed over
-/// smaller patches. Facets are cut where others touch them in any case.
+/// Mesh options for one row per facet. Ray casting samples a whole facet, so a facet is one patch.
+/// A hemicube has one centre per patch, and a closed form few shadow rays per pair of patches: both
+/// are summed over smaller patches. Every method cuts facets where other facets touch them.
 MeshOptions mesh_for_facets(FormFactorMethod method, const Scene& scene) {
   MeshOptions options{.elements_per_patch_edge = 1};
   constexpr int patches_of_hemicubes = 2048, patches_of_closed_forms = 512;
@@ -71,11 +70,12 @@ struct Computed {
   ViewFactorRows rows{};
   ViewFactors factors{0};
   FormFactorReport report{};
-  std::optional<double> error{};  // estimated, of the worst factor
+  std::optional<double> error{};  // estimated error of the worst factor
 };
 
 Computed compute(const FormFactorArguments& arguments, const NumberedScene& numbered,
-                 const FacetCheck& check, Console& console, Report& report) {
+                 const FacetCheck& check, const Feedback& feedback) {
+  const auto& [console, report] = feedback;
   Stopwatch watch;
   const ViewFactorScene view = make_view_factor_scene(numbered, check, arguments.two_sided);
   const FormFactorMethod method = form_factor_method(arguments.method);
@@ -146,7 +146,7 @@ Json form_factor_facts(const FormFactorArguments& arguments, const NumberedScene
           {"rays", computed.report.rays}};
 }
 
-/// The arrays that go beside the matrix, one value per row.
+/// Arrays of the JSON file beside the matrix, one value per row.
 Json row_facts(const Computed& computed) {
   const ViewFactorRows& rows = computed.rows;
   Json side = Json::array();
@@ -166,15 +166,15 @@ std::string form_factor_text(const Json& facts) {
   text += fmt::format("{:<9} {} of {} facets, {} entries, {:.6g} m2 in all\n", "rows",
                       facts["rows"].get<int>(), facts["facets"].get<int>(),
                       facts["entries"].get<std::int64_t>(), number("total_area"));
-  text += fmt::format("{:<9} rows and what is open add up to 1 within {:.1e}\n", "closure",
+  text += fmt::format("{:<9} rows and their open shares add up to 1 within {:.1e}\n", "closure",
                       number("closure_max_error"));
   text += fmt::format("{:<9} A_i F_ij = A_j F_ji within {:.1e} of the smaller area\n", "exchange",
                       number("reciprocity_max_error"));
-  text += fmt::format("{:<9} {:.4f} % of what leaves the facets, {:.4f} % at most, meets none\n",
+  text += fmt::format("{:<9} {:.4f} % of the light of all rows, {:.4f} % at most, meets no facet\n",
                       "open", 100.0 * number("open_share"), 100.0 * number("most_open_share"));
   const Json& error = facts["error_estimate"];
   text += fmt::format(
-      "{:<9} {} in the worst factor; asked for {:.1e} ({})\n", "error",
+      "{:<9} {} in the worst factor; target {:.1e} ({})\n", "error",
       error.is_null() ? "not estimated" : fmt::format("{:.1e}, estimated,", error.get<double>()),
       number("target_error"), facts["method"].get<std::string>());
   return text;
@@ -214,9 +214,10 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
   std::vector<std::string> notes = findings(numbered, check);
   report.add_phase("read_scene", watch.lap());
 
-  Computed computed = compute(arguments, numbered, check, console, report);
+  Computed computed = compute(arguments, numbered, check, {console, report});
   if (computed.factors.entry_count() == 0) {
-    notes.push_back("No facet sees another; facets see where their corners run counter-clockwise.");
+    notes.push_back(
+        "No facet sees another; the front of a facet is where its corners run counter-clockwise.");
   }
   for (const std::string& note : notes) console.say("note: " + note);
   const Json found = form_factor_facts(arguments, numbered, computed);
@@ -227,7 +228,7 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
   write_files(arguments, numbered, computed, report);
   report.add_phase("write", watch.lap());
   report.add_file(arguments.json_file());
-  computed.factors.release_rows();  // the arrays beside the matrix take memory, too
+  computed.factors.release_rows();  // makes room for the arrays of the JSON file
   Json beside = report.json();
   beside["row"] = row_facts(computed);
   write_json(arguments.json_file(), beside);
@@ -239,7 +240,7 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
 }
 
 void add_how(CLI::App& command, FormFactorArguments& arguments) {
-  const std::string group = "How they are found";
+  const std::string group = "How form factors are found";
   command
       .add_option("--method,--form-factors", arguments.method,
                   "auto (default), ray-cast, hemicube or analytic")
@@ -249,21 +250,21 @@ void add_how(CLI::App& command, FormFactorArguments& arguments) {
   add_hemicube_resolution(command, arguments.hemicube_resolution)->group(group);
   command
       .add_option("--target-error", arguments.target_error,
-                  "wanted standard error of every factor (default 1e-3)")
+                  "target standard error of every factor (default 1e-3)")
       ->type_name("E")
       ->check(positive())
       ->group(group);
   add_memory(command, arguments.memory)->group(group);
   command
       .add_option("--max-patch-size", arguments.max_patch_size,
-                  "cut facets into patches of that edge, in the scene file's unit, with a row each "
-                  "(default: a row for each facet)")
+                  "cut facets into patches of at most this edge, in the scene file's unit, with a "
+                  "row each (default: a row for each facet)")
       ->type_name("L")
       ->check(positive())
       ->group(group);
   command
       .add_flag("--two-sided", arguments.two_sided,
-                "facets see with their backs as well: row n + i is the back of row i of n")
+                "both sides of facets have rows: row n + i is the back of row i of n")
       ->group(group);
 }
 
@@ -284,7 +285,8 @@ Action add_form_factors(CLI::App& command) {
       ->required()
       ->type_name("FILE")
       ->check(with_extension({".mtx"}));
-  command.add_option("--view3d", arguments->view3d, "also View3D's text result")->type_name("FILE");
+  command.add_option("--view3d", arguments->view3d, "also the result in View3D's text format")
+      ->type_name("FILE");
   auto* const show_row =
       command
           .add_option("--show-row", arguments->show_row,
@@ -293,7 +295,7 @@ Action add_form_factors(CLI::App& command) {
           ->check(whole_number(1, 2000000000));
   command
       .add_option("--row-output", arguments->row_output,
-                  "where that goes (default: beside the matrix)")
+                  "file of --show-row (default: beside the matrix)")
       ->type_name("FILE")
       ->check(with_extension({".vtp"}))
       ->needs(show_row);

@@ -24,7 +24,7 @@
 namespace lightwell {
 namespace {
 
-// Both sides, where it shines to both.
+// Area of the emitting sides, m^2: both sides if the material emits from both.
 double emitting_area(const Scene& scene, const Surface& surface) {
   double area = 0.0;
   if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
@@ -55,7 +55,8 @@ Json emitters_json(const Scene& scene) {
   return emitters;
 }
 
-// What open ground gets, and where the sun stands.
+// Irradiance or illuminance of open ground by the sky, position of the sun in degrees (azimuth from
+// north over east), and irradiance or illuminance across the sun's rays.
 Json sky_json(const Scene& scene) {
   const Sky& sky = *scene.sky;
   const auto amount = [&](const Spectrum& E) {
@@ -218,14 +219,14 @@ Json luminaire_json(const LuminaireFile& luminaire) {
   if (luminaire.watts > 0.0) facts["input_watts"] = luminaire.watts;
   std::vector<std::string> notes = luminaire.notes;
   if (luminaire.is_radiometric) {
-    notes.emplace_back("Its intensities are radiant, in W/sr, and not candela: none of it is lux.");
+    notes.emplace_back("The intensities are radiant, in W/sr, not in candela: no lux are known.");
   }
   facts["notes"] = notes;
   return facts;
 }
 
-/// Rooms are X x Y in heights of the luminaires above the eye, reflectances percent of ceiling,
-/// walls and floor.
+/// UGR table for JSON. Rooms are X x Y in multiples of the height of the luminaires above the eye;
+/// reflectances are those of ceiling, walls and floor in percent.
 Json ugr_json(const UgrTable& table) {
   const auto rows = [](const UgrTable::Ratings& ratings) {
     Json all = Json::array();
@@ -264,7 +265,7 @@ void print_ugr(const UgrTable& table) {
     for_both([&](int view, std::size_t r) {
       const double ugr = (view == 0 ? table.along_c0 : table.along_c90)(
           static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(r));
-      constexpr double least = 10.0;  // below which tables only say so
+      constexpr double least = 10.0;  // printed UGR tables have "<10" below
       fmt::print("{:>6}", ugr < least ? "<10" : fmt::format("{:.1f}", ugr));
     });
     fmt::print("\n");
@@ -309,8 +310,8 @@ Json describe(const std::string& file) {
   return scene_json(read_scene(file));
 }
 
-// A value on one line; a list of objects as a line each.
-void print_info(const Json& facts) {
+// Prints each value on a line; in a list of objects and in the notes each item has a line.
+void print_for_people(const Json& facts) {
   const auto word = [](const Json& value) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
@@ -351,11 +352,11 @@ Action add_info(CLI::App& command) {
   };
   const auto arguments = std::make_shared<Arguments>();
   command.description(
-      "What is in a scene (.toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3), a "
+      "Describes a scene (.toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3), a "
       "solution (.vtp), a picture (.exr) or a luminaire (.ies, .ldt).");
   command.add_option("file", arguments->file, "the file")->required()->type_name("FILE");
   command.add_flag("--ugr", arguments->ugr,
-                   "of a luminaire: its UGR in the 19 standard rooms (CIE 117, CIE 190)");
+                   "UGR table of a luminaire in the 19 standard rooms (CIE 117, CIE 190)");
   command.footer("Example: lightwell info cornell/cornell.toml");
   return [arguments](Console& console) {
     const std::string& file = arguments->file;
@@ -366,7 +367,7 @@ Action add_info(CLI::App& command) {
     }
     Json facts = describe(file);
     if (!arguments->ugr) {
-      console.options().json ? print_json(facts) : print_info(facts);
+      console.options().json ? print_json(facts) : print_for_people(facts);
       return int{exit_done};
     }
     const UgrTable table = ugr_table(read_luminaire(file));
@@ -374,7 +375,7 @@ Action add_info(CLI::App& command) {
       facts["ugr"] = ugr_json(table);
       print_json(facts);
     } else {
-      print_info(facts);
+      print_for_people(facts);
       print_ugr(table);
     }
     return int{exit_done};

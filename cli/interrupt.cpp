@@ -5,7 +5,7 @@
 namespace lightwell {
 namespace {
 
-volatile std::sig_atomic_t requested = 0;  // all that a signal handler may touch
+volatile std::sig_atomic_t requested = 0;  // the type that a signal handler may write
 
 void request(int) {
   requested = 1;
@@ -19,7 +19,7 @@ void catch_interrupts() {
   action.sa_flags = SA_RESTART | SA_RESETHAND;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // A file that may not grow is an error to report, like a full disk.
+  // A write beyond the allowed file size fails with EFBIG and is reported, like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
 }
 

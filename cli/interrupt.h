@@ -7,14 +7,15 @@
 
 namespace lightwell {
 
-/// From now on SIGINT and SIGTERM raise a flag instead of ending the program; a second one ends it.
-/// Files that reach the size that is allowed fail to be written, with an error as on a full disk.
+/// Installs signal handling for the whole process:
+/// - the first SIGINT or SIGTERM sets a flag, the second ends the program;
+/// - SIGXFSZ is ignored, so that a file at the allowed size fails to be written with an error.
 void catch_interrupts();
 
-/// Whether one of them has arrived.
+/// True once SIGINT or SIGTERM has arrived.
 bool interrupt_requested();
 
-/// An Interrupted with a sentence for people, that takes the place of the usual one.
+/// An Interrupted with a message of its own in place of the usual one.
 class InterruptedWith : public Interrupted {
  public:
   explicit InterruptedWith(std::string sentence) : sentence_(std::move(sentence)) {}
@@ -24,7 +25,7 @@ class InterruptedWith : public Interrupted {
   std::string sentence_;
 };
 
-/// Throws Interrupted if one has: for moments between two pieces of work.
+/// Throws Interrupted if interrupt_requested(); to be called between two pieces of work.
 void stop_if_interrupted();
 
 }  // namespace lightwell

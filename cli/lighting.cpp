@@ -26,7 +26,7 @@
 namespace lightwell {
 namespace {
 
-/// A number after the last '@' or '='.
+/// NAME@NUMBER or NAME=NUMBER.
 struct Named {
   std::string name{};
   double value = 0.0;
@@ -36,8 +36,8 @@ struct LightingArguments {
   std::string scene, solution;
   std::vector<std::string> outputs, surfaces, observers;
   std::vector<Named> planes, watts;
-  std::optional<double> margin;  // in the scene file's unit, as spacing; unset: 0.5 m
-  double spacing = 0.0;
+  std::optional<double> margin;  // in the scene file's unit; unset: 0.5 m
+  double spacing = 0.0;          // in the scene file's unit; 0: that of EN 12464-1
   double maintenance_factor = 1.0;
   int rays = 1024;
   std::optional<LuxRange> range;
@@ -65,10 +65,11 @@ int find_surface(const Scene& scene, const std::string& name) {
                                scene.file.string(), name, did_you_mean(name, names)));
 }
 
-// Watts of the file, and before those what the command line says.
+// One row per name of emitters and lamps. Installed power is that of the scene and its photometric
+// files (`design`); 0 if the power of one emitter of the name is unknown.
 std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
-                                     const DirectLight& direct_light, const LightingDesign& design,
-                                     const std::vector<Named>& watts) {
+                                     const DirectLight& direct_light,
+                                     const LightingDesign& design) {
   std::vector<LuminaireRow> rows;
   const auto row_of = [&](const std::string& name) -> LuminaireRow& {
     const auto at = std::ranges::find(rows, name, &LuminaireRow::name);
@@ -101,24 +102,29 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
   for (LuminaireRow& row : rows) {
     if (partly_known.contains(row.name)) row.watts = 0.0;
   }
+  return rows;
+}
+
+// Replaces the installed power of the luminaires named by --watts.
+void set_watts(std::vector<LuminaireRow>& rows, const std::vector<Named>& watts,
+               const Scene& scene) {
   for (const Named& known : watts) {
     const auto at = std::ranges::find(rows, known.name, &LuminaireRow::name);
     if (at == rows.end()) {
-      throw InputError(fmt::format("{}: '--watts' names '{}', which is no luminaire there",
+      throw InputError(fmt::format("{}: there is no luminaire '{}', which '--watts' names",
                                    scene.file.string(), known.name));
     }
     at->watts = at->count * known.value;
   }
-  return rows;
 }
 
-/// The grids of the file and those that were asked for, before any light is traced.
+/// Points of the grids: those of the scene file, of --surface and of --plane, in this order.
 std::vector<CalculationSurface> grids(const LightingArguments& arguments, const Scene& scene,
                                       const LightingDesign& design, const Eigen::Vector3d& up) {
   std::vector<CalculationSurface> surfaces;
   const double metres = scene.metres_per_unit;
   const double spacing = arguments.spacing * metres;
-  constexpr double strip = 0.5;  // m, which EN 12464-1 leaves out along walls
+  constexpr double strip = 0.5;  // m; strip along walls that EN 12464-1 leaves out
   const double margin = arguments.margin ? *arguments.margin * metres : strip;
   for (const CalculationGrid& grid : design.grids) {
     const double usual = grid.height > 0.0 ? margin : 0.0;
@@ -172,7 +178,7 @@ Json figures_json(const LightingReport& report) {
                          {"solid_angle", source.solid_angle},
                          {"position_index", source.position_index}});
     }
-    Json ugr;  // null: none in sight
+    Json ugr;  // null: no luminaire in sight
     if (glare.ugr) ugr = *glare.ugr;
     observers.push_back({{"name", name},
                          {"UGR", std::move(ugr)},
@@ -227,22 +233,71 @@ void print_figures(const LightingReport& report) {
   }
 }
 
+/// A solved scene with what rays from points need.
+struct MeasurableScene {
+  MeasurableScene(const Scene& of, const SolvedScene& solved)
+      : scene(of), solution(solved.solution), caster(solved.mesh), direct_light(of, solved.mesh) {}
+
+  const Scene& scene;
+  const RadiositySolution& solution;
+  ElementCaster caster;
+  DirectLight direct_light;
+};
+
+void measure_surfaces(const MeasurableScene& lit, const GatherOptions& gathering,
+                      LightingReport& made) {
+  for (CalculationSurface& surface : made.surfaces) {
+    surface.grid = without_buried_points(lit.caster, std::move(surface.grid));
+    surface.field = measure_grid(lit.scene, lit.caster, lit.direct_light, lit.solution,
+                                 surface.grid, made.maintenance_factor, gathering);
+    stop_if_interrupted();
+  }
+}
+
+std::vector<Observer> rate_glare(const MeasurableScene& lit,
+                                 const std::vector<std::string>& cameras,
+                                 const LightingDesign& design, GatherOptions gathering) {
+  constexpr int rays_of_an_eye = 1 << 14;
+  gathering.rays = std::max(gathering.rays, rays_of_an_eye);
+  std::vector<Observer> observers;
+  for (const std::string& name : cameras) {
+    observers.push_back({.name = name,
+                         .glare = unified_glare_rating(lit.scene, lit.caster, lit.direct_light,
+                                                       lit.solution, choose_camera(lit.scene, name),
+                                                       gathering, design.luminous_height)});
+    stop_if_interrupted();
+  }
+  return observers;
+}
+
+void write_outputs(const LightingArguments& arguments, const LightingReport& made,
+                   const Json& figures, Report& report) {
+  for (const std::filesystem::path file : arguments.outputs) {
+    const std::string kind = lower_extension(file);
+    if (kind == ".html") write_whole(file, {lighting_page(made, arguments.range)});
+    if (kind == ".csv") write_whole(file, {points_csv(made)});
+    if (kind == ".json") write_json(file, figures);
+    report.add_file(file);
+  }
+}
+
 int report_lighting(const LightingArguments& arguments, Console& console) {
   Report report(console.options());
   CleanUpReport clean_up;
   const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
   if (scene.relative_units) {
-    throw InputError(fmt::format(
-        "{}: its light is in no known unit, so that there are no lux to report", arguments.scene));
+    throw InputError(
+        fmt::format("{}: the scene names no unit of light, so no illuminance can be reported",
+                    arguments.scene));
   }
   for (const std::string& file : arguments.outputs) require_writable(file);
   const LightingDesign design = read_lighting_design(scene);
   if (design.grids.empty() && arguments.surfaces.empty() && arguments.planes.empty() &&
       arguments.observers.empty()) {
     throw InputError(
-        "nothing was asked for; name surfaces with '--surface floor', planes above them with "
-        "'--plane floor@0.75' or as [[grids]] in the scene file, or observers with '--observer "
-        "CAMERA'");
+        "there is nothing to report; name surfaces with '--surface floor', planes above surfaces "
+        "with '--plane floor@0.75' or as [[grids]] in the scene file, or observers with "
+        "'--observer CAMERA'");
   }
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   LightingReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
@@ -252,41 +307,23 @@ int report_lighting(const LightingArguments& arguments, Console& console) {
                       .maintenance_factor = arguments.maintenance_factor,
                       .rays = arguments.rays,
                       .error_estimate = solved.solution.error_estimate};
-  // A surface is asked for as the file has it, not with what it was joined with.
+  // --surface and --plane name surfaces of the file, which merge_planar_regions() may have joined
+  // with others: names->apart() separates them again.
   made.surfaces = grids(arguments, clean_up.names ? clean_up.names->apart(scene) : scene, design,
                         guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)));
   const Stopwatch watch;
-  const ElementCaster caster(solved.mesh);
-  const DirectLight direct_light(scene, solved.mesh);
-  made.luminaires = luminaires(scene, solved.mesh, direct_light, design, arguments.watts);
+  const MeasurableScene lit(scene, solved);
+  made.luminaires = luminaires(scene, solved.mesh, lit.direct_light, design);
+  set_watts(made.luminaires, arguments.watts, scene);
   GatherOptions gathering{.rays = arguments.rays};
   gathering.run.progress = console.progress();
-  for (CalculationSurface& surface : made.surfaces) {
-    surface.grid = without_buried_points(caster, std::move(surface.grid));
-    surface.field = measure_grid(scene, caster, direct_light, solved.solution, surface.grid,
-                                 arguments.maintenance_factor, gathering);
-    stop_if_interrupted();
-  }
-  for (const std::string& name : arguments.observers) {
-    constexpr int rays_of_an_eye = 1 << 14;
-    gathering.rays = std::max(arguments.rays, rays_of_an_eye);
-    made.observers.push_back({.name = name,
-                              .glare = unified_glare_rating(
-                                  scene, caster, direct_light, solved.solution,
-                                  choose_camera(scene, name), gathering, design.luminous_height)});
-    stop_if_interrupted();
-  }
+  measure_surfaces(lit, gathering, made);
+  made.observers = rate_glare(lit, arguments.observers, design, gathering);
   console.finish_phase();
   report.add_phase("measure", watch.seconds());
   const Json figures = figures_json(made);
   for (const auto& [key, value] : figures.items()) report.add(key, value);
-  for (const std::filesystem::path file : arguments.outputs) {
-    const std::string kind = lower_extension(file);
-    if (kind == ".html") write_whole(file, {lighting_page(made, arguments.range)});
-    if (kind == ".csv") write_whole(file, {points_csv(made)});
-    if (kind == ".json") write_json(file, figures);
-    report.add_file(file);
-  }
+  write_outputs(arguments, made, figures, report);
   if (!console.options().json) print_figures(made);
   report.print();
   return exit_done;
@@ -297,10 +334,10 @@ int report_lighting(const LightingArguments& arguments, Console& console) {
 Action add_report(CLI::App& command) {
   const auto arguments = std::make_shared<LightingArguments>();
   command.description(
-      "Figures of a lighting design: mean and least illuminance and uniformity of surfaces and "
+      "Reports a lighting design: mean and least illuminance and uniformity of surfaces and "
       "working\nplanes, glare (UGR) of observers, the luminaires; as a page, JSON or CSV.");
   command.add_option("scene", arguments->scene, "the scene file")->required()->type_name("SCENE");
-  command.add_option("solution", arguments->solution, "its solution, .vtp")
+  command.add_option("solution", arguments->solution, "the scene's solution, .vtp")
       ->required()
       ->type_name("SOLUTION");
   command
@@ -323,27 +360,28 @@ Action add_report(CLI::App& command) {
               arguments->planes.push_back(named_number(text, '@', "--plane"));
             }
           },
-          "measure so far above this surface: floor@0.75; may be repeated")
+          "measure on a plane at this height above a surface: floor@0.75; may be repeated")
       ->type_name("NAME@HEIGHT")
       ->type_size(1)
       ->allow_extra_args(false);
   command
-      .add_option("--margin", arguments->margin, "of planes, along their outline (default 0.5 m)")
+      .add_option("--margin", arguments->margin,
+                  "strip along the outline of planes that is left out (default 0.5 m)")
       ->type_name("LENGTH")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber.description(""));  // no ":NONNEGATIVE" in --help
   command
       .add_option("--spacing", arguments->spacing,
-                  "most between points (default: as EN 12464-1 has it)")
+                  "largest distance between points (default: by EN 12464-1)")
       ->type_name("LENGTH")
       ->check(positive());
   command
       .add_option("--maintenance", arguments->maintenance_factor,
-                  "factor of all illuminances, above 0 up to 1 (default 1)")
+                  "maintenance factor of all illuminances, above 0 up to 1 (default 1)")
       ->type_name("FACTOR")
-      ->check(CLI::Range(1e-6, 1.0));
+      ->check(CLI::Range(1e-6, 1.0).description(""));  // no ":FLOAT in ..." in --help
   command
       .add_option("--observer", arguments->observers,
-                  "a camera, for whose eye UGR is found; may be repeated")
+                  "camera for whose eye UGR is computed; may be repeated")
       ->type_name("CAMERA")
       ->type_size(1)
       ->allow_extra_args(false);
@@ -355,7 +393,7 @@ Action add_report(CLI::App& command) {
               arguments->watts.push_back(named_number(text, '=', "--watts"));
             }
           },
-          "electric power of each luminaire of that name; may be repeated")
+          "electric power of each luminaire of this name; may be repeated")
       ->type_name("NAME=W")
       ->type_size(1)
       ->allow_extra_args(false);

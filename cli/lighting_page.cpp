@@ -54,7 +54,8 @@ std::string hex_colour(double place) {
                      static_cast<int>(c[2]));
 }
 
-/// Even from 0 where that tells the values apart, which people read more easily.
+/// Scale of a plan's false colours: linear from 0 if the greatest illuminance is at most 20 times
+/// the least, since a linear scale is easier to read; lux_range() otherwise.
 LuxRange range_of(const LuxField& field) {
   constexpr double few_times = 20.0;
   if (field.greatest > few_times * std::max(field.least, 1e-30)) {
@@ -67,7 +68,8 @@ LuxRange range_of(const LuxField& field) {
   return {.low = 0.0, .high = 10.0 * power};
 }
 
-/// Cells as they lie, v upwards; their lux in them where there is room.
+/// Plan of the grid as SVG, v upwards, in false colours; illuminances are printed in cells that are
+/// large enough.
 std::string plan(const CalculationSurface& surface, const std::optional<LuxRange>& given) {
   constexpr double width = 760.0, tallest = 760.0, bar = 16.0, gap = 24.0, labels = 60.0;
   constexpr double room_for_text = 30.0;
@@ -118,7 +120,7 @@ void add_luminaires(const LightingReport& report, std::string& page) {
   const auto out = std::back_inserter(page);
   page += "<h2>Luminaires</h2>\n";
   if (report.luminaires.empty()) {
-    page += "<p>There are none; the light is that of sky and sun.</p>\n";
+    page += "<p>No luminaires; the light is that of sky and sun.</p>\n";
     return;
   }
   page +=
@@ -145,11 +147,12 @@ void add_surfaces(const LightingReport& report, const std::optional<LuxRange>& r
                   std::string& page) {
   if (report.surfaces.empty()) return;
   const auto out = std::back_inserter(page);
-  fmt::format_to(out,
-                 "<h2>Illuminance</h2>\n<p>Maintained values: new ones times a maintenance factor "
-                 "of {:g}. E<sub>m</sub> is the mean over the points of a grid, U<sub>0</sub> = "
-                 "E<sub>min</sub>/E<sub>m</sub>.</p>\n",
-                 report.maintenance_factor);
+  fmt::format_to(
+      out,
+      "<h2>Illuminance</h2>\n<p>Maintained values: initial ones times a maintenance "
+      "factor of {:g}. E<sub>m</sub> is the mean over the points of a grid, U<sub>0</sub> = "
+      "E<sub>min</sub>/E<sub>m</sub>.</p>\n",
+      report.maintenance_factor);
   page +=
       "<table><tr><th>calculation surface</th><th>E<sub>m</sub>, lx</th><th>E<sub>min</sub>, "
       "lx</th><th>E<sub>max</sub>, lx</th><th>U<sub>0</sub></th><th>points</th></tr>\n";
@@ -176,10 +179,10 @@ void add_surfaces(const LightingReport& report, const std::optional<LuxRange>& r
     const LuxGrid& grid = surface.grid;
     fmt::format_to(out, "<figure><figcaption><b>{}</b>", escaped(grid.name));
     if (grid.options.height > 0.0) {
-      fmt::format_to(out, ", {:g} m above it", grid.options.height);
+      fmt::format_to(out, ", {:g} m above the surface", grid.options.height);
     }
     if (grid.options.margin > 0.0) {
-      fmt::format_to(out, ", {:g} m from its edges left out", grid.options.margin);
+      fmt::format_to(out, ", without a margin of {:g} m", grid.options.margin);
     }
     fmt::format_to(out, ": {:.2f} m × {:.2f} m, a point every {:.2f} m × {:.2f} m</figcaption>\n",
                    grid.columns * grid.step_u, grid.rows * grid.step_v, grid.step_u, grid.step_v);
@@ -202,10 +205,11 @@ void add_observers(const LightingReport& report, std::string& page) {
   page += "</table>\n";
   for (const auto& [name, glare] : report.observers) {
     if (glare.sources.empty()) continue;
-    fmt::format_to(out,
-                   "<h3>{} sees</h3>\n<table><tr><th>luminaire</th><th>luminance, cd/m²</th>"
-                   "<th>solid angle, sr</th><th>p</th><th>share</th></tr>\n",
-                   escaped(name));
+    fmt::format_to(
+        out,
+        "<h3>Luminaires in sight of {}</h3>\n<table><tr><th>luminaire</th><th>luminance, cd/m²</th>"
+        "<th>solid angle, sr</th><th>p</th><th>share</th></tr>\n",
+        escaped(name));
     double all = 0.0;
     for (const GlareSource& source : glare.sources) all += source.share;
     for (const GlareSource& source : glare.sources) {
@@ -247,19 +251,19 @@ std::string lighting_page(const LightingReport& report, const std::optional<LuxR
   add_luminaires(report, page);
   add_surfaces(report, range, page);
   add_observers(report, page);
-  page += "<h2>How sure it is</h2>\n";
+  page += "<h2>Uncertainty</h2>\n";
   if (!report.surfaces.empty()) {
     fmt::format_to(out,
-                   "<p>Each point's light was gathered anew by {} rays over its hemisphere, and "
-                   "shadow rays to each lamp. The ± beside a value is what these leave open, with "
-                   "odds of 19 to 1, as two independent halves of them tell.</p>\n",
+                   "<p>The light of each point was gathered by {} rays over the hemisphere, and by "
+                   "shadow rays to each lamp. The ± beside a value is the 95 % confidence interval "
+                   "of this sampling, estimated from two independent halves of the rays.</p>\n",
                    report.rays);
   }
   if (report.error_estimate > 0.0) {
     fmt::format_to(out,
-                   "<p>Reflected light is read from a solution whose own estimate of its error is "
-                   "{} of the mean irradiance in a single place (root mean square); a point "
-                   "averages over all that it sees.</p>\n",
+                   "<p>Reflected light is read from a solution whose estimated error at a single "
+                   "point is {} of the mean irradiance (root mean square); each gather averages "
+                   "over the errors of all points that its rays reach.</p>\n",
                    percent(report.error_estimate));
   }
   return page + "</body></html>\n";

@@ -29,7 +29,8 @@ CLI::Option* add_lux_range(CLI::App& command, std::optional<LuxRange>& range) {
   return command
       .add_option_function<std::string>(
           "--range", [&range](const std::string& text) { range = parse_range(text); },
-          "ends of the scale in lux, even from 0, else logarithmic (default: suits the solution)")
+          "ends of the false-colour scale: linear from 0, otherwise logarithmic (default: "
+          "automatic)")
       ->type_name("LOW:HIGH");
 }
 

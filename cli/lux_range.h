@@ -7,7 +7,7 @@
 
 namespace lightwell {
 
-/// Adds --range LOW:HIGH, of a scale of false colours in lux.
+/// Adds --range LOW:HIGH, the ends of a false-colour scale in lux.
 CLI::Option* add_lux_range(CLI::App& command, std::optional<LuxRange>& range);
 
 }  // namespace lightwell

@@ -15,6 +15,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/version.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/parallel.h"
@@ -64,7 +65,7 @@ constexpr std::array<NamedCommand, 12> commands = {{{"run", add_run},
                                                     {"form-factors", add_form_factors},
                                                     {"info", add_info}}};
 
-/// One blank line between groups, so that help fits a screen.
+/// Help with one blank line between groups, so that it fits a screen.
 class TightFormatter : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name,
@@ -74,7 +75,8 @@ class TightFormatter : public CLI::Formatter {
     return help;
   }
 
-  /// Without what goes with what: descriptions say so, and lines that are not broken are read.
+  /// Drops CLI11's lists of needed and excluded options: descriptions hold these conditions, and
+  /// the lists would break the lines.
   std::string make_option_opts(const CLI::Option* option) const override {
     std::string text = CLI::Formatter::make_option_opts(option);
     for (const char* mark : {" Needs:", " Excludes:"}) {
@@ -88,22 +90,28 @@ void add_common(CLI::App& app, CommonOptions& options) {
   const std::string group = "Everywhere";
   app.add_flag("--quiet", options.quiet, "no progress, notes or report")->group(group);
   app.add_flag("--json", options.json, "one JSON object on standard output")->group(group);
-  app.add_flag("--verbose", options.verbose, "also say which options are in force")->group(group);
-  app.add_option("--threads", options.threads, "default: one per core")
+  app.add_flag("--verbose", options.verbose, "also print the effective options")->group(group);
+  app.add_option("--threads", options.threads, "number of threads (default: one per core)")
       ->type_name("N")
       ->check(whole_number(0, 1024))
       ->group(group);
-  app.set_version_flag("--version", "lightwell " LIGHTWELL_VERSION)->group(group);
+  // The words are searched, since --json may follow --version.
+  const auto versions = [&options] {
+    const bool json = std::ranges::count(options.command_line, "--json") > 0;
+    return json ? version_json().dump(2) : version_text();
+  };
+  app.set_version_flag("--version", versions, "versions of the program and of its libraries")
+      ->group(group);
   app.set_help_flag("-h,--help", "this text")->group(group);
 }
 
 int wrong_usage(const std::string& sentence, const std::string& command = {}) {
-  fmt::print(stderr, "error: {}\n'lightwell{} --help' shows what there is.\n", sentence,
+  fmt::print(stderr, "error: {}\n'lightwell{} --help' lists the options.\n", sentence,
              command.empty() ? "" : " " + command);
   return exit_wrong_usage;
 }
 
-// The first word that is not an option, if it names no command.
+// The first word that is not an option, unless it is a known command.
 std::optional<std::string> unknown_command(int argc, char** argv,
                                            const std::vector<std::string>& known) {
   for (int i = 1; i < argc; ++i) {
@@ -118,7 +126,7 @@ std::optional<std::string> unknown_command(int argc, char** argv,
   return std::nullopt;
 }
 
-// CLI11's sentence, and for an option that does not exist the nearest that does.
+// CLI11's message; for an unknown option, a message that suggests the nearest known option.
 std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app,
                            const CLI::App& command) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return error.what();

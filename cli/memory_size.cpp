@@ -13,7 +13,7 @@
 namespace lightwell {
 namespace {
 
-// Nothing for what is no amount, and for less than a megabyte.
+// Bytes; empty if `text` is no amount of memory or less than 2^20 bytes.
 std::optional<std::int64_t> parse_memory(const std::string& text) {
   double value = 0.0;
   const char* const last = text.data() + text.size();

@@ -23,7 +23,7 @@ struct MeshCommandArguments {
   MeshArguments mesh;
 };
 
-// Where to find it: in the scene file's names, unit and axes.
+// Area (m^2) and place of an element, with the surface's name and the unit of the scene file.
 Json element_json(const Scene& scene, const JoinedSurfaces* names, const PatchMesh& mesh,
                   int element) {
   const int patch = mesh.patch[element];
@@ -133,7 +133,7 @@ int mesh(const MeshCommandArguments& arguments, Console& console) {
 Action add_mesh(CLI::App& command) {
   const auto arguments = std::make_shared<MeshCommandArguments>();
   command.description(
-      "The patches and elements that 'solve' would use, and how well they are made.");
+      "Makes the patches and elements that 'solve' would use, and reports their quality.");
   command
       .add_option("scene", arguments->scene,
                   "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3")

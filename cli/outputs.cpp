@@ -26,7 +26,7 @@ void require_writable(const fs::path& file) {
   }
   const fs::file_status status = fs::status(file, error);
   if (fs::is_directory(status)) refuse(file, "it is a folder");
-  // A rename would put a file in the place of a device.
+  // Results are written beside `file` and renamed, which would replace a device by a plain file.
   if (fs::exists(status) && !fs::is_regular_file(status)) refuse(file, "it is not a plain file");
 
   fs::path trial = file;
@@ -60,7 +60,7 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
 }
 
 OutputFolder::~OutputFolder() {
-  std::error_code not_empty;  // then it stays, which is what is wanted
+  std::error_code not_empty;  // a folder with results stays
   for (auto p = made_.rbegin(); p != made_.rend(); ++p) fs::remove(*p, not_empty);
 }
 

@@ -5,14 +5,15 @@
 
 namespace lightwell {
 
-/// Throws std::runtime_error, saying why, unless the file could be created or replaced now. Asked
-/// before the long work whose result it is to hold.
+/// Throws std::runtime_error with the reason if `file` can be neither created nor replaced. To be
+/// called before the long work whose result goes into `file`.
 void require_writable(const std::filesystem::path& file);
 
-/// A folder for results: made if it is missing, and removed again if nothing has come into it.
+/// A folder for results: the constructor makes missing folders of its path, the destructor removes
+/// those of them that are empty.
 class OutputFolder {
  public:
-  /// Throws std::runtime_error, saying why, if it cannot be made.
+  /// Throws std::runtime_error with the reason if the folder cannot be made.
   explicit OutputFolder(const std::filesystem::path& folder);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

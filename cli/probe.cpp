@@ -22,7 +22,7 @@ struct ProbeArguments {
   int rays = 1024;
 };
 
-// What the points read, and no more.
+// Solves as far as probes need: coarse gathers, no refinement, no error estimate.
 SolvedScene solve_for_probes(const Scene& scene, Console& console, Report& report) {
   SolveOptions options = options_for_probes();
   options.run.progress = console.progress();
@@ -31,22 +31,22 @@ SolvedScene solve_for_probes(const Scene& scene, Console& console, Report& repor
   stop_if_interrupted();
   note_mesh(scene, solved.mesh, console, report);
   solved.solution.provenance.version = LIGHTWELL_VERSION;
-  solved.solution.provenance.options = "what probes read";
+  solved.solution.provenance.options = "coarse solve for probes";
   report.add_solution(solved, true);
-  report.remove("error_estimate");  // nobody estimated one
+  report.remove("error_estimate");  // the solve made no estimate
   return solved;
 }
 
 int probe(const ProbeArguments& arguments, Console& console) {
   if (arguments.interpolate && arguments.solution.empty()) {
     throw InputError(
-        "--interpolate reads the mesh of a solution: name one after the scene, as 'solve' makes "
-        "it");
+        "--interpolate reads the mesh of a solution made by 'lightwell solve'; name one after the "
+        "scene");
   }
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   if (scene.relative_units) {
-    console.say("note: the scene's light is in no known unit; irradiance and lux are relative.");
+    console.say("note: the scene names no unit of light; irradiance and lux are relative.");
   }
   const std::vector<Probe> probes = read_probes(arguments.points, scene.metres_per_unit);
   require_writable(arguments.output);
@@ -89,7 +89,7 @@ Action add_probe(CLI::App& command) {
       ->type_name("SCENE");
   command
       .add_option("solution", arguments->solution,
-                  "its solution, .vtp (default: solves now, as far as the points need)")
+                  "the scene's solution, .vtp (default: a coarse solve for these points)")
       ->type_name("SOLUTION");
   command
       .add_option("--points", arguments->points,
@@ -101,7 +101,7 @@ Action add_probe(CLI::App& command) {
       ->type_name("FILE");
   auto* const interpolate = command.add_flag(
       "--interpolate", arguments->interpolate,
-      "read the solution's mesh instead of gathering afresh; points must lie on surfaces");
+      "interpolate in the solution's mesh instead of gathering; points must lie on surfaces");
   command
       .add_option("--rays", arguments->rays, "gather rays per point, a power of two (default 1024)")
       ->type_name("N")

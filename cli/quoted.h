@@ -4,8 +4,8 @@
 
 namespace lightwell {
 
-/// As a shell takes it for one word: in quotes if there is anything in it that means something
-/// else.
+/// `word` as one word of a shell command: in single quotes if it is empty or has characters that a
+/// shell might interpret.
 std::string quoted(const std::string& word);
 
 }  // namespace lightwell

@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-// "0.5%", "0.5 %", "5lx": a number and its unit.
+// A number and its unit: "0.5%", "0.5 %", "5lx".
 struct Quantity {
   double value = 0.0;
   std::string unit{};
@@ -58,7 +58,7 @@ std::optional<double> parse_share(const std::string& text) {
   if (!quantity || (!quantity->unit.empty() && quantity->unit != "%")) return std::nullopt;
   constexpr double percent = 0.01;
   const double share = quantity->unit == "%" ? percent * quantity->value : quantity->value;
-  // Below a thousandth of a percent there is nothing but rounding; above all, nothing to refine.
+  // Errors below 0.001 % are those of rounding; above 100 % nothing would be refined.
   constexpr double least = 1e-5, most = 1.0;
   if (!(share >= least && share <= most)) return std::nullopt;
   return share;
@@ -73,22 +73,22 @@ void add_refinement(CLI::App& command, RefineOptions& options, const std::string
             if (!tolerance) {
               throw CLI::ValidationError(
                   "--refine",
-                  fmt::format("'{}' is no error to refine to; write a share of the mean irradiance "
-                              "from 0.001% to 100%, such as 0.5%, or off",
+                  fmt::format("'{}' is not a tolerance; write a share of the mean irradiance from "
+                              "0.001% to 100%, such as 0.5%, or off",
                               text));
             }
             options.tolerance = *tolerance;
           },
-          fmt::format("split elements until interpolation is this exact, or off (default {:g}%)",
+          fmt::format("split elements until the interpolation error is below ERROR, or off "
+                      "(default {:g}%)",
                       100.0 * options.tolerance))
       ->type_name("ERROR")
       ->group(group);
-  constexpr int most_elements = 20000000;  // as for meshes that are not refined
+  constexpr int most_elements = 20000000;  // the limit of meshes without refinement
   command
       .add_option_function<int>(
           "--max-elements", [&options](int most) { options.max_elements = most; },
-          "elements that refinement may make (default: about those of an even mesh of half the "
-          "edge)")
+          "most elements of refinement (default: about those of an even mesh of half the edge)")
       ->type_name("N")
       ->check(whole_number(1, most_elements))
       ->group(group);
@@ -112,7 +112,7 @@ void add_accuracy(CLI::App& command, std::optional<Accuracy>& accuracy, const st
                             "to 100%, such as 1%, or an illuminance, such as 5lx",
                             text));
           },
-          "work until the estimated RMS error is below: 1% of the mean irradiance, or 5lx")
+          "target of the estimated RMS error: a share of the mean irradiance, 1%, or lux, 5lx")
       ->type_name("ERROR")
       ->group(group);
 }

@@ -10,23 +10,25 @@
 
 namespace lightwell {
 
-/// "0.5%", or the same as a share, "0.005"; nothing for what is none or not from 0.001 % to 100 %.
+/// The share in `text`: 0.005 for "0.5%" and for "0.005". Empty if `text` is not a share from
+/// 0.001 % to 100 %.
 std::optional<double> parse_share(const std::string& text);
 
 /// Adds --refine PERCENT|off and --max-elements N.
 void add_refinement(CLI::App& command, RefineOptions& options, const std::string& group);
 
-/// Adds --accuracy PERCENT|LUX, which chooses what --refine and --gather-rays else say: they
-/// exclude it, and must be there already.
+/// Adds --accuracy PERCENT|LUX, which chooses the refinement tolerance and the gather rays. To be
+/// called after --refine and --gather-rays are added: --accuracy is refused beside --gather-rays
+/// and beside every --refine but "off".
 void add_accuracy(CLI::App& command, std::optional<Accuracy>& accuracy, const std::string& group);
 
-/// The command line that repeats it, with a space before it; empty if there is none.
+/// Command-line option that repeats the accuracy, after a space; "" if `accuracy` is empty.
 std::string accuracy_text(const std::optional<Accuracy>& accuracy);
 
-/// The command line that repeats it, with a space before it.
+/// Command-line options that repeat the refinement, after a space.
 std::string refinement_text(const RefineOptions& options);
 
-/// For the key "refinement" of JSON.
+/// Value of the JSON key "refinement".
 Json refinement_json(const RefineReport& report);
 
 }  // namespace lightwell

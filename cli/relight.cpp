@@ -40,14 +40,14 @@ int relight_solution(const RelightArguments& arguments, Console& console) {
 Action add_relight(CLI::App& command) {
   const auto arguments = std::make_shared<RelightArguments>();
   command.description(
-      "Dims and recolours the channels of a solution, without solving. Settings are against the\n"
-      "scene as it was solved; a channel that is not named stays as it is.");
+      "Dims and recolours the channels of a solution, without solving. Settings are relative\n"
+      "to the scene as solved; channels that are not named keep their settings.");
   command.add_option("solution", arguments->solution, "a solution made with --channels, .vtp")
       ->required()
       ->type_name("SOLUTION");
   add_channel_settings(command, arguments->settings);
   command.get_option("--channel")->required();
-  command.add_option("-o,--output", arguments->output, "the solution with that light, .vtp")
+  command.add_option("-o,--output", arguments->output, "the relit solution, .vtp")
       ->required()
       ->type_name("FILE")
       ->check(with_extension({".vtp"}));

@@ -27,16 +27,15 @@ int render(const RenderCommandArguments& arguments, Console& console) {
   const std::vector<std::filesystem::path> files(arguments.outputs.begin(),
                                                  arguments.outputs.end());
   arguments.render.film.check(scene, files);
-  static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws if it cannot be
+  static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws for a bad camera
   for (const std::filesystem::path& file : files) require_writable(file);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   report.add("camera", camera.name);
   Checkpoint checkpoint(arguments.checkpoint,
                         picture_provenance(scene, solved.solution, arguments.render), files,
                         console);
-  SceneRenderer renderer(scene, solved.mesh, solved.solution);
-  render_step(scene, solved, renderer, camera, arguments.render, files, checkpoint, console,
-              report);
+  RenderableScene renderable(scene, solved);
+  render_step(renderable, {camera, arguments.render, files}, checkpoint, {console, report});
   checkpoint.finish(report);
   report.print();
   return exit_done;

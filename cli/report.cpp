@@ -25,12 +25,12 @@ std::string megabytes_text(double megabytes) {
                            : fmt::format("{:.1f} GB", megabytes / 1024.0);
 }
 
-// Where rows are, and why there.
+// Megabytes of form-factor rows in memory and on disk, with the reason.
 std::string storage_text(const Json& storage) {
   const auto size = [&](const char* key) { return megabytes_text(storage[key].get<double>()); };
   const bool is_on_disk = storage["disk_mb"].get<double>() > 0.0;
   if (!is_on_disk && !(storage["memory_mb"].get<double>() > 0.0)) {
-    return fmt::format("no rows are kept, since patches shoot theirs as they go (budget {})",
+    return fmt::format("no rows are stored, since patches shoot without them (budget {})",
                        size("budget_mb"));
   }
   if (!is_on_disk) {
@@ -42,7 +42,7 @@ std::string storage_text(const Json& storage) {
                      size("budget_mb"));
 }
 
-// "desk 3.2 W (scale 0.3), sun 40 W": as it is now.
+// Emitted power and scale of each channel: "desk 3.2 W (scale 0.3), sun 40 W".
 std::string channel_text(const Json& channels) {
   std::vector<std::string> parts;
   for (const Json& channel : channels) {
@@ -59,8 +59,61 @@ std::string channel_text(const Json& channels) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+std::string line(const char* head, const std::string& body) {
+  return fmt::format("{:<9} {}\n", head, body);
+}
+
+// Energy balance, and the share of lamps without surface.
+std::string energy_text(const Json& facts) {
+  const Json& energy = facts["energy"];
+  const double emitted = energy["emitted"];
+  const auto percent = [&](const char* key) {
+    const double share = emitted > 0.0 ? 100.0 * energy[key].get<double>() / emitted : 0.0;
+    constexpr double printed_as_zero = 5e-5;
+    return std::abs(share) < printed_as_zero ? 0.0 : share;  // prevents "-0.0000"
+  };
+  std::string text = line(
+      "energy", fmt::format("{:.6g} {} emitted = {:.4f} % absorbed + {:.4f} % escaped + {:.4f} % "
+                            "unshot",
+                            emitted, facts["light"] == light_name(true) ? "(relative units)" : "W",
+                            percent("absorbed"), percent("escaped"), percent("unshot")));
+  if (energy.contains("from_lamps")) {
+    text += line("lamps", fmt::format("{:.4g} % of the emitted power; {:.4f} % met no surface",
+                                      percent("from_lamps"), percent("missed")));
+  }
+  return text;
+}
+
+// Sizes, energy balance, unlit surfaces, channels, residual and error estimate.
+std::string solution_text(const Json& facts) {
+  std::string text = line("patches", fmt::format("{} ({} elements)", facts["patches"].get<int>(),
+                                                 facts["elements"].get<int>()));
+  if (facts.contains("refined")) text += line("refined", facts["refined"].get<std::string>());
+  text += energy_text(facts);
+  constexpr double worth_a_line = 0.005;
+  if (facts.contains("unlit") && facts["unlit"]["share"].get<double>() >= worth_a_line) {
+    const Json& unlit = facts["unlit"];
+    text += line("dark",
+                 fmt::format("{:.3g} m2 of surfaces ({:.0f} %) get no light on either side, most "
+                             "of this area on '{}'; check that light can reach them",
+                             unlit["area"].get<double>(), 100.0 * unlit["share"].get<double>(),
+                             unlit["surface"].get<std::string>()));
+  }
+  if (facts.contains("channels")) text += line("channels", channel_text(facts["channels"]));
+  const std::string by =
+      facts.contains("solver") ? " of " + facts["solver"].get<std::string>() : "";
+  text += line("residual",
+               fmt::format("{:.2g} after {} sweeps{} ({})", facts["residual"].get<double>(),
+                           facts["sweeps"].get<int>(), by, facts["outcome"].get<std::string>()));
+  if (facts.contains("error_estimate")) {
+    text += line("error", fmt::format("{:.2f} % of the mean irradiance, estimated (relative RMS)",
+                                      100.0 * facts["error_estimate"].get<double>()));
+  }
+  return text;
+}
+
 std::string to_text(const Json& json) {
-  // File names may hold bytes that are no UTF-8.
+  // File names may hold bytes that are not UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -128,59 +181,17 @@ Json Report::json() const {
 }
 
 std::string Report::for_people() const {
-  std::string text;
-  const auto line = [&text](const char* head, const std::string& body) {
-    text += fmt::format("{:<9} {}\n", head, body);
-  };
-  if (facts_.contains("energy")) {
-    line("patches", fmt::format("{} ({} elements)", facts_["patches"].get<int>(),
-                                facts_["elements"].get<int>()));
-    if (facts_.contains("refined")) line("refined", facts_["refined"].get<std::string>());
-    const Json& energy = facts_["energy"];
-    const double emitted = energy["emitted"];
-    const auto percent = [&](const char* key) {
-      const double share = emitted > 0.0 ? 100.0 * energy[key].get<double>() / emitted : 0.0;
-      constexpr double printed_as_zero = 5e-5;
-      return std::abs(share) < printed_as_zero ? 0.0 : share;  // and not as -0
-    };
-    line("energy",
-         fmt::format("{:.6g} {} emitted = {:.4f} % absorbed + {:.4f} % escaped + {:.4f} % "
-                     "unshot",
-                     emitted, facts_["light"] == light_name(true) ? "(no known unit)" : "W",
-                     percent("absorbed"), percent("escaped"), percent("unshot")));
-    if (energy.contains("from_lamps")) {
-      line("lamps",
-           fmt::format("{:.4g} % of the emitted power; {:.4f} % left without meeting anything",
-                       percent("from_lamps"), percent("missed")));
-    }
-    constexpr double worth_a_line = 0.005;
-    if (facts_.contains("unlit") && facts_["unlit"]["share"].get<double>() >= worth_a_line) {
-      const Json& unlit = facts_["unlit"];
-      line("dark", fmt::format("{:.3g} m2 of surfaces ({:.0f} %) get no light on either side, most "
-                               "of it of '{}': do they see a lamp?",
-                               unlit["area"].get<double>(), 100.0 * unlit["share"].get<double>(),
-                               unlit["surface"].get<std::string>()));
-    }
-    if (facts_.contains("channels")) line("channels", channel_text(facts_["channels"]));
-    const std::string by =
-        facts_.contains("solver") ? " of " + facts_["solver"].get<std::string>() : "";
-    line("residual",
-         fmt::format("{:.2g} after {} sweeps{} ({})", facts_["residual"].get<double>(),
-                     facts_["sweeps"].get<int>(), by, facts_["outcome"].get<std::string>()));
-    if (facts_.contains("error_estimate")) {
-      line("error", fmt::format("{:.2f} % of the mean irradiance, estimated (relative RMS)",
-                                100.0 * facts_["error_estimate"].get<double>()));
-    }
-  }
+  std::string text = facts_.contains("energy") ? solution_text(facts_) : std::string();
   std::vector<std::string> phases;
   for (const PhaseSeconds& phase : phases_) {
     phases.push_back(fmt::format("{} {:.1f}", phase.phase, phase.seconds));
   }
-  line("seconds", fmt::format("{:.1f} ({}), {} {}", total_.seconds(), fmt::join(phases, ", "),
-                              thread_count(), thread_count() == 1 ? "thread" : "threads"));
-  if (facts_.contains("storage")) line("storage", storage_text(facts_["storage"]));
-  line("memory", fmt::format("{:.0f} MB at most", peak_memory_mb()));
-  for (const std::string& file : files_) line("wrote", file);
+  text +=
+      line("seconds", fmt::format("{:.1f} ({}), {} {}", total_.seconds(), fmt::join(phases, ", "),
+                                  thread_count(), thread_count() == 1 ? "thread" : "threads"));
+  if (facts_.contains("storage")) text += line("storage", storage_text(facts_["storage"]));
+  text += line("memory", fmt::format("{:.0f} MB at most", peak_memory_mb()));
+  for (const std::string& file : files_) text += line("wrote", file);
   return text;
 }
 

@@ -11,29 +11,29 @@
 
 namespace lightwell {
 
-/// Keys in the order they are added.
+/// JSON whose keys keep the order in which they were added.
 using Json = nlohmann::ordered_json;
 
-/// What a command did and what it cost, collected on the way: for people by default, one JSON
-/// object with --json.
+/// Results, seconds and files of a command: text by default, one JSON object with --json.
 class Report {
  public:
   explicit Report(const CommonOptions& options);
 
-  /// Sizes, energy balance, residual, error estimate, and the solver's own phases if it ran now.
+  /// Adds sizes, energy balance, residual, error estimate; with `solved_now` also the solver and
+  /// the seconds of its phases.
   void add_solution(const SolvedScene& solved, bool solved_now);
-  /// What memory was allowed for and where rows of form factors were.
+  /// Adds the memory budget and the rows of form factors in memory and on disk.
   void add_storage(const StorageReport& storage);
   void add_phase(const std::string& phase, double seconds);
   void add_file(const std::filesystem::path& file);
   void add(const std::string& key, Json value);
   void remove(const std::string& key);
 
-  /// All of it, with the totals up to now.
+  /// All keys, with total seconds and peak memory at the time of the call.
   Json json() const;
-  /// On standard output: the JSON object with --json, else a report for people unless --quiet.
+  /// Prints on standard output: the JSON object with --json, nothing with --quiet, text otherwise.
   void print() const;
-  /// The JSON object as a file; throws std::runtime_error naming it.
+  /// Writes the JSON object; throws std::runtime_error that names `file`.
   void write(const std::filesystem::path& file) const;
 
  private:
@@ -46,22 +46,28 @@ class Report {
   std::vector<std::string> files_{};
 };
 
-/// One JSON object on standard output.
+/// Console and report of a command: the targets of messages and of results.
+struct Feedback {
+  Console& console;
+  Report& report;
+};
+
+/// Prints a JSON object on standard output.
 void print_json(const Json& json);
 
-/// A JSON object as a file; throws std::runtime_error naming it.
+/// Writes a JSON object; throws std::runtime_error that names `file`.
 void write_json(const std::filesystem::path& file, const Json& json);
 
-/// What light is in, for the key "light" of JSON: "watts" or "relative".
+/// Value of the JSON key "light", the unit of power: "watts" or "relative".
 std::string light_name(bool relative_units);
 
-/// What cleaning did to a scene's polygons, for JSON.
+/// Counts of the repairs of a scene's polygons, for JSON.
 Json clean_up_json(const CleanUpReport& report);
 
-/// Watts by fate, or their relative amounts, for JSON.
+/// Emitted, absorbed, escaped and unshot power for JSON, in watts or relative units.
 Json energy_json(const EnergyBalance& energy);
 
-/// "converged" or "max_sweeps_reached".
+/// "converged", "max_sweeps_reached" or "accuracy_missed".
 std::string outcome_name(Outcome outcome);
 
 }  // namespace lightwell

@@ -27,73 +27,85 @@ fs::path default_folder(const fs::path& scene) {
   return scene.stem().string() + "-output";  // in the working folder
 }
 
-// What `output` holds already, if it was asked to go on with that; else solved and written now.
-SolvedScene solved_scene(const Scene& scene, const RunArguments& arguments, const fs::path& output,
-                         Console& console, Report& report) {
-  const Provenance of = provenance(scene, arguments.solve);
-  if (auto done = finished_solution(arguments.checkpoint, of, output, console, true)) {
-    attach_textures(scene, done->mesh);
-    report.add_solution(*done, false);
-    return std::move(*done);
-  }
-  Checkpoint checkpoint(arguments.checkpoint, of, {output}, console);
-  SolvedScene solved = solve_step(scene, arguments.solve, output, checkpoint, console, report);
-  write_solution_step(output, solved, console, report);
-  checkpoint.finish(report);
-  return solved;
-}
-
 struct Outputs {
   fs::path solution{};
   std::vector<std::vector<fs::path>> pictures{};  // of each camera
 };
 
-void render_pictures(const Scene& scene, const SolvedScene& solved, const RunArguments& arguments,
-                     const Outputs& outputs, Console& console, Report& report) {
+struct Job {
+  const RunArguments& arguments;
+  const Scene& scene;
+  const Outputs& outputs;
+  Feedback feedback;
+};
+
+// The solution in its file if --resume was given and the file is finished; otherwise solves the
+// scene and writes the file.
+SolvedScene solved_scene(const Job& job) {
+  const auto& [arguments, scene, outputs, feedback] = job;
+  Console& console = feedback.console;
+  Report& report = feedback.report;
+  const Provenance of = provenance(scene, arguments.solve);
+  if (auto done = finished_solution(arguments.checkpoint, of, outputs.solution, console)) {
+    attach_textures(scene, done->mesh);
+    report.add_solution(*done, false);
+    return std::move(*done);
+  }
+  Checkpoint checkpoint(arguments.checkpoint, of, {outputs.solution}, console);
+  SolvedScene solved = solve_step(scene, {arguments.solve, outputs.solution}, checkpoint, feedback);
+  write_solution_step(outputs.solution, solved, console, report);
+  checkpoint.finish(report);
+  return solved;
+}
+
+void render_pictures(const Job& job, const SolvedScene& solved) {
+  const auto& [arguments, scene, outputs, feedback] = job;
+  Console& console = feedback.console;
   CheckpointArguments kept = arguments.checkpoint;
   kept.reuse.clear();
-  if (kept.keep) kept.file.clear();                    // there is the solve in it
-  kept.resume = kept.resume && fs::exists(kept.file);  // pictures need not have been begun
+  if (kept.keep) kept.file.clear();                    // the file holds the solve
+  kept.resume = kept.resume && fs::exists(kept.file);  // none exists before the first tiles
   std::vector<fs::path> files = {outputs.solution};
   for (const auto& each : outputs.pictures) files.insert(files.end(), each.begin(), each.end());
   Checkpoint checkpoint(kept, picture_provenance(scene, solved.solution, arguments.render), files,
                         console);
-  SceneRenderer renderer(scene, solved.mesh, solved.solution);
+  RenderableScene renderable(scene, solved);
   try {
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-      render_step(scene, solved, renderer, scene.cameras[i], arguments.render, outputs.pictures[i],
-                  checkpoint, console, report);
+      render_step(renderable, {scene.cameras[i], arguments.render, outputs.pictures[i]}, checkpoint,
+                  feedback);
     }
   } catch (const InterruptedWith&) {
     throw;
   } catch (const Interrupted&) {
     if (arguments.checkpoint.file.empty()) throw;
     throw InterruptedWith(
-        fmt::format("interrupted; the light is solved, in '{}'. To go on with the pictures:\n  {}",
+        fmt::format("interrupted; the solution is in '{}'. To resume with the pictures:\n  {}",
                     outputs.solution.string(), command_to_resume(console.options())));
   }
-  checkpoint.finish(report, "picture_checkpoint");
+  checkpoint.finish(feedback.report, "picture_checkpoint");
 }
 
 int run(const RunArguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
-  choose_camera(scene, "");  // to refuse before the work, not after it
+  choose_camera(scene, "");  // throws before the work if the scene has no camera
   const OutputFolder folder(arguments.output.empty() ? default_folder(arguments.scene)
                                                      : fs::path(arguments.output));
-  const fs::path solution_file = folder / "solution.vtp", report_file = folder / "report.json";
-  std::vector<std::vector<fs::path>> pictures;
+  const fs::path report_file = folder / "report.json";
+  Outputs outputs{.solution = folder / "solution.vtp"};
   for (const Camera& camera : scene.cameras) {
-    pictures.push_back({folder / (camera.name + ".exr"), folder / (camera.name + ".png")});
-    arguments.render.film.check(scene, pictures.back());
-    static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws if it cannot be
-    for (const fs::path& picture : pictures.back()) require_writable(picture);
+    outputs.pictures.push_back({folder / (camera.name + ".exr"), folder / (camera.name + ".png")});
+    arguments.render.film.check(scene, outputs.pictures.back());
+    static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws for a bad camera
+    for (const fs::path& picture : outputs.pictures.back()) require_writable(picture);
   }
-  require_writable(solution_file);
+  require_writable(outputs.solution);
   require_writable(report_file);
 
-  const SolvedScene solved = solved_scene(scene, arguments, solution_file, console, report);
-  render_pictures(scene, solved, arguments, {solution_file, pictures}, console, report);
+  const Job job{arguments, scene, outputs, {console, report}};
+  const SolvedScene solved = solved_scene(job);
+  render_pictures(job, solved);
   report.add_file(report_file);
   report.write(report_file);
   report.print();
@@ -115,9 +127,10 @@ Action add_run(CLI::App& command) {
       ->type_name("DIR");
   arguments->solve.add_to(command);
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first);
+  arguments->checkpoint.pictures_follow = true;
   arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
-  command.get_option("--depth")->group("");  // rarely asked for: 'render --help' shows it
+  command.get_option("--depth")->group("");  // hidden, as rarely needed; 'render --help' shows it
   arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::hidden);
   command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");
   return [arguments](Console& console) { return run(*arguments, console); };

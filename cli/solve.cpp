@@ -32,7 +32,7 @@ int solve(const SolveCommandArguments& arguments, Console& console) {
   }
   Checkpoint checkpoint(arguments.checkpoint, of, {arguments.output}, console);
   const SolvedScene solved =
-      solve_step(scene, arguments.solve, arguments.output, checkpoint, console, report);
+      solve_step(scene, {arguments.solve, arguments.output}, checkpoint, {console, report});
   write_solution_step(arguments.output, solved, console, report);
   checkpoint.finish(report);
   report.print();
@@ -43,7 +43,7 @@ int solve(const SolveCommandArguments& arguments, Console& console) {
 
 Action add_solve(CLI::App& command) {
   const auto arguments = std::make_shared<SolveCommandArguments>();
-  command.description("Meshes a scene, solves for the light on all its surfaces, and saves it.");
+  command.description("Meshes a scene, solves for the light on its surfaces, saves the solution.");
   command
       .add_option("scene", arguments->scene,
                   "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .xml, .rad, .rif, .vs3")

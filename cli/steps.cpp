@@ -17,7 +17,7 @@ namespace lightwell {
 namespace fs = std::filesystem;
 namespace {
 
-// What to do where refinement ended before elements were as small as an accuracy takes.
+// Advice for a solve whose refinement ended before elements were small enough for --accuracy.
 std::string way_to_smaller_elements(RefineOutcome outcome) {
   constexpr const char* smaller = "make elements smaller with --max-patch-size";
   switch (outcome) {
@@ -34,7 +34,8 @@ std::string way_to_smaller_elements(RefineOutcome outcome) {
   return "Make elements smaller with --max-patch-size";
 }
 
-// What no light reaches on either side: a room without a lamp, or what is walled in.
+// Area (m^2) and share of reflecting elements without light on either side, such as those of a room
+// without a lamp or of enclosed cavities, and the surface with most of that area.
 Json unlit_json(const Scene& scene, const SolvedScene& solved) {
   const PatchMesh& mesh = solved.mesh;
   const BandArray E = solved.solution.irradiance();
@@ -61,7 +62,50 @@ Json unlit_json(const Scene& scene, const SolvedScene& solved) {
           {"surface", scene.surfaces[static_cast<std::size_t>(most - dark.begin())].name}};
 }
 
+// Prints notes and warnings on a solve that ended above its tolerances.
+void warn_of_outcome(const RadiositySolution& solution, const SolveReport& solve_report,
+                     double solver_tolerance, Console& console) {
+  const RefineOutcome refined = solve_report.refinement.outcome;
+  if (refined == RefineOutcome::max_elements_reached ||
+      refined == RefineOutcome::memory_limit_reached) {
+    console.say("note: refinement " + sentence(solve_report.refinement));
+  }
+  if (solution.outcome == Outcome::accuracy_missed) {
+    console.say(fmt::format(
+        "warning: the estimated error of {:.3g} % is above the {:.3g} % that --accuracy asks for; "
+        "the solution is written. {}",
+        100.0 * solution.error_estimate, 100.0 * solve_report.accuracy,
+        way_to_smaller_elements(refined)));
+  }
+  if (solution.outcome == Outcome::max_sweeps_reached) {
+    console.say(
+        fmt::format("warning: the solver ({}) stopped after {} sweeps at a residual of {:.2g}, "
+                    "above the tolerance of {:g}; the solution so far is written. Allow more "
+                    "--max-sweeps, or try --solver bicgstab",
+                    solution.solver, solution.history.size(), solution.residual, solver_tolerance));
+  }
+}
+
+// A note on branches of the ray tree that ended at the maximum depth; without --verbose only if the
+// light of these branches could be visible.
+void note_depth_cut(const Camera& camera, const RenderReport& rendered, int max_depth,
+                    Console& console) {
+  if (!(rendered.depth_cut > 0)) return;
+  // A share below one grey level of an 8-bit picture is invisible.
+  constexpr double visible = 1.0 / 255.0;
+  const std::string cut = fmt::format(
+      "{}: {} branches of the ray tree ended after {} mirrors and glass surfaces; about {:.2g} % "
+      "of the picture's light is missing",
+      camera.name, rendered.depth_cut, max_depth, 100.0 * rendered.cut_share);
+  if (rendered.cut_share > visible) {
+    console.say("note: " + cut + ". A larger '--depth' follows more");
+  } else {
+    console.say_verbose(cut);
+  }
+}
+
 }  // namespace
+
 Scene read_scene_step(const fs::path& file, Console& console, Report& report,
                       CleanUpReport* clean_up) {
   const Stopwatch watch;
@@ -82,7 +126,7 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report,
 }
 
 void note_mesh(const Scene& scene, const PatchMesh& mesh, Console& console, Report& report) {
-  std::vector<std::string> notes = scene.notes;  // said when it was read
+  std::vector<std::string> notes = scene.notes;  // read_scene_step() has printed them
   notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
   report.add("notes", notes);
   for (const std::string& note : mesh.notes) console.say("note: " + note);
@@ -95,15 +139,17 @@ Provenance provenance(const Scene& scene, const SolveArguments& arguments) {
           .options = arguments.text(scene)};
 }
 
-SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, const fs::path& output,
-                       Checkpoint& checkpoint, Console& console, Report& report) {
+SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& checkpoint,
+                       const Feedback& feedback) {
+  const SolveArguments& arguments = task.arguments;
+  const auto& [console, report] = feedback;
   SolveOptions options = arguments.options(scene);
   options.run.progress = checkpoint.watched(console.progress());
   Journal* const journal = checkpoint.journal();
   const bool is_of_another = journal && journal->is_read_only();
   (is_of_another ? options.form_factors.run.journal : options.run.journal) = journal;
   options.form_factors.memory = std::make_shared<MemoryBudget>(
-      MemoryOptions{.limit = arguments.memory, .folder = output.parent_path()});
+      MemoryOptions{.limit = arguments.memory, .folder = task.output.parent_path()});
   std::optional<SolvedScene> start;
   if (!arguments.start_from.empty()) {
     start = read_solution(arguments.start_from);
@@ -126,31 +172,12 @@ SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments, cons
   report.add("refinement", refinement_json(solve_report.refinement));
   report.add("unlit", unlit_json(scene, solved));
   report.add_storage(options.form_factors.memory->report());
-  const RefineOutcome refined = solve_report.refinement.outcome;
-  if (refined == RefineOutcome::max_elements_reached ||
-      refined == RefineOutcome::memory_limit_reached) {
-    console.say("note: refinement " + sentence(solve_report.refinement));
-  }
   if (solve_report.accuracy > 0.0) {
     report.add("accuracy", {{"asked", solve_report.accuracy},
                             {"reached", solved.solution.error_estimate},
                             {"gather_rays", solve_report.gather_rays}});
   }
-  if (solved.solution.outcome == Outcome::accuracy_missed) {
-    console.say(fmt::format(
-        "warning: an error of {:.3g} % was asked for, and {:.3g} % is left by estimate; what there "
-        "is is written. {}",
-        100.0 * solve_report.accuracy, 100.0 * solved.solution.error_estimate,
-        way_to_smaller_elements(refined)));
-  }
-  if (solved.solution.outcome == Outcome::max_sweeps_reached) {
-    console.say(
-        fmt::format("warning: the solver ({}) stopped after {} sweeps at a residual of {:.2g}, "
-                    "before the tolerance of {:g} was reached; what it has is written. Allow more "
-                    "--max-sweeps, or try --solver bicgstab",
-                    solved.solution.solver, solved.solution.history.size(),
-                    solved.solution.residual, options.solver.tolerance));
-  }
+  warn_of_outcome(solved.solution, solve_report, options.solver.tolerance, console);
   return solved;
 }
 
@@ -169,7 +196,7 @@ SolvedScene read_solution_step(const fs::path& file, const Scene& scene, Console
   SolvedScene solved = read_solution(file);
   check_matches(scene, solved.solution);
   attach_textures(scene, solved.mesh);
-  solved.solution.relative_units = scene.relative_units;  // old files do not say
+  solved.solution.relative_units = scene.relative_units;  // older files lack the unit
   report.add_solution(solved, false);
   report.add_phase("read_solution", watch.seconds());
   console.say_verbose("the solution was made with " + solved.solution.provenance.options);
@@ -186,50 +213,39 @@ Provenance picture_provenance(const Scene& scene, const RadiositySolution& solut
                                  solution.provenance.options)};
 }
 
-void render_step(const Scene& scene, const SolvedScene& solved, SceneRenderer& renderer,
-                 const Camera& camera, const RenderArguments& arguments,
-                 const std::vector<fs::path>& files, Checkpoint& checkpoint, Console& console,
-                 Report& report) {
+void render_step(RenderableScene& renderable, const PictureTask& task, Checkpoint& checkpoint,
+                 const Feedback& feedback) {
+  const Camera& camera = task.camera;
+  const RenderArguments& arguments = task.arguments;
+  const auto& [console, report] = feedback;
   const Stopwatch watch;
   console.say_verbose(fmt::format("rendering {} with {}", camera.name, arguments.text()));
   RenderOptions options = arguments.options();
-  options.layers = arguments.film.rendered_layers(scene);
+  options.layers = arguments.film.rendered_layers(renderable.scene);
   options.run.progress = checkpoint.watched(console.progress());
   options.run.journal = checkpoint.journal();
   RenderReport rendered;
   const Camera view = arguments.sized(camera);
   Image image;
   try {
-    image = renderer.render(view, options, &rendered);
+    image = renderable.renderer.render(view, options, &rendered);
     stop_if_interrupted();
   } catch (const std::exception&) {
     checkpoint.rethrow_stopped();
   }
   console.finish_phase();
   const Picture picture{.image = image,
-                        .solution = solved.solution,
+                        .solution = renderable.solved.solution,
                         .camera = view,
                         .render_options = arguments.text(),
                         .exposure_ev = arguments.exposure_ev};
-  for (const fs::path& file : files) {
+  for (const fs::path& file : task.files) {
     write_picture(file, picture, arguments.film);
     report.add_file(file);
   }
   report.add_phase("render_" + camera.name, watch.seconds());
   report.add("depth_cut_" + camera.name, rendered.cut_share);
-  // Below a grey level of an 8-bit picture nobody would see it.
-  constexpr double visible = 1.0 / 255.0;
-  if (rendered.depth_cut > 0) {
-    const std::string cut = fmt::format(
-        "{}: {} branches ended behind {} mirrors and glass surfaces; about {:.2g} % of the "
-        "picture's light was in them",
-        camera.name, rendered.depth_cut, options.max_depth, 100.0 * rendered.cut_share);
-    if (rendered.cut_share > visible) {
-      console.say("note: " + cut + ". '--depth' follows more");
-    } else {
-      console.say_verbose(cut);
-    }
-  }
+  note_depth_cut(camera, rendered, options.max_depth, console);
 }
 
 int exit_code(const RadiositySolution& solution) {

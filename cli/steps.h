@@ -15,45 +15,67 @@
 
 namespace lightwell {
 
-// The steps that several sub-commands share. Each notes its seconds in the report, says on the
-// console what people should know, and throws Interrupted when asked to stop.
+// The steps that several sub-commands share. Each step adds its seconds to the report, prints notes
+// on the console, and throws Interrupted after an interrupt.
 
-/// The scene as every command that needs light sees it: cleaned by merge_planar_regions(), so that
-/// facet numbers and hash are those of any solution made from it.
+/// Reads a scene and cleans its polygons by merge_planar_regions(): facet numbers and hash are
+/// those of every solution of the scene. `clean_up`, if not null, receives the report of the
+/// cleaning.
 Scene read_scene_step(const std::filesystem::path& file, Console& console, Report& report,
                       CleanUpReport* clean_up = nullptr);
 
-/// Notes on the mesh go to the console, those on the scene and the mesh into the report.
+/// Prints the notes on the mesh, and adds the notes on scene and mesh to the report.
 void note_mesh(const Scene& scene, const PatchMesh& mesh, Console& console, Report& report);
 
-/// What a solution of the scene with these options, by this program, says of itself.
+/// Provenance of a solution of the scene with these options by this version of the program.
 Provenance provenance(const Scene& scene, const SolveArguments& arguments);
 
-/// Form factors that do not fit into memory go beside `output`. What was finished of an earlier run
-/// is taken from the checkpoint, if that holds any, and more is kept there.
-SolvedScene solve_step(const Scene& scene, const SolveArguments& arguments,
-                       const std::filesystem::path& output, Checkpoint& checkpoint,
-                       Console& console, Report& report);
+/// A solve and the file that its solution will be written to.
+struct SolveTask {
+  const SolveArguments& arguments;
+  const std::filesystem::path& output;
+};
+
+/// Solves the scene. Form factors that do not fit into memory go to disk beside the task's
+/// `output`. Work that the checkpoint holds is reused; more finished work is added to the
+/// checkpoint.
+SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& checkpoint,
+                       const Feedback& feedback);
 
 void write_solution_step(const std::filesystem::path& file, const SolvedScene& solved,
                          Console& console, Report& report);
 
-/// Reads a solution and makes sure that it belongs to the scene.
+/// Reads a solution; throws InputError if the solution is of another scene.
 SolvedScene read_solution_step(const std::filesystem::path& file, const Scene& scene,
                                Console& console, Report& report);
 
-/// What pictures of the solution with these options, by this program, are made of.
+/// Provenance of pictures of the solution with these options by this version of the program.
 Provenance picture_provenance(const Scene& scene, const RadiositySolution& solution,
                               const RenderArguments& arguments);
 
-/// Renders one camera's picture into every file given (.exr or .png). Its finished tiles are taken
-/// from the checkpoint, and more are kept there. `renderer` is of the solved scene.
-void render_step(const Scene& scene, const SolvedScene& solved, SceneRenderer& renderer,
-                 const Camera& camera, const RenderArguments& arguments,
-                 const std::vector<std::filesystem::path>& files, Checkpoint& checkpoint,
-                 Console& console, Report& report);
+/// A solved scene with the renderer of its pictures.
+struct RenderableScene {
+  RenderableScene(const Scene& of, const SolvedScene& by)
+      : scene(of), solved(by), renderer(of, by.mesh, by.solution) {}
 
-/// 0, or 4 where the solver stopped early.
+  const Scene& scene;
+  const SolvedScene& solved;
+  SceneRenderer renderer;
+};
+
+/// A camera's picture and the files (.exr or .png) that it will be written to.
+struct PictureTask {
+  const Camera& camera;
+  const RenderArguments& arguments;
+  const std::vector<std::filesystem::path>& files;
+};
+
+/// Renders a picture and writes its files. Finished tiles that the checkpoint holds are reused;
+/// more are added to the checkpoint.
+void render_step(RenderableScene& renderable, const PictureTask& task, Checkpoint& checkpoint,
+                 const Feedback& feedback);
+
+/// exit_done if the solver converged, otherwise exit_not_accurate.
 int exit_code(const RadiositySolution& solution);
 
 }  // namespace lightwell

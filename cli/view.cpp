@@ -37,7 +37,7 @@ struct ViewArguments {
   std::string path;
   int frames = 0, turntable = 0;
   std::vector<double> isolux;
-  double eye_height = 0.0;  // in the scene file's unit; 0: a person's
+  double eye_height = 0.0;  // in the scene file's unit; 0: automatic
   bool walk = false, look_through = false, from_outside = false;
   std::vector<Eigen::Vector2d> pointer, clicks;  // pixels
 };
@@ -51,7 +51,8 @@ Annotations annotations(const ViewArguments& arguments) {
   return result;
 }
 
-// A camera of the scene; or what the digit's key shows, where no camera has it for a name.
+// The scene's camera called `name`. A digit that names no camera selects the view of its key in the
+// window: the bookmark, otherwise the camera of that number.
 Camera choose_view(const Scene& scene, const std::string& name, const fs::path& bookmark_file) {
   const bool is_digit = name.size() == 1 && name[0] >= '1' && name[0] <= '9';
   const auto has_name = [&](const Camera& camera) { return camera.name == name; };
@@ -93,7 +94,7 @@ ViewOptions view_options(const ViewArguments& arguments, const Scene& scene) {
   if (!arguments.camera.empty()) {
     options.camera = choose_view(scene, arguments.camera, options.bookmark_file);
   }
-  // Off screen, the picture that 'render' would make; a window is as large as suits a screen.
+  // An offscreen picture has the size that 'render' would give it.
   if (!arguments.offscreen.empty() && !scene.cameras.empty()) {
     const Camera& camera = options.camera ? *options.camera : scene.cameras.front();
     std::tie(options.width, options.height) = std::pair(camera.width, camera.height);
@@ -102,8 +103,8 @@ ViewOptions view_options(const ViewArguments& arguments, const Scene& scene) {
   return options;
 }
 
-// Each luminaire kept apart can be dimmed while its light arrives, and costs columns of light at
-// every vertex.
+// True if a channel per luminaire is affordable: each channel can be dimmed while light arrives,
+// and takes one column per band at every vertex.
 bool has_few_luminaires(const Scene& scene) {
   constexpr std::size_t few = 8;
   std::set<std::string> names;
@@ -118,13 +119,13 @@ bool is_by_default(const ChannelArguments& channels) {
   return !channels.is_off && !channels.per_luminaire && channels.patterns.empty();
 }
 
-// Without a solution: the light arrives while one looks.
+// Shows the scene while progressive refinement solves it.
 int view_live(const ViewArguments& arguments, const Scene& scene, const ViewOptions& options,
-              Console& console, Report& report) {
+              const Feedback& feedback) {
+  const auto& [console, report] = feedback;
   if (options.interpolation_error) {
     throw InputError(
-        fmt::format("'--false-colour error' needs a solution; give one: lightwell view {} "
-                    "SOLUTION.vtp",
+        fmt::format("'--false-colour error' needs a solution: lightwell view {} SOLUTION.vtp ...",
                     arguments.scene));
   }
   SolveArguments solving;
@@ -151,11 +152,11 @@ int view_live(const ViewArguments& arguments, const Scene& scene, const ViewOpti
   }
   if (arguments.shots.empty()) {
     throw InputError(
-        "off screen, light cannot be watched arriving; say after how many shots to draw, such as "
-        "'--shots 100', or give a solution");
+        "'--offscreen' without a solution needs the number of shots before the picture, such as "
+        "'--shots 100'; or give a solution");
   }
   if (!std::is_sorted(arguments.shots.begin(), arguments.shots.end())) {
-    throw InputError("'--shots' must rise, as in 1,10,100: light that was shot is not taken back");
+    throw InputError("the numbers of '--shots' must rise, as in 1,10,100");
   }
   const Stopwatch watch;
   const int shots = write_live_snapshot(scene, live, arguments.shots, options, arguments.offscreen);
@@ -182,21 +183,21 @@ int view(const ViewArguments& arguments, Console& console) {
   for (const std::string& file : {first_picture, arguments.output}) {
     if (!file.empty()) require_writable(file);
   }
-  if (arguments.solution.empty()) return view_live(arguments, scene, options, console, report);
+  if (arguments.solution.empty()) return view_live(arguments, scene, options, {console, report});
   if (!arguments.shots.empty()) {
-    throw InputError(fmt::format("'--shots' is for light that is still arriving, and {} is solved",
+    throw InputError(fmt::format("'--shots' is for a scene without a solution; leave out {}",
                                  arguments.solution));
   }
   if (options.illuminance && options.measure == Measure::unshot) {
     throw InputError(
-        fmt::format("'--false-colour unshot' is for light that is still arriving, and {} is solved",
+        fmt::format("'--false-colour unshot' is for a scene without a solution; leave out {}",
                     arguments.solution));
   }
   SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   if (options.interpolation_error && solved.solution.interpolation_error.size() == 0) {
     throw InputError(fmt::format(
-        "{}: it was not refined, so there is no error of interpolation to show; solve it without "
-        "'--refine off'",
+        "{}: the solution was not refined, so it has no estimate of the interpolation error; solve "
+        "without '--refine off'",
         arguments.solution));
   }
   if (!arguments.channels.empty()) {
@@ -230,7 +231,7 @@ int view(const ViewArguments&, Console&) {
 }
 #endif
 
-// Up to so many places, as X,Y,X,Y.
+// Pixels in `text`, X,Y,X,Y, at most `most` of them.
 std::vector<Eigen::Vector2d> pixels(const std::string& text, const char* option, std::size_t most,
                                     const char* form) {
   std::vector<double> numbers;
@@ -242,8 +243,8 @@ std::vector<Eigen::Vector2d> pixels(const std::string& text, const char* option,
     at = bad == std::errc() ? end + (has_more ? 1 : 0) : nullptr;
   }
   if (at != last || numbers.size() % 2 != 0 || numbers.size() > 2 * most) {
-    throw CLI::ValidationError(
-        option, fmt::format("'{}' is no place in a picture; write {} in pixels", text, form));
+    throw CLI::ValidationError(option,
+                               fmt::format("'{}' is not a pixel; write {} in pixels", text, form));
   }
   std::vector<Eigen::Vector2d> places;
   for (std::size_t i = 0; i < numbers.size(); i += 2) {
@@ -252,127 +253,137 @@ std::vector<Eigen::Vector2d> pixels(const std::string& text, const char* option,
   return places;
 }
 
-}  // namespace
-
-Action add_view(CLI::App& command) {
-  const auto arguments = std::make_shared<ViewArguments>();
-  command.description(
-      "Walk through a solved scene in a window: W A S D or arrows to walk, the mouse to look\n"
-      "around, 1 to 9 for the scene's cameras, H for all keys, Escape to leave. Without a "
-      "solution\n"
-      "the light is solved for while you walk, and arrives shot by shot.");
-  command.add_option("scene", arguments->scene, "the scene file")->required()->type_name("SCENE");
+void add_start(CLI::App& command, ViewArguments& arguments) {
   command
-      .add_option("solution", arguments->solution,
-                  "its solution, .vtp (default: solve while it is watched)")
-      ->type_name("SOLUTION");
-  auto* const offscreen = command
-                              .add_option("--offscreen", arguments->offscreen,
-                                          "draw into this .png instead of a window")
-                              ->type_name("FILE")
-                              ->check(with_extension({".png"}));
-  command
-      .add_option("--camera", arguments->camera,
-                  "where to start: a camera's name, or a digit for what its key shows (default: "
-                  "the first camera)")
+      .add_option("--camera", arguments.camera,
+                  "start at a camera, by name, or at the view of a digit key (default: the first "
+                  "camera)")
       ->type_name("NAME");
-  add_size(command, arguments->size);
-  add_exposure(command, arguments->exposure_ev);
+  add_size(command, arguments.size);
+  add_exposure(command, arguments.exposure_ev);
   command
-      .add_option("--overlay", arguments->overlay,
-                  "mesh: begin with the outlines of the elements (key M); keys: with the list of "
-                  "keys (H), off screen")
+      .add_option("--overlay", arguments.overlay,
+                  "begin with the outlines of the elements: mesh (key M); or off screen with the "
+                  "list of keys: keys (H)")
       ->type_name("WHAT")
       ->check(one_of("overlay", {"mesh", "keys"}));
-  command.add_flag("--look-through", arguments->look_through,
+  command.add_flag("--look-through", arguments.look_through,
                    "begin looking through surfaces that get no light (key X)");
-  command.add_flag("--from-outside", arguments->from_outside,
+  command.add_flag("--from-outside", arguments.from_outside,
                    "begin with all of the scene in the picture (key F)");
   auto* const false_colour =
       command
           .add_option(
-              "--false-colour,--false-color", arguments->false_colour,
-              "begin in false colours: lux (key V), luminance (U), unshot, what is still to "
-              "be shot while light arrives (U), or error, what interpolation was estimated "
-              "to miss")
+              "--false-colour,--false-color", arguments.false_colour,
+              "begin in false colours: lux (key V), luminance (U), unshot (light still to be "
+              "shot, U) or error (estimated interpolation error)")
           ->type_name("WHAT")
           ->check(one_of("quantity", {"lux", "luminance", "unshot", "error"}));
-  add_lux_range(command, arguments->range)->needs(false_colour);
+  add_lux_range(command, arguments.range)->needs(false_colour);
   command
-      .add_option("--isolux", arguments->isolux,
-                  "begin with lines of equal illuminance at these lux, as 100,300,500 (key I)")
+      .add_option("--isolux", arguments.isolux,
+                  "begin with isolux lines at these illuminances, such as 100,300,500 (key I)")
       ->type_name("LUX")
       ->delimiter(',')
       ->check(positive());
-  command.add_flag("--walk", arguments->walk, "begin on foot (key G)");
+  command.add_flag("--walk", arguments.walk, "begin on foot (key G)");
   command
-      .add_option("--eye-height", arguments->eye_height,
-                  "of a person on foot (default: 1.6 m, less in a model smaller than a room)")
+      .add_option("--eye-height", arguments.eye_height,
+                  "eye height on foot (default: 1.6 m, less in a model smaller than a room)")
       ->type_name("LENGTH")
       ->check(positive());
+}
+
+void add_pictures(CLI::App& command, ViewArguments& arguments) {
+  CLI::Option* const offscreen = command.get_option("--offscreen");
   command
       .add_option_function<std::string>(
           "--pointer",
-          [arguments](const std::string& text) {
-            arguments->pointer = pixels(text, "--pointer", 1, "X,Y");
+          [&arguments](const std::string& text) {
+            arguments.pointer = pixels(text, "--pointer", 1, "X,Y");
           },
-          "with --offscreen: read what is at this pixel, beside it (key T)")
+          "with --offscreen: label the point at this pixel (key T)")
       ->type_name("X,Y")
       ->needs(offscreen);
   command
       .add_option_function<std::string>(
           "--click",
-          [arguments](const std::string& text) {
-            arguments->clicks = pixels(text, "--click", 2, "X,Y or X,Y,X,Y");
+          [&arguments](const std::string& text) {
+            arguments.clicks = pixels(text, "--click", 2, "X,Y or X,Y,X,Y");
           },
-          "with --offscreen: read what is at this pixel, in full; of two, the distance (key L)")
+          "with --offscreen: describe the point at this pixel; two: measure their distance (key L)")
       ->type_name("X,Y[,X,Y]")
       ->needs(offscreen);
   auto* const path =
-      command.add_option("--path", arguments->path, "a path recorded with the key J, for --frames")
+      command.add_option("--path", arguments.path, "a path recorded with the key J, for --frames")
           ->type_name("FILE");
   auto* const frames =
       command
-          .add_option("--frames", arguments->frames,
-                      "with --offscreen out-%04d.png: so many pictures along the path")
+          .add_option("--frames", arguments.frames,
+                      "with --offscreen out-%04d.png: number of pictures along the path")
           ->type_name("N")
           ->check(whole_number(1, 1000000));
   path->needs(frames);
   frames->needs(path)->needs(offscreen);
   command
-      .add_option("--turntable", arguments->turntable,
-                  "with --offscreen out-%04d.png: so many pictures around the scene")
+      .add_option("--turntable", arguments.turntable,
+                  "with --offscreen out-%04d.png: number of pictures around the scene")
       ->type_name("N")
       ->check(whole_number(1, 1000000))
       ->needs(offscreen)
       ->excludes(path);
+}
+
+void add_live(CLI::App& command, ViewArguments& arguments) {
+  const char* const live = "Without a solution";
+  command
+      .add_option(
+          "--shots", arguments.shots,
+          "with --offscreen: draw after this many shots, or when all light is shot; several, "
+          "such as 1,10,100, side by side")
+      ->type_name("N")
+      ->delimiter(',')
+      ->check(whole_number(0, 1 << 24))
+      ->needs(command.get_option("--offscreen"))
+      ->group(live);
+  command
+      .add_flag("--no-ambient", arguments.no_ambient,
+                "with --shots: without the ambient term for unshot light")
+      ->group(live);
+  arguments.kept_apart.add_to(command, live);
+  command.get_option("--channels")
+      ->description(
+          "light channels that keys dim: per-luminaire (default for up to 8), NAME=PATTERN of "
+          "emitters, which may be repeated, or off");
+  arguments.mesh.add_to(command, live);
+}
+
+}  // namespace
+
+Action add_view(CLI::App& command) {
+  const auto arguments = std::make_shared<ViewArguments>();
+  command.description(
+      "Shows a solved scene in a window: W A S D or arrows to walk, the mouse to look around,\n"
+      "1 to 9 for the scene's cameras, H for all keys, Escape to leave. Without a solution the\n"
+      "scene is solved by progressive refinement while you walk.");
+  command.add_option("scene", arguments->scene, "the scene file")->required()->type_name("SCENE");
+  command
+      .add_option("solution", arguments->solution,
+                  "the scene's solution, .vtp (default: solve in the window)")
+      ->type_name("SOLUTION");
+  command
+      .add_option("--offscreen", arguments->offscreen, "draw into this .png instead of a window")
+      ->type_name("FILE")
+      ->check(with_extension({".png"}));
+  add_start(command, *arguments);
+  add_pictures(command, *arguments);
   add_channel_settings(command, arguments->channels);
   command
       .add_option("-o,--output", arguments->output,
                   "where Ctrl+S and Enter save the solution (default: a free name here), .vtp")
       ->type_name("FILE")
       ->check(with_extension({".vtp"}));
-  const char* const live = "Without a solution";
-  command
-      .add_option(
-          "--shots", arguments->shots,
-          "with --offscreen: draw after this many shots, or when all light is shot; several, "
-          "as 1,10,100, are drawn side by side")
-      ->type_name("N")
-      ->delimiter(',')
-      ->check(whole_number(0, 1 << 24))
-      ->needs(offscreen)
-      ->group(live);
-  command
-      .add_flag("--no-ambient", arguments->no_ambient,
-                "with --shots: only the light that was shot, not what is foretold of the rest")
-      ->group(live);
-  arguments->kept_apart.add_to(command, live);
-  command.get_option("--channels")
-      ->description(
-          "the light that keys dim: per-luminaire (default where those are few), NAME=PATTERN of "
-          "emitters, which may be repeated, or off");
-  arguments->mesh.add_to(command, live);
+  add_live(command, *arguments);
   command.footer("Example: lightwell view cornell/cornell.toml cornell.vtp");
   return [arguments](Console& console) { return view(*arguments, console); };
 }

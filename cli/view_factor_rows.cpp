@@ -14,7 +14,7 @@ void add_row(ViewFactorRows& rows, const NumberedScene& numbered, int facet_row,
   rows.emittance.push_back(row.emittance);
 }
 
-/// "5, 9 and 3 more", counted from 1.
+/// Facet numbers counted from 1, ten at most: "5, 9 and 3 more".
 std::string some_of(const std::vector<int>& numbers) {
   constexpr std::size_t most_named = 10;
   std::vector<int> named;
@@ -83,8 +83,8 @@ std::vector<std::string> findings(const NumberedScene& numbered, const FacetChec
   }
   if (check.inconsistent_edges > 0) {
     notes.push_back(
-        fmt::format("{} edges lie between facets that face opposite ways; facets see "
-                    "where their corners run counter-clockwise.",
+        fmt::format("{} edges lie between facets that face opposite ways; the front of a facet is "
+                    "where its corners run counter-clockwise.",
                     check.inconsistent_edges));
   }
   if (check.open_edges > 0) {

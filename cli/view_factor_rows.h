@@ -9,26 +9,27 @@
 
 namespace lightwell {
 
-/// What the rows of a matrix of view factors are.
+/// Surface, facet and side of each row of a view-factor matrix.
 struct ViewFactorRows {
-  std::vector<int> of_patch{};      ///< -1: none
+  std::vector<int> of_patch{};      ///< row of each patch; -1: none
   std::vector<std::string> name{};  ///< of the surface
-  std::vector<int> facet{};         ///< of the file, counted from 1
+  std::vector<int> facet{};         ///< number in the file, counted from 1
   std::vector<char> is_back{};
   std::vector<double> emittance{};
 
   int count() const { return static_cast<int>(name.size()); }
 };
 
-/// A row for each facet of the file; with two sides the backs come after all fronts.
+/// One row per facet of the file; in a two-sided scene the rows of the backs follow those of all
+/// fronts.
 ViewFactorRows facet_rows(const NumberedScene& numbered, const ViewFactorScene& view,
                           const PatchMesh& mesh);
 
-/// A row for each patch of a facet that has one.
+/// One row per patch whose facet has a row.
 ViewFactorRows patch_rows(const NumberedScene& numbered, const ViewFactorScene& view,
                           const PatchMesh& mesh);
 
-/// What was found in the file and done about it, a sentence each.
+/// Notes on the file, a sentence each: the reader's notes, empty and duplicate facets, edges.
 std::vector<std::string> findings(const NumberedScene& numbered, const FacetCheck& check);
 
 }  // namespace lightwell

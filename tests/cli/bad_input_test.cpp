@@ -1,5 +1,5 @@
-// Every way to be wrong: the exit code, one clear sentence on standard error, nothing on standard
-// output, and no file that was not there before.
+// Wrong input and wrong usage: exit code, one sentence on standard error, nothing on standard
+// output, and no new file.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -210,7 +210,7 @@ const Mistake mistakes[] = {
     {"MeshOfElementsBySizeAndNumber",
      {"mesh", "room.toml", "--elements-per-patch-edge", "3", "--max-element-size", "0.1"},
      2,
-     {"--max-element-size", "instead of --elements-per-patch-edge"}},
+     {"--max-element-size", "combined with --elements-per-patch-edge"}},
     {"MeshOfElementsLargerThanPatches",
      {"mesh", "room.toml", "--max-patch-size", "0.1", "--max-element-size", "0.2"},
      3,
@@ -256,7 +256,7 @@ const Mistake mistakes[] = {
 INSTANTIATE_TEST_SUITE_P(Use, Wrong, testing::ValuesIn(mistakes),
                          [](const auto& each) { return each.param.name; });
 
-/// A solution of the small room, made once.
+/// The small room with a solution.
 class Solved : public testing::Test {
  protected:
   void SetUp() override {

@@ -1,4 +1,4 @@
-// Solves that are stopped, and gone on with.
+// Solves that are stopped and resumed.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 using Words = std::vector<std::string>;
 
-// A second or a few of work.
+// Options of a solve that takes a few seconds.
 Words work() {
   return {"--max-patch-size", "0.25", "--rays", "2048", "--gather-rays", "256"};
 }
@@ -30,14 +30,14 @@ class CheckpointTest : public CommandTest {
   CheckpointTest() { folder.write("room.toml", small_room()); }
 
   bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
-  // Stops a solve once form factors are under way; the checkpoint is there then.
+  // Stops a solve while it computes form factors, when the checkpoint exists.
   Ended stopped(const Words& words, int signal) {
     Running running(folder / "", words);
     for (int i = 0; i < 600 && running.err().empty(); ++i) std::this_thread::sleep_for(50ms);
     running.signal(signal);
     return running.wait();
   }
-  // A checkpoint with all the work of a quick solve in it.
+  // Makes the checkpoint "C" with all the work of a quick solve, and no solution.
   void make_checkpoint() {
     ASSERT_EQ(run(solve + quick() + kept + Words{"--keep-checkpoint"}).code, 0);
     std::filesystem::remove(folder / "S.vtp");
@@ -68,19 +68,20 @@ TEST_F(CheckpointTest, AnInterruptSaysHowToGoOnAndThatWorks) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const Ended ended = stopped(solve + work() + kept, signal);
     EXPECT_EQ(ended.code, 130) << ended.err;
-    EXPECT_TRUE(says(ended.err, "interrupted; what was done is in 'C' ("));
+    EXPECT_TRUE(says(ended.err, "interrupted; finished work is in 'C' ("));
     EXPECT_TRUE(exists("C"));
     EXPECT_FALSE(exists("S.vtp"));
-    const std::size_t at = ended.err.find("To go on:\n  ");
+    const std::string before_command = "To resume:\n  ";
+    const std::size_t at = ended.err.find(before_command);
     ASSERT_NE(at, std::string::npos) << ended.err;
-    const std::string command = ended.err.substr(at + 12);
+    const std::string command = ended.err.substr(at + before_command.size());
     EXPECT_TRUE(says(command, "solve room.toml -o S.vtp"));
     EXPECT_TRUE(says(command, "--checkpoint C --resume"));
-    // As a person would: copied into a shell.
+    // The printed command is given to a shell, as a user would copy it.
     std::string shell = "cd '" + folder.path().string() + "' && " + command;
     shell.erase(shell.find_last_not_of('\n') + 1);
     ASSERT_EQ(std::system((shell + " >out 2>err").c_str()), 0) << content_of(folder / "err");
-    EXPECT_TRUE(says(content_of(folder / "err"), "going on with 'C'"));
+    EXPECT_TRUE(says(content_of(folder / "err"), "resuming from 'C'"));
     EXPECT_TRUE(says(content_of(folder / "err"), "removed the checkpoint 'C'"));
     EXPECT_FALSE(exists("C"));
     expect_same_solution(folder / "S.vtp", folder / "reference.vtp");
@@ -88,7 +89,7 @@ TEST_F(CheckpointTest, AnInterruptSaysHowToGoOnAndThatWorks) {
   }
 }
 
-// A word that a shell would take apart is quoted in that command.
+// The command to resume quotes words that a shell would split.
 TEST_F(CheckpointTest, TheCommandToGoOnIsQuoted) {
   const Ended ended = stopped(solve + work() + Words{"--checkpoint", "it's done.ckpt"}, SIGINT);
   EXPECT_TRUE(says(ended.err, "--checkpoint 'it'\\''s done.ckpt' --resume"));
@@ -103,7 +104,7 @@ TEST_F(CheckpointTest, ResumingWhatIsFinishedSaysSo) {
   EXPECT_TRUE(says(ended.out, "energy")) << "the report is printed all the same";
   EXPECT_EQ(content_of(folder / "S.vtp"), solution);
   EXPECT_FALSE(exists("C"));
-  // With other options it is not.
+  // Other options start another solve.
   const Ended other =
       run(solve + quick() + Words{"--gather-rays", "64"} + kept + Words{"--resume"});
   EXPECT_EQ(other.code, 2) << "the option was given twice";
@@ -132,7 +133,7 @@ TEST_F(CheckpointTest, FinishedWorkIsNotOverwritten) {
   const std::string before = content_of(folder / "C");
   const Ended ended = run(solve + quick() + kept);
   EXPECT_EQ(ended.code, 3);
-  EXPECT_TRUE(says(ended.err, "'C' holds finished work already; add --resume to go on with it"));
+  EXPECT_TRUE(says(ended.err, "'C' holds finished work already; add --resume to continue"));
   EXPECT_EQ(content_of(folder / "C"), before);
 }
 
@@ -209,7 +210,7 @@ TEST_F(CheckpointTest, TimesHaveUnits) {
   }
 }
 
-// A scene that is refused leaves no checkpoint that would be in the way afterwards.
+// A refused scene leaves no checkpoint, which a later solve would be refused for.
 TEST_F(CheckpointTest, AFailureBeforeAnyWorkLeavesNone) {
   std::string text = small_room();
   text.erase(text.find("power ="), text.find("]", text.find("power =")) + 1 - text.find("power ="));
@@ -233,7 +234,7 @@ TEST_F(CheckpointTest, RunGoesOnWithItsPictures) {
   EXPECT_EQ(content_of(folder / "D/door.exr"), picture);
 }
 
-// As on a full disk, for the child alone: nothing may be longer than this.
+// RLIMIT_FSIZE of the child stands for a full disk: no file may grow beyond the limit.
 TEST_F(CheckpointTest, AFullDiskStopsTheCheckpointAndNotTheSolve) {
   ASSERT_EQ(run(Words{"solve", "room.toml", "-o", "reference.vtp", "--quiet"} + work()).code, 0);
   const auto needed = std::filesystem::file_size(folder / "reference.vtp");
@@ -254,14 +255,14 @@ TEST_F(CheckpointTest, AFullDiskStopsTheCheckpointAndNotTheSolve) {
   expect_same_solution(folder / "S.vtp", folder / "reference.vtp");
 }
 
-// LIGHTWELL_KILLS=50 for the long test.
+// Number of kills, by the environment variable LIGHTWELL_KILLS (50 for a long test).
 int kill_count() {
   const char* const asked = std::getenv("LIGHTWELL_KILLS");
   return asked ? std::atoi(asked) : 4;
 }
 
 TEST_F(CheckpointTest, KilledAnywhereAndResumedItHasTheSameBits) {
-  // Mirror, glass and a caustic; refinement, and all form factors there are.
+  // The scene has a mirror, glass and a caustic; the options make form factors and refine.
   const std::string scene = LIGHTWELL_CORNELL "/cornell-spheres.toml";
   const Words options = {"--max-patch-size", "80",  "--rays",   "2048",
                          "--gather-rays",    "128", "--refine", "2%"};
@@ -280,7 +281,7 @@ TEST_F(CheckpointTest, KilledAnywhereAndResumedItHasTheSameBits) {
       running.signal(SIGKILL);
     }
     const Ended ended = running.wait();
-    if (ended.err.find("going on with 'C'") != std::string::npos) ++resumed;
+    if (ended.err.find("resuming from 'C'") != std::string::npos) ++resumed;
     if (ended.code == -SIGKILL) {
       ++kills;
       continue;

@@ -1,4 +1,4 @@
-// What 'lightwell export' makes of a solution, and what it refuses.
+// Files and errors of 'lightwell export'.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -44,14 +44,14 @@ TEST_F(ExportCommand, WritesEveryFormatAtOnce) {
   EXPECT_EQ(glb.cameras[0].name, "door");
 }
 
-/// The room is lit from inside only: its walls' outer sides are left out, and the panel's back.
+/// The room is lit from inside only: the model lacks the outer sides of the walls.
 TEST_F(ExportCommand, TheModelHasTheAreaOfTheRoomsLitSides) {
   ASSERT_EQ(run({"export", "room.vtp", "--scene", "room.toml", "-o", "a.ply", "--quiet"}).code, 0);
   double area = 0.0, wanted = 0.0;
   for (const Surface& surface : read_scene(folder / "a.ply").surfaces)
     area += surface_area(surface);
   for (const Surface& s : read_scene(folder / "room.toml").surfaces) wanted += surface_area(s);
-  EXPECT_GE(area, wanted * (1 - 1e-5));  // single precision; both sides of what hangs in the room
+  EXPECT_GE(area, wanted * (1 - 1e-5));  // single precision; the panel may have both sides
   EXPECT_LE(area, 2 * wanted);
 }
 
@@ -88,7 +88,7 @@ TEST_F(ExportCommand, WritesLightmapsThatAreTheSameForAnyNumberOfThreads) {
       EXPECT_GT(json["lightmap"]["coverage"].get<double>(), 0.3);
     }
     EXPECT_EQ(content_of(folder / "1-lightmap-1.exr"), content_of(folder / "3-lightmap-1.exr"));
-    // The model names its data, which have other names here.
+    // The models differ in the names of their lightmaps alone.
     EXPECT_EQ(content_of(folder / "1.glb").size(), content_of(folder / "3.glb").size());
   }
 }
@@ -116,7 +116,7 @@ TEST_F(ExportCommand, RefusesWhatItCannotWrite) {
   expect_refused({"export", "room.vtp", "-o", "nowhere/a.glb"}, 1, "there is no folder 'nowhere'");
   std::filesystem::create_directory(folder / "taken.html");
   expect_refused({"export", "room.vtp", "-o", "taken.html"}, 1, "it is a folder");
-  std::filesystem::create_directory(folder / "b.mtl");  // which b.obj needs
+  std::filesystem::create_directory(folder / "b.mtl");  // the material file of b.obj
   expect_refused({"export", "room.vtp", "-o", "b.obj"}, 1, "b.mtl");
   expect_refused({"export", "room.vtp", "-o", "a.html", "--range", "5:1"}, 2, "is no range");
 }

@@ -1,4 +1,4 @@
-// What a thermal engineer sees of 'lightwell form-factors'.
+// Files and errors of 'lightwell form-factors'.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,13 +49,13 @@ O 7  11 12 16 15
 O 8  12  9 13 16
 )";
 
-// Closed forms of the two, computed with mpmath for this project: the first by the double contour
-// integral, the second by clipping the visible region.
+// Exact F_12 without and with the box, computed with mpmath for this project: the first by the
+// double contour integral, the second by clipping the visible region.
 constexpr double plates_F = 0.199824895698387, plates_and_box_F = 0.123862784216098;
 
-// What keeping a factor or share below 1 as a float costs, at most.
+// Largest rounding error of a factor or share below 1 that is stored as a float.
 constexpr double rounding = 6e-8;
-// A closed form is stored as a float, and scaled by a float's rounding when its row is closed.
+// A closed form is rounded to a float twice: when it is stored, and when closure scales its row.
 constexpr double closed_form = 2 * rounding;
 
 struct Matrix {
@@ -74,7 +74,7 @@ class FormFactorsCommand : public CommandTest {
     std::ifstream in(folder / name);
     return nlohmann::json::parse(in);
   }
-  // Every number in [0, 1], as promised for any input.
+  // Factors of any input lie in [0, 1].
   Matrix matrix(const std::string& name) const {
     std::ifstream in(folder / name);
     std::string line;
@@ -117,8 +117,8 @@ TEST_F(FormFactorsCommand, TwoPlatesAreRightWithinTheErrorAskedFor) {
   EXPECT_EQ(folder.file_count(), 3);
 }
 
-// Polygons are clipped exactly, to 1e-6. Rays have a standard error of at most what is asked for,
-// 1e-3; four of them are passed once in 16 000 cases.
+// Clipping is exact to 1e-6. The standard error of ray casting is at most the target, 1e-3; an
+// error of four standard errors is exceeded once in 16 000 cases.
 TEST_F(FormFactorsCommand, AnObstructionTakesItsShareAndHasNoRow) {
   folder.write("box.vs3", plates + box);
   const std::map<std::string, double> allowed{{"auto", 1e-6}, {"ray-cast", 4e-3}};
@@ -141,7 +141,7 @@ TEST_F(FormFactorsCommand, MethodsAgree) {
   folder.write("plates.vs3", plates);
   for (const char* method : {"auto", "ray-cast", "hemicube", "analytic"}) {
     ASSERT_EQ(run({"form-factors", "plates.vs3", "-o", "F.mtx", "--method", method}).code, 0);
-    // Twice the error asked for: what hemicubes may leave at their resolution.
+    // Hemicubes may have twice the target error at their resolution.
     const bool is_exact = method == std::string("auto") || method == std::string("analytic");
     EXPECT_NEAR(matrix("F.mtx").at(1, 2), plates_F, is_exact ? closed_form : 2e-3) << method;
   }
@@ -215,7 +215,7 @@ TEST_F(FormFactorsCommand, SmallerPatchesAreRowsThatKnowTheirFacet) {
   EXPECT_EQ(json["facets"], 2);
   const Matrix F = matrix("F.mtx");
   const auto row = json_file("F.json")["row"];
-  double exchange = 0.0;  // A_1 F_12, added up again
+  double exchange = 0.0;  // A_1 F_12 as the sum over patches
   for (int i = 1; i <= 8; ++i) {
     for (int j = 1; j <= 8; ++j) {
       const auto facet = [&](int r) { return row["facet"][static_cast<std::size_t>(r - 1)]; };

@@ -1,4 +1,4 @@
-// Ctrl-C and a polite kill: exit code 130 within a moment, and nothing left.
+// SIGINT and SIGTERM: exit code 130 within seconds, and no new file.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -17,10 +17,10 @@ class Interrupted : public testing::TestWithParam<int> {};
 TEST_P(Interrupted, SolveStopsWithinAMomentAndLeavesNothing) {
   TemporaryFolder folder;
   folder.write("room.toml", small_room());
-  // Minutes of work, if it were let.
+  // Without the signal, the solve would take minutes.
   Running running(folder / "", {"solve", "room.toml", "-o", "S.vtp", "--max-patch-size", "0.1",
                                 "--rays", "65536"});
-  // The mesh is done once the program says so; form factors are under way.
+  // The first line on standard error ends the phase "mesh"; form factors follow.
   for (int i = 0; i < 600 && running.err().empty(); ++i) std::this_thread::sleep_for(50ms);
   ASSERT_NE(running.err(), "") << "no sign of work after 30 s";
 
@@ -32,7 +32,7 @@ TEST_P(Interrupted, SolveStopsWithinAMomentAndLeavesNothing) {
   EXPECT_EQ(ended.out, "");
   EXPECT_TRUE(says(ended.err, "interrupted"));
   EXPECT_EQ(folder.file_count(), 1) << "something besides the scene is there";
-  // Promised is one second of an idle machine; tests share theirs with other tests.
+  // The limit is one second on an idle machine; tests run beside other tests.
   EXPECT_LT(taken, 5s);
 }
 

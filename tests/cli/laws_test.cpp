@@ -1,4 +1,4 @@
-// Laws, through the built program.
+// Furnace test and independence of the number of threads, through the built program.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -53,8 +53,8 @@ box = { min = [0, 0, 0], max = [300, 400, 250], inward = true }
       std::vector<double> values;
       for (std::string field; std::getline(fields, field, ',');) values.push_back(std::stod(field));
       ASSERT_GE(values.size(), 10u);
-      // Every ray sees the same radiance, so nothing is left to chance: what remains is rounding to
-      // float, and the solver's tolerance of 1e-5 over 1 - rho.
+      // Every ray sees the same radiance, so the estimate has no variance. The error is rounding to
+      // float and the solver's tolerance of 1e-5 over 1 - rho.
       const double exact[] = {1.0, 2.0 / 0.5, 3.0 / 0.2};
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(values[6 + k] / exact[k], 1.0, 1e-4) << line;
       ++probes;

@@ -1,5 +1,4 @@
-// What 'lightwell report' and 'info --ugr' say of a design and of a luminaire, and what they
-// refuse.
+// Figures and errors of 'lightwell report' and 'lightwell info --ugr'.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +31,7 @@ class ReportCommand : public CommandTest {
   }
 };
 
-/// The light is solved for on a floor of 4 m x 2 m, and asked for on its halves.
+/// The solve joins two surfaces into a floor of 4 m x 2 m; the report has each by its name.
 TEST_F(ReportCommand, SurfacesOfOnePlaneAreMeasuredByName) {
   folder.write("floor.toml", R"(
 unit = "m"
@@ -67,17 +66,17 @@ polygon = [[0, 0, 2], [0, 2, 2], [1, 2, 2], [1, 0, 2]]
   EXPECT_GT(json["surfaces"][0]["E_min"], json["surfaces"][1]["E_max"]);
 }
 
-/// The room's largest plane that faces up is its floor of 4 m x 3 m; 0.5 m of it all around are
-/// left out. All figures of a grid follow from its points, which the CSV has.
+/// The room's largest plane that faces up is its floor of 4 m x 3 m, of which a margin of 0.5 m is
+/// left out. All figures of a grid follow from the points in the CSV.
 TEST_F(ReportCommand, FiguresAreThoseOfThePoints) {
   const Json json = run_json(
       {"report",        "room.toml", "room.vtp",   "--plane", "room@0.75", "--surface", "panel",
        "--maintenance", "0.8",       "--observer", "door",    "--watts",   "panel=40",  "--rays",
        "256",           "-o",        "a.html",     "-o",      "a.json",    "-o",        "a.csv"});
   ASSERT_EQ(json["surfaces"].size(), 2u);
-  const Json& plane = json["surfaces"][1];  // after the surfaces
+  const Json& plane = json["surfaces"][1];  // planes follow the surfaces
   EXPECT_EQ(plane["name"], "room + 0.75 m");
-  // p(3 m) = 0.43 m: 7 x 5 cells.
+  // EN 12464-1 spacing p(3 m) = 0.43 m: 7 x 5 cells.
   EXPECT_EQ(plane["points"], 35);
   EXPECT_EQ(Json::parse(content_of(folder / "a.json"))["surfaces"], json["surfaces"]);
 
@@ -101,13 +100,13 @@ TEST_F(ReportCommand, FiguresAreThoseOfThePoints) {
   }
   ASSERT_EQ(count, 35);
   const double E_m = plane["E_m"];
-  // The CSV has six digits: half a unit in the sixth is 5e-6 at most.
+  // The CSV has six digits: the relative rounding error is at most 5e-6.
   constexpr double rounded = 5e-6;
   EXPECT_NEAR(E_m, sum / count, rounded * E_m);
   EXPECT_NEAR(plane["E_min"].get<double>(), least, rounded * least);
   EXPECT_NEAR(plane["U_0"].get<double>(), least / E_m, rounded);
-  // 256 rays leave 1 / sqrt(256) even where single rays differ by all of the mean; it is said as
-  // two standard deviations.
+  // If the standard deviation of single rays is the mean, that of 256 rays is 1 / sqrt(256) of the
+  // mean; `point_within` is two standard deviations.
   const double point_within = plane["point_within_relative"];
   EXPECT_GT(point_within, 0.0);
   EXPECT_LT(point_within, 2.0 / 16.0);
@@ -125,7 +124,7 @@ TEST_F(ReportCommand, FiguresAreThoseOfThePoints) {
   EXPECT_EQ(page.find("src="), std::string::npos) << "it holds all it needs";
 }
 
-/// 40 W over the 12 m2 of the floor.
+/// Power density is 40 W over the 12 m2 of the floor.
 TEST_F(ReportCommand, GridsOfTheSceneFileAreMeasured) {
   folder.write("room.toml", small_room() +
                                 "[[grids]]\nname = \"desks\"\nsurface = \"room\"\nheight = "
@@ -137,7 +136,7 @@ TEST_F(ReportCommand, GridsOfTheSceneFileAreMeasured) {
   EXPECT_EQ(desks["name"], "desks");
   EXPECT_EQ(desks["points"], 4 * 3);  // 3.5 m x 2.5 m in cells of at most 1 m
   EXPECT_EQ(desks["margin_m"], 0.25);
-  // JSON hands doubles over unrounded.
+  // Doubles in JSON are not rounded.
   EXPECT_DOUBLE_EQ(desks["W_per_m2"].get<double>(), 40.0 / 12.0);
   EXPECT_DOUBLE_EQ(desks["W_per_m2_per_100_lx"].get<double>(),
                    40.0 / 12.0 / (desks["E_m"].get<double>() / 100.0));
@@ -148,7 +147,7 @@ TEST_F(ReportCommand, GridsOfTheSceneFileAreMeasured) {
       << "nobody knows the panel's power";
 }
 
-/// Illuminance is proportional to the maintenance factor, with the same rays.
+/// Illuminance by the same rays is proportional to the maintenance factor.
 TEST_F(ReportCommand, MaintenanceDimsAllAlike) {
   const auto mean = [&](const char* factor) {
     return run_json({"report", "room.toml", "room.vtp", "--plane", "room@0.75", "--rays", "64",

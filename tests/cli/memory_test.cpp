@@ -1,4 +1,4 @@
-// --memory: what the process may have resident, and what becomes of rows that do not fit.
+// Option --memory: resident memory of the process, and rows that do not fit.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -12,7 +12,7 @@ namespace lightwell {
 namespace {
 using Words = std::vector<std::string>;
 
-// Sanitizers keep notes and what is freed.
+// False with a sanitizer, which takes memory for shadow bytes and keeps freed blocks.
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 constexpr bool memory_is_its_own = false;
 #else
@@ -21,7 +21,7 @@ constexpr bool memory_is_its_own = true;
 
 class Memory : public CommandTest {
  protected:
-  // Cut finely enough, every row of the cube sees hundreds of patches.
+  // In patches of 0.04 every row of the cube has hundreds of entries.
   void SetUp() override {
     folder.write("cube.obj", unit_cube());
     folder.write("room.toml", small_room());
@@ -34,7 +34,7 @@ class Memory : public CommandTest {
   std::string content(const std::string& file) const { return content_of(folder / file); }
 };
 
-// The budget that a refusal asks for.
+// The budget in the message of a refusal, MB; 0: none.
 int needed_mb(const std::string& refusal) {
   std::smatch found;
   return std::regex_search(refusal, found, std::regex("Allow (\\d+) MB")) ? std::stoi(found[1]) : 0;
@@ -57,7 +57,7 @@ TEST_F(Memory, TheLeastThatIsEnoughIsSaidAndKept) {
   ASSERT_GT(needed, 20) << refused.err;
   ASSERT_LT(needed, free["peak_memory_mb"].get<double>()) << "the case is large enough";
 
-  // A megabyte or two: what a process has resident is not the same from one run to the next.
+  // Resident memory varies by a megabyte or two between runs.
   const int budget = needed + 2;
   const Ended kept = factors("F.mtx", {"--memory", std::to_string(budget) + "M", "--threads", "3"});
   ASSERT_EQ(kept.code, 0) << kept.err;
@@ -89,7 +89,7 @@ TEST_F(Memory, SolveAndRunKeepToItToo) {
 }
 
 // Shooting takes 16 MB for its rays and 144 bytes a patch; rows take 1.2 kB a patch beside a slice
-// of 16 MB. Of 12 000 patches a budget in between holds the one and not the other.
+// of 16 MB. A budget between the two, for 12 000 patches, allows shooting alone.
 TEST_F(Memory, PatchesShootWhereRowsDoNotFit) {
   if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
   const auto solve = [&](const char* output, const std::string& memory) {
@@ -144,7 +144,8 @@ TEST_F(Memory, AmountsThatAreNoneAreRefused) {
   }
 }
 
-// The program inherits the limit, and would be ended by a signal if it did not see to that.
+// The program inherits the limit. A write beyond it raises SIGXFSZ, which would end the program by
+// default.
 TEST_F(Memory, AFileThatMayNotGrowIsAnError) {
   if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
   const int needed = needed_mb(factors("F.mtx", {"--memory", "2M"}).err);

@@ -1,4 +1,4 @@
-// What 'lightwell mesh' tells and writes, read back as ParaView does.
+// Report and file of 'lightwell mesh'; the file is read by VTK, as ParaView does.
 #include <gtest/gtest.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -22,7 +22,7 @@ namespace lightwell {
 namespace {
 using Words = std::vector<std::string>;
 
-// Sums of some hundred areas of order one.
+// Relative rounding error of a sum of some hundred areas of order one.
 constexpr double rounding = 1e-12;
 
 const std::string ball = R"(
@@ -56,7 +56,7 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-// 2 (4 x 3 + 4 x 2.5 + 3 x 2.5) m^2 of room, 1 m^2 of panel, and the exact ball.
+// The area is 2 (4 x 3 + 4 x 2.5 + 3 x 2.5) m^2 of room, 1 m^2 of panel, and the exact ball.
 TEST_F(MeshCommand, FrontsCoverTheSceneOnce) {
   folder.write("ball.toml", small_room() + ball);
   const double area = 60.0 + 4.0 * std::numbers::pi * 0.35 * 0.35;
@@ -99,7 +99,7 @@ TEST_F(MeshCommand, ReportAndColumnsAgree) {
   const auto smallest = std::min_element(areas.begin(), areas.end()) - areas.begin();
   EXPECT_EQ(json["smallest_element"]["area"], areas[smallest]);
   EXPECT_EQ(json["smallest_element"]["element"], element[smallest]);
-  EXPECT_EQ(json["smallest_element"]["surface"], "ball");  // at its poles
+  EXPECT_EQ(json["smallest_element"]["surface"], "ball");  // at one of the poles
   EXPECT_EQ(json["largest_element"]["area"], *std::max_element(areas.begin(), areas.end()));
 
   vtkPolyData* const poly = read("M.vtp");
@@ -166,7 +166,7 @@ TEST_F(MeshCommand, BacksComeOnlyWhenAskedFor) {
   EXPECT_LT(read("fronts.vtp")->GetNumberOfPoints(), json["vertices"].get<int>());
 }
 
-// Each square in two triangles: 12 facets become 6, each of them 2 x 2 patches of 2 x 2 elements.
+// Cleaning joins the 12 triangles of a cube to 6 squares, each of 2 x 2 patches of 2 x 2 elements.
 TEST_F(MeshCommand, TellsWhatWasCleanedFirst) {
   std::string obj = unit_cube();
   obj.erase(obj.find("f "));
@@ -181,7 +181,7 @@ TEST_F(MeshCommand, TellsWhatWasCleanedFirst) {
   EXPECT_TRUE(says(run({"mesh", "cube.obj"}).out, "12 facets became 6"));
 }
 
-// A block that hangs in a room of few large elements has more shadow bounds than may be drawn.
+// A floating block in a room of few large elements has more discontinuity lines than are allowed.
 TEST_F(MeshCommand, NotesSayWhatMeshingLeftOut) {
   folder.write("block.toml", small_room() + R"(
 [[surfaces]]

@@ -1,10 +1,13 @@
-// What a script sees: files, standard output, JSON.
+// Files, standard output and JSON, as scripts read them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -48,7 +51,7 @@ TEST_F(Output, SolveTellsHowItRefined) {
   const auto json = run_json(asked + quick());
   const auto& refinement = json["refinement"];
   EXPECT_NE(refinement["outcome"], "off");
-  EXPECT_DOUBLE_EQ(refinement["tolerance"].get<double>(), 0.02);  // the 2 % asked for
+  EXPECT_DOUBLE_EQ(refinement["tolerance"].get<double>(), 0.02);  // the 2 % of --refine
   EXPECT_EQ(refinement["elements"], json["elements"]);
   EXPECT_LE(refinement["elements"].get<int>(), 900);
   EXPECT_TRUE(says(json["options"], "--refine 2% --max-elements 900 "));
@@ -128,7 +131,7 @@ TEST_F(Output, ProbeSolvesWhatItHasNoSolutionOf) {
   const auto json = run_json({"probe", "room.toml", "--points", "points.csv", "-o", "E.csv"});
   EXPECT_EQ(json["points"], 2);
   EXPECT_NEAR(json["energy"]["emitted"].get<double>(), 30.0, 1e-4);
-  EXPECT_FALSE(json.contains("error_estimate"));  // nothing estimates one
+  EXPECT_FALSE(json.contains("error_estimate"));  // the solve made no estimate
   EXPECT_EQ(json["files"], nlohmann::json::array({"E.csv"}));
 }
 
@@ -197,9 +200,39 @@ TEST_F(Output, HelpAndVersionEverywhere) {
     EXPECT_EQ(help.err, "");
     const std::string example = command.empty() ? "lightwell" : "Example: lightwell " + command[0];
     EXPECT_TRUE(says(help.out, example));
-    // One screen of a window that is maximised.
+    // Help fits the lines of a maximised terminal.
     EXPECT_LE(std::count(help.out.begin(), help.out.end(), '\n'), 48) << help.out;
     EXPECT_TRUE(says(run(command + Words{"--version"}).out, "lightwell "));
+  }
+}
+
+// Every line after the first is "NAME VERSION", and --json has the same names and versions.
+TEST_F(Output, VersionNamesTheLibraries) {
+  const Ended ended = run({"--version"});
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_EQ(ended.err, "");
+  std::istringstream lines(ended.out);
+  std::string program, version;
+  ASSERT_TRUE(lines >> program >> version);
+  EXPECT_EQ(program, "lightwell");
+  EXPECT_EQ(ended.out.find('\n'), program.size() + 1 + version.size());
+  auto libraries = nlohmann::json::object();
+  for (std::string name, number; lines >> name >> number;) {
+    EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(number[0]))) << name << " " << number;
+    libraries[name] = number;
+  }
+  for (const char* name : {"Embree", "oneTBB", "CGAL", "Eigen", "VTK", "OpenEXR", "fmt"}) {
+    EXPECT_TRUE(libraries.contains(name)) << name;
+  }
+  EXPECT_EQ(static_cast<std::size_t>(std::count(ended.out.begin(), ended.out.end(), '\n')),
+            libraries.size() + 1);
+  for (const Words& words : {Words{"--version", "--json"}, Words{"--json", "--version"},
+                             Words{"--json", "solve", "--version"}}) {
+    const Ended as_json = run(words);
+    EXPECT_EQ(as_json.code, 0) << as_json.err;
+    const auto json = nlohmann::json::parse(as_json.out);
+    EXPECT_EQ(json["version"], version);
+    EXPECT_EQ(json["libraries"], libraries);
   }
 }
 
@@ -219,9 +252,10 @@ TEST_F(Output, SaysWhichSolverFoundIt) {
     EXPECT_GT(json["sweeps"], 1);
     EXPECT_NE(json["options"].get<std::string>().find("--solver " + solver), std::string::npos);
     const double now = json["energy"]["absorbed"];
-    // Each radiosity, and so each irradiance, is within 1e-5 of the largest, the lamp's 12 W/m^2.
-    // The bands of the room's 59 m^2 keep 0.3, 0.5 and 0.7 of it, those of the panel's 2 m^2 all:
-    // 0.0113 of the 30 W that are emitted, and absorbed, by either of two solvers.
+    // The error of each radiosity, and so of each irradiance, is at most 1e-5 of the largest, the
+    // lamp's 12 W/m^2. The room's 59 m^2 absorb 0.3, 0.5 and 0.7 of irradiance in the three bands,
+    // the panel's 2 m^2 all of it. The absorbed power of two solvers, 30 W each, differs by at most
+    // the sum of both errors.
     constexpr double apart = 2.0 * 1e-5 * 12.0 * (59.0 * 1.5 + 2.0 * 3.0) / 30.0;
     if (absorbed > 0.0) {
       EXPECT_NEAR(now / absorbed, 1.0, apart) << solver;

@@ -1,4 +1,4 @@
-// Pictures: what they hold, how they are exposed, going on with them, comparing them.
+// Pictures: layers, exposure, checkpoints and comparison.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class Pictures : public CommandTest {
     return Words{"render", "room.toml", "S.vtp", "--size", "24x18", "--pass", "interpolate"} + more;
   }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
-  // Until a picture of so many channels has a tile in the checkpoint.
+  // Waits until the checkpoint holds a tile of a picture with that many channels.
   void wait_for_a_tile(const std::string& checkpoint, int channels) const {
     const auto a_tile = static_cast<std::uintmax_t>(8000) * channels * sizeof(float);
     std::error_code none;
@@ -37,7 +37,7 @@ class Pictures : public CommandTest {
   }
 };
 
-// A cube of lamps whose light is in no known unit.
+// A cube of emitters in relative units.
 std::string relative_scene() {
   return R"(<scene version="3.0.0"><shape type="cube"><emitter type="area"/></shape>
       <sensor type="perspective"><transform name="to_world">
@@ -111,7 +111,7 @@ TEST_F(Pictures, PngSaysWhatItsWhiteIs) {
   const std::string png = content_of(folder / "a.png");
   EXPECT_TRUE(says(png, "--tone-map linear --exposure 0 --ev100 8"));
   EXPECT_TRUE(says(png, std::string("whiteLuminance") + '\0' + "307.2"));  // 1.2 * 2^8 cd/m^2
-  // A stop less by one and a stop more by the other is the same picture.
+  // --ev100 one higher is a stop darker, --exposure 1 a stop brighter.
   ASSERT_EQ(
       run(render({"-o", "b.png", "--ev100", "9", "--exposure", "1", "--tone-map", "linear"})).code,
       0);
@@ -130,7 +130,7 @@ TEST_F(Pictures, ImpossibleSizesAndPlacesAreRefusedAtOnce) {
     EXPECT_EQ(ended.code, 2) << size;
     EXPECT_TRUE(says(ended.err, "is no picture size")) << ended.err;
   }
-  // The solution, which would take time to read, is not even looked for.
+  // The size is refused before the solution is read: "missing.vtp" does not exist.
   const Ended large =
       run({"render", "room.toml", "missing.vtp", "--size", "32768x32768", "-o", "a.png"});
   EXPECT_EQ(large.code, 3);
@@ -152,10 +152,12 @@ TEST_F(Pictures, InterruptedPictureGoesOnWithTheSameBits) {
   const Ended ended = running.wait();
   ASSERT_EQ(ended.code, 130) << ended.err;
   EXPECT_FALSE(exists("P.exr"));
-  EXPECT_TRUE(says(ended.err, "interrupted; what was done is in 'C' (")) << ended.err;
-  const std::size_t at = ended.err.find("To go on:\n  ");
+  EXPECT_TRUE(says(ended.err, "interrupted; finished work is in 'C' (")) << ended.err;
+  const std::string before_command = "To resume:\n  ";
+  const std::size_t at = ended.err.find(before_command);
   ASSERT_NE(at, std::string::npos) << ended.err;
-  std::string shell = "cd '" + folder.path().string() + "' && " + ended.err.substr(at + 12);
+  std::string shell =
+      "cd '" + folder.path().string() + "' && " + ended.err.substr(at + before_command.size());
   shell.erase(shell.find_last_not_of('\n') + 1);
   ASSERT_EQ(std::system((shell + " --json >out 2>err").c_str()), 0) << content_of(folder / "err");
   const auto json = nlohmann::json::parse(content_of(folder / "out"));
@@ -173,7 +175,8 @@ TEST_F(Pictures, RunKeepsTheTilesOfItsPictures) {
   const Words kept =
       Words{"run", "room.toml", "-o", "D"} + slow + Words{"--checkpoint", "C", "--every", "0.1s"};
   Running running(folder / "", kept);
-  // The solve's checkpoint is gone once there is a solution; the next one is of the pictures.
+  // The checkpoint of the solve is removed once the solution is written; that of the pictures
+  // follows.
   for (int i = 0; i < 2400 && !exists("D/solution.vtp"); ++i) std::this_thread::sleep_for(25ms);
   for (int i = 0; i < 400 && !says(running.err(), "removed the checkpoint"); ++i) {
     std::this_thread::sleep_for(5ms);
@@ -182,7 +185,7 @@ TEST_F(Pictures, RunKeepsTheTilesOfItsPictures) {
   running.signal(SIGTERM);
   const Ended ended = running.wait();
   ASSERT_EQ(ended.code, 130) << ended.err;
-  EXPECT_TRUE(says(ended.err, "what was done is in 'C' (")) << ended.err;
+  EXPECT_TRUE(says(ended.err, "finished work is in 'C' (")) << ended.err;
   EXPECT_FALSE(exists("D/door.exr"));
   const auto json = run_json(kept + Words{"--resume"});
   EXPECT_GT(json["picture_checkpoint"]["resumed_mb"].get<double>(), 0.09);
@@ -195,7 +198,7 @@ TEST_F(Pictures, InterruptWithoutACheckpointLeavesNothing) {
   const int before = folder.file_count();
   Running running(folder / "", {"render", "room.toml", "S.vtp", "--size", "2000x2000", "-o",
                                 "P.exr", "--shadow-rays", "256"});
-  std::this_thread::sleep_for(1s);  // of a quarter of a minute
+  std::this_thread::sleep_for(1s);  // the picture takes about 15 s
   running.signal(SIGINT);
   EXPECT_EQ(running.wait().code, 130);
   EXPECT_EQ(folder.file_count(), before);

@@ -22,7 +22,7 @@ Running::Running(const std::filesystem::path& folder, const std::vector<std::str
   process_ = ::fork();
   if (process_ < 0) throw std::runtime_error("fork failed");
   if (process_ > 0) return;
-  // Only calls that are safe between fork and exec.
+  // Between fork and exec only async-signal-safe functions may be called.
   const int in = ::open("/dev/null", O_RDONLY);
   const int to_out = ::open(out.c_str(), O_CREAT | O_WRONLY, 0600);
   const int to_err = ::open(err.c_str(), O_CREAT | O_WRONLY, 0600);

@@ -11,15 +11,15 @@
 
 namespace lightwell {
 
-/// How a run of the built lightwell ended and what it said.
+/// Exit code and output of a run of the built lightwell.
 struct Ended {
   int code = -1;    ///< exit code; -signal if a signal ended it
   std::string out;  ///< standard output
   std::string err;  ///< standard error
 };
 
-/// The lightwell command as a child process, with its working folder in `folder`. What it says goes
-/// to files outside that folder.
+/// The lightwell command as a child process with working folder `folder`. Standard output and
+/// standard error go to files outside of `folder`.
 class Running {
  public:
   Running(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
@@ -28,7 +28,7 @@ class Running {
   Running& operator=(const Running&) = delete;
 
   void signal(int number) const;
-  /// What it has said on standard error up to now.
+  /// Text on standard error so far.
   std::string err() const;
   Ended wait();
 
@@ -39,13 +39,13 @@ class Running {
 
 Ended run_lightwell(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
 
-/// A folder of its own, and the command run in it.
+/// A test with an empty folder in which it runs the command.
 class CommandTest : public testing::Test {
  protected:
   Ended run(const std::vector<std::string>& arguments) {
     return run_lightwell(folder / "", arguments);
   }
-  /// With --json; throws unless standard output is one value and nothing else.
+  /// Standard output of the command with --json; throws unless that is exactly one JSON value.
   nlohmann::json run_json(std::vector<std::string> arguments) {
     arguments.emplace_back("--json");
     const Ended ended = run(arguments);
@@ -55,10 +55,10 @@ class CommandTest : public testing::Test {
   TemporaryFolder folder;
 };
 
-/// A room 4 m x 3 m x 2.5 m with a luminous panel under its ceiling and the camera "door"; small
-/// enough to solve in a moment with `quick`.
+/// A room of 4 m x 3 m x 2.5 m with a luminous panel of 1 m^2 under its ceiling and the camera
+/// "door". With quick() a solve takes a moment.
 std::string small_room();
-/// The unit cube from inside, as an OBJ file of six squares.
+/// An OBJ file of the unit cube, six squares that face inwards.
 std::string unit_cube();
 
 /// Coarse options for small_room().

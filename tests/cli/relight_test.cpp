@@ -79,8 +79,8 @@ TEST_F(RelightCommand, InfoListsChannelsWithTheirFluxAndScale) {
   EXPECT_EQ(desk["name"], "desk");
   EXPECT_EQ(desk["surfaces"], nlohmann::json::array({"desk lamp"}));
   EXPECT_EQ(desk["scale"], nlohmann::json::array({0.5, 0.5, 0.5}));
-  // 690 W/m2 of all bands on 0.04 m2; half of it is left. Exitances, scales and colours are floats,
-  // each off by 6e-8 of itself; a few of them are multiplied and added.
+  // Half of 690 W/m2 (sum of the bands) on 0.04 m2. Exitances, scales and colours are floats with a
+  // relative rounding error of 6e-8; a few of them are multiplied and added.
   constexpr double rounding = 1e-6;
   EXPECT_NEAR(desk["watts"].get<double>(), 13.8, rounding * 13.8);
   // A colour keeps the lumens and changes the watts.
@@ -102,8 +102,8 @@ TEST_F(RelightCommand, ProgressiveLightIsKeptApartToo) {
   ASSERT_EQ(relight({"desk lamp=off"}, "P.vtp", "panel.vtp").code, 0);
   ASSERT_EQ(relight({"panel=off"}, "P.vtp", "desk.vtp").code, 0);
   const auto all = probed("P.vtp"), panel = probed("panel.vtp"), desk = probed("desk.vtp");
-  // Up to four float operations on both sides, each off by 6e-8: what arrives of a lamp, its
-  // scale, the sum over lamps, and that over an element's corners. 2 * 4 * 6e-8.
+  // 2 * 4 * 6e-8: both sides have up to four float operations, each with a relative error of 6e-8:
+  // irradiance by a lamp, its scale, the sum over lamps, the sum over an element's corners.
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_NEAR(panel[i] + desk[i], all[i], 5e-7 * all[i]);
   }
@@ -113,14 +113,16 @@ TEST_F(RelightCommand, LightAddsUpAtEveryPoint) {
   solve();
   ASSERT_EQ(relight({"desk=off"}, "S.vtp", "ceiling.vtp").code, 0);
   ASSERT_EQ(relight({"ceiling=off"}, "S.vtp", "desk.vtp").code, 0);
-  // From a relit file: against the scene as it was solved; the desk lamp stays at 0 unless named.
+  // Settings are relative to the scene as solved, also in a relit file; the scale of the desk lamp
+  // stays 0 unless it is set.
   ASSERT_EQ(relight({"ceiling=2"}, "ceiling.vtp", "bright.vtp").code, 0);
   ASSERT_EQ(relight({"desk=1", "ceiling=1"}, "ceiling.vtp", "again.vtp").code, 0);
   const auto all = probed("S.vtp"), ceiling = probed("ceiling.vtp"), desk = probed("desk.vtp"),
              bright = probed("bright.vtp"), again = probed("again.vtp");
   for (std::size_t i = 0; i < all.size(); ++i) {
-    // On both sides up to four float operations, each off by 6e-8: light at vertices, what of it is
-    // reflected, the sum over lamps, and that of direct and indirect light. 2 * 4 * 6e-8.
+    // 2 * 4 * 6e-8: both sides have up to four float operations, each with a relative error of
+    // 6e-8: irradiance at vertices, its reflection, the sum over lamps, the sum of direct and
+    // indirect light.
     EXPECT_NEAR(ceiling[i] + desk[i], all[i], 5e-7 * all[i]);
     EXPECT_NEAR(bright[i], 2.0 * ceiling[i], 5e-7 * all[i]);
     EXPECT_EQ(again[i], all[i]);
@@ -139,8 +141,9 @@ TEST_F(RelightCommand, PicturesAddUpWithTheOriginalScene) {
     return read_exr(folder / (name + ".exr")).radiance;
   };
   {
-    // As many looks everywhere, at the same places, and no shadow rays: nothing is left but floats.
-    // Each look has some ten operations off by 6e-8 of what they add up to, on both sides.
+    // Every pixel has the same samples in each picture, and no shadow rays: the pictures differ by
+    // float rounding alone. A sample has some ten operations with a relative error of 6e-8, on both
+    // sides.
     const Words plain{"--pass", "interpolate", "--samples", "16"};
     const BandArray all = picture("S", plain);
     const BandArray sum = picture("ceiling", plain) + picture("desk", plain);
@@ -148,9 +151,9 @@ TEST_F(RelightCommand, PicturesAddUpWithTheOriginalScene) {
   }
   const BandArray all = picture("S", {});
   const BandArray sum = picture("ceiling", {}) + picture("desk", {});
-  // Shadow rays go by each lamp's share of the light, and pixels are split by the contrast of what
-  // is lit: one that is split in one picture alone is off by up to that contrast, 10 %. One in a
-  // hundred of such pixels, at the edges of shadows, would make 1 %.
+  // Shadow rays are distributed by each lamp's share of the light, and pixels are supersampled by
+  // their contrast. A pixel that is supersampled in one picture alone differs by up to that
+  // contrast, 10 %; if one pixel in a hundred does, at the edges of shadows, the RMS is 1 %.
   const double rms = std::sqrt((all - sum).cast<double>().square().mean());
   EXPECT_LT(rms, 0.01 * all.cast<double>().mean());
 }
@@ -185,7 +188,7 @@ TEST_F(RelightCommand, StartsFromAnotherSolution) {
   const auto warm =
       run_json(Words{"solve", "grey.toml", "-o", "B.vtp", "--start-from", "S.vtp"} + more);
   EXPECT_LT(warm["sweeps"].get<int>(), cold["sweeps"].get<int>());
-  // Each B is off by 1e-7 of the lamp's 300 W/m2 at most, in three bands on 60 m2.
+  // The error of each B is at most 1e-7 of the lamp's 300 W/m2, in three bands on 60 m2.
   EXPECT_NEAR(warm["energy"]["absorbed"].get<double>(), cold["energy"]["absorbed"].get<double>(),
               2 * 1e-7 * 300 * 3 * 60);
   const Ended other = run(

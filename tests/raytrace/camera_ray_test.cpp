@@ -77,8 +77,8 @@ TEST(CameraRays, RaysOfALensMeetWhereItIsFocused) {
   }
 }
 
-// A regular polygon of n sides in the unit circle: its second moment about an axis in its plane
-// over its area is (1 + 2 cos^2(pi/n)) / 12; of the disk it is 1/4.
+// A regular polygon of n sides in the unit circle has, about an axis in its plane, a second moment
+// over its area of (1 + 2 cos^2(pi/n)) / 12; the disk has 1/4.
 TEST(CameraRays, ALensIsEvenlyCoveredWhateverItsBlades) {
   constexpr int steps = 64;
   for (const int blades : {0, 3, 5, 8}) {
@@ -92,8 +92,8 @@ TEST(CameraRays, ALensIsEvenlyCoveredWhateverItsBlades) {
       EXPECT_LE(p.norm(), 1.0 + 1e-6);
     }
     const double c = blades > 0 ? std::cos(std::numbers::pi / blades) : 1.0;
-    // Midpoints miss means of functions this smooth by about a step squared; blades that do not
-    // divide the steps add a step of a blade's share.
+    // The midpoint rule has an error of about a step squared for functions this smooth; if the
+    // number of blades does not divide that of steps, a step of a blade's share is added.
     EXPECT_LT(mean.norm(), 1.0 / steps) << blades;
     EXPECT_NEAR(square.x(), (1 + 2 * c * c) / 12, 1.0 / steps) << blades;
     EXPECT_NEAR(square.y(), (1 + 2 * c * c) / 12, 1.0 / steps) << blades;

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 const Paint white{.reflectance = 0.5f};
 
-// Photons of equal power, spread evenly over what `place` makes of the unit square.
+// Photons of equal power, spread evenly over the image of the unit square under `place`.
 CausticPhotons spread(const ElementCaster& caster, int count,
                       const std::function<Vector3d(float, float)>& place, float power) {
   CausticPhotons photons;
@@ -44,7 +44,7 @@ double irradiance_at(const ElementCaster& caster, const CausticMap& map, double 
   return static_cast<double>(map.irradiance({x, y, 0.0}, Vector3d::UnitZ(), hit.element)[0]);
 }
 
-// Even light on a floor stays even up to its edges and into its corners.
+// Constant irradiance on a floor stays constant up to edges and corners.
 TEST(CausticMap, EvenLightIsEvenUpToTheEdge) {
   const LitScene lit(
       SceneBuilder().square(white, Vector3d::Zero(), Vector3d::UnitZ(), 1.0).build());
@@ -53,8 +53,9 @@ TEST(CausticMap, EvenLightIsEvenUpToTheEdge) {
       lit.caster, count, [](float u, float v) { return Vector3d(2.0 * u - 1.0, 2.0 * v - 1.0, 0); },
       4.0f / count);
   const CausticMap map(lit.mesh, photons);
-  // Independent photons would leave sqrt(4/3 / k) = 0.13 of k = 40, a half more at an edge, where
-  // half of them count twice, and twice as much in a corner; stratified ones much less.
+  // Independent photons would have a standard error of sqrt(4/3 / k) = 0.18 with k = 40, more at an
+  // edge, where half of them count twice, and twice as much in a corner; that of stratified photons
+  // is much smaller.
   EXPECT_NEAR(irradiance_at(lit.caster, map, 0.1, 0.2), 1.0, 0.08);
   EXPECT_NEAR(irradiance_at(lit.caster, map, 0.999, 0.2), 1.0, 0.12);
   EXPECT_NEAR(irradiance_at(lit.caster, map, 0.999, -0.999), 1.0, 0.16);
@@ -66,7 +67,7 @@ TEST(CausticMap, EvenLightIsEvenUpToTheEdge) {
   EXPECT_NEAR(sum, 1.0, 0.02);
 }
 
-// Watts per square metre add up to the watts, wherever on an L-shaped floor they lie.
+// The integral of irradiance over an L-shaped floor is the power of the photons.
 TEST(CausticMap, IrradianceAddsUpToThePowerOfThePhotons) {
   const LitScene lit(
       SceneBuilder()
@@ -89,14 +90,14 @@ TEST(CausticMap, IrradianceAddsUpToThePowerOfThePhotons) {
         sum += irradiance_at(lit.caster, map, x, y) * step * step;
       }
     }
-    // The grid meets discs of a radius of about 6 steps, thousands of them: 1e-3. Those beside the
-    // inner corner lose nothing behind it, since the floor is all one.
+    // The grid samples thousands of discs with a radius of about 6 steps: error 1e-3. Discs at the
+    // inner corner lose no power, since the floor is one surface.
     EXPECT_NEAR(sum, 3.0, 0.01);
   }
 }
 
-// A wall from side to side parts a floor: light before it is not on the floor behind, however wide
-// the discs.
+// A wall divides a floor: light in front of the wall stays off the floor behind for any disc
+// radius.
 TEST(CausticMap, NoLightPassesBeneathAWall) {
   const LitScene lit(SceneBuilder()
                          .square(white, Vector3d::Zero(), Vector3d::UnitZ(), 1.0)
@@ -109,8 +110,8 @@ TEST(CausticMap, NoLightPassesBeneathAWall) {
   EXPECT_EQ(irradiance_at(lit.caster, map, 0.01, 0.1), 0.0);
 }
 
-// A lamp over a mirror is seen in it: the ceiling receives what a lamp as far below would send
-// through a window where the mirror is.
+// A lamp over a mirror: the ceiling receives the light that the mirror image of the lamp would send
+// through a window in place of the mirror.
 class MirroredLamp {
  public:
   static constexpr float M = 10.0f, rho = 0.8f;
@@ -122,15 +123,15 @@ class MirroredLamp {
 
   MirroredLamp() { lit.solution.caustic_irradiance = lit.solution.indirect_irradiance; }
 
-  // What of the mirrored lamp is seen, for a place whose view of it the mirror's rim does not cut
-  // and the lamp itself does not hide.
+  // Irradiance by the mirrored lamp, at a point for which neither the mirror's rim nor the lamp
+  // hides the image.
   static double irradiance(double x, double y) {
     const Loop lamp{{-0.1, -0.1, -1}, {0.1, -0.1, -1}, {0.1, 0.1, -1}, {-0.1, 0.1, -1}};
     return double{rho * M} *
            std::abs(point_to_polygon({x, y, 2}, {0, 0, -1}, std::vector<Loop>{lamp}));
   }
 
-  // RMS relative error over 150 places, and the neighbours that discs reach over.
+  // RMS relative error over 150 points, and the number of neighbours in a disc.
   std::pair<double, int> error(int photon_count) const {
     const CausticPhotons photons =
         shoot_photons({lit.scene, lit.caster, lit.direct_light}, photon_count, 4);
@@ -152,15 +153,16 @@ class MirroredLamp {
   }
 };
 
-// k neighbours leave sqrt(4/3 / k) of independent photons, and k grows as N^(2/3). The light is
-// smooth: what discs blur is less than that.
+// The standard error by k neighbours among independent photons is sqrt(4/3 / k), and k grows as
+// N^(2/3). The light is smooth, so the bias of discs is smaller.
 TEST(CausticMap, LightOffAMirrorIsThatOfTheMirroredLamp) {
   const MirroredLamp mirrored;
   double last = 1.0;
   for (const int count : {1 << 15, 1 << 18, 1 << 21}) {
     const auto [error, k] = mirrored.error(count);
     std::printf("%8d photons, k = %3d: relative RMS error %.4f\n", count, k, error);
-    // Discs overlap, so that 150 places are a few dozen to judge by: within some 15 %, twice.
+    // Discs overlap, so 150 points count as a few dozen independent ones: the RMS has a standard
+    // error of some 15 %, of which two are allowed.
     EXPECT_LT(error, 1.3 * std::sqrt(4.0 / 3.0 / k));
     EXPECT_LT(error, 0.7 * last);
     last = error;
@@ -175,7 +177,7 @@ TEST(CausticMap, PicturesShowIt) {
     const double L = 0.5 * MirroredLamp::irradiance(0.75, 0.1) / std::numbers::pi;
     EXPECT_NEAR(seen.radiance.col(0).cast<double>().mean(), L, 0.03 * L);
   }
-  // Without photons it is the solution's, which has none here.
+  // Without photons caustics are those of the solution, which has none here.
   const Image without = mirrored.lit.render(camera, {.photons = 0});
   EXPECT_EQ(without.radiance.maxCoeff(), 0.0f);
 }

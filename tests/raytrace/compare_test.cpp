@@ -41,14 +41,14 @@ TEST(CompareImages, FiguresFollowTheirDefinitions) {
 }
 
 TEST(CompareImages, SumsInDoubleKeepSmallDifferencesOfLargeImages) {
-  // 1 + 2^-20 against 1 everywhere: float sums over 3e5 values would lose it.
+  // Float sums over 3e5 values would lose the difference 2^-20 from 1.
   const ImageDifference d =
       compare_images(flat_image(512, 200, 1.0f + 0x1p-20f), flat_image(512, 200, 1.0f));
   EXPECT_NEAR(d.rmse, 0x1p-20, 1e-6 * 0x1p-20);
 }
 
 TEST(CompareImages, PerceptualDifferenceOfBlackAndWhiteIsNearlyOne) {
-  // White through the shoulder is 1 - exp(-...) of full; black is 0: Oklab lightness 0 to almost 1.
+  // Black has Oklab lightness 0; white through the shoulder of the tone curve has almost 1.
   Image reference = flat_image(100, 10, 0.18f);
   const ImageDifference far = compare_images(flat_image(100, 10, 1e4f), flat_image(100, 10, 0.0f));
   EXPECT_NEAR(far.perceptual, 1.0, 1e-3);
@@ -80,7 +80,7 @@ TEST(CompareImages, BandsAreJudgedOneByOne) {
   EXPECT_DOUBLE_EQ(d.bands[2].rmse, 0.5);  // one of four pixels is off by 1
 }
 
-// RGB, a band of a spectral picture, and a layer.
+// A picture with RGB, a spectral band and a layer.
 Image spectral_image(float band) {
   Image image = flat_image(2, 2, 1.0f);
   image.layers.names = {"500-510nm", "depth.Z"};
@@ -124,7 +124,7 @@ TEST(CompareImages, WhatIsAboveTheBoundIsLeftOut) {
 }
 
 TEST(CompareImages, BlocksCompareMeansAndLeaveOutWhatIsExcluded) {
-  // Noise of +1 and -1 in turn has no mean over 2 x 2; a shift of 0.5 has.
+  // Alternating noise of +1 and -1 has mean 0 over 2 x 2 pixels; a shift of 0.5 has mean 0.5.
   Image a = flat_image(5, 4, 2.5f);
   const Image b = flat_image(5, 4, 2.0f);
   for (int y = 0; y < 4; ++y) {
@@ -132,8 +132,8 @@ TEST(CompareImages, BlocksCompareMeansAndLeaveOutWhatIsExcluded) {
   }
   EXPECT_DOUBLE_EQ(compare_images(a, b, {.block = 2}).rmse, 0.5);
   EXPECT_GT(compare_images(a, b).rmse, 0.5);
-  // A lamp in one square: what is left of that square still counts, as much as any other. Without
-  // its pixel of 3.5 the square's mean is (1.5 + 1.5 + 3.5) / 3; there are 3 x 2 squares.
+  // The lamp's pixel is left out of its square; the rest of the square counts as much as any other
+  // square. The mean of the rest is (1.5 + 1.5 + 3.5) / 3; there are 3 x 2 squares.
   Image lamp = b;
   lamp.radiance.row(0) = 9.0f;
   const double off = 6.5 / 3.0 - 2.0;
@@ -142,7 +142,7 @@ TEST(CompareImages, BlocksCompareMeansAndLeaveOutWhatIsExcluded) {
   EXPECT_THROW(compare_images(a, b, {.block = 0}), InputError);
 }
 
-// 1 everywhere, and uniform noise of [-0.3, 0.3): variance 0.3^2 / 3.
+// A picture of 1 plus uniform noise in [-0.3, 0.3), of variance 0.3^2 / 3.
 Image noisy(std::uint64_t seed) {
   Image image = flat_image(100, 100, 1.0f);
   for (Eigen::Index i = 0; i < image.radiance.size(); ++i) {
@@ -157,14 +157,14 @@ TEST(CompareWithHalves, NoiseOfTheReferencesCancels) {
   for (const float off : {0.0f, 0.02f}) {
     const HalvesDifference d =
         compare_with_halves(flat_image(100, 100, 1.0f + off), noisy(1), noisy(2));
-    // The product of two independent errors has the variance of their variances' product, and twice
-    // off^2 variance; five standard errors.
+    // The product of two independent errors has the variance v^2 + 2 off^2 v, with v that of one
+    // error; the tolerance is five standard errors.
     const double tolerance = 5 * std::sqrt((variance * variance + 2 * off * off * variance) / n);
     EXPECT_NEAR(d.mean_square, off * off, tolerance);
     EXPECT_EQ(d.rmse, std::sqrt(std::max(0.0, d.mean_square)));
-    // RMS of the mean of two: sqrt(variance / 2); its relative error is below 1 / sqrt(n).
+    // The RMS of the mean of two is sqrt(variance / 2), with a relative error below 1 / sqrt(n).
     EXPECT_NEAR(d.reference_noise, std::sqrt(variance / 2), 5 * std::sqrt(variance / 2 / n));
-    // The ordinary comparison sees the noise, seventeen times the error of 0.02 in square.
+    // The ordinary comparison includes the noise, which dominates the squared error.
     EXPECT_GT(compare_images(flat_image(100, 100, 1.0f + off), noisy(1)).rmse, 0.15);
   }
 }

@@ -1,4 +1,4 @@
-// The sky in pictures: seen, mirrored, and the same light whatever the pass.
+// The sky in pictures: directly visible, mirrored, and with the same light in every pass.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -52,7 +52,7 @@ TEST(DaylightPictures, ShowTheSkyTheGroundAndTheSun) {
     return static_cast<double>(
         picture(scene, looking({0, 0, 5}, direction, fov), Pass::direct).radiance.mean());
   };
-  constexpr double rounding = 1e-6;  // of weighted means in floats
+  constexpr double rounding = 1e-6;  // relative error of weighted means in floats
   EXPECT_NEAR(mean({1, -1, 0.5}, 2.0), 4.0, 4.0 * rounding);
   EXPECT_NEAR(mean({1, -1, -0.2}, 2.0), 1.0, rounding);
   const double of_sun = 10.0 / scene.sky->sun->solid_angle();
@@ -84,8 +84,8 @@ TEST(DaylightPictures, PassesAgreeInARoomWithAWindow) {
   const double interpolated = picture(scene, camera, Pass::interpolate).radiance.mean();
   const double direct = picture(scene, camera, Pass::direct).radiance.mean();
   const double gathered = picture(scene, camera, Pass::gather).radiance.mean();
-  // Each of 64 pixels has rays of its own, of which 128 leave a tenth of noise: 0.1 / 8, and light
-  // from vertex to vertex is straight where it is curved, a share of (element / room)^2, 1 % here.
+  // Each of 64 pixels has 128 rays of its own with a noise of a tenth: 0.1 / 8. Linear
+  // interpolation of curved light has an error of (element / room)^2, here 1 %.
   EXPECT_NEAR(direct, interpolated, 0.02 * interpolated);
   EXPECT_NEAR(gathered, interpolated, 0.02 * interpolated);
 }

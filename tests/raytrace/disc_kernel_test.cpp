@@ -13,7 +13,8 @@ double kernel(double x, double y) {
   return std::max(0.0, 2.0 / std::numbers::pi * (1.0 - x * x - y * y));
 }
 
-// Across a line at distance h a slice of the kernel holds 8 / (3 pi) (1 - x^2)^(3/2).
+// Share of the kernel beyond a line at distance h. The integral of the kernel along a line at
+// distance x is 8 / (3 pi) (1 - x^2)^(3/2).
 double beyond_line(double h) {
   constexpr int steps = 100000;
   double sum = 0.0;
@@ -76,7 +77,7 @@ const std::vector<Polygon> areas = {
     {{-0.3, -0.4}, {2.0, -0.4}, {2.0, 0.2}, {0.1, 0.2}, {0.1, 2.0}, {-0.3, 2.0}},
     {{-0.2, -0.1}, {0.6, -0.3}, {0.1, 0.5}}};
 
-// What is folded back and weighed adds up to the whole kernel: no power is lost or won.
+// The kernel within the area plus the parts folded back is the whole kernel: power is conserved.
 TEST(FoldedDisc, GivesAllOfItsKernelToTheInside) {
   constexpr double scale = 0.7;
   const Eigen::Vector3d center(3.0, -2.0, 1.0);
@@ -97,8 +98,9 @@ TEST(FoldedDisc, GivesAllOfItsKernelToTheInside) {
       }
     }
     sum *= 36.0 / (steps * steps);
-    // Cells of 0.004 along some 4 of boundary, in or out by chance: sqrt(1000) cells of 1.6e-5
-    // each, where the kernels are 1 or so together; three times that.
+    // Some 1000 cells of edge 0.004 along a boundary of length 4 are inside or outside at random:
+    // the standard error is sqrt(1000) cells of area 1.6e-5, with a kernel of about 1; three of
+    // them.
     EXPECT_NEAR(disc.within, sum, 1.5e-3);
   }
 }

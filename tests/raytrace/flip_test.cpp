@@ -27,7 +27,7 @@ Image reference() {
   return image;
 }
 
-/// The same with a shadow on part of the block, and a white pixel.
+/// reference() with a shadow on part of the block, and a white pixel.
 Image with_faults() {
   Image image = reference();
   for (int y = 4; y < 12; ++y) {
@@ -49,8 +49,8 @@ float at(const Eigen::ArrayXf& error, int x, int y) {
   return error[y * width + x];
 }
 
-// Known values are those of the authors' own program (flip-evaluator 1.7, linear input) for these
-// pictures at its default distance. It sums in float: 1e-4 is ten times what that makes out.
+// Expected values are those of the authors' program (flip-evaluator 1.7, linear input) for these
+// pictures at its default distance. The program sums in float; 1e-4 is ten times the effect.
 
 TEST(Flip, AgreesWithTheAuthorsProgram) {
   const Eigen::ArrayXf error = flip(with_faults(), reference());
@@ -82,7 +82,7 @@ TEST(Flip, IsZeroForEqualOneForOppositeAndTheSameBothWays) {
   const Eigen::ArrayXf one_way = flip(with_faults(), reference()),
                        other_way = flip(reference(), with_faults());
   EXPECT_LT((one_way - other_way).abs().maxCoeff(), 1e-6f);
-  // Green against blue is the largest difference there is by definition.
+  // The difference of green and blue is 1, the largest, by definition.
   Image green{.width = 4, .height = 4}, blue = green;
   green.radiance.setZero(16, 3);
   blue.radiance.setZero(16, 3);

@@ -14,8 +14,8 @@ namespace {
 constexpr auto pi_f = std::numbers::pi_v<float>;
 const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 
-// Under the middle of a square of B = 3, of which a point sees four quarters, each with the
-// corner's form factor (Howell, B-4).
+// A point under the middle of a square with B = 3: four quarters, each with the form factor of a
+// corner (Howell, B-4).
 TEST(PixelGather, ReadsTheSolutionWhereItsRaysEnd) {
   constexpr double h = 1.0, half = 2.0;
   LitScene lit(SceneBuilder()
@@ -28,12 +28,12 @@ TEST(PixelGather, ReadsTheSolutionWhereItsRaysEnd) {
   const ShadingPoint at{.position = {0, 0, 0}, .normal = up, .smooth_normal = up, .facet = 0};
   const double s = half / std::hypot(half, h);
   const double F = 4.0 / std::numbers::pi * s * std::atan(s);
-  // Of the 1024 strata about 4 sqrt(1024) lie across the square's edge, each right within a
-  // variance of 1/4; four standard deviations.
+  // About 4 sqrt(1024) of the 1024 strata cross the square's edge, each with a variance of at most
+  // 1/4; the tolerance is four standard deviations.
   EXPECT_NEAR(gather.indirect_irradiance(lit.caster, at, 3, 1.0f)[0], 3.0 * F,
               4 * 3.0 * std::sqrt(4 * 32 * 0.25) / 1024);
-  // A sixteenth of the rays have the same mean: 64 times 64, of a standard deviation of at most
-  // 1/2.
+  // A sixteenth of the rays has the same mean: 64 gathers of 64 rays, each ray with a standard
+  // deviation of at most 1/2.
   double sum = 0.0;
   for (std::uint64_t key = 0; key < 64; ++key) {
     sum += static_cast<double>(gather.indirect_irradiance(lit.caster, at, key, 1.0f / 16.0f)[0]);
@@ -42,7 +42,8 @@ TEST(PixelGather, ReadsTheSolutionWhereItsRaysEnd) {
 }
 
 TEST(PixelGather, AMirrorDoublesWhatIsBesideIt) {
-  // A lit wall, black behind, whose light comes to a floor straight and by a mirror that faces it.
+  // A lit wall with a black back; its light reaches a floor directly and by a mirror that faces the
+  // wall.
   LitScene lit(SceneBuilder()
                    .square({.reflectance = 0.5f}, {0, 0, 0}, up, 0.2)
                    .square({.reflectance = 1.0f}, {0, 0, 2}, -up, 0.5)
@@ -58,14 +59,15 @@ TEST(PixelGather, AMirrorDoublesWhatIsBesideIt) {
                     .build());
   open.set_indirect([](const Eigen::Vector3d& p) { return p.z() > 1.9 ? 1.0f : 0.0f; });
   const PixelGather without(open.scene, open.caster, open.direct_light, open.solution, 1 << 14, 4);
-  // The image lies wholly within the mirror, seen from the point: rays to x = 1.1 to 2.1, z = 2
-  // cross x = 0.8 at heights of 0.76 to 1.45 and |y| < 0.37. Edges as above, of two pictures.
+  // From the point the image lies wholly within the mirror: rays to x = 1.1 to 2.1, z = 2 cross
+  // x = 0.8 at heights of 0.76 to 1.45 and |y| < 0.37. The strata at edges are those of two
+  // squares.
   EXPECT_NEAR(gather.indirect_irradiance(lit.caster, at, 3, 1.0f)[0],
               without.indirect_irradiance(open.caster, at, 3, 1.0f)[0],
               4 * std::sqrt(2 * 4 * 128 * 0.25) / 16384);
 }
 
-// All passes show the same light where the mesh is fine enough to hold it.
+// All passes show the same light if the mesh is fine enough.
 TEST(Passes, AgreeOnADiffuseRoom) {
   const Scene scene =
       SceneBuilder()
@@ -84,8 +86,9 @@ TEST(Passes, AgreeOnADiffuseRoom) {
   const auto difference = [&](const BandArray& a, const BandArray& b) {
     return std::sqrt((a - b).square().mean()) / b.mean();
   };
-  // The solution itself is refined until interpolation misses 0.7 % of the mean irradiance, and its
-  // vertices have noise of as much; pixels gather 256 stratified rays, with about 1 %.
+  // The solution is refined to an interpolation error of 0.7 % of the mean irradiance, and its
+  // vertices have noise of the same size; pixels gather 256 stratified rays, with noise of about 1
+  // %.
   EXPECT_LT(difference(interpolated, direct), 0.02f);
   EXPECT_LT(difference(gathered, direct), 0.02f);
   EXPECT_LT(std::abs(gathered.mean() / direct.mean() - 1.0f), 0.005f);

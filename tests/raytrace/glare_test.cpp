@@ -18,7 +18,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double degrees = 180.0 / pi;
 
 /// The first row of table 4.1 of CIE 117-1995: straight above the line of sight, by height over
-/// distance, in steps of 0.1. Levin's formula keeps to it within 4 %, a third of a unit of UGR.
+/// distance, in steps of 0.1. Levin's formula agrees to 4 %, a third of a unit of UGR.
 TEST(PositionIndex, IsThatOfTheStandard) {
   constexpr std::array<double, 11> table = {1.00, 1.26, 1.53, 1.90, 2.35, 2.86,
                                             3.50, 4.20, 5.00, 6.00, 7.00};
@@ -37,11 +37,11 @@ TEST(PositionIndex, RisesAwayFromTheLineOfSight) {
   }
 }
 
-constexpr double single = 1e-6;  // sums of a few floats
+constexpr double single = 1e-6;  // relative error of sums of a few floats
 
 constexpr float M = 1000.0f, rho = 0.5f, E = 2.0f;
 
-/// A room in which all that is reflected is even, L_b = rho E / pi, with a small luminaire.
+/// A room of constant reflected light, L_b = rho E / pi, with a small luminaire.
 LitScene& lit_room(const Eigen::Vector3d& luminaire) {
   static std::unique_ptr<LitScene> lit;
   const Paint wall{.reflectance = rho, .one_sided = true};
@@ -63,12 +63,12 @@ Camera eye() {
 }
 
 Glare rating(const LitScene& lit, const Camera& camera, const std::vector<double>& heights = {}) {
-  const DirectLight direct_light(lit.scene, lit.caster.mesh());  // with lamps that came later
+  const DirectLight direct_light(lit.scene, lit.caster.mesh());  // includes lamps added later
   return unified_glare_rating(lit.scene, lit.caster, direct_light, lit.solution, camera,
                               {.rays = 256}, heights);
 }
 
-/// CIE 117 by hand: a square of 0.1 m at 4 m and 1.2 m above the line of sight, facing the eye.
+/// CIE 117 by hand for a square of 0.1 m at 4 m and 1.2 m above the line of sight, facing the eye.
 TEST(UnifiedGlareRating, OfASmallLuminaireIsTheFormulas) {
   const LitScene& lit = lit_room({2, 5, 2.4});
   const Glare glare = rating(lit, eye());
@@ -79,9 +79,9 @@ TEST(UnifiedGlareRating, OfASmallLuminaireIsTheFormulas) {
   ASSERT_EQ(glare.sources.size(), 1u);
   EXPECT_EQ(glare.sources[0].name, "surface 1");
   EXPECT_NEAR(glare.sources[0].luminance, L, single * L);
-  // The formula takes its middle for all of it. Half of its width is seen under 0.7 degrees, 0.012,
-  // over which p changes by 2.8 %: what is left are their squares, and in UGR 2 * 8 / ln 10 times
-  // that of p.
+  // The formula treats the square as its centre. Half of its width subtends 0.7 degrees = 0.012
+  // rad, over which p changes by 2.8 %: the errors are the squares of both, and in UGR 2 * 8 / ln
+  // 10 times that of p.
   EXPECT_NEAR(glare.sources[0].solid_angle, omega, 1.5e-4 * omega);
   EXPECT_NEAR(glare.sources[0].position_index, p, 8e-4 * p);
   EXPECT_NEAR(glare.background, L_b, single * L_b);
@@ -89,8 +89,8 @@ TEST(UnifiedGlareRating, OfASmallLuminaireIsTheFormulas) {
   EXPECT_NEAR(*glare.ugr, 8.0 * std::log10(0.25 / L_b * L * L * omega / (p * p)), 0.006);
 }
 
-/// 1.7 m above the line of sight: that is within 1.9 times 1 m along it, and beyond 1.9 times 0.8
-/// m.
+/// A luminaire 1.7 m above the line of sight is within 1.9 times a distance of 1 m, and beyond 1.9
+/// times a distance of 0.8 m.
 TEST(UnifiedGlareRating, EndsWhereTheStandardsTableEnds) {
   EXPECT_TRUE(rating(lit_room({2, 2, 2.9}), eye()).ugr.has_value());
   EXPECT_FALSE(rating(lit_room({2, 1.8, 2.9}), eye()).ugr.has_value());
@@ -108,7 +108,7 @@ TEST(UnifiedGlareRating, IsEmptyBehindTheEyeAndBehindAWall) {
   EXPECT_FALSE(rating(hidden, eye()).ugr.has_value());
 }
 
-/// An opening of 0.1 m x 0.2 m that the eye sees at 45 degrees.
+/// A lamp with an opening of 0.1 m x 0.2 m, seen at 45 degrees.
 Lamp downlight() {
   return {.name = "downlight",
           .position = {2, 2, 2.2},
@@ -127,15 +127,15 @@ TEST(UnifiedGlareRating, OfALampGoesByItsOpening) {
   const double d2 = 2.0;
   ASSERT_EQ(glare.sources.size(), 1u);
   const GlareSource& seen = glare.sources[0];
-  // Half of its length over the distance is 0.07, 2.9 degrees as seen, over which p changes by
-  // 15 %: squares of those, the latter's as the mean of a square.
+  // Half of its length over the distance is 0.07 and subtends 2.9 degrees, over which p changes by
+  // 15 %: the errors are the squares of both, that of p averaged over the length.
   EXPECT_NEAR(seen.luminance, I / (A * cosine), 5e-3 * I / (A * cosine));
   EXPECT_NEAR(seen.solid_angle, A * cosine / d2, 5e-3 * A * cosine / d2);
   EXPECT_NEAR(seen.position_index, position_index(45.0, 0.0), 8e-3 * position_index(45.0, 0.0));
   EXPECT_EQ(glare.left_out, std::vector<std::string>{"bulb"});
 }
 
-/// Sides 0.05 m high add what an eye sees of a box, or of a cylinder's outline.
+/// Sides of 0.05 m height add the projected area of a box's sides, or of a cylinder's outline.
 TEST(LuminousArea, IsThatOfOpeningAndSides) {
   const LampOpening box{.along_c0 = 0.1, .along_c90 = 0.2};
   const double half = std::sqrt(0.5);
@@ -155,8 +155,8 @@ TEST(UnifiedGlareRating, OfALampCountsItsLuminousSides) {
   const double I = luminous(lit.scene.bands, downlight().intensity);
   const double area = (0.02 + 0.05 * 0.1) * std::sqrt(0.5), L = I / area;
   ASSERT_EQ(glare.sources.size(), 1u);
-  // As above; and places off the middle, 0.025 m at 1.41 m in the mean, see something of the sides
-  // that face C0: 0.018 * 0.2 m * 0.05 m, a hundredth of the area.
+  // Beside the errors of the downlight, points off the middle, on average 0.025 m at 1.41 m,
+  // project the sides that face C0: 0.018 * 0.2 m * 0.05 m, a hundredth of the area.
   EXPECT_NEAR(glare.sources[0].luminance, L, 1.5e-2 * L);
   EXPECT_NEAR(glare.sources[0].solid_angle, area / 2.0, 1.5e-2 * area / 2.0);
 }

@@ -24,12 +24,12 @@ float radiance(const LitScene& lit, const Ray& ray, const RenderOptions& options
       .radiance[0];
 }
 
-// A branch carries all of what it sees, so that no path but those cut off can be missing.
+// Options with hardly any cut of the ray tree.
 const RenderOptions to_the_end{.max_depth = 400, .min_contribution = 1e-9f};
 
 class GlossInAFurnace : public testing::TestWithParam<Paint> {};
 
-// What is rough neither absorbs nor shines: in a world of radiance 1 it cannot be seen.
+// Rough surfaces neither absorb nor emit: in a world of radiance 1 they are invisible.
 TEST_P(GlossInAFurnace, IsInvisible) {
   const LitScene lit(SceneBuilder()
                          .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
@@ -60,8 +60,8 @@ TEST(Gloss, ReflectsTheShareThatItIsGiven) {
   EXPECT_NEAR(radiance(lit, {.origin = {0.5, 0.1, 2}, .direction = -up}), 0.6, 1e-6);
 }
 
-// What is seen of a lamp by way of a rough surface, for which the eye samples lamps beside the
-// lobe, is the share of the lobe's rays that end on it, which is all the first pass knows.
+// A lamp's reflection in a rough surface: the second pass samples both lamps and the lobe, the
+// first pass only the lobe. Both give the share of the lobe's rays that end on the lamp.
 TEST(Gloss, ScattersAlikeInBothPasses) {
   for (const Paint& paint : {Paint{.specular = 0.9f, .roughness = 0.5f},
                              Paint{.index_of_refraction = 1.5f, .roughness = 0.3f}}) {
@@ -92,16 +92,16 @@ TEST(Gloss, ScattersAlikeInBothPasses) {
         if (key % 20 == 0)
           seen += static_cast<double>(tree.trace(ray, key).radiance[0]) * 20 / count;
       }
-      // A share p of independent rays: sigma = sqrt(p (1 - p) / count), at most 0.005; the eye has
-      // 8 times 500 and lamp samples, which are no worse.
+      // A share p of independent rays has sigma = sqrt(p (1 - p) / count), at most 0.005; the
+      // second pass has 8 times 500 samples of the lobe, and samples of lamps, whose noise is not
+      // larger.
       EXPECT_NEAR(seen, found, 4 * std::hypot(0.005, 0.5 / std::sqrt(4000.0)));
       EXPECT_GT(found, 0.1);
     }
   }
 }
 
-// Every wall shines with M and reflects rho: B = M / (1 - rho) whatever rough things are between
-// them.
+// Every wall emits M and reflects rho: B = M / (1 - rho) with any rough bodies between the walls.
 TEST(Gloss, NeitherTakesNorGivesLightInTheFirstPass) {
   for (const Paint& paint : {Paint{.specular = 1.0f, .roughness = 0.4f},
                              Paint{.index_of_refraction = 1.5f, .roughness = 0.1f}}) {
@@ -117,14 +117,15 @@ TEST(Gloss, NeitherTakesNorGivesLightInTheFirstPass) {
       if (!(solved.mesh.emission(p, 0) > 0.0f)) continue;
       for (int e = solved.mesh.first_element[p]; e < solved.mesh.first_element[p + 1]; ++e) {
         const float E = irradiance(solved.mesh.corners[e][0], 0);
-        // What is still within the ball after 64 surfaces.
+        // The tolerance is the light still within the ball after 64 surfaces.
         EXPECT_NEAR(E, 2.0f, 2e-3f);
       }
     }
   }
 }
 
-// An index of 1 neither bends nor reflects: exp(-a 2 r) of the world is seen through the middle.
+// An index of 1 neither refracts nor reflects: through the middle exp(-a 2 r) of the world's
+// radiance is transmitted.
 TEST(Absorption, FollowsBeerAndLambertThroughABall) {
   const LitScene lit(SceneBuilder()
                          .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
@@ -135,11 +136,12 @@ TEST(Absorption, FollowsBeerAndLambertThroughABall) {
     EXPECT_NEAR(radiance(lit, {.origin = {off, 0, 2}, .direction = -up}), std::exp(-0.7 * chord),
                 1e-5);
   }
-  // An eye within sees half of it.
+  // From the centre the absorbing path is half as long.
   EXPECT_NEAR(radiance(lit, {.origin = {0, 0, 0}, .direction = -up}), std::exp(-0.7), 1e-5);
 }
 
-// A slab with all of its inner reflections: T = (1-R)^2 a / (1 - R^2 a^2), a = exp(-absorption d).
+// Transmission of a slab with all inner reflections: T = (1-R)^2 a / (1 - R^2 a^2), with
+// a = exp(-absorption d).
 TEST(Absorption, SlabPassesWhatItsManyReflectionsLeave) {
   const LitScene lit(
       SceneBuilder()
@@ -151,7 +153,7 @@ TEST(Absorption, SlabPassesWhatItsManyReflectionsLeave) {
               (1 - R) * (1 - R) * a / (1 - R * R * a * a), 1e-6);
 }
 
-// T1 T2 / (1 - R1 R2); 0.857142... for two panes of index 1.5.
+// Transmission of two panes: T1 T2 / (1 - R1 R2), 0.857142... for index 1.5.
 TEST(ThinPanes, TwoPassWhatTheirReflectionsLeave) {
   const Paint pane{.index_of_refraction = 1.5f, .thin = true};
   const LitScene lit(SceneBuilder()

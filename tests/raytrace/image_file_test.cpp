@@ -21,7 +21,7 @@
 namespace lightwell {
 namespace {
 
-// Every float it can hold: huge, tiny, negative, no two alike.
+// A picture of different floats: huge, tiny and negative.
 Image noise(int width, int height, int bands) {
   Image image{.width = width, .height = height};
   image.radiance.resize(width * height, bands);
@@ -99,7 +99,7 @@ TEST(Exr, HalfFloatsInAWindowOffTheOriginAreRead) {
   for (int i = 0; i < 18; ++i) EXPECT_EQ(image.radiance.data()[i], static_cast<float>(i));
 }
 
-// Radiance, and a layer of each kind.
+// A picture with radiance and a layer of each kind.
 Image layered() {
   Image image = noise(6, 4, 3);
   image.radiance = image.radiance.abs().min(6e4f);
@@ -140,7 +140,8 @@ TEST(Exr, HalfFloatsRoundLightButNotDistancesPatchesOrCandelas) {
   const Image written = layered();
   write_exr(folder / "a.exr", written, rgb_bands(), {}, {.half = true});
   const Image read = read_exr(folder / "a.exr", ExrChannels::all);
-  // 11 bits: half a unit in the last place is 2^-11 relative, or 2^-25 below the smallest normal.
+  // Half floats have 11 bits: half a unit in the last place is 2^-11 relative, or 2^-25 absolute
+  // below the smallest normal number.
   EXPECT_TRUE(
       ((read.radiance - written.radiance).abs() <= 0x1p-11f * written.radiance + 0x1p-25f).all());
   EXPECT_FALSE((read.radiance == written.radiance).all());

@@ -1,4 +1,4 @@
-// Directions towards lamps have the density that is told of them.
+// Directions towards lamps and their probability density.
 #include "raytrace/lamp_samples.h"
 
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@
 namespace lightwell {
 namespace {
 
-// A room of 4 m with squares of light that face down, and one in its middle that faces up.
+// A room of 4 m with emitting squares that face down, and an uplight in its middle.
 struct Room {
-  int lamps;  // besides that
+  int lamps;  // squares that face down
   Scene scene = [this] {
     Scene made;
     const int grey = test::add_material(made, test::diffuse(made.bands, 0.5f));
@@ -30,15 +30,15 @@ struct Room {
   PatchMesh mesh = build_patches(scene, {.max_patch_size = 2.0});
   DirectLight direct_light{scene, mesh};
 
-  // Seen counter-clockwise from below.
+  // Vertices of lamp i, counter-clockwise as seen from below.
   static Loop lamp(int i) {
     const double x = 0.1 + 0.4 * (i % 9), y = 0.1 + 0.4 * static_cast<int>(i / 9.0), a = 0.05;
     return {{x, y, 3.5}, {x, y + a, 3.5}, {x + a, y + a, 3.5}, {x + a, y, 3.5}};
   }
 };
 
-// The mean of f / density over what is drawn is the integral of f over the lamps' solid angles:
-// f = cos / pi gives the sum of their form factors.
+// The mean of f / density over drawn directions is the integral of f over the lamps' solid angles:
+// f = cos / pi gives the sum of the form factors.
 double summed_form_factors(const LampSamples& lamps, const Eigen::Vector3d& from) {
   constexpr int count = 1 << 14;
   const SobolPoints sobol(count);
@@ -55,7 +55,7 @@ double summed_form_factors(const LampSamples& lamps, const Eigen::Vector3d& from
 }
 
 TEST(LampSamples, AreDrawnByTheStatedDensity) {
-  // Up to most_weighed lamps are weighed by place, more by their power alone.
+  // Up to most_weighed lamps have weights by position and power, more lamps by power alone.
   for (const int count : {1, 5, LampSamples::most_weighed + 10}) {
     const Room room{.lamps = count};
     const LampSamples lamps(room.direct_light);
@@ -64,9 +64,9 @@ TEST(LampSamples, AreDrawnByTheStatedDensity) {
     for (int i = 0; i < count; ++i) F += point_to_polygon(from, {0, 0, 1}, Room::lamp(i));
     const double estimate = summed_form_factors(lamps, from);
     std::printf("%d lamps: sum of form factors %.6f, by draws %.6f\n", count, F, estimate);
-    // Drawn by power, one in five of 74 lamps is the uplight, which gives nothing here, and the
-    // others differ by up to twice their mean: a spread of 2 at most, and of stratified points
-    // less. Four standard errors.
+    // If lamps are drawn by power, one in five draws among 74 lamps is the uplight, which gives no
+    // light here, and the others differ by up to twice their mean: the standard deviation is at
+    // most 2, and less for stratified points. The tolerance is four standard errors.
     EXPECT_NEAR(estimate / F, 1.0, 4.0 * 2.0 / std::sqrt(double{1 << 14}));
   }
 }
@@ -77,7 +77,7 @@ TEST(LampSamples, AreOfLampsThatFaceThePlace) {
   const SobolPoints sobol(256);
   for (int i = 0; i < sobol.count(); ++i) {
     const Eigen::Array4d u = sobol.point(i, 5).cast<double>();
-    // The uplight has sixteen times the power, and none of it goes down.
+    // The uplight has sixteen times the power, all of it upwards.
     const auto below = lamps.draw({2, 2, 1}, -1, u[0], u[1], u[2]);
     ASSERT_TRUE(below);
     EXPECT_LT(below->emitter->normal.z(), 0.0);

@@ -1,4 +1,4 @@
-// Pictures of rooms that lamps light, which are no surface.
+// Pictures of rooms lit by lamps without surface.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -63,9 +63,8 @@ TEST(LampPictures, AllPassesAgreeAndProbesWithThem) {
   }
   std::printf("means: %.5f interpolated, %.5f direct, %.5f gathered\n", means[0], means[1],
               means[2]);
-  // 256 rays a sample leave a twentieth of noise in what is reflected, and 1728 pixels average it:
-  // 0.1 %. Light that is straight between vertices adds a share of (element / room)^2: (0.25 /
-  // 4)^2.
+  // Gathers of 256 rays have noise of a twentieth in reflected light, 0.1 % in the mean of 1728
+  // pixels. Linear interpolation between vertices adds (element / room)^2 = (0.25 / 4)^2.
   EXPECT_NEAR(means[0] / means[2], 1.0, 0.005);
   EXPECT_NEAR(means[1] / means[2], 1.0, 0.005);
 
@@ -73,11 +72,11 @@ TEST(LampPictures, AllPassesAgreeAndProbesWithThem) {
   const BandArray gathered =
       probe_irradiance(scene, caster, light, solved.solution, probes, {.rays = 1024});
   const BandArray interpolated = interpolate_irradiance(caster, solved.solution, probes);
-  // (0.25 / 4)^2 again, and the noise of 1024 stratified rays.
+  // The tolerance is (0.25 / 4)^2 for interpolation, and the noise of 1024 stratified rays.
   EXPECT_LT(((gathered - interpolated) / gathered).abs().maxCoeff(), 0.01f);
 }
 
-// A rough mirror shows the highlight of a lamp as that of a small ball of the same intensity.
+// The highlight of a lamp in a rough mirror is that of a small ball of the same intensity.
 TEST(LampPictures, HighlightIsThatOfASmallBall) {
   Material glossy = test::diffuse(rgb_bands(), 0.0f);
   glossy.specular = constant_spectrum(rgb_bands(), 0.8f);
@@ -102,8 +101,8 @@ TEST(LampPictures, HighlightIsThatOfASmallBall) {
     const Image image = render(scene, caster, light, solved.solution, camera());
     return image.radiance.bottomRows(48 * 18).cast<double>().mean();  // the floor
   };
-  // The ball hides nothing and is 0.02 m wide at 1 m or more: (0.02 / 1)^2 / 4 by its size, and the
-  // noise of a highlight sampled at random in 864 pixels, 0.2 / sqrt(864).
+  // The ball occludes nothing and has a radius of 0.02 m at 1 m or more: (0.02 / 1)^2 / 4 by its
+  // size, and the noise of a highlight sampled at random in 864 pixels, 0.2 / sqrt(864).
   EXPECT_NEAR(mean(false) / mean(true), 1.0, 0.007);
 }
 

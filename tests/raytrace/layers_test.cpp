@@ -63,8 +63,8 @@ TEST_P(LightLayers, AddUpToThePictureInEveryPixel) {
   for (Eigen::Index i = 0; i < sum.rows(); ++i) {
     const Spectrum L = image.radiance.row(i).transpose();
     const Eigen::Array3f rgb = linear_rgb(bands, L);
-    // Some 200 sums in float of what is in the pixel, to the RGB of which other channels add up to
-    // three times as much.
+    // Some 200 float sums per pixel; the channels that make up the RGB add up to at most four times
+    // its largest value.
     const float rounding = 200 * 6e-8f * 4 * rgb.abs().maxCoeff();
     EXPECT_LE((sum.row(i).transpose() - rgb).abs().maxCoeff(), rounding + 1e-7f) << i;
   }
@@ -112,7 +112,7 @@ TEST(Layers, OfAWallSeenAskew) {
     const Eigen::Vector3d r = camera.direction + step * (i % 8 - 3.5) * right -
                               step * (i / 8 - 3.5) * camera.up;  // r.d = 1
     EXPECT_NEAR(depth(i, 0), 3 / -r.z(), 1e-5);
-    // The patch is one whose elements hold the point that the pixel's centre shows.
+    // An element of the patch contains the point at the pixel's centre.
     const Eigen::Vector3d p = camera.position - 3 / r.z() * r;
     ASSERT_EQ(patch(i, 0), std::floor(patch(i, 0)));
     Eigen::AlignedBox3d box;
@@ -138,8 +138,8 @@ TEST(Layers, WhereNothingIsDepthIsInfiniteAndThereIsNoPatch) {
 }
 
 TEST(Layers, AlbedoIsAMeanOverThePixel) {
-  // Black left of x = 0, white right of it; the middle column of an odd number of pixels is half
-  // of each, within the 16 points that find an edge's share in each of its 4 x 4 cells.
+  // The floor is black left of x = 0 and white right of x = 0. The middle one of an odd number of
+  // pixel columns is half of each, to the 16 points that sample an edge in each of 4 x 4 cells.
   const LitScene lit(
       SceneBuilder()
           .polygon({.reflectance = 0.0f}, {{-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0}})
@@ -167,7 +167,7 @@ TEST(Layers, IlluminanceIsSeenThroughGlassButNotInMirrors) {
           .polygon({.index_of_refraction = 1.5f}, {{-9, -9, 1}, {0, -9, 1}, {0, 9, 1}, {-9, 9, 1}})
           .polygon({.specular = 0.9f}, {{0, -9, 1}, {9, -9, 1}, {9, 9, 1}, {0, 9, 1}})
           .build());
-  // 1 on the floor, 5 on what is at a height of 1: only the mirror has elements of its own there.
+  // Irradiance is 1 on the floor and 5 at height 1, where only the mirror has elements.
   lit.set_direct([](const Eigen::Vector3d& p) { return p.z() > 0.5 ? 5.0f : 1.0f; });
   const Camera camera{.position = {0, 0, 3},
                       .direction = {0, 0, -1},

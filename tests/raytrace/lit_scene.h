@@ -19,7 +19,7 @@
 
 namespace lightwell {
 
-/// A material in grey; two-sided unless said otherwise.
+/// A grey material, two-sided by default.
 struct Paint {
   float reflectance = 0.0f, specular = 0.0f, exitance = 0.0f;
   std::optional<float> index_of_refraction{};
@@ -104,7 +104,7 @@ class SceneBuilder {
   Scene scene_{};
 };
 
-/// A scene with its mesh and an irradiance set by hand instead of a solver.
+/// A scene with its mesh and a given irradiance in place of a solution.
 class LitScene {
  public:
   using Field = std::function<float(const Eigen::Vector3d& position)>;
@@ -141,7 +141,7 @@ class LitScene {
   }
 };
 
-/// Looks from `eye` at `target`; up is any direction across.
+/// A camera at `eye` that looks at `target`; up is some direction perpendicular to the view.
 inline Camera camera_towards(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
                              double fov_degrees, int pixels) {
   const Eigen::Vector3d direction = (target - eye).normalized();
@@ -154,7 +154,7 @@ inline Camera camera_towards(const Eigen::Vector3d& eye, const Eigen::Vector3d& 
           .height = pixels};
 }
 
-/// Where the light of the first band is centred: pixels from the left and from the top.
+/// Centroid of the first band's radiance, in pixels from the left and from the top.
 inline Eigen::Vector2d centroid(const Image& image) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double weight = 0.0;

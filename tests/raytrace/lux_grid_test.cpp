@@ -18,12 +18,13 @@ PolygonMesh& shape_of(Scene& scene, std::size_t surface) {
   return std::get<PolygonMesh>(scene.surfaces[surface].shape);
 }
 
-/// 4 m x 5 m, its longest edge along y.
+/// A floor of 4 m x 5 m with the longest edge along y.
 Scene floor_of_an_office() {
   return SceneBuilder().polygon({}, {{0, 0, 0}, {4, 0, 0}, {4, 5, 0}, {0, 5, 0}}).build();
 }
 
-/// EN 12464-1, table 1 rounds these: 0.2 m over 1 m, 0.6 m over 5 m, 1 m over 10 m, 5 m over 100 m.
+/// Spacings of EN 12464-1; its table 1 rounds them to 0.2 m over 1 m, 0.6 m over 5 m, 1 m over 10
+/// m, 5 m over 100 m.
 TEST(LuxGrid, HasTheSpacingOfTheStandard) {
   EXPECT_NEAR(greatest_grid_spacing(1.0), 0.2, 1e-12);
   EXPECT_NEAR(greatest_grid_spacing(5.0), 0.6, 0.02);
@@ -32,7 +33,7 @@ TEST(LuxGrid, HasTheSpacingOfTheStandard) {
   EXPECT_EQ(greatest_grid_spacing(1e6), 10.0);
 }
 
-/// A strip of 0.5 m leaves 3 m x 4 m, over which p(4 m) = 0.53 m makes 6 x 8 cells.
+/// A margin of 0.5 m leaves 3 m x 4 m, with 6 x 8 cells at p(4 m) = 0.53 m.
 TEST(LuxGrid, CoversTheSurfaceLessItsMargin) {
   const LuxGrid grid = lux_grid(floor_of_an_office(), 0, up, {.height = 0.75, .margin = 0.5});
   EXPECT_EQ(grid.columns, 8);
@@ -48,8 +49,8 @@ TEST(LuxGrid, CoversTheSurfaceLessItsMargin) {
   }
 }
 
-/// An L of two facets, whose common edge is none of its outline: of the square of 16 cells the
-/// quarter that it lacks has none, and with a margin a strip around the inner corner goes too.
+/// An L of two facets, whose common edge is not part of the outline. The missing quarter of the
+/// square of 16 cells has no points; a margin also removes the strip around the inner corner.
 TEST(LuxGrid, KeepsToTheOutline) {
   Scene scene = SceneBuilder().polygon({}, {{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}}).build();
   PolygonMesh& mesh = shape_of(scene, 0);
@@ -65,7 +66,7 @@ TEST(LuxGrid, KeepsToTheOutline) {
   EXPECT_EQ(within.columns, 7);
 }
 
-/// Top and bottom of a block are as large as each other.
+/// Top and bottom of a block have the same area; the grid lies on the top.
 TEST(LuxGrid, OfABlockItIsOnTop) {
   const Scene scene = SceneBuilder().box({}, {0, 0, 0}, {2, 1, 0.7}, false).build();
   const LuxGrid grid = lux_grid(scene, 0, up);
@@ -123,8 +124,8 @@ TEST(LuxGrid, LeavesOutWhatIsOnTheFacesOfBodies) {
   }
 }
 
-/// A panel of even exitance M over a black floor: E = M F in closed form at every point. Half of
-/// the noise is the shadow rays', of which none is needed in the open.
+/// A panel of constant exitance M over a black floor: E = M F in closed form at every point. Direct
+/// light without occluders needs no shadow rays and has no noise.
 TEST(LuxGrid, MeasuresAPanelOverAFloorAsTheFormulaHasIt) {
   const Paint panel{.exitance = 10.0f, .one_sided = true};
   const LitScene lit(SceneBuilder()
@@ -153,8 +154,8 @@ TEST(LuxGrid, MeasuresAPanelOverAFloorAsTheFormulaHasIt) {
   EXPECT_LT(field.point_within, 1e-4) << "nothing here is left to chance";
 }
 
-/// Reflected light comes by rays. What they leave open is told to a factor: of 1000 points the mean
-/// square error is known to 5 %, and it is what is found against many more rays.
+/// Reflected light is gathered by rays, with an estimated error. The mean square error over 1000
+/// points is known to 5 %, and agrees with the error against a gather of many more rays.
 TEST(LuxGrid, TellsHowSureItIs) {
   LitScene lit(SceneBuilder()
                    .box({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, {4, 5, 3}, true)

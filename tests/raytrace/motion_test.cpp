@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double pi = std::numbers::pi;
 constexpr auto pi_f = std::numbers::pi_v<float>;
 
-// Camera straight above the plane z = 0, its width over [-2, 2] of it; the picture's x is the
+// A camera above the plane z = 0 whose picture is [-2, 2] wide there; the picture's x is the
 // world's.
 Camera overhead(int width, int height) {
   return {.name = "above",
@@ -32,7 +32,7 @@ Camera overhead(int width, int height) {
           .shutter_close = 1.0};
 }
 
-// A square of radiance 1 on black, of half width 0.5, that goes from x = -distance / 2 to
+// A square of radiance 1 and half width 0.5 on black that moves from x = -distance / 2 to
 // distance / 2.
 Scene moving_square(double distance, double degrees = 0.0) {
   Scene scene = SceneBuilder().square({.reflectance = 1.0f}, {0, 0, 0}, {0, 0, 1}, 0.5).build();
@@ -93,8 +93,8 @@ TEST(Motion, EnergyOfThePictureIsKept) {
   EXPECT_NEAR(at_rest / (3 * 8 * 8), 1.0, 2e-3) << "a sixteenth of the picture, in three bands";
 }
 
-// A whole turn passes all directions evenly: at radius r a bar of half width w covers
-// 2 asin(w / r) / pi of the time.
+// In a whole turn all directions have the same time: at radius r a bar of half width w covers a
+// share 2 asin(w / r) / pi of the time.
 TEST(Motion, BladeThatTurnsIsSeenForItsShareOfTheTurn) {
   const double w = 0.1, reach = 1.6;
   Scene scene = SceneBuilder()
@@ -105,7 +105,8 @@ TEST(Motion, BladeThatTurnsIsSeenForItsShareOfTheTurn) {
   scene.surfaces[0].motion = 0;
   place_at_rest(scene, 0.5);
   const Image image = picture_of(scene, overhead(32, 32));
-  // 1024 samples at random would leave sqrt(0.09 / 1024) = 9e-3; Sobol's stay below it everywhere.
+  // 1024 random samples would have a standard error of sqrt(0.09 / 1024) = 9e-3; the errors of
+  // Sobol samples are smaller everywhere.
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {
       const double r = std::hypot(4.0 * (x + 0.5) / 32 - 2.0, 4.0 * (y + 0.5) / 32 - 2.0);
@@ -115,7 +116,7 @@ TEST(Motion, BladeThatTurnsIsSeenForItsShareOfTheTurn) {
   }
 }
 
-// A lamp over a floor, a mirror beside it, and between them what turns and moves.
+// A lamp over a floor with a mirror beside, and moving bodies between them.
 Scene shadowed_floor() {
   Scene scene = SceneBuilder()
                     .square({.exitance = 200.0f}, {0.5, 0, 3}, {0, 0, -1}, 0.05)
@@ -177,7 +178,7 @@ TEST(Motion, GatheredPictureIsTheMeanOfItsInstantsToo) {
     Scene scene = room();
     place_at_rest(scene, 0.5 * (open + close));
     LitScene lit(scene);
-    // The block alone is bright: what the walls receive from it goes with it.
+    // Only the block is bright; its light on the walls moves with the block.
     lit.set_indirect([](const Vector3d& p) {
       return p.head<2>().cwiseAbs().maxCoeff() < 1.9 && p.z() > 0.1 && p.z() < 2.9 ? pi_f : 0.0f;
     });
@@ -199,7 +200,7 @@ TEST(Motion, GatheredPictureIsTheMeanOfItsInstantsToo) {
     mean += render(time, time, 64) / static_cast<float>(instants);
   }
   EXPECT_NEAR(moving.mean() / mean.mean(), 1.0, 5e-3);
-  // All instants draw the same 1024 directions in a pixel, whose noise is 5 % of it.
+  // All instants draw the same 1024 directions in a pixel, with noise of 5 %.
   EXPECT_LT(std::sqrt((moving - mean).square().mean()) / mean.mean(), 0.1);
 }
 
@@ -212,7 +213,7 @@ TEST(Motion, CameraThatMovesSeesWhatStandsStillMoveBackwards) {
   scene.surfaces[0].motion = -1;
   camera.motion = 0;
   const Image found = picture_of(scene, camera);
-  // The same samples through the same way, back to front; edges may round to the other side once.
+  // The same samples follow the motion in reverse; a sample at an edge may round to the other side.
   EXPECT_LT((found.radiance - expected.radiance).abs().maxCoeff(), 1e-3f);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr auto pi_f = std::numbers::pi_v<float>;
 
-// The window a0 - a1 cos + a2 cos 2 - a3 cos 3 over [-1.5, 1.5], with variance
+// Variance of the window a0 - a1 cos + a2 cos 2 - a3 cos 3 over [-1.5, 1.5]:
 // 1.5^2 (1/3 - (2 / pi^2 a0) (a1 - a2/4 + a3/9)) pixels^2.
 double filter_variance() {
   const double pi = std::numbers::pi;
@@ -30,7 +30,7 @@ TEST(FilterSampler, HaveTheMomentsOfTheWindow) {
     square += x * x / count;
   }
   EXPECT_NEAR(mean, 0.0, 1e-6);
-  // Steps of 3/256 pixels in which the window is constant.
+  // The tolerance is the square of the steps of 3/256 pixels in which the window is constant.
   EXPECT_NEAR(square, filter_variance(), 3.0 / 256 * 3.0 / 256);
 }
 
@@ -44,7 +44,7 @@ TEST(PixelSamples, EvenlyLitPixelsAreDoneAtOnceAndExact) {
 }
 
 TEST(PixelSamples, StopWhereTheErrorIsAskedFor) {
-  // Half of the picture's middle column shines: its pixels' samples are 0 or 1.
+  // Half of the picture's middle column is bright: samples there are 0 or 1.
   const LitScene lit(SceneBuilder()
                          .polygon({.exitance = pi_f, .emits_both_sides = true},
                                   {{0, -9, -9}, {0, 9, -9}, {0, 9, 0}, {0, -9, 0}})
@@ -62,9 +62,9 @@ TEST(PixelSamples, StopWhereTheErrorIsAskedFor) {
   EXPECT_LT(fine.eye_rays, 25 * 4096);
 }
 
-// A small lamp at distance d, seen by a lens of radius r focused at f, is a disk of radius
-// r |1/d - 1/f| on the picture plane at distance 1, of variance radius^2 / 4 each way; its power
-// stays what a pinhole sees.
+// A small lamp at distance d before a lens of radius r focused at f is a disk of radius
+// r |1/d - 1/f| on the picture plane at distance 1, with variance radius^2 / 4 along each axis and
+// the total light of a pinhole's picture.
 TEST(DepthOfField, BlursAPointToADiskOfTheThinLens) {
   const double d = 2.0, lamp_radius = 0.01;
   const LitScene lit(SceneBuilder().sphere({.exitance = pi_f}, {d, 0, 0}, lamp_radius).build());

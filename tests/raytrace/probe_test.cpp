@@ -23,7 +23,7 @@ BandArray gathered(const LitScene& lit, const std::vector<Probe>& probes, int ra
                           {.rays = rays});
 }
 
-/// A closed room with a block standing on the floor; all emit M and reflect rho, E = M / (1 - rho).
+/// A closed room with a block on the floor; all surfaces emit M and reflect rho, E = M / (1 - rho).
 constexpr float rho = 0.5f, M = 1.0f, B = M / (1.0f - rho);
 const LitScene& furnace() {
   static const auto lit = [] {
@@ -45,7 +45,7 @@ struct NamedProbe {
 class FurnaceProbe : public ::testing::TestWithParam<NamedProbe> {};
 
 TEST_P(FurnaceProbe, SeesTheSameLightEverywhere) {
-  // Closed: every ray ends on B, so the gather has no noise; only float sums round.
+  // In a closed room every ray ends on radiosity B, so the gather has no noise but float rounding.
   const std::vector<Probe> probes = {GetParam().probe};
   EXPECT_NEAR(gathered(furnace(), probes)(0, 0), B, 1e-4 * B);
 }
@@ -76,7 +76,7 @@ TEST(InterpolateIrradiance, IsExactForALinearField) {
     for (const double y : {0.0, 0.41, 1.0}) probes.push_back({{x, y, 1}, up});
   }
   const BandArray values = interpolated(lit, probes);
-  // On the rim the probe is read a hair inwards: at most 1e-5 of the diagonal.
+  // A probe on the rim is moved inwards by at most 1e-5 of the diagonal.
   for (std::size_t i = 0; i < probes.size(); ++i) {
     EXPECT_NEAR(values(static_cast<Eigen::Index>(i), 2), E(probes[i].position), 1e-4);
   }
@@ -100,7 +100,8 @@ TEST(InterpolateIrradiance, ProbeOffEverySurfaceIsNamedInFileUnits) {
   const auto refusal = [&](const Probe& probe) {
     return message_of<InputError>([&] { interpolated(lit, {{{0, 0, 0}, up}, probe}); });
   };
-  // The scene's diagonal is 2.83 m: 0.1 m is not on it, 0.1 mm is.
+  // With a scene diagonal of 2.83 m, a probe 0.1 m off the surface is refused, one 0.1 mm off is
+  // not.
   EXPECT_TRUE(says(refusal({{0.5, 0.25, 0.1}, up}), "probe 2 at (500, 250, 100) mm lies on no"));
   EXPECT_EQ(refusal({{0.5, 0.25, 1e-4}, up}), "");
   EXPECT_TRUE(says(refusal({{0.5, 0.25, 0}, Eigen::Vector3d::UnitX()}), "lies on no surface"));
@@ -108,8 +109,9 @@ TEST(InterpolateIrradiance, ProbeOffEverySurfaceIsNamedInFileUnits) {
 }
 
 TEST(ProbeIrradiance, UnderASmallLampIsTheClosedForm) {
-  // A square lamp of half-width a at height h above the probe, parallel to it: four corner
-  // rectangles (Howell, A catalog of radiation heat transfer configuration factors, B-4).
+  // The form factor of a parallel square lamp of half width a at height h above the probe is that
+  // of four corner rectangles (Howell, A catalog of radiation heat transfer configuration factors,
+  // B-4).
   constexpr double a = 0.5, h = 2.0;
   const double X = a / h, root = std::sqrt(1 + X * X);
   const double F = 4.0 / (2 * std::numbers::pi) * 2 * (X / root) * std::atan(X / root);
@@ -125,8 +127,7 @@ TEST(ProbeIrradiance, UnderASmallLampIsTheClosedForm) {
 }
 
 TEST(ProbeIrradiance, OnTheFoldOfABentFloorIsShadedByNeitherHalf) {
-  // Two triangles that meet along the diagonal with a fold of 2 mm: a quad that is not quite
-  // planar.
+  // Two triangles of a quadrilateral that deviates from a plane by 2 mm meet along the diagonal.
   LitScene lit(SceneBuilder()
                    .polygon({.reflectance = 0.5f, .one_sided = true},
                             {{-1, -1, 0}, {1, -1, 2e-3}, {1, 1, 0}})
@@ -141,14 +142,14 @@ TEST(ProbeIrradiance, OnTheFoldOfABentFloorIsShadedByNeitherHalf) {
 }
 
 TEST(ProbeIrradiance, BelowAStackOfTwoFloorsSeesNeither) {
-  // Two sheets in one plane: whichever the caster names, the other must not shade the probe.
+  // Two sheets lie in one plane. The caster may hit either; the other must not shade the probe.
   LitScene lit(SceneBuilder()
                    .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1)
                    .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 0.5)
                    .square({.exitance = pi_f}, {0, 0, 1}, -up, 100)
                    .build());
   const BandArray E = gathered(lit, {{{0.1, 0.2, 0}, up}}, 1024);
-  EXPECT_NEAR(E(0, 0), pi_f, 1e-3 * pi_f);  // a lamp as wide as the sky: all but (1/100)^2
+  EXPECT_NEAR(E(0, 0), pi_f, 1e-3 * pi_f);  // the lamp fills the hemisphere to (1/100)^2
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A relit solution and the scene file as it was: what is seen and measured is the light in force.
+// A relit solution with the unchanged scene file: pictures and measurements have the relit light.
 #include <gtest/gtest.h>
 
 #include "mesh/elements/element_caster.h"
@@ -32,7 +32,7 @@ BandArray probed(const Scene& scene, const SolvedScene& solved) {
                           {.rays = 64});
 }
 
-// Solved once and relit, and solved with that emission.
+// A scene solved and relit, and the same scene solved with the relit emission.
 struct Both {
   explicit Both(float desk) {
     test::TwoLamps is{.with_mirror = true};
@@ -51,10 +51,10 @@ struct Both {
   SolvedScene relit, changed;
 };
 
-// The desk lamp stays the brighter of both, so that its shadow rays are the same.
+// The dimmed desk lamp stays the brighter one, so its shadow rays are the same.
 constexpr float dimmed = 0.6f;
 
-// Some ten roundings of floats, 6e-8 each, and as many again from the hit to the pixel.
+// Twenty float roundings of 6e-8: ten in the solution and ten from the hit to the pixel.
 constexpr double rounding = 1.2e-6;
 
 TEST(Relit, PicturesAreThoseOfTheChangedScene) {
@@ -76,9 +76,8 @@ TEST(Relit, ProbesAreThoseOfTheChangedScene) {
   EXPECT_GT(b.minCoeff(), 0.0f);
 }
 
-// The lamp that is off is black, though the scene file says that it shines. Shadow rays to the
-// other are not the same as where there is no second lamp: 32 of them, of which one row of cells
-// may err.
+// A lamp at scale 0 is black, although it emits in the scene file. Shadow rays to the other lamp
+// differ from those without a second lamp: 32 rays, of which one row of cells may have errors.
 TEST(Relit, ALampThatIsOffIsDarkItself) {
   const Both both(0.0f);
   const Camera up{.position = {0.5, 0.6, 0.9},
@@ -93,7 +92,7 @@ TEST(Relit, ALampThatIsOffIsDarkItself) {
         .radiance;
   };
   const BandArray a = look(both.scene, both.relit), b = look(both.changed_scene, both.changed);
-  // It reflects a tenth of what it gets; alight it would give 40 W/m2 in each band.
+  // The lamp reflects a tenth of its irradiance; at scale 1 it would emit 40 W/m2 in each band.
   EXPECT_LT(a.maxCoeff(), 0.02f * 40.0f / static_cast<float>(M_PI));
   EXPECT_GT(a.minCoeff(), 0.0f);
   EXPECT_LT((a - b).abs().maxCoeff(), b.maxCoeff() / 32);

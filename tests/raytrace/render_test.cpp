@@ -29,7 +29,7 @@ TEST_P(Furnace, EveryPixelShowsBOverPi) {
                {0.8, 0.4, 0.7}, false)
           .sphere({.reflectance = rho, .exitance = M, .one_sided = true}, {1.2, 0.5, 0.9}, 0.3)
           .build());
-  ASSERT_TRUE(lit.direct_light.emitters().empty());  // all of it emits: hemispheres find it
+  ASSERT_TRUE(lit.direct_light.emitters().empty());  // every wall emits: gathers find the emission
   lit.set_indirect([](const auto&) { return B; });
   Camera camera = camera_towards({0.1, 0.9, 0.1}, {1.5, 0.2, 1.2}, 70, 48);
   camera.height = 31;
@@ -63,7 +63,7 @@ TEST(Render, InterpolatedLinearIrradianceIsExactInEveryPixel) {
   for (int y = 0; y < 20; ++y) {
     for (int x = 0; x < 20; ++x) {
       const Eigen::Vector3d p(1 + (x - 9.5) * pixel, 0.5 - (y - 9.5) * pixel, 0);
-      // Float distances of the caster move the point by 1e-6.
+      // Float distances of the caster have an error of 1e-6.
       EXPECT_NEAR(image.radiance(20 * y + x, 0), E(p) / pi_f, 1e-5);
     }
   }
@@ -87,7 +87,7 @@ TEST(Render, PixelsAreMeansOverTheirSquares) {
   double worst = 0.0, sum = 0.0;
   for (int y = 0; y < 24; ++y) {
     for (int x = 0; x < 24; ++x) {
-      // Exact cover by integrating the edge y = 0.3 + x / 3 over the pixel.
+      // The exact coverage is the integral of the edge y = 0.3 + x / 3 over the pixel.
       const double left = -1 + x * pixel, bottom = 1 - (y + 1) * pixel;
       double cover = 0.0;
       constexpr int slices = 2000;
@@ -99,14 +99,14 @@ TEST(Render, PixelsAreMeansOverTheirSquares) {
       sum += image.radiance(24 * y + x, 0) - cover;
     }
   }
-  // The edge crosses at most 2^levels + 2^levels / 3 + 1 of 4^levels cells, each off by half at
-  // most.
+  // The edge crosses at most 2^levels + 2^levels / 3 + 1 of 4^levels cells, each with an error of
+  // at most one half.
   EXPECT_LT(worst, 0.5 * (4.0 / 3.0 * 16 + 1) / 256);
   EXPECT_LT(std::abs(sum) / (24 * 24), 1e-3);
 }
 
 TEST(Render, StripThinnerThanAPixelIsNotLost) {
-  // 0.4 pixels wide, through the middle of a column of pixels, between all their corners.
+  // A strip of 0.4 pixels runs through the middle of a column of pixels, between all their corners.
   const double pixel = 0.1;
   const double half = 0.2 * pixel, middle = 0.5 * pixel;
   const LitScene lit(SceneBuilder()
@@ -122,7 +122,7 @@ TEST(Render, StripThinnerThanAPixelIsNotLost) {
                       .width = 16,
                       .height = 16};
   const Image image = lit.render(camera, {.max_subdivision = 4});
-  EXPECT_NEAR(image.radiance.col(0).mean(), 0.4 / 16, 0.1 / 16);  // 16 cells across: within 1/16
+  EXPECT_NEAR(image.radiance.col(0).mean(), 0.4 / 16, 0.1 / 16);  // 16 cells: error below 1/16
   for (int y = 0; y < 16; ++y) EXPECT_GT(image.radiance(16 * y + 8, 0), 0.3f);
 }
 
@@ -147,7 +147,7 @@ TEST(Render, EveryPathBetweenTwoMirrorsIsCutOnce) {
   EXPECT_GE(report.eye_rays, 81);
   EXPECT_EQ(report.depth_cut, report.eye_rays);
   EXPECT_DOUBLE_EQ(report.cut_share, 1.0);
-  // A lossy mirror is left when its contribution is spent, and nothing is counted as cut.
+  // A branch at a lossy mirror ends when its contribution is negligible, and is not counted as cut.
   const LitScene dim(SceneBuilder()
                          .square({.specular = 0.1f}, {0, 0, 0}, {0, 0, 1}, 1000)
                          .square({.specular = 0.1f}, {0, 0, 1}, {0, 0, -1}, 1000)
@@ -239,7 +239,8 @@ TEST(Render, StoppedAnywhereAndGoneOnWithItHasTheSameBits) {
   const Image whole = lit.render(camera, options);
   const TemporaryFolder folder;
   const Provenance of{.version = "1", .scene_hash = 7};
-  // 3000 rows of 8 pixels are 3 tiles of 8192 pixels; each time one more is done, on other threads.
+  // 3000 rows of 8 pixels are 3 tiles of 8192 pixels. Each run resumes with one more finished tile,
+  // on another number of threads.
   for (int done = 1; done <= 3; ++done) {
     Journal journal(folder / "J", of);
     options.run.journal = &journal;

@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-// A lamp over a mirror, which throws its light on the ceiling.
+// A lamp over a mirror, which reflects light to the ceiling.
 struct MirroredLamp {
   LitScene lit{SceneBuilder()
                    .square({.exitance = 10.0f, .one_sided = true}, {0, 0, 1}, {0, 0, -1}, 0.1)
@@ -19,7 +19,7 @@ struct MirroredLamp {
   MirroredLamp() { lit.solution.caustic_irradiance = lit.solution.indirect_irradiance; }
 };
 
-// Options that count how often photons are traced.
+// Options whose progress callback counts the tracings of photons in `traced`.
 RenderOptions counting(int& traced, int photons) {
   return {.photons = photons, .run = {.progress = [&traced](std::string_view phase, double share) {
                                 if (phase == "photons" && share == 0.0) ++traced;

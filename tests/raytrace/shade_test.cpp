@@ -17,7 +17,7 @@ constexpr double pi = std::numbers::pi;
 constexpr auto pi_f = static_cast<float>(pi);
 const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 
-// Lives as long as the program: loops run over its members.
+// Closed forms by name. The object is static, since loops run over its members.
 const nlohmann::json& closed_forms(const std::string& name) {
   static const nlohmann::json all = [] {
     std::ifstream file(LIGHTWELL_TEST_DATA "/raytrace/optics.json");
@@ -35,7 +35,7 @@ Eigen::Vector3d downwards(double degrees) {
   return {std::sin(degrees * pi / 180.0), 0.0, -std::cos(degrees * pi / 180.0)};
 }
 
-// First band of what is seen; all bands are alike in these grey scenes.
+// Radiance of the first band; all bands are equal in these grey scenes.
 float radiance(const LitScene& lit, const Ray& ray, const RenderOptions& options = {}) {
   return RayTree(lit.scene, lit.caster, lit.direct_light, lit.solution, options)
       .trace(ray, 1)
@@ -43,7 +43,7 @@ float radiance(const LitScene& lit, const Ray& ray, const RenderOptions& options
 }
 
 /// A glass surface z = 0 between a lamp of radiance 1 far above and one of radiance 100 far below:
-/// what is seen tells reflected from refracted light.
+/// radiance separates reflected from refracted light.
 LitScene& glass_between_lamps() {
   static LitScene lit(SceneBuilder()
                           .square({.index_of_refraction = 1.5f}, {0, 0, 0}, up, 1000)
@@ -57,7 +57,7 @@ TEST(RayTree, FresnelSharesOfAirToGlass) {
   for (const auto& [degrees, R] : closed_forms("fresnel_air_to_glass")["R"].items()) {
     const double r = R.get<double>();
     const Ray ray{.origin = {0, 0, 1}, .direction = downwards(std::stod(degrees))};
-    // Eye rays leave z = 1 in double; float keeps 7 digits of the sum.
+    // Eye rays start at z = 1 in double precision; the float sum has 7 digits.
     EXPECT_NEAR(radiance(glass_between_lamps(), ray), r + 100 * (1 - r), 1e-5 * 100) << degrees;
   }
 }
@@ -91,7 +91,7 @@ TEST(RayTree, SlabShiftsARaySideways) {
     const double shift = value.get<double>();
     const Eigen::Vector3d d = downwards(angle);
     const Eigen::Vector3d eye = Eigen::Vector3d(0, 0, 1.5) - 0.5 * d;
-    // Inside, the ray is steeper, so it comes out on the near side of its straight line.
+    // Inside the glass the ray is steeper, so it leaves on the near side of the straight line.
     const Eigen::Vector3d sideways(-std::cos(angle * pi / 180.0), 0, -std::sin(angle * pi / 180.0));
     const Eigen::Vector3d lamp = eye + 9.0 * d + shift * sideways;
     constexpr double radius = 1e-3;
@@ -99,7 +99,7 @@ TEST(RayTree, SlabShiftsARaySideways) {
                            .box({.index_of_refraction = 1.5f}, {-9, -9, 0.5}, {9, 9, 1.5}, false)
                            .sphere({.exitance = pi_f}, lamp, radius)
                            .build());
-    // The lamp is met by a ray aimed at it and by none that misses it by a tenth of its radius.
+    // A ray aimed at the lamp hits; a ray beyond the lamp's edge by a tenth of its radius does not.
     const auto seen_at = [&](double off) {
       return radiance(lit, {.origin = eye + off * radius * sideways, .direction = d});
     };
@@ -153,7 +153,7 @@ TEST(RayTree, MirrorAndDiffuseSharesOfOneSurfaceAdd) {
                    .square({.exitance = 8 * pi_f}, {0, 0, 5}, -up, 50)
                    .build());
   lit.set_indirect([](const auto&) { return 2 * pi_f; });
-  // The lamp is the larger part of the scene, so its light is in the indirect irradiance:
+  // The lamp is the larger part of the scene, so its light is part of indirect irradiance:
   // 0.5 * 2 pi / pi + 0.25 * 8.
   const Ray ray{.origin = {0.2, 0.1, 1}, .direction = downwards(20)};
   EXPECT_NEAR(radiance(lit, ray), 3.0f, 1e-5f);
@@ -187,8 +187,8 @@ TEST(RayTree, GlassStandingOnAFloorShowsTheFloor) {
                    .box({.index_of_refraction = 1.5f}, {-1, -1, 0}, {1, 1, 1}, false)
                    .build());
   lit.set_indirect([](const auto&) { return pi_f; });
-  // Straight down: the floor of radiance 1 is seen through one surface if floor and base are one,
-  // through two and their reflections if there is air between; nothing else, at any place.
+  // Straight down, the floor of radiance 1 lies behind one surface if floor and base coincide, and
+  // behind two surfaces with their reflections if air is between them.
   const double R = 0.04;
   for (int i = 0; i < 200; ++i) {
     const double x = 1.8 * random_uniform(static_cast<std::uint64_t>(i)) - 0.9;
@@ -200,8 +200,8 @@ TEST(RayTree, GlassStandingOnAFloorShowsTheFloor) {
 }
 
 TEST(RayTree, GlassSphereInAUniformWorldIsInvisible) {
-  // Reflected and refracted shares add up to 1 at every surface, so a world of radiance 1 looks the
-  // same through glass, up to what the deepest branch still carries: after k internal reflections
+  // Reflected and refracted shares add up to 1 at every surface, so glass in a world of radiance 1
+  // has radiance 1, except for the share of the deepest branch: after k internal reflections
   // (1-R) R^k < 1 / (e k) for any R.
   constexpr int depth = 500;
   const LitScene lit(SceneBuilder()
@@ -234,7 +234,8 @@ TEST(RayTree, DirectLightHasTheExactPenumbra) {
       sum += pi * tree.trace(ray, static_cast<std::uint64_t>(key)).radiance[0];
     }
     // The shadow's edge crosses about 2 sqrt(64) of the 64 strata of a lamp in two triangles, each
-    // with variance of at most 1/4: sigma = sqrt(16/4)/64 = 1/32 of the open irradiance a look.
+    // with variance of at most 1/4: sigma = sqrt(16/4)/64 = 1/32 of the unoccluded irradiance per
+    // key.
     EXPECT_NEAR(sum / keys, E, 4.0 / 32.0 / std::sqrt(keys) * open) << "at x = " << x;
   }
 }

@@ -21,7 +21,8 @@ using Eigen::Vector3d;
 constexpr double pi = std::numbers::pi;
 constexpr auto pi_f = std::numbers::pi_v<float>;
 
-// Facets between 8 rings of latitude and 16 of longitude, corners on the sphere of radius 1.
+// A sphere of radius 1 in facets between 8 rings of latitude and 16 of longitude, with vertices on
+// the sphere.
 PolygonMesh tessellated_sphere(bool with_normals) {
   constexpr int rings = 8, sectors = 16;
   const auto point = [&](int ring, int sector) {
@@ -56,7 +57,7 @@ void add_ball(Scene& scene, Ball ball, int material) {
   scene.surfaces.push_back(surface);
 }
 
-// A ball before a lamp to its side, so that the shadow's edge runs down the middle of the picture.
+// A picture of a ball with a lamp at its side: the terminator runs down the middle.
 Image side_lit_ball(Ball ball) {
   Scene scene = SceneBuilder().square({.exitance = 100.0f}, {6, -2, 1}, {-6, 2, -1}, 0.2).build();
   scene.materials.push_back(scene.materials[0]);
@@ -69,7 +70,7 @@ Image side_lit_ball(Ball ball) {
   return lit.render(camera);
 }
 
-// The picture inside the ball's outline, whose radius is 0.8 of what it looks like.
+// Visits the pixels inside a circle of 0.8 of the outline's radius.
 template <class Visit>
 void for_each_inside(const Image& image, Visit&& visit) {
   const double half = 0.5 * image.width,
@@ -107,9 +108,9 @@ TEST(SmoothNormals, BallLooksLikeTheSphereAndHasNoDarkFacetsAtTheShadow) {
   RecordProperty("faceted", std::to_string(faceted_error));
   RecordProperty("worst", std::to_string(worst / brightest));
   EXPECT_GT(all, 0.0);
-  EXPECT_LT(smooth_error, 0.04);  // a facet lies up to 0.04 below the sphere, and is seen beside it
+  EXPECT_LT(smooth_error, 0.04);  // a facet lies up to 0.04 below the sphere, which shifts the hit
   EXPECT_LT(smooth_error, 0.2 * faceted_error);
-  // Neither black nor bright anywhere, the shadow's edge included.
+  // No pixel is black or too bright, also at the terminator.
   EXPECT_LT(worst, 0.05 * brightest);
   EXPECT_LT(worst_in_shade, 0.01 * brightest);
 }
@@ -143,8 +144,8 @@ double relative_rms(const Image& a, const Image& b, double field_share) {
   return std::sqrt(sum / count) / (all / count);
 }
 
-// What a ball of the paint shows of the room beside what the sphere does, within a share of the
-// picture's half width, of which the sphere's outline is 0.85.
+// Errors of a tessellated ball's picture against the exact sphere's, within a share of the
+// picture's half width; the sphere's outline is at 0.85.
 struct BallErrors {
   double smooth = 0.0, faceted = 0.0;
 };
@@ -160,7 +161,8 @@ BallErrors errors_of(const Paint& paint, double share) {
 
 TEST(SmoothNormals, MirrorBallShowsTheRoomAsTheSphereDoes) {
   const BallErrors errors = errors_of({.specular = 1.0f}, 0.6);
-  // What is seen lies h / r of the ball's size off, h = 0.03 r being how deep facets lie.
+  // Hits are shifted by h / r of the ball's size, where h = 0.03 r is the depth of facets below the
+  // sphere.
   EXPECT_LT(errors.smooth, 0.03);
   EXPECT_LT(errors.smooth, 0.2 * errors.faceted);
 }
@@ -171,8 +173,7 @@ TEST(SmoothNormals, GlassBallBendsLightAsTheSphereDoes) {
   EXPECT_LT(errors.smooth, 0.2 * errors.faceted);
 }
 
-// What a ball looks like in a room of radiance 1 throughout: as bright as the room, if it loses no
-// light.
+// Radiance of a ball in a room of constant radiance 1: 1 everywhere if the ball loses no light.
 Eigen::ArrayXf ball_in_furnace(Ball ball, const Paint& paint) {
   Scene scene = SceneBuilder().box({.exitance = pi_f}, {-6, -6, -6}, {6, 6, 6}, true).build();
   scene.materials.push_back(SceneBuilder().sphere(paint, {0, 0, 0}, 1.0).build().materials[0]);
@@ -188,10 +189,10 @@ TEST(SmoothNormals, FurnaceIsKept) {
                              Paint{.specular = 1.0f, .roughness = 0.3f},
                              Paint{.index_of_refraction = 1.5f, .roughness = 0.3f}}) {
     const Eigen::ArrayXf L = ball_in_furnace(Ball::smooth, paint);
-    EXPECT_NEAR(L.minCoeff(), 1.0f, 2e-6f);  // every ray brings 1: floats alone
+    EXPECT_NEAR(L.minCoeff(), 1.0f, 2e-6f);  // every ray has radiance 1: only float rounding
     EXPECT_NEAR(L.maxCoeff(), 1.0f, 2e-6f);
   }
-  // Facets catch light that grazes smooth glass beyond the critical angle, flat ones more.
+  // Facets trap light beyond the critical angle at grazing incidence; flat normals trap more.
   const Paint glass{.index_of_refraction = 1.5f};
   const float smooth = ball_in_furnace(Ball::smooth, glass).mean();
   EXPECT_NEAR(smooth, 1.0f, 5e-3f);
@@ -216,7 +217,7 @@ TEST(SmoothNormals, SolvedIrradianceOfABallInAFurnaceIsEven) {
   EXPECT_GT(shared, 16 * 7) << "facets share their vertices";
 }
 
-// Light that a ball of mirrors throws from a lamp onto the ceiling, W/m^2, at places of a grid.
+// Irradiance on the ceiling by a lamp's reflection in a mirror ball, W/m^2, at points of a grid.
 Eigen::ArrayXd thrown_on_ceiling(Ball ball) {
   Scene scene = SceneBuilder()
                     .square({.exitance = 100.0f, .one_sided = true}, {0, 0, 6}, {0, 0, -1}, 0.2)
@@ -240,7 +241,7 @@ Eigen::ArrayXd thrown_on_ceiling(Ball ball) {
   return E;
 }
 
-// Facets throw one patch of light each, which normals at vertices spread out as the sphere does.
+// Flat facets reflect one spot of light each; normals at vertices spread the light like the sphere.
 TEST(SmoothNormals, MirrorBallThrowsLightAsTheSphereDoes) {
   const Eigen::ArrayXd exact = thrown_on_ceiling(Ball::exact);
   const auto error = [&](Ball ball) {
@@ -249,13 +250,13 @@ TEST(SmoothNormals, MirrorBallThrowsLightAsTheSphereDoes) {
   const double smooth = error(Ball::smooth), faceted = error(Ball::faceted);
   RecordProperty("smooth", std::to_string(smooth));
   RecordProperty("faceted", std::to_string(faceted));
-  // Facets lie up to 0.04 r below the sphere, and two maps of 160 neighbours leave sqrt(2) times
-  // sqrt(4/3 / 160) = 0.13 of independent photons, stratified ones less.
+  // Facets lie up to 0.04 r below the sphere. Two maps with 160 neighbours differ by sqrt(2) times
+  // sqrt(4/3 / 160) = 0.13 with independent photons, and by less with stratified ones.
   EXPECT_LT(smooth, 0.13);
   EXPECT_LT(smooth, 0.05 * faceted);
 }
 
-// A sheet whose normals lean far over, and a lamp behind it that they face.
+// A sheet has strongly tilted normals that face a lamp behind the sheet.
 TEST(SmoothNormals, NoLightComesThroughASheet) {
   Scene scene = SceneBuilder().square({.exitance = 100.0f}, {3, 0, -1}, {-3, 0, 1}, 0.3).build();
   scene.materials.push_back(

@@ -1,4 +1,4 @@
-// Pictures of pictures.
+// Textures in pictures.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,11 +13,11 @@ namespace lightwell {
 namespace {
 
 constexpr auto pi_f = std::numbers::pi_v<float>;
-// Of 16-bit texels between 0.1 and 1, relative, with sums of floats.
+// Relative error of 16-bit texels between 0.1 and 1, with float sums.
 constexpr float rounding = 1e-4f;
 
-// A unit square in the plane z = 0, u along x, v along -y, seen from above so that it fills the
-// picture: row 0 is at y = 1.
+// A unit square in the plane z = 0 with u along x and v along -y, and a camera above whose picture
+// it fills: row 0 is at y = 1.
 Scene square(const SurfaceTexture& picture) {
   Scene scene = SceneBuilder().polygon({}, {{0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}}).build();
   put_picture(scene, 0, picture);
@@ -48,13 +48,13 @@ std::vector<float> noise(int count) {
 
 class InEveryPass : public testing::TestWithParam<Pass> {};
 
-// A texel is eight pixels wide: within it, all a pixel sees is the texel.
+// A texel is eight pixels wide: inner pixels show the texel alone.
 TEST_P(InEveryPass, APixelShowsTextureTimesIrradianceOverPi) {
   constexpr int texels = 8, pixels = 64;
   constexpr float E = 3.0f;
   const std::vector<float> shares = noise(texels * texels);
   LitScene lit(square(picture_of(texels, texels, shares)), 0.2);
-  // Direct and gather find no light in this empty space but what stands in the mesh.
+  // The scene has no emitter: its only light is the irradiance of the mesh.
   if (GetParam() == Pass::gather) GTEST_SKIP() << "there is nothing to gather from";
   lit.set_indirect([](const auto&) { return E; });
   const Image image = lit.render(from_above(pixels), {.pass = GetParam()});
@@ -68,7 +68,7 @@ TEST_P(InEveryPass, APixelShowsTextureTimesIrradianceOverPi) {
 }
 INSTANTIATE_TEST_SUITE_P(Passes, InEveryPass, testing::Values(Pass::interpolate, Pass::direct));
 
-// Black walls that all emit M send E = M to a square among them, which shows its texel times E /
+// Black walls that emit M give E = M on a square between them, whose radiance is texel times E /
 // pi.
 TEST(Textures, AFinalGatherShowsTheTextureToo) {
   constexpr float E = 3.0f;
@@ -93,9 +93,9 @@ TEST(Textures, AFinalGatherShowsTheTextureToo) {
   }
 }
 
-// Texels 16 times finer than pixels: filtered, a pixel is the mean of what it covers and of as
-// much beside it; unfiltered, samples at its corners alone would be off by a texel's contrast,
-// 0.26. A mean over 256 texels of which neighbours are independent is off by 0.26 / 16.
+// Texels are 16 times finer than pixels. A filtered pixel is the mean over its footprint and as
+// much around; samples of unfiltered texels at its corners would have the texels' standard
+// deviation of 0.26. The mean of 256 independent texels has 0.26 / 16.
 TEST(Textures, FineTexturesDoNotShimmer) {
   constexpr int texels = 512, pixels = 32;
   LitScene lit(square(picture_of(texels, texels, noise(texels * texels))), 0.2);
@@ -117,7 +117,7 @@ TEST(Textures, TheAlbedoLayerIsTheTexture) {
   EXPECT_NEAR(albedo(6, 6), 1.0f, rounding);
 }
 
-// Rows of the mask are strips; through the holes a bright floor is seen.
+// Rows of the mask are strips; a bright floor is visible through the holes.
 TEST(Textures, TheEyeSeesThroughHoles) {
   Scene scene = SceneBuilder()
                     .polygon({}, {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}})

@@ -20,7 +20,7 @@ Image flat_image(int width, int height, const Eigen::Array3f& L) {
 constexpr std::array all_curves = {ToneCurve::shoulder, ToneCurve::linear, ToneCurve::reinhard,
                                    ToneCurve::filmic};
 
-// A wall whose luminance varies by a factor 16, as rooms do.
+// A wall whose luminance varies by a factor of 16, as in rooms.
 Image wall(int pixels) {
   Image image{.width = pixels, .height = 1};
   image.radiance.resize(pixels, 3);
@@ -40,7 +40,7 @@ TEST(Srgb, PassesThroughThePointsOfTheStandard) {
 TEST(Shoulder, IsSmoothRisingAndStaysBelowWhite) {
   constexpr float h = 1e-3f;
   EXPECT_FLOAT_EQ(shoulder(0.5f), 0.5f);
-  EXPECT_NEAR((shoulder(0.5f + h) - shoulder(0.5f)) / h, 1.0f, 2 * h);  // slope goes on as 1
+  EXPECT_NEAR((shoulder(0.5f + h) - shoulder(0.5f)) / h, 1.0f, 2 * h);  // the slope starts at 1
   float previous = -1.0f;
   for (float x = 0.0f; x < 4.0f; x += 0.01f) {
     EXPECT_GT(shoulder(x), previous);
@@ -81,7 +81,7 @@ TEST(ToneMap, ExposureValueMakesOnePointTwoTimesTwoToTheEvWhite) {
   const Image half_white = flat_image(1, 1, Eigen::Array3f::Constant(0.5f * L));
   EXPECT_NEAR(L * exposure_scale(half_white, rgb_bands(), photo), 1.0, 1e-6);
   EXPECT_EQ(tone_map(half_white, rgb_bands(), photo)[0], 188);  // sRGB of 0.5
-  // Whatever else is in the picture, and whatever lumens a watt has.
+  // The scale depends neither on other pixels nor on lumens per watt.
   Image lamp = flat_image(2, 1, Eigen::Array3f::Constant(0.5f * L));
   lamp.radiance.row(1) = 1e4f;
   EXPECT_EQ(tone_map(lamp, rgb_bands(), photo)[0], 188);
@@ -136,7 +136,7 @@ TEST(ToneMap, LampsAndBlackDoNotMoveTheExposure) {
   image.radiance.setZero(1300, 3);  // 200 pixels of black outside
   image.radiance.topRows(1000) = wall(1000).radiance;
   image.radiance.middleRows(1000, 100) = 1e4f;  // and a lamp
-  // The median moves by at most 100 places of 1000, 0.4 stops, but the mean over the wall stays.
+  // The median moves by at most 100 ranks of 1000, 0.4 stops, but the mean over the wall stays.
   EXPECT_NEAR(exposure_scale(image, rgb_bands()), without, 1e-6 * without);
 }
 
@@ -165,7 +165,8 @@ TEST(ToneMap, ColouredLampFarAboveWhiteShowsNearlyWhite) {
 }
 
 TEST(ToneMap, EdgePixelOfALampShowsTheMeanOfWhatLampAndWallShow) {
-  // Columns of wall, 30 % lamp, lamp. Shown linear: 0.3 of the lamp's white + 0.7 of the wall's.
+  // Columns are wall, 30 % lamp, and lamp. The linear mix is 0.3 of the lamp's white plus 0.7 of
+  // the wall's.
   Image image{.width = 101, .height = 3};
   image.radiance.setConstant(303, 3, 1.0f);
   for (int y = 0; y < 3; ++y) {
@@ -175,7 +176,7 @@ TEST(ToneMap, EdgePixelOfALampShowsTheMeanOfWhatLampAndWallShow) {
   const auto bytes = tone_map(image, rgb_bands());
   const float wall = shoulder(static_cast<float>(exposure_scale(image, rgb_bands())));
   const float expected = 255.0f * srgb_encode(0.3f + 0.7f * wall);
-  EXPECT_NEAR(bytes[3 * (101 + 99)], expected, 1.0);  // the lamp itself is a hair below 1
+  EXPECT_NEAR(bytes[3 * (101 + 99)], expected, 1.0);  // the lamp is slightly below 1
   EXPECT_NEAR(bytes[3 * (101 + 98)], 255.0f * srgb_encode(wall), 1.0);
   EXPECT_EQ(bytes[3 * (101 + 100)], 255);
 }

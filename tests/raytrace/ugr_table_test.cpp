@@ -20,7 +20,7 @@ namespace {
 const std::filesystem::path folder =
     std::filesystem::path(LIGHTWELL_TEST_DATA) / "luminaires" / "ugr";
 
-/// Crosswise, along C0, then endwise; 0 where the program only says that it is below 10.
+/// Ratings crosswise (along C0), then endwise; 0 if the program prints only that UGR is below 10.
 using Printed = Eigen::Array<double, ugr_rooms.size(), 2 * ugr_reflectances.size()>;
 
 Printed printed(int luminaire, const std::string& program) {
@@ -65,8 +65,8 @@ struct Apart {
   double rms() const { return std::sqrt(squares / count); }
 };
 
-/// Two commercial programs do not agree about the same files: Lightwell is as near to each of them
-/// as they are to each other, and nowhere further away than they are somewhere.
+/// Two commercial programs differ for the same files. Lightwell's difference from each has
+/// at most the RMS and the maximum of the difference between them.
 TEST(UgrTable, IsThatOfDialuxAndRelux) {
   Apart dialux, relux, each_other;
   for (int luminaire = 1; luminaire <= 6; ++luminaire) {
@@ -87,7 +87,7 @@ TEST(UgrTable, IsThatOfDialuxAndRelux) {
   EXPECT_LE(relux.largest, each_other.largest);
 }
 
-/// UGR goes by 8 log10(I^2 / E): twice the candela of the same luminaire are 8 log10 2 more.
+/// UGR is 8 log10(I^2 / E) + const: twice the candela of the same luminaire add 8 log10 2.
 TEST(UgrTable, RisesWithTheFlux) {
   LuminaireFile luminaire = sample(3);
   const UgrTable once = ugr_table(luminaire);
@@ -98,7 +98,7 @@ TEST(UgrTable, RisesWithTheFlux) {
   EXPECT_LT((twice.along_c90 - once.along_c90 - 8.0 * std::log10(2.0)).abs().maxCoeff(), 1e-9);
 }
 
-/// A quarter turn of the web and the opening changes what the planes are called, and nothing else.
+/// A quarter turn of the web and the opening changes the names of the planes and nothing else.
 TEST(UgrTable, TurnsWithTheLuminaire) {
   const LuminaireFile as_measured = sample(3);
   LuminaireFile turned = as_measured;

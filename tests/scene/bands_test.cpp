@@ -8,7 +8,7 @@
 namespace lightwell {
 namespace {
 
-// The fit promises each colour-matching function to within 1 % of its peak (Wyman et al. 2013).
+// The fit of each colour-matching function is exact to 1 % of the peak (Wyman et al. 2013).
 constexpr double fit_error = 0.01;
 
 Eigen::Array3d tristimulus(const Bands& bands) {
@@ -70,8 +70,8 @@ TEST(SpectralBands, TheEyeIsMostSensitiveAt555Nanometres) {
 }
 
 TEST(SpectralBands, TotalDoesNotDependOnHowTheSpectrumIsCut) {
-  // W per band: a flat 1 W/nm is `width` in each band. The 16-point mean is exact to far below
-  // this.
+  // A constant 1 W/nm is `width` W in each band. The error of the 16-point mean is far smaller than
+  // the tolerance.
   double first = 0.0;
   for (int count : {10, 30, 75}) {
     const Bands bands = spectral_bands(400, 700, count);
@@ -86,7 +86,7 @@ TEST(SpectralBands, DisplayedColourHasTheLuminanceOfTheSpectrum) {
   Spectrum values(30);
   for (int k = 0; k < 30; ++k) values[k] = 1.0f + 0.5f * std::sin(0.3f * static_cast<float>(k));
   const Spectrum rgb = linear_rgb(bands, values);
-  // Float matrices of condition number about 5, 30 terms.
+  // The tolerance allows for float matrices of condition number 5 with 30 terms.
   EXPECT_NEAR(luminous(rgb_bands(), rgb), luminous(bands, values), 1e-5 * luminous(bands, values));
 }
 

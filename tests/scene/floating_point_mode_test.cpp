@@ -25,8 +25,8 @@ CastGeometry floor_of_quads(int n) {
   return floor;
 }
 
-/// Building a RayCaster is the first parallel work of this process: whatever mode it runs in must
-/// not become the mode of the loops that follow.
+/// Building a RayCaster is the first parallel work of this process. The floating-point mode of that
+/// work must not become the mode of later loops.
 TEST(FloatingPointMode, DenormalsSurviveInParallelLoopsAfterRayTreesAreBuilt) {
   const RayCaster caster(floor_of_quads(100));
   std::atomic<int> flushed{0};
@@ -37,8 +37,8 @@ TEST(FloatingPointMode, DenormalsSurviveInParallelLoopsAfterRayTreesAreBuilt) {
   EXPECT_EQ(flushed, 0);
 }
 
-/// A ray that starts exactly in its own plane (t = 0, whose successor is a denormal) must pass it
-/// and meet what is beyond, in parallel loops as well.
+/// A ray that starts exactly in a plane (t = 0, whose successor is denormal) must pass the plane
+/// and hit the surface beyond, in parallel loops as well.
 TEST(FloatingPointMode, RaysLeaveTheirOwnPlaneInParallelLoops) {
   CastGeometry room = floor_of_quads(100);
   const int v = static_cast<int>(room.vertices.size());

@@ -8,7 +8,7 @@
 
 namespace lightwell {
 
-/// The bytes of numbers, little-endian as glTF has them.
+/// The bytes of numbers in glTF's byte order, little-endian.
 template <typename T>
 std::string bytes_of(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');
@@ -32,8 +32,8 @@ inline std::string base64(std::string_view bytes) {
 }
 
 /// A glTF file with a unit square in the xy plane, z = 0, front towards +z: 4 positions (accessor
-/// 0) and 6 indices of two triangles (accessor 1). `more` begins with a comma and adds to the root;
-/// it must bring scenes and nodes. `primitive` goes into the one primitive of mesh 0.
+/// 0) and 6 indices of two triangles (accessor 1). `more` begins with a comma, is added to the root
+/// object, and must define scenes and nodes. `primitive` goes into the one primitive of mesh 0.
 inline std::string square_gltf(const std::string& more, const std::string& primitive = "",
                                const std::vector<std::uint16_t>& indices = {0, 1, 2, 0, 2, 3}) {
   const std::string data =
@@ -51,7 +51,7 @@ inline std::string square_gltf(const std::string& more, const std::string& primi
          primitive + "}]}]" + more + "}";
 }
 
-/// A binary glTF file (.glb) of that JSON.
+/// A binary glTF file (.glb) with `json` as its JSON chunk.
 inline std::string glb(std::string json) {
   while (json.size() % 4) json += ' ';
   const auto word = [](std::size_t n) {

@@ -29,7 +29,7 @@ TEST(HemisphereSets, DrawsHaveTheMomentsOfLambertsLaw) {
       mean_direction += d / count;
       mean_point += planar / count;
     }
-    // The mean of cos(theta) is 2/3; stratified, so far closer than 1/sqrt(1024).
+    // The mean of cos(theta) is 2/3; with stratified points the error is far below 1/sqrt(1024).
     EXPECT_NEAR((mean_direction - 2.0 / 3.0 * normal).norm(), 0.0, 2e-3);
     EXPECT_NEAR((mean_point - Eigen::Vector2d(0.5, 0.5)).norm(), 0.0, 2e-3);
   }
@@ -50,8 +50,8 @@ TEST(HemisphereSets, OnePointIsASet) {
   EXPECT_EQ(sets.draw(3).all().size(), 1u);
 }
 
-// The first points of a block are those of the sequence, which are spread evenly, and not those
-// that come first in the order of directions.
+// The first points of a block are the first of the sequence, which are spread evenly, not the first
+// in the order of directions.
 TEST(HemisphereSets, AnyNumberOfFirstPointsIsSpreadEvenly) {
   const HemisphereSets sets(4 * HemisphereSets::block);
   const auto draw = sets.draw(5);
@@ -67,7 +67,7 @@ TEST(HemisphereSets, AnyNumberOfFirstPointsIsSpreadEvenly) {
         ++is_there[static_cast<std::size_t>(p.rank)];
       }
       EXPECT_EQ(std::count(is_there.begin(), is_there.end(), 1), size);
-      // Random points would be off by about 0.8 / sqrt(size).
+      // The mean of random points would have an error of about 0.8 / sqrt(size).
       EXPECT_NEAR((mean - Eigen::Vector3d(0.0, 0.0, 2.0 / 3.0)).norm(), 0.0, 1.0 / size + 2e-3)
           << first << ' ' << size;
     }
@@ -83,7 +83,7 @@ TEST(HemisphereSets, NeighboursPointNearlyAlike) {
                            points[i].z - points[i - 1].z)
                .norm();
   }
-  // 1 024 cells over the hemisphere are 0.08 wide; Morton's curve jumps now and then.
+  // 1024 cells over the hemisphere are 0.08 wide; the Morton curve has some jumps.
   EXPECT_LT(sum / static_cast<double>(points.size()), 0.16);
 }
 

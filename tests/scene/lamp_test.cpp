@@ -18,7 +18,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Mean weight of drawn directions, and the flux by rings of a fine grid.
+// Flux of a lamp as the mean weight of drawn directions.
 double drawn_flux(const Lamp& lamp) {
   double sum = 0.0;
   constexpr int draws = 1 << 16;
@@ -28,6 +28,7 @@ double drawn_flux(const Lamp& lamp) {
   return sum / draws;
 }
 
+// Flux of a lamp by rings of a fine grid.
 double integrated_flux(const Lamp& lamp) {
   double sum = 0.0;
   constexpr int rings = 20000;
@@ -67,8 +68,8 @@ TEST(Lamp, SpotFallsOffAsItsFormatsHaveIt) {
   EXPECT_NEAR(at(0.5), 0.25, 1e-12);
 }
 
-// gamma = 0 along the aim, C0 where it was asked for, C90 counter-clockwise from it seen from
-// above.
+// gamma = 0 is along the aim, C0 along the given direction, C90 counter-clockwise from C0 as seen
+// from above.
 TEST(Lamp, AxesFollowAimAndC0) {
   const Eigen::Matrix3d down = lamp_axes(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
   EXPECT_LT((down.col(0) - Eigen::Vector3d::UnitX()).norm(), 1e-12);
@@ -104,7 +105,7 @@ TEST(Lamp, OpeningPointsLieWithinTheOpening) {
 }
 
 TEST(PhotometricWeb, LinearTablesIntegrateExactly) {
-  // I = 1 from gamma 0 to 90: half of the sphere.
+  // I = 1 from gamma 0 to 90, half of the sphere.
   const PhotometricWeb even({0.0}, {0.0, 30.0, 90.0}, Eigen::ArrayXXd::Ones(1, 3));
   EXPECT_NEAR(even.integral(), 2.0 * pi, 1e-12);
   EXPECT_THROW(PhotometricWeb({0.0}, {0.0, 90.0}, -Eigen::ArrayXXd::Ones(1, 2)),

@@ -13,13 +13,13 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Head-on every microfacet that faces up is seen by its own cosine: the share of normals within
-// theta is tan^2 / (alpha^2 + tan^2).
+// At normal incidence a microfacet's visible area is proportional to its cosine: the share of
+// normals within theta is tan^2 / (alpha^2 + tan^2).
 TEST(VisibleNormals, HeadOnTheirSlopesAreThoseOfGGX) {
   constexpr int count = 4096;
   const SobolPoints points(count);
   for (const double alpha : {0.05, 0.3, 1.0}) {
-    for (const double slope : {0.3, 1.0, 3.0}) {  // of alpha
+    for (const double slope : {0.3, 1.0, 3.0}) {  // in units of alpha
       int within = 0;
       for (int i = 0; i < count; ++i) {
         const Eigen::Array4f u = points.point(i, 7);
@@ -27,15 +27,16 @@ TEST(VisibleNormals, HeadOnTheirSlopesAreThoseOfGGX) {
         EXPECT_NEAR(m.norm(), 1.0, 1e-12);
         within += std::hypot(m.x(), m.y()) / m.z() < slope * alpha ? 1 : 0;
       }
-      // Stratified in u: one stratum in 64 rows straddles the bound.
+      // Points are stratified in u: one stratum in each of 64 rows straddles the bound.
       EXPECT_NEAR(static_cast<double>(within) / count, slope * slope / (1 + slope * slope),
                   1.0 / 64.0);
     }
   }
 }
 
-// The same means by normals of density D cos (tan^2 = alpha^2 u / (1 - u)), each weighted by
-// G1 max(0, o.m) / (cos_o cos_m); their sum of weights is 1, which is what Lambda is made for.
+// Visible normals have the means of normals of density D cos (tan^2 = alpha^2 u / (1 - u)),
+// weighted by G1 max(0, o.m) / (cos_o cos_m). The weights have mean 1, the defining property of
+// Lambda.
 TEST(VisibleNormals, ObliquelyTheyHaveTheDensityOfWhatIsSeen) {
   constexpr int count = 1 << 14;
   const SobolPoints points(count);
@@ -67,7 +68,7 @@ TEST(VisibleNormals, ObliquelyTheyHaveTheDensityOfWhatIsSeen) {
 TEST(SmithsLambda, VanishesHeadOnAndOnSmoothSurfaces) {
   EXPECT_EQ(ggx_lambda(1.0, 0.5), 0.0);
   EXPECT_EQ(ggx_lambda(0.2, 0.0), 0.0);
-  // tan = 1, alpha = 1: (sqrt 2 - 1) / 2.
+  // Lambda is (sqrt 2 - 1) / 2 for tan = 1, alpha = 1.
   EXPECT_NEAR(ggx_lambda(std::sqrt(0.5), 1.0), 0.5 * (std::sqrt(2.0) - 1.0), 1e-12);
 }
 

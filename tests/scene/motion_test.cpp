@@ -24,7 +24,7 @@ class Motions : public test::SceneFileTest {
   static std::string camera(const std::string& more) {
     return "[[cameras]]\nposition = [0, 0, 9]\nlook_at = [0, 0, 0]\n" + more + "\n";
   }
-  // What reading it fails with.
+  // Message of the error that reading the text throws.
   std::string failure(const std::string& text) {
     try {
       read_file("scene.toml", text);

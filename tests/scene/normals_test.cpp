@@ -1,4 +1,4 @@
-// Normals at vertices: what readers make of them, and what the smooth surface behind facets is.
+// Vertex normals in readers, and the smooth surface that they define over facets.
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 class Normals : public test::SceneFileTest {};
 
-// A quarter of a cylinder of radius 1 about z, its chords counter-clockwise seen from outside.
+// A quarter of a cylinder of radius 1 about z, with chords counter-clockwise as seen from outside.
 std::string quarter_cylinder(bool with_normals) {
   std::ostringstream text;
   for (int i = 0; i <= 4; ++i) {
@@ -180,10 +180,11 @@ TEST(FacetNormals, HeightIsThatOfTheSphereBehindAFacet) {
     for (const int v : facet.boundary) middle += mesh.vertices[static_cast<std::size_t>(v)];
     middle /= static_cast<double>(facet.boundary.size());
     const double exact = radius - middle.norm();
-    // A parabola for a circle is off by h / (2 r) of the height; the deepest facets have 0.01 r.
+    // A parabola in place of a circle has an error of h / (2 r) of the height h, at most 0.01 r.
     EXPECT_NEAR(normals.height(static_cast<int>(f), middle, flat), exact, 0.005 * exact);
     EXPECT_EQ(normals.height(static_cast<int>(f), middle, -flat), 0.0) << "hollow from behind";
-    // A map that is linear in the plane gives a sphere's normals exactly, but for floats.
+    // Linear interpolation in the plane gives a sphere's normals exactly, except for float
+    // rounding.
     EXPECT_LT((normals.at(static_cast<int>(f), middle, flat) - middle.normalized()).norm(), 1e-6);
   }
 }

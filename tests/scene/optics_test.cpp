@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-// Both sides are doubles from the same closed formula; near the critical angle the square root
+// Both values are doubles of the same closed form; near the critical angle the square root
 // magnifies rounding to about 1e-11.
 constexpr double tolerance = 1e-9;
 constexpr double degree = std::numbers::pi / 180.0;

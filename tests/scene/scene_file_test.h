@@ -10,7 +10,7 @@
 
 namespace lightwell::test {
 
-/// A folder of its own, and scene files in it.
+/// A test with a temporary folder for scene files.
 class SceneFileTest : public testing::Test {
  protected:
   Scene read_file(const std::string& name, const std::string& content) const {

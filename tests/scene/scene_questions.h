@@ -19,12 +19,12 @@ inline double area_of(const PolygonMesh& mesh) {
   return area;
 }
 
-/// Of the surface's first facet.
+/// Normal of the surface's first facet.
 inline Eigen::Vector3d normal_of(const Scene& scene, std::size_t surface = 0) {
   return facet_normal(mesh_of(scene, surface), mesh_of(scene, surface).facets.at(0));
 }
 
-/// Whether a note says `text`, among other things.
+/// True if one of the scene's notes contains `text`.
 inline bool has_note(const Scene& scene, const std::string& text) {
   return std::ranges::any_of(
       scene.notes, [&](const std::string& note) { return note.find(text) != std::string::npos; });

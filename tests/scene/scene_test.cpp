@@ -11,7 +11,7 @@
 namespace lightwell {
 namespace {
 
-// A square with a square hole, a sphere and three materials; everything validate() looks at.
+// A valid scene: a square with a square hole, a sphere and three materials.
 Scene sound_scene() {
   Scene scene;
   const Spectrum half = constant_spectrum(scene.bands, 0.5f), zero = half * 0.0f;

@@ -27,7 +27,7 @@ Sky overcast_sky() {
   return sky;
 }
 
-// E of a surface with that normal, by a fine midpoint rule about the zenith.
+// E of a surface with this normal, by a fine midpoint rule around the zenith.
 double irradiance(const Sky& sky, const Eigen::Vector3d& normal) {
   constexpr int rings = 600, around = 1200;
   double sum = 0.0;
@@ -51,7 +51,7 @@ TEST(Sky, OvercastIrradiancesAreThoseOfMoonAndSpencer) {
   const Sky sky = overcast_sky();
   const double horizontal = diffuse_horizontal_irradiance(sky)[0];
   EXPECT_NEAR(horizontal, 7.0 / 9.0 * pi, 1e-5);
-  // int of (1 + 2 sin)/3 over half the dome: L (pi/6 + 4/9).
+  // The integral of (1 + 2 sin)/3 over half the dome gives L (pi/6 + 4/9).
   const double wall = irradiance(sky, sky.north);
   EXPECT_NEAR(wall, pi / 6.0 + 4.0 / 9.0, 1e-4);
   EXPECT_NEAR(wall / horizontal, 0.396, 5e-4);
@@ -63,7 +63,7 @@ TEST(Sky, OvercastIsThreeTimesBrighterAtTheZenith) {
   EXPECT_NEAR(sky_radiance(sky, sky.north)[0], 1.0 / 3.0, 1e-6);
 }
 
-// The clear sky of CIE 1973, as ISO 15469 has it as type 12: with the sun at 45 degrees,
+// The clear sky of CIE 1973, type 12 of ISO 15469, with the sun at 45 degrees:
 // L(Z, chi) = (1 - exp(-0.32 / cos Z)) (0.91 + 10 exp(-3 chi) + 0.45 cos^2 chi).
 TEST(Sky, StandardClearSkyIsThatOfKittler) {
   Sky sky = grey_sky(standard_sky(12));
@@ -193,7 +193,7 @@ TEST(SunPosition, AgreesWithThePublishedExample) {
 }
 
 // Meeus 1998, "Astronomical Algorithms", example 25.b: declination -7.785 degrees on 1992-10-13 at
-// 0 h; seen from the pole that is the altitude.
+// 0 h. At the pole the altitude is the declination.
 TEST(SunPosition, DeclinationIsThatOfMeeus) {
   const SunPosition sun =
       sun_position({.year = 1992, .month = 10, .day = 13, .hour = 0.0}, 90.0, 0.0);

@@ -63,9 +63,9 @@ TEST(RoughMirror, ReflectsItsShareAtEveryAngle) {
   }
 }
 
-// The mean direction of what single scattering reflects: microfacets of density D cos, weighted by
-// (1 / (4 cos_i cos_o)) G2 over their density of directions, D cos_m / (4 i.m); divided by the sum
-// of weights, for nothing is lost here.
+// Mean direction of single-scattering reflection: microfacets of density D cos, weighted by
+// (1 / (4 cos_i cos_o)) G2 over the density of directions, D cos_m / (4 i.m), and divided by the
+// sum of weights, since the lobe is normalised.
 TEST(RoughMirror, HasTheLobeOfSingleScattering) {
   constexpr int count = 1 << 14;
   const SobolPoints points(count);
@@ -88,7 +88,8 @@ TEST(RoughMirror, HasTheLobeOfSingleScattering) {
         weights += weight;
         weighted += weight * out;
       }
-      // Directions and weights spread by at most about 2: 2 / sqrt(count) = 0.016 each.
+      // Directions and weights have standard deviations of at most about 2: 2 / sqrt(count) = 0.016
+      // each.
       EXPECT_LT((drawn / count - weighted / weights).norm(), 0.03) << alpha << " " << degrees;
     }
   }
@@ -106,8 +107,8 @@ TEST(RoughGlass, LosesNothingAndReflectsByFresnelWhereItIsNearlySmooth) {
         reflected += sample.crosses ? 0.0 : 1.0 / count;
       }
       const double R = fresnel_reflectance(std::cos(degrees * degree), from_back ? 1 / 1.5 : 1.5);
-      // Stratified: the bound of R crosses few strata. Slopes of 0.001 change R by 0.001 dR/dangle,
-      // which is below 10 at these angles, the critical one being 41.8 degrees.
+      // Samples are stratified, and the bound of R crosses few strata. Slopes of 0.001 change R by
+      // 0.001 dR/dangle, which is below 0.01 at these angles; the critical angle is 41.8 degrees.
       EXPECT_NEAR(reflected, R, 0.01 + 1.0 / 64.0) << degrees << from_back;
     }
   }
@@ -129,8 +130,8 @@ TEST(RoughGlass, SpreadsMoreTheRougherItIs) {
   EXPECT_LT(last, 0.99);
 }
 
-// Over all directions, in cells of even solid angle, the density adds up to 1, and has the means of
-// what is drawn.
+// The integral of the density over all directions, in cells of equal solid angle, is 1, and the
+// mean directions by density and by drawn directions agree.
 TEST(RoughLobe, IsTheDensityOfWhatIsDrawn) {
   for (const Material& material : {mirror(0.4f), mirror(1.0f), glass(0.3f), glass(0.5f, true)}) {
     for (const bool from_back : {false, true}) {
@@ -158,9 +159,9 @@ TEST(RoughLobe, IsTheDensityOfWhatIsDrawn) {
         for (int i = 0; i < count; ++i) {
           drawn += draw(material, downwards(degrees), from_back, i).direction / count;
         }
-        // The table's 256 points and straight lines between 64 cosines are good to a percent; so
-        // are the cells, whose edge at the horizon cuts the lobe. Means of drawn directions have a
-        // standard deviation of at most 1 / sqrt(4096).
+        // The table of 256 points, linear between 64 cosines, has an error of one percent, and so
+        // have the cells, which the horizon cuts. Means of drawn directions have a standard
+        // deviation of at most 1 / sqrt(4096).
         EXPECT_NEAR(all, 1.0, 0.02) << material.gloss_roughness() << from_back << degrees;
         EXPECT_LT((expected - drawn).norm(), 0.02 + 2.0 / 64.0)
             << material.gloss_roughness() << from_back << degrees;
@@ -195,11 +196,11 @@ TEST(Media, AbsorbByBeerAndLambertWhereLightIsWithin) {
   };
   Media media;
   EXPECT_EQ(passed(media, 2, false), 1.0f);
-  // An eye within: what is met from behind surrounds it.
+  // From inside: a surface that is hit from behind surrounds the origin.
   EXPECT_FLOAT_EQ(passed(media, 0, true), std::exp(-0.6f));
   media.cross(0, scene.materials[0], inwards, false);
   EXPECT_FLOAT_EQ(passed(media, 2, false), std::exp(-0.6f));  // a mirror within the glass
-  media.cross(1, scene.materials[1], inwards, false);         // a bubble of the other
+  media.cross(1, scene.materials[1], inwards, false);         // a bubble of the other medium
   EXPECT_FLOAT_EQ(passed(media, 1, true), std::exp(-0.15f));
   media.cross(1, scene.materials[1], back, true);  // reflected within
   EXPECT_FLOAT_EQ(passed(media, 2, false), std::exp(-0.15f));

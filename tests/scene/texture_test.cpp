@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-// Half of the code's step at a share s, 2 sqrt(s) / 65535 wide there, and float rounding.
+// Half a step of the code at a share s, where steps are 2 sqrt(s) / 65535, plus float rounding.
 float step_at(float share) {
   return std::sqrt(share) / 65535.0f + 1e-7f;
 }
@@ -24,7 +24,7 @@ Texture random_texture(int width, int height, int channels) {
   return {width, height, channels, std::move(texels)};
 }
 
-// Black top left, white top right; grey 0.25 and 0.5 below.
+// A texture with black top left, white top right, and grey 0.25 and 0.5 below.
 SurfaceTexture four_texels() {
   std::vector<Texture::Code> texels;
   for (const float share : {0.0f, 1.0f, 0.25f, 0.5f}) texels.push_back(Texture::encode(share));
@@ -49,7 +49,7 @@ TEST(Texture, EveryLevelHasTheMeanOfThePicture) {
       for (int y = 0; y < h; ++y) {
         for (int x = 0; x < w; ++x) sum += picture.texel(level, x, y).cast<double>();
       }
-      // Each level may round by half a step at most.
+      // Each level has a rounding error of at most half a step.
       const double off = (sum / (w * h) - picture.mean().cast<double>()).abs().maxCoeff();
       EXPECT_LE(off, (level + 1) * step_at(1.0f)) << width << " x " << height << ", " << level;
     }
@@ -86,7 +86,7 @@ TEST(Texture, GoesOnBeyondItsEdgesAsItsWrapSays) {
   EXPECT_NEAR(top_row_at(TextureWrap::mirror, -0.1), 0.0f, step_at(1.0f));
   EXPECT_NEAR(top_row_at(TextureWrap::clamp, 17.0), 1.0f, step_at(1.0f));
   EXPECT_NEAR(top_row_at(TextureWrap::clamp, -3.0), 0.0f, step_at(1.0f));
-  // Places that no whole number of texels can name are somewhere in the picture all the same.
+  // Coordinates beyond the range of integers, and NaN, still give a texel of the picture.
   for (const double u : {1e300, -1e300, std::nan(""), HUGE_VAL}) {
     for (const auto wrap : {TextureWrap::repeat, TextureWrap::mirror, TextureWrap::clamp}) {
       const float share = top_row_at(wrap, u);
@@ -105,8 +105,8 @@ TEST(Texture, AFootprintAsLargeAsThePictureSeesItsMean) {
   }
 }
 
-// A line as long as the picture and thin across: the mean of columns or of rows. It lies on a mip
-// level of one texel, so that the row it is on stays itself.
+// A footprint as long as the picture and narrow across has the mean of a row or of a column. It is
+// filtered on a mip level of one texel, without blur across.
 TEST(Texture, ALongFootprintIsNotBlurredAcross) {
   std::vector<Texture::Code> texels;
   for (int y = 0; y < 8; ++y) {

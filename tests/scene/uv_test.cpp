@@ -1,4 +1,4 @@
-// Where readers put pictures: texture coordinates of facets, masks, and what is said without them.
+// Texture coordinates of readers, masks, and notes on missing texture coordinates.
 #include <algorithm>
 
 #include "scene/facet_textures.h"
@@ -26,7 +26,7 @@ class Pictures : public test::SceneFileTest {
       return note.find(words) != std::string::npos;
     });
   }
-  // rho of the scene's facet 0 at a point, in red.
+  // Reflectance of the scene's facet 0 at a point, first band.
   static float rho(const Scene& scene, const Vector3d& p) {
     return FacetTextures(scene).reflectance(0, p)[0];
   }
@@ -95,7 +95,7 @@ TEST(UvMap, MovesWithItsMesh) {
       .rotate(Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()));
   Eigen::Affine3d mirrored = turned, sheared = turned;
   mirrored.scale(Vector3d(-2, 2, 2));
-  sheared.scale(Vector3d(1, 3, 0));  // flattens what is flat already
+  sheared.scale(Vector3d(1, 3, 0));  // the square is flat along z already
   for (const Eigen::Affine3d& place : {turned, mirrored, sheared}) {
     const PolygonMesh placed = placed_mesh(mesh, place, false, true, repairs);
     ASSERT_EQ(placed.facets.size(), 1u);
@@ -169,7 +169,7 @@ TEST_F(Pictures, MasksOfNativeFilesCutHoles) {
   EXPECT_TRUE(textures.is_hole(0, {1.5, 0.5, 0}));
 }
 
-// A picture's first row is at the largest v of an OBJ file.
+// The first row of a picture is at the largest v in OBJ files.
 TEST_F(Pictures, OfObjFilesStandOnTheirFeet) {
   folder.write("a.mtl", "newmtl m\nKd 0.5 0.5 0.5\nmap_Kd -s 1 1 1 two pixels.png\n");
   const Scene scene = read_file("a.obj",
@@ -208,7 +208,7 @@ TEST_F(Pictures, OfGltfFilesAreLaidAndWrappedAsTheySay) {
     };
     put(R"("buffers":[)",
         R"({"byteLength":32,"uri":"data:application/octet-stream;base64,)" + uv + R"("},)");
-    // The square's own buffer is the second now.
+    // The square's buffer becomes the second one.
     for (std::size_t at = 0; (at = text.find(R"({"buffer":0,)", at)) != std::string::npos; ++at) {
       text[at + 10] = '1';
     }
@@ -219,7 +219,7 @@ TEST_F(Pictures, OfGltfFilesAreLaidAndWrappedAsTheySay) {
     put(R"("POSITION":0)", R"(,"TEXCOORD_1":2)");
     return read_file("a.gltf", text);
   };
-  // Three quarters of the base colour are diffuse, a quarter is metal.
+  // Three quarters of the base colour are diffuse, a quarter is metallic.
   const Scene scene = read("", R"(,"texCoord":1)");
   EXPECT_NEAR(rho(scene, {0.25, 0.5, 0}), 0.6f, 1e-5f);
   EXPECT_NEAR(rho(scene, {0.75, 0.5, 0}), 0.0f, 1e-5f);

@@ -8,8 +8,8 @@
 
 namespace lightwell {
 
-/// The room with the lamps "desk" and "panel" and a mirror for a wall, seen from near the floor:
-/// the desk lamp from below, which shines downwards, in the middle of the picture.
+/// A room with the lamps "desk" and "panel" and a mirror wall. The camera is near the floor, with
+/// the desk lamp, which shines downwards, in the middle of the picture.
 inline Scene channel_room() {
   Scene scene = test::two_lamps({.with_mirror = true});
   Camera camera;
@@ -30,7 +30,7 @@ inline SolvedScene solve_by_channel(const Scene& scene) {
   return solve_scene(scene, options);
 }
 
-/// With a setting for each channel, as `lightwell relight` takes them.
+/// `solved` relit by settings in the form of `lightwell relight`, one per channel.
 inline SolvedScene relit(SolvedScene solved, std::initializer_list<const char*> settings) {
   std::vector<Spectrum> scales;
   for (const char* const setting : settings) {

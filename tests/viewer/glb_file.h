@@ -47,12 +47,12 @@ inline std::vector<float> floats(const Glb& glb, int accessor, int columns) {
   return values;
 }
 
-/// What runs Khronos' validator.
+/// True if node, which runs Khronos' validator, is installed.
 inline bool has_node() {
   return std::system("node --version >/dev/null 2>&1") == 0;
 }
 
-/// Neither errors nor warnings; else it prints them.
+/// True if the validator finds neither errors nor warnings; prints them otherwise.
 inline bool is_valid_gltf(const TemporaryFolder& folder, const std::filesystem::path& glb) {
   const auto script =
       folder.write("validate.js",

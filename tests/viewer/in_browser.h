@@ -22,7 +22,7 @@ inline bool has_program(const std::string& name) {
   return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
 }
 
-/// The first that is installed; empty: none is.
+/// The first of `names` that is installed; empty if none is.
 inline std::string first_program(std::initializer_list<const char*> names) {
   for (const char* name : names) {
     if (has_program(name)) return name;
@@ -41,14 +41,14 @@ inline std::string output_of(const std::string& command) {
   return text;
 }
 
-/// Collects what goes wrong from the very beginning. A browser that only dumps its document shows
-/// no frames, so a clock stands in for them. What was found is left in that document; Firefox,
-/// which cannot dump it, writes it to its standard output and closes.
+/// Script that collects errors from the start of the page. A browser that dumps its document draws
+/// no frames, so a timer replaces requestAnimationFrame. The findings are left in the document;
+/// Firefox, which cannot dump a document, writes them to standard output and closes.
 inline constexpr const char* watch = R"(<head><script>
 const errors = [];
 for (const kind of ['error', 'warn']) console[kind] = (...words) => errors.push(words.join(' '));
 window.addEventListener('error', (event) => errors.push(event.message));
-// The display's own pointer, which other windows share, is kept out.
+// Events of the display's real pointer, which other windows share, are ignored.
 for (const kind of ['move', 'enter', 'leave', 'over', 'out', 'down', 'up']) {
   window.addEventListener(`pointer${kind}`, (event) => event.isTrusted && event.stopImmediatePropagation(), true);
 }
@@ -60,7 +60,7 @@ const report = (found) => {
   window.dump(document.getElementById('result').outerHTML);
   window.close();
 };
-// What scripts do with the page; places on it are in [0,1].
+// Functions that scripts control the page with; positions on the page are in [0,1].
 const driver = {
   wait: (ms) => new Promise((done) => setTimeout(done, ms)),
   frame: () => new Promise(requestAnimationFrame),
@@ -84,7 +84,7 @@ const driver = {
     gl.readPixels(x * gl.drawingBufferWidth, (1 - y) * gl.drawingBufferHeight, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
     return [...bytes].slice(0, 3);
   },
-  // `drive(page, found)` puts into `found` what a test is to know.
+  // `drive(page, found)` stores the values for the test in `found`.
   async run(drive) {
     const found = {};
     try {
@@ -98,8 +98,8 @@ const driver = {
 };
 </script>)";
 
-/// A new profile: nothing but the page is opened, nothing is fetched (no one listens at port 9),
-/// and pages may write and close.
+/// Preferences of a new profile: only the page is opened, nothing is fetched (the proxy at port 9
+/// does not exist), and pages may write to standard output and close.
 inline constexpr const char* firefox_settings = R"(
 user_pref("browser.dom.window.dump.enabled", true);
 user_pref("dom.allow_scripts_to_close_windows", true);
@@ -133,7 +133,7 @@ inline std::string decoded(const std::string& text) {
 
 enum class BrowserKind { chromium, firefox };
 
-/// A page in each of the browsers.
+/// A test of a page in each of the browsers.
 class InBrowser : public testing::TestWithParam<BrowserKind> {
  protected:
   bool is_firefox() const { return GetParam() == BrowserKind::firefox; }
@@ -153,7 +153,7 @@ class InBrowser : public testing::TestWithParam<BrowserKind> {
     }
   }
 
-  /// Opens the page with a script in it that hands what it found to report().
+  /// Opens the page with a script that gives its findings to report(), and returns them.
   Json run(const BakedModel& model, const std::string& drive, bool with_webgl = true) {
     write_walkthrough(folder / "page.html", model, LuxRange{.low = 0.0, .high = 4000.0});
     std::string page = content_of(folder / "page.html");
@@ -170,12 +170,12 @@ class InBrowser : public testing::TestWithParam<BrowserKind> {
                     << complaints.substr(0, 2000);
       return {};
     }
-    // What Firefox itself finds wrong with the page.
+    // Errors of the page that Firefox reports itself.
     EXPECT_FALSE(says(complaints, "JavaScript error: file:")) << complaints;
     return Json::parse(decoded(said.substr(begin, stop - begin)));
   }
 
-  /// The document of driven.html in the end.
+  /// The document of driven.html after the script.
   std::string chromium(bool with_webgl) {
     const std::string sandbox = ::geteuid() == 0 ? " --no-sandbox " : " ";
     const std::string options =
@@ -184,7 +184,7 @@ class InBrowser : public testing::TestWithParam<BrowserKind> {
                              " --window-size=640,640 --virtual-time-budget=60000 --dump-dom"));
   }
 
-  /// What driven.html writes.
+  /// Standard output of driven.html.
   std::string firefox(bool with_webgl) {
     const std::string webgl = with_webgl ? "" : "user_pref(\"webgl.disabled\", true);\n";
     std::filesystem::create_directory(folder / "profile");

@@ -11,7 +11,7 @@
 
 namespace lightwell {
 
-/// Reads painted atlases as a graphics card does.
+/// Samples painted atlases by the bilinear filter of graphics cards.
 class LightmapReader {
  public:
   LightmapReader(const LightmapLayout& layout, const BakedModel& model, const SolvedScene& solved,
@@ -28,7 +28,7 @@ class LightmapReader {
     }
   }
 
-  /// Of a place in a face, by weights of its corners: in texels of its chart's atlas.
+  /// Atlas, and position in texels, of the point of a face with these corner weights.
   std::pair<int, Eigen::Vector2d> texel(int face, const std::array<double, 4>& weights) const {
     const auto [c, f] = at_.at(face);
     const LightmapChart& chart = layout_.charts[c];
@@ -39,7 +39,7 @@ class LightmapReader {
     return {c, layout_.texel(c, place)};
   }
 
-  /// E by the bilinear filter.
+  /// E at that point by the bilinear filter.
   Eigen::ArrayXf irradiance(int face, const std::array<double, 4>& weights) const {
     const auto [c, at] = texel(face, weights);
     const LightmapAtlas& atlas = atlases[layout_.place[c].atlas];
@@ -62,10 +62,11 @@ class LightmapReader {
 
  private:
   const LightmapLayout& layout_;
-  std::map<int, std::pair<int, int>> at_{};  // chart and number in it, of a face
+  std::map<int, std::pair<int, int>> at_{};  // by face: chart and number in the chart
 };
 
-/// Bilinear weights of a place (u, v) in [0,1]^2 of a quad; of a triangle, barycentric ones.
+/// Corner weights of the point (u, v) in [0,1]^2: bilinear in a quadrilateral, barycentric in a
+/// triangle.
 inline std::array<double, 4> corner_weights(const BakedModel& model, int face, double u, double v) {
   if (model.corner_count(face) == 4) {
     return {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
@@ -77,8 +78,7 @@ inline std::array<double, 4> corner_weights(const BakedModel& model, int face, d
   return {1.0 - u - v, u, v, 0.0};
 }
 
-/// A sequence that fills the unit square evenly (Roberts' R2), so that tests need no random
-/// numbers.
+/// Point i of Roberts' R2 sequence, which fills the unit square evenly without random numbers.
 inline Eigen::Vector2d spread(int i) {
   const double x = 0.5 + 0.7548776662466927 * i, y = 0.5 + 0.5698402909980532 * i;
   return {x - std::floor(x), y - std::floor(y)};

@@ -4,7 +4,7 @@
 
 namespace lightwell {
 
-/// A unit square with a front and a back side that lie on each other, in the plane z = 0.
+/// A unit square in the plane z = 0 with a front and a back side in the same place.
 inline SolvedScene square_of_two_sides(const Eigen::Array3f& front, const Eigen::Array3f& back) {
   SolvedQuads quads;
   const int f = quads.add({{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}, front);
@@ -20,7 +20,7 @@ inline SolvedScene square_of_two_sides(const Eigen::Array3f& front, const Eigen:
 
 inline const Eigen::Array3f dark{0.0f, 0.0f, 0.0f};
 
-/// Names, materials and the camera that go with solved_box().
+/// The scene of solved_box(): names, materials and the camera.
 inline Scene box_scene() {
   Scene scene;
   scene.title = "box";

@@ -10,19 +10,19 @@
 
 namespace lightwell {
 
-/// What stands at a place that the page's description names.
+/// Values of the page at the offset that the page's description has.
 template <class T>
 std::vector<T> values_at(const PageData& page, const nlohmann::ordered_json& place,
                          std::size_t count) {
   const std::size_t offset = place["offset"];
-  EXPECT_EQ(offset % sizeof(T), 0u);  // so that a browser can look at them in place
+  EXPECT_EQ(offset % sizeof(T), 0u);  // typed arrays need aligned offsets
   EXPECT_LE(offset + count * sizeof(T), page.bytes.size());
   std::vector<T> values(count);
   std::memcpy(values.data(), page.bytes.data() + offset, count * sizeof(T));
   return values;
 }
 
-/// IEEE 754 binary16.
+/// The value of an IEEE 754 binary16 number.
 inline float half_to_float(std::uint16_t bits) {
   const int exponent = bits >> 10 & 31, fraction = bits & 1023;
   const double size =

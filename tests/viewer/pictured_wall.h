@@ -5,11 +5,12 @@
 
 namespace lightwell {
 
-/// Of the wall below: rho of its left and right half as the camera of solved_box() sees them.
+/// Reflectances of the left and right half of the wall of PicturedBox, as seen by the camera of
+/// solved_box().
 inline constexpr float bright_half = 0.9f, dark_half = 0.2f;
 
-/// solved_box() whose wall at the end shows a picture that is dark on one half, so that its light
-/// is that of their mean; and its scene. The other walls have no polygon.
+/// solved_box() and its scene; the back wall has a texture that is dark on one half, and radiosity
+/// by the mean reflectance. The scene lacks polygons for the other walls.
 struct PicturedBox {
   PicturedBox() {
     Scene& s = scene;

@@ -8,8 +8,8 @@
 
 namespace lightwell {
 
-/// Quads put together by hand into a solved scene, one facet, patch and material each, with the
-/// irradiance of every corner given: what should be seen is known without solving anything.
+/// A solved scene of quadrilaterals, each with its own facet, patch and material, and with given
+/// irradiance at every corner, so that expected colours are known without a solve.
 class SolvedQuads {
  public:
   /// Corners counter-clockwise seen from the front. Reflectance is 1, so radiosity = irradiance.
@@ -69,8 +69,9 @@ inline const Eigen::Array3f blue{0.3f, 0.3f, 2.5f};
 inline const Eigen::Array3f white{2.0f, 2.0f, 2.0f};
 inline const Eigen::Array3f grey{1.0f, 1.0f, 1.0f};
 
-/// The room [0,2]^3, y up, open towards -z, seen from the inside only: looking along +z with y up,
-/// world +x is on the left (direction x up). There is the green wall; red is on the right.
+/// The room [0,2]^3, y up, open towards -z, with walls that face inwards. For a camera along +z
+/// with y up, world +x with the green wall is on the left (right is direction x up), and the red
+/// wall on the right.
 inline SolvedScene solved_box() {
   SolvedQuads quads;
   quads.add({{{2, 0, 0}, {2, 0, 2}, {2, 2, 2}, {2, 2, 0}}}, green);  // x = 2, faces -x
@@ -81,7 +82,7 @@ inline SolvedScene solved_box() {
   return quads.solved();
 }
 
-/// From in front of the opening.
+/// A camera in front of the opening.
 inline Camera box_camera() {
   Camera camera;
   camera.name = "front";

@@ -24,7 +24,7 @@ TEST(BoxTree, FindsWhatLookingAtEveryBoxFinds) {
   for (const int count : {0, 1, 5, 700}) {
     std::vector<BoxTree::Box> boxes;
     for (int i = 0; i < count; ++i) boxes.push_back(random_box(i, i % 7 == 0 ? 0.9 : 0.05));
-    // Many boxes with one centre must not break the halving.
+    // Half of the boxes share one centre, which a median split cannot separate.
     for (int i = 0; i < count / 2; ++i) boxes.push_back(boxes[0]);
     const BoxTree tree(boxes);
     std::vector<int> found;

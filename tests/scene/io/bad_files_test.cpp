@@ -9,8 +9,8 @@
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 
-// One small file per way to be wrong, and what a reader of the message must find in it: the place
-// (file:line:column), the thing, and the remedy.
+// One small file per error. Its message must name the place (file:line:column), the faulty value
+// and the remedy.
 
 namespace lightwell {
 namespace {
@@ -171,7 +171,7 @@ TEST(BadScenes, AreAllInTheTable) {
   for (const BadFile& file : bad_files) listed.insert(file.name);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
-    if (extension == ".mtl" || extension == ".csv") continue;  // parts of others
+    if (extension == ".mtl" || extension == ".csv") continue;  // read by other files
     EXPECT_TRUE(listed.contains(entry.path().filename().string())) << entry.path();
   }
 }
@@ -186,7 +186,7 @@ TEST(BadPaths, AreNamedWithWhatIsPossible) {
             std::string::npos);
 }
 
-// Reading a file cut off anywhere ends in a scene or in an InputError, never in anything else.
+// Reading a file that is cut off at any byte returns a scene or throws InputError.
 TEST(CutOffFiles, AreRefusedOrReadButNeverCrash) {
   const TemporaryFolder temporary;
   for (const char* name : {"everything.toml", "room.obj", "room.mtl", "cube.ply", "cube.stl"}) {

@@ -1,5 +1,4 @@
-// Files that were damaged on their way: whatever stands in them, a reader answers with a scene or
-// with an InputError, soon, and never with a crash.
+// Damaged files: a reader returns a scene or throws InputError, in bounded time, for any bytes.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -66,7 +65,7 @@ void expect_answers(const TemporaryFolder& where, const std::string& name, const
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     EXPECT_LT(seconds.count(), 10.0) << name << ", seed " << seed;
   }
-  // Both happen, so the damage is neither too small to matter nor too large to get past the start.
+  // Some files are read and some refused, so the damage is neither too small nor too large.
   EXPECT_GT(read, 0) << name;
   EXPECT_GT(refused, 0) << name;
 }
@@ -78,7 +77,7 @@ TEST(DamagedScenes, OfMitsubaAreReadOrRefused) {
 
 TEST(DamagedScenes, OfRadianceAreReadOrRefused) {
   const TemporaryFolder where;
-  // Materials, patterns, round shapes and generators in one file.
+  // The file has materials, patterns, round shapes and generators.
   std::string scene;
   for (const char* part : {"mug.norm", "cornerdesk.norm", "lights", "blinds"}) {
     scene += content_of(folder / "radiance" / part);

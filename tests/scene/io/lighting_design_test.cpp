@@ -1,4 +1,4 @@
-// What a native file says of a design beside its light.
+// Lighting design of native files: grids and power of lamps.
 #include "scene/io/lighting_design.h"
 
 #include <gtest/gtest.h>
@@ -59,8 +59,8 @@ surface = "floor"
   EXPECT_FALSE(design.grids[1].margin.has_value());
 }
 
-/// What the lamp says goes before what its file says, and a flux that is not the file's is of
-/// another luminaire, whose power nobody knows.
+/// `watts` of a lamp overrides the power in its photometric file. With a flux other than the file's
+/// the luminaire is another one, of unknown power.
 TEST_F(Design, KnowsThePowerOfLamps) {
   const double of_file = read_luminaire(LIGHTWELL_DOCS "/luminaires/bracket.ies").watts;
   ASSERT_GT(of_file, 0.0);

@@ -18,7 +18,7 @@ Loop square(double low, double high, double z = 0.0) {
   return {{low, low, z}, {high, low, z}, {high, high, z}, {low, high, z}};
 }
 
-// Turned and moved out of every symmetry, and made small.
+// `polygon` rotated and moved to a general position, and scaled down.
 Polygon moved(Polygon polygon) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -88,7 +88,7 @@ TEST(SplitIntoTriangles, CutsAQuadrilateralFromTheFirstVertex) {
 }
 
 TEST(SplitIntoTriangles, StaysInsideAConcaveQuadrilateral) {
-  // v0-v2 would run outside, past the notch at v1.
+  // The diagonal v0-v2 would be outside, beyond the notch at v1.
   const Loop arrow = {{0, 0, 0}, {1, 1, 0.01}, {4, 0, 0}, {1, 4, 0}};
   const auto triangles = split_into_triangles(arrow);
   ASSERT_EQ(triangles.size(), 2u);
@@ -156,7 +156,7 @@ TEST(AddRepaired, KeepsWhatIsSoundAndCountsTheRest) {
 }
 
 TEST(AddRepaired, OpensAHoleThatIsJoinedByABridge) {
-  // Out from (0,0) to the hole's corner, around it clockwise, and back the same way.
+  // The boundary runs from (0,0) to the hole's corner, clockwise around the hole, and back.
   MeshBuilder builder;
   Repairs repairs;
   add_repaired(builder,

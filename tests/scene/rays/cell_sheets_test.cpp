@@ -58,7 +58,7 @@ Vector3d at(const std::array<Vector3d, 4>& corners, double u, double v) {
   return corners[0] + u * (corners[1] - corners[0]) + v * (corners[3] - corners[0]);
 }
 
-// Whether each quad is in one sheet, or single.
+// Expects that each quadrilateral is in exactly one sheet, or single.
 void expect_all_once(const CastGeometry& g, const CellSheets& sheets) {
   std::vector<int> found = sheets.cells;
   found.insert(found.end(), sheets.single.begin(), sheets.single.end());
@@ -68,7 +68,7 @@ void expect_all_once(const CastGeometry& g, const CellSheets& sheets) {
   EXPECT_EQ(found, all);
 }
 
-// On `inner` of each sheet, about its middle.
+// Checks places() at points of the inner part `inner` of each sheet, around its middle.
 void expect_cells(const CastGeometry& g, const CellSheets& sheets, double inner = 1.0) {
   for (std::size_t s = 0; s < sheets.sheets.size(); ++s) {
     const CellSheet& sheet = sheets.sheets[s];
@@ -81,7 +81,8 @@ void expect_cells(const CastGeometry& g, const CellSheets& sheets, double inner 
       const Vector3d in_cell = at({corner(g, cell.quad, 0), corner(g, cell.quad, 1),
                                    corner(g, cell.quad, 2), corner(g, cell.quad, 3)},
                                   cell.u, cell.v);
-      // Floats tell u and v of 2 m to 2e-7, times and less up to 20 cells by a rounding each.
+      // Floats have u and v of 2 m to 2e-7; a product and a difference for up to 20 cells add a
+      // rounding each.
       ASSERT_LT((in_cell - at(sheet.corners, u, v)).norm(), 1e-5);
     }
   }
@@ -138,7 +139,7 @@ TEST(CellSheets, UnequalCellsAndOtherGroupsStayApart) {
   EXPECT_EQ(join_all(two).sheets.size(), 2u);
 
   CastGeometry trapezoids = grid(even(5), even(1));
-  trapezoids.vertices[8].z() += 0.1;  // of the second and third
+  trapezoids.vertices[8].z() += 0.1;  // a vertex of the second and the third cell
   expect_all_once(trapezoids, join_all(trapezoids));
   EXPECT_EQ(join_all(trapezoids).sheets.size(), 1u);
 }
@@ -156,19 +157,19 @@ TEST(CellSheets, AMarginMovesNoPlace) {
   const CastGeometry g = grid(even(7), even(4));
   const CellSheets bare = join_all(g), wide = join_all(g, 0.01);
   const CellSheet &a = bare.sheets.at(0), &b = wide.sheets.at(0);
-  // Along both edges; coordinates up to 8 are kept to a rounding, and twice subtracted.
+  // A way along both edges. Coordinates up to 8 have a rounding error, and are subtracted twice.
   const Vector3d way = (corner(g, 0, 1) - corner(g, 0, 0)).normalized() +
                        (corner(g, 0, 3) - corner(g, 0, 0)).normalized();
   const double roundings = 4.0 * 8.0 * std::numeric_limits<double>::epsilon();
   EXPECT_LT((a.corners[0] - 0.01 * way - b.corners[0]).norm(), roundings);
   expect_cells(g, wide, 0.98);
-  const auto edge = wide.cell_point(b, 0.0f, 1.0f);  // past the cells
+  const auto edge = wide.cell_point(b, 0.0f, 1.0f);  // beyond the cells
   EXPECT_EQ(edge.quad, bare.cell_point(a, 0.0f, 1.0f).quad);
   EXPECT_EQ(edge.u, 0.0f);
   EXPECT_EQ(edge.v, 1.0f);
 }
 
-// Rays meet the same cells in the same places where each is a group of its own, which are not
+// Rays hit the same cells at the same points as without sheets: cells of different groups are not
 // joined.
 TEST(CellSheets, RaysMeetTheCellsThatTheyMetApart) {
   CastGeometry together = grid(even(9), even(6));
@@ -178,8 +179,8 @@ TEST(CellSheets, RaysMeetTheCellsThatTheyMetApart) {
   const Vector3d normal = (corner(together, 0, 1) - corner(together, 0, 0))
                               .cross(corner(together, 0, 3) - corner(together, 0, 0))
                               .normalized();
-  // Floats move no point further than this, as EmbreeScene reckons: four roundings of half the
-  // diagonal. (Both casters have the same middle, and round rays alike.)
+  // Bound of EmbreeScene on float rounding of a point: four roundings of half the diagonal. (Both
+  // casters have the same centre, and round rays alike.)
   Eigen::AlignedBox3d box;
   for (const Vector3d& v : together.vertices) box.extend(v);
   const double rounding =
@@ -201,7 +202,7 @@ TEST(CellSheets, RaysMeetTheCellsThatTheyMetApart) {
     if (a.primitive < 0) continue;
     ++met;
     const double facing = std::abs(ray.direction.dot(normal));
-    // What that moves along the plane, and what it moves off it, seen aslant.
+    // Error along the plane, and error across the plane projected at the angle of incidence.
     const double in_plane = rounding * (1.0 + 1.0 / facing);
     EXPECT_NEAR(a.t * facing, b.t * facing, rounding);
     EXPECT_EQ(a.from_back, b.from_back);

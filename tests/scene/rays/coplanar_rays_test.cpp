@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A square in the plane z = height, turned up or down.
+// Adds a square in the plane z = height that faces up or down.
 void add_square(CastGeometry& geometry, double half_size, double height, bool faces_up, int group) {
   const int first = static_cast<int>(geometry.vertices.size());
   const double h = half_size;
@@ -91,8 +91,8 @@ TEST(CoplanarRays, BesideWhatLiesOnItThePlaneIsFree) {
   }
 }
 
-// The six sides of a box, each a group of its own from `first_group` on: -x, +x, -y, +y, -z, +z.
-// `inward`: a room, seen from within.
+// Adds the six sides of a box, -x, +x, -y, +y, -z, +z, as six groups from `first_group` on.
+// `inward`: a room, whose sides face inwards.
 void add_box(CastGeometry& geometry, const Vector3d& low, const Vector3d& high, bool inward,
              int first_group) {
   const int first = static_cast<int>(geometry.vertices.size());
@@ -113,8 +113,8 @@ void add_box(CastGeometry& geometry, const Vector3d& low, const Vector3d& high, 
 
 constexpr int low_x = 0, high_x = 1, low_z = 4;
 
-// Where two bodies stand, and with which rounding: the second may come turned by a quarter about an
-// axis, as a node of a glTF file whose quaternion is stored in float.
+// Positions of two bodies and their rounding: the second may be turned by a quarter about an axis,
+// as by a node of a glTF file whose quaternion is stored in float.
 struct Placement {
   const char* name;
   Eigen::Affine3d of_both = Eigen::Affine3d::Identity();
@@ -122,7 +122,7 @@ struct Placement {
   friend void PrintTo(const Placement& place, std::ostream* out) { *out << place.name; }
 };
 
-// Off a quarter turn by 1.7e-7.
+// A rotation that deviates from a quarter turn by 1.7e-7.
 Eigen::Affine3d float_quarter_turn(const Vector3d& axis) {
   Eigen::Quaterniond turn;
   turn.w() = 0.7071067094802856;
@@ -157,7 +157,7 @@ class CoplanarBodies : public testing::TestWithParam<Placement> {
     add_box(geometry, {0, 0, 0}, {1, 1, 1}, false, 6);
     build(geometry, 8);
   }
-  // What a ray that starts nowhere in particular meets.
+  // Primitive that a ray hits which starts on no surface.
   int look(const Vector3d& from, const Vector3d& towards) const {
     const Ray ray = between(from, towards);
     Hit hit;
@@ -191,7 +191,7 @@ TEST_P(CoplanarBodies, RoomsWithAWallInCommonSeeEachTheirOwn) {
     const Vector3d on_wall(1.0, 0.1 * i, 0.37);
     EXPECT_EQ(look({0.3, 0.4, 0.5}, on_wall), high_x);
     EXPECT_EQ(look({1.7, 0.4, 0.5}, on_wall), 6 + low_x);
-    // And neither wall lies on the other's front.
+    // Neither wall lies on the front of the other.
     EXPECT_EQ(leave(on_wall, {-1.0, 0.05, 0.0}, high_x).primitive, low_x);
     EXPECT_EQ(leave(on_wall, {1.0, 0.05, 0.0}, 6 + low_x).primitive, 6 + high_x);
     EXPECT_FALSE(leave(on_wall, {-0.5, 0.0, 0.1}, high_x).is_blocked);
@@ -202,15 +202,15 @@ TEST_P(CoplanarBodies, BoxAgainstAWallAndOnTheFloorHidesThem) {
   build_block_in_room();
   for (int i = 1; i < 10; ++i) {
     const Vector3d on_wall(0.0, 0.1 * i, 0.63), on_floor(0.1 * i, 0.41, 0.0);
-    // Out of the box: its own sides, from behind.
+    // Rays out of the box hit its own sides from behind.
     EXPECT_EQ(look({0.5, 0.4, 0.5}, on_wall), 6 + low_x);
     EXPECT_EQ(look({0.5, 0.4, 0.5}, on_floor), 6 + low_z);
-    // The wall under it sees the side that lies on it, and nothing beyond.
+    // Rays from the wall hit the side that lies on the wall, and nothing beyond.
     EXPECT_EQ(leave(on_wall, {1.0, 0.1, 0.2}, low_x).primitive, 6 + low_x);
     EXPECT_EQ(leave(on_wall, {0.01, 1.0, 0.2}, low_x).primitive, 6 + low_x);
     EXPECT_EQ(leave(on_wall, {-0.01, 1.0, 0.2}, 6 + low_x).primitive, low_x);
     EXPECT_EQ(leave(on_floor, {0.2, 0.1, 1.0}, low_z).primitive, 6 + low_z);
-    // Through the wall from outside: the wall, from behind.
+    // Rays through the wall from outside hit the wall from behind.
     EXPECT_EQ(look({-1.0, 0.4, 0.5}, on_wall), low_x);
   }
 }
@@ -240,7 +240,7 @@ Eigen::Affine3d on_the_map(double angle) {
   return Eigen::Translation3d(5e5, 5e6, 100.0) * Eigen::AngleAxisd(angle, Vector3d::UnitZ());
 }
 
-// The wall between the rooms then stands where the sign of its normal is told by rounding alone.
+// A transformation after which rounding alone decides the sign of the wall's normal.
 Eigen::Affine3d undecided() {
   const Vector3d told_by(0.8191, 0.4927, 0.2937);
   return Eigen::Affine3d(Eigen::Quaterniond::FromTwoVectors(
@@ -270,8 +270,8 @@ INSTANTIATE_TEST_SUITE_P(
                   .turns_second = -Vector3d::UnitZ()}),
     [](const auto& place) { return std::string(place.param.name); });
 
-// A strip that is as long as the floor, and small ones beside it and beyond its end, in an order
-// of their own: whoever stands on one of them is told from whoever stands between.
+// A strip as long as the floor, and small sheets beside and beyond it, in shuffled order. Points on
+// a sheet are distinguished from points between sheets.
 TEST(CoplanarRays, ManySheetsOnAFloorEachHideWhatIsBelow) {
   CastGeometry geometry;
   add_square(geometry, 10.0, 0.0, true, 0);

@@ -43,8 +43,8 @@ bool is_blocked(const RayCaster& caster, const Ray& ray) {
   return blocked != 0;
 }
 
-// The unit cube's faces x0 x1 y0 y1 z0 z1 (groups 0 to 5), cut into n x n cells, triangles on every
-// other face and quads on the rest, seen from inside.
+// The unit cube's faces x0 x1 y0 y1 z0 z1 (groups 0 to 5), facing inwards, cut into n x n cells:
+// triangles on every other face, quadrilaterals on the others.
 CastGeometry box(int n) {
   CastGeometry g;
   std::vector<int> quad_groups;
@@ -80,7 +80,7 @@ CastGeometry box(int n) {
   return g;
 }
 
-// How many of `rays` rays from inside the box, towards target(i), meet nothing or a back side.
+// Number of `rays` rays from inside the box towards target(i) that hit nothing or a back side.
 int count_escapes(const RayCaster& caster, int rays, const std::function<Vector3d(int)>& target) {
   std::atomic<int> escaped{0};
   parallel_for(rays, 10'000, [&](int begin, int end) {
@@ -118,9 +118,9 @@ TEST(RayCaster, NoRayPassesBetweenTwoTrianglesThatShareAnEdge) {
 }
 
 TEST(RayCaster, AVertexIsHitLikelyThoughNotSurely) {
-  // Within rounding of a vertex the signs of the edge tests around it are chance, and the ray
-  // passes if all agree. Embree 3.13 lets 1 in 1e4 through; ten times as many would be news. No ray
-  // but one aimed at the vertex comes so near.
+  // Within rounding of a vertex the signs of the edge tests around it are random, and the ray
+  // passes if all agree. Embree 3.13 lets 1 in 1e4 such rays through; the bound is ten times as
+  // many. Only rays aimed at a vertex come so near.
   const RayCaster caster(box(cells));
   constexpr int rays = 200'000;
   EXPECT_LT(count_escapes(caster, rays, [](int i) { return wall_point(i, 0.0); }), rays / 1000);
@@ -134,7 +134,7 @@ TEST(RayCaster, HitsLieOnTheWallsAndCoordinatesReproduceThem) {
     const Hit hit = closest(caster, ray);
     ASSERT_GE(hit.primitive, 0);
     const Vector3d p = ray.origin + hit.t * ray.direction;
-    // Float coordinates in a room of size 1: 1e-7, and a few of them in a row.
+    // Float coordinates in a room of size 1 have errors of 1e-7, of which a few add up.
     const double wall = std::min(p.cwiseAbs().minCoeff(), (p.array() - 1.0).abs().minCoeff());
     EXPECT_LT(wall, 1e-6);
     Vector3d q;
@@ -162,7 +162,7 @@ TEST(RayCaster, FrontIsTheCounterClockwiseSide) {
 
 TEST(RayCaster, TheOriginsOwnPlaneIsNeverMet) {
   const RayCaster caster(box(5));
-  // Pushed behind its plane by more than float rounding could.
+  // The origin is behind its plane by up to more than float rounding.
   for (const double behind : {0.0, 1e-9, 1e-7, 1e-6}) {
     for (std::uint64_t i = 0; i < 5'000; ++i) {
       Vector3d origin = random_point(i, 6),
@@ -182,7 +182,7 @@ TEST(RayCaster, TheOriginsOwnPlaneIsNeverMet) {
 }
 
 TEST(RayCaster, AFanOfManyOwnTrianglesIsPassedToo) {
-  // 400 triangles of one group meet in the origin; a wall stands above.
+  // 400 triangles of one group meet in the origin, below a wall.
   CastGeometry g{.vertices = {{0, 0, 0}}};
   constexpr int n = 400;
   for (int i = 0; i < n; ++i) {
@@ -249,7 +249,7 @@ TEST(RayCasterSphere, RaysFromItsSurfaceMeetTheFarSideOrNothing) {
     }
     if (cosine < -1e-6) {
       ASSERT_EQ(hit.primitive, 0) << "inwards, ray " << i;
-      // The chord is -2 r cos; origin rounding at 100 m is 1e-14 of it.
+      // The chord is -2 r cos; the rounding of an origin at 100 m is 1e-14 of the chord.
       EXPECT_NEAR(hit.t, -2.0 * radius * cosine, 1e-9 * radius);
       EXPECT_TRUE(hit.from_back);
     }
@@ -257,7 +257,7 @@ TEST(RayCasterSphere, RaysFromItsSurfaceMeetTheFarSideOrNothing) {
   }
 }
 
-// A room with a ball and a table in it; spheres and all groups apart from one another.
+// A room with a ball and a table.
 CastGeometry furnished(double scale, const Vector3d& shift) {
   CastGeometry g = box(4);
   const int first = static_cast<int>(g.vertices.size());
@@ -292,7 +292,7 @@ TEST_P(RayCasterIn, AnotherFrameSeesTheSame) {
         closest(there, {.origin = scale * origin + shift, .direction = scale * direction});
     ASSERT_GE(a.primitive, 0);
     ASSERT_GE(b.primitive, 0);
-    // Float rounding of 1e-7 may decide at a silhouette, which one ray in 1e6 comes that close to.
+    // Float rounding of 1e-7 decides at a silhouette; one ray in 1e6 comes that close.
     if (std::abs(a.t - b.t) > 1e-5) ++grazing;
   }
   EXPECT_LE(grazing, 1);
@@ -324,7 +324,7 @@ TEST(RayCaster, OccludedAgreesWithClosestHits) {
     ASSERT_TRUE(hits[i].primitive < 0 || hits[i].t < 1.0 + 1e-6);
     blocked_count += blocked[i];
   }
-  // Both answers occur, or the agreement would mean nothing.
+  // Both results must occur, otherwise the agreement is trivial.
   EXPECT_GT(blocked_count, n / 20);
   EXPECT_LT(blocked_count, n / 2);
 }

@@ -21,7 +21,7 @@ TEST(Appearance, MatteSurfacesShowRadiosityOverPi) {
   EXPECT_FLOAT_EQ(L(4, 0), red[0] / pi);
 }
 
-/// What a vertex shows is what the second pass's picture shows of the same radiance, byte for byte.
+/// A vertex has the same bytes as a pixel of the second pass with the same radiance.
 TEST(Appearance, VerticesAreToneMappedAsPicturesAre) {
   Image image{256, 1, BandArray(256, 3)};
   for (int x = 0; x < 256; ++x) {
@@ -96,7 +96,8 @@ TEST(StartView, AnOpenBoxIsSeenFromItsOpenSide) {
   EXPECT_EQ(bounds.high, Eigen::Vector3d(2, 2, 2));
   const Camera camera = find_start(caster, element_kinds(box, {}), shown_radiance(box, {}),
                                    Eigen::Vector3d::UnitY(), 320, 240);
-  // Everything is one-sided, so any side shows the inside; the whole box must be in view.
+  // Every wall is one-sided, so each side of the box shows the inside; the whole box must be in
+  // view.
   const double distance = (camera.position - Eigen::Vector3d(1, 1, 1)).norm();
   EXPECT_GT(distance, std::sqrt(3.0));
   EXPECT_NEAR(camera.direction.dot(camera.up), 0.0, 1e-12);
@@ -112,7 +113,8 @@ TEST(StartView, FrameAllHoldsTheBoundingSphere) {
 }
 
 /// A square camera of 90 degrees in a window twice as wide as high: the height must still span
-/// 90 degrees, so tan of half the width's angle doubles to 2. In a tall window the width keeps it.
+/// 90 degrees, so tan of half the width's angle doubles to 2. In a tall window the width spans 90
+/// degrees.
 TEST(StartView, WindowsShowAllOfTheCamerasPicture) {
   Camera camera;
   camera.fov_degrees = 90.0;
@@ -136,7 +138,7 @@ TEST(FalseColor, TheLuxScaleEndsOnRoundNumbersAroundTheValues) {
   for (int i = 1; i <= 1000; ++i) lux.push_back(0.7f * static_cast<float>(i));
   const LuxRange range = lux_range(lux);
   EXPECT_DOUBLE_EQ(range.high, 1000.0);  // the brightest is 700
-  EXPECT_DOUBLE_EQ(range.low, 1.0);      // a thousandth of it
+  EXPECT_DOUBLE_EQ(range.low, 1.0);      // a thousandth of `high`
   EXPECT_DOUBLE_EQ(lux_range({150.0f, 190.0f}).high, 200.0);
   EXPECT_DOUBLE_EQ(lux_range({150.0f, 190.0f}).low, 100.0);
   const LuxRange dark = lux_range({0.0f, 0.0f});

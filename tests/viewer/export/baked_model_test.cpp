@@ -40,7 +40,7 @@ TEST(BakedModel, TwoLitSidesAreBothThere) {
   EXPECT_EQ(model.parts[1].vertex_count, 4);
 }
 
-/// The dark floor of a lit room is still a floor.
+/// The dark floor of a lit room stays in the model.
 TEST(BakedModel, OfTwoDarkSidesTheFrontStays) {
   const BakedModel model = bake_model(square_of_two_sides(dark, dark), {});
   ASSERT_EQ(model.parts.size(), 1u);
@@ -58,7 +58,7 @@ TEST(BakedModel, ASharedPolygonIsPartedByNameAgain) {
     EXPECT_EQ(model.materials[part.material].name, part.name + " paint");
     if (part.name == "lamp") continue;
     for (int v = part.first_vertex; v < part.first_vertex + part.vertex_count; ++v) {
-      // Elements are 0.25 long, and 1 is a multiple of that.
+      // Elements are 0.25 long, so the border at x = 1 lies on element edges.
       EXPECT_TRUE(part.name == "left" ? model.position[v].x() <= 1.0
                                       : model.position[v].x() >= 1.0);
     }
@@ -157,7 +157,7 @@ TEST(BakedModel, ASceneOfFewerSurfacesIsNotTheOne) {
   EXPECT_TRUE(says(message_of<InputError>([&] { bake_model(solved_box(), scene); }), "4 surfaces"));
 }
 
-/// What a damaged solution may hold; glTF may not.
+/// NaN and infinity, which a damaged solution may hold and glTF must not.
 TEST(BakedModel, WhatIsNoNumberShowsBlack) {
   SolvedScene box = solved_box();
   box.solution.direct_irradiance(0, 1) = std::numeric_limits<float>::quiet_NaN();

@@ -16,7 +16,7 @@ TEST(ChartPlane, TheBoxOfATurnedRectangleLiesAlongIt) {
     for (int j = 0; j <= 4; ++j) points.push_back(0.3 * i * x + 0.2 * j * y);
   }
   const Vector2d found = box_direction(points);
-  // From sums of a few products: some units of 2^-52.
+  // Sums of a few products have errors of some 2^-52.
   EXPECT_NEAR(std::abs(found.dot(x)), 1.0, 1e-14);
 }
 
@@ -45,8 +45,8 @@ TEST(ChartPlane, AThinWallIsCutInItsMiddleAndAThickOneIsNot) {
   EXPECT_TRUE(narrow_gaps(thick.faces, thick.places, 0.05).empty());
 }
 
-/// Squares that share vertices have no border between them, and the sides of a needle look away
-/// from each other.
+/// Squares that share vertices have no border between them, and neither have the two sides of a
+/// needle, which face away from each other.
 TEST(ChartPlane, WholeFacesAndSharpTipsAreNotCut) {
   const std::vector<Vector2d> places = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {2, 0}, {2, 1}};
   const std::vector<std::array<int, 4>> whole = {{0, 1, 2, 3}, {1, 4, 5, 2}};

@@ -15,7 +15,7 @@ float linear(std::uint8_t srgb) {
   return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
 
-// Half a step of 8-bit sRGB at its steepest, relative to white.
+// Half a step of 8-bit sRGB at its steepest slope, relative to white.
 constexpr float byte_rounding = 0.005f;
 
 TEST(DrawnPictures, TexelsTimesTheBrightestAreReflectances) {
@@ -41,7 +41,7 @@ TEST(DrawnPictures, TexelsTimesTheBrightestAreReflectances) {
 TEST(DrawnPictures, HolesAreTransparentWhereverTheMaskLies) {
   PicturedBox box;
   Material& material = box.scene.materials.back();
-  // Turned by a half against the picture, which has its holes where the mask is dark.
+  // The mask is turned by 180 degrees against the picture; dark texels of the mask are holes.
   SurfaceTexture holes = picture_of(2, 1, {1.0f, 0.0f});
   holes.placement << -1, 0, 1, 0, -1, 1;
   material.mask = Mask{.image = holes};
@@ -66,7 +66,7 @@ TEST(DrawnPictures, LargeOnesAreHalved) {
   EXPECT_NEAR(linear(picture.rgba[0]) * picture.brightest[0], 0.4f, byte_rounding);
 }
 
-/// The mean of what the texels show is what the patch shows on the whole.
+/// The mean of a patch's texels is the patch's radiosity.
 TEST(DrawnPictures, AModelWithThemHasTheSameLight) {
   const PicturedBox box;
   const BakedModel model = bake_model(box.solved, box.scene);
@@ -84,7 +84,7 @@ TEST(DrawnPictures, AModelWithThemHasTheSameLight) {
   EXPECT_EQ(pictured, 1);
 }
 
-/// A vertex where two pictures meet that do not go on alike has two places.
+/// A vertex between two texture maps that do not continue each other has two texture coordinates.
 TEST(DrawnPictures, VerticesAreNotSharedAcrossMaps) {
   SolvedQuads quads;
   quads.add({{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}, grey);

@@ -1,4 +1,4 @@
-// glTF with its light in textures, and the pictures beside it, read back.
+// Exported glTF with lightmaps, and their EXR files, read back.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ TEST_F(ExportLightmap, OurReaderFindsTheRoom) {
   EXPECT_EQ(scene.cameras.size(), 1u);
 }
 
-/// Half floats have 11 digits of two.
+/// Half floats have 11 binary digits.
 TEST_F(ExportLightmap, TheDataAreTheAtlas) {
   const SolvedScene solved = solved_box();
   const Scene scene = box_scene();
@@ -59,7 +59,7 @@ TEST_F(ExportLightmap, TheDataAreTheAtlas) {
   }
 }
 
-/// Light that half floats cannot hold is kept whole.
+/// Light beyond the range of half floats is written as 32-bit floats.
 TEST_F(ExportLightmap, VeryBrightLightIsWrittenInFull) {
   SolvedScene solved = solved_box();
   solved.solution.direct_irradiance *= 1e5f;
@@ -67,8 +67,8 @@ TEST_F(ExportLightmap, VeryBrightLightIsWrittenInFull) {
   EXPECT_GT(read_exr(made.files[0]).radiance.maxCoeff(), 2e5f);
 }
 
-/// Every corner lies in its chart, and texture coordinates span it; TEXCOORD_0 is there because
-/// glTF wants sets counted from 0.
+/// The texture coordinates of a face's corners lie in the face's chart and span the chart.
+/// TEXCOORD_0 exists because glTF numbers the sets from 0.
 TEST_F(ExportLightmap, CoordinatesLeadIntoTheTexture) {
   write(solved_box(), box_scene(), {.size = 64});
   const Glb glb = parse_glb(content_of(folder / "room.glb"));
@@ -83,7 +83,7 @@ TEST_F(ExportLightmap, CoordinatesLeadIntoTheTexture) {
     const Json& texture = material["pbrMetallicRoughness"]["baseColorTexture"];
     EXPECT_EQ(texture["texCoord"], 1);
     EXPECT_EQ(texture["index"], 0);
-    // A wall's corners lie on whole texels.
+    // Corners of a wall lie on texel boundaries.
     for (const float x : uv) EXPECT_EQ(64 * x, std::round(64 * x));
   }
   const Json& view = glb.json["bufferViews"][glb.json["images"][0]["bufferView"].get<int>()];
@@ -91,9 +91,9 @@ TEST_F(ExportLightmap, CoordinatesLeadIntoTheTexture) {
   EXPECT_EQ(glb.json["asset"]["extras"]["lightmap"]["files"][0], "room-lightmap-1.exr");
 }
 
-/// What an engine needs to dim lamps: the light of each, as it was solved, in the same charts.
-/// Times the scales in force they add up to the lightmap; single precision of sums, half floats in
-/// files.
+/// The files of the channels have the light of each lamp at scale 1 in the same charts, so that an
+/// engine can dim lamps. The sum of channels times scales is the lightmap, to the precision of
+/// float sums and of half floats in files.
 TEST_F(ExportLightmap, ChannelsAddUpToAllLight) {
   const Scene scene = channel_room();
   const SolvedScene solved = relit(solve_by_channel(scene), {"0.5", "off"});

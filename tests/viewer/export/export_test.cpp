@@ -1,4 +1,4 @@
-// Files that other programs read, read back.
+// Exported files, read back.
 #include "viewer/export/export.h"
 
 #include <gtest/gtest.h>
@@ -55,14 +55,14 @@ TEST_F(Export, OurReaderFindsTheRoomInTheGltf) {
   ASSERT_EQ(scene.cameras.size(), 1u);
   const Camera &camera = scene.cameras[0], wanted = box_camera();
   EXPECT_EQ(camera.name, "front");
-  // From doubles in text and back through a matrix and two tangents: some units of 2^-52.
+  // The round trip of doubles through text, a matrix and two tangents has errors of some 2^-52.
   EXPECT_LT((camera.position - wanted.position).norm(), 1e-14);
   EXPECT_LT((camera.direction - wanted.direction).norm(), 1e-14);
   EXPECT_LT((camera.up - wanted.up).norm(), 1e-14);
   EXPECT_NEAR(camera.fov_degrees, wanted.fov_degrees, 1e-12);
 }
 
-/// Facets face where they faced: the walls of the box look inwards.
+/// Facets keep their orientation: the walls of the box face inwards.
 TEST_F(Export, WindingIsKept) {
   write_gltf(folder / "box.glb", bake_model(solved_box(), box_scene()));
   for (const Surface& surface : read_scene(folder / "box.glb").surfaces) {
@@ -75,7 +75,7 @@ TEST_F(Export, WindingIsKept) {
   }
 }
 
-/// COLOR_0 times `radiosity_of_color_1` is B, and what is clipped is counted.
+/// COLOR_0 times `radiosity_of_color_1` is B, and clipped vertices are counted.
 TEST_F(Export, GltfColorsStandForRadiosity) {
   const BakedModel model = bake_model(solved_box(), box_scene(), -1.0);
   write_gltf(folder / "box.glb", model);
@@ -129,7 +129,7 @@ TEST_F(Export, AnyNameIsWrittenAsValidText) {
   EXPECT_NEAR(area_of(read_scene(folder / "box.ply")), box_area, 1e-12);
 }
 
-/// A viewer multiplies COLOR_0 with the picture, so at bright texels it shows what they reflect.
+/// A viewer multiplies COLOR_0 with the picture; the product is the radiosity of the texel.
 TEST_F(Export, PicturesAreBaseColours) {
   const PicturedBox box;
   const BakedModel model = bake_model(box.solved, box.scene);
@@ -148,7 +148,7 @@ TEST_F(Export, PicturesAreBaseColours) {
     ++pictured;
     EXPECT_EQ(material["name"], "wall paint with a picture");
     const auto scale = glb.json["asset"]["extras"]["exposure"].get<float>();
-    // What lies on the bright half has rho, and E is that of a white wall.
+    // B = rho E with rho of the bright half and E of a white wall.
     const float wanted = scale * bright_half * white[0] / std::numbers::pi_v<float>;
     for (const float c : floats(glb, attributes["COLOR_0"], 3)) {
       EXPECT_NEAR(c, std::min(wanted, 1.0f), 1e-4f);
@@ -182,7 +182,7 @@ TEST_F(Export, OurReaderFindsTheRoomInThePly) {
   EXPECT_EQ(scene_bounds(scene).high, Eigen::Vector3d(2, 2, 2));
 }
 
-/// The rows of vertices, byte for byte.
+/// The rows of vertices are compared byte for byte.
 TEST_F(Export, PlyHoldsTheLightOfEveryVertex) {
   const BakedModel model = bake_model(solved_box(), box_scene());
   write_ply(folder / "box.ply", model);
@@ -222,7 +222,7 @@ TEST_F(Export, OurReaderFindsTheRoomInTheObj) {
   ASSERT_EQ(scene.materials.size(), 5u);
   EXPECT_EQ(scene.materials[2].name, "2_wall_paint");
 
-  // The coordinates and colours of every vertex.
+  // Every vertex has coordinates and colours.
   std::istringstream text(content_of(folder / "box.obj"));
   const auto bytes = srgb_colors(model);
   int v = 0;
@@ -248,7 +248,7 @@ TEST_F(Export, AFileThatCannotBeWrittenIsNamedAndLeavesNothing) {
   const auto fails = [&](void (*write)(const std::filesystem::path&, const BakedModel&),
                          const char* name) {
     const auto path = folder / "nowhere" / name;
-    // Of OBJ the first file is box.mtl.
+    // An OBJ export writes box.mtl first.
     EXPECT_TRUE(says(message_of<std::runtime_error>([&] { write(path, model); }),
                      path.parent_path() / path.stem()));
   };

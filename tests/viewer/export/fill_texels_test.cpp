@@ -29,7 +29,7 @@ struct TwoSquares {
   float at(int x, int y) const { return picture(y * size + x, 0); }
 };
 
-/// Four rings from each side of a gap of eight: each side keeps to its own.
+/// Four rings from each side fill a gap of eight; each side has the light of its own square.
 TEST(FillTexels, RingsContinueTheirOwnSquareAlone) {
   TwoSquares two;
   two.fill(4);
@@ -39,7 +39,7 @@ TEST(FillTexels, RingsContinueTheirOwnSquareAlone) {
   }
 }
 
-/// Means of 1 and 3 lie between them.
+/// Every texel that is filled by a mean of 1 and 3 lies between 1 and 3.
 TEST(FillTexels, NothingStaysBlack) {
   TwoSquares two;
   two.fill(1);

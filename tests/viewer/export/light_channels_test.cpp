@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A basis as a page unpacks it.
+/// A basis of light as a page unpacks its values.
 struct Basis {
   std::vector<float> radiance, illuminance;
   std::vector<float> weight;
@@ -48,9 +48,10 @@ std::vector<Basis> bases_of(const PageData& page, std::size_t vertices, std::siz
   return bases;
 }
 
-/// Half floats keep each value to 2^-11 of itself, or of a 2^-29th of the largest of its array
-/// (2^-14 of the 2^15 that the largest becomes). Where no part is negative sums keep it too;
-/// some ten roundings of floats besides.
+/// Error bound of a sum of bases. A half float has a relative error of 2^-11, or, for values below
+/// 2^-29 of the largest in its array (2^-14 where the largest is 2^15), an absolute error of 2^-11
+/// of that threshold. Sums without negative terms have the same bound. Some ten float roundings are
+/// added.
 double bound(double sum, double largest) {
   return sum * (std::exp2(-11.0) + 1e-6) + largest * std::exp2(-40.0);
 }
@@ -65,7 +66,7 @@ int mesh_vertex(const BakedModel& model, const PatchMesh& mesh, int face, int ve
   return 0;
 }
 
-/// The bases with their weights are the light of `wanted`.
+/// Expects that the weighted sum of the bases is the light of `wanted`.
 void expect_sum(const std::vector<Basis>& bases, const BakedModel& model, const SolvedScene& wanted,
                 const std::vector<Material>& materials) {
   const Bands& bands = wanted.solution.bands;
@@ -108,7 +109,7 @@ class LightChannels : public testing::Test {
   const SolvedScene solved = solve_by_channel(scene);
 };
 
-/// What is embedded adds up to relight()'s light, lamps seen directly and mirrors included.
+/// The sum of the embedded bases is the light of relight(), also of visible lamps and of mirrors.
 TEST_F(LightChannels, AddUpWithTheScalesInForce) {
   const SolvedScene dim = relit("0.25", "1.5,#ff4020");
   const BakedModel model = bake_model(dim, scene);
@@ -124,7 +125,7 @@ TEST_F(LightChannels, AddUpWithTheScalesInForce) {
   expect_sum(bases, model, dim, scene.materials);
 }
 
-/// Light of a lamp that was off when the file was written is all there.
+/// The basis of a lamp at scale 0 holds the lamp's full light.
 TEST_F(LightChannels, AddUpWithOtherWeightsToTheSceneRelit) {
   const BakedModel model = bake_model(relit("off", "0.1"), scene);
   auto bases = bases_of(page_data(model, any_range), model.position.size(), 3);
@@ -136,7 +137,7 @@ TEST_F(LightChannels, AddUpWithOtherWeightsToTheSceneRelit) {
   expect_sum(bases, model, wanted, scene.materials);
 }
 
-/// The flux that a colour has to keep: emitted_flux at a scale of 1.
+/// Lumens of a channel are those of emitted_flux at scale 1; a colour keeps them.
 TEST_F(LightChannels, LumensAreThoseOfTheLamps) {
   const PageData page = page_data(bake_model(relit("0.3", "off"), scene), any_range);
   for (std::size_t c = 0; c < 2; ++c) {
@@ -147,7 +148,8 @@ TEST_F(LightChannels, LumensAreThoseOfTheLamps) {
   }
 }
 
-/// Bands of wavelength have one weight. A scale that is uneven between them is kept by the light.
+/// Spectral bands share one weight per channel; a scale that differs between bands is part of the
+/// basis.
 TEST(SpectralChannels, KeepAnUnevenScale) {
   Scene scene;
   scene.bands = spectral_bands(420.0, 680.0, 4);
@@ -166,7 +168,8 @@ TEST(SpectralChannels, KeepAnUnevenScale) {
   expect_sum(bases, model, solved, scene.materials);
 }
 
-/// A side that only an extinguished lamp lights is part of the model, so that it can be lit there.
+/// A side that only a switched-off lamp lights is part of the model, for when the lamp is switched
+/// on.
 TEST(ChannelsThatAreOff, StillCountAsLight) {
   SolvedScene square = square_of_two_sides(white, dark);
   RadiositySolution& s = square.solution;
@@ -186,10 +189,11 @@ TEST(ChannelsThatAreOff, StillCountAsLight) {
   const BakedModel model = bake_model(square, {});
   EXPECT_EQ(model.face_count(), 2);
   EXPECT_EQ(model.black_behind, (std::vector<std::uint8_t>{0, 0}));
-  EXPECT_EQ(model.radiance.maxCoeff(), 2.0f / std::numbers::pi_v<float>);  // the sum in force
+  EXPECT_EQ(model.radiance.maxCoeff(),
+            2.0f / std::numbers::pi_v<float>);  // with the scales of the solution
 }
 
-/// Without channels a page is what it was: one basis, and no weight.
+/// Without channels a page has one basis and no weights.
 TEST(ChannelsThatAreNotKept, LeaveOneBasis) {
   const PageData page = page_data(bake_model(solved_box(), box_scene()), any_range);
   ASSERT_EQ(page.about["bases"].size(), 1u);

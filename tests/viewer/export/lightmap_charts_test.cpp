@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The side of an upright prism, all of it one surface, facing outwards.
+/// The side of an upright prism as one surface that faces outwards.
 Scene prism(int sides) {
   Scene scene = SceneBuilder()
                     .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, -5}, {0, 0, 1}, 1)
@@ -38,21 +38,21 @@ std::vector<LightmapChart> charts_of(const Scene& scene, double patch_size) {
   return cut_charts(model, solved.mesh, 1e-3);
 }
 
-/// Sides that turn by 15 degrees have vertices of their own, for their light is not one's; but
-/// three of them make one chart: the first and what meets it left and right. So 24 sides make 8, or
-/// a few more where the last ones find their neighbours taken.
+/// Sides at 15 degrees to each other share no vertices, since their light differs; but a side and
+/// its two neighbours make one chart. So 24 sides make 8 charts, or a few more if neighbours of the
+/// last sides are in charts already.
 TEST(LightmapCharts, SidesOfAColumnThatMeetBluntlyShareOne) {
   const auto charts = charts_of(prism(24), 0.5);
   EXPECT_GE(charts.size(), 8u);
   EXPECT_LE(charts.size(), 12u);
 }
 
-/// Sharp creases, here of 60 degrees, part them.
+/// Sharp creases, here of 60 degrees, separate charts.
 TEST(LightmapCharts, SharpCreasesPartThem) {
   EXPECT_EQ(charts_of(prism(6), 0.5).size(), 6u);
 }
 
-/// A chart of a flat surface is a motion of it: lengths stay. A rectangle fills its chart.
+/// The chart of a plane surface is isometric, and a rectangle fills its chart.
 TEST(LightmapCharts, PlanesKeepTheirLengths) {
   const Vector3d x = Vector3d(3, 1, 2).normalized(), y = Vector3d(-1, 3, 0).normalized();
   const Scene scene =

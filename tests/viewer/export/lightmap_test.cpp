@@ -21,7 +21,7 @@ SolvedScene solved_of(const LitScene& lit) {
   return {lit.mesh, lit.solution};
 }
 
-/// A room with a block and a ball in it, and light that varies smoothly from place to place.
+/// A room with a block, a ball and smoothly varying light.
 const LitScene& furnished() {
   static const auto lit = [] {
     const Paint paint{.reflectance = 0.5f, .one_sided = true};
@@ -39,10 +39,10 @@ const LitScene& furnished() {
   return *lit;
 }
 
-/// Light that is bilinear over each wall of a box: a bilinear filter of samples of it is itself,
-/// on the border too, where what lies beyond goes on as steeply. Beyond a corner the product of
-/// both slopes s t keeps its sign where it should not: two half texels off the corner that is
-/// 2 (d/2)^2 of it, of which a filter in the corner's texel takes at most a quarter.
+/// A bilinear filter reproduces light that is bilinear over a wall, also at the border, where the
+/// padding is extrapolated with the same slope. Beyond a corner the extrapolated product s t of
+/// both slopes has the wrong sign: half a texel d/2 off in both directions the error is 2 (d/2)^2
+/// of the product, and a filter in the corner's texel weighs it by at most a quarter.
 TEST(Lightmap, BilinearLightIsReadAsItIs) {
   SolvedQuads quads;
   const auto light = [](float a) { return Eigen::Array3f(a, 2.0f * a, 1.0f); };
@@ -55,7 +55,7 @@ TEST(Lightmap, BilinearLightIsReadAsItIs) {
   const LightmapReader reader(layout, model, solved);
   for (int f = 0; f < model.face_count(); ++f) {
     const ChartRectangle& place = layout.place[reader.chart_of(f)];
-    // (1 - 2 + 5 - 3) = 1 is the slopes' product over the whole quad; light(a) doubles it.
+    // The product of slopes over the whole wall is 1 - 2 + 5 - 3 = 1, doubled by light(a).
     const double at_corner = 0.25 * 2.0 * 2.0 * 0.25 / (place.width * place.height);
     for (int i = 0; i < 500; ++i) {
       const Eigen::Vector2d uv = spread(i);
@@ -70,7 +70,7 @@ TEST(Lightmap, BilinearLightIsReadAsItIs) {
   }
 }
 
-/// RMS over the room of what a filter reads less what the solution has, relative.
+/// Relative RMS difference over the room between filtered lightmaps and the solution.
 double reading_error(const LitScene& lit, int size) {
   const SolvedScene solved = solved_of(lit);
   const BakedModel model = bake_model(solved, lit.scene);
@@ -80,7 +80,7 @@ double reading_error(const LitScene& lit, int size) {
   std::vector<float> read;
   for (int f = 0; f < model.face_count(); ++f) {
     const bool is_ball = layout.charts[reader.chart_of(f)].sphere >= 0;
-    if (is_ball) continue;  // its faces are flat here and round where probes lie
+    if (is_ball) continue;  // faces of the ball are flat, and probes lie on the sphere
     const Eigen::Vector2d uv = spread(f);
     const auto weights = corner_weights(model, f, uv.x(), uv.y());
     Vector3d at = Vector3d::Zero();
@@ -101,17 +101,18 @@ double reading_error(const LitScene& lit, int size) {
   return std::sqrt(sum / static_cast<double>(read.size()));
 }
 
-/// A filter errs only where elements meet in a kink, by at most an eighth of a texel times what the
-/// slope jumps there. That is light's second derivative, at most 7.2 W/m^4, times an element of
-/// 0.25 m; a texel is about 0.04 m, and light 1.5 to 8.5 W/m^2: 0.6 % at the very most. Half the
-/// texel errs half as much in half as many places: by 2^-1.5 in the mean of squares.
+/// The filter has errors only at kinks between elements, of at most an eighth of a texel times the
+/// jump of the slope. That jump is the second derivative of the light, at most 7.2 W/m^4, times an
+/// element of 0.25 m. With texels of about 0.04 m and light of 1.5 to 8.5 W/m^2 the error is at
+/// most 0.6 %. With half the texel size it is half as large at half as many points: the RMS falls
+/// by 2^-1.5.
 TEST(Lightmap, ReadsWhatProbesReadAndBetterWithMoreTexels) {
   const double coarse = reading_error(furnished(), 256), fine = reading_error(furnished(), 512);
   EXPECT_LT(coarse, 0.006);
   EXPECT_LT(fine, 0.6 * coarse);
 }
 
-/// Of one chart: E times the area that its texels stand for.
+/// Sum over the texels of one chart of E times the texel's area.
 double power(const LightmapLayout& layout, const LightmapAtlas& atlas, std::size_t c,
              const SolvedScene& solved) {
   const LightmapChart& chart = layout.charts[c];
@@ -119,7 +120,7 @@ double power(const LightmapLayout& layout, const LightmapAtlas& atlas, std::size
   const double texel = chart.size.x() * chart.size.y() / (place.width * place.height);
   double sum = 0.0;
   for (int y = place.y; y < place.y + place.height; ++y) {
-    // On a sphere, rows towards the poles stand for less.
+    // On a sphere, texels of rows near the poles have less area.
     double area = texel;
     if (chart.sphere >= 0) {
       const double r = solved.mesh.sphere_grids[chart.sphere].sphere.radius;
@@ -135,9 +136,9 @@ double power(const LightmapLayout& layout, const LightmapAtlas& atlas, std::size
   return sum;
 }
 
-/// The midpoint rule over texels, against the solution's own mean over its elements: a corner's
-/// mean is exact for parallelograms and triangles, and off by a share of the square of an element's
-/// angle, (0.25 / 0.4)^2 / 24 = 1.6 % of a sphere's ups and downs, on the ball.
+/// Power by the midpoint rule over texels, against the mean of corners over the elements. The mean
+/// of corners is exact for parallelograms and triangles; on the ball its error is the square of an
+/// element's angle over 24, (0.25 / 0.4)^2 / 24 = 1.6 % of the variation of light.
 TEST(Lightmap, TexelsTimesAreaAreThePowerOnAllSurfaces) {
   const SolvedScene solved = solved_of(furnished());
   const BakedModel model = bake_model(solved, furnished().scene);
@@ -152,8 +153,8 @@ TEST(Lightmap, TexelsTimesAreaAreThePowerOnAllSurfaces) {
   EXPECT_NEAR(texels / elements, 1.0, 0.002);
 }
 
-/// Walls of one light each: every texel of a chart and of its padding has that of its wall, so
-/// nothing bleeds in from a neighbour or from the dark.
+/// Each wall has constant light: every texel of its chart and of the padding has that light, so no
+/// light bleeds from other charts or unused texels.
 TEST(Lightmap, PaddingHasTheLightOfItsChart) {
   const SolvedScene solved = solved_box();
   const BakedModel model = bake_model(solved, box_scene());
@@ -168,7 +169,7 @@ TEST(Lightmap, PaddingHasTheLightOfItsChart) {
     for (int y = place.y - padding; y < place.y + place.height + padding; ++y) {
       for (int x = place.x - padding; x < place.x + place.width + padding; ++x) {
         const auto i = static_cast<Eigen::Index>(y) * layout.size + x;
-        // Means of equal numbers, which rounding may move.
+        // The mean of equal numbers may differ from them by rounding.
         EXPECT_LT((reader.atlases[0].irradiance.row(i) - E).abs().maxCoeff(), 1e-5f);
       }
     }
@@ -176,8 +177,8 @@ TEST(Lightmap, PaddingHasTheLightOfItsChart) {
   EXPECT_GT(reader.atlases[0].irradiance.minCoeff(), 0.0f);
 }
 
-/// A floor with a partition as thin as paper that ends in its middle. Light rises around the
-/// partition's end from 0 on one side to 1 on the other.
+/// A thin partition ends in the middle of a floor. Light rises around the end of the partition from
+/// 0 on one side to 1 on the other.
 TEST(Lightmap, NothingLeaksThroughAThinWall) {
   const Paint paint{.reflectance = 0.5f};
   LitScene lit(SceneBuilder()
@@ -212,21 +213,23 @@ TEST(Lightmap, NothingLeaksThroughAThinWall) {
         p += weights[c] * model.position[model.faces[f][c]];
         E += static_cast<float>(weights[c]) * model.irradiance(model.faces[f][c], 0);
       }
-      // Nearer than a texel to the partition, and not at its end, where light turns quickly.
+      // Only points within a texel of the partition, without its end, where light changes quickly.
       if (std::abs(p.z()) > 0.0 || std::abs(p.x() - 2.0) > 1.0 / layout.texels_per_metre ||
           p.y() > 1.5) {
         continue;
       }
       ++beside_wall;
-      // Light rises by 1 / (2 pi 0.5 m) at most here; half a texel of it is a kink's error.
+      // The slope of light is at most 1 / (2 pi 0.5 m) here; the error at a kink is half a texel
+      // times the slope.
       EXPECT_NEAR(reader.irradiance(f, weights)[0], E, 0.2 / layout.texels_per_metre);
     }
   }
   EXPECT_GT(beside_wall, 20);
 }
 
-/// A block on a lit floor: the floor under it has no light and is laid into the floor's own chart,
-/// whose texels there continue the light around, so that no filter at the foot finds darkness.
+/// A block stands on a lit floor. The unlit floor below is part of the floor's chart, whose texels
+/// there continue the surrounding light, so that the filter finds no dark texel at the block's
+/// foot.
 TEST(Lightmap, NothingDarkShowsAtABlocksFoot) {
   const Paint paint{.reflectance = 0.5f, .one_sided = true};
   LitScene lit(SceneBuilder()
@@ -261,8 +264,8 @@ TEST(Lightmap, NothingDarkShowsAtABlocksFoot) {
   EXPECT_GE(under, 4);
 }
 
-/// On a ball, texels hold what is interpolated in angle there; the seam and the poles have no
-/// texel without light.
+/// On a ball, texels are interpolated by longitude and latitude; no texel at the seam or the poles
+/// is without light.
 TEST(Lightmap, ABallIsRolledOffByLongitudeAndLatitude) {
   const SolvedScene solved = solved_of(furnished());
   const BakedModel model = bake_model(solved, furnished().scene);
@@ -289,13 +292,13 @@ TEST(Lightmap, ABallIsRolledOffByLongitudeAndLatitude) {
   }
   const BandArray E = interpolate_irradiance(furnished().caster, furnished().solution, probes);
   for (std::size_t i = 0; i < read.size(); ++i) {
-    // Where rays in single precision meet the ball, 1e-6 m off, light differs by no more.
+    // Hits of single-precision rays are off by 1e-6 m, where light differs by less than the bound.
     EXPECT_NEAR(read[i], E(static_cast<Eigen::Index>(i), 0), 1e-3);
   }
 }
 
-/// Nothing between lamp and floor: direct light at a texel's centre is the closed form's, though
-/// elements are as large as the floor.
+/// Without occluders direct light at a texel's centre is that of the closed form, although the
+/// floor is one element.
 TEST(Lightmap, DirectLightIsTracedAnewAtTexelCentres) {
   const Paint white{.reflectance = 0.5f, .one_sided = true};
   const Paint lamp{.exitance = 100.0f, .one_sided = true};
@@ -323,14 +326,14 @@ TEST(Lightmap, DirectLightIsTracedAnewAtTexelCentres) {
     const double F = lit.direct_light.unoccluded_form_factor(lit.direct_light.emitters()[0],
                                                              {{x, y, 0}, {0, 0, 1}});
     const double E = 100.0 * F + 0.25;
-    // Places are held a thousandth of an element off its edges, over which F changes by 0.4 %.
+    // Points keep a thousandth of an element from its edges; F changes by 0.4 % over this distance.
     EXPECT_NEAR(reader.atlases[0].irradiance(static_cast<Eigen::Index>(i), 0), E, 0.005 * E);
     ++floor_texels;
   }
   EXPECT_GT(floor_texels, 1000);
 }
 
-/// A hemisphere gather in a closed room where all is alike reads that everywhere.
+/// In a closed room of constant radiosity a final gather has the same value everywhere.
 TEST(Lightmap, AGatherInAFurnaceIsTheSameEverywhere) {
   const Paint paint{.reflectance = 0.5f, .exitance = 1.0f, .one_sided = true};
   LitScene lit(SceneBuilder().box(paint, {0, 0, 0}, {2, 2, 2}, true).build(), 1.0);

@@ -11,7 +11,7 @@
 namespace lightwell {
 namespace {
 
-/// Dims, recolours and switches lamps, and reads the light after each.
+/// Script that dims, recolours and switches lamps, and reads the light after each change.
 constexpr const char* drive = R"(<script>
 driver.run(async (page, found) => {
   const {wait, tap} = driver;
@@ -62,8 +62,8 @@ driver.run(async (page, found) => {
 });
 </script>)";
 
-/// Readings are the light that relight() puts at the same places: half floats keep 2^-11 of it,
-/// positions single precision.
+/// Expects readings with the light of relight() at the same points, to the precision of half
+/// floats, 2^-11, and of positions in single precision.
 void expect_light(const Json& readings, const SolvedScene& lit, const Scene& scene) {
   const ElementCaster caster(lit.mesh);
   const BandArray radiance = shown_radiance(lit, scene.materials);
@@ -99,7 +99,7 @@ TEST_P(InBrowser, SlidersRelightTheScene) {
   ASSERT_FALSE(found.contains("failed")) << found["failed"];
   EXPECT_EQ(found["errors"], Json::array());
 
-  // Controls begin where the solution is.
+  // Controls begin with the scales of the solution.
   EXPECT_EQ(found["names"], Json::array({"desk", "panel"}));
   EXPECT_EQ(found["percents"], Json::array({"250 %", "50 %"}));
   EXPECT_EQ(found["sliders"], Json::array({"250", "50"}));
@@ -117,7 +117,8 @@ TEST_P(InBrowser, SlidersRelightTheScene) {
   expect_light(found["bright"], bright, scene);
   expect_light(found["off"], relit(solved, {"off", "off"}), scene);
 
-  // The light meter sees it too. Pixels on edges, a few in a hundred, may belong to either side.
+  // The exposure meter measures the brighter picture. Pixels on edges, a few in a hundred, may
+  // belong to either side.
   const double exposure = found["brighter_exposure"];
   EXPECT_NEAR(std::log2(exposure / exposure_for(bright, scene)), 0.0, 0.05);
   EXPECT_EQ(found["exposure_of_darkness"], exposure);  // nothing to expose for

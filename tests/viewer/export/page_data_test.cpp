@@ -1,4 +1,4 @@
-// What is in a walkthrough page, without a browser.
+// Data of a walkthrough page, read without a browser.
 #include "viewer/export/page_data.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,8 @@ class PageOf : public testing::Test {
   }
 };
 
-/// 21 bits along the longest side: half a step of 2 m / (2^21 - 1), wherever the room stands.
+/// Positions have 21 bits along the longest side: their error is half a step of 2 m / (2^21 - 1)
+/// for any position of the room.
 TEST_F(PageOf, PositionsAreKeptToHalfAStep) {
   const auto packed = values_at<std::uint64_t>(page, page.about["positions"], n);
   const double step = page.about["positions"]["step"];
@@ -62,12 +63,12 @@ TEST_F(PageOf, PositionsAreKeptToHalfAStep) {
   for (std::size_t v = 0; v < n; ++v) {
     const Eigen::Vector3d place(packed[v] & 0x1fffff, packed[v] >> 21 & 0x1fffff, packed[v] >> 42);
     const Eigen::Vector3d found = to_scene(step * place);
-    // 7e6 in double precision is good to 1e-9.
+    // The rounding error of 7e6 in double precision is 1e-9.
     EXPECT_LE((found - model.position[v]).cwiseAbs().maxCoeff(), 0.5 * step + 2e-9);
   }
 }
 
-/// Half floats keep 11 bits, of numbers down to 2e-9 of the largest.
+/// Half floats have 11 significant bits for numbers down to 2e-9 of the largest.
 TEST_F(PageOf, LightIsKeptToElevenBits) {
   const Json& basis = page.about["bases"][0];
   const auto check = [&](const Json& place, const float* wanted, std::size_t count) {
@@ -108,7 +109,7 @@ TEST_F(PageOf, CamerasStandWhereTheyStood) {
   EXPECT_EQ(camera["exposure"], model.cameras[0].scale);
 }
 
-/// RFC 4648, section 10.
+/// Test vectors of RFC 4648, section 10.
 TEST(Base64, IsThatOfTheStandard) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
@@ -124,7 +125,7 @@ int count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// A script element ends at the first "</script", and "<!--" changes what that means.
+/// A script element ends at the first "</script", unless "<!--" precedes it.
 TEST(Walkthrough, NamesCannotBreakThePage) {
   const TemporaryFolder folder;
   Scene scene = box_scene();
@@ -145,7 +146,7 @@ TEST(Walkthrough, NamesCannotBreakThePage) {
   EXPECT_EQ(about["parts"][0]["name"], scene.surfaces[0].name);
 }
 
-/// Nothing is fetched: no address but those in the licences and the library's own texts.
+/// A page has no address to fetch: addresses occur only in licences and in the library's texts.
 TEST(Walkthrough, HoldsAllThatItNeeds) {
   const TemporaryFolder folder;
   write_walkthrough(folder / "box.html", bake_model(solved_box(), box_scene()));
@@ -157,8 +158,8 @@ TEST(Walkthrough, HoldsAllThatItNeeds) {
   EXPECT_TRUE(says(page, "three.js authors"));
 }
 
-/// The worst a mesh of 100 000 elements can be: quads of which none shares a vertex. Pages are sent
-/// by mail, whose limits begin at 20 MB.
+/// The largest data of 100 000 elements are quadrilaterals without shared vertices. Pages are sent
+/// by mail, with limits from 20 MB.
 TEST(PageSize, OfAHundredThousandElementsIsBelowFifteenMegabytes) {
   SolvedQuads quads;
   constexpr int side = 317;  // 100 489 quads

@@ -1,4 +1,4 @@
-// What is seen outside of the scene, for windows and pages.
+// Sky and ground around the scene, for windows and pages.
 #include "viewer/export/sky_grid.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace lightwell {
 namespace {
 
-/// Half as bright at the zenith as at the horizon, on darker ground.
+/// The CIE overcast sky above ground.
 Sky graded_sky() {
   return {.name = "graded",
           .up = Eigen::Vector3d::UnitY(),
@@ -23,7 +23,7 @@ Sky graded_sky() {
           .ground = Eigen::Array3f(0.5f, 0.4f, 0.3f)};
 }
 
-/// L = L_z (1 + 2 cos Z) / 3: L_z at the zenith, a third of it at the horizon.
+/// L = L_z (1 + 2 cos Z) / 3: L_z at the zenith, L_z / 3 at the horizon.
 TEST(SkyGrid, HasTheSkyOnItsRowsAndASharpHorizon) {
   const Sky sky = graded_sky();
   const SkyGrid grid = sky_grid(sky, 65);
@@ -44,7 +44,7 @@ TEST(SkyGrid, HasTheSkyOnItsRowsAndASharpHorizon) {
   EXPECT_TRUE((grid.radiance.row(3 * 65) == grid.radiance.row(3 * 65 + 64)).all()) << "both north";
 }
 
-/// Channels dim what is seen as they dim its light; a lamp comes before both.
+/// The channels of sky and sun scale their visible radiance; that of the lamp precedes both.
 TEST(SkyInForce, IsAsBrightAsTheSolutionHasIt) {
   Scene scene = box_scene();
   scene.sky = graded_sky();
@@ -62,7 +62,7 @@ TEST(SkyInForce, IsAsBrightAsTheSolutionHasIt) {
   EXPECT_FALSE(effective_sky(scene, box.mesh).has_value());
 }
 
-/// A miss shows the sky, and exposure counts it.
+/// A ray that misses the scene shows the sky, which counts for the exposure.
 TEST(SkyInForce, IsInTheCoarsePicture) {
   const SolvedScene box = solved_box();
   const ElementCaster caster(box.mesh);

@@ -1,5 +1,5 @@
-// The walkthrough page in Chromium and in Firefox. Skipped where there is no such browser (Debian:
-// apt install chromium firefox-esr).
+// The walkthrough page in Chromium and in Firefox. A test is skipped if its browser is missing
+// (Debian: apt install chromium firefox-esr).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace lightwell {
 namespace {
 
-/// Presses keys, moves the mouse, and leaves what is then to be seen as JSON.
+/// Script that presses keys, moves the mouse, and leaves the state of the page as JSON.
 constexpr const char* drive = R"(<script>
 driver.run(async (page, found) => {
   const {wait, frame, tap, read, pixel} = driver;
@@ -70,7 +70,7 @@ driver.run(async (page, found) => {
 });
 </script>)";
 
-/// The box with light that changes over each wall, seen from the front.
+/// The box with light that varies over each wall, seen from the front.
 SolvedScene shaded_box() {
   SolvedScene box = solved_box();
   for (int v = 0; v < box.mesh.vertex_count(); ++v) {
@@ -93,8 +93,9 @@ TEST_P(InBrowser, ThePageShowsAndMeasuresTheSolution) {
   EXPECT_EQ(found["message_hidden"], true);
   EXPECT_EQ(found["options"], Json::array({"1 front"}));
 
-  // Readings are those of interpolate_irradiance at the same place. Half floats keep 2^-11 of the
-  // corners' values, and so of what lies between them; positions single precision of 4 m.
+  // Readings are those of interpolate_irradiance at the same point. Values of corners, and so
+  // interpolated ones, have the relative error of half floats, 2^-11; positions have that of single
+  // precision at 4 m.
   const ElementCaster caster(box.mesh);
   for (const Json& reading : found["probes"]) {
     ASSERT_TRUE(reading.contains("illuminance")) << reading;
@@ -112,7 +113,7 @@ TEST_P(InBrowser, ThePageShowsAndMeasuresTheSolution) {
   EXPECT_EQ(found["probes"][2]["surface"], "floor");
   EXPECT_EQ(found["outside"]["text"], "");
 
-  // Colours of a pixel: what display_colors makes of the light there.
+  // The colour of a pixel is that of display_colors for the light at the point.
   const Probe middle{.position = {1, 1, 2}, .normal = {0, 0, -1}};
   const BandArray L =
       interpolate_irradiance(caster, box.solution, {&middle, 1}) / std::numbers::pi_v<float>;
@@ -126,14 +127,14 @@ TEST_P(InBrowser, ThePageShowsAndMeasuresTheSolution) {
                                          {.low = scale_of_luminance["low"].get<double>(),
                                           .high = scale_of_luminance["high"].get<double>()});
   for (std::size_t c = 0; c < 3; ++c) {
-    // The light of this wall is linear, so triangles show it as it is; two roundings.
+    // The light of this wall is linear, so triangles interpolate it exactly, with two roundings.
     EXPECT_NEAR(found["wall_pixel"][c].get<int>(), wanted[c], 2) << c;
     EXPECT_NEAR(found["brighter_pixel"][c].get<int>(), brighter[c], 2) << c;
     EXPECT_NEAR(found["false_color_pixel"][c].get<int>(), in_false_color[c], 2) << c;
     EXPECT_NEAR(found["luminance_pixel"][c].get<int>(), in_luminance[c], 2) << c;
   }
-  // The same light in the same picture; pixels on edges, two or three in a hundred, may belong to
-  // either of two walls, whose light differs by less than two stops.
+  // Page and window measure the same picture. Pixels on edges, two or three in a hundred, may
+  // belong to either of two walls, whose light differs by less than two stops.
   EXPECT_NEAR(std::log2(found["measured_exposure"].get<double>() / scale), 0.0, 0.05);
 
   ASSERT_TRUE(found["legend"].is_array());
@@ -155,8 +156,8 @@ TEST_P(InBrowser, ThePageShowsAndMeasuresTheSolution) {
   EXPECT_NEAR(back[2].get<double>(), -3.0, 1e-5);
 }
 
-/// Sky above the horizon, ground below, as bright as pictures have them; dimming their channel dims
-/// what is seen.
+/// The page shows the sky above the horizon and the ground below, with the radiance of pictures;
+/// dimming their channel dims both.
 TEST_P(InBrowser, ThePageShowsTheSky) {
   constexpr const char* look = R"(<script>
 driver.run(async (page, found) => {
@@ -202,7 +203,8 @@ TEST_P(InBrowser, WithoutWebGlThePageSaysWhatToDo) {
   EXPECT_TRUE(says(found["message"], "This browser shows no WebGL 2")) << found;
 }
 
-/// Halves of a wall show what they reflect, to one step of rounding more than plain walls.
+/// The halves of a textured wall have the colours of their reflectances, to one rounding more than
+/// plain walls.
 TEST_P(InBrowser, ThePageShowsPictures) {
   constexpr const char* look = R"(<script>
 driver.run(async (page, found) => {
@@ -225,7 +227,7 @@ driver.run(async (page, found) => {
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(found["halves"][half][c].get<int>(), wanted[c], 3) << half << ' ' << c;
     }
-    // The reading is of the texel, whose 8 bits are right to 1 % there.
+    // The reading has the reflectance of the texel, whose 8 bits are exact to 1 % there.
     const double lux = luminous(rgb_bands(), Spectrum(white));
     const double luminance = rho * lux / std::numbers::pi;
     EXPECT_NEAR(number(found["read"][half]["luminance"]), luminance, 0.01 * luminance);
@@ -239,10 +241,10 @@ driver.run(async (page, found) => {
   EXPECT_LT(with_hole["halves"][1][1].get<int>(), 60) << "the page's own ground";
 }
 
-/// A ball of a few large elements is split until it is round: all triangles that are drawn have
-/// their corners on it and face outwards, and lack (2.8 degrees)^2 / 6 = 4e-4 of its area. Readings
-/// are those of its elements; a place on a chord instead of its arc is off by less than 1 % of how
-/// light varies over an element of 60 degrees, here by a half.
+/// A ball of a few large elements is split until it is round: the corners of all drawn triangles
+/// lie on the ball, the triangles face outwards, and their area is less than the ball's by a share
+/// of (2.8 degrees)^2 / 6 = 4e-4. Readings are those of its elements; the difference between chord
+/// and arc is less than 1 % of the variation of light over an element of 60 degrees, here a half.
 TEST_P(InBrowser, ThePageShowsRoundSpheres) {
   constexpr const char* look = R"(<script>
 driver.run(async (page, found) => {
@@ -301,7 +303,8 @@ driver.run(async (page, found) => {
   ASSERT_GE(hit.element, 0);
   const double lux =
       luminous(scene.bands, interpolate(solved.mesh, solution.direct_irradiance, hit));
-  // The page's faces lie up to 1e-3 of the radius below the sphere, over which it changes by half.
+  // The page's faces lie up to 1e-3 of the radius below the sphere; light varies by a half over one
+  // radius.
   EXPECT_NEAR(number(reading["illuminance"]), lux, 0.002 * lux);
 }
 

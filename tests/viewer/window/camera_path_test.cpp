@@ -22,7 +22,7 @@ CameraPath straight_path() {
   return path;
 }
 
-/// A curve through points of a straight and even walk is that walk, whatever the times between.
+/// The path through points of a straight walk at constant speed is that walk, for any time steps.
 TEST(CameraPath, KeepsAnEvenWalkEven) {
   const CameraPath path = straight_path();
   for (const double t : {0.0, 0.3, 1.0, 1.2, 2.75, 4.0}) {
@@ -179,7 +179,8 @@ TEST(WalkWindowViews, AWalkThatWasRecordedIsPlayed) {
   EXPECT_NEAR(read_views(options.bookmark_file).path.duration(), 2.0, 0.11);
 }
 
-/// Around what is in the middle: the back wall at (1, 1, 2), 5 m away.
+/// The camera orbits around the point in the middle of the picture: (1, 1, 2) on the back wall, 5 m
+/// away.
 TEST(WalkWindowViews, OrbitsAroundWhatIsInTheMiddle) {
   const SolvedScene box = solved_box();
   ViewOptions options;
@@ -195,8 +196,7 @@ TEST(WalkWindowViews, OrbitsAroundWhatIsInTheMiddle) {
   EXPECT_GT((camera.position - box_camera().position).norm(), 0.5);
 }
 
-/// On foot in the box, 2 m high: all at 2/2.5 of a person's, eyes 1.28 m over the floor, a radius
-/// of 0.2 m from the walls.
+/// In the box of 2 m height the body is scaled by 2/2.5: eyes 1.28 m above the floor, radius 0.2 m.
 TEST(WalkWindowViews, WalksOnTheFloorAndStopsAtTheWall) {
   const SolvedScene box = solved_box();
   ViewOptions options;

@@ -18,7 +18,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 const Sphere ball{.center = {1.0, 2.0, 3.0}, .radius = 0.5};
 
-/// A ball that shines, two-sided, of a few large elements.
+/// A two-sided emitting ball of a few large elements.
 Scene ball_scene() {
   Scene scene;
   scene.bands = rgb_bands();
@@ -34,7 +34,8 @@ PatchMesh ball_mesh() {
   return build_patches(ball_scene(), {.max_patch_size = 0.5, .elements_per_patch_edge = 1});
 }
 
-/// Inscribed: less area than the sphere by about (2.8 degrees)^2 / 6, 4e-4 of it, on each side.
+/// The inscribed faces have less area than the sphere by a share of (2.8 degrees)^2 / 6 = 4e-4 on
+/// each side.
 TEST(FineSpheres, FacesCoverBothSidesOfTheSphereAndFaceAwayFromThem) {
   const PatchMesh mesh = ball_mesh();
   const FineSpheres fine = fine_spheres(mesh);
@@ -58,7 +59,7 @@ TEST(FineSpheres, FacesCoverBothSidesOfTheSphereAndFaceAwayFromThem) {
   }
 }
 
-/// Light of points is that which rays find there.
+/// Light at points is that of the elements that rays hit there.
 TEST(FineSpheres, PointsHaveTheLightOfTheirElement) {
   const PatchMesh mesh = ball_mesh();
   const ElementCaster caster(mesh);
@@ -78,7 +79,7 @@ TEST(FineSpheres, PointsHaveTheLightOfTheirElement) {
     for (int c = 0; c < 4; ++c) {
       if (point.vertex[c] >= 0) value += point.weight[c] * values(point.vertex[c], 0);
     }
-    // Rays find places to 1e-6 of their length, where values change by 7 within 0.3 m.
+    // Hits are exact to 1e-6 of a ray's length; values change by 7 within 0.3 m.
     const Eigen::Vector3d away = (point.position - ball.center).normalized();
     if (std::abs(away.z()) < 0.999) {  // at the poles every longitude is as good
       EXPECT_NEAR(value, interpolate(mesh, values, hit)[0], 1e-4f);
@@ -86,8 +87,8 @@ TEST(FineSpheres, PointsHaveTheLightOfTheirElement) {
   }
 }
 
-/// Seen from 4 m away, an outline of radius tan(asin(0.5 / 4)), whatever the elements: the share of
-/// the picture that shows light is that disc's, to a tenth of a pixel around the outline.
+/// From 4 m away the outline is a circle of radius tan(asin(0.5 / 4)) for any element size. The lit
+/// share of the picture is that of the disc, to a tenth of a pixel along the outline.
 TEST(FineSpheres, OutlinesAreRound) {
   const Scene scene = ball_scene();
   SolvedScene solved{.mesh = ball_mesh(), .solution = {}};

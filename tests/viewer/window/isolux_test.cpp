@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-/// A wall 2 m wide whose light rises evenly from left to right, seen from in front.
+/// A wall 2 m wide with illuminance that rises linearly from left to right, seen from the front.
 SolvedScene ramp() {
   SolvedQuads quads;
   const Eigen::Array3f dim = 0.0f * grey, bright = 2.0f * grey;
@@ -29,8 +29,8 @@ ViewOptions options_at(std::vector<double> levels) {
   return options;
 }
 
-/// 683 lx is half of the way: a vertical line in the middle of the picture and nowhere else, white
-/// on black. World +x is on the left.
+/// The line of 683 lx is vertical, in the middle of the picture, white on black. World +x is on the
+/// left.
 TEST(Isolux, LiesWhereTheLightHasThatValue) {
   const DisplayConnection display;
   const SolvedScene wall = ramp();
@@ -50,7 +50,7 @@ TEST(Isolux, LiesWhereTheLightHasThatValue) {
   EXPECT_EQ(changed_beside, 0);
 }
 
-/// Behind the wall nothing is drawn, so no lines are either.
+/// The back of the wall is not drawn and has no lines.
 TEST(Isolux, IsNotSeenFromBehind) {
   const DisplayConnection display;
   const SolvedScene wall = ramp();

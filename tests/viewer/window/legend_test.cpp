@@ -21,7 +21,7 @@ std::vector<float> rising(int width, int height) {
 
 class Legend : public testing::Test {
  protected:
-  // Text is drawn without any display; other tests need theirs.
+  // Text is drawn without a display; the variable is restored for other tests.
   Legend() {
     if (const char* display = std::getenv("DISPLAY")) display_ = display;
     ::unsetenv("DISPLAY");
@@ -49,7 +49,7 @@ TEST_F(Legend, LeavesThePictureInTheWindowsColoursOnTheLeft) {
 TEST_F(Legend, BarRisesFromTheLowEndToTheHighEndAsTheColoursDo) {
   const LegendPicture shown =
       with_legend(rising(50, 400), 50, 400, {.low = 1, .high = 1000}, "cd/m\u00b2");
-  // The bar is where the colours of both ends are, one above the other.
+  // The bar is located by the colours of its two ends, one above the other.
   const auto shows = [&](int x, int y, float place) {
     const Eigen::Array3f c = false_color(place);
     for (int k = 0; k < 3; ++k) {
@@ -79,7 +79,7 @@ TEST_F(Legend, SmallPictureIsPutBesideAScaleThatIsWhole) {
   const LegendPicture shown = with_legend(rising(4, 3), 4, 3, {.low = 0, .high = 500}, "lx");
   EXPECT_GT(shown.height, 60);
   EXPECT_EQ(*std::max_element(pixel(shown, 0, 50), pixel(shown, 0, 50) + 3), 0);
-  // Beside the ticks, of which there is a row each, digits are lit.
+  // Beside the rows of the ticks, pixels of digits are lit.
   int lit = 0;
   for (int y = 0; y < shown.height; ++y) {
     for (int x = 4; x < shown.width; ++x) {

@@ -30,7 +30,7 @@ TEST(LightBoard, ChoosesChannelsInTurnAndNone) {
   EXPECT_EQ(board.text(), "desk 100 %  [panel 100 %]");
 }
 
-/// Three thirds of a stop are a half, and back again is full light to the last bit.
+/// Three steps of a third of a stop halve the light; three steps back restore its bits.
 TEST(LightBoard, DimsInThirdsOfAStop) {
   LightBoard board(room().solution);
   board.choose(1);
@@ -70,7 +70,8 @@ TEST(LightBoard, BeginsWithWhatIsInForce) {
   EXPECT_EQ(board.text(), "desk 25 %  panel off");
 }
 
-/// Keys on a window do what `lightwell relight` does, and what is saved is what is seen.
+/// Keys of the window relight as `lightwell relight` does; the saved file has the light in the
+/// window.
 TEST(LightKeys, RelightThePictureAndSaveIt) {
   const TemporaryFolder folder;
   ViewOptions options;

@@ -28,7 +28,7 @@ SolveOptions quick() {
   return options;
 }
 
-/// True as soon as `what` is, false if that takes longer than anything here should.
+/// Waits until `what` is true; false if that exceeds a time beyond every step of these tests.
 template <class Claim>
 bool comes_true(Claim&& what) {
   for (int i = 0; i < 6000; ++i) {
@@ -38,8 +38,8 @@ bool comes_true(Claim&& what) {
   return false;
 }
 
-/// The first shooters are the brightest: the emitters. Before, there is no light at vertices; the
-/// ambient term stands for all of it.
+/// The first shooters are the emitters, with the most unshot power. Before the first shot vertices
+/// have the ambient term alone.
 TEST(LiveSolve, LightArrivesShotByShot) {
   const Scene scene = channel_room();
   LiveSolve live(scene, quick(), {});
@@ -57,7 +57,7 @@ TEST(LiveSolve, LightArrivesShotByShot) {
   }
 }
 
-/// Before the first shot it is what lamps emit; every shot takes some of it away.
+/// Unshot light is the emission of lamps before the first shot, and falls with every shot.
 TEST(LiveSolve, UnshotLightIsWhatPatchesAreStillToGive) {
   const Scene scene = channel_room();
   LiveSolve live(scene, quick(), {});
@@ -76,7 +76,7 @@ TEST(LiveSolve, UnshotLightIsWhatPatchesAreStillToGive) {
   EXPECT_LT(lumens(live.light().unshot), 0.9 * lumens(first));
 }
 
-/// What has no shot to come by is said, until there is a solution, which has it.
+/// A note names the light that shots leave out, until the solution includes that light.
 TEST(LiveSolve, SaysThatMirrorsSendTheirLightLater) {
   const Scene scene = channel_room();  // it has a mirror
   Scene without = scene;
@@ -101,9 +101,9 @@ TEST(LiveSolve, IsTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE((after(1) == after(3)).all());
 }
 
-/// Shots that go on to the tolerance leave the light that solve_scene finds. The two differ by what
-/// is unshot (1e-3 of the power), the noise of shot rays and that of 64 gather rays on each side;
-/// 5 % of the mean at vertices holds all of it.
+/// Shots down to the tolerance leave the light of solve_scene. Both differ by the unshot power
+/// (1e-3 of all power), the noise of shot rays and that of 64 gather rays on each side; 5 % of the
+/// mean at vertices bounds the sum.
 TEST(LiveSolve, EndsAtTheSolution) {
   const Scene scene = test::two_lamps();
   SolveOptions options = quick();
@@ -124,7 +124,7 @@ TEST(LiveSolve, EndsAtTheSolution) {
   const auto difference =
       (solved.solution.irradiance() - wanted.solution.irradiance()).abs().mean();
   EXPECT_LT(difference, 0.05f * mean);
-  // What is shown meanwhile is the same light, received shot by shot instead of gathered.
+  // The light shown meanwhile is the same, received shot by shot instead of gathered.
   const auto shown = (live.light().irradiance - wanted.solution.irradiance()).abs().mean();
   EXPECT_LT(shown, 0.1f * mean);
 }
@@ -139,8 +139,8 @@ TEST(LiveSolve, WhatIsEndedEarlySaysSo) {
   EXPECT_NEAR(solved.solution.energy.unshot / solved.solution.energy.emitted, unshot, 1e-6);
 }
 
-/// Channels are columns of the same shots: what arrives is the same light, and a dimmed lamp's is
-/// less by just its share, before there is a solution and after.
+/// Channels are columns of the same shots: the sum of light is the same, and the light of a dimmed
+/// lamp is scaled by the lamp's factor, before the solution and after.
 TEST(LiveSolve, DimsALampWhileItsLightArrives) {
   const Scene scene = channel_room();
   SolveOptions options = quick();
@@ -216,7 +216,7 @@ TEST(LiveThread, PausesStepsAndEnds) {
   EXPECT_EQ(live.state().phase, LivePhase::done);
 }
 
-/// Closing the window destroys it in whatever it is at.
+/// The destructor, called when the window closes, ends the thread in any phase.
 TEST(LiveThread, EndsAtOnceWhateverItDoes) {
   const Scene scene = test::two_lamps();
   for (const auto wait : {0ms, 20ms, 200ms}) {
@@ -232,7 +232,7 @@ TEST(LiveThread, EndsAtOnceWhateverItDoes) {
   }
 }
 
-/// The window on a solving: light, keys, the meter, and a file that is a solution like others.
+/// The window during a solve: light, keys, exposure meter, and a saved file that is a solution.
 TEST(LiveWindow, ShowsPausesAndSaves) {
   const TemporaryFolder folder;
   const Scene scene = test::two_lamps();
@@ -276,7 +276,7 @@ TEST(LiveWindow, ShowsPausesAndSaves) {
   EXPECT_TRUE((saved.solution.irradiance() == window.solved().solution.irradiance()).all());
 }
 
-/// Keys dim a lamp while light arrives, and the solution that follows is as dimmed.
+/// Keys dim a lamp while light arrives; the following solution has the same scale.
 TEST(LiveWindow, KeepsALampDimmedInTheSolution) {
   const TemporaryFolder folder;
   const Scene scene = channel_room();

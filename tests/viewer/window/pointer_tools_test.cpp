@@ -18,8 +18,8 @@
 namespace lightwell {
 namespace {
 
-/// A patch knows the mean of its picture; what one points at is a texel. Its codes are right to
-/// 1e-3.
+/// A patch has the mean reflectance of its texture; a reading has that of the texel, whose codes
+/// are exact to 1e-3.
 TEST(PointReading, OfAPictureIsTheTexels) {
   PicturedBox box;
   box.solved.mesh.textures = std::make_shared<const FacetTextures>(box.scene);
@@ -35,9 +35,9 @@ TEST(PointReading, OfAPictureIsTheTexels) {
   }
 }
 
-/// A window's answer is `lightwell probe --interpolate`'s at the same point and normal. Both
-/// interpolate in one element, from rays of other directions: float weights differ by some 1e-6 of
-/// the light's change across an element, which is at most about its own size.
+/// A reading is the irradiance of `lightwell probe --interpolate` at the same point and normal.
+/// Both interpolate in one element, at hits of different rays: float weights differ by some 1e-6 of
+/// the variation of light across an element, which is at most about the light itself.
 TEST(PointReading, IsWhatProbeInterpolates) {
   const Scene scene = channel_room();
   const SolvedScene solved = solve_by_channel(scene);
@@ -101,7 +101,7 @@ TEST(PointReading, LuminanceIsRadiosityOverPi) {
   EXPECT_EQ(full_text(reading, box.solution.bands, relative).find(" lx"), std::string::npos);
 }
 
-/// From the left the red wall shows its back, which is not drawn: what is read is what is seen.
+/// The back of the red wall, which faces the camera on the left, is neither drawn nor read.
 TEST(PointReading, LooksThroughBacks) {
   const SolvedScene box = solved_box();
   Camera camera = box_camera();
@@ -127,8 +127,8 @@ class PointerToolsTest : public testing::Test {
   PointerTools tools_{nullptr};
 };
 
-/// The floor's and the ceiling's middle lines are 2 m apart where the back wall begins; pixels for
-/// (1, 0, 2) and (1, 2, 2), 5 m away: 1 m is 100 / (5 tan 20 deg) = 54.95 pixels.
+/// The clicks are at (1, 0, 2) on the floor and (1, 2, 2) on the ceiling, 2 m apart. At 5 m, 1 m is
+/// 100 / (5 tan 20 deg) = 54.95 pixels.
 TEST_F(PointerToolsTest, MeasuresBetweenTwoClicks) {
   tools_.switch_measuring();
   const double high = 100.0 / (5.0 * std::tan(20.0 * std::numbers::pi / 180.0));

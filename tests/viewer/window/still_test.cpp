@@ -42,14 +42,14 @@ class StillTest : public testing::Test {
     }
     return window.still().phase() == phase;
   }
-  /// Enough pixels to come in more than one strip.
+  /// A view with enough pixels for more than one strip.
   ViewOptions large_view() const {
     ViewOptions large = options();
     large.width = 640;
     large.height = 480;
     return large;
   }
-  /// Asks for a picture and waits for its first strip.
+  /// Starts a picture and waits for its first strip.
   static void start_still(WalkWindow& window) {
     window.tick(0.01);
     window.press("r");
@@ -62,8 +62,7 @@ class StillTest : public testing::Test {
   TemporaryFolder folder_{};
 };
 
-/// What covers the window in the end is the second pass's picture to the last bit, in the window's
-/// exposure.
+/// The finished picture in the window has the bits of the second pass at the window's exposure.
 TEST_F(StillTest, IsThePictureThatRenderMakes) {
   WalkWindow window(solved(), options());
   window.tick(0.01);
@@ -98,7 +97,7 @@ TEST_F(StillTest, IsThrownAwayWhenTheCameraMoves) {
   EXPECT_EQ(window.still().phase(), StillPhase::none) << "R again cancels";
 }
 
-/// Strips come from the top down, and are those of the whole picture.
+/// Strips arrive from the top down, with the bits of the whole picture.
 TEST_F(StillTest, ShowsWhatIsThereWhileItGoesOn) {
   WalkWindow window(solved(), large_view());
   start_still(window);

@@ -52,7 +52,7 @@ Picture draw(const SolvedScene& solved, const ViewOptions& options, const Look* 
   return {options.width, options.height, draw_offscreen(view, options.width, options.height)};
 }
 
-/// The bytes a surface of this irradiance (and reflectance 1) must show in a picture.
+/// Pixel bytes of a surface with irradiance E and reflectance 1.
 Pixel expected(const SolvedScene& solved, const ViewOptions& options, const Eigen::Array3f& E) {
   const SolutionView view(solved, options);
   const BandArray L = E.transpose() / std::numbers::pi_v<float>;
@@ -61,15 +61,16 @@ Pixel expected(const SolvedScene& solved, const ViewOptions& options, const Eige
   return {bytes[0], bytes[1], bytes[2]};
 }
 
-/// OpenGL may round a colour either way, and the average over subpixels rounds once more.
+/// Tolerance of two roundings: OpenGL may round a colour up or down, and so may the mean over
+/// subpixels.
 void expect_pixel(const Pixel& seen, const Pixel& wanted, const char* what) {
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(seen[c], wanted[c], 2) << what << ", colour component " << c;
   }
 }
 
-/// Walls of one colour each: the pixels are the tone-mapped vertex colours, and left is left. The
-/// opening is 3 m away and 2 m wide in a picture 2 * 3 tan 20 deg = 2.18 m wide there.
+/// Each wall has one colour: the pixels are the tone-mapped vertex colours, with left and right as
+/// in the scene. The opening is 3 m away and 2 m wide in a picture 2 * 3 tan 20 deg = 2.18 m wide.
 TEST(Snapshot, ShowsEveryWallWhereTheCameraSeesIt) {
   const SolvedScene box = solved_box();
   const ViewOptions options = options_for(box_camera());
@@ -82,8 +83,8 @@ TEST(Snapshot, ShowsEveryWallWhereTheCameraSeesIt) {
   expect_pixel(picture.at(2, 75), {0, 0, 0}, "beside the box there is nothing");
 }
 
-/// Halves of the wall at the end in the light of a white one: left is the picture's left. sRGB is
-/// no pure power, so that the product of two encoded values is off by up to 2 %.
+/// The halves of the textured back wall have the light of a white wall times the texture. sRGB is
+/// not a pure power, so the product of two encoded values has an error of up to 2 %.
 TEST(Snapshot, ShowsPicturesInTheirLight) {
   PicturedBox box;
   ViewOptions options = options_for(box_camera());
@@ -109,8 +110,8 @@ TEST(Snapshot, ShowsPicturesInTheirLight) {
   expect_pixel(with_hole.at(120, 75), {0, 0, 0}, "through the hole there is nothing");
 }
 
-/// Light far above white keeps its colour on a dark picture: it is tone-mapped with the texel, not
-/// before. Codes of light are right to 2 %, which is 4 of 255 at the most.
+/// Light far above white keeps its colour on a dark texture, since light times texel is
+/// tone-mapped. Codes of light are exact to 2 %, at most 4 of 255.
 TEST(Snapshot, DarkPicturesInBrightLightKeepItsColour) {
   PicturedBox box;
   ViewOptions options = options_for(box_camera());
@@ -129,8 +130,8 @@ TEST(Snapshot, DarkPicturesInBrightLightKeepItsColour) {
   }
 }
 
-/// Beside the box there is the sky, the ground below the horizon, and the sun's disc; no light
-/// falls on them, so false colours leave them black.
+/// Around the box the picture has the sky, the ground below the horizon, and the sun's disc. They
+/// have no illuminance, so false colours leave them black.
 TEST(Snapshot, ShowsTheSkyOutside) {
   const SolvedScene box = solved_box();
   Scene scene = box_scene();
@@ -143,7 +144,7 @@ TEST(Snapshot, ShowsTheSkyOutside) {
                              .angle_degrees = 4.0}};
   ViewOptions options = options_for(box_camera());
   options.scene = &scene;
-  options.exposure_ev = -1.0;  // so that nothing is white
+  options.exposure_ev = -1.0;  // keeps every pixel below white
   const auto shown = [&](const Eigen::Array3f& L) {
     return expected(box, options, std::numbers::pi_v<float> * L);
   };
@@ -170,7 +171,7 @@ TEST(Snapshot, BacksAreNotDrawn) {
                "through the back of the red wall");
 }
 
-/// Both sides of one wall lie in the same plane and must not fight for the pixels.
+/// Both sides of a wall lie in the same plane, and only the side towards the camera is drawn.
 TEST(Snapshot, EachSideOfAWallShowsItsOwnLight) {
   SolvedQuads quads;
   quads.add({{{0, 0, 0}, {0, 2, 0}, {2, 2, 0}, {2, 0, 0}}}, red);   // faces -z
@@ -193,8 +194,8 @@ TEST(Snapshot, EachSideOfAWallShowsItsOwnLight) {
   }
 }
 
-/// Two opposite corners are equal and the others are not: the crease must join the equal ones, so
-/// that the middle has their value, whichever pair it is.
+/// If two opposite corners are equal and the other two are not, the diagonal must join the equal
+/// corners: the middle then has their value.
 TEST(Snapshot, QuadsAreSplitAlongTheSmootherDiagonal) {
   const Eigen::Array3f dim = 0.25f * grey, bright = 3.0f * grey;
   for (const auto& irradiance :
@@ -210,8 +211,9 @@ TEST(Snapshot, QuadsAreSplitAlongTheSmootherDiagonal) {
   }
 }
 
-/// A quarter of pixel column 100 and of pixel row 74 is covered; light averages before it is
-/// encoded. At 2 m the picture is 4 tan 20 deg = 1.456 m wide and has 200 pixels; its right is -x.
+/// The dark wall covers a quarter of pixel column 100 and of pixel row 74; light is averaged before
+/// it is encoded. At 2 m the picture is 4 tan 20 deg = 1.456 m wide and has 200 pixels; its right
+/// is -x.
 TEST(Snapshot, APixelShowsItsMeanLight) {
   const double quarter = 0.25 * 4.0 * std::tan(20.0 * std::numbers::pi / 180.0) / 200.0;
   const double right = 1.0 - quarter, top = 1.0 + quarter;
@@ -269,8 +271,8 @@ TEST(Snapshot, TheMeshOverlayDrawsTheOutlinesAndNoDiagonals) {
   Look look = SolutionView(box, options).look();
   look.mesh = true;
   const Picture meshed = draw(box, options, &look);
-  // Across the edge between the back wall and the floor, 1 m below the axis at 5 m: 1 / (5 tan 20)
-  // of the half width of 100 pixels, 55 pixels below the middle.
+  // The edge between back wall and floor is 1 m below the axis at 5 m: 1 / (5 tan 20 deg) of the
+  // half width of 100 pixels, 55 pixels below the middle.
   int darkest = 255;
   for (int y = 127; y <= 133; ++y) darkest = std::min(darkest, meshed.at(100, y)[0]);
   EXPECT_LT(darkest, plain.at(100, 126)[0] - 40);
@@ -303,7 +305,7 @@ Pixel quarter_up_the_scale() {
   return {static_cast<int>(c[0]), static_cast<int>(c[1]), static_cast<int>(c[2])};
 }
 
-/// Of reflectance 1, luminance is E / pi.
+/// With reflectance 1, luminance is E / pi.
 TEST(Snapshot, MeasuresLuminanceAndUnshotLight) {
   const SolvedScene box = solved_box();
   ViewOptions options = options_for(box_camera());
@@ -321,7 +323,7 @@ TEST(Snapshot, MeasuresLuminanceAndUnshotLight) {
   expect_pixel(picture.at(100, 75), quarter_up_the_scale(), "a quarter of 40 lm/m2");
 }
 
-/// A range is of what it was given for: with another quantity the scale suits the solution.
+/// A given range holds for its own quantity; another quantity has an automatic scale.
 TEST(Snapshot, ARangeHoldsForItsOwnQuantity) {
   const SolvedScene box = solved_box();
   ViewOptions options = options_for(box_camera());
@@ -335,7 +337,7 @@ TEST(Snapshot, ARangeHoldsForItsOwnQuantity) {
   EXPECT_NE(draw(box, options, &look).bytes, suits.bytes);
 }
 
-/// The marks' colour, whatever blending made of their edges.
+/// True if the pixel has the marks' colour, also where edges are blended.
 bool has_mark(const Picture& picture, int x, int y) {
   const Pixel p = picture.at(x, y);
   return p[0] > 240 && p[1] > 190 && p[2] < 80;
@@ -371,7 +373,7 @@ TEST(Snapshot, WhatKeysAndClicksShowIsDrawnOffScreen) {
   for (const int x : {300, 400, 500}) EXPECT_TRUE(has_mark(measured, x, 300)) << x;
   options.annotations = {.pointer = Eigen::Vector2d(200.5, 300.5)};
   const Picture pointed = written();
-  int changed = 0;  // pixels on its right, where there is room
+  int changed = 0;  // pixels to the right, where there is room
   for (int x = 210; x < 400; ++x) changed += pointed.at(x, 320) != plain.at(x, 320);
   EXPECT_GT(changed, 50);
   options.annotations.pointer = Eigen::Vector2d(800.0, 300.0);
@@ -388,7 +390,7 @@ TEST(Snapshot, WhatKeysAndClicksShowIsDrawnOffScreen) {
   EXPECT_FALSE(SolutionView(box, options).look().unlit);
 }
 
-/// The legend's text, which is white, ends before the picture does.
+/// The legend's white text ends within the picture.
 TEST(Snapshot, TheLegendFitsIntoNarrowPictures) {
   const SolvedScene box = solved_box();
   ViewOptions options = options_for(box_camera());
@@ -403,7 +405,7 @@ TEST(Snapshot, TheLegendFitsIntoNarrowPictures) {
   EXPECT_LT(brightest, 128);
 }
 
-/// A folder of its own that goes away with the test.
+/// A test with a temporary folder.
 class SnapshotFile : public testing::Test {
  protected:
   Picture read(const fs::path& png) const {
@@ -459,7 +461,7 @@ TEST_F(SnapshotFile, AFolderThatDoesNotExistIsNamed) {
   }
 }
 
-/// VTK would end the program; the library must say what to do instead.
+/// Without a display VTK would end the program; the library throws with a remedy.
 TEST_F(SnapshotFile, WithoutADisplayTheMessageSaysWhatToDo) {
   const char* before = std::getenv("DISPLAY");
   const std::string display = before ? before : "";
@@ -478,7 +480,7 @@ TEST_F(SnapshotFile, WithoutADisplayTheMessageSaysWhatToDo) {
   EXPECT_EQ(folder_.file_count(), 0);
 }
 
-/// The whole window, driven from outside as a person would: walk, save a picture, close.
+/// A real window, driven by key events from outside: walk, save a picture, close.
 TEST_F(SnapshotFile, AWindowCanBeWalkedPhotographedAndClosed) {
   if (std::system("command -v xdotool >/dev/null") != 0) GTEST_SKIP() << "xdotool is not installed";
   const SolvedScene box = solved_box();
@@ -507,8 +509,8 @@ TEST_F(SnapshotFile, AWindowCanBeWalkedPhotographedAndClosed) {
   EXPECT_NE(before.at(160 - 96, 120), after.at(160 - 96, 120));
 }
 
-/// On foot, against the wall at z = 2: the eye stops a radius of its body before it. There a click
-/// in the middle reads the wall, which is lit evenly.
+/// A walk on foot stops with the eye a body's radius before the wall at z = 2. There a click in the
+/// middle reads the wall, which has constant illuminance.
 TEST_F(SnapshotFile, AWindowStopsAtWallsAndReadsWhatIsClicked) {
   if (std::system("command -v xdotool >/dev/null") != 0) GTEST_SKIP() << "xdotool is not installed";
   const SolvedScene box = solved_box();
@@ -538,7 +540,7 @@ TEST_F(SnapshotFile, AWindowStopsAtWallsAndReadsWhatIsClicked) {
   EXPECT_TRUE(window.look().illuminance);
   const auto kept = read_views(options.bookmark_file).bookmarks[0];
   ASSERT_TRUE(kept.has_value());
-  // The rays that find wall and floor are of single precision.
+  // Rays towards wall and floor are in single precision.
   EXPECT_NEAR(kept->position.z(), 2.0 - body.radius, 1e-6);
   EXPECT_NEAR(kept->position.y(), body.eye_height, 1e-6) << "it stands on the floor";
   ASSERT_TRUE(window.pointer().reading().has_value());

@@ -66,7 +66,7 @@ TEST_F(WalkBodyTest, StopsARadiusBeforeAWall) {
   EXPECT_NEAR(eye.z(), 1.6, 1e-3);
 }
 
-/// Along the wall it keeps the part of the way that the wall does not stop.
+/// Motion into a wall keeps its component along the wall.
 TEST_F(WalkBodyTest, SlidesAlongAWall) {
   const Eigen::Vector3d eye = walk({3.7, -3, 1.6}, {1.0, 1.0, 0}, 4.0);
   EXPECT_NEAR(eye.x(), 3.75, 2e-3);
@@ -95,8 +95,8 @@ TEST_F(WalkBodyTest, DoesNotClimbALedgeButJumpsOntoIt) {
   EXPECT_NEAR(eye.z(), 2.1, 0.01) << "a jump of 0.45 m and a step of 0.3 m reach 0.5 m";
 }
 
-/// A jump rises by its height and takes 2 sqrt(2 h / g); with steps of 1/120 s times and heights
-/// are those of the trapezoidal rule, exact for a constant g but for the last moment.
+/// A jump has height h and takes 2 sqrt(2 h / g). Steps of 1/120 s by the trapezoidal rule are
+/// exact for constant g, except for the last step.
 TEST_F(WalkBodyTest, JumpsByTheLawOfFall) {
   Eigen::Vector3d eye = walk({0, 0, 1.6}, {0, 0, 0}, 0.1);
   person_.jump();
@@ -121,12 +121,12 @@ TEST_F(WalkBodyTest, KeepsItsHeightWhereThereIsNoGround) {
   EXPECT_EQ(eye.z(), 3.0);
 }
 
-/// From behind the wall is not drawn, and stops nobody.
+/// The back of a wall is not drawn and does not stop a walk.
 TEST_F(WalkBodyTest, WalksThroughBacksThatAreNotSeen) {
   EXPECT_LT(walk({5.5, 0, 1.6}, {-1.4, 0, 0}, 2.0).x(), 3.75);
 }
 
-/// A block in an empty hall, its sides facing outwards.
+/// A block with sides that face outwards, in an empty hall.
 SolvedScene hall_with_block(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   SolvedQuads quads;
   quads.add({{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}}, grey);
@@ -141,8 +141,8 @@ SolvedScene hall_with_block(const Eigen::Vector3d& low, const Eigen::Vector3d& h
   return quads.solved();
 }
 
-/// Walks straight on for three seconds; the least level distance from the body's axis to the block
-/// on the way, and where it ends.
+/// A straight walk of three seconds: least horizontal distance from the body's axis to the block,
+/// and the final position.
 struct Passage {
   double nearest = 1e300;
   Eigen::Vector3d end{};
@@ -163,9 +163,9 @@ Passage walk_at(const SolvedScene& solved, const Eigen::Vector3d& low, const Eig
   return passage;
 }
 
-/// However it is met, a post of 4 cm comes nowhere nearer than the body's radius, but for what lies
-/// between two rays of the fan, 0.25 m / 12: at a corner between them, by their distance times the
-/// slope of the round body, at most 2 cm * tan(asin(23/24)).
+/// From every direction a post of 4 cm keeps the body's radius as distance, except at corners
+/// between two rays of the fan, which are 0.25 m / 12 apart: there by at most their distance times
+/// the slope of the round body, 2 cm * tan(asin(23/24)).
 TEST(WalkBody, IsStoppedByAThinPost) {
   const Eigen::Vector3d low(2, -0.02, 0), high(2.04, 0.02, 2.5);
   const SolvedScene solved = hall_with_block(low, high);
@@ -179,7 +179,7 @@ TEST(WalkBody, IsStoppedByAThinPost) {
   }
 }
 
-/// A table's top, 4 cm thick, between two of the heights at which rays go around.
+/// A table top, 4 cm thick, lies between two of the heights at which rays are cast around the body.
 TEST(WalkBody, IsStoppedByATablesTop) {
   const Eigen::Vector3d low(2, -1, 0.72), high(3, 1, 0.76);
   const SolvedScene solved = hall_with_block(low, high);

@@ -87,7 +87,7 @@ TEST(WalkState, TheEyeStopsFiveDegreesFromZenithAndNadir) {
   EXPECT_NEAR(walk.camera().direction.y(), -std::cos(5 * degree), 1e-12);
 }
 
-/// Each of the turns rounds; the frame is made orthonormal again every time, so errors do not add.
+/// Each turn has rounding errors; the frame is orthonormalised every time, so errors do not add up.
 TEST(WalkState, TheCameraStaysAFrameAfterManyTurns) {
   WalkState walk = walk_from(level_camera());
   for (int i = 0; i < 20000; ++i) walk.look(0.01, 0.003 * std::sin(0.02 * i));
@@ -95,7 +95,7 @@ TEST(WalkState, TheCameraStaysAFrameAfterManyTurns) {
   EXPECT_NEAR(camera.direction.norm(), 1.0, 1e-14);
   EXPECT_NEAR(camera.up.norm(), 1.0, 1e-14);
   EXPECT_NEAR(camera.direction.dot(camera.up), 0.0, 1e-14);
-  // Never rolled: the horizon is level.
+  // The camera is not rolled: the horizon is level.
   EXPECT_NEAR(camera.direction.cross(camera.up).y(), 0.0, 1e-9);
 }
 

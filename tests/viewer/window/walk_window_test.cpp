@@ -23,7 +23,7 @@ class WalkWindowTest : public testing::Test {
     options.height = 120;
     return options;
   }
-  /// A key event as VTK delivers it: to the interactor style.
+  /// Sends a key event to the interactor style, as VTK does.
   void send(unsigned long event, const char* key) {
     window_.interactor()->SetKeySym(key);
     window_.interactor()->InvokeEvent(event);
@@ -42,7 +42,7 @@ TEST_F(WalkWindowTest, HoldingAKeyWalksUntilItIsReleased) {
   send(vtkCommand::KeyPressEvent, "w");
   for (int i = 0; i < 20; ++i) window_.tick(0.05);
   const double walked = window_.look().camera.position.z() + 3.0;
-  // One second at the speed for a box 2 sqrt(3) m across, less the start.
+  // The way is that of one second at the speed for a box 2 sqrt(3) m across, less the start.
   EXPECT_NEAR(walked, walking_speed(2.0 * std::sqrt(3.0)) * (1.0 - 0.08), 0.01);
   send(vtkCommand::KeyReleaseEvent, "w");
   for (int i = 0; i < 20; ++i) window_.tick(0.05);
@@ -88,7 +88,7 @@ TEST_F(WalkWindowTest, NumbersGoToCamerasAndHomeGoesBack) {
   tap("2");
   EXPECT_EQ(window_.look().camera.position.z(), -1.0);
   EXPECT_EQ(window_.message(), "near");
-  // Each camera's picture is exposed for itself, as if the window had been opened there.
+  // Each camera has an exposure of its own, as in a window that opens at that camera.
   ViewOptions from_near = options();
   from_near.camera = from_near.cameras[1];
   EXPECT_EQ(window_.look().metered_scale, WalkWindow(box_, from_near).look().metered_scale);
@@ -109,7 +109,7 @@ TEST_F(WalkWindowTest, FShowsTheWholeScene) {
   EXPECT_GT((camera.position - Eigen::Vector3d(1, 1, 1)).norm(), 2.0 * std::sqrt(3.0));
 }
 
-/// Nothing is being solved, so there is no unshot light to show.
+/// Without a running solve there is no unshot light to show.
 TEST_F(WalkWindowTest, FalseColoursShowLuminanceOrIlluminance) {
   tap("u");
   EXPECT_TRUE(window_.look().illuminance);
@@ -156,7 +156,7 @@ TEST_F(WalkWindowTest, AScreenshotThatCannotBeSavedIsReportedNotThrown) {
   EXPECT_NE(window.message().find("/nonexistent-folder"), std::string::npos) << window.message();
 }
 
-/// Left to VTK, 'e' and 'q' would end the event loop.
+/// VTK's own handling of 'e' and 'q' would end the event loop.
 TEST_F(WalkWindowTest, VtksOwnKeysDoNothing) {
   int exits = 0;
   vtkNew<vtkCallbackCommand> count;

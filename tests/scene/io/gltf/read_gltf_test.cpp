@@ -47,7 +47,7 @@ TEST(GltfFile, StrengthMultipliesEmissionInBothMaterialModels) {
     const float factor = model == "pbr" ? 0.9f : 0.3f;
     EXPECT_NEAR(weak[0], pi * factor, 1e-6f);
     EXPECT_NEAR(strong[2], pi * 0.9f * 5.0f, 1e-5f);
-    // The same picture dims both alike.
+    // The texture scales both by the same factor.
     const float dim = material_called(scene, model + "EmissiveGrayTexture").emission[0];
     EXPECT_GT(dim, 0.0f);
     EXPECT_LT(dim, pi * 0.9f);
@@ -67,7 +67,7 @@ TEST(GltfFile, ClosedBodiesOfClearMaterialKeepTheirIndex) {
 }
 
 TEST_F(Gltf, NodesPlaceTheirChildren) {
-  // Scaled by 2, turned by 90 degrees about z, then moved by its parent.
+  // The node scales by 2 and rotates by 90 degrees about z; its parent translates.
   const Scene scene = read(square_gltf(
       R"(,"scenes":[{"nodes":[0]}],"nodes":[{"translation":[10,0,0],"children":[1,2]},
       {"mesh":0,"name":"turned","rotation":[0,0,0.70710678118654752,0.70710678118654752],"scale":[2,2,2]},
@@ -106,7 +106,7 @@ TEST_F(Gltf, BinaryFilesSayTheSame) {
   EXPECT_EQ(scene_hash(read_scene(folder.write("it.glb", glb(json)))), scene_hash(text));
 }
 
-// Alpha is the square of roughness.
+// The GGX parameter alpha is the square of glTF's roughness.
 TEST_F(Gltf, MetalsAreGlossyAndOnlyTheRoughestDiffuse) {
   const Material smooth = material(
       R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":1,"roughnessFactor":0.1}})");
@@ -137,7 +137,7 @@ TEST_F(Gltf, ClearSheetsAreThinPanesUnlessTheyHaveAThickness) {
   EXPECT_TRUE(pane.dielectric->thin);
   EXPECT_FLOAT_EQ(pane.dielectric->index_of_refraction, 1.5f);
   EXPECT_FLOAT_EQ(pane.dielectric->tint[0], 0.5f);
-  // Half of the light is left after 1 m; 2 m leave a quarter, so each crossing passes a half.
+  // The transmittance is a half after 1 m and a quarter after 2 m, so each crossing has a half.
   const Material solid = material(base + R"(,"KHR_materials_ior":{"ior":1.3},"KHR_materials_volume":
       {"thicknessFactor":2,"attenuationDistance":1,"attenuationColor":[0.5,0.5,0.5]}}})");
   ASSERT_TRUE(solid.dielectric.has_value());

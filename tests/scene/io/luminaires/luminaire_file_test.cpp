@@ -39,15 +39,14 @@ struct Measured {
 
 class RealFiles : public testing::TestWithParam<Measured> {};
 
-// Flux of the whole table by the trapezoid rule with exact solid angles, found with another
-// program.
+// Flux of the table by the trapezoid rule with exact solid angles, computed with another program.
 TEST_P(RealFiles, FluxAndPeakAreThoseOfTheTable) {
   const LuminaireFile luminaire = read_luminaire(data(GetParam().file));
   EXPECT_NEAR(luminaire.flux() / GetParam().lumens, 1.0, 0.015);
   EXPECT_NEAR(luminaire.web->peak() / GetParam().candela, 1.0, 1e-3);
   EXPECT_FALSE(luminaire.is_radiometric);
 
-  // Drawn directions find the same flux, with weights that hardly vary.
+  // Drawn directions have the same flux, with weights that hardly vary.
   double sum = 0.0, squares = 0.0;
   constexpr int draws = 1 << 14;
   for (int i = 0; i < draws; ++i) {
@@ -80,7 +79,7 @@ TEST(Luminaires, RadiantIntensityIsNotCandela) {
 
 // The table is per 1000 lm of lamps and integrates to 10 times the light output ratio in percent.
 TEST(Luminaires, EulumdatFilesKeepTheirLightOutputRatio) {
-  // All five give all that their lamps do, or were measured without them.
+  // All five have a light output ratio of 1, or were measured without lamps.
   for (const auto& [file, lumens] :
        {std::pair("sample1.ldt", 1983.0), std::pair("sample3.ldt", 12800.0),
         std::pair("sample5.ldt", 611.9), std::pair("sample6.ldt", 1800.0),
@@ -102,7 +101,7 @@ TEST(Luminaires, AbsolutePhotometryHasNoLamps) {
   EXPECT_EQ(read_luminaire(data("sample5.ldt")).lamp_lumens, 0.0);
 }
 
-// IES: C0 runs along the length; EULUMDAT: across it.
+// C0 is along the length of an opening in IES files, and across the length in EULUMDAT files.
 TEST(Luminaires, OpeningsLieAlongTheirPlanes) {
   constexpr double foot = 0.3048;
   const LampOpening ies = read_luminaire(data("overhead.ies")).opening;
@@ -127,7 +126,7 @@ TEST(Luminaires, PlanesGoOnAcrossTheLastToTheFirst) {
   EXPECT_NEAR(at(spot, 30.0, 352.5), between, 1e-9);
 }
 
-// A table whose values tell which place they come from: I = 100 + gamma + C / 10.
+// A table whose values encode their angles: I = 100 + gamma + C / 10.
 std::string ies(const std::string& planes, const std::vector<double>& angles,
                 const std::string& before = "IESNA:LM-63-1995\n",
                 const std::string& tilt = "NONE") {
@@ -191,7 +190,7 @@ TEST_F(WrittenFiles, HeadersOfAllAgesAreRead) {
   EXPECT_EQ(read(ies("0", {0}, "")).web->planes().size(), 1u);
   EXPECT_EQ(read(ies("0", {0}, "\xef\xbb\xbfIES:LM-63-2019\r\n[LUMINAIRE] A lamp\r\n")).name,
             "A lamp");
-  // Not UTF-8: Latin-1 is taken for what it is.
+  // Bytes that are not UTF-8 are read as Latin-1.
   EXPECT_EQ(read(ies("0", {0}, "IESNA91\n[LUMINAIRE] 70\xb0\n")).name, "70\xc2\xb0");
 }
 

@@ -19,7 +19,7 @@ TEST(PictureMean, IsTakenOfLightNotOfItsCode) {
   EXPECT_DOUBLE_EQ(mean->alpha, 0.5);
 }
 
-// A grey of 188 of 255: ((188/255 + 0.055) / 1.055)^2.4 = 0.5029. JPEG may miss a code by one,
+// A grey of code 188 is ((188/255 + 0.055) / 1.055)^2.4 = 0.5029. JPEG may be off by one code,
 // which is 0.006 there.
 TEST(PictureMean, DecodesJpegAndTheSrgbCurve) {
   PictureFiles files;

@@ -65,7 +65,7 @@ bool is_closed(const PolygonMesh& mesh) {
   return std::ranges::all_of(crossed, [](const auto& edge) { return edge.second == 0; });
 }
 
-// Positive where the fronts look outwards: a third of the sum of p . n dA (Gauss).
+// Volume as a third of the sum of p . n dA (Gauss); positive if the fronts face outwards.
 double volume(const PolygonMesh& mesh) {
   double sum = 0.0;
   for (const Facet& facet : mesh.facets) {
@@ -156,15 +156,16 @@ TEST_F(RadianceCommands, ABevelledBoxLosesItsEdges) {
   const PolygonMesh box = mesh_of(read("!genbox grey box 4 4 4 -b 1"));
   EXPECT_EQ(box.facets.size(), 6u + 12u + 8u);
   EXPECT_TRUE(is_closed(box));
-  // 64 less 12 edges of length 2 and section 1/2, and 8 corners of 1 - 1/6.
+  // The volume is 64 minus 12 edges of length 2 and section 1/2, minus 8 corners of 1 - 1/6.
   EXPECT_NEAR(volume(box), 64.0 - 12.0 - 8.0 * 5.0 / 6.0, 1e-12);
 }
 
 TEST_F(RadianceCommands, ARoundedBoxComesNearItsExactVolume) {
   const PolygonMesh box = mesh_of(read("!genbox grey box 4 5 6 -r 1"));
   EXPECT_TRUE(is_closed(box));
-  // Core 2 x 3 x 4, moved outwards by 1: V + A + pi (sum of sides) + 4 pi / 3 (Steiner). Chords of
-  // 22.5 degrees lose 2.6 % of a disk's area and 5 % of a ball's volume, so of the two last terms.
+  // A core of 2 x 3 x 4 moved outwards by 1 has the volume V + A + pi (sum of sides) + 4 pi / 3
+  // (Steiner). Chords of 22.5 degrees lose 2.6 % of a disk's area and 5 % of a ball's volume, which
+  // reduces the last two terms.
   const double round = pi * (2 + 3 + 4) + 4 * pi / 3, exact = 24 + 52 + round;
   EXPECT_LT(volume(box), exact);
   EXPECT_GT(volume(box), exact - 0.05 * round);
@@ -172,7 +173,7 @@ TEST_F(RadianceCommands, ARoundedBoxComesNearItsExactVolume) {
 }
 
 TEST_F(RadianceCommands, APrismIsClosedAndFacesAsItsCornersRun) {
-  const std::string square = " 4 0 0 0 2 3 2 3 0 ";  // clockwise seen from +z
+  const std::string square = " 4 0 0 0 2 3 2 3 0 ";  // clockwise as seen from +z
   const PolygonMesh up = mesh_of(read("!genprism grey prism" + square + "-l 0 0 5"));
   EXPECT_TRUE(is_closed(up));
   EXPECT_NEAR(volume(up), 30.0, 1e-12);
@@ -192,7 +193,7 @@ TEST_F(RadianceCommands, BlindsAreSlatsOneAboveTheOther) {
 }
 
 TEST_F(RadianceCommands, CurvedSlatsFollowTheirArc) {
-  // Depth 1 on radius 1 turns by 60 degrees: an arc of pi / 3, in 20 chords.
+  // A depth of 1 at radius 1 turns by 60 degrees, an arc of pi / 3 in 20 chords.
   const double chord = 2 * std::sin(pi / 120);
   for (const char* way : {"-r 1", "+r 1"}) {
     const Scene curved = read(std::string("!genblinds grey blind 1 4 6 1 0 ") + way);
@@ -207,13 +208,13 @@ TEST_F(RadianceCommands, CurvedSlatsFollowTheirArc) {
 }
 
 TEST_F(RadianceCommands, ASurfaceOfRevolutionIsClosedWhereItsOutlineIs) {
-  // The desk's rounded edge closed to a torus: radii 1 and 0.25.
+  // The desk's rounded edge, closed to a torus of radii 1 and 0.25.
   const PolygonMesh torus =
       mesh_of(read("!genrev grey torus '.25*sin(2*PI*t)' '1+.25*cos(2*PI*t)' 32 -s"));
   EXPECT_EQ(torus.facets.size(), 32u * 32u);
   EXPECT_TRUE(is_closed(torus));
-  // 2 pi^2 R r^2, less what 32 chords lose of the tube's section (0.64 %) and plus what the
-  // enlarged polygons about the axis add (R^2 by 0.32 %, less 0.64 % of a disk's).
+  // The volume is 2 pi^2 R r^2, minus the loss of the tube's section by 32 chords (0.64 %), plus
+  // the gain by enlarged polygons about the axis (R^2 by 0.32 %, less 0.64 % of a disk's).
   const double exact = 2 * pi * pi * 0.25 * 0.25;
   EXPECT_NEAR(volume(torus), exact, 0.01 * exact);
   EXPECT_GT(volume(torus), 0.0);
@@ -227,7 +228,7 @@ TEST_F(RadianceCommands, ARevolvedOutlineFacesAsRadianceHasIt) {
   };
   EXPECT_GT(side("t", "1").x(), 0.9);           // upwards: a cylinder
   EXPECT_LT(side("1-t", "1").x(), -0.9);        // downwards: a tube
-  EXPECT_NEAR(side("1", "1-t").z(), 1, 1e-12);  // inwards: a ring that looks up
+  EXPECT_NEAR(side("1", "1-t").z(), 1, 1e-12);  // inwards: a ring that faces up
   EXPECT_NEAR(side("1", "t").z(), -1, 1e-12);
 }
 
@@ -249,8 +250,9 @@ TEST_F(RadianceCommands, AWormIsSpheresAndConesThatTouchThem) {
   const Scene straight = read("!genworm grey w 0 0 '3*t' .5 3");
   EXPECT_EQ(straight.surfaces.size(), 4u + 3u);
   EXPECT_NEAR(area_of(mesh_of(straight, 1)), 2 * pi * 0.5 * 1.0, 1e-12);
-  // A cone touches both spheres, so its line is at right angles to their radii: from radius 1 to
-  // 0.5 at distance 1 its length is sqrt(1 - 0.25), its ends' radii those times sqrt(1 - 0.25).
+  // The cone is tangent to both spheres, so its generator is perpendicular to their radii: from
+  // radius 1 to 0.5 at distance 1 it has length sqrt(1 - 0.25), and the radii of its ends are those
+  // of the spheres times sqrt(1 - 0.25).
   const Scene thinner = read("!genworm grey w 0 0 t '1-t/2' 1");
   const double shrink = std::sqrt(0.75);
   EXPECT_NEAR(area_of(mesh_of(thinner, 1)), pi * (1 + 0.5) * shrink * shrink, 1e-12);
@@ -327,11 +329,11 @@ TEST_F(RadianceCommands, WrongArgumentsAreNamed) {
   wrong("genblinds grey b 1 1 1 2.5 0", "whole number");
 }
 
-// Bounded in time: each of these would run for hours, or fill the memory, if it were obeyed.
+// Files that would take hours or all memory; the reader must refuse them in bounded time.
 class RadianceRunaway : public RadianceCommands {
  protected:
   void expect_refused_soon(const std::string& content, const std::string& says_this) const {
-    const std::clock_t start = std::clock();  // of this process: the machine may be busy
+    const std::clock_t start = std::clock();  // processor time, since the machine may be busy
     EXPECT_TRUE(says(error(content), says_this)) << content.substr(0, 80);
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20.0);
   }
@@ -363,7 +365,7 @@ TEST_F(RadianceRunaway, CirclesOfFilesAreRefused) {
 }
 
 TEST_F(RadianceRunaway, FilesThatMultiplyAreRefused) {
-  // Ten files deep, ten times each: 10^10 empty files.
+  // Inclusion ten levels deep, ten times per level, reads 10^10 empty files.
   for (int level = 0; level < 10; ++level) {
     std::string text;
     for (int i = 0; i < 10; ++i) text += "!cat level" + std::to_string(level + 1) + ".rad\n";
