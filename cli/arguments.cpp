@@ -14,11 +14,10 @@
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {
-
-constexpr int largest_picture_edge = 32768;  // pixels; the limit of scene files
 
 std::optional<double> parsed_number(const std::string& text) {
   double value = 0.0;
@@ -44,14 +43,14 @@ std::pair<int, int> parse_size(const std::string& text) {
   if (bad_width == std::errc() && x != last && (*x == 'x' || *x == 'X')) {
     const auto [end, bad_height] = std::from_chars(x + 1, last, height);
     if (bad_height == std::errc() && end == last && width >= 1 && height >= 1 &&
-        width <= largest_picture_edge && height <= largest_picture_edge) {
+        width <= max_picture_edge && height <= max_picture_edge) {
       return {width, height};
     }
   }
   throw CLI::ValidationError(
       "--size", fmt::format("'{}' is no picture size; write WIDTHxHEIGHT in pixels, such as "
                             "640x480, each from 1 to {}",
-                            text, largest_picture_edge));
+                            text, max_picture_edge));
 }
 
 // Progressive refinement stores no form factors and is not among solver_methods.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/limits.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -48,10 +49,9 @@ Eigen::Matrix3d lamp_axes(const Eigen::Vector3d& aim, const Eigen::Vector3d& c0)
   const auto across = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
     return v - v.dot(up) * up;
   };
-  constexpr double parallel = 1e-6;
   Eigen::Vector3d x = across(c0.norm() > 0.0 ? Eigen::Vector3d(c0.normalized()) : c0);
-  if (!(x.norm() > parallel)) x = across(Eigen::Vector3d::UnitX());
-  if (!(x.norm() > parallel)) x = across(Eigen::Vector3d::UnitZ());
+  if (!(x.norm() > parallel_sine)) x = across(Eigen::Vector3d::UnitX());
+  if (!(x.norm() > parallel_sine)) x = across(Eigen::Vector3d::UnitZ());
   x.normalize();
   Eigen::Matrix3d axes;
   axes << x, up.cross(x), up;

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "scene/errors.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {
@@ -173,12 +174,10 @@ void check_loop(const Scene& scene, const Surface& surface, const PolygonMesh& m
 // What is wrong with a position or a radius; empty if nothing is.
 std::string place_fault(const Eigen::Vector3d& p) {
   if (!p.allFinite()) return "a coordinate is not a finite number";
-  constexpr double farthest =
-      1e9;  // m; far below where products of the ray caster's floats overflow
   const double reach = p.cwiseAbs().maxCoeff();
-  if (reach <= farthest) return {};
+  if (reach <= farthest_coordinate) return {};
   return fmt::format("a coordinate is {:g} m; nothing may lie beyond {:g} m, check the unit", reach,
-                     farthest);
+                     farthest_coordinate);
 }
 
 void check_mesh(const Scene& scene, const Surface& surface, const PolygonMesh& mesh) {

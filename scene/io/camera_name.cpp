@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "scene/limits.h"
+
 namespace lightwell {
 
 std::string camera_name(std::string name, const Scene& scene) {
@@ -27,8 +29,7 @@ bool place_camera(const Eigen::Affine3d& to_world, const Eigen::Vector3d& ahead,
   const Eigen::Vector3d direction = to_world.linear() * ahead, up = to_world.linear().col(1);
   camera.direction = direction.stableNormalized();
   const Eigen::Vector3d across = up.stableNormalized().cross(camera.direction);
-  constexpr double parallel = 1e-6;  // below this the picture's roll would be rounding
-  if (!(direction.stableNorm() > 0.0 && across.norm() > parallel)) return false;
+  if (!(direction.stableNorm() > 0.0 && across.norm() > parallel_sine)) return false;
   camera.up = camera.direction.cross(across.normalized());
   if (to_world.linear().determinant() < 0.0) {
     remarks.add("Cameras that mirror what they see were turned the right way round", camera.name);

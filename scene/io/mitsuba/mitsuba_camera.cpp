@@ -9,6 +9,7 @@
 #include "scene/degree.h"
 #include "scene/io/camera_name.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {
@@ -47,10 +48,9 @@ double half_width(const MitsubaNode& sensor, double width, double height) {
 int pixels(const MitsubaNode* film, const char* property, int otherwise) {
   if (!film) return otherwise;
   const double count = film->number_or(property, otherwise);
-  constexpr double most = 32768.0;
-  if (!(count >= 1.0 && count <= most && count == std::floor(count))) {
-    film->fail(
-        fmt::format("has the {} {}; give a whole number from 1 to {}", property, count, most));
+  if (!(count >= 1.0 && count <= max_picture_edge && count == std::floor(count))) {
+    film->fail(fmt::format("has the {} {}; give a whole number from 1 to {}", property, count,
+                           max_picture_edge));
   }
   return static_cast<int>(count);
 }

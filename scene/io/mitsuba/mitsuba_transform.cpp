@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/limits.h"
+
 namespace lightwell {
 namespace {
 
@@ -51,8 +53,7 @@ Eigen::Affine3d look_at(const MitsubaNode& node) {
                              : std::abs(direction.y()) < 0.9 ? Eigen::Vector3d::UnitY().eval()
                                                              : Eigen::Vector3d::UnitZ().eval();
   const Eigen::Vector3d left = up.stableNormalized().cross(direction);
-  constexpr double parallel = 1e-6;  // below this the roll would be rounding
-  if (!(left.norm() > parallel)) node.fail("looks along its 'up'; choose another");
+  if (!(left.norm() > parallel_sine)) node.fail("looks along its 'up'; choose another");
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   result.linear().col(0) = left.normalized();
   result.linear().col(1) = direction.cross(left.normalized());

@@ -9,6 +9,7 @@
 
 #include "scene/io/placed_mesh.h"
 #include "scene/io/seams.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {
@@ -32,10 +33,9 @@ std::string stem_of(const std::string& name) {
 
 // Numbers within a scene's bounds, so that nothing overflows on the way to Scene's own check.
 void require_moderate(const RadiancePrimitive& p) {
-  constexpr double farthest = 1e9;
   for (const double value : p.reals) {
-    if (!(std::abs(value) <= farthest)) {
-      p.fail(fmt::format("reaches {:g}; nothing may lie beyond {:g}", value, farthest));
+    if (!(std::abs(value) <= farthest_coordinate)) {
+      p.fail(fmt::format("reaches {:g}; nothing may lie beyond {:g}", value, farthest_coordinate));
     }
   }
 }

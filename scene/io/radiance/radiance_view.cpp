@@ -9,6 +9,7 @@
 
 #include "scene/degree.h"
 #include "scene/io/camera_name.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {
@@ -115,10 +116,10 @@ void add_radiance_camera(const RadianceView& view, const std::string& name,
       fail(fmt::format("spans {} degrees; -vh and -vv must lie between 0 and 180", angle));
     }
   }
-  constexpr double most = 32768.0;
-  if (!(std::min(view.width, view.height) >= 1.0 && std::max(view.width, view.height) <= most)) {
+  if (!(std::min(view.width, view.height) >= 1.0 &&
+        std::max(view.width, view.height) <= max_picture_edge)) {
     fail(fmt::format("has a picture of {} x {} pixels; give from 1 to {}", view.width, view.height,
-                     most));
+                     max_picture_edge));
   }
   if (view.shift != 0.0 || view.lift != 0.0) {
     remarks.add("Views off their axis (-vs, -vl) were read as if on it", name);

@@ -16,6 +16,7 @@
 #include "scene/io/toml/toml_sky.h"
 #include "scene/io/toml/toml_surfaces.h"
 #include "scene/io/toml/toml_value.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {
@@ -103,8 +104,7 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
   const auto up = table.find("up");
   const Eigen::Vector3d upwards = up ? Eigen::Vector3d(up->vector().stableNormalized()) : camera.up;
   const Eigen::Vector3d across = upwards - upwards.dot(camera.direction) * camera.direction;
-  constexpr double parallel = 1e-6;  // below this the picture's roll would be rounding
-  if (!(across.norm() > parallel)) {
+  if (!(across.norm() > parallel_sine)) {
     (up ? *up : table.value())
         .fail(up ? "has no length or is parallel to the viewing direction; choose another"
                  : "looks along [0, 1, 0]; say with 'up' which way is up in the picture");
@@ -119,9 +119,8 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
   if (const auto size = table.find("size")) {
     const auto pixels = size->elements("number");
     if (pixels.size() != 2) size->fail("must be two whole numbers [width, height]");
-    constexpr int most = 32768;
-    camera.width = static_cast<int>(pixels[0].integer_within(1, most));
-    camera.height = static_cast<int>(pixels[1].integer_within(1, most));
+    camera.width = static_cast<int>(pixels[0].integer_within(1, max_picture_edge));
+    camera.height = static_cast<int>(pixels[1].integer_within(1, max_picture_edge));
   }
   read_toml_lens(table, scene.metres_per_unit, camera);
   if (const auto shutter = table.find("shutter")) read_toml_shutter(*shutter, camera);

@@ -8,6 +8,7 @@
 #include "scene/degree.h"
 #include "scene/errors.h"
 #include "scene/io/luminaires/luminaire_file.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {
@@ -45,8 +46,7 @@ Eigen::Matrix3d read_axes(const TomlTable& table, const Eigen::Vector3d& positio
   const auto c0 = table.find("c0");
   if (!c0) return lamp_axes(aim);
   const Eigen::Vector3d direction = read_direction(*c0);
-  constexpr double parallel = 1e-6;
-  if (!(direction.cross(aim).norm() > parallel)) {
+  if (!(direction.cross(aim).norm() > parallel_sine)) {
     c0->fail("is parallel to the direction the lamp is aimed in; C0 must point across it");
   }
   return lamp_axes(aim, direction);

@@ -10,6 +10,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/pictures/environment_file.h"
+#include "scene/limits.h"
 #include "scene/sun_position.h"
 
 namespace lightwell {
@@ -245,8 +246,9 @@ Sky read_toml_sky(const TomlValue& value, const TomlBands& bands) {
     sky.north = Eigen::Vector3d::UnitY();
   }
   const Eigen::Vector3d level = sky.north - sky.north.dot(sky.up) * sky.up;
-  constexpr double parallel = 1e-6;
-  if (!(level.norm() > parallel)) table.fail("has a north that points up; give one on the horizon");
+  if (!(level.norm() > parallel_sine)) {
+    table.fail("has a north that points up; give one on the horizon");
+  }
   sky.north = level.normalized();
   sky.bright = sky.up;
   sky.scale = sky.ground = constant_spectrum(bands.bands, 0.0f);
