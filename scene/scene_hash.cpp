@@ -1,0 +1,164 @@
+#include <bit>
+
+#include "scene/scene.h"
+
+namespace lightwell {
+namespace {
+
+// FNV-1a over the bits of what it is fed.
+class Hash {
+ public:
+  void add(std::uint64_t x) {
+    for (int byte = 0; byte < 8; ++byte) {
+      state_ = (state_ ^ ((x >> (8 * byte)) & 0xffu)) * 0x100000001b3ull;
+    }
+  }
+  void add(double x) {
+    add(std::bit_cast<std::uint64_t>(x + 0.0));
+  }  // + 0.0: -0 and 0 are one value
+  void add(const Eigen::Vector3d& v) {
+    for (int c = 0; c < 3; ++c) add(v[c]);
+  }
+  void add(const Spectrum& s) {
+    add(static_cast<std::uint64_t>(s.size()));
+    for (float x : s) add(static_cast<double>(x));
+  }
+  void add(const std::vector<int>& loop) {
+    add(static_cast<std::uint64_t>(loop.size()));
+    for (int i : loop) add(static_cast<std::uint64_t>(i));
+  }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325ull;
+};
+
+// Only where there is any, so that solutions of scenes without keep their hash. Each kind begins
+// with a word of its own that no reflectance has.
+void add_gloss(const Material& m, Hash& hash) {
+  constexpr std::uint64_t rough_mirror = 0x6d17707e, glass_body = 0x61a55b0d;
+  if (m.specular_roughness > 0.0f && (m.specular > 0.0f).any()) {
+    hash.add(rough_mirror);
+    hash.add(static_cast<double>(m.specular_roughness));
+  }
+  if (!m.dielectric) return;
+  const Dielectric& glass = *m.dielectric;
+  if (glass.roughness > 0.0f || glass.thin || (glass.absorption > 0.0f).any()) {
+    hash.add(glass_body);
+    hash.add(static_cast<double>(glass.roughness));
+    hash.add(static_cast<std::uint64_t>(glass.thin));
+    hash.add(glass.absorption);
+  }
+}
+
+void add_image(const SurfaceTexture& image, Hash& hash) {
+  hash.add(image.picture->hash());
+  for (const TextureWrap wrap : image.wrap) hash.add(static_cast<std::uint64_t>(wrap));
+  hash.add(static_cast<std::uint64_t>(image.is_smooth));
+  for (const double x : image.placement.reshaped()) hash.add(x);
+}
+
+void add_pictures(const Material& m, Hash& hash) {
+  constexpr std::uint64_t texture = 0x7e87u, mask = 0x3a5cu;
+  if (m.texture) {
+    hash.add(texture);
+    add_image(m.texture->image, hash);
+    hash.add(m.texture->factor);
+  }
+  if (m.mask) {
+    hash.add(mask);
+    add_image(m.mask->image, hash);
+    hash.add(static_cast<double>(m.mask->cutoff));
+  }
+}
+
+// Where nothing shows a picture, texture coordinates decide nothing.
+void add_uv(const PolygonMesh& mesh, const Material& material, Hash& hash) {
+  if (!material.texture && !material.mask) return;
+  for (const UvMap& uv : mesh.uv_maps) {
+    for (const double x : uv.gradient.reshaped()) hash.add(x);
+    for (const double x : uv.offset) hash.add(x);
+  }
+  for (const Facet& facet : mesh.facets) hash.add(static_cast<std::uint64_t>(facet.uv_map + 1));
+}
+
+// Only where there are any, like add_gloss.
+void add_lamps(const Scene& scene, Hash& hash) {
+  constexpr std::uint64_t lamp_word = 0x1a3b5u;
+  for (const Lamp& lamp : scene.lamps) {
+    hash.add(lamp_word);
+    hash.add(lamp.position);
+    for (const double x : lamp.axes.reshaped()) hash.add(x);
+    hash.add(lamp.intensity);
+    hash.add(static_cast<std::uint64_t>(lamp.shape.index()));
+    if (const auto* cone = std::get_if<SpotCone>(&lamp.shape)) {
+      hash.add(cone->inner);
+      hash.add(cone->outer);
+      hash.add(static_cast<std::uint64_t>(cone->edge));
+    } else if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) {
+      hash.add(static_cast<std::uint64_t>((*web)->planes().size()));
+      for (const double x : (*web)->planes()) hash.add(x);
+      for (const double x : (*web)->gammas()) hash.add(x);
+      for (const double x : (*web)->values().reshaped()) hash.add(x);
+    }
+    hash.add(lamp.opening.along_c0);
+    hash.add(lamp.opening.along_c90);
+    hash.add(static_cast<std::uint64_t>(lamp.opening.is_round));
+  }
+}
+
+// Across which edges light is smooth; only where there are any, as above.
+void add_normals(const PolygonMesh& mesh, Hash& hash) {
+  if (mesh.normal_maps.empty()) return;
+  constexpr std::uint64_t normals = 0x5a007bu;
+  hash.add(normals);
+  for (const NormalMap& map : mesh.normal_maps) {
+    for (const double x : map.gradient.reshaped()) hash.add(x);
+    hash.add(map.offset);
+  }
+  for (const Facet& facet : mesh.facets) {
+    hash.add(static_cast<std::uint64_t>(facet.normal_map + 1));
+  }
+}
+
+}  // namespace
+
+std::uint64_t scene_hash(const Scene& scene) {
+  Hash hash;
+  hash.add(scene.bands.lumens_per_watt);
+  for (double nm : scene.bands.wavelengths_nm) hash.add(nm);
+  for (const Material& m : scene.materials) {
+    hash.add(m.reflectance);
+    hash.add(m.specular);
+    hash.add(m.emission);
+    hash.add(static_cast<std::uint64_t>(m.one_sided) +
+             2 * static_cast<std::uint64_t>(m.emits_both_sides));
+    if (m.dielectric) {
+      hash.add(static_cast<double>(m.dielectric->index_of_refraction));
+      hash.add(m.dielectric->tint);
+    }
+    add_gloss(m, hash);
+    add_pictures(m, hash);
+  }
+  for (const Surface& surface : scene.surfaces) {
+    hash.add(static_cast<std::uint64_t>(surface.material));
+    if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
+      for (const auto& v : mesh->vertices) hash.add(v);
+      for (const Facet& facet : mesh->facets) {
+        hash.add(facet.boundary);
+        for (const auto& hole : facet.holes) hash.add(hole);
+      }
+      add_uv(*mesh, scene.materials[static_cast<std::size_t>(surface.material)], hash);
+      add_normals(*mesh, hash);
+    } else {
+      const auto& sphere = std::get<Sphere>(surface.shape);
+      hash.add(sphere.center);
+      hash.add(sphere.radius);
+    }
+  }
+  add_lamps(scene, hash);
+  if (scene.sky) hash.add(sky_hash(*scene.sky));
+  return hash.value();
+}
+
+}  // namespace lightwell

@@ -1,0 +1,307 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "scene/errors.h"
+#include "scene/limits.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+namespace {
+
+[[noreturn]] void fail(const Scene& scene, const std::string& what) {
+  throw InputError(scene.file.empty() ? what : fmt::format("{}: {}", scene.file.string(), what));
+}
+
+void check_share(const Scene& scene, const Material& material, const char* what,
+                 const Spectrum& values) {
+  if (values.size() != scene.bands.count()) {
+    fail(scene, fmt::format("material '{}': {} has {} bands, the scene has {}", material.name, what,
+                            values.size(), scene.bands.count()));
+  }
+  for (int k = 0; k < values.size(); ++k) {
+    if (!(values[k] >= 0.0f && values[k] <= 1.0f)) {
+      fail(scene, fmt::format("material '{}': {} is {} in band {}; it must lie between 0 and 1",
+                              material.name, what, values[k], scene.bands.names[k]));
+    }
+  }
+}
+
+void check_roughness(const Scene& scene, const Material& material, float roughness) {
+  if (!(roughness >= 0.0f && roughness <= 1.0f)) {
+    fail(scene, fmt::format("material '{}': roughness is {}; it must lie between 0 (smooth) and 1",
+                            material.name, roughness));
+  }
+}
+
+void check_dielectric(const Scene& scene, const Material& m, const Dielectric& glass) {
+  check_share(scene, m, "dielectric tint", glass.tint);
+  check_roughness(scene, m, glass.roughness);
+  const float index = glass.index_of_refraction;
+  if (!(index >= lowest_index && index <= highest_index)) {
+    fail(scene,
+         fmt::format("material '{}': index of refraction {}; it is that behind the surface over "
+                     "that before it and must lie between {} and {} (glass: 1.5)",
+                     m.name, index, lowest_index, highest_index));
+  }
+  if (glass.absorption.size() == 0) return;
+  if (glass.absorption.size() != scene.bands.count()) {
+    fail(scene, fmt::format("material '{}': absorption has {} bands, the scene has {}", m.name,
+                            glass.absorption.size(), scene.bands.count()));
+  }
+  for (int k = 0; k < glass.absorption.size(); ++k) {
+    if (!(glass.absorption[k] >= 0.0f && glass.absorption[k] <= highest_absorption)) {
+      fail(scene,
+           fmt::format("material '{}': absorption is {} per metre in band {}; it must lie "
+                       "between 0 and {:g}",
+                       m.name, glass.absorption[k], scene.bands.names[k], highest_absorption));
+    }
+  }
+  if (glass.thin && (glass.absorption > 0.0f).any()) {
+    fail(scene, fmt::format("material '{}' is a thin pane, in which light goes no distance to be "
+                            "absorbed along; give it a tint instead of an absorption",
+                            m.name));
+  }
+}
+
+void check_pictures(const Scene& scene, const Material& m) {
+  if (m.texture) {
+    if (scene.bands.count() != 3 || !scene.bands.wavelengths_nm.empty()) {
+      fail(scene, fmt::format("material '{}' has a texture, whose colours are r, g and b, but the "
+                              "scene has other bands; give it a reflectance alone",
+                              m.name));
+    }
+    if (!m.texture->image.picture) {
+      fail(scene, fmt::format("material '{}' has a texture without a picture", m.name));
+    }
+    check_share(scene, m, "texture factor", m.texture->factor);
+    constexpr float rounding = 1e-5f;
+    const Spectrum brightest = m.texture->factor * m.texture->image.picture->largest();
+    if (!((brightest + m.specular) <= 1.0f + rounding).all()) {
+      fail(scene, fmt::format("material '{}': where its texture is brightest, reflectance {} + "
+                              "specular {} exceed 1; lower one",
+                              m.name, brightest.maxCoeff(), m.specular.maxCoeff()));
+    }
+    if (m.dielectric) {
+      fail(scene,
+           fmt::format("material '{}' is a dielectric and has a texture; remove one: a clear "
+                       "surface has no diffuse reflectance",
+                       m.name));
+    }
+  }
+  if (!m.mask) return;
+  if (!m.mask->image.picture || !(m.mask->cutoff > 0.0f && m.mask->cutoff <= 1.0f)) {
+    fail(scene, fmt::format("material '{}': a mask needs a picture, and a cutoff above 0 and up to "
+                            "1",
+                            m.name));
+  }
+  if (m.is_emitter()) {
+    fail(scene, fmt::format("material '{}' emits light and has a mask; remove one: lamps have no "
+                            "holes",
+                            m.name));
+  }
+}
+
+void check_material(const Scene& scene, const Material& m) {
+  check_share(scene, m, "reflectance", m.reflectance);
+  check_share(scene, m, "specular reflectance", m.specular);
+  constexpr float rounding = 1e-5f;  // decimals of a file that should add up to 1
+  for (int k = 0; k < scene.bands.count(); ++k) {
+    const float sum = m.reflectance[k] + m.specular[k];
+    if (!(sum <= 1.0f + rounding)) {
+      fail(scene,
+           fmt::format(
+               "material '{}': reflectance {} + specular {} = {} in band {}; more light would "
+               "leave than arrives, lower one so that they add up to at most 1",
+               m.name, m.reflectance[k], m.specular[k], sum, scene.bands.names[k]));
+    }
+  }
+  check_roughness(scene, m, m.specular_roughness);
+  if (m.dielectric) {
+    check_dielectric(scene, m, *m.dielectric);
+    if ((m.reflectance > 0.0f).any() || (m.specular > 0.0f).any()) {
+      fail(scene, fmt::format(
+                      "material '{}' is a dielectric and also has a diffuse or mirror reflectance; "
+                      "remove one: a clear surface reflects by Fresnel's law alone",
+                      m.name));
+    }
+  }
+  if (m.emission.size() != scene.bands.count() || !(m.emission >= 0.0f).all() ||
+      !m.emission.isFinite().all()) {
+    fail(scene,
+         fmt::format("material '{}': emission must be one finite number >= 0 per band", m.name));
+  }
+  check_pictures(scene, m);
+}
+
+void check_loop(const Scene& scene, const Surface& surface, const PolygonMesh& mesh, int facet,
+                const std::vector<int>& loop) {
+  if (loop.size() < 3) {
+    fail(scene, fmt::format("surface '{}', polygon {}: {} vertices; a polygon needs at least 3",
+                            surface.name, facet, loop.size()));
+  }
+  for (int v : loop) {
+    if (v < 0 || v >= static_cast<int>(mesh.vertices.size())) {
+      fail(scene, fmt::format("surface '{}', polygon {}: vertex index {} is out of range 0..{}",
+                              surface.name, facet, v, mesh.vertices.size() - 1));
+    }
+  }
+}
+
+// What is wrong with a position or a radius; empty if nothing is.
+std::string place_fault(const Eigen::Vector3d& p) {
+  if (!p.allFinite()) return "a coordinate is not a finite number";
+  const double reach = p.cwiseAbs().maxCoeff();
+  if (reach <= farthest_coordinate) return {};
+  return fmt::format("a coordinate is {:g} m; nothing may lie beyond {:g} m, check the unit", reach,
+                     farthest_coordinate);
+}
+
+void check_mesh(const Scene& scene, const Surface& surface, const PolygonMesh& mesh) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (const std::string what = place_fault(mesh.vertices[v]); !what.empty()) {
+      fail(scene, fmt::format("surface '{}', vertex {}: {}", surface.name, v, what));
+    }
+  }
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Facet& facet = mesh.facets[f];
+    check_loop(scene, surface, mesh, static_cast<int>(f), facet.boundary);
+    for (const auto& hole : facet.holes)
+      check_loop(scene, surface, mesh, static_cast<int>(f), hole);
+    if (!(facet_area(mesh, facet) > 0.0)) {
+      fail(scene,
+           fmt::format(
+               "surface '{}', polygon {}: its area is zero; remove it or correct its vertices",
+               surface.name, f));
+    }
+    if (facet.uv_map < -1 || facet.uv_map >= static_cast<int>(mesh.uv_maps.size())) {
+      fail(scene, fmt::format("surface '{}', polygon {}: its texture coordinates do not exist",
+                              surface.name, f));
+    }
+    if (facet.normal_map < -1 || facet.normal_map >= static_cast<int>(mesh.normal_maps.size())) {
+      fail(scene,
+           fmt::format("surface '{}', polygon {}: its normals do not exist", surface.name, f));
+    }
+  }
+  for (const NormalMap& map : mesh.normal_maps) {
+    if (map.gradient.allFinite() && map.offset.allFinite()) continue;
+    fail(scene, fmt::format("surface '{}': its normals are not finite", surface.name));
+  }
+  for (const UvMap& uv : mesh.uv_maps) {
+    if (uv.gradient.allFinite() && uv.offset.allFinite()) continue;
+    fail(scene, fmt::format("surface '{}': its texture coordinates are not finite", surface.name));
+  }
+}
+
+void check_lamp(const Scene& scene, const Lamp& lamp) {
+  const auto refuse = [&](const std::string& what) {
+    fail(scene, fmt::format("lamp '{}': {}", lamp.name, what));
+  };
+  if (const std::string what = place_fault(lamp.position); !what.empty()) refuse(what);
+  constexpr double rounding = 1e-6;
+  const Eigen::Matrix3d& axes = lamp.axes;
+  if (!((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm() < rounding) ||
+      !(axes.determinant() > 0.0)) {
+    refuse("its axes are no rotation; give three unit vectors at right angles, right-handed");
+  }
+  if (lamp.intensity.size() != scene.bands.count() || !(lamp.intensity >= 0.0f).all() ||
+      !lamp.intensity.isFinite().all()) {
+    refuse("its intensity must be one finite number >= 0 per band");
+  }
+  const LampOpening& opening = lamp.opening;
+  for (const double size : {opening.along_c0, opening.along_c90}) {
+    if (!(size >= 0.0 && std::isfinite(size))) {
+      refuse(fmt::format("its opening is {:g} m by {:g} m; neither may be below 0",
+                         opening.along_c0, opening.along_c90));
+    }
+  }
+  if (const auto* cone = std::get_if<SpotCone>(&lamp.shape)) {
+    if (!(cone->inner >= 0.0 && cone->inner <= cone->outer && cone->outer > 0.0 &&
+          cone->outer <= std::numbers::pi)) {
+      refuse(
+          fmt::format("its cone is {:g} inside and {:g} outside; 0 <= inside <= outside <= pi, "
+                      "with outside above 0",
+                      cone->inner, cone->outer));
+    }
+  }
+  const auto* web = std::get_if<SharedWeb>(&lamp.shape);
+  if (web && (!*web || (*web)->values().size() == 0)) refuse("its distribution is empty");
+}
+
+void check_motion(const Scene& scene, const std::string& what, int motion) {
+  if (motion >= -1 && motion < static_cast<int>(scene.motions.size())) return;
+  fail(scene, fmt::format("{}: its motion does not exist", what));
+}
+
+void check_motions(const Scene& scene) {
+  for (const RigidMotion& motion : scene.motions) {
+    if (const std::string what = fault(motion); !what.empty()) {
+      fail(scene, fmt::format("motion '{}' {}", motion.name, what));
+    }
+    if (motion.rest_time != scene.motions.front().rest_time) {
+      fail(scene,
+           fmt::format("motion '{}' rests at another time than '{}'; light is solved for one "
+                       "instant",
+                       motion.name, scene.motions.front().name));
+    }
+  }
+  for (const Surface& surface : scene.surfaces) {
+    check_motion(scene, fmt::format("surface '{}'", surface.name), surface.motion);
+    if (surface.motion < 0) continue;
+    const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
+    if (material.is_emitter()) {
+      fail(scene,
+           fmt::format("surface '{}' moves and its material '{}' emits light; light of lamps "
+                       "that move is not modelled: let the lamp stand still",
+                       surface.name, material.name));
+    }
+  }
+  for (const Camera& camera : scene.cameras) {
+    check_motion(scene, fmt::format("camera '{}'", camera.name), camera.motion);
+  }
+}
+
+}  // namespace
+
+void validate(const Scene& scene) {
+  const int bands = scene.bands.count();
+  if (bands < 1 || bands > max_bands) {
+    fail(scene, fmt::format("the scene has {} bands; give between 1 and {}", bands, max_bands));
+  }
+  for (const Material& material : scene.materials) check_material(scene, material);
+  for (const Lamp& lamp : scene.lamps) check_lamp(scene, lamp);
+  if (scene.sky) {
+    try {
+      validate(*scene.sky, scene.bands);
+    } catch (const std::invalid_argument& error) {
+      fail(scene, error.what());
+    }
+  }
+  for (const Surface& surface : scene.surfaces) {
+    if (surface.material < 0 || surface.material >= static_cast<int>(scene.materials.size())) {
+      fail(scene, fmt::format("surface '{}' names a material that does not exist", surface.name));
+    }
+    if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
+      check_mesh(scene, surface, *mesh);
+    } else {
+      const auto& sphere = std::get<Sphere>(surface.shape);
+      const Eigen::Vector3d reach = Eigen::Vector3d::Constant(sphere.radius);
+      for (const Eigen::Vector3d& p : {sphere.center, reach}) {
+        if (const std::string what = place_fault(p); !what.empty()) {
+          fail(scene, fmt::format("sphere '{}': {}", surface.name, what));
+        }
+      }
+      if (!(sphere.radius > 0.0)) {
+        fail(scene, fmt::format("sphere '{}': its radius is {}; it must be positive", surface.name,
+                                sphere.radius));
+      }
+    }
+  }
+  check_motions(scene);
+}
+
+}  // namespace lightwell
