@@ -15,7 +15,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(target), t
 
 AtomicFile::~AtomicFile() {
   if (committed_) return;
-  std::error_code ignored;  // nothing was promised about a temporary that never existed
+  std::error_code ignored;  // a temporary that never existed is no error
   std::filesystem::remove(temporary_, ignored);
 }
 

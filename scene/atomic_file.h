@@ -4,8 +4,9 @@
 
 namespace lightwell {
 
-/// A file that appears under its name only when it is complete: it is written under a temporary
-/// name in the same folder and renamed by commit(). Without commit() the temporary is removed.
+/// A file that appears under its name only when complete. The caller writes a temporary file in the
+/// same folder, and commit() renames it. Without commit() the destructor removes the temporary
+/// file.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& target);
@@ -13,9 +14,10 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Where to write.
+  /// The temporary file, for the caller to write.
   const std::filesystem::path& temporary() const { return temporary_; }
-  /// Throws std::runtime_error naming the target if it cannot take its name.
+  /// Renames the temporary file to the target. Throws std::runtime_error naming the target if the
+  /// renaming fails.
   void commit();
 
  private:

@@ -18,7 +18,7 @@ EnvironmentMap::EnvironmentMap(int width, int height, BandArray radiance)
     throw std::invalid_argument(
         "the radiance of an environment map must be finite and not below 0");
   }
-  // FNV-1a of words.
+  // FNV-1a over words instead of bytes.
   hash_ = 0xcbf29ce484222325ull;
   const auto add = [this](std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3ull; };
   add(static_cast<std::uint64_t>(width));

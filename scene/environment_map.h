@@ -7,20 +7,20 @@
 
 namespace lightwell {
 
-/// Radiance from all directions as a picture: W/(m^2 sr), longitude and latitude. Rows go from +y
-/// (the top) down to -y; the middle of the picture is +z, a quarter further to the right -x, as one
-/// sees it from within. (Mitsuba's layout.)
+/// Radiance from all directions, W/(m^2 sr), as a picture over longitude and latitude in Mitsuba's
+/// layout. Rows run from +y (top) to -y. The middle of the picture is +z; a quarter of the width to
+/// the right of the middle is -x, seen from within.
 class EnvironmentMap {
  public:
   /// `radiance`: width * height rows from the top left corner on, a column per band. Throws
-  /// std::invalid_argument if the sizes differ or anything in it is below 0 or not finite.
+  /// std::invalid_argument if the sizes differ or a value is below 0 or not finite.
   EnvironmentMap(int width, int height, BandArray radiance);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// In a unit direction, bilinear between the middles of pixels.
+  /// Radiance in a unit direction, bilinear between the middles of pixels.
   Spectrum at(const Eigen::Vector3d& direction) const;
-  /// Of size and pixels: equal for equal pictures.
+  /// Hash of size and pixels, equal for equal pictures.
   std::uint64_t hash() const { return hash_; }
 
  private:

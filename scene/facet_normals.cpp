@@ -10,7 +10,8 @@
 namespace lightwell {
 namespace {
 
-// The least that a normal may rise from its facet, as a cosine: files may hold anything.
+// Smallest cosine between a smooth normal and its facet's normal; normals in files may be
+// arbitrary.
 constexpr double least_cosine = 1e-3;
 
 }  // namespace
@@ -71,7 +72,8 @@ double FacetNormals::height(int facet, const Eigen::Vector3d& point,
   double least = std::numeric_limits<double>::infinity();
   for (int i = here.first_corner; i < here.first_corner + here.corners; ++i) {
     const Eigen::Vector3d& corner = corners_[static_cast<std::size_t>(i)];
-    // The slope of a height is the normal's part along the plane over that along its normal.
+    // The slope of a height is the normal's component in the plane over the component along the
+    // facet's normal.
     const Eigen::Vector3d m = at(facet, corner, normal);
     const Eigen::Vector3d slopes = n / n.dot(normal) + m / m.dot(normal);
     least = std::min(least, 0.5 * (corner - point).dot(slopes));

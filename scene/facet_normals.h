@@ -8,30 +8,31 @@
 
 namespace lightwell {
 
-/// The normals of the smooth surfaces that facets stand for, where files give normals at vertices.
-/// They decide how a surface is shaded, mirrors and refracts in pictures, and across which edges
-/// light is smooth; where a surface is, what it hides and which side of it is lit stays the
-/// facets'. Facets are numbered through the scene (see scene_facets). Keeps no reference to it.
+/// Normals of the smooth surfaces that facets approximate, where files give normals at vertices.
+/// Normals decide how a surface is shaded, mirrors and refracts in pictures, and across which edges
+/// light is smooth. Position, visibility and the lit side remain those of the facets. Facets are
+/// numbered through the scene (see scene_facets). Keeps no reference to the scene.
 class FacetNormals {
  public:
   explicit FacetNormals(const Scene& scene);
 
-  /// Whether no surface has normals of its own.
+  /// True if no surface has normals of its own.
   bool is_empty() const { return entries_.empty(); }
-  /// Whether the surface of a facet has: its flat facets then are flat, as it says.
+  /// True if the facet's surface has normals of its own; facets of such a surface without a normal
+  /// map are flat.
   bool is_given(int facet) const { return !entries_.empty() && entry(facet).is_given; }
-  /// Unit normal at a point (metres) of a facet's plane, on the side of `normal`, the facet's own
-  /// or its opposite, which it is where there is no other.
+  /// Unit normal at `point` (metres) in a facet's plane, on the side of `normal`, which is the
+  /// facet's own normal or its opposite. Returns `normal` where the facet has no other.
   Eigen::Vector3d at(int facet, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
 
-  /// How far the smooth surface lies above the facet's plane at a point, metres, >= 0, on the side
-  /// of `normal`: the quadratic height that is 0 at the facet's corners and has the normals for
-  /// slopes, h(p) = (c - p) . (n(c) + n(p)) / 2 from a corner c, and of what the corners say the
-  /// least. Exact for spheres and cylinders, to the second order; 0 where a surface is flat or
+  /// Height of the smooth surface above the facet's plane at `point`, metres, >= 0, on the side of
+  /// `normal`: h(p) = min over corners c of (c - p) . (n(c) + n(p)) / 2, with normals n scaled to
+  /// length 1 along `normal`. The quadratic height is 0 at the facet's corners and has the normals
+  /// for slopes. Exact to the second order for spheres and cylinders; 0 where a surface is flat or
   /// hollow, and for facets with holes.
   double height(int facet, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
 
-  /// Of all that decides the answers; 0 if is_empty().
+  /// Hash of all that decides the normals; 0 if is_empty().
   std::uint64_t hash() const { return hash_; }
 
  private:
@@ -44,12 +45,13 @@ class FacetNormals {
 
   std::vector<NormalMap> maps_{};
   std::vector<Entry> entries_{};            // by facet; empty: nowhere
-  std::vector<Eigen::Vector3d> corners_{};  // of the boundaries of facets that have a map
+  std::vector<Eigen::Vector3d> corners_{};  // boundaries of facets with a map and without holes
   std::uint64_t hash_ = 0;
 };
 
-/// A direction on which light goes on at a facet whose `normal` is on the side it came from: as it
-/// is, or mirrored at the facet's plane where a smooth normal has sent it to the wrong side.
+/// `direction` in which light continues at a facet whose `normal` is on the side that the light
+/// came from. The direction is mirrored at the facet's plane if a smooth normal has turned it to
+/// the wrong side; otherwise unchanged. `crosses`: the light passes through the surface.
 Eigen::Vector3d on_its_side(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal,
                             bool crosses);
 

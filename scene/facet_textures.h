@@ -9,30 +9,30 @@
 
 namespace lightwell {
 
-/// What varies over the facets of a scene: the pictures of their materials, where they have texture
-/// coordinates. Facets are numbered through the scene (see scene_facets). Keeps no reference to the
-/// scene.
+/// Pictures of materials on the facets of a scene, where facets have texture coordinates. Facets
+/// are numbered through the scene (see scene_facets). Keeps no reference to the scene.
 class FacetTextures {
  public:
   explicit FacetTextures(const Scene& scene);
 
-  /// Whether there is nothing that varies.
+  /// True if no facet shows a picture.
   bool is_empty() const { return entry_of_.empty(); }
-  /// Whether some facet has holes.
+  /// True if some facet has holes.
   bool has_holes() const { return has_holes_; }
-  /// Of all that decides where the holes are; 0 without holes.
+  /// Hash of all that decides where the holes are; 0 without holes.
   std::uint64_t hash_of_holes() const { return hash_of_holes_; }
   bool is_textured(int facet) const { return varying(facet) && materials_of(facet).texture; }
   bool has_holes(int facet) const { return varying(facet) && materials_of(facet).mask; }
 
-  /// Diffuse rho of a facet that is textured at a point (metres) of its plane, unfiltered.
+  /// Diffuse rho at `point` (metres) in the plane of a textured facet, unfiltered.
   Spectrum reflectance(int facet, const Eigen::Vector3d& point) const;
-  /// Its mean about the point over the parallelogram with sides `footprint` (columns, metres).
+  /// Mean diffuse rho about `point` over the parallelogram with sides `footprint` (columns,
+  /// metres).
   Spectrum reflectance(int facet, const Eigen::Vector3d& point,
                        const Eigen::Matrix<double, 3, 2>& footprint) const;
-  /// How many texels of a facet's texture lie along a vector in its plane (metres).
+  /// Number of texels of a facet's texture along `vector` (metres) in the facet's plane.
   double texels_along(int facet, const Eigen::Vector3d& vector) const;
-  /// Whether light goes through at a point of a facet that has holes.
+  /// True if light passes at `point` (metres) of a facet that has holes.
   bool is_hole(int facet, const Eigen::Vector3d& point) const;
 
  private:
@@ -55,7 +55,7 @@ class FacetTextures {
 
   std::vector<Pictures> pictures_{};
   std::vector<Entry> entries_{};  // one for each UvMap of a surface that has pictures
-  std::vector<int> entry_of_{};   // by facet; -1: nothing varies; empty: nowhere
+  std::vector<int> entry_of_{};   // by facet; -1: no picture; empty: no facet has one
   bool has_holes_ = false;
   std::uint64_t hash_of_holes_ = 0;
 };

@@ -13,11 +13,11 @@
 namespace lightwell {
 namespace {
 
-// Enough for neighbours to differ, few enough to stay in the second-level cache.
+// Enough sets for neighbouring patches to differ, few enough for the second-level cache.
 constexpr int most_sets = 64, fewest_sets = 8, points_in_cache = 1 << 16;
 
-// Where a direction lies on the disc below it, along a curve that keeps neighbours together (Morton
-// 1966).
+// Index of a direction, projected onto the unit disc, along a curve that keeps neighbours together
+// (Morton 1966).
 unsigned place_on_curve(const HemispherePoint& point) {
   constexpr int bits = 8;
   const auto cell = [](float x) { return static_cast<unsigned>((0.5f * x + 0.5f) * 255.0f); };
@@ -57,7 +57,7 @@ HemisphereSets::HemisphereSets(int count, bool with_planar_points)
       const auto made = std::span(points_).subspan(begin_of_set, size);
       for (std::size_t i = 0; i < size; ++i) {
         const Eigen::Array4f& p = points[i];
-        // The first two dimensions are stratified best; directions gain most by it.
+        // The first two dimensions are stratified best, and directions gain most by stratification.
         const Eigen::Vector3f d = cosine_direction(p[0], p[1]).cast<float>();
         made[i] = {d.x(), d.y(), d.z(), static_cast<int>(i % block)};
         if (with_planar_points) planar_points_[begin_of_set + i] = {p[2], p[3]};

@@ -35,7 +35,7 @@ double cone_flux(const SpotCone& cone) {
   return two_pi * ((1.0 - inner) + falling);
 }
 
-// About -z.
+// Uniform direction in the spherical cap about -z whose cosines reach from 1 down to 1 - height.
 Eigen::Vector3d cap_direction(double height, double u, double v) {
   const double cosine = 1.0 - u * height;
   const double sine = std::sqrt(std::max(0.0, u * height * (2.0 - u * height)));
@@ -94,7 +94,7 @@ Eigen::Vector3d opening_point(const Lamp& lamp, double u, double v) {
   if (lamp.opening.is_point()) return lamp.position;
   double x = u - 0.5, y = v - 0.5;
   if (lamp.opening.is_round) {
-    // The concentric map keeps neighbours neighbours (Shirley & Chiu 1997).
+    // The concentric map (Shirley & Chiu 1997) keeps neighbouring samples neighbours.
     const Eigen::Vector3d disk = cosine_direction(static_cast<float>(u), static_cast<float>(v));
     x = 0.5 * disk.x();
     y = 0.5 * disk.y();

@@ -20,8 +20,8 @@ double ggx_normals(double cosine, double alpha) {
 
 Eigen::Vector3d ggx_visible_normal(const Eigen::Vector3d& outwards, double alpha, double u,
                                    double v) {
-  // Stretched so that the microfacets are a hemisphere, of which a disk is seen, its far part
-  // foreshortened.
+  // Stretching by alpha turns the microfacets into a hemisphere. The visible part of the hemisphere
+  // projects to a disk whose far half is foreshortened.
   const Eigen::Vector3d w =
       Eigen::Vector3d(alpha * outwards.x(), alpha * outwards.y(), outwards.z()).normalized();
   const double across = std::hypot(w.x(), w.y());

@@ -35,7 +35,7 @@ Eigen::Vector3d visible_normal(const Eigen::Vector3d& direction, const Eigen::Ve
                                const Eigen::Vector3d& smooth) {
   const Eigen::Vector3d mirrored = reflect(direction, smooth);
   const double height = mirrored.dot(flat);
-  // Light that grazes the surface is mirrored at no more than its own angle.
+  // Light that grazes the surface is mirrored to less than its own height.
   const double least = std::min(0.01, -0.9 * direction.dot(flat));
   if (height >= least) return smooth;
   const Eigen::Vector3d raised = (mirrored + (least - height) * flat).normalized();

@@ -73,8 +73,8 @@ int thread_count() {
 void parallel_for(int count, int grain, const std::function<void(int, int)>& body) {
   grain = std::max(grain, 1);
   const int pieces = (count + grain - 1) / grain;
-  // Without this a task takes the floating-point mode of whatever started oneTBB in the process:
-  // after Embree's tree building that is denormals flushed to zero.
+  // Without fp_settings a task takes the floating-point mode of whatever started oneTBB in the
+  // process. After Embree's tree building that mode flushes denormals to zero.
   tbb::task_group_context callers_mode(
       tbb::task_group_context::bound,
       tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);

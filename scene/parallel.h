@@ -10,7 +10,8 @@ namespace lightwell {
 /// same bits on one thread or on many. The first exception thrown by a body is rethrown here.
 void parallel_for(int count, int grain, const std::function<void(int begin, int end)>& body);
 
-/// Keeps parallel_for to at most `threads` threads while it lives; 0 means one per core.
+/// Limits parallel_for to at most `threads` threads during the life of the object; 0 means one per
+/// core.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
@@ -23,7 +24,7 @@ class ThreadLimit {
   std::unique_ptr<Impl> impl_;
 };
 
-/// How many threads parallel_for uses now.
+/// Number of threads that parallel_for uses at present.
 int thread_count();
 
 }  // namespace lightwell

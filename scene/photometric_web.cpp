@@ -55,7 +55,7 @@ double PhotometricWeb::along(Eigen::Index plane, Eigen::Index interval, double t
 }
 
 double PhotometricWeb::at_angles(double gamma, double plane) const {
-  // Tables end where no light is left: rounding of an angle must not cut the last value off.
+  // A table ends where the light ends. Rounding of an angle must not cut its last value off.
   constexpr double rounding = 1e-9;
   if (gamma < gammas_.front() - rounding || gamma > gammas_.back() + rounding) return 0.0;
   gamma = std::clamp(gamma, gammas_.front(), gammas_.back());
@@ -87,8 +87,8 @@ double PhotometricWeb::at(const Eigen::Vector3d& direction) const {
   return at_angles(gamma, plane);
 }
 
-// The integral is exact: over C values are linear, and so their trapezoids; over an interval of
-// gamma, where I = a + b gamma, int I sin = [(b sin - I cos)].
+// The integral is exact. Values are linear over C, so the trapezoidal rule is exact. Over an
+// interval of gamma, where I = a + b gamma, int I sin = [b sin - I cos].
 void PhotometricWeb::tabulate() {
   const auto planes = static_cast<Eigen::Index>(planes_.size());
   Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(values_.cols());
@@ -117,7 +117,7 @@ void PhotometricWeb::tabulate() {
         (std::cos(r * step * degree) - std::cos((r + 1) * step * degree)) * turn * degree;
     double of_row = 0.0;
     for (int s = 0; s < sectors; ++s) {
-      // The largest of some places, so that no light has a density of 0.
+      // The largest of nine samples, so that no direction with light has a density of 0.
       double most = 0.0;
       for (const double y : {0.0, 0.5, 1.0}) {
         for (const double x : {0.0, 0.5, 1.0}) {

@@ -4,9 +4,9 @@
 
 namespace lightwell {
 
-/// Puts surfaces and cameras where their motions have them at a time, s, from where a file has put
-/// them, and says so in RigidMotion::rest_time: light is solved for what stands there then. To be
-/// called once; motions must be sound (see fault()).
+/// Moves surfaces and cameras from their coordinates in the file to the poses of their motions at
+/// `time`, s, and sets RigidMotion::rest_time: light is solved for that instant. To be called once;
+/// motions must be sound (see fault()).
 void place_at_rest(Scene& scene, double time);
 
 }  // namespace lightwell

@@ -7,8 +7,8 @@
 namespace lightwell {
 
 /// Purposes of random numbers: the part of a key that keeps the numbers of one use apart from those
-/// of all others (see random_key). A value never changes, since results depend on it. A new purpose
-/// takes a new value, here and in is_distinct_purpose().
+/// of all others (see random_key). A value never changes, since results depend on values. A new
+/// purpose takes a new value, here and in is_distinct_purpose().
 enum class RandomPurpose : std::uint64_t {
   // Rows of form factors; (patch, purpose) or (key, purpose, number).
   form_factor_rays = 1,

@@ -15,9 +15,9 @@ std::uint64_t random_key(std::uint64_t a, std::uint64_t b = 0, std::uint64_t c =
 /// A uniform number in [0,1) that depends on the key only.
 double random_uniform(std::uint64_t key);
 
-/// The first `count` points of the 4-D Sobol sequence (direction numbers of Joe & Kuo 2008), to be
-/// Owen-scrambled with a key of one's own: every key gives an equally well stratified, independent
-/// randomisation (hash-based, after Burley 2020), so results depend on neither threads nor order.
+/// The first `count` points of the 4-D Sobol sequence (direction numbers of Joe & Kuo 2008),
+/// Owen-scrambled with a key (hash-based, after Burley 2020). Every key gives an independent
+/// randomisation that is stratified equally well, so results depend on neither threads nor order.
 /// Counts that are powers of two are stratified best.
 class SobolPoints {
  public:
@@ -25,7 +25,7 @@ class SobolPoints {
   int count() const { return static_cast<int>(points_.size()); }
   /// Point i in [0,1)^4; any two dimensions are well stratified together.
   Eigen::Array4f point(int i, std::uint64_t key) const;
-  /// The fifth dimension of point i, in [0,1), for what has four already.
+  /// The fifth dimension of point i, in [0,1), for samples that already use four.
   static double fifth(int i, std::uint64_t key);
   /// Points first, first + 1, ... one after another; quicker than one at a time.
   void points(int first, std::uint64_t key, std::span<Eigen::Array4f> result) const;
@@ -38,8 +38,8 @@ class SobolPoints {
 /// concentric disk map, which keeps stratification).
 Eigen::Vector3d cosine_direction(float u, float v);
 
-/// Two unit vectors that make a right-handed frame (first, second, n) with the unit vector n
-/// (Duff et al. 2017: continuous but at n_z = 0 crossing, no branch on zero).
+/// Two unit vectors that make a right-handed frame (first, second, n) with the unit vector n (Duff
+/// et al. 2017: continuous except where n_z changes sign, and no branch).
 void tangent_frame(const Eigen::Vector3d& n, Eigen::Vector3d& first, Eigen::Vector3d& second);
 
 /// Barycentric weights of a uniform point of a triangle.

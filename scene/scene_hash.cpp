@@ -5,7 +5,7 @@
 namespace lightwell {
 namespace {
 
-// FNV-1a over the bits of what it is fed.
+// FNV-1a hash of everything added, byte by byte.
 class Hash {
  public:
   void add(std::uint64_t x) {
@@ -33,8 +33,8 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325ull;
 };
 
-// Only where there is any, so that solutions of scenes without keep their hash. Each kind begins
-// with a word of its own that no reflectance has.
+// Adds gloss only where there is any, so that solutions of scenes without gloss keep their hash.
+// Each kind begins with a word of its own, which no reflectance has.
 void add_gloss(const Material& m, Hash& hash) {
   constexpr std::uint64_t rough_mirror = 0x6d17707e, glass_body = 0x61a55b0d;
   if (m.specular_roughness > 0.0f && (m.specular > 0.0f).any()) {
@@ -72,7 +72,7 @@ void add_pictures(const Material& m, Hash& hash) {
   }
 }
 
-// Where nothing shows a picture, texture coordinates decide nothing.
+// Texture coordinates matter only where the material shows a picture.
 void add_uv(const PolygonMesh& mesh, const Material& material, Hash& hash) {
   if (!material.texture && !material.mask) return;
   for (const UvMap& uv : mesh.uv_maps) {
@@ -82,7 +82,7 @@ void add_uv(const PolygonMesh& mesh, const Material& material, Hash& hash) {
   for (const Facet& facet : mesh.facets) hash.add(static_cast<std::uint64_t>(facet.uv_map + 1));
 }
 
-// Only where there are any, like add_gloss.
+// Adds lamps only where there are any, like add_gloss.
 void add_lamps(const Scene& scene, Hash& hash) {
   constexpr std::uint64_t lamp_word = 0x1a3b5u;
   for (const Lamp& lamp : scene.lamps) {
@@ -107,7 +107,7 @@ void add_lamps(const Scene& scene, Hash& hash) {
   }
 }
 
-// Across which edges light is smooth; only where there are any, as above.
+// Normals decide across which edges light is smooth. Added only where there are any, like gloss.
 void add_normals(const PolygonMesh& mesh, Hash& hash) {
   if (mesh.normal_maps.empty()) return;
   constexpr std::uint64_t normals = 0x5a007bu;

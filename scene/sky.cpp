@@ -34,7 +34,8 @@ constexpr std::array<SkyGradation, 15> standard_skies = {{{4.0, -0.70, 0.0, -1.0
                                                           {-1.0, -0.15, 16.0, -3.0, 0.30},
                                                           {-1.0, -0.15, 24.0, -2.8, 0.15}}};
 
-// Perez, Seals & Michalsky 1993, table 1: for a class of clearness, x1 to x4 of a, b, c, d and e.
+// Perez, Seals & Michalsky 1993, table 1: coefficients x1 to x4 of a, b, c, d and e for each class
+// of clearness.
 struct PerezClass {
   double clearness_below = 0.0;
   std::array<std::array<double, 4>, 5> x{};
@@ -89,7 +90,7 @@ constexpr std::array<PerezClass, 8> perez_classes = {{{1.065,
                                                          {1.5000, -0.6426, 1.8564, 0.5636}}}}}};
 
 double gradation(const SkyGradation& g, double cos_zenith, double cos_chi) {
-  // exp(b / cos Z) goes to 0 at the horizon, b being below 0 there; Perez has some b above.
+  // exp(b / cos Z) tends to 0 at the horizon for b < 0; some classes of Perez have b > 0.
   constexpr double nearly_horizon = 1e-3;
   const double phi =
       g.a == 0.0 ? 1.0 : 1.0 + g.a * std::exp(g.b / std::max(cos_zenith, nearly_horizon));
@@ -162,7 +163,7 @@ SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double s
   // order.
   const double air_mass = 1.0 / (std::sin(sun_altitude_degrees * degree) +
                                  0.50572 * std::pow(sun_altitude_degrees + 6.07995, -1.6364));
-  constexpr double solar_constant = 1367.0;  // W/m^2, as the model was fitted with
+  constexpr double solar_constant = 1367.0;  // W/m^2, the value of the fit
   const double normal = solar_constant * (1.0 + 0.033 * std::cos(2.0 * pi * day_of_year / 365.0));
   double brightness = diffuse_horizontal * air_mass / normal;
   const auto at = std::find_if(perez_classes.begin(), perez_classes.end() - 1,
@@ -180,7 +181,7 @@ SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double s
     sky.c = std::exp(std::pow(std::max(0.0, brightness * (c[0] + c[1] * Z)), c[2])) - c[3];
     sky.d = -std::exp(brightness * (d[0] + d[1] * Z)) + d[2] + brightness * d[3];
   }
-  // Theirs is f = 1 + c exp(d chi) + e cos^2 chi: the same but for a factor.
+  // The paper has f = 1 + c exp(d chi) + e cos^2 chi, which differs by a constant factor.
   const double factor = 1.0 + sky.c * std::exp(0.5 * pi * sky.d);
   sky.c /= factor;
   sky.e /= factor;
@@ -206,8 +207,8 @@ Spectrum radiance_outside(const Sky& sky, const Eigen::Vector3d& direction) {
 }
 
 Spectrum diffuse_horizontal_irradiance(const Sky& sky) {
-  // E = int L cos dw = 1/2 int int L d(sin^2 Z) dphi, by the midpoint rule; all kinds but maps and
-  // those with a bright sun region are exact in phi.
+  // E = int L cos dw = 1/2 int int L d(sin^2 Z) dphi, by the midpoint rule. The rule is exact in
+  // phi for all kinds but maps and skies with a bright region about the sun.
   const int rings = sky.kind == SkyKind::map ? 512 : 1024;
   const int around = sky.kind == SkyKind::map ? 2048 : 256;
   const Eigen::Vector3d east = sky.north.cross(sky.up);

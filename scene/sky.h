@@ -11,15 +11,14 @@
 
 namespace lightwell {
 
-/// The sun: a disc of even radiance, so far away that its light comes from the same directions
-/// everywhere.
+/// The sun: a disc of uniform radiance at infinite distance.
 struct Sun {
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitY();  ///< unit, towards its middle
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitY();  ///< unit, towards the middle of the disc
   Spectrum irradiance{};         ///< on a surface that faces it, W/m^2, >= 0
   double angle_degrees = 0.533;  ///< across the disc, (0, 10]; 0.533 seen from the earth's mean
                                  ///< distance
 
-  double cosine_of_edge() const;  ///< of the angle from the middle
+  double cosine_of_edge() const;  ///< cosine of the angle between edge and middle
   double solid_angle() const;     ///< sr
 };
 
@@ -32,68 +31,71 @@ struct SkyGradation {
   double c = 0.0, d = -1.0, e = 0.0;  ///< c = e = 0: the same all around
 };
 
-/// One of the 15 standard skies of ISO 15469; 1 is the standard overcast sky, 5 the uniform, 12 the
-/// standard clear one. Throws std::invalid_argument for other numbers.
+/// One of the 15 standard skies of ISO 15469: 1 is the standard overcast sky, 5 the uniform sky, 12
+/// the standard clear sky. Throws std::invalid_argument for other numbers.
 SkyGradation standard_sky(int number);
 
-/// The all-weather sky (Perez, Seals & Michalsky 1993) for `direct_normal` and
-/// `diffuse_horizontal` irradiance, W/m^2, with the sun at an altitude above the horizon, on a day
-/// of the year from 1. Throws std::invalid_argument for a diffuse irradiance that is not above 0, a
-/// direct one below 0 or a sun that is not up.
+/// Gradation of the all-weather sky (Perez, Seals & Michalsky 1993). `direct_normal` and
+/// `diffuse_horizontal` are irradiances, W/m^2; `day_of_year` counts from 1. Throws
+/// std::invalid_argument if the diffuse irradiance is not above 0, the direct one is below 0 or the
+/// sun is not above the horizon.
 SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double sun_altitude_degrees,
                        int day_of_year);
 
-/// How radiance goes over the dome.
+/// Distribution of radiance over the dome.
 enum class SkyKind : std::uint8_t {
-  gradation,  ///< SkyGradation; uniform as well
-  overcast,   ///< (1 + 2 cos Z) / 3 of the zenith's (Moon & Spencer 1942)
-  map         ///< a picture, of what is below the horizon too
+  gradation,  ///< SkyGradation, of which the uniform sky is one
+  overcast,   ///< (1 + 2 cos Z) / 3 of the zenith's radiance (Moon & Spencer 1942)
+  map         ///< a picture, which covers directions below the horizon too
 };
 
-/// What lies around the scene and sends light into it: a sky dome, the ground below the horizon,
-/// and the sun. Everything is infinitely far away.
+/// Light from outside the scene: a sky dome, the ground below the horizon and the sun, all at
+/// infinite distance.
 struct Sky {
-  std::string name{};                                 ///< for people: "CIE overcast"
+  std::string name{};                                 ///< shown to people: "CIE overcast"
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();      ///< unit, towards the zenith
   Eigen::Vector3d north = -Eigen::Vector3d::UnitZ();  ///< unit, perpendicular to up
   SkyKind kind = SkyKind::gradation;
   SkyGradation gradation{};
-  /// Of the bright part of the dome, where `gradation` has any; unit.
+  /// Unit direction to the bright part of the dome, where `gradation` has one.
   Eigen::Vector3d bright = Eigen::Vector3d::UnitY();
-  /// Radiance where phi f (or the overcast sky) is 1, W/(m^2 sr) per band; of a map a factor.
+  /// Radiance per band where phi f, or the overcast distribution, is 1, W/(m^2 sr); for a map, a
+  /// factor of the picture.
   Spectrum scale{};
-  Spectrum ground{};  ///< radiance of what is below the horizon, W/(m^2 sr); not of a map
-  std::shared_ptr<const EnvironmentMap> map{};  ///< shared by copies; only where kind says so
-  /// From directions of the scene to those of the map.
+  Spectrum ground{};  ///< radiance from below the horizon, W/(m^2 sr); unused with a map
+  std::shared_ptr<const EnvironmentMap> map{};  ///< shared by copies; set if kind is map
+  /// Rotation or mirroring from directions of the scene to directions of the map.
   Eigen::Matrix3d to_map = Eigen::Matrix3d::Identity();
   std::optional<Sun> sun{};
 };
 
-/// Whether anything but the sun gives light.
+/// True if anything but the sun gives light.
 bool has_dome(const Sky& sky);
 
-/// Radiance from a unit direction without the sun, W/(m^2 sr) per band.
+/// Radiance from a unit direction, W/(m^2 sr) per band, without the sun.
 Spectrum sky_radiance(const Sky& sky, const Eigen::Vector3d& direction);
 
-/// The same with the sun's disc.
+/// Radiance from a unit direction, W/(m^2 sr) per band, with the sun's disc.
 Spectrum radiance_outside(const Sky& sky, const Eigen::Vector3d& direction);
 
 /// Irradiance of an unobstructed horizontal surface that faces up, from the dome alone, W/m^2 per
-/// band: the integral of L cos over the upper hemisphere, to about 1e-5 of it (of a map: of its
-/// pixels).
+/// band: the integral of L cos over the upper hemisphere. Relative error about 1e-5; the integral
+/// of a map has 512 x 2048 directions.
 Spectrum diffuse_horizontal_irradiance(const Sky& sky);
 
-/// The same from the sun alone; 0 below the horizon.
+/// Irradiance of an unobstructed horizontal surface that faces up, from the sun alone, W/m^2 per
+/// band; 0 if the sun is below the horizon.
 Spectrum sun_horizontal_irradiance(const Sky& sky);
 
-/// Direction by azimuth, clockwise from north as seen from above, and altitude above the horizon.
+/// Unit direction from azimuth, clockwise from north as seen from above, and altitude above the
+/// horizon.
 Eigen::Vector3d sky_direction(const Sky& sky, double azimuth_degrees, double altitude_degrees);
 
-/// Checks what all that use it rely on: unit directions, bands, ranges. Throws
-/// std::invalid_argument with a sentence that names the value.
+/// Checks unit directions, numbers of bands and ranges. Throws std::invalid_argument with a
+/// sentence that names the value.
 void validate(const Sky& sky, const Bands& bands);
 
-/// Equal for skies that send the same light.
+/// 64-bit hash, equal for skies that send the same light.
 std::uint64_t sky_hash(const Sky& sky);
 
 }  // namespace lightwell

@@ -24,7 +24,8 @@ double reflected_share(const Dielectric& glass, double cos_incident, bool from_b
   return glass.thin ? pane_reflectance(cosine, index) : fresnel_reflectance(cosine, index);
 }
 
-// Through a microfacet (or the whole surface) of normal m.
+// Direction of the light transmitted through a microfacet, or the whole surface, of normal m. Empty
+// under total internal reflection.
 std::optional<Eigen::Vector3d> transmitted_direction(const SurfaceInteraction& interaction,
                                                      const Eigen::Vector3d& m) {
   const Dielectric& glass = *interaction.material.dielectric;
@@ -33,8 +34,8 @@ std::optional<Eigen::Vector3d> transmitted_direction(const SurfaceInteraction& i
   return reflect(reflect(interaction.direction, m), interaction.normal);
 }
 
-// Share of the light that a microfacet sends onwards which nothing is in the way of; 0 below the
-// horizon of the side it belongs to.
+// Share of the light scattered by a microfacet that no other microfacet masks; 0 below the horizon
+// of the side on which the light leaves.
 double unmasked(const SurfaceInteraction& interaction, double alpha,
                 const Eigen::Vector3d& outgoing, bool crosses) {
   const double cos_out = outgoing.dot(interaction.normal) * (crosses ? -1.0 : 1.0);
@@ -45,14 +46,16 @@ double unmasked(const SurfaceInteraction& interaction, double alpha,
   return is_reflected ? (1.0 + in) / (1.0 + in + out) : 1.0 / (1.0 + out);
 }
 
-// Share of what meets a microfacet of normal m that it reflects; a mirror's is counted elsewhere.
+// Fresnel reflectance of a microfacet of normal m. 1 for a mirror, whose reflectance
+// scattering_weight() has.
 double microfacet_reflectance(const SurfaceInteraction& interaction, const Eigen::Vector3d& m) {
   const auto& glass = interaction.material.dielectric;
   return glass ? reflected_share(*glass, -interaction.direction.dot(m), interaction.from_back)
                : 1.0;
 }
 
-// The microfacet's normal is drawn in the frame whose columns are `frame`, the last the surface's.
+// Draws the normal of a microfacet. The columns of `frame` are axes about the surface's normal, the
+// last column.
 Eigen::Vector3d sample_microfacet_normal(const SurfaceInteraction& interaction,
                                          const Eigen::Matrix3d& frame, double u, double v) {
   const Eigen::Vector3d from = -(frame.transpose() * interaction.direction);
@@ -67,7 +70,7 @@ Eigen::Matrix3d frame_about(const Eigen::Vector3d& normal) {
   return frame;
 }
 
-// One try at a rough surface.
+// One attempt at a sample of a rough surface; empty if the sample is masked.
 std::optional<ScatteringSample> sample_microfacet(const SurfaceInteraction& interaction,
                                                   const Eigen::Matrix3d& frame,
                                                   const ScatteringRandom& random) {
@@ -136,7 +139,7 @@ ScatteringSample sample_scattering(const SurfaceInteraction& interaction,
     return sample_smooth(interaction, first.component);
   }
   const Eigen::Matrix3d frame = frame_about(interaction.normal);
-  // Even at alpha 1 and grazing incidence, a third of all tries go on.
+  // Even at alpha 1 and grazing incidence a third of all attempts succeed.
   constexpr int most_tries = 64;
   ScatteringRandom random = first;
   for (std::uint64_t i = 1; i <= most_tries; ++i) {
@@ -187,7 +190,7 @@ double RoughLobe::density(const SurfaceInteraction& interaction,
   const auto& glass = interaction.material.dielectric;
   const bool crosses = outgoing.dot(n) < 0.0;
   if (!(cos_in > 0.0) || (crosses && !glass)) return 0.0;
-  // The microfacet that sends light there, and its solid angle per solid angle of directions.
+  // Normal of the microfacet that scatters into `outgoing`, and d omega_m / d omega_outgoing.
   Eigen::Vector3d m;
   double stretch = 0.0;
   if (!crosses || glass->thin) {
@@ -197,7 +200,7 @@ double RoughLobe::density(const SurfaceInteraction& interaction,
   } else {
     const double index = relative_index(*glass, interaction.from_back);
     m = -(from + index * outgoing);
-    constexpr double unbent = 1e-6;  // of index 1, whose lobe is one direction
+    constexpr double unbent = 1e-6;  // at index 1 the lobe is a single direction
     if (!(m.norm() > unbent)) return 0.0;
     m.normalize();
     if (m.dot(n) < 0.0) m = -m;

@@ -10,8 +10,8 @@
 namespace lightwell {
 namespace {
 
-// Source texels that a coarser one is the mean of, with their shares: two of an even row, three of
-// an odd one, so that the mean of all stays what it was.
+// Source texels whose mean is one coarser texel, with their weights: two of an even row, three of
+// an odd one, so that the mean over the whole picture is kept.
 struct Cover {
   int first = 0;
   std::array<float, 4> share{};
@@ -48,8 +48,8 @@ int wrapped_texel(int i, int size, TextureWrap wrap) {
   return ((i % size) + size) % size;
 }
 
-// The same place within one period of the wrap, where its whole part fits an int. Beyond what
-// doubles tell apart any place will do.
+// The same position within one period of the wrap, so that its integer part fits an int. Beyond the
+// resolution of doubles any position will do.
 double within_period(double x, TextureWrap wrap) {
   if (wrap == TextureWrap::clamp) return std::clamp(x, -1.0, 2.0);
   const double period = wrap == TextureWrap::mirror ? 2.0 : 1.0;
@@ -107,7 +107,7 @@ Texture::Level Texture::halved(const Level& from) const {
   return to;
 }
 
-// The mean of the finest level itself: rounding of the coarser ones does not add up in it.
+// The mean is that of the finest level, free of the rounding of coarser levels.
 void Texture::measure() {
   const Level& all = levels_.front();
   Eigen::Array3d sum = Eigen::Array3d::Zero();

@@ -9,12 +9,12 @@
 
 namespace lightwell {
 
-/// A picture as it lies on surfaces: texels of linear shares in [0,1], one channel or three, rows
-/// from the top, and all coarser levels of it (mip map; Williams 1983), each the mean of the one
-/// before. Place (0,0) is the picture's top left corner, (1,1) its bottom right one.
+/// A picture for surfaces: texels of linear shares in [0,1], one channel or three, rows from the
+/// top. All coarser levels are kept (mip map; Williams 1983), each the mean of the level before.
+/// Position (0,0) is the picture's top left corner, (1,1) its bottom right corner.
 class Texture {
  public:
-  /// 16 bits for a share in [0,1], finer in the dark: its square root.
+  /// 16-bit code of a share in [0,1]: the square root, which is finer in the dark.
   using Code = std::uint16_t;
   static Code encode(float share);
   static float decode(Code code) {
@@ -22,7 +22,8 @@ class Texture {
     return scale * static_cast<float>(code) * static_cast<float>(code);
   }
 
-  /// `texels`: width x height x channels (1 or 3). Throws std::invalid_argument if they are not.
+  /// `texels`: width x height x channels (1 or 3). Throws std::invalid_argument if the sizes
+  /// differ.
   Texture(int width, int height, int channels, std::vector<Code> texels);
 
   int width() const { return levels_.front().width; }
@@ -32,16 +33,17 @@ class Texture {
   int level_width(int level) const { return levels_[static_cast<std::size_t>(level)].width; }
   int level_height(int level) const { return levels_[static_cast<std::size_t>(level)].height; }
 
-  /// A texel, its place within the level's size; one channel stands for all three.
+  /// Texel (x, y) of a level, within the level's size; a single channel is repeated three times.
   Eigen::Array3f texel(int level, int x, int y) const;
-  /// Of all texels.
+  /// Mean of all texels, per channel.
   Eigen::Array3f mean() const { return mean_; }
-  /// The largest texel, per channel.
+  /// Largest texel, per channel.
   Eigen::Array3f largest() const { return largest_; }
-  /// Of size and texels: equal for equal pictures.
+  /// Hash of size and texels, equal for equal pictures.
   std::uint64_t hash() const { return hash_; }
 
-  /// The picture with three channels whose texels are `change` of this one's; shares in [0,1].
+  /// A picture with three channels whose texels are `change` of this picture's texels; shares in
+  /// [0,1].
   Texture mapped(const std::function<Eigen::Array3f(const Eigen::Array3f&)>& change) const;
 
  private:
@@ -58,22 +60,22 @@ class Texture {
   std::uint64_t hash_ = 0;
 };
 
-/// How a picture goes on beyond its edges.
+/// Continuation of a picture beyond its edges.
 enum class TextureWrap : std::uint8_t { repeat, mirror, clamp };
 
-/// A picture and how it is laid over texture coordinates (u, v).
+/// A picture and its layout over texture coordinates (u, v).
 struct SurfaceTexture {
   std::shared_ptr<const Texture> picture{};  ///< shared by all materials that show it; not null
   std::array<TextureWrap, 2> wrap = {TextureWrap::repeat, TextureWrap::repeat};  ///< in u and v
   bool is_smooth = true;  ///< bilinear between the middles of texels; else texels are flat squares
-  /// Place in the picture: placement * (u, v, 1).
+  /// Position in the picture: placement * (u, v, 1).
   Eigen::Matrix<double, 2, 3> placement = Eigen::Matrix<double, 2, 3>::Identity();
 
-  /// The picture at a place, unfiltered.
+  /// Unfiltered value of the picture at (u, v).
   Eigen::Array3f at(const Eigen::Vector2d& uv) const;
-  /// Its mean about a place over the parallelogram with sides `footprint` (columns, in u and v):
-  /// bilinear between texels and levels of the mip map at up to 16 places along the longer side
-  /// (McCormack, Perry, Farkas & Jouppi 1999).
+  /// Mean of the picture about (u, v) over the parallelogram with sides `footprint` (columns, in u
+  /// and v): linear between texels and between levels of the mip map, at up to 16 sample points
+  /// along the longer side (McCormack, Perry, Farkas & Jouppi 1999).
   Eigen::Array3f over(const Eigen::Vector2d& uv, const Eigen::Matrix2d& footprint) const;
 
  private:

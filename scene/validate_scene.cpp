@@ -152,7 +152,7 @@ void check_loop(const Scene& scene, const Surface& surface, const PolygonMesh& m
   }
 }
 
-// What is wrong with a position or a radius; empty if nothing is.
+// Fault of a position, or of a radius as a vector; empty if there is none.
 std::string place_fault(const Eigen::Vector3d& p) {
   if (!p.allFinite()) return "a coordinate is not a finite number";
   const double reach = p.cwiseAbs().maxCoeff();
