@@ -4,20 +4,20 @@
 
 namespace lightwell {
 
-/// The spheres of a ray caster, as Embree's callbacks find them. Exact, in double precision.
+/// The spheres of a ray caster, in double precision, for Embree's callbacks.
 struct SphereSet {
   std::vector<Sphere> spheres;
   std::vector<int> group;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of Embree's coordinates
-  double rounding = 0.0;                             // of Embree's coordinates, metres
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // origin of Embree's coordinates, metres
+  double rounding = 0.0;                             // bound for Embree's coordinates, metres
 };
 
-/// The nearest root of |o + t d - c| = r above 0, also beyond the ray's t_max; for a ray that
-/// starts on this sphere the root at its own origin is the one of smaller magnitude and does not
-/// count. Negative: none.
+/// Smallest root t > 0 of |o + t d - c| = r, also beyond the ray's t_max. For a ray that starts on
+/// the sphere, the root of smaller magnitude is the ray's own origin and does not count. Negative
+/// if there is none.
 double sphere_root(const Sphere& sphere, const Ray& ray, bool starts_here);
 
-/// A geometry of Embree's, not yet committed, over `set`, which must outlive it.
+/// Makes an Embree geometry of `set`, not yet committed. `set` must outlive the geometry.
 RTCGeometry sphere_geometry(RTCDevice device, SphereSet& set);
 
 }  // namespace lightwell

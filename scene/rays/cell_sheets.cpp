@@ -9,10 +9,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Finds the cell that begins where another ends, by the edge both share.
+// Finds the cell that begins at the edge where another cell ends.
 class Neighbours {
  public:
-  // An edge is that of corners `from` and `to` of the quads that there are.
+  // `from`, `to`: the two corners of each quad that bound its edge.
   Neighbours(const CastGeometry& geometry, std::span<const int> quads, int from, int to) {
     for (const int q : quads) {
       const auto& c = geometry.quads[static_cast<std::size_t>(q)];
@@ -21,7 +21,7 @@ class Neighbours {
     std::ranges::sort(edges_);
   }
 
-  // -1: none.
+  // Returns the quad with that edge, -1 if there is none.
   int at(int from, int to) const {
     const std::array<int, 2> edge{from, to};
     const auto found = std::ranges::lower_bound(edges_, edge, {}, &Edge::first);
@@ -71,7 +71,7 @@ class Joining {
   int above(int q) const { return lows_.at(corners(q)[3], corners(q)[2]); }
   int below(int q) const { return highs_.at(corners(q)[0], corners(q)[1]); }
 
-  // Whether a cell is that of a column and row of the lattice that another begins.
+  // True if cell `q` stands in a column and row of the lattice that the cell `origin` begins.
   bool is_in_lattice(int q, int origin, int column, int row) const {
     if (q < 0 || is_joined_[static_cast<std::size_t>(q)] != 0 || group(q) != group(origin)) {
       return false;
@@ -89,7 +89,7 @@ class Joining {
     return true;
   }
 
-  // From where columns and rows go on to any cell, as far as that can be gone back from it.
+  // First cell of the rows and columns through `q`: as far back as cells continue evenly.
   int first_cell(int q) const {
     const auto go_back = [&](const auto& before, bool along_row) {
       const int column = along_row ? 1 : 0, row = along_row ? 0 : 1;
@@ -104,7 +104,7 @@ class Joining {
     return q;
   }
 
-  // How many cells along one edge of this one a sheet may have.
+  // Most cells of a sheet along the edge of `q` from corner 0 to `corner`.
   int most(int q, int corner) const {
     const double times = longest_ / (position(q, corner) - position(q, 0)).norm();
     return static_cast<int>(std::min(times, static_cast<double>(quads_.size())));
@@ -112,7 +112,7 @@ class Joining {
 
   void add_sheet(int origin, CellSheets& result) {
     std::vector<int> cells{origin};
-    if (!is_in_lattice(origin, origin, 0, 0)) {  // no parallelogram, or of no width
+    if (!is_in_lattice(origin, origin, 0, 0)) {  // no parallelogram, or without width
       is_joined_[static_cast<std::size_t>(origin)] = 1;
       result.single.push_back(origin);
       return;
@@ -162,7 +162,7 @@ class Joining {
   const CastGeometry& geometry_;
   double longest_, margin_;
   std::span<const int> quads_;
-  Neighbours lefts_, rights_, lows_, highs_;  // by their left edges, and so on
+  Neighbours lefts_, rights_, lows_, highs_;  // cells by their left, right, low and high edges
   std::vector<char> is_joined_;
 };
 

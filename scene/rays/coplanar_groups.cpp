@@ -11,20 +11,20 @@ namespace lightwell {
 
 struct CoplanarGroups::Plane {
   int group = 0;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // to the front
-  Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // the first
-  double distance = 0.0;                             // from the middle of the geometry, >= 0
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // towards the front
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // first corner
+  double distance = 0.0;                             // from the middle of the geometry, m, >= 0
   Eigen::AlignedBox3d box{};
-  std::vector<int> vertices{};                 // of the geometry, polygon after polygon
-  std::vector<int> ends{};                     // of the polygons among those
-  std::vector<Eigen::AlignedBox2d> boxes{};    // of the polygons, flattened, once asked for
-  std::vector<Eigen::Vector2d> convex_hull{};  // counter-clockwise, once asked for
-  int seen_along = -1;                         // the axis along which that is flattened
+  std::vector<int> vertices{};                 // indices, polygon after polygon
+  std::vector<int> ends{};                     // ends of the polygons in `vertices`
+  std::vector<Eigen::AlignedBox2d> boxes{};    // of the polygons, by flatten()
+  std::vector<Eigen::Vector2d> convex_hull{};  // counter-clockwise, by flatten()
+  int seen_along = -1;                         // axis of the last flatten()
 };
 
 namespace {
 
-constexpr double margin = 4.0;  // tolerances by which what lies together may seem apart
+constexpr double margin = 4.0;  // tolerances by which coinciding planes may differ
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -55,7 +55,7 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   return hull;
 }
 
-// Whether a line along an edge of `a` keeps `b` off, by less than `tolerance` of overlap.
+// True if a line along an edge of `a` separates `b`, up to an overlap of `tolerance`.
 bool is_apart(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b,
               double tolerance) {
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -77,15 +77,15 @@ struct DirectedEdge {
 std::uint64_t hash_of(const DirectedEdge& edge) {
   std::uint64_t key = 0;
   for (int c = 0; c < 3; ++c) {
-    // -0 and 0 are one place.
+    // -0 and 0 are the same coordinate.
     key = random_key(key, std::bit_cast<std::uint64_t>(edge.from[c] + 0.0),
                      std::bit_cast<std::uint64_t>(edge.to[c] + 0.0));
   }
   return key;
 }
 
-// Which groups have an edge: a table with open addressing, for there is an entry for each edge of
-// each element, and most that is looked up is not in it.
+// Groups by edge, in a table with open addressing: there is an entry for each edge of each element,
+// and most look-ups find nothing.
 class GroupsAtEdges {
  public:
   explicit GroupsAtEdges(std::size_t edges) : slots_(std::bit_ceil(2 * edges + 1)) {}
@@ -139,13 +139,14 @@ void for_each_edge(const CastGeometry& geometry, std::span<const int> polygon, V
 
 }  // namespace
 
-// Rounding the vertices to float turns a facet by less than this, 4.5e-5, unless it is a sliver.
+// Rounding the vertices to float turns a facet by less than the angle of this cosine, 4.5e-5,
+// unless the facet is a sliver.
 bool CoplanarGroups::lie_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   constexpr double cosine = 1.0 - 1e-9;
   return std::abs(a.dot(b)) > cosine;
 }
 
-// In order of distance.
+// Planes of all groups but spheres, by distance from the middle of the geometry.
 std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry& geometry) {
   int groups = 0;
   for (const int g : geometry.group) groups = std::max(groups, g + 1);
@@ -179,13 +180,15 @@ std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry&
 CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
   std::vector<Plane> planes = planes_of(geometry);
   for (Plane& plane : planes) {
-    // Boxes of flat things are flat: what rounding sets apart must meet. And a ray that starts a
-    // little off the plane must not be taken across by what the ray caster allows for rounding.
+    // Margins: boxes of flat things are flat, and boxes set apart by rounding must meet. The ray
+    // caster's allowance for rounding must not take a ray that starts a little off the plane across
+    // the plane.
     plane.box.min().array() -= margin * tolerance;
     plane.box.max().array() += margin * tolerance;
     if (plane.group >= static_cast<int>(groups_.size())) groups_.resize(plane.group + 1);
     Group& group = groups_[plane.group];
-    // Seldom in any plane of a scene: planes that are one have normals of one sign.
+    // A direction seldom in any plane of a scene, so that coinciding planes have normals of one
+    // sign.
     const Eigen::Vector3d askew(0.8191, 0.4927, 0.2937);
     group.facing = plane.normal.dot(askew) < 0.0 ? -1 : 1;
     group.normal = group.facing * plane.normal;
@@ -206,7 +209,7 @@ CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
   if (has_any) find_bodies(geometry, tolerance);
 }
 
-// Rounding may still have turned two normals of one plane to either side.
+// Rounding may still have given two normals of one plane opposite signs.
 void CoplanarGroups::align_normals(const std::vector<Pair>& pairs) {
   const bool are_aligned = std::ranges::all_of(
       pairs, [&](const Pair& pair) { return normal(pair[0]).dot(normal(pair[1])) > 0.0; });
@@ -235,8 +238,9 @@ void CoplanarGroups::align_normals(const std::vector<Pair>& pairs) {
   }
 }
 
-// A group's body are the faces that meet it along an edge, going on over the edge as faces of one
-// surface do: in the opposite direction. So the next room's walls are not taken for this one's.
+// The body of a group consists of the faces that meet the group along an edge and run along the
+// edge in the opposite direction, as faces of one surface do. Walls of the next room are thereby
+// left out.
 void CoplanarGroups::find_bodies(const CastGeometry& geometry, double tolerance) {
   std::size_t edges = 0;
   for_each_polygon(geometry, [&](int group, std::span<const int> polygon) {
@@ -247,7 +251,7 @@ void CoplanarGroups::find_bodies(const CastGeometry& geometry, double tolerance)
     if (!has_overlaps(group)) return;
     for_each_edge(geometry, polygon, [&](const DirectedEdge& edge) { groups_at.add(edge, group); });
   });
-  std::vector<double> side(groups_.size(), 0.0);  // length of the edges on either
+  std::vector<double> side(groups_.size(), 0.0);  // length of edges above less below, m
   for_each_polygon(geometry, [&](int group, std::span<const int> polygon) {
     for_each_edge(geometry, polygon, [&](const DirectedEdge& edge) {
       groups_at.for_each_group(edge.reversed(), [&](int other) {
@@ -272,7 +276,7 @@ void CoplanarGroups::find_bodies(const CastGeometry& geometry, double tolerance)
 int CoplanarGroups::order(int a, int b) const {
   const Group &first = groups_[a], &second = groups_[b];
   if (first.body != 0 && second.body != 0) {
-    // Away from the plane: a room's wall first, then what is inside of the room.
+    // Away from the plane: a room's wall first, then the contents of the room.
     const auto level = [](const Group& g) {
       const bool is_solid = g.body != g.facing;
       return g.body * (is_solid ? 2 : 1);
@@ -291,7 +295,7 @@ void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
     const double x = a.box.min().x(), y = b.box.min().x();
     return x != y ? x < y : a.group < b.group;
   });
-  // Where very many lie together all of them count as covered: that only costs their rays time.
+  // Beyond this number of pairs all groups count as covered, which costs their rays time only.
   std::size_t pairs_left = 1000 * planes.size();
   for (std::size_t i = 0; i < planes.size(); ++i) {
     Plane& a = planes[i];
@@ -305,7 +309,7 @@ void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
       if (!lie_parallel(a.normal, b.normal) || !a.box.intersects(b.box)) continue;
       const Eigen::AlignedBox3d shared = a.box.intersection(b.box);
       if (!is_one_plane(a, b, shared.center(), tolerance)) continue;
-      // Facets that share an edge have boxes that meet, but do not lie on each other.
+      // Facets that share an edge have boxes that meet, without lying on each other.
       int along = 0;
       a.normal.cwiseAbs().maxCoeff(&along);
       flatten(geometry, along, a);
@@ -321,8 +325,8 @@ void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
   }
 }
 
-// Whether any two of their polygons do, whose hulls may where they do not: a lamp lies in the hole
-// of its ceiling. Where there are very many, they count as if.
+// True if any two polygons of the planes share area. Hulls may where polygons do not: a lamp lies
+// in the hole of its ceiling. Also true for very many polygons, untested.
 bool CoplanarGroups::share_area(const CastGeometry& geometry, const Plane& a, const Plane& b,
                                 int along, double tolerance) {
   using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
@@ -350,7 +354,8 @@ bool CoplanarGroups::share_area(const CastGeometry& geometry, const Plane& a, co
   });
 }
 
-// Planes on opposite sides of the middle are as far from it as those that are one.
+// Planes on opposite sides of the middle are at the same distance as coinciding planes, so the
+// heights of `place` are compared.
 bool CoplanarGroups::is_one_plane(const Plane& a, const Plane& b, const Eigen::Vector3d& place,
                                   double tolerance) {
   const double above_a = a.normal.dot(place - a.corner), above_b = b.normal.dot(place - b.corner);

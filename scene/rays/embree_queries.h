@@ -12,7 +12,8 @@
 
 namespace lightwell {
 
-// Embree hands this back to the sphere callback, which needs the origin in double and its group.
+// Context of a query, which Embree passes on to callbacks: the sphere callback needs the ray's
+// origin in double precision and the ray's group.
 #if RTC_VERSION_MAJOR >= 4
 using EmbreeContext = RTCRayQueryContext;
 #else
@@ -21,7 +22,7 @@ using EmbreeContext = RTCIntersectContext;
 struct QueryContext : EmbreeContext {
   const Ray* rays = nullptr;     // a lane's ray is rays[its id]
   const void* caster = nullptr;  // RayCaster::Impl, for the filter
-  int target = -1;               // group that the filter lets pass
+  int target = -1;               // group that the filter ignores
 };
 
 inline void init(QueryContext& context, const Ray* rays) {

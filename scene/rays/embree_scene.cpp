@@ -13,7 +13,7 @@
 namespace lightwell {
 namespace {
 
-// Of triangles and quads.
+// Area of triangles and quads, m^2.
 double area(const CastGeometry& source) {
   double sum = 0.0;
   const auto add = [&](int a, int b, int c) {
@@ -53,15 +53,15 @@ EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
     box.extend(s.center + Eigen::Vector3d::Constant(s.radius));
   }
   if (!box.isEmpty()) center = box.center();
-  constexpr double roundings = 4.0;  // origin, vertices and the intersection's own arithmetic
+  constexpr double roundings = 4.0;  // of the origin, the vertices and the intersection
   if (!box.isEmpty()) {
     rounding = roundings * 0.5 * box.diagonal().norm() * std::numeric_limits<float>::epsilon();
   }
 
   planes = std::make_unique<CoplanarGroups>(geometry, rounding);
 
-  // One thread builds, whatever the user's limit: the order inside Embree's leaves, and with it
-  // which of two primitives wins on a shared edge, must not depend on it.
+  // One thread builds, whatever the user's limit. The order inside Embree's leaves must not depend
+  // on the number of threads: the order decides which of two primitives wins on a shared edge.
   const ThreadLimit one(1);
 #ifdef LIGHTWELL_STD_THREADS
   device = rtcNewDevice("threads=1");
@@ -70,7 +70,7 @@ EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
 #endif
   if (!device) throw std::runtime_error("Embree could not be started on this processor.");
   scene = rtcNewScene(device);
-  // Allows the filter; costs nothing measurable where none is given.
+  // Allows the filter, without measurable cost where none is given.
 #if RTC_VERSION_MAJOR >= 4
   constexpr int filter_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 #else
@@ -106,9 +106,8 @@ void EmbreeScene::attach(RTCGeometry geometry, GeometryId id) {
   rtcReleaseGeometry(geometry);
 }
 
-// Embree keeps a tree for every type of geometry, and a ray goes down each of them. So where
-// there are quads, triangles are quads that end in their last corner twice; u and v remain the
-// same.
+// Embree keeps a tree for every type of geometry, and a ray visits each. Where there are quads,
+// triangles are therefore quads with a repeated last corner; u and v remain the same.
 RTCGeometry EmbreeScene::polygon_geometry(const CastGeometry& source,
                                           std::span<const int> primitives,
                                           std::span<const CellSheet> with) const {
@@ -150,7 +149,7 @@ RTCGeometry EmbreeScene::polygon_geometry(const CastGeometry& source,
   return geometry;
 }
 
-// What lies on a cell may hide it, and no other.
+// A surface that lies on one cell may hide that cell alone.
 bool EmbreeScene::may_join(const CastGeometry& source, int quad) const {
   const auto p = static_cast<std::size_t>(triangles + quad);
   if (!source.has_holes.empty() && source.has_holes[p] != 0) return false;
@@ -159,8 +158,8 @@ bool EmbreeScene::may_join(const CastGeometry& source, int quad) const {
 }
 
 void EmbreeScene::add_polygons(const CastGeometry& source) {
-  // In a hall of 100 boxes rays are quickest among some thousands of quads: among the 600 of its
-  // walls and boxes they take a quarter longer, among a million half as long again.
+  // Measured in a hall of 100 boxes: rays are quickest among some thousands of quads. The 600 quads
+  // of its walls and boxes take a quarter longer, a million half as long again.
   constexpr double sheets_in_all = 3000.0;
   const double longest = std::sqrt(area(source) / sheets_in_all);
   sheets = join_cells(source, longest, rounding, [&](int quad) { return may_join(source, quad); });
@@ -212,14 +211,14 @@ void EmbreeScene::add_spheres(const CastGeometry& source) {
   attach(sphere_geometry(device, sphere_set), spheres_id);
 }
 
-// Groups that lie on a place of a plane, itself included.
+// Groups that lie on a plane at `place`, group `on` itself included.
 std::vector<int> EmbreeScene::groups_at(const Eigen::Vector3d& place, int on) const {
   struct Search : QueryContext {
     std::vector<int> found;
   } search;
   const Eigen::Vector3d& normal = planes->normal(on);
   const Ray ray{.origin = place - 8.0 * rounding * normal, .direction = normal};
-  init(search, &ray);  // spheres ask for it
+  init(search, &ray);  // read by the callback of spheres
   search.caster = this;
   const Eigen::Vector3d from = ray.origin - center;
   RTCRayHit query{};
@@ -237,15 +236,15 @@ std::vector<int> EmbreeScene::groups_at(const Eigen::Vector3d& place, int on) co
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
     const auto& caster = *static_cast<const EmbreeScene*>(here.caster);
     here.found.push_back(caster.group[caster.primitive(hit)]);
-    args->valid[0] = 0;  // go on to the next
+    args->valid[0] = 0;  // continue to the next
   });
   return search.found;
 }
 
-// Primitives are asked at their centre: whoever wants this exact cuts them where others end.
+// Primitives are tested at their centre: exact answers need primitives cut where others end.
 void EmbreeScene::find_hidden(const CastGeometry& source) {
   hidden.assign(static_cast<std::size_t>(triangles + quads), 0);
-  // What has holes hides nothing whole.
+  // Groups with holes hide nothing whole.
   std::vector<char> is_porous(
       group.empty() ? 0 : *std::max_element(group.begin(), group.end()) + std::size_t{1}, 0);
   for (const int p : porous) is_porous[group[p]] = 1;

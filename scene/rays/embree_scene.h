@@ -12,9 +12,10 @@
 
 namespace lightwell {
 
-/// What RayCaster asks: Embree's tree over a CastGeometry, and what is known about its planes.
+/// Embree's tree over a CastGeometry, and the planes of its groups.
 struct EmbreeScene {
-  // Embree's numbers of the two geometries.
+  // Embree's geometry IDs. Polygons with holes are a geometry of their own: its filter costs the
+  // others nothing.
   enum GeometryId : unsigned { polygons_id, spheres_id, porous_id };
   enum Hidden : std::uint8_t { from_front = 1, from_back = 2 };
 
@@ -26,26 +27,26 @@ struct EmbreeScene {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  // Embree's origin
-  double rounding = 0.0;  // how far float coordinates move a point at most, metres
+  double rounding = 0.0;  // largest error of a point by float coordinates, metres
   std::vector<int> group;
   std::unique_ptr<CoplanarGroups> planes;
-  std::vector<std::uint8_t> hidden;  // per triangle and quad: sides that what lies on it hides
-  bool is_any_hidden = false;        // saves rays a look at `hidden`
+  std::vector<std::uint8_t> hidden;  // per triangle and quad: sides hidden by another group
+  bool is_any_hidden = false;        // saves rays the access to `hidden`
   SphereSet sphere_set;
   int triangles = 0, quads = 0;
-  // Polygons with holes are a geometry of their own, with a filter that the others do not pay for.
-  // Primitives of Embree's two geometries.
+  // Primitives of Embree's two geometries of polygons.
   std::vector<int> solid, porous;
-  CellSheets sheets;  // the last of the solid ones, each known by its first cell there
+  CellSheets sheets;  // the last entries of `solid` are their first cells
   std::function<bool(int group, const Eigen::Vector3d& point)> is_hole;
 
-  // Of a sheet any cell, since all are of one group, and nothing lies on them.
+  // Number of the primitive that was met. For a sheet: any cell, since all cells are of one group
+  // and nothing lies on them.
   int primitive(const RTCHit& hit) const {
     if (hit.geomID == spheres_id) return static_cast<int>(hit.primID) + triangles + quads;
     return (hit.geomID == porous_id ? porous : solid)[hit.primID];
   }
 
-  // Null: what was met is a primitive itself.
+  // Sheet that was met; null if a single primitive was met.
   const CellSheet* sheet(const RTCHit& hit) const {
     const std::size_t alone = solid.size() - sheets.sheets.size();
     if (hit.geomID != polygons_id || hit.primID < alone) return nullptr;

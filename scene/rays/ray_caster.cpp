@@ -12,11 +12,12 @@ namespace lightwell {
 struct RayCaster::Impl : EmbreeScene {
   using EmbreeScene::EmbreeScene;
 
-  static constexpr double coplanar = 4.0;  // times `rounding`: no further off a plane
+  static constexpr double coplanar = 4.0;  // times `rounding`: largest height of a coplanar point
 
-  // A ray that starts on a group begins past its plane by what rounding may move it, so that it
-  // rarely meets that plane and needs a second query. Where another surface may lie on the plane it
-  // begins as far before it, so that the other, the table under a block of glass, is still ahead.
+  // A ray that starts on a group begins past the plane of the group by the bound of rounding, so
+  // that the ray rarely meets that plane and needs a second query. If another surface may lie on
+  // the plane, the ray begins as far before the plane: the other surface, such as the table under a
+  // block of glass, is then still ahead.
   void set_ray(RTCRay& r, const Ray& ray, unsigned id) const {
     Eigen::Vector3d origin = ray.origin - center;
     r.tnear = 0.0f;
@@ -48,36 +49,40 @@ struct RayCaster::Impl : EmbreeScene {
     return ray.target_group >= 0 && planes->has_overlaps(ray.target_group);
   }
 
-  // Rounding may set what lies on the target behind it. `counts` drops what else is met there.
+  // Rounding may move a surface that lies on the target behind the target. `counts` drops all else
+  // that is met there.
   double past_target(const Ray& ray) const {
-    constexpr double at_most = 1e-3;  // of the ray, where it grazes the target
+    constexpr double at_most = 1e-3;  // of the ray's length, where the ray grazes the target
     return ray.t_max + std::min(target_depth(ray), at_most * ray.t_max);
   }
 
-  // As a ray starts past its own plane, it ends before its target's, which would else answer every
-  // other ray that nothing blocks, and have it cast three times. What stands on the target must
-  // still hide it: rays that graze it are rather cast again. Spheres have no plane.
+  // A ray ends before the plane of its target, as it starts past its own plane. The target would
+  // otherwise answer every other unblocked ray, which would be cast three times. Objects that stand
+  // on the target must still hide the target, so rays that graze the target keep their full length
+  // and are cast again. Spheres have no plane.
   double before_target(const Ray& ray) const {
-    constexpr double at_most = 1e-4;  // of the ray
+    constexpr double at_most = 1e-4;  // of the ray's length
     if (ray.target_group < 0) return ray.t_max;
     const double depth = target_depth(ray);
     return depth < at_most * ray.t_max ? ray.t_max - depth : ray.t_max;
   }
 
-  // What rounding may set the target off by along a ray.
+  // Largest displacement of the target by rounding, along a ray.
   double target_depth(const Ray& ray) const {
     const double along = std::abs(planes->normal(ray.target_group).dot(ray.direction));
     return coplanar * rounding / along;
   }
 
-  // Whether the plane of a hit is one with a group's, there where the ray meets it.
+  // True if the plane of a hit coincides with that of group `with` where the ray meets the hit.
   bool is_coplanar(const RTCHit& hit, double off_plane, int with) const {
     return std::abs(off_plane) <= coplanar * rounding &&
            planes->are_parallel(with, group[primitive(hit)]);
   }
 
-  // Whether a hit is what the ray meets: not its own plane, nor what lies on that before it or
-  // cannot be told to lie after it; not what another surface hides; and nothing on its target.
+  // True if a hit is the surface that the ray meets. False for the ray's own plane, and for
+  // surfaces on that plane that lie before the plane or in unknown order; for surfaces hidden by
+  // another; for the target, and for surfaces on its plane that lie behind the target or in unknown
+  // order; and past the end of the ray.
   bool counts(const RTCHit& hit, float t, const Ray& ray, int target) const {
     const bool is_past = target >= 0 && t > static_cast<float>(ray.t_max);
     const int p = primitive(hit), g = group[p];
@@ -113,7 +118,7 @@ struct RayCaster::Impl : EmbreeScene {
     if (!caster.counts(hit, t, ray, context.target)) args->valid[0] = 0;
   }
 
-  // Of shadow rays in packets: what does not count blocks none of them.
+  // Filter for packets of shadow rays: hits that do not count block no ray.
   static void skip_what_does_not_block(const RTCFilterFunctionNArguments* args) {
     const auto& context = *static_cast<const QueryContext*>(args->context);
     const auto& caster = *static_cast<const Impl*>(context.caster);
@@ -133,8 +138,8 @@ struct RayCaster::Impl : EmbreeScene {
   }
 
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const {
-    // All queries are written before Embree reads the first: a vector load from words just stored
-    // one by one would stall.
+    // All queries are written before Embree reads the first: a vector load of words just stored one
+    // by one would stall.
     constexpr std::size_t batch = 32;
     std::array<RTCRayHit, batch> queries;
     QueryContext context;
@@ -164,9 +169,9 @@ struct RayCaster::Impl : EmbreeScene {
     }
   }
 
-  // Hits that do not count are rare, so asking again with a filter is cheaper than a filter on
-  // every candidate of every ray (measured 15 % of the ray rate). Stepping past them would also
-  // pass what lies in their plane, the table under a block of glass.
+  // Hits that do not count are rare, so a second query with a filter is cheaper than a filter on
+  // every candidate of every ray (measured: 15 % of the ray rate). A step past such a hit would
+  // also pass surfaces in the same plane, such as the table under a block of glass.
   Hit closest(const Ray& ray, int target) const {
     QueryContext context;
     init(context, &ray);
@@ -184,8 +189,8 @@ struct RayCaster::Impl : EmbreeScene {
         set_hit(ray, query, hit);
         return hit;
       }
-      // Spheres know no filter. At least a normal number: Embree flushes denormals, and would meet
-      // the same place again.
+      // Spheres have no filter. tnear is at least a normal number: Embree flushes denormals and
+      // would meet the same point again.
       query.ray.tnear =
           std::max(std::numeric_limits<float>::min(),
                    std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity()));
@@ -195,9 +200,9 @@ struct RayCaster::Impl : EmbreeScene {
     return {};
   }
 
-  // Rays of several packets that Embree calls blocked. It may mean their own plane or their target,
-  // so the closest hit decides; asked for one packet's few at a time, that cost as much as all
-  // else.
+  // Rays of several packets that Embree reports as blocked. The blocker may be a ray's own plane or
+  // target, so the closest hit decides. Queries for the few rays of a single packet cost as much as
+  // all else.
   struct Suspects {
     RTCRay16 rays{};
     std::array<std::size_t, packet_size> number{};
@@ -212,8 +217,8 @@ struct RayCaster::Impl : EmbreeScene {
     confirm(rays, suspects, blocked);
   }
 
-  // Shadow rays come from one point to one emitter, so a packet of them goes down the tree together
-  // (measured 3 to 4 times the rate of single rays).
+  // Shadow rays run from one point to one emitter, so the rays of a packet visit the tree together
+  // (measured: 3 to 4 times the rate of single rays).
   void cast_packet(std::span<const Ray> rays, std::size_t begin, std::span<std::uint8_t> blocked,
                    Suspects& suspects) const {
     const int lanes = static_cast<int>(std::min<std::size_t>(packet_size, rays.size() - begin));
@@ -221,7 +226,7 @@ struct RayCaster::Impl : EmbreeScene {
     alignas(64) std::array<float, packet_size> end;
     RTCRay16 shadow;
     for (int i = 0; i < packet_size; ++i) {
-      // Lanes without a ray hold numbers all the same.
+      // Lanes without a ray must hold numbers, too.
       const std::size_t number = begin + static_cast<std::size_t>(std::min(i, lanes - 1));
       valid[i] = i < lanes ? -1 : 0;
       RTCRay ray;

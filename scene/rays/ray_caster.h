@@ -12,27 +12,28 @@
 
 namespace lightwell {
 
-/// What a RayCaster is built over. Primitives are numbered triangles first, then quads, then
-/// spheres. A *group* joins primitives that cannot see each other because they lie in one plane (a
-/// facet), or are one sphere; a ray never meets the group it starts from, whatever rounding does to
-/// its origin. Where groups lie on each other, the one that is met first hides the others (see
-/// CoplanarGroups for which that is); where that cannot be told, neither hides the other from a ray
-/// that starts on them.
+/// Geometry of a RayCaster. Primitives are numbered triangles first, then quads, then spheres.
+///
+/// A *group* joins primitives that cannot see each other because they lie in one plane (a facet),
+/// or are one sphere. A ray never meets the group it starts from, whatever rounding does to the
+/// ray's origin. Where groups lie on each other, the group that is met first hides the others (see
+/// CoplanarGroups for the order). If the order is not known, neither group hides the other from a
+/// ray that starts on one of the two.
 struct CastGeometry {
   std::vector<Eigen::Vector3d> vertices{};
   std::vector<std::array<int, 3>> triangles{};
   std::vector<std::array<int, 4>> quads{};  ///< planar, convex, in order around
   std::vector<Sphere> spheres{};
-  std::vector<int> group{};  ///< one per primitive, >= 0
-  /// Whether rays go on through a point of a group that has holes. Called from many threads.
+  std::vector<int> group{};  ///< group of each primitive, >= 0
+  /// True if rays pass through a point of a group that has holes. Called from many threads.
   std::function<bool(int group, const Eigen::Vector3d& point)> is_hole{};
-  std::vector<char> has_holes{};  ///< per triangle, then quad: 1 asks is_hole; empty: none has
+  std::vector<char> has_holes{};  ///< per triangle, then quad: 1 if is_hole applies; empty: none
 };
 
 struct Ray {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction =
-      Eigen::Vector3d::UnitZ();  ///< any length > 0; distances t are in multiples of it
+      Eigen::Vector3d::UnitZ();  ///< any length > 0; distances t are in multiples of the length
   double t_max = std::numeric_limits<double>::infinity();
   int origin_group =
       -1;  ///< group the ray starts on (a ray inside a sphere still meets its far side)
@@ -43,18 +44,19 @@ struct Hit {
   int primitive = -1;  ///< -1: nothing was hit
   int group = -1;      ///< of the primitive
   double t = std::numeric_limits<double>::infinity();
-  /// Triangle (v0,v1,v2): weights (1-u-v, u, v). Quad (v0..v3): bilinear, u along v0-v1, v along
-  /// v0-v3. Sphere: 0.
+  /// Position on the primitive. Triangle (v0,v1,v2): weights (1-u-v, u, v). Quad (v0..v3):
+  /// bilinear, u along v0-v1, v along v0-v3. Sphere: 0.
   float u = 0.0f, v = 0.0f;
   bool from_back = false;  ///< the ray met the clockwise side, or a sphere's inside
 };
 
-/// Answers batches of rays over Embree, which no other room knows. Immutable once built, and safe
-/// to use from many threads. Coordinates are recentred before they become float, so a room far from
-/// the origin loses no digits. Triangles and quads are watertight along shared edges (Embree's
-/// robust mode); of rays aimed at a vertex itself, to the last float digit, one in 1e4 slips
-/// through. Small quads in even rows and columns of a group are cast as one (see CellSheet).
-/// Spheres are intersected in double precision.
+/// Answers batches of rays by Embree, which no other room includes. Immutable once built, and safe
+/// to use from many threads. Coordinates are recentred before the conversion to float, so a room
+/// far from the origin loses no digits.
+///
+/// Triangles and quads are watertight along shared edges (Embree's robust mode). Of rays aimed at a
+/// vertex itself, to the last float digit, one in 1e4 slips through. Small quads in even rows and
+/// columns of a group are cast as one (see CellSheet). Spheres are intersected in double precision.
 class RayCaster {
  public:
   /// Throws std::invalid_argument if `group` does not match the primitives, std::runtime_error if
@@ -64,17 +66,19 @@ class RayCaster {
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;
 
-  /// hits[i] answers rays[i] with the closest primitive in (0, t_max).
+  /// Sets hits[i] to the closest hit of rays[i] in (0, t_max).
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const;
 
-  /// blocked[i] = 1 if anything but the origin's and the target's group lies in (0, t_max), else 0.
+  /// Sets blocked[i] to 1 if anything but the origin's and the target's group lies in (0, t_max) of
+  /// rays[i], else to 0.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
 
-  /// Of two groups that lie on each other, whether a ray in `direction` meets `group` first. False
-  /// as well where that cannot be told.
+  /// True if a ray in `direction` meets `group` before `other`, of two groups that lie on each
+  /// other. False if the order is not known.
   bool meets_first(int group, int other, const Eigen::Vector3d& direction) const;
 
-  /// Whether another surface that lies on this triangle or quad hides it from its front or back.
+  /// True if another surface that lies on a triangle or quad hides the front or the back of
+  /// `primitive`.
   bool is_hidden(int primitive, bool from_back) const;
 
   int triangle_count() const;
