@@ -242,9 +242,9 @@ Eigen::Affine3d on_the_map(double angle) {
 
 // A transformation after which rounding alone decides the sign of the wall's normal.
 Eigen::Affine3d undecided() {
-  const Vector3d told_by(0.8191, 0.4927, 0.2937);
+  const Vector3d askew(0.8191, 0.4927, 0.2937);
   return Eigen::Affine3d(Eigen::Quaterniond::FromTwoVectors(
-      Vector3d::UnitX(), told_by.cross(Vector3d::UnitZ()).normalized()));
+      Vector3d::UnitX(), askew.cross(Vector3d::UnitZ()).normalized()));
 }
 
 const Eigen::Affine3d eighth_turn(Eigen::AngleAxisd(std::numbers::pi / 4.0, Vector3d::UnitZ()));
