@@ -12,6 +12,8 @@
 #include "mesh/cleaning/hanging_points.h"
 #include "mesh/cleaning/plane_regions.h"
 #include "mesh/cleaning/straighten.h"
+#include "mesh/geometry/box_tree.h"
+#include "mesh/geometry/facet_plane.h"
 #include "mesh/geometry/welded_points.h"
 
 namespace lightwell {
@@ -231,21 +233,29 @@ void take_over(const Polygons& all, const Joined& joined, Scene& scene, std::vec
 
 }  // namespace
 
+struct JoinedSurfaces::Planes {
+  // Polygons of surfaces_; FacetPlane::surface is an index into surfaces_.
+  std::vector<FacetPlane> all;
+  BoxTree boxes;  // of the planes
+
+  explicit Planes(std::vector<FacetPlane> planes) : all(std::move(planes)), boxes(boxes_of(all)) {}
+};
+
 JoinedSurfaces::JoinedSurfaces(const Scene& before, std::vector<int> numbers)
     : numbers_(std::move(numbers)),
       surfaces_(only(before, numbers_).surfaces),
-      planes_(planes_of(only(before, numbers_), weld_share * scene_bounds(before).diagonal())),
       reach_(reach_share * scene_bounds(before).diagonal()),
-      boxes_(boxes_of(planes_)) {}
+      planes_(std::make_shared<const Planes>(
+          planes_of(only(before, numbers_), weld_share * scene_bounds(before).diagonal()))) {}
 
 int JoinedSurfaces::surface_at(const Vector3d& point, const Vector3d& front) const {
   const Vector3d reach = Vector3d::Constant(reach_);
   std::vector<int> found;
-  boxes_.find_overlaps({point - reach, point + reach}, found);
+  planes_->boxes.find_overlaps({point - reach, point + reach}, found);
   constexpr double about_alike = 0.5;  // cosine; distinguishes the two sides
   int at_border = -1;
   for (const int i : found) {
-    const FacetPlane& plane = planes_[i];
+    const FacetPlane& plane = planes_->all[i];
     if (plane.normal.dot(front) < about_alike || std::abs(plane.height(point)) > reach_) continue;
     const Eigen::Vector2d q = plane.project(point);
     if (plane.contains(q, 0.0)) return numbers_[plane.surface];

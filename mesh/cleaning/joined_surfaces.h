@@ -4,8 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/geometry/box_tree.h"
-#include "mesh/geometry/facet_plane.h"
 #include "mesh/patches/patch_mesh.h"
 #include "scene/scene.h"
 
@@ -30,12 +28,11 @@ class JoinedSurfaces {
   Scene apart(Scene joined) const;
 
  private:
+  struct Planes;
   std::vector<int> numbers_;
   std::vector<Surface> surfaces_;  // as they were before, in the order of numbers_
-  // Polygons of surfaces_; FacetPlane::surface is an index into surfaces_.
-  std::vector<FacetPlane> planes_;
-  double reach_ = 0.0;  // m, tolerance of surface_at()
-  BoxTree boxes_;       // of the planes
+  double reach_ = 0.0;             // m, tolerance of surface_at()
+  std::shared_ptr<const Planes> planes_;
 };
 
 /// Joins polygons of different surfaces, so that files that give every polygon a name of its own

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/elements/element_tree.h"
 #include "mesh/elements/quad_weights.h"
 #include "mesh/patches/sphere_grid.h"
 #include "scene/facet_textures.h"

@@ -6,11 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "mesh/elements/element_tree.h"
 #include "mesh/patches/patch_mesh.h"
 #include "scene/rays/ray_caster.h"
 
 namespace lightwell {
+
+struct ElementTree;
 
 struct ElementHit {
   int facet = -1;  ///< scene-wide number of the facet met; -1: the ray left the scene

@@ -9,6 +9,7 @@
 
 #include "radiosity/emitters/emitter_point.h"
 #include "radiosity/emitters/exact_shadows.h"
+#include "radiosity/emitters/sky_light.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"
 

@@ -10,7 +10,6 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/emitters/free_source.h"
-#include "radiosity/emitters/sky_light.h"
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/sampling.h"
@@ -20,6 +19,7 @@
 namespace lightwell {
 
 class ExactShadows;
+class SkyLight;
 
 /// An emitting facet whose light is a closed form times visibility, never left to random rays.
 struct Emitter {

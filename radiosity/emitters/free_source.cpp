@@ -10,6 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "radiosity/visibility/shadow_rays.h"
 #include "scene/sampling.h"
 
 namespace lightwell {

@@ -5,11 +5,13 @@
 #include <variant>
 #include <vector>
 
-#include "radiosity/visibility/shadow_rays.h"
+#include "scene/rays/ray_caster.h"
 #include "scene/scene.h"
 #include "scene/surface_point.h"
 
 namespace lightwell {
+
+struct ShadowSample;
 
 /// A lamp as a source of rays.
 struct LampLight {

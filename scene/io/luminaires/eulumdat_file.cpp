@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/io/text_file.h"
+
 #include "scene/io/luminaires/luminaire_file.h"
 
 namespace lightwell {

@@ -5,6 +5,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "scene/io/text_file.h"
+
 #include "scene/io/luminaires/luminaire_file.h"
 
 namespace lightwell {

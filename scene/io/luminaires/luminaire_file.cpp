@@ -7,6 +7,7 @@
 
 #include "scene/degree.h"
 #include "scene/errors.h"
+#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace {

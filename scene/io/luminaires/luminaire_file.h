@@ -3,9 +3,10 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "scene/io/text_file.h"
 #include "scene/lamp.h"
 
 namespace lightwell {
