@@ -2,7 +2,8 @@
 
 #include <optional>
 
-#include "radiosity/refine/refine_solution.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/refine/refine_options.h"
 #include "radiosity/solution/solution.h"
 
 namespace lightwell {

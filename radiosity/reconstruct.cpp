@@ -8,6 +8,7 @@
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/refine/gather_noise.h"
+#include "radiosity/refine/refine_solution.h"
 
 namespace lightwell {
 namespace {

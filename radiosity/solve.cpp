@@ -15,6 +15,7 @@
 #include "radiosity/journal/journal.h"
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/refine/effort.h"
+#include "radiosity/refine/refine_solution.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solvers/solve_channels.h"

@@ -8,7 +8,7 @@
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/journal/run_control.h"
 #include "radiosity/paths/free_light.h"
-#include "radiosity/refine/refine_solution.h"
+#include "radiosity/refine/refine_options.h"
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/solution/solution.h"
 #include "radiosity/solvers/progressive.h"

@@ -10,6 +10,7 @@
 
 #include "mesh/build_patches.h"
 #include "radiosity/refine/gather_noise.h"
+#include "radiosity/refine/interpolated_vertices.h"
 #include "tests/radiosity/two_lamps.h"
 
 namespace lightwell {
