@@ -15,8 +15,8 @@ namespace {
 // Splits `text` at the '=' at index `at`: the first '=' before a pattern, which may hold another
 // '='; the last before a value, which never does. Throws CLI::ValidationError that describes the
 // `wanted` form if one side is empty.
-std::pair<std::string, std::string> split(const char* option, const std::string& text,
-                                          std::size_t at, const char* wanted) {
+std::pair<std::string, std::string> split_words(const char* option, const std::string& text,
+                                                std::size_t at, const char* wanted) {
   if (at == std::string::npos || at == 0 || at + 1 == text.size()) {
     throw CLI::ValidationError(option, fmt::format("'{}' is not {}", text, wanted));
   }
@@ -66,9 +66,9 @@ void ChannelArguments::add(const std::string& text) {
   per_luminaire = text == "per-luminaire";
   if (is_off || per_luminaire) return;
   const auto [channel, glob] =
-      split(option, text, text.find('='),
-            "off, per-luminaire or NAME=PATTERN, such as desk='desk lamp*': a channel and a "
-            "pattern for the names of its emitters or their materials");
+      split_words(option, text, text.find('='),
+                  "off, per-luminaire or NAME=PATTERN, such as desk='desk lamp*': a channel and a "
+                  "pattern for the names of its emitters or their materials");
   patterns.push_back({channel, glob});
 }
 
@@ -94,8 +94,8 @@ void add_channel_settings(CLI::App& command, ChannelSettings& settings) {
        .type = "NAME=VALUE"},
       [&settings](const std::string& text) {
         const auto [name, value] =
-            split("--channel", text, text.rfind('='),
-                  "NAME=VALUE, such as desk=0.3, ceiling=#ffd9b0 or sun=off");
+            split_words("--channel", text, text.rfind('='),
+                        "NAME=VALUE, such as desk=0.3, ceiling=#ffd9b0 or sun=off");
         for (const auto& [other, setting] : settings) {
           if (other != name) continue;
           throw CLI::ValidationError(

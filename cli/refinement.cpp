@@ -35,7 +35,7 @@ std::optional<Accuracy> parse_accuracy(const std::string& text) {
   return Accuracy{.lux = quantity->value};
 }
 
-const char* outcome_name(RefineOutcome outcome) {
+const char* refine_outcome_name(RefineOutcome outcome) {
   switch (outcome) {
     case RefineOutcome::tolerance_reached:
       return "tolerance_reached";
@@ -130,7 +130,7 @@ std::string refinement_text(const RefineOptions& options) {
 }
 
 Json refinement_json(const RefineReport& report) {
-  return {{"outcome", outcome_name(report.outcome)},
+  return {{"outcome", refine_outcome_name(report.outcome)},
           {"tolerance", report.tolerance},
           {"estimate", report.estimate},
           {"rounds", report.rounds},

@@ -20,7 +20,7 @@ struct RenderCommandArguments {
   CheckpointArguments checkpoint;
 };
 
-int render(const RenderCommandArguments& arguments, Console& console) {
+int render_scene(const RenderCommandArguments& arguments, Console& console) {
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   const Camera& camera = choose_camera(scene, arguments.camera);
@@ -65,7 +65,7 @@ Action add_render(CLI::App& command) {
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first, group);
   command.footer(
       "Example: lightwell render cornell/cornell.toml cornell.vtp --size 256x256 -o small.png");
-  return [arguments](Console& console) { return render(*arguments, console); };
+  return [arguments](Console& console) { return render_scene(*arguments, console); };
 }
 
 }  // namespace lightwell

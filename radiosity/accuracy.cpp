@@ -13,13 +13,13 @@ namespace {
 // refinement ends between half of its tolerance and all of it; where the sum is too large, a later
 // attempt adds to the first. Both shares were set with whole solves in view (docs/figures.md:
 // "Rooms", "The error estimate").
-constexpr double share_of_interpolation = 0.95, share_of_noise = 0.55;
+constexpr double share_of_interpolation = 0.95, share_of_gather_noise = 0.55;
 constexpr int most_attempts = 6;
 
 }  // namespace
 
 double noise_share(double target) {
-  return share_of_noise * target;
+  return share_of_gather_noise * target;
 }
 
 double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
@@ -64,7 +64,7 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
     return std::sqrt(std::max(std::pow(goal * target, 2) - other * other, least * target * target));
   };
   Effort next = spent;
-  const double noise_goal = can_split ? share_of_noise * target : beside(without);
+  const double noise_goal = can_split ? share_of_gather_noise * target : beside(without);
   constexpr int most_times = 16;  // the estimate of the noise may be far too high by chance
   if (noise > noise_goal) {
     next.gather_rays = std::min(rays_for_noise(spent.gather_rays, noise, noise_goal),

@@ -156,8 +156,9 @@ struct SampledSolution {
   Eigen::ArrayXd weight{};  // mean 1
 };
 
-SampledSolution read_solution(const PatchMesh& mesh, const RadiositySolution& solution,
-                              const BandArray& irradiance, const std::vector<ErrorSample>& drawn) {
+SampledSolution sample_solution(const PatchMesh& mesh, const RadiositySolution& solution,
+                                const BandArray& irradiance,
+                                const std::vector<ErrorSample>& drawn) {
   const auto count = static_cast<Eigen::Index>(drawn.size());
   SampledSolution sampled{.interpolated = BandArray(count, irradiance.cols()),
                           .caustic = BandArray::Zero(count, irradiance.cols()),
@@ -252,7 +253,7 @@ ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
       draw_samples(lit.scene, lit.caster, indicator, wanted, batch);
   if (drawn.empty()) return {};
 
-  const SampledSolution sampled = read_solution(mesh, solution, irradiance, drawn);
+  const SampledSolution sampled = sample_solution(mesh, solution, irradiance, drawn);
   const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
   irradiance.resize(0, 0);
   const GatheredIrradiance independent = gather_irradiance(

@@ -135,7 +135,7 @@ struct ImageSize {
   int width = 0, height = 0;
 };
 
-ImageSize size_of(const Imf::InputFile& file, const std::string& name) {
+ImageSize window_size(const Imf::InputFile& file, const std::string& name) {
   const auto window = file.header().dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
@@ -154,9 +154,9 @@ void require_full_resolution(const Imf::Channel& channel, const std::string& cha
 }
 
 // Channels of a file, a column each.
-BandArray read_channels(Imf::InputFile& file, const std::vector<std::string>& channels,
-                        const std::string& name) {
-  const auto [width, height] = size_of(file, name);
+BandArray read_exr_channels(Imf::InputFile& file, const std::vector<std::string>& channels,
+                            const std::string& name) {
+  const auto [width, height] = window_size(file, name);
   const auto window = file.header().dataWindow();
   const auto columns = static_cast<std::ptrdiff_t>(channels.size());
   BandArray values(std::int64_t{width} * height, columns);
@@ -175,7 +175,7 @@ BandArray read_channels(Imf::InputFile& file, const std::vector<std::string>& ch
 Image read_image(Imf::InputFile& file, const std::string& name, ExrChannels which) {
   const Imf::ChannelList& list = file.header().channels();
   const std::vector<std::string> rgb(rgb_names.begin(), rgb_names.end());
-  const auto [width, height] = size_of(file, name);
+  const auto [width, height] = window_size(file, name);
   for (const std::string& channel : rgb) {
     const Imf::Channel* found = list.findChannel(channel);
     if (!found) {
@@ -185,7 +185,7 @@ Image read_image(Imf::InputFile& file, const std::string& name, ExrChannels whic
     require_full_resolution(*found, channel, name);
   }
   Image image{.width = width, .height = height};
-  image.radiance = read_channels(file, rgb, name);
+  image.radiance = read_exr_channels(file, rgb, name);
   if (which == ExrChannels::rgb) return image;
   for (auto it = list.begin(); it != list.end(); ++it) {
     const std::string channel = it.name();
@@ -194,7 +194,8 @@ Image read_image(Imf::InputFile& file, const std::string& name, ExrChannels whic
     require_full_resolution(it.channel(), channel, name);
     image.layers.names.push_back(channel);
   }
-  if (!image.layers.is_empty()) image.layers.values = read_channels(file, image.layers.names, name);
+  if (!image.layers.is_empty())
+    image.layers.values = read_exr_channels(file, image.layers.names, name);
   return image;
 }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<std::string_view, 6> column_names = {"x", "y", "z", "nx", "ny", "nz"};
 using Columns = std::array<int, 6>;
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trimmed_cell(std::string_view text) {
   constexpr std::string_view blanks = " \t\r";
   const auto first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
@@ -29,7 +29,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
   for (std::size_t begin = 0;;) {
     const auto comma = line.find(',', begin);
-    cells.push_back(trimmed(line.substr(begin, comma - begin)));
+    cells.push_back(trimmed_cell(line.substr(begin, comma - begin)));
     if (comma == std::string_view::npos) return cells;
     begin = comma + 1;
   }
@@ -108,7 +108,7 @@ std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_p
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     std::string_view text = line;
     if (location.line == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(3);
-    text = trimmed(text);
+    text = trimmed_cell(text);
     if (text.empty() || text.starts_with('#')) continue;
     const auto cells = cells_of(text);
     if (!columns) {

@@ -18,7 +18,7 @@ Eigen::Vector3d loop_area_vector(const PolygonMesh& mesh, const std::vector<int>
   return 0.5 * sum;
 }
 
-Eigen::Vector3d area_vector(const PolygonMesh& mesh, const Facet& facet) {
+Eigen::Vector3d facet_area_vector(const PolygonMesh& mesh, const Facet& facet) {
   Eigen::Vector3d sum = loop_area_vector(mesh, facet.boundary);
   for (const auto& hole : facet.holes) sum += loop_area_vector(mesh, hole);
   return sum;
@@ -60,13 +60,13 @@ std::vector<FacetRef> scene_facets(const Scene& scene) {
 }
 
 Eigen::Vector3d facet_normal(const PolygonMesh& mesh, const Facet& facet) {
-  const Eigen::Vector3d n = area_vector(mesh, facet);
+  const Eigen::Vector3d n = facet_area_vector(mesh, facet);
   const double length = n.norm();
   return length > 0.0 ? Eigen::Vector3d(n / length) : Eigen::Vector3d::Zero();
 }
 
 double facet_area(const PolygonMesh& mesh, const Facet& facet) {
-  return area_vector(mesh, facet).norm();
+  return facet_area_vector(mesh, facet).norm();
 }
 
 double surface_area(const Surface& surface) {

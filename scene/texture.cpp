@@ -18,7 +18,7 @@ struct Cover {
   int count = 0;
 };
 
-std::vector<Cover> covers(int from, int to) {
+std::vector<Cover> texel_covers(int from, int to) {
   std::vector<Cover> result(static_cast<std::size_t>(to));
   const double step = static_cast<double>(from) / to;
   for (int i = 0; i < to; ++i) {
@@ -81,7 +81,8 @@ Texture::Level Texture::halved(const Level& from) const {
   Level to{.width = std::max(1, from.width / 2), .height = std::max(1, from.height / 2)};
   const std::size_t row = static_cast<std::size_t>(to.width) * static_cast<std::size_t>(channels_);
   to.texels.resize(row * static_cast<std::size_t>(to.height));
-  const auto columns = covers(from.width, to.width), rows = covers(from.height, to.height);
+  const auto columns = texel_covers(from.width, to.width),
+             rows = texel_covers(from.height, to.height);
   parallel_for(to.height, 16, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       const Cover& down = rows[static_cast<std::size_t>(y)];

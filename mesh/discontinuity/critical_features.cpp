@@ -13,16 +13,16 @@ using Eigen::Vector3d;
 constexpr double parallel_cosine = 1.0 - 1e-12;  // directions less than 1.4e-6 rad apart are equal
 
 // A facet's use of the edge between two points.
-struct EdgeUse {
+struct PlaneEdge {
   int plane = 0;
   bool is_forward = false;  // from the lower-numbered point to the other
   Vector3d low, high;
 };
-using EdgeUses = std::map<std::array<int, 2>, std::vector<EdgeUse>>;
+using PlaneEdges = std::map<std::array<int, 2>, std::vector<PlaneEdge>>;
 
 template <class Keep>
-EdgeUses edge_uses(const std::vector<FacetPlane>& planes, Keep&& keep) {
-  EdgeUses uses;
+PlaneEdges plane_edges(const std::vector<FacetPlane>& planes, Keep&& keep) {
+  PlaneEdges uses;
   for (int p = 0; p < static_cast<int>(planes.size()); ++p) {
     const FacetPlane& plane = planes[p];
     if (!keep(plane)) continue;
@@ -38,7 +38,7 @@ EdgeUses edge_uses(const std::vector<FacetPlane>& planes, Keep&& keep) {
 
 // True if the edge lies between two facets of one plane that face the same way or opposite ways.
 // Light is continuous across such an edge.
-bool is_seam(const std::vector<EdgeUse>& uses, const std::vector<FacetPlane>& planes) {
+bool is_seam(const std::vector<PlaneEdge>& uses, const std::vector<FacetPlane>& planes) {
   if (uses.size() != 2) return false;
   const double cosine = planes[uses[0].plane].normal.dot(planes[uses[1].plane].normal);
   return uses[0].is_forward != uses[1].is_forward ? cosine > parallel_cosine
@@ -72,7 +72,7 @@ class Sheets {
   std::vector<int> parent_;
 };
 
-void add_border_edge(const std::array<int, 2>& ends, const EdgeUse& use, EmittingPolygon& emitter,
+void add_border_edge(const std::array<int, 2>& ends, const PlaneEdge& use, EmittingPolygon& emitter,
                      std::map<int, int>& corner_of_point) {
   const Vector3d d = (use.high - use.low).normalized();
   emitter.edges.push_back({use.low, use.high});
@@ -88,11 +88,11 @@ void add_border_edge(const std::array<int, 2>& ends, const EdgeUse& use, Emittin
 
 std::vector<EmittingPolygon> emitting_polygons(const Scene& scene,
                                                const std::vector<FacetPlane>& planes) {
-  const EdgeUses uses = edge_uses(
+  const PlaneEdges uses = plane_edges(
       planes, [&](const FacetPlane& plane) { return material_of(scene, plane).is_emitter(); });
   Sheets sheets(planes.size());
   // Emission is the same on both sides of a seam only within a material and a side.
-  const auto joins = [&](const std::vector<EdgeUse>& edge) {
+  const auto joins = [&](const std::vector<PlaneEdge>& edge) {
     return is_seam(edge, planes) && edge[0].is_forward != edge[1].is_forward &&
            &material_of(scene, planes[edge[0].plane]) == &material_of(scene, planes[edge[1].plane]);
   };
@@ -117,7 +117,7 @@ std::vector<EmittingPolygon> emitting_polygons(const Scene& scene,
   std::map<int, std::map<int, int>> corner_of_point;
   for (const auto& [ends, edge] : uses) {
     if (joins(edge)) continue;
-    for (const EdgeUse& use : edge) {
+    for (const PlaneEdge& use : edge) {
       const int root = sheets.root(use.plane);
       add_border_edge(ends, use, of_root.at(root), corner_of_point[root]);
     }
@@ -142,7 +142,7 @@ std::vector<EmittingPolygon> emitting_polygons(const Scene& scene,
 }
 
 OccluderFeatures occluder_features(const Scene& scene, const std::vector<FacetPlane>& planes) {
-  const EdgeUses uses = edge_uses(planes, [&](const FacetPlane& plane) {
+  const PlaneEdges uses = plane_edges(planes, [&](const FacetPlane& plane) {
     return !material_of(scene, plane).dielectric.has_value();
   });
   OccluderFeatures features;
@@ -153,7 +153,7 @@ OccluderFeatures occluder_features(const Scene& scene, const std::vector<FacetPl
     OccluderEdge& added = features.edges.emplace_back(
         OccluderEdge{.a = ends[0], .b = ends[1], .from = from, .to = to});
     const Vector3d d = (to - from).normalized();
-    for (const EdgeUse& use : edge) {
+    for (const PlaneEdge& use : edge) {
       added.planes.push_back(use.plane);
       added.inwards.push_back(planes[use.plane].normal.cross(use.is_forward ? d : Vector3d(-d)));
     }

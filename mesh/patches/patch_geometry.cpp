@@ -13,14 +13,14 @@ namespace {
 using Eigen::Vector3d;
 
 // Twice the area of a triangle, along the normal.
-Vector3d area_vector(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+Vector3d outline_area_vector(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return (b - a).cross(c - a);
 }
 
 Vector3d element_area_vector(const PatchMesh& mesh, int element) {
   const auto& c = mesh.corners[element];
   const Vector3d p0 = mesh.position(c[0]), p1 = mesh.position(c[1]), p2 = mesh.position(c[2]);
-  if (c[3] < 0) return area_vector(p0, p1, p2);
+  if (c[3] < 0) return outline_area_vector(p0, p1, p2);
   return (p2 - p0).cross(mesh.position(c[3]) - p1);
 }
 

@@ -108,8 +108,8 @@ ShadowSample solid_angle_sample(const SolidAngleSampler& sampler, const Eigen::V
           .weight = std::max(0.0, to.normalized().dot(normal))};
 }
 
-ShadowSample shadow_sample(const Emitter& emitter, const SolidAngleSampler& sampler,
-                           const SurfacePoint& at, double u, double v) {
+ShadowSample emitter_shadow_sample(const Emitter& emitter, const SolidAngleSampler& sampler,
+                                   const SurfacePoint& at, double u, double v) {
   const auto& [point, normal, facet] = at;
   ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u, v)
                         : sampler.empty() ? polygon_sample(emitter, point, normal, u, v)
@@ -145,8 +145,9 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
       const Eigen::Array4f u = sobol.point(s, shadows[i].key);
       const LightShadow& shadow = shadows[i];
       batch.add(static_cast<int>(i),
-                shadow.emitter ? shadow_sample(*shadow.emitter, shadow.sampler, at, u[0], u[1])
-                               : shadow_sample(*shadow.source, at, u[0], u[1]));
+                shadow.emitter
+                    ? emitter_shadow_sample(*shadow.emitter, shadow.sampler, at, u[0], u[1])
+                    : shadow_sample(*shadow.source, at, u[0], u[1]));
     }
   };
   for (std::size_t i = 0; i < shadows.size(); ++i) {
@@ -334,8 +335,8 @@ std::optional<bool> DirectLight::sees(int light, const ElementCaster& caster,
   const auto emitter_count = static_cast<int>(emitters_.size());
   const ShadowSample sample =
       light < emitter_count
-          ? shadow_sample(emitters_[light], SolidAngleSampler(emitters_[light], at.position), at, u,
-                          v)
+          ? emitter_shadow_sample(emitters_[light],
+                                  SolidAngleSampler(emitters_[light], at.position), at, u, v)
           : shadow_sample(free_sources_[light - emitter_count], at, u, v);
   if (!(sample.weight > 0.0)) return std::nullopt;
   return (passed(caster, sample.ray) > 0.0f).any();

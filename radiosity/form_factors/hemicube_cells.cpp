@@ -40,7 +40,7 @@ std::vector<double> running_sums(int rows, int columns, double first_row_line, C
   return sums;
 }
 
-double total(const std::vector<double>& sums, int rows, int columns) {
+double sum_of_cells(const std::vector<double>& sums, int rows, int columns) {
   double sum = 0.0;
   for (int row = 0; row < rows; ++row) {
     sum += sums[static_cast<std::size_t>(row) * (columns + 1) + columns];
@@ -58,7 +58,7 @@ HemicubeCells::HemicubeCells(int resolution) : n_(resolution) {
   }
   top_sums_ = running_sums(n_, n_, -1.0, top_corner);
   side_sums_ = running_sums(n_ / 2, n_, 0.0, side_corner);
-  const double all = total(top_sums_, n_, n_) + 4.0 * total(side_sums_, n_ / 2, n_);
+  const double all = sum_of_cells(top_sums_, n_, n_) + 4.0 * sum_of_cells(side_sums_, n_ / 2, n_);
   for (double& sum : top_sums_) sum /= all;
   for (double& sum : side_sums_) sum /= all;
 }

@@ -8,10 +8,10 @@
 namespace lightwell {
 namespace {
 
-using Values = Eigen::Map<const Eigen::Array<float, 1, Eigen::Dynamic>>;
+using RecordValues = Eigen::Map<const Eigen::Array<float, 1, Eigen::Dynamic>>;
 
 // Values per band of a record.
-Values values_of(const std::byte* record, int bands) {
+RecordValues values_of(const std::byte* record, int bands) {
   return {reinterpret_cast<const float*>(record + sizeof(int)), bands};
 }
 
@@ -97,7 +97,7 @@ void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, const Assembly
     for (const RecordSpan part : {below, upper}) {
       for (std::size_t k = 0; k < part.size(); ++k) {
         const int j = part.patch(k);
-        const Values S_ij = values_of(part[k], rows.bands());
+        const RecordValues S_ij = values_of(part[k], rows.bands());
         patches.push_back(j);
         for (int band = 0; band < rows.bands(); ++band) {
           values.push_back(

@@ -15,13 +15,13 @@
 namespace lightwell {
 namespace {
 
-constexpr std::int64_t mebibyte = 1 << 20;
+constexpr std::int64_t bytes_per_mebibyte = 1 << 20;
 // Least slice of rows in memory; with less, rows would be moved to and fro page by page.
-constexpr std::int64_t least_slice = 16 * mebibyte;
+constexpr std::int64_t least_slice = 16 * bytes_per_mebibyte;
 
 std::string size_text(std::int64_t bytes) {
   constexpr double large = 1000.0;
-  const double megabytes = static_cast<double>(bytes) / mebibyte;
+  const double megabytes = static_cast<double>(bytes) / bytes_per_mebibyte;
   return megabytes < large ? fmt::format("{:.0f} MB", megabytes)
                            : fmt::format("{:.1f} GB", megabytes / 1024.0);
 }
@@ -42,8 +42,8 @@ TransportChoice choose_transport(const TransportFigures& figures) {
     return {Transport::rows_in_memory, fmt::format("{}, and nothing fits into {}", rows, left)};
   }
   const double to_hold = static_cast<double>(figures.limit - room + figures.rows);
-  const std::string enough =
-      fmt::format("'--memory {:.0f}M'", std::ceil(to_hold / static_cast<double>(mebibyte)));
+  const std::string enough = fmt::format(
+      "'--memory {:.0f}M'", std::ceil(to_hold / static_cast<double>(bytes_per_mebibyte)));
   const bool has_slice = room >= std::min(least_slice, figures.rows);
   if (has_slice && figures.rows <= figures.disk / 2 && figures.rows <= most_rows_on_disk) {
     return {Transport::rows_on_disk,

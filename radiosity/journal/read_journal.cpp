@@ -16,7 +16,7 @@ namespace lightwell {
 namespace {
 
 constexpr std::size_t longest_header = 1 << 16;
-constexpr std::size_t piece = RecordChecksum::piece;
+constexpr std::size_t checked_piece = RecordChecksum::piece;
 constexpr std::uint32_t most_blocks = 1U << 30U;
 
 [[noreturn]] void reject_damaged(const std::filesystem::path& path, std::int64_t offset) {
@@ -108,8 +108,8 @@ class Reader {
 
   // Adds the bytes of a record to its checksum, and keeps the first piece in beginning_.
   bool add_file(RecordChecksum& checksum, std::int64_t at, std::uint64_t size) {
-    for (std::uint64_t done = 0; done < size; done += piece) {
-      buffer_.resize(std::min<std::uint64_t>(piece, size - done));
+    for (std::uint64_t done = 0; done < size; done += checked_piece) {
+      buffer_.resize(std::min<std::uint64_t>(checked_piece, size - done));
       if (!read_at(file_, at + static_cast<std::int64_t>(done), buffer_)) return false;
       checksum.add(buffer_);
       if (done == 0) beginning_ = buffer_;
@@ -122,7 +122,8 @@ class Reader {
     if (head.kind == RecordKind::mark) return head.size == sizeof(std::uint64_t);
     if (head.kind == RecordKind::phase) {
       std::uint64_t fingerprint = 0;
-      if (head.phase != phases.size() || head.size < sizeof fingerprint || head.size > piece) {
+      if (head.phase != phases.size() || head.size < sizeof fingerprint ||
+          head.size > checked_piece) {
         return false;
       }
       std::memcpy(&fingerprint, beginning_.data(), sizeof fingerprint);
@@ -155,7 +156,8 @@ class Reader {
     constexpr std::size_t same = offsetof(RecordHead, checksum);
     std::int64_t confirmed = 0;
     for (std::int64_t from = begin; size_ - from >= static_cast<std::int64_t>(sizeof(Mark));) {
-      buffer_.resize(std::min<std::size_t>(static_cast<std::size_t>(size_ - from), 16 * piece));
+      buffer_.resize(
+          std::min<std::size_t>(static_cast<std::size_t>(size_ - from), 16 * checked_piece));
       if (!read_at(file_, from, buffer_)) break;
       for (std::size_t at = 0; at + sizeof(Mark) <= buffer_.size(); ++at) {
         if (std::memcmp(buffer_.data() + at, &wanted, same) != 0) continue;

@@ -14,7 +14,7 @@ namespace {
 
 // Share of the noise that counts in the test for even indirect light. The product of two gathers
 // has no noise in the mean, and most of the differences that noise hides are nothing.
-constexpr double share_of_noise = 0.25;
+constexpr double counted_noise = 0.25;
 
 // A straight shadow edge crosses at most 2 sqrt(n) of the n cells of stratified rays, each of which
 // is off by 0.3 in the root mean square.
@@ -145,7 +145,7 @@ InterpolationError::Squares InterpolationError::beyond_noise(const Differences& 
                     (shadow_counts ? 0.0 : std::clamp(error, 0.0, shadow_noise)),
           .direct = differences.direct,
           .shadow_noise = shadow_noise,
-          .indirect = std::max(differences.indirect, 0.0) + share_of_noise * differences.noise,
+          .indirect = std::max(differences.indirect, 0.0) + counted_noise * differences.noise,
           .noise = differences.noise};
 }
 

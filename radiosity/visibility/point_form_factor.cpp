@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr int points_at_once = 128;
 // Smaller F is rounding: the shooter is edge-on or at the horizon.
-constexpr double nothing = 1e-12;
+constexpr double negligible_factor = 1e-12;
 
 // Stratified sample points of one shooter.
 class ShooterSamples {
@@ -101,7 +101,7 @@ PointFormFactors::Unsampled PointFormFactors::without_rays(const ShaftEnd& targe
   for (const ConvexPolygon& part : target.parts) {
     result.F += point_to_polygon(point.position, point.normal, part.corners());
   }
-  if (!(result.F > nothing)) return {};
+  if (!(result.F > negligible_factor)) return {};
   result.F = std::min(result.F, 1.0);
   const ShaftEnd from = shafts_.end({point.position, point.normal, point.facet});
   Between between;

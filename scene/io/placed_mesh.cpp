@@ -11,11 +11,11 @@ namespace lightwell {
 namespace {
 
 // Sides of a round shape: the outline of a disk then stays within 0.5 % of its radius.
-constexpr int sides = 32;
+constexpr int round_sides = 32;
 constexpr int rings = 16;
 
 Eigen::Vector2d on_circle(int side, double radius) {
-  const double angle = 2.0 * std::numbers::pi * (side % sides) / sides;
+  const double angle = 2.0 * std::numbers::pi * (side % round_sides) / round_sides;
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
@@ -48,10 +48,10 @@ std::vector<Loop> cube_loops() {
 
 std::vector<Loop> disk_loops() {
   // n triangles of area r^2 sin(2 pi / n) / 2 add up to pi.
-  const double turn = 2.0 * std::numbers::pi / sides;
+  const double turn = 2.0 * std::numbers::pi / round_sides;
   const double radius = std::sqrt(turn / std::sin(turn));
   Loop loop;
-  for (int i = 0; i < sides; ++i) {
+  for (int i = 0; i < round_sides; ++i) {
     const Eigen::Vector2d p = on_circle(i, radius);
     loop.emplace_back(p.x(), p.y(), 0.0);
   }
@@ -60,10 +60,10 @@ std::vector<Loop> disk_loops() {
 
 std::vector<Loop> cylinder_loops() {
   // n chords of length 2 r sin(pi / n) add up to 2 pi.
-  const double half = std::numbers::pi / sides;
+  const double half = std::numbers::pi / round_sides;
   const double radius = half / std::sin(half);
   std::vector<Loop> loops;
-  for (int i = 0; i < sides; ++i) {
+  for (int i = 0; i < round_sides; ++i) {
     const Eigen::Vector2d a = on_circle(i, radius), b = on_circle(i + 1, radius);
     loops.push_back({{a.x(), a.y(), 0}, {b.x(), b.y(), 0}, {b.x(), b.y(), 1}, {a.x(), a.y(), 1}});
   }
@@ -73,13 +73,13 @@ std::vector<Loop> cylinder_loops() {
 std::vector<Loop> cone_loops(double radius, double top_radius, double height) {
   // n trapezia have the area n k (r + R) sin(pi/n) sqrt(h^2 + (k (R - r) cos(pi/n))^2) with radii
   // made larger by k; that is to be pi (r + R) sqrt(h^2 + (R - r)^2), a quadratic equation in k^2.
-  const double half = std::numbers::pi / sides, hh = height * height;
+  const double half = std::numbers::pi / round_sides, hh = height * height;
   const double dd = (top_radius - radius) * (top_radius - radius);
   const double d = dd * std::cos(half) * std::cos(half);
   const double c = half * half * (hh + dd) / (std::sin(half) * std::sin(half));
   const double k = std::sqrt(2.0 * c / (hh + std::sqrt(hh * hh + 4.0 * d * c)));
   std::vector<Loop> loops;
-  for (int i = 0; i < sides; ++i) {
+  for (int i = 0; i < round_sides; ++i) {
     const auto point = [&](int side, double r, double z) -> Eigen::Vector3d {
       const Eigen::Vector2d p = on_circle(side, k * r);
       return {p.x(), p.y(), z};
@@ -115,7 +115,7 @@ std::vector<Loop> sphere_loops() {
     return Eigen::Vector3d(p.x(), p.y(), std::sin(latitude));
   };
   for (int ring = 0; ring < rings; ++ring) {
-    for (int i = 0; i < sides; ++i) {
+    for (int i = 0; i < round_sides; ++i) {
       Loop loop = {point(ring, i)};
       if (ring > 0) loop.push_back(point(ring, i + 1));
       loop.push_back(point(ring + 1, i + 1));

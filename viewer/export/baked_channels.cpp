@@ -34,7 +34,7 @@ struct Split {
   Spectrum within{};
 };
 
-Split split(const Bands& bands, const Spectrum& scale) {
+Split split_channels(const Bands& bands, const Spectrum& scale) {
   if (bands.wavelengths_nm.empty()) return {scale.head<3>(), constant_spectrum(bands, 1.0f)};
   const float largest = scale.maxCoeff();
   if (!(largest > 0.0f)) return {Eigen::Array3f::Zero(), constant_spectrum(bands, 1.0f)};
@@ -52,7 +52,7 @@ Spectrum luminous_columns(const Bands& bands, const Spectrum& values) {
 BakedChannel bake(const SolvedScene& alone, const LightChannel& channel,
                   const std::vector<Material>& materials, const std::vector<int>& mesh_vertex) {
   const Bands& bands = alone.solution.bands;
-  const auto [weight, within] = split(bands, channel.scale);
+  const auto [weight, within] = split_channels(bands, channel.scale);
   const Spectrum flux = channel.energy.row(0).transpose().cast<float>() * within;
   BakedChannel baked{.name = channel.name,
                      .radiance = {},
@@ -84,7 +84,8 @@ int channel_of(const RadiositySolution& solution, std::size_t source) {
 /// What light of a channel is multiplied by before it becomes RGB; see split.
 Spectrum factor_within(const RadiositySolution& solution, int channel) {
   if (channel < 0) return constant_spectrum(solution.bands, 1.0f);
-  return split(solution.bands, solution.channels[static_cast<std::size_t>(channel)].scale).within;
+  return split_channels(solution.bands, solution.channels[static_cast<std::size_t>(channel)].scale)
+      .within;
 }
 
 }  // namespace

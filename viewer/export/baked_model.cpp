@@ -12,6 +12,7 @@
 #include "mesh/patches/mesh_bounds.h"
 #include "mesh/patches/sphere_grid.h"
 #include "scene/errors.h"
+#include "scene/rotation_between.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_channels.h"
 #include "viewer/export/sky_grid.h"
@@ -237,7 +238,7 @@ void add_cameras(const SolvedScene& solved, const Scene& scene,
 
 /// Turns `up_axis`, a coordinate axis or its opposite, to +y.
 Eigen::Matrix3d rotation_to_y_up(const Eigen::Vector3d& up_axis) {
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(up_axis, Eigen::Vector3d::UnitY());
+  const Eigen::Quaterniond turn = rotation_between(up_axis, Eigen::Vector3d::UnitY());
   return turn.toRotationMatrix().array().round();
 }
 

@@ -7,21 +7,19 @@
 #include <map>
 #include <utility>
 
+#include "mesh/geometry/cross.h"
+
 namespace lightwell {
 namespace {
 
 using Eigen::Vector2d;
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 int corner_count(const std::array<int, 4>& face) {
   return face[3] < 0 ? 3 : 4;
 }
 
 // Andrew's monotone chain, counter-clockwise, without points on its edges.
-std::vector<Vector2d> convex_hull(std::span<const Vector2d> points) {
+std::vector<Vector2d> flat_hull(std::span<const Vector2d> points) {
   std::vector<Vector2d> sorted(points.begin(), points.end());
   std::sort(sorted.begin(), sorted.end(), [](const Vector2d& a, const Vector2d& b) {
     return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
@@ -109,7 +107,7 @@ class BorderGrid {
 }  // namespace
 
 Eigen::Vector2d box_direction(std::span<const Eigen::Vector2d> points) {
-  const std::vector<Vector2d> hull = convex_hull(points);
+  const std::vector<Vector2d> hull = flat_hull(points);
   Vector2d best = Vector2d::UnitX();
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < hull.size(); ++i) {

@@ -85,7 +85,7 @@ BakedModel with_all_on(const BakedModel& model, SolvedScene& solved) {
   return all;
 }
 
-std::vector<std::string> channel_names(const RadiositySolution& solution) {
+std::vector<std::string> lightmap_channel_names(const RadiositySolution& solution) {
   std::vector<std::string> names;
   for (const LightChannel& channel : solution.channels) names.push_back(channel.name);
   return names;
@@ -296,7 +296,7 @@ GltfJson write_channels(const std::filesystem::path& path, const BakedModel& lit
                         SolvedScene& switched, const Scene& scene, const LightmapLayout& layout,
                         const LightmapOptions& options, const std::vector<Spectrum>& scales,
                         std::vector<std::filesystem::path>& files) {
-  const std::vector<std::string> names = channel_names(switched.solution);
+  const std::vector<std::string> names = lightmap_channel_names(switched.solution);
   GltfJson channels = GltfJson::array();
   for (std::size_t c = 0; c < names.size(); ++c) {
     switch_on(c, switched);

@@ -41,7 +41,7 @@ GltfJson camera_lens(const Camera& camera, double scene_size) {
             {"znear", 1e-3 * scene_size}}}};
 }
 
-double size_of(const BakedModel& model) {
+double extent_of(const BakedModel& model) {
   Eigen::Vector3d low = model.position.front(), high = low;
   for (const Eigen::Vector3d& p : model.position) {
     low = low.cwiseMin(p);
@@ -147,7 +147,7 @@ void add_nodes(const BakedModel& model, GltfJson meshes, GltfJson& root) {
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     nodes.push_back({{"name", meshes[m]["name"]}, {"mesh", m}});
   }
-  const double size = size_of(model);
+  const double size = extent_of(model);
   for (const BakedCamera& baked : model.cameras) {
     if (!model.cameras_are_given) break;
     nodes.push_back(camera_node(model, baked.camera, static_cast<int>(cameras.size())));

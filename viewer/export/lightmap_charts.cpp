@@ -82,7 +82,7 @@ LightmapChart project(const BakedModel& model, std::vector<int> faces) {
 }
 
 /// Turned so that it fills a rectangle as well as it can, its longer side along x.
-void straighten(const BakedModel& model, LightmapChart& chart) {
+void straighten_chart(const BakedModel& model, LightmapChart& chart) {
   const Vector2d x = box_direction(chart.place);
   const Vector3d a = chart.x_axis, b = chart.y_axis;
   chart.x_axis = x.x() * a + x.y() * b;
@@ -99,8 +99,8 @@ void straighten(const BakedModel& model, LightmapChart& chart) {
 }
 
 /// The corners of a chart's faces with one vertex where creases join several.
-std::vector<std::array<int, 4>> joined_corners(const LightmapChart& chart,
-                                               const ChartNeighbours& near) {
+std::vector<std::array<int, 4>> joined_chart_corners(const LightmapChart& chart,
+                                                     const ChartNeighbours& near) {
   std::map<int, int> first;  // of the chart's vertices that are joined
   std::vector<int> number;
   for (std::size_t v = 0; v < chart.vertices.size(); ++v) {
@@ -123,9 +123,10 @@ void cut_and_add(const BakedModel& model, const ChartNeighbours& near, std::vect
   while (!waiting.empty()) {
     LightmapChart chart = project(model, std::move(waiting.back()));
     waiting.pop_back();
-    const std::vector<CutLine> lines = narrow_gaps(joined_corners(chart, near), chart.place, gap);
+    const std::vector<CutLine> lines =
+        narrow_gaps(joined_chart_corners(chart, near), chart.place, gap);
     if (lines.empty()) {
-      straighten(model, chart);
+      straighten_chart(model, chart);
       charts.push_back(std::move(chart));
       continue;
     }

@@ -25,7 +25,7 @@ Eigen::Quaterniond orientation(const Camera& camera) {
 }
 
 // The two axes of a camera, made unit and upright to each other. False if they are not axes.
-bool straighten(Camera& camera) {
+bool straighten_camera(Camera& camera) {
   if (!(camera.direction.norm() > 1e-9) || !camera.direction.allFinite()) return false;
   camera.direction.normalize();
   camera.up -= camera.up.dot(camera.direction) * camera.direction;
@@ -61,7 +61,7 @@ Camera camera_of(const Json& json) {
   }
   camera.width = size[0];
   camera.height = size[1];
-  if (!camera.position.allFinite() || !straighten(camera)) {
+  if (!camera.position.allFinite() || !straighten_camera(camera)) {
     throw InputError("'direction' and 'up' must be two directions, not along one line");
   }
   if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "scene/degree.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
 
 namespace lightwell {

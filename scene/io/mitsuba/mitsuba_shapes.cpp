@@ -9,6 +9,7 @@
 #include "scene/io/mitsuba/mitsuba_transform.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/text_file.h"
+#include "scene/rotation_between.h"
 
 namespace lightwell {
 namespace {
@@ -142,7 +143,7 @@ PolygonMesh MitsubaShapes::cylinder(const MitsubaNode& shape, const Eigen::Affin
   const double radius = positive(shape, "radius", 1.0);
   if (!(axis.stableNorm() > 0.0)) shape.fail("has no length: p0 and p1 are one point");
   const Eigen::Affine3d place = Eigen::Translation3d(p0) *
-                                Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis) *
+                                rotation_between(Eigen::Vector3d::UnitZ(), axis) *
                                 Eigen::Scaling(radius, radius, axis.stableNorm());
   std::vector<NormalLoop> normals = cylinder_loops();
   for (NormalLoop& loop : normals) {

@@ -22,7 +22,7 @@ Sky& sky_of(Scene& scene) {
   return *scene.sky;
 }
 
-bool has_dome(const Scene& scene) {
+bool scene_has_dome(const Scene& scene) {
   return scene.sky && (scene.sky->kind == SkyKind::map || (scene.sky->scale > 0.0f).any());
 }
 
@@ -67,7 +67,7 @@ bool add_mitsuba_sky(const MitsubaNode& emitter, const MitsubaTree& tree, Scene&
                      Remarks& remarks) {
   const bool is_dome = emitter.type == "constant" || emitter.type == "envmap";
   if (!is_dome && emitter.type != "directional") return false;
-  if (is_dome ? has_dome(scene) : scene.sky && scene.sky->sun) {
+  if (is_dome ? scene_has_dome(scene) : scene.sky && scene.sky->sun) {
     remarks.add(
         fmt::format("A scene has one {} here; further ones were left out", is_dome ? "sky" : "sun"),
         emitter.label());

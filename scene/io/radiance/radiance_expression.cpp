@@ -78,7 +78,7 @@ void define_functions(mu::Parser& parser) {
 // What of a formula is fit for a message.
 std::string beginning(const std::string& text) {
   constexpr std::size_t longest = 80;
-  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+  return text.size() <= longest ? text : std::string(text, 0, longest).append("...");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "scene/io/placed_mesh.h"
 #include "scene/io/seams.h"
 #include "scene/limits.h"
+#include "scene/rotation_between.h"
 
 namespace lightwell {
 namespace {
@@ -41,8 +42,7 @@ void require_moderate(const RadiancePrimitive& p) {
 }
 
 Eigen::Affine3d along(const Eigen::Vector3d& from, const Eigen::Vector3d& axis) {
-  return Eigen::Translation3d(from) *
-         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis);
+  return Eigen::Translation3d(from) * rotation_between(Eigen::Vector3d::UnitZ(), axis);
 }
 
 Loop placed(Loop loop, const Eigen::Affine3d& transform) {
