@@ -247,7 +247,8 @@ std::string command_to_resume(const CommonOptions& options) {
   std::string text;
   bool resumes = false;
   for (const std::string& word : options.command_line) {
-    text += (text.empty() ? "" : " ") + quoted(word);
+    if (!text.empty()) text += ' ';
+    text += quoted(word);
     resumes = resumes || word == "--resume";
   }
   return resumes ? text : text + " --resume";

@@ -208,13 +208,13 @@ void Report::write(const std::filesystem::path& file) const {
 }
 
 void print_json(const Json& json) {
-  fmt::print("{}", report_text(json));
+  fmt::print("{}", to_text(json));
 }
 
 void write_json(const std::filesystem::path& file, const Json& json) {
   AtomicFile target(file);
   std::ofstream out(target.temporary(), std::ios::binary);
-  out << report_text(json);
+  out << to_text(json);
   out.close();
   if (!out) throw std::runtime_error(fmt::format("{}: could not be written", file.string()));
   target.commit();

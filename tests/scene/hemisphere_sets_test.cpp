@@ -42,7 +42,7 @@ TEST(HemisphereSets, KeysGiveDifferentDrawsAndOneKeyTheSame) {
   EXPECT_EQ(sets.draw(7).frame(up), sets.draw(7).frame(up));
   EXPECT_NE(sets.draw(7).frame(up), sets.draw(8).frame(up));
   const HemispherePoint& point = sets.draw(7).all()[0];
-  EXPECT_NE(sets.draw(7).planar(0, point), sets.draw(8).planar(0, point));
+  EXPECT_NE(sets.draw(7).planar_point(0, point), sets.draw(8).planar_point(0, point));
 }
 
 TEST(HemisphereSets, OnePointIsASet) {
