@@ -10,98 +10,107 @@
 
 namespace lightwell {
 
-/// Shares of a mesh that are drawn differently.
+/// Classes of elements that are drawn differently.
 enum class ElementKind : std::uint8_t {
-  lit,    ///< shows light
-  unlit,  ///< no light at any corner: the outside of a closed room, for one
-  glass,  ///< clear: drawn as a veil over what is behind
+  lit,    ///< irradiance at a corner, or emission
+  unlit,  ///< neither, for example on the outside of a closed room
+  glass,  ///< clear material, drawn as a translucent veil
 };
 
-/// Share of what is behind that glass hides.
+/// Opacity of glass as drawn, [0,1].
 inline constexpr double glass_opacity = 0.2;
 
-/// What each element is. Without materials nothing is glass.
+/// Kind of each element. An element is glass only by `materials`: an empty list has no glass.
 std::vector<ElementKind> element_kinds(const SolvedScene& solved,
                                        const std::vector<Material>& materials);
 
-/// The same by the light at vertices, E (vertices x bands), where it is not all of the solution's.
+/// Kind of each element for irradiance E at the vertices (vertices x bands), for example a part of
+/// a solution's.
 std::vector<ElementKind> element_kinds(const PatchMesh& mesh, const BandArray& E,
                                        const std::vector<Material>& materials);
 
-/// Radiance that stands for each vertex, W/(m^2 sr), vertices x bands: B / pi; mirrors and glass
-/// add what they would send out if they scattered the mirrored or the refracted light evenly.
+/// Radiance drawn at each vertex, W/(m^2 sr), vertices x bands: B / pi. Mirrors and glass are drawn
+/// as if they scattered the mirrored or the refracted light diffusely.
 BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>& materials);
 
-/// Share of irradiance that shown_radiance sends out from a patch, per band.
+/// Reflectance of a patch per band as shown_radiance uses it: diffuse, plus specular or the glass's
+/// tint.
 Spectrum shown_reflectance(const PatchMesh& mesh, const std::vector<Material>& materials,
                            int patch);
 
-/// The corner of a quad from which the diagonal goes along which to split it: the one whose ends
-/// differ less, so that the crease follows the light. 0 or 1; 0 for a triangle.
+/// First corner of the diagonal that splits a quad, 0 or 1; 0 for a triangle. The chosen diagonal's
+/// ends differ less in radiance, so that the crease follows the light.
 int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance);
 
-/// 8-bit sRGB, 3 bytes a vertex: the second pass's automatic tone mapping with `scale` as the
-/// exposure (see exposure_scale).
+/// Tone-mapped colours, 8-bit sRGB, 3 bytes a vertex: the second pass's automatic tone mapping with
+/// `scale` as the exposure (see exposure_scale).
 std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
                                          double scale);
 
-/// Light before tone mapping as graphics hardware blends it between vertices: code c of 255 stands
-/// for x = 2^(light_code_stops c - light_code_depth) - 2^-light_code_depth of white, which takes in
-/// 64 times white; each step is a factor of 1.039, so that x is right to 2 %.
+/// Logarithmic 8-bit code of light before tone mapping, which graphics hardware interpolates
+/// between vertices. Code c in [0,1] is x = 2^(light_code_stops c - light_code_depth) -
+/// 2^-light_code_depth of white, at most 64 times white. A step of 1/255 is a factor of 1.039, so
+/// that x is accurate to 2 %.
 inline constexpr float light_code_stops = 14.0f, light_code_depth = 8.0f;
 
-/// 3 bytes a vertex: linear RGB times `scale` as such codes.
+/// Light codes (see light_code_stops) of linear RGB times `scale`, 3 bytes a vertex.
 std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& bands, double scale);
 
-/// What false colours show.
+/// Quantity that false colours show.
 enum class Measure {
   illuminance,  ///< lx
-  luminance,    ///< cd/m^2, of what is drawn
-  unshot,       ///< lm/m^2 that patches are still to shoot, while light is being solved for
+  luminance,    ///< cd/m^2, of the radiance drawn
+  unshot,       ///< unshot radiosity of patches, lm/m^2, during progressive refinement
 };
 
-/// Of a false-colour scale, lx (or what else is measured), low < high: logarithmic, or even where
-/// `low` is 0.
+/// Ends of a false-colour scale, low < high, in lx or the unit of the quantity shown. The scale is
+/// linear where `low` is 0, else logarithmic.
 struct LuxRange {
   double low = 1.0, high = 1000.0;
 
   bool is_even() const { return low == 0.0; }
 };
 
-/// A logarithmic one with 1, 2 or 5 times a power of ten at either end, that takes in all but the
-/// brightest 0.5 % of the vertices and reaches at most a thousandth down.
+/// Logarithmic scale for values at vertices, lx. Either end is 1, 2 or 5 times a power of ten. The
+/// high end is above all but the brightest 0.5 % of the positive values; the low end is at least a
+/// thousandth of the high end. Without positive values: LuxRange's default.
 LuxRange lux_range(const std::vector<float>& lux);
 
-/// Where a scale is labelled: about five even steps, or 1, 2 and 5 times the powers of ten; the
-/// powers alone and the ends over more than two decades. lx.
+/// Labelled values of a scale, in its unit.
+/// - linear: about five even steps
+/// - logarithmic: 1, 2 and 5 times the powers of ten
+/// - logarithmic over more than two decades: the powers of ten and the ends
 std::vector<double> scale_steps(const LuxRange& range);
 
-/// luminous() of each row, cd/m^2 of radiance.
+/// luminous() of each row of `values` (rows x bands): radiance in W/(m^2 sr) gives cd/m^2,
+/// irradiance in W/m^2 gives lx.
 std::vector<float> luminous_rows(const BandArray& values, const Bands& bands);
 
 /// Illuminance at each vertex, lx.
 std::vector<float> vertex_illuminance(const RadiositySolution& solution);
 
-/// False colour for a place on the scale, [0,1]: dark blue by green to yellow, rising in lightness
-/// so that it reads the same in grey and for colour-blind eyes. sRGB, [0,1].
+/// False colour, sRGB in [0,1], at a position on the scale in [0,1]: dark blue through green to
+/// yellow. Lightness rises along the scale, so that the order of values survives printing in grey
+/// and colour blindness.
 Eigen::Array3f false_color(float place);
 
-/// 8-bit sRGB, 3 bytes a vertex.
+/// False colours of values in the unit of `range`, 8-bit sRGB, 3 bytes a value.
 std::vector<std::uint8_t> false_colors(const std::vector<float>& lux, const LuxRange& range);
 
-/// The interpolation error around each vertex, the largest of its elements, on a logarithmic scale
-/// from 0.1 % of the mean irradiance to 10 %. 8-bit sRGB, 3 bytes a vertex.
+/// False colours of the interpolation error at each vertex, 8-bit sRGB, 3 bytes a vertex. A
+/// vertex's error is the largest of its elements'. The scale is logarithmic, from 0.1 % to 10 % of
+/// the mean irradiance.
 std::vector<std::uint8_t> error_colors(const SolvedScene& solved);
 
-/// A coarse picture, `width` pixels wide, of what the viewer draws for a camera: backs and glass
-/// are looked through, a miss shows the sky, or is black without. Its exposure_scale is what the
-/// second pass's picture from there has, up to mirrors and glass.
+/// Coarse picture, `width` pixels wide, of what the viewer draws for a camera. Rays pass through
+/// backs and glass; rays that leave the scene show the sky, or black without a sky. The picture's
+/// exposure_scale approximates that of the second pass's picture; mirrors and glass differ.
 Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                      const BandArray& radiance, const Camera& camera, int width,
                      const Sky* sky = nullptr);
 
-/// The exposure_scale of the second pass's picture from a camera, by a coarse picture; where
-/// nothing is to be seen from there, that of all vertices alike.
+/// The exposure_scale of the second pass's picture from a camera, estimated from a coarse picture.
+/// Where the coarse picture is black, the exposure_scale of all vertices alike.
 double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                      const BandArray& radiance, const Bands& bands, const Camera& camera,
                      const Sky* sky = nullptr);

@@ -9,20 +9,21 @@
 
 namespace lightwell {
 
-/// What files hold in place of what is no number.
+/// `value`, or 0 where it is infinite or no number: files hold finite numbers only.
 inline float finite_or_black(float value) {
   return std::isfinite(value) ? value : 0.0f;
 }
 
-/// What element_kinds says with every channel on, as it was solved: what one of them lights is lit,
-/// even while it is off. Without channels, what it says.
+/// element_kinds with every channel on at scale 1: an element that a channel lights counts as lit
+/// even while the channel is off. Without channels, element_kinds of the solution.
 std::vector<ElementKind> kinds_with_all_on(const SolvedScene& solved,
                                            const std::vector<Material>& materials);
 
-/// What is seen outside of the scene; nothing without a sky.
+/// Sky and sun of a scene; empty without a sky.
 std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene);
 
-/// The light of each channel at the mesh's vertices that are listed.
+/// Light of each channel at the mesh's vertices in `mesh_vertex`, in their order. Empty without
+/// channels.
 std::vector<BakedChannel> bake_channels(const SolvedScene& solved,
                                         const std::vector<Material>& materials,
                                         const std::vector<int>& mesh_vertex);

@@ -11,28 +11,32 @@
 
 namespace lightwell {
 
-/// Cosine of how much the faces of a chart may turn away: of a projected face at least nine tenths
-/// of the area are left.
+/// Cosine of 25 degrees, the largest angle between normals of faces that are grouped or joined: a
+/// projected face keeps at least nine tenths of its area.
 inline const double most_turned = std::cos(25.0 * std::numbers::pi / 180.0);
 
-/// Twice a face's area, along its normal.
+/// Normal of a face, not unit: its length is twice the face's area, m^2.
 Eigen::Vector3d face_vector(const BakedModel& model, int face);
 
-/// Which faces of a part hang together: those that share a vertex, and those of two facets that
-/// meet in an edge, even if the mesh has vertices of its own for each because they meet in a
-/// crease. Faces in one plane that do not share vertices have something between them.
+/// Neighbours of each face of a part.
+/// - Faces that share a vertex are neighbours.
+/// - Faces of two facets that meet at an edge in a crease of less than 25 degrees are neighbours,
+///   although the mesh has separate vertices for the two facets.
+/// - Coplanar faces that meet at an edge without a shared vertex are not: the light is
+///   discontinuous between them.
 class ChartNeighbours {
  public:
   ChartNeighbours(const BakedModel& model, const BakedPart& part);
 
-  /// Calls see(face) for each of them; for some several times.
+  /// Calls see(neighbour) for each neighbour of `face`, for some several times, and for `face`.
   template <class See>
   void around(int face, See&& see) const {
     for (int c = 0; c < model_.corner_count(face); ++c)
       see_all(around_, model_.faces[face][c], see);
     see_all(across_, face, see);
   }
-  /// One vertex for all that are joined in creases.
+  /// Representative of the vertices that are joined to `vertex` in creases; the vertex itself
+  /// where there are none.
   int joined(int vertex) const;
 
  private:
@@ -49,8 +53,8 @@ class ChartNeighbours {
 
   const BakedModel& model_;
   int first_vertex_;
-  Pairs around_{};           // vertex and face
-  Pairs across_{};           // two faces
+  Pairs around_{};           // (vertex, face), sorted
+  Pairs across_{};           // (face, face) across a crease, both ways, sorted
   std::vector<int> weld_{};  // union-find over the part's vertices
 };
 

@@ -6,23 +6,25 @@
 
 namespace lightwell {
 
-/// What texels of a chart and of its padding show.
+/// Texels of a chart and the weights that interpolate light at them.
 class ChartTexels {
  public:
   ChartTexels(const LightmapLayout& layout, int chart, const BakedModel& model,
               const PatchMesh& mesh);
 
   struct Texel {
-    int x = 0, y = 0;        ///< of the atlas
-    int face = 0;            ///< of the model
-    bool is_inside = false;  ///< its centre lies in the face; else a filter on the chart reads it
-    /// Of the face's corners, in the model's order; they sum to 1. Beyond the chart's border they
-    /// go on as steeply as within, so that what a filter finds on the border is the light there.
+    int x = 0, y = 0;  ///< in the atlas
+    int face = 0;      ///< of the model
+    /// The texel's centre lies in the face; else only a filter at the chart's border reads it.
+    bool is_inside = false;
+    /// Weights of the face's corners, in the model's order; sum 1. Outside of the chart they
+    /// extrapolate the light's slope, so that a bilinear filter on the border reads the light
+    /// there.
     Eigen::Array4f weights = Eigen::Array4f::Zero();
-    /// The same of the nearest place within the face.
+    /// Weights of the face's corners at the nearest point of the face; sum 1.
     Eigen::Array4f inside = Eigen::Array4f::Zero();
   };
-  /// Row by row: those a bilinear filter reads anywhere on the chart.
+  /// All texels that a bilinear filter reads on the chart, row by row.
   std::vector<Texel> texels() const;
 
  private:

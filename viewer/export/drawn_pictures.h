@@ -10,32 +10,33 @@
 
 namespace lightwell {
 
-/// What a surface shows, as graphics hardware and model files have it.
+/// A surface's texture and mask in the form of graphics hardware and model files.
 struct DrawnPicture {
   int width = 0, height = 0;
-  /// Rows from the top, 4 bytes a texel: sRGB of rho over `brightest`, and 0 in holes, else 255.
+  /// 4 bytes a texel, rows from the top: sRGB of rho / `brightest`; alpha 0 in holes, else 255.
   std::vector<std::uint8_t> rgba{};
   Eigen::Array3f brightest = Eigen::Array3f::Ones();  ///< rho of a white texel, > 0
   bool has_holes = false;
-  bool is_smooth = true;  ///< texels are blended; else flat squares
+  bool is_smooth = true;  ///< texels are interpolated; else flat squares
   std::array<TextureWrap, 2> wrap = {TextureWrap::repeat, TextureWrap::repeat};
 };
 
-/// The pictures of a scene's materials, its textures with its masks as their alpha, and where they
-/// lie on its facets. Numbers facets as scene_facets does. Scenes of bands other than RGB, and
-/// materials that emit light, have none.
+/// Pictures of a scene's materials, textures with masks as alpha, and their placement on facets.
+/// Facets are numbered as by scene_facets. Scenes of bands other than RGB and materials that emit
+/// light have no pictures.
 class DrawnPictures {
  public:
-  /// Pictures wider or higher than `longest` texels are halved until they are not.
+  /// Halves pictures until neither side exceeds `longest` texels, or no coarser level is left.
   DrawnPictures(const Scene& scene, int longest);
 
   const std::vector<DrawnPicture>& all() const { return pictures_; }
-  /// On a facet, an index into all(); -1: none, or a facet the scene does not have.
+  /// Picture of a facet, an index into all(); -1: no picture, or no facet of the scene.
   int of(int facet) const;
-  /// The same for facets over which the picture goes on alike, of those that have one.
+  /// Texture map of a facet, equal for facets with the same map. Only in scenes with pictures; -1:
+  /// none.
   int map_of(int facet) const { return facet_map_[static_cast<std::size_t>(facet)]; }
-  /// Place in the picture of a point on a facet that has one: (0, 0) is the top left corner, (1, 1)
-  /// the bottom right one.
+  /// Picture coordinates of a point on a facet with a picture: (0, 0) is the top left corner,
+  /// (1, 1) the bottom right one.
   Eigen::Vector2f place(int facet, const Eigen::Vector3d& point) const;
 
  private:
@@ -46,11 +47,11 @@ class DrawnPictures {
   };
   std::vector<DrawnPicture> pictures_{};
   std::vector<Map> maps_{};
-  std::vector<int> facet_map_{};  // -1: none; empty: nowhere
+  std::vector<int> facet_map_{};  // index into maps_; -1: none; empty: no facet has a picture
 };
 
-/// Factor from what a vertex shows on the whole, with the mean of its pictures, to what a white
-/// texel shows there; vertices x 3, 1 where there is no picture.
+/// Factor from the radiance of a vertex, with the mean reflectance of its pictures, to that of a
+/// white texel: brightest / rho, vertices x 3; 1 without a picture.
 Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor> picture_gains(const PatchMesh& mesh,
                                                                       const DrawnPictures& drawn);
 

@@ -7,10 +7,10 @@
 
 namespace lightwell {
 
-/// Continues square pictures, row y * size + x for a texel, where `is_known` is 0: `rings` texels
-/// outwards by the mean of the neighbours in the ring before, and farther off by ever coarser means
-/// of what is around (the pull-push of Gortler, Grzeszczuk, Szeliski & Cohen 1996). Leaves all as
-/// it is where nothing is known.
+/// Fills texels of square pictures where `is_known` is 0; row y * size + x is texel (x, y). Up to
+/// `rings` texels from a known one, a texel is the mean of its neighbours in the ring before.
+/// Farther away a texel is a mean over ever larger blocks of known texels (the pull-push algorithm
+/// of Gortler, Grzeszczuk, Szeliski & Cohen 1996). Without known texels pictures stay unchanged.
 void fill_texels(int size, std::vector<char> is_known, int rings,
                  std::span<BandArray* const> pictures);
 

@@ -13,22 +13,24 @@ namespace lightwell {
 
 using GltfJson = nlohmann::ordered_json;
 
-// Numbers that glTF 2.0 gives things.
+// Component types and buffer targets of glTF 2.0.
 inline constexpr int gltf_float = 5126, gltf_unsigned_int = 5125;
 inline constexpr int gltf_vertex_data = 34962, gltf_index_data = 34963;
 
-/// The binary chunk of a .glb, and what its JSON says of it.
+/// Binary chunk of a .glb, with the buffer views and accessors that describe the chunk in JSON.
 class GltfBuffer {
  public:
   std::string& bytes() { return bytes_; }
   const std::string& bytes() const { return bytes_; }
-  /// What was appended since the last view is one; returns its number. `target` and `stride` are
-  /// left out where they are 0.
+  /// Makes a view of all bytes appended since the last view; returns the view's number. `target`
+  /// and `stride` (bytes) are omitted from the JSON where 0.
   int end_view(const char* name, int target, int stride);
-  /// A stretch of a view: `count` things of `size` bytes from the `first` on; returns its number.
+  /// Adds an accessor for `count` items of `size` bytes of a view, from item `first`; returns the
+  /// accessor's number. `component` and `type` are glTF's component type and "SCALAR", "VEC2", ...
   int add_accessor(int view, int component, const char* type, std::size_t size, std::size_t first,
                    std::size_t count);
-  /// The same of three floats each, with the bounds that glTF wants of positions.
+  /// Adds an accessor for the positions of `vertices`, with the bounds that glTF requires; returns
+  /// the accessor's number. The view holds three floats a vertex; item `first` is vertices[0].
   int add_positions(int view, const BakedModel& model, std::span<const int> vertices,
                     std::size_t first);
   /// Bytes since the last view ended.
@@ -43,20 +45,22 @@ class GltfBuffer {
   GltfJson views_ = GltfJson::array(), accessors_ = GltfJson::array();
 };
 
-/// In the model's axes of glTF.
+/// Appends a vertex's position as three floats, m, in glTF's axes.
 void append_position(std::string& bytes, const BakedModel& model, int vertex);
 
-/// Unlit, named, glass as a veil: what shows a model's light as it is.
+/// Material that shows vertex colours and textures without shading (KHR_materials_unlit). Glass is
+/// blended with opacity glass_opacity.
 GltfJson unlit_material(const BakedMaterial& material);
 
-/// `asset`, with what the colours stand for in its extras. A surface of radiance L has radiosity
-/// pi L.
+/// The JSON object `asset`. Its extras give the exposure, and the radiosity and the luminance of
+/// colour 1.
 GltfJson gltf_asset(const BakedModel& model);
 
-/// Scene, nodes and cameras around meshes that stand in the order of their surfaces.
+/// Adds scene, nodes, meshes and the scene's cameras to `root`: a node for each mesh.
 void add_nodes(const BakedModel& model, GltfJson meshes, GltfJson& root);
 
-/// Writes a .glb of what was collected. Throws std::runtime_error naming the file.
+/// Writes a .glb of `root` and `buffer`. Throws std::runtime_error naming the file if writing fails
+/// or the content exceeds 4 GiB.
 void write_glb(const std::filesystem::path& path, GltfJson root, const GltfBuffer& buffer);
 
 }  // namespace lightwell

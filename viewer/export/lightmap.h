@@ -12,58 +12,63 @@ namespace lightwell {
 
 struct LightmapOptions {
   int size = 2048;  ///< texels along an edge of an atlas, 16 to 8192
-  /// 0: as many as let one atlas of that size hold everything. Else there may be several.
+  /// Density, texels/m. 0: the highest at which one atlas holds all charts. A given density may
+  /// take several atlases.
   double texels_per_metre = 0.0;
-  /// Texels around a chart that repeat its edge, 1 to 64. With 2^k of them neighbours do not bleed
-  /// into each other down to mip level k.
+  /// Texels of padding around a chart, 1 to 64. With a padding of 2^k texels, neighbouring charts
+  /// do not bleed into each other down to mip level k.
   int padding = 4;
-  /// Where a texel's light is from: the solution (interpolate), its indirect light and direct light
-  /// traced anew at the texel's centre (direct), or all of it anew (gather).
+  /// Source of a texel's irradiance.
+  /// - interpolate: the solution
+  /// - direct: the solution's indirect light, and direct light computed at the texel's centre
+  /// - gather: direct and indirect light gathered at the texel's centre; caustics interpolated
   Pass pass = Pass::interpolate;
   ShadowOptions shadows{};
   int gather_rays = 256;     ///< for Pass::gather; 1 to most_gather_rays
-  bool per_channel = false;  ///< data of each light channel as well, in the same charts
+  bool per_channel = false;  ///< also writes data of each light channel, in the same charts
   RunControl run{};
 };
 
 inline constexpr int least_lightmap_size = 16, most_lightmap_size = 8192, most_atlases = 64;
 
-/// Where a chart lies, in texels from an atlas's upper left corner; the padding is outside of it.
+/// Rectangle of a chart in texels from an atlas's upper left corner, without the padding.
 struct ChartRectangle {
   int atlas = 0, x = 0, y = 0, width = 0, height = 0;
 };
 
-/// A model's charts, packed into square atlases of equal size.
+/// Charts of a model, packed into square atlases of equal size.
 struct LightmapLayout {
   int size = 0, padding = 0, atlas_count = 0;
   double texels_per_metre = 0.0;
   std::vector<LightmapChart> charts{};
-  std::vector<ChartRectangle> place{};  ///< of each chart; those that are dark share one, or have
-                                        ///< their host's
+  /// Rectangle of each chart. A chart with a host has the host's; other dark charts share one.
+  std::vector<ChartRectangle> place{};
 
-  /// Of a place of a chart, in texels from its atlas's upper left corner, y downwards: a chart
-  /// fills its rectangle, which is a whole number of texels.
+  /// Position of a chart's point `at` (m, see LightmapChart::place) in texels from the upper left
+  /// corner of the chart's atlas, y downwards. A chart is stretched to fill its rectangle, which
+  /// has a whole number of texels on each side.
   Eigen::Vector2d texel(int chart, const Eigen::Vector2d& at) const;
 };
 
-/// Throws InputError that says which size or density would do if the charts do not fit, and for
-/// options out of their range.
+/// Cuts a model into charts and packs them. Throws InputError for options out of range, and if the
+/// charts do not fit; the message recommends a size or a density.
 LightmapLayout lay_out_lightmap(const BakedModel& model, const PatchMesh& mesh,
                                 const LightmapOptions& options = {});
 
-/// Light of one atlas, row 0 on top. What no chart covers continues those around it, so that no
-/// filter finds black there.
+/// Light of one atlas, row 0 on top. Texels outside of charts continue the charts around, so that
+/// no filter reads black.
 struct LightmapAtlas {
   int size = 0;
   BandArray irradiance{};    ///< E, W/m^2, texels x bands
   BandArray radiosity{};     ///< B = M + rho E, W/m^2, texels x linear Rec. 709 RGB
-  BandArray radiance{};      ///< what is shown as light: see BakedModel::radiance
-  std::vector<int> face{};   ///< of the model, in which a texel's centre lies; -1: none
+  BandArray radiance{};      ///< W/(m^2 sr), texels x RGB, as BakedModel::radiance
+  std::vector<int> face{};   ///< face of the model that contains the texel's centre; -1: none
   std::int64_t covered = 0;  ///< texels with a face
 };
 
-/// `scene` must be the one the solution was made from for Pass::direct and Pass::gather, and may be
-/// empty else. The same bits for any number of threads.
+/// Computes the light of atlas number `atlas`. For Pass::direct and Pass::gather `scene` must be
+/// the scene that was solved; for Pass::interpolate an empty scene suffices. The result has the
+/// same bits for any number of threads.
 LightmapAtlas paint_atlas(const LightmapLayout& layout, int atlas, const BakedModel& model,
                           const SolvedScene& solved, const Scene& scene,
                           const LightmapOptions& options = {});

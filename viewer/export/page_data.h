@@ -8,17 +8,17 @@
 
 namespace lightwell {
 
-/// What a walkthrough page is made from: a description, and arrays of which it gives the place.
-/// docs/export.md says what is in them. Lengths are metres with y upwards, counted from the lowest
-/// corner of the model, so that a room far from its origin keeps its digits in single precision.
+/// Data of a walkthrough page, as docs/export.md describes. Lengths are metres, y upwards, from the
+/// lowest corner of the model: a room far from its origin keeps its digits in single precision.
 struct PageData {
-  nlohmann::ordered_json about{};
-  std::string bytes{};
+  nlohmann::ordered_json about{};  ///< description, with offsets of arrays in `bytes`
+  std::string bytes{};             ///< arrays, little-endian
 };
 
+/// Data of a model's page. `range`: scale of the false colours of illuminance, lx.
 PageData page_data(const BakedModel& model, const LuxRange& range);
 
-/// RFC 4648, with padding.
+/// Base64 of RFC 4648, with padding.
 std::string base64(const std::string& bytes);
 
 }  // namespace lightwell

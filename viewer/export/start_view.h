@@ -9,22 +9,22 @@
 
 namespace lightwell {
 
-/// Axis-aligned bounds of the mesh's vertices.
-
-/// The coordinate axis most cameras' up leans to; without cameras the one of y and z in which the
-/// scene is lower, as rooms are wider than high.
+/// Upwards direction: the coordinate axis, or its opposite, nearest to the sum of the cameras' up
+/// vectors. Without cameras +y or +z, along which the scene is shorter, as rooms are wider than
+/// high; +y if equal.
 Eigen::Vector3d guess_up_axis(const std::vector<Camera>& cameras, const Bounds& bounds);
 
-/// From outside along `direction` (unit), the whole scene in the picture of width : height.
+/// Camera outside of the scene along `direction`, with the bounding sphere in a picture of
+/// width x height pixels.
 Camera frame_all(const Bounds& bounds, const Eigen::Vector3d& direction,
                  const Eigen::Vector3d& up_axis, int width, int height);
 
-/// The same camera with as wide an angle as a window of width : height needs to show all of the
-/// camera's own picture.
+/// Camera with a field of view wide enough that a window of width x height pixels shows all of the
+/// given camera's picture.
 Camera fit_to_window(const Camera& camera, int width, int height);
 
-/// Where to start when no camera is given: the whole scene from outside if light is seen from
-/// there, else inside, looking across the room.
+/// Start camera of a scene without cameras: the whole scene from outside if enough light is visible
+/// from there, else a view inside across the room.
 Camera find_start(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                   const BandArray& radiance, const Eigen::Vector3d& up_axis, int width, int height);
 

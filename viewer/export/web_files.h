@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// The files of viewer/export/web, which CMake turns into C++ (cmake/EmbedFile.cmake).
+/// Contents of the files in viewer/export/web, embedded by CMake (cmake/EmbedFile.cmake).
 namespace lightwell::web {
 
 extern const std::string_view page_html, page_css, library_js, licenses_txt;

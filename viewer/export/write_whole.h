@@ -8,18 +8,19 @@
 
 namespace lightwell {
 
-/// Writes the pieces one after the other under a temporary name and renames the file; throws
-/// std::runtime_error naming the file and the system's reason if that fails.
+/// Writes the pieces one after the other under a temporary name and renames the file. Throws
+/// std::runtime_error naming the file and the system's reason if writing fails.
 void write_whole(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
 
-/// Appends the bytes of plain values, least significant first, as every format here wants them.
+/// Appends the bytes of a value in memory order. The formats written here are little-endian, as
+/// x86-64 is.
 template <typename T>
 void append_bytes(std::string& bytes, const T& value) {
   static_assert(std::is_trivially_copyable_v<T>);
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
-/// A name on one line of a text file: control characters become `_`.
+/// `name` for one line of a text file: control characters become `_`.
 std::string one_line(std::string name);
 
 }  // namespace lightwell
