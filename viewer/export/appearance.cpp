@@ -13,7 +13,7 @@ namespace lightwell {
 namespace {
 
 constexpr int vertex_grain = 4096;
-/// Surfaces a sample looks through before it counts as black; each is a pane or a wall from behind.
+/// Surfaces that a sample passes before it counts as black: panes of glass and walls from behind.
 constexpr int max_layers = 16;
 constexpr int metering_width = 160;
 
@@ -116,7 +116,7 @@ std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& ba
       const Eigen::Array3f x =
           linear_rgb(bands, radiance.row(v).transpose()) * static_cast<float>(scale);
       for (int c = 0; c < 3; ++c) {
-        const float light = x[c] > 0.0f ? x[c] : 0.0f;  // what is no number is black
+        const float light = x[c] > 0.0f ? x[c] : 0.0f;  // NaN becomes black
         const float code = (std::log2(light + floor) + light_code_depth) / light_code_stops;
         codes[std::size_t{3} * v + c] =
             static_cast<std::uint8_t>(255.0f * std::clamp(code, 0.0f, 1.0f) + 0.5f);
@@ -149,7 +149,7 @@ LuxRange lux_range(const std::vector<float>& lux) {
   const double darkest = lit.front();
   const double brightest =
       lit[static_cast<std::size_t>(0.995 * static_cast<double>(lit.size() - 1))];
-  // The nearest 1, 2 or 5 times a power of ten that is not below (above, for the low end).
+  // The nearest of 1, 2 and 5 times a power of ten that is >= value (up) or <= value (down).
   const auto round = [](double value, bool up) {
     const double power = std::pow(10.0, std::floor(std::log10(value)));
     double result = up ? 10.0 * power : power;

@@ -6,7 +6,7 @@
 namespace lightwell {
 namespace {
 
-/// Dark, on the same mesh.
+/// Solution without light or channels on the same mesh.
 SolvedScene unlit(const SolvedScene& solved) {
   SolvedScene result;
   result.mesh = solved.mesh;
@@ -14,7 +14,7 @@ SolvedScene unlit(const SolvedScene& solved) {
   return result;
 }
 
-/// The light of one channel with every scale at 1 into `alone`, which has the same mesh.
+/// Copies the light of one channel, with all scales 1, into `alone`, which has the same mesh.
 void light_alone(const RadiositySolution& solution, std::size_t number, SolvedScene& alone) {
   const LightChannel& channel = solution.channels[number];
   alone.solution.direct_irradiance = channel.direct_irradiance;
@@ -27,8 +27,9 @@ void light_alone(const RadiositySolution& solution, std::size_t number, SolvedSc
   }
 }
 
-/// The weights are RGB. A scale that differs between bands of wavelength is more than three numbers
-/// can say, so what is uneven in it goes into the light: the first number is left as the weight.
+/// A channel's scale as a product of an RGB weight and a factor per band of the light. For RGB
+/// bands the weight is the scale. A spectral scale has more bands than three: its largest band is
+/// the weight, and the factor is scale / weight.
 struct Split {
   Eigen::Array3f weight{};
   Spectrum within{};
@@ -41,7 +42,7 @@ Split split_channels(const Bands& bands, const Spectrum& scale) {
   return {Eigen::Array3f::Constant(largest), scale / largest};
 }
 
-/// luminous(), apart by red, green and blue; of other bands all in one.
+/// The terms of luminous() for red, green and blue; for spectral bands one number, their sum.
 Spectrum luminous_columns(const Bands& bands, const Spectrum& values) {
   if (!bands.wavelengths_nm.empty()) {
     return Spectrum::Constant(1, static_cast<float>(luminous(bands, values)));
@@ -73,15 +74,15 @@ BakedChannel bake(const SolvedScene& alone, const LightChannel& channel,
   return baked;
 }
 
-/// Places of azimuth in a page's sky: steps of 1.4 degrees, of a map 0.7.
+/// Azimuths of a baked sky, in steps of 1.4 degrees; of a sky map 0.7 degrees.
 constexpr int sky_columns = 257, map_columns = 513;
 
-/// The channel of a free source; -1 where light is not kept apart.
+/// Channel of a free source; -1 in a solution without channels.
 int channel_of(const RadiositySolution& solution, std::size_t source) {
   return source < solution.source_channel.size() ? solution.source_channel[source] : -1;
 }
 
-/// What light of a channel is multiplied by before it becomes RGB; see split.
+/// Factor per band of a channel's light before conversion to RGB; see Split.
 Spectrum factor_within(const RadiositySolution& solution, int channel) {
   if (channel < 0) return constant_spectrum(solution.bands, 1.0f);
   return split_channels(solution.bands, solution.channels[static_cast<std::size_t>(channel)].scale)

@@ -22,10 +22,11 @@ namespace lightwell {
 namespace {
 
 constexpr int start_width = 1024, start_height = 768;
-/// Texels along a picture in files that people send each other.
+/// Largest side of a picture, texels: keeps files small enough to send.
 constexpr int longest_picture = 1024;
 
-/// Of two sides on each other, the one to leave out: unlit, and the back if neither is lit.
+/// Whether an element of two coincident sides is left out: an unlit one is, unless both are unlit
+/// and the element is the front.
 bool is_left_out(const PatchMesh& mesh, const std::vector<ElementKind>& kinds, int element) {
   const int twin = mesh.twin[element];
   if (twin < 0 || kinds[element] != ElementKind::unlit) return false;
@@ -62,7 +63,7 @@ struct Side {
   auto operator<=>(const Side&) const = default;
 };
 
-/// Elements to keep; where they show a picture, in the order of its maps.
+/// Elements of each side that are kept. Elements with a picture are in the order of texture maps.
 std::map<Side, std::vector<int>> sides_of(const PatchMesh& mesh,
                                           const std::vector<ElementKind>& kinds,
                                           const DrawnPictures& drawn, const JoinedSurfaces* names) {
@@ -81,8 +82,8 @@ std::map<Side, std::vector<int>> sides_of(const PatchMesh& mesh,
   return sides;
 }
 
-/// Numbers the mesh's vertices anew, in the order in which faces ask for them; each group, a part
-/// or what of it lies on one map of its picture, has its own.
+/// Numbers vertices of the mesh in order of first use. Each group, a part or its elements of one
+/// texture map, has numbers of its own.
 class VertexNumbers {
  public:
   explicit VertexNumbers(int count) : number_(static_cast<std::size_t>(count), -1) {}
@@ -103,7 +104,7 @@ class VertexNumbers {
   std::vector<int> number_, order_;
 };
 
-/// The materials that are used, numbered as they come.
+/// Numbers the materials in order of first use.
 class MaterialNumbers {
  public:
   MaterialNumbers(const Scene& scene, std::vector<BakedMaterial>& materials)
@@ -138,7 +139,7 @@ void add_face(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
   model.black_behind.push_back(twin >= 0 && is_left_out(mesh, kinds, twin) ? 1 : 0);
 }
 
-/// Fills parts, materials and faces; returns the mesh vertex of each vertex.
+/// Fills parts, materials and faces. Returns the mesh's vertex for each vertex of the model.
 std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
                            const std::vector<ElementKind>& kinds, const BandArray& radiance,
                            const DrawnPictures& drawn, const JoinedSurfaces* names,
@@ -236,7 +237,7 @@ void add_cameras(const SolvedScene& solved, const Scene& scene,
   }
 }
 
-/// Turns `up_axis`, a coordinate axis or its opposite, to +y.
+/// Rotation from `up_axis`, a coordinate axis or its opposite, to +y.
 Eigen::Matrix3d rotation_to_y_up(const Eigen::Vector3d& up_axis) {
   const Eigen::Quaterniond turn = rotation_between(up_axis, Eigen::Vector3d::UnitY());
   return turn.toRotationMatrix().array().round();

@@ -8,7 +8,7 @@
 namespace lightwell {
 namespace {
 
-/// Facets that turn by less are one plane.
+/// Cosine of half a degree: facets with a smaller angle between them are coplanar.
 const double least_turned = std::cos(0.5 * std::numbers::pi / 180.0);
 
 }  // namespace
@@ -36,10 +36,10 @@ int ChartNeighbours::joined(int vertex) const {
   return v + first_vertex_;
 }
 
-// Edges by the places of their ends, so that both sides of a crease follow one another.
+// Edges sorted by the positions of their ends, so that both sides of a crease are adjacent.
 void ChartNeighbours::find_creases(const BakedPart& part) {
   struct Edge {
-    std::array<int, 2> place, vertex;  // in the order of places
+    std::array<int, 2> place, vertex;  // of the ends, the lower place first
     int face;
   };
   const std::vector<int> place = places(part);
@@ -72,7 +72,7 @@ void ChartNeighbours::find_creases(const BakedPart& part) {
   std::sort(across_.begin(), across_.end());
 }
 
-// A number for each vertex of the part, the same for those in one place.
+// A number for each vertex of the part, equal for vertices at equal positions.
 std::vector<int> ChartNeighbours::places(const BakedPart& part) const {
   std::vector<int> order(static_cast<std::size_t>(part.vertex_count));
   std::iota(order.begin(), order.end(), first_vertex_);

@@ -18,7 +18,7 @@ int corner_count(const std::array<int, 4>& face) {
   return face[3] < 0 ? 3 : 4;
 }
 
-// Andrew's monotone chain, counter-clockwise, without points on its edges.
+// Convex hull by Andrew's monotone chain, counter-clockwise, without points inside edges.
 std::vector<Vector2d> flat_hull(std::span<const Vector2d> points) {
   std::vector<Vector2d> sorted(points.begin(), points.end());
   std::sort(sorted.begin(), sorted.end(), [](const Vector2d& a, const Vector2d& b) {
@@ -34,7 +34,7 @@ std::vector<Vector2d> flat_hull(std::span<const Vector2d> points) {
       }
       hull.push_back(p);
     }
-    hull.pop_back();  // begins the other half
+    hull.pop_back();  // the other half begins with this point
     std::reverse(sorted.begin(), sorted.end());
   }
   return hull;
@@ -66,14 +66,15 @@ struct Segment {
   }
 };
 
-// Borders by the cells of a square grid that they run through, to find near ones.
+// Border edges in each cell of a square grid that the edge passes.
 class BorderGrid {
  public:
   BorderGrid(const std::vector<BorderEdge>& edges, std::span<const Vector2d> places, double cell)
       : cell_(cell) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const Vector2d a = places[edges[i].from], b = places[edges[i].to];
-      // A step of a cell at most, so that what is nearer than half a cell is in the next one.
+      // Steps are at most a cell long, so that an edge within half a cell of a point is in the
+      // point's cell or a neighbour.
       const int steps = 1 + static_cast<int>((b - a).norm() / cell_);
       std::pair<std::int64_t, std::int64_t> last{};
       for (int s = 0; s <= steps; ++s) {
@@ -115,7 +116,7 @@ Eigen::Vector2d box_direction(std::span<const Eigen::Vector2d> points) {
     if (!(edge.norm() > 0.0)) continue;
     const Vector2d x = edge.normalized(), size = extent(hull, x);
     const double area = size.x() * size.y();
-    // Sides of one rectangle differ by rounding: the first of them is as good.
+    // The two sides of one rectangle differ in area by rounding; the first is kept.
     if (!(area < least * (1.0 - 1e-9))) continue;
     least = area;
     best = size.x() >= size.y() ? x : Vector2d(-x.y(), x.x());
@@ -151,8 +152,8 @@ std::vector<BorderEdge> border_edges(std::span<const std::array<int, 4>> faces,
 
 std::vector<CutLine> narrow_gaps(std::span<const std::array<int, 4>> faces,
                                  std::span<const Eigen::Vector2d> places, double gap) {
-  constexpr double opposed = -0.5;      // cosine between what two borders look towards
-  constexpr double least_length = 4.0;  // gaps: shorter walls darken few texels
+  constexpr double opposed = -0.5;      // cosine between the outward normals of two borders
+  constexpr double least_length = 4.0;  // in gaps; shorter walls darken few texels
   constexpr double no_distance = 1e-6;  // of an edge's length
   const std::vector<BorderEdge> edges = border_edges(faces, places);
   const BorderGrid grid(edges, places, 2.0 * gap);

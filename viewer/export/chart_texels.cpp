@@ -14,17 +14,18 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A bilinear filter at a place reads the four texels around it.
+/// Largest distance, texels, from a point to the four texel centres that a bilinear filter reads.
 constexpr double filter_reach = std::numbers::sqrt2;
 
-/// A face laid flat, in texels.
+/// Face in the plane of its atlas, in texels.
 struct FlatFace {
   std::array<Vector2d, 4> corner{};
   int count = 0;
 
-  /// The nearest place of the face, its border included, and how far it is.
+  /// Nearest point of the face, its border included, and the distance to that point.
   std::pair<Vector2d, double> nearest(const Vector2d& p) const;
-  /// Of a place in the face: barycentric, or bilinear.
+  /// Weights of the corners at a point of the face: barycentric for a triangle, bilinear for a
+  /// quad.
   Eigen::Array4d weights(const Vector2d& p) const;
 };
 
@@ -56,7 +57,7 @@ Eigen::Array4d FlatFace::weights(const Vector2d& p) const {
   const Vector2d x = corner[1] - corner[0], y = corner[count - 1] - corner[0], to = p - corner[0];
   const double area = cross_2d(x, y);
   if (count == 3) {
-    // Without area, all of it is one place.
+    // All points of a triangle without area get the first corner's value.
     if (!(std::abs(area) > 0.0)) return {1.0, 0.0, 0.0, 0.0};
     const double u = std::clamp(cross_2d(to, y) / area, 0.0, 1.0);
     const double v = std::clamp(cross_2d(x, to) / area, 0.0, 1.0 - u);
@@ -67,7 +68,7 @@ Eigen::Array4d FlatFace::weights(const Vector2d& p) const {
   const Vector2d z = corner[2] - corner[1] - corner[3] + corner[0];
   double s = 0.5, t = 0.5;
   constexpr int most_steps = 16;
-  constexpr double converged = 1e-9;  // of the face
+  constexpr double converged = 1e-9;  // share of the face
   for (int step = 0; step < most_steps; ++step) {
     const Vector2d off = s * x + t * y + s * t * z - to;
     const Vector2d ds = x + t * z, dt = y + s * z;
@@ -83,14 +84,15 @@ Eigen::Array4d FlatFace::weights(const Vector2d& p) const {
   return {(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t};
 }
 
-/// The number of the mesh's corner that a face of the model begins with.
+/// Corner of the mesh's element that is the first corner of the model's face.
 int first_corner_of(const BakedModel& model, const PatchMesh& mesh, int f) {
   const auto& corners = mesh.corners[model.element[f]];
   const int vertex = model.mesh_vertex[model.faces[f][0]];
   return static_cast<int>(std::find(corners.begin(), corners.end(), vertex) - corners.begin());
 }
 
-/// Weights of an outside element's corners for the inside one, whose corners run backwards.
+/// Weights of the corners of a sphere's inside element, from those of the outside element; the
+/// inside's corners are in reverse order.
 Eigen::Array4f turned_weights(const Eigen::Array4f& w, int count) {
   return count == 3 ? Eigen::Array4f(w[0], w[2], w[1], 0.0f)
                     : Eigen::Array4f(w[0], w[3], w[2], w[1]);
@@ -109,7 +111,7 @@ std::vector<ChartTexels::Texel> ChartTexels::texels() const {
 std::vector<ChartTexels::Texel> ChartTexels::flat_texels() const {
   const LightmapChart& chart = layout_.charts[chart_];
   const ChartRectangle& place = layout_.place[chart_];
-  // One texel around the rectangle is all that a filter reads.
+  // A filter reads at most one texel around the rectangle.
   const int x0 = place.x - 1, y0 = place.y - 1;
   const int width = place.width + 2, height = place.height + 2;
   struct Nearest {
@@ -127,7 +129,7 @@ std::vector<ChartTexels::Texel> ChartTexels::flat_texels() const {
       low = low.cwiseMin(face.corner[c]);
       high = high.cwiseMax(face.corner[c]);
     }
-    // Of texels whose centre is near enough.
+    // First and last texel whose centre is within filter_reach of the face's bounds.
     const auto first = [](double from, int at) {
       return std::max(0, static_cast<int>(std::ceil(from - filter_reach - 0.5)) - at);
     };
@@ -156,7 +158,7 @@ std::vector<ChartTexels::Texel> ChartTexels::flat_texels() const {
       const Eigen::Array4d inside = face.weights(at);
       texel.inside = inside.cast<float>();
       texel.weights = texel.inside;
-      // Light as far within as the texel is beyond, mirrored in the border.
+      // Linear extrapolation across the border, from the light at the mirrored point.
       if (const Vector2d mirrored = 2.0 * at - center; distance > 0.0) {
         const auto [within, short_of] = face.nearest(mirrored);
         const double share = (within - at).norm() / distance;
@@ -170,12 +172,12 @@ std::vector<ChartTexels::Texel> ChartTexels::flat_texels() const {
   return result;
 }
 
-// Around the seam the sphere goes on; at the poles it ends.
+// Texels beyond the seam continue on the other side of it; texels beyond a pole repeat the pole.
 std::vector<ChartTexels::Texel> ChartTexels::sphere_texels() const {
   const LightmapChart& chart = layout_.charts[chart_];
   const ChartRectangle& place = layout_.place[chart_];
   const SphereGrid& grid = mesh_.sphere_grids[chart.sphere];
-  std::map<int, int> face_of;  // by element of the outside
+  std::map<int, int> face_of;  // keyed by the element of the outside
   const bool is_back = mesh_.is_back[mesh_.patch[model_.element[chart.faces.front()]]] != 0;
   for (const int f : chart.faces) {
     const int e = model_.element[f];

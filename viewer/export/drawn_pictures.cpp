@@ -21,7 +21,7 @@ int level_that_fits(const Texture& picture, int longest) {
   return level;
 }
 
-// The place in texture coordinates that `image` shows at a place of its own.
+// Texture coordinates of a point of the picture, the inverse of image.placement.
 Eigen::Vector2d uv_at(const SurfaceTexture& image, const Eigen::Vector2d& place) {
   return image.placement.leftCols<2>().inverse() * (place - image.placement.col(2));
 }
@@ -31,7 +31,8 @@ bool can_be_inverted(const SurfaceTexture& image) {
   return std::isfinite(area) && area != 0.0;
 }
 
-// Of the texture, with the mask sampled at its texels; or of the mask alone, white.
+// Picture of a material's texture, with the mask sampled at the texture's texels. Without a texture
+// the picture is white with the mask's resolution.
 DrawnPicture draw(const Material& material, int longest) {
   const SurfaceTexture& image = material.texture ? material.texture->image : material.mask->image;
   const Texture& picture = *image.picture;

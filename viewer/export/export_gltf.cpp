@@ -10,8 +10,7 @@
 namespace lightwell {
 namespace {
 
-/// What all vertices have of one kind follows one another in the buffer, so that a part is a
-/// stretch of each.
+/// Buffer with one view for each vertex attribute. A part's vertices are consecutive in every view.
 class VertexColorBuffer {
  public:
   explicit VertexColorBuffer(const BakedModel& model) : model_(model) {
@@ -76,7 +75,7 @@ class VertexColorBuffer {
   std::vector<std::size_t> first_index_;
 };
 
-/// One for each surface.
+/// One mesh for each surface.
 GltfJson meshes_of(const BakedModel& model, VertexColorBuffer& buffer) {
   GltfJson meshes = GltfJson::array();
   std::map<int, std::size_t> mesh_of;
@@ -89,7 +88,7 @@ GltfJson meshes_of(const BakedModel& model, VertexColorBuffer& buffer) {
   return meshes;
 }
 
-/// WebGL's numbers for how pictures go on and are filtered.
+/// Wrapping and filtering of a picture by the numbers of WebGL.
 GltfJson sampler_of(const DrawnPicture& picture) {
   constexpr int nearest = 9728, linear = 9729, nearest_mipmap_linear = 9986, linear_mipmap = 9987;
   const auto wrap = [](TextureWrap how) {
@@ -102,7 +101,8 @@ GltfJson sampler_of(const DrawnPicture& picture) {
           {"minFilter", picture.is_smooth ? linear_mipmap : nearest_mipmap_linear}};
 }
 
-/// Of each picture an image, a texture and a material: a material has one picture at most.
+/// Adds an image, a sampler, a texture and a material for each picture. A picture belongs to one
+/// material of the scene.
 void add_gltf_pictures(const BakedModel& model, GltfBuffer& buffer, GltfJson& root) {
   for (std::size_t p = 0; p < model.pictures.size(); ++p) {
     const DrawnPicture& picture = model.pictures[p];

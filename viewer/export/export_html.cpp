@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-/// Text as the content of an element.
+/// `text` as the content of an HTML element.
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -25,8 +25,8 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-/// JSON within a script element, which ends at the first "</script" whatever stands around it:
-/// names are free to hold that, or "<!--".
+/// JSON as the content of a script element. A script element ends at the first "</script", even
+/// inside a JSON string, and names may contain "</script" or "<!--": every "<" is escaped.
 std::string script_json(const nlohmann::ordered_json& json) {
   std::string result;
   for (const char c : json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) {
@@ -44,7 +44,7 @@ std::string title_of(const BakedModel& model) {
   return std::filesystem::path(model.provenance.scene_file).filename().string();
 }
 
-/// Copies page.html, with a piece in place of every "{{name}}".
+/// A copy of page.html in which pieces replace the marks "{{name}}", in the order of the file.
 class Page {
  public:
   void put(std::string_view name, std::string_view piece) {

@@ -27,7 +27,7 @@ std::filesystem::path exr_name(const std::filesystem::path& glb, int atlas) {
   return name.replace_filename(fmt::format("{}-lightmap-{}.exr", glb.stem().string(), atlas + 1));
 }
 
-/// For Image::layers: radiosity and illuminance beside the picture's own irradiance.
+/// Layers of a data file: radiosity, and illuminance in lx.
 LayerColumns layers_of(const LightmapAtlas& atlas, const Bands& bands) {
   LayerColumns layers{.names = {"radiosity.R", "radiosity.G", "radiosity.B", "illuminance.Y"},
                       .values = BandArray(atlas.radiosity.rows(), 4)};
@@ -38,7 +38,8 @@ LayerColumns layers_of(const LightmapAtlas& atlas, const Bands& bands) {
   return layers;
 }
 
-/// `channel`: whose light it is; empty: all that is in force.
+/// Writes an atlas's data as OpenEXR and moves the atlas's irradiance out. `channel`: name of the
+/// channel of the light; empty: all channels at their effective scales.
 void write_light(const std::filesystem::path& path, LightmapAtlas& atlas, const BakedModel& model,
                  const LightmapLayout& layout, const LightmapOptions& options,
                  const std::string& channel = {}) {
@@ -63,7 +64,7 @@ void write_light(const std::filesystem::path& path, LightmapAtlas& atlas, const 
             {.half = is_half, .compression = ExrCompression::zip});
 }
 
-/// Only the light of one channel is in force, as it was solved; of all of them without a number.
+/// Relights with `channel` at scale 1 and the others at 0; without a number all are at scale 1.
 void switch_on(std::optional<std::size_t> channel, SolvedScene& solved) {
   const Bands& bands = solved.solution.bands;
   std::vector<Spectrum> scales(solved.solution.channels.size(),
@@ -72,7 +73,7 @@ void switch_on(std::optional<std::size_t> channel, SolvedScene& solved) {
   relight(solved, scales);
 }
 
-/// The model with light of all channels, so that charts are laid out for what any of them lights.
+/// The model with all channels at scale 1: charts then are dark only where no channel gives light.
 BakedModel with_all_on(const BakedModel& model, SolvedScene& solved) {
   switch_on({}, solved);
   BakedModel all = model;
@@ -91,7 +92,7 @@ std::vector<std::string> lightmap_channel_names(const RadiositySolution& solutio
   return names;
 }
 
-/// Radiance times exposure as COLOR_0 of write_gltf has it, but encoded as sRGB.
+/// Radiance times exposure, clipped to [0,1], as 8-bit sRGB.
 std::vector<std::uint8_t> shown_bytes(const LightmapAtlas& atlas, double exposure) {
   const auto scale = static_cast<float>(exposure);
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(atlas.radiance.size()));
@@ -106,7 +107,7 @@ std::vector<std::uint8_t> shown_bytes(const LightmapAtlas& atlas, double exposur
   return bytes;
 }
 
-/// Texels that are brighter than the texture can show.
+/// Number of covered texels that exceed 1 after exposure and are clipped.
 std::int64_t clipped(const LightmapAtlas& atlas, double exposure) {
   std::int64_t count = 0;
   for (std::size_t i = 0; i < atlas.face.size(); ++i) {
@@ -116,12 +117,12 @@ std::int64_t clipped(const LightmapAtlas& atlas, double exposure) {
   return count;
 }
 
-/// The charts of one part in one atlas.
+/// Charts of one part in one atlas, drawn as one primitive.
 struct Stretch {
   int part = 0, atlas = 0;
   std::vector<int> charts{};
   std::size_t first_vertex = 0, first_index = 0, index_count = 0;
-  std::vector<int> vertices{};  ///< of the model
+  std::vector<int> vertices{};  ///< of the model, one for each vertex of the charts
 };
 
 std::vector<Stretch> stretches_of(const BakedModel& model, const LightmapLayout& layout) {
@@ -140,7 +141,7 @@ std::vector<Stretch> stretches_of(const BakedModel& model, const LightmapLayout&
   return stretches;
 }
 
-/// Geometry with texture coordinates, then the atlases' pictures.
+/// Buffer of geometry with lightmap coordinates, followed by the PNGs of the atlases.
 class LightmapBuffer {
  public:
   LightmapBuffer(const BakedModel& model, const LightmapLayout& layout)
@@ -173,7 +174,7 @@ class LightmapBuffer {
   const std::vector<Stretch>& stretches() const { return stretches_; }
   const GltfBuffer& buffer() const { return buffer_; }
 
-  /// Numbers of the images are those of the atlases.
+  /// Adds an image and a texture for each atlas, with the atlas's number.
   void add_pictures(const std::vector<std::string>& pictures, GltfJson& root) {
     for (std::size_t i = 0; i < pictures.size(); ++i) {
       buffer_.bytes() += pictures[i];
@@ -182,8 +183,8 @@ class LightmapBuffer {
       root["images"].push_back({{"name", name}, {"bufferView", view}, {"mimeType", "image/png"}});
       root["textures"].push_back({{"name", name}, {"sampler", 0}, {"source", i}});
     }
-    // Without mipmaps: coarse ones, which are taken where a surface is seen at a grazing angle,
-    // would mix it with its neighbours in the atlas.
+    // No mipmaps: at grazing angles coarse levels would mix a chart with its neighbours in the
+    // atlas.
     constexpr int linear = 9729, clamp_to_edge = 33071;
     root["samplers"].push_back({{"magFilter", linear},
                                 {"minFilter", linear},
@@ -191,7 +192,8 @@ class LightmapBuffer {
                                 {"wrapT", clamp_to_edge}});
   }
 
-  /// glTF wants sets of coordinates numbered from 0; both are the lightmap's.
+  /// Primitive of a stretch. glTF requires sets of texture coordinates to be numbered from 0, so
+  /// TEXCOORD_0 and TEXCOORD_1 are both the lightmap's.
   GltfJson primitive(const Stretch& s, int material) {
     const std::size_t first = s.first_vertex, count = s.vertices.size();
     GltfJson attributes = {
@@ -237,7 +239,7 @@ class LightmapBuffer {
   int positions_ = 0, texcoords_ = 0, illuminance_ = 0, indices_ = 0;
 };
 
-/// Meshes by surface, and a material for each of the model's in each atlas.
+/// Adds a mesh for each surface, and a material for each pair of model material and atlas.
 void add_surfaces(const BakedModel& model, LightmapBuffer& buffer, GltfJson& root) {
   GltfJson meshes = GltfJson::array();
   std::map<int, std::size_t> mesh_of;
@@ -291,7 +293,8 @@ std::vector<std::filesystem::path> channel_lightmap_files(const std::filesystem:
 
 namespace {
 
-/// Writes the data of each channel; returns what `extras` says of them, and adds to the files.
+/// Writes the data files of each channel and appends their names to `files`. Returns the entry
+/// "channels" of `extras`.
 GltfJson write_channels(const std::filesystem::path& path, const BakedModel& lit,
                         SolvedScene& switched, const Scene& scene, const LightmapLayout& layout,
                         const LightmapOptions& options, const std::vector<Spectrum>& scales,
@@ -353,7 +356,7 @@ LightmapReport write_lightmapped_gltf(const std::filesystem::path& path, const B
   const double texels = static_cast<double>(layout.size) * layout.size * layout.atlas_count;
   result.coverage = static_cast<double>(covered) / texels;
 
-  // The data first: a model that is there names files that are there.
+  // The model is written after its data, so that every file named in a .glb exists.
   LightmapBuffer buffer(model, layout);
   GltfJson root;
   root["asset"] = gltf_asset(model);

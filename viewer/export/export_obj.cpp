@@ -8,7 +8,7 @@
 namespace lightwell {
 namespace {
 
-/// A name as OBJ can hold it: one word, since some programs end names at a space.
+/// `name` as one word, since some programs end names at a space, without "#".
 std::string obj_word(const std::string& name) {
   std::string result;
   for (const char c : name) {
@@ -17,12 +17,13 @@ std::string obj_word(const std::string& name) {
   return result.empty() ? "_" : result;
 }
 
-/// Numbered, since two materials may have the same name.
+/// Name of a material with its number, since two materials may have the same name.
 std::string material_word(const BakedModel& model, int material) {
   return fmt::format("{}_{}", material, obj_word(model.materials[material].name));
 }
 
-/// White without shading, so that programs which multiply by it show the vertices' colours.
+/// The MTL: white materials without shading, so that programs that multiply vertex colours by Kd
+/// show the vertex colours.
 std::string library(const BakedModel& model) {
   std::string text = "# Baked by Lightwell: the light is in the colours of the vertices.\n";
   for (int m = 0; m < static_cast<int>(model.materials.size()); ++m) {
@@ -57,7 +58,7 @@ void write_obj(const std::filesystem::path& path, const BakedModel& model) {
       fmt::format_to(out, "f {} {} {}\n", triangle[0] + 1, triangle[1] + 1, triangle[2] + 1);
     }
   }
-  // The library first: an OBJ that is there names one that is there.
+  // The OBJ is written after the MTL, so that the MTL named in an OBJ exists.
   write_whole(materials, {library(model)});
   write_whole(path, {text});
 }

@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-/// The name of a property is one word.
+/// `name` as one word, as PLY requires of property names.
 std::string ply_word(std::string name) {
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= 0x20 || c == 0x7f) c = '_';

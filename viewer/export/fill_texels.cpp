@@ -6,7 +6,7 @@
 namespace lightwell {
 namespace {
 
-/// Calls see(i) for the eight texels around one.
+/// Calls see(j) for the up to eight neighbours of texel i.
 template <class See>
 void around(int size, int i, See&& see) {
   const int x = i % size, y = i / size;
@@ -17,7 +17,8 @@ void around(int size, int i, See&& see) {
   }
 }
 
-// Two charts' rings that meet do not mix: a ring is known only when all of it is found.
+// Grows known texels by rings. A ring counts as known only when the whole ring is computed: texels
+// of one ring do not average each other, neither around a chart nor where two charts' rings meet.
 void grow(int size, int rings, std::vector<char>& is_known, std::span<BandArray* const> pictures) {
   constexpr char is_asked = 2;
   std::vector<int> ring;
@@ -48,6 +49,7 @@ void grow(int size, int rings, std::vector<char>& is_known, std::span<BandArray*
   }
 }
 
+// Fills unknown texels from a picture of half the size, recursively.
 void pull_push(int size, const std::vector<char>& is_known, BandArray& picture) {
   if (size == 1) return;
   const int half = (size + 1) / 2;

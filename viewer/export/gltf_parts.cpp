@@ -15,7 +15,7 @@
 namespace lightwell {
 namespace {
 
-/// A node turned so that it looks along -z with y upwards.
+/// Node of a camera: its matrix turns glTF's camera, along -z with y upwards, to `camera`.
 GltfJson camera_node(const BakedModel& model, const Camera& camera, int number) {
   const Eigen::Vector3d back = -(model.to_y_up * camera.direction);
   const Eigen::Vector3d up = model.to_y_up * camera.up;
@@ -50,13 +50,13 @@ double extent_of(const BakedModel& model) {
   return (high - low).norm();
 }
 
-/// Of many bands the colours are weighted sums.
+/// Unit of the colours' radiosity. Colours of spectral bands are weighted sums of the bands.
 const char* unit_of_radiosity(const BakedModel& model) {
   if (model.relative_units) return "relative";
   return model.bands.wavelengths_nm.empty() ? "W/m^2" : "W/m^2, weighted to linear sRGB";
 }
 
-/// What the colours stand for. A surface of radiance L has radiosity pi L.
+/// Extras of the asset: the quantities of colour 1 and their units, by B = pi L.
 GltfJson meaning(const BakedModel& model) {
   const double scale = model.cameras.front().scale;
   const auto clipped = (model.radiance * static_cast<float>(scale) > 1.0f).rowwise().any().count();
@@ -91,7 +91,7 @@ int GltfBuffer::end_view(const char* name, int target, int stride) {
   if (stride > 0) view["byteStride"] = stride;
   if (target > 0) view["target"] = target;
   views_.push_back(std::move(view));
-  bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');  // what follows is aligned
+  bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');  // aligns the next view
   begin_ = bytes_.size();
   return static_cast<int>(views_.size()) - 1;
 }
@@ -169,7 +169,7 @@ void write_glb(const std::filesystem::path& path, GltfJson root, const GltfBuffe
   root["bufferViews"] = buffer.views();
   root["buffers"] = GltfJson::array({{{"byteLength", bytes.size()}}});
 
-  // Names come from anybody's files: what is not UTF-8 is replaced.
+  // Names come from the user's files: bytes that are not UTF-8 are replaced.
   std::string json = root.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
   json.resize((json.size() + 3) / 4 * 4, ' ');
   constexpr std::size_t heads = 12 + 8 + 8;

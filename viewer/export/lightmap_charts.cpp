@@ -21,8 +21,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Groups of ascending faces that hang together and face much as the first of their group does.
-/// Faces of a group ascend, and so do groups by their first.
+/// Connected groups of `faces` (ascending). Normals of a group are within 25 degrees of the normal
+/// of its first face. Faces in a group ascend, and groups ascend by their first face.
 std::vector<std::vector<int>> connected_groups(const BakedModel& model, const ChartNeighbours& near,
                                                std::span<const int> faces) {
   constexpr char elsewhere = 2;
@@ -56,7 +56,7 @@ void lay_flat(const BakedModel& model, LightmapChart& chart) {
   }
 }
 
-/// Numbers the vertices of the faces and projects them on their mean plane.
+/// Chart of faces, projected on their mean plane.
 LightmapChart project(const BakedModel& model, std::vector<int> faces) {
   LightmapChart chart;
   Vector3d normal = Vector3d::Zero(), a, b;
@@ -81,7 +81,8 @@ LightmapChart project(const BakedModel& model, std::vector<int> faces) {
   return chart;
 }
 
-/// Turned so that it fills a rectangle as well as it can, its longer side along x.
+/// Turns a chart so that its smallest bounding rectangle lies along the axes, the longer side along
+/// x, and moves the rectangle's corner to the origin.
 void straighten_chart(const BakedModel& model, LightmapChart& chart) {
   const Vector2d x = box_direction(chart.place);
   const Vector3d a = chart.x_axis, b = chart.y_axis;
@@ -98,10 +99,10 @@ void straighten_chart(const BakedModel& model, LightmapChart& chart) {
   chart.size = high - low;
 }
 
-/// The corners of a chart's faces with one vertex where creases join several.
+/// Corners of a chart's faces, with one vertex in place of several that are joined in creases.
 std::vector<std::array<int, 4>> joined_chart_corners(const LightmapChart& chart,
                                                      const ChartNeighbours& near) {
-  std::map<int, int> first;  // of the chart's vertices that are joined
+  std::map<int, int> first;  // by representative, the chart's first vertex
   std::vector<int> number;
   for (std::size_t v = 0; v < chart.vertices.size(); ++v) {
     number.push_back(
@@ -116,7 +117,8 @@ std::vector<std::array<int, 4>> joined_chart_corners(const LightmapChart& chart,
   return corners;
 }
 
-/// Along the first line that separates borders too near to each other, again and again.
+/// Appends charts of connected faces. Faces are cut along the first line between borders that are
+/// too near to each other (see narrow_gaps), until there is none.
 void cut_and_add(const BakedModel& model, const ChartNeighbours& near, std::vector<int> faces,
                  double gap, std::vector<LightmapChart>& charts) {
   std::vector<std::vector<int>> waiting = {std::move(faces)};
@@ -138,14 +140,14 @@ void cut_and_add(const BakedModel& model, const ChartNeighbours& near, std::vect
       const bool is_beyond = (center - lines.front().point).dot(lines.front().normal) > 0.0;
       sides[is_beyond ? 1 : 0].push_back(chart.faces[f]);
     }
-    for (const auto& side : sides) {  // neither is empty: a face lies on each
+    for (const auto& side : sides) {  // neither is empty: see narrow_gaps
       for (auto& group : connected_groups(model, near, side)) waiting.push_back(std::move(group));
     }
   }
 }
 
-/// By longitude and latitude, so that texels between vertices have the place that light is
-/// interpolated for. A pole has a vertex for each sector.
+/// Chart of a sphere by longitude and latitude, in which light is interpolated between vertices. A
+/// pole has a vertex for each sector.
 LightmapChart unroll(const BakedModel& model, const PatchMesh& mesh, int sphere,
                      std::vector<int> faces) {
   const SphereGrid& grid = mesh.sphere_grids[sphere];
@@ -157,7 +159,7 @@ LightmapChart unroll(const BakedModel& model, const PatchMesh& mesh, int sphere,
   LightmapChart chart;
   chart.sphere = sphere;
   chart.size = {2.0 * std::numbers::pi * r, std::numbers::pi * r};
-  std::map<std::pair<int, int>, int> number;  // of a vertex in a column of half sectors
+  std::map<std::pair<int, int>, int> number;  // key: vertex, column in half sectors
   for (const int f : faces) {
     const int e = model.element[f];
     const auto found = cell_of.find(e);
@@ -169,7 +171,7 @@ LightmapChart unroll(const BakedModel& model, const PatchMesh& mesh, int sphere,
       const Vector3d towards = (model.position[v] - grid.sphere.center).normalized();
       const double across = std::hypot(towards.x(), towards.y());
       const bool is_pole = !(across > 0.25 * std::numbers::pi / grid.rings);
-      // Longitude to the nearest edge of this cell, whichever way round.
+      // Longitude from the middle of this cell, in sectors, the shorter way around.
       const double phi = std::atan2(towards.y(), towards.x()) / (2.0 * std::numbers::pi);
       const double turned = phi * grid.sectors - (sector + 0.5);
       const double wrapped = turned - grid.sectors * std::round(turned / grid.sectors);
@@ -202,7 +204,7 @@ int sphere_of(const PatchMesh& mesh, int element) {
   return grid ? static_cast<int>(grid - mesh.sphere_grids.data()) : -1;
 }
 
-/// Whether another surface lies on all of a chart.
+/// Whether other surfaces cover all faces of a chart.
 bool is_covered(const BakedModel& model, const ElementCaster& caster, const LightmapChart& chart) {
   const PatchMesh& mesh = caster.mesh();
   return std::ranges::all_of(chart.faces, [&](int f) {
@@ -212,10 +214,10 @@ bool is_covered(const BakedModel& model, const ElementCaster& caster, const Ligh
   });
 }
 
-/// Lays what is covered into the gap that it leaves in the chart around it. Both are of one facet.
+/// Lays covered dark charts into the gaps of the lit chart on the same side of the same facet.
 void lay_into_hosts(const BakedModel& model, const PatchMesh& mesh,
                     std::vector<LightmapChart>& charts) {
-  std::map<std::pair<int, bool>, int> lit;  // a chart of each side of each facet
+  std::map<std::pair<int, bool>, int> lit;  // first lit chart of each facet and side
   std::vector<int> covered;
   const ElementCaster caster(mesh);
   const auto key = [&](const LightmapChart& chart) {
@@ -241,7 +243,7 @@ void lay_into_hosts(const BakedModel& model, const PatchMesh& mesh,
     laid.y_axis = around.y_axis;
     laid.size = around.size;
     lay_flat(model, laid);
-    // Not beyond the chart, where others lie.
+    // A covered chart that exceeds the host's rectangle would lie on other charts.
     const double hair = 1e-6 * around.size.norm();
     const bool is_within = std::ranges::all_of(laid.place, [&](const Vector2d& p) {
       return (p.array() >= -hair).all() && (p.array() <= around.size.array() + hair).all();

@@ -13,9 +13,9 @@
 namespace lightwell {
 namespace {
 
-/// Of a chart: so that a filter finds a slope in it.
+/// Texels along each side of a chart: two suffice for a bilinear slope.
 constexpr int least_texels = 2;
-/// Texels between two borders of a chart, for filters not to see across.
+/// Texels between two borders of a chart, so that no bilinear filter reads across.
 constexpr double least_gap = 2.0;
 
 void check(const LightmapOptions& options) {
@@ -42,20 +42,21 @@ double face_area(const BakedModel& model) {
   return area;
 }
 
-/// Packs charts at a density.
+/// Packs charts into atlases at a given density, texels/m.
 class Packing {
  public:
   Packing(const std::vector<LightmapChart>& charts, int padding)
       : charts_(charts), padding_(padding) {}
 
-  /// Along one edge of a chart, without padding. A hair more than a whole number is that number.
+  /// Texels along an edge of a chart of `length` metres, without padding, rounded up. An excess of
+  /// up to 1e-6 over a whole number is rounding and ignored.
   static double texels(double length, double density) {
     return std::max<double>(least_texels, std::ceil(length * density - 1e-6));
   }
   std::optional<std::vector<ChartRectangle>> pack(double density, int size, int most) const {
     std::vector<Eigen::Vector2i> sizes;
-    std::vector<int> number;  // of the rectangle that a chart lies in
-    std::optional<int> dark;  // that of all that are dark: they look alike
+    std::vector<int> number;  // each chart's rectangle; -1: its host's
+    std::optional<int> dark;  // rectangle shared by all dark charts, which look alike
     for (const LightmapChart& chart : charts_) {
       if (chart.host >= 0 || (chart.is_dark && dark)) {
         number.push_back(chart.host >= 0 ? -1 : *dark);
@@ -115,7 +116,7 @@ class Packing {
 
 void pack_densely(LightmapLayout& layout, const Packing& packing) {
   constexpr int halvings = 10;
-  // No packing is better than one without padding and gaps.
+  // Upper bound: a packing without padding or gaps fills the atlas.
   const double area = packing.box_area();
   double high = area > 0.0 ? layout.size / std::sqrt(area) : 0.0, low = 0.0;
   auto best = packing.pack(low, layout.size, 1);

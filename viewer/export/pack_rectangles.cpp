@@ -8,7 +8,7 @@
 namespace lightwell {
 namespace {
 
-/// What is taken of a square: everything above a line of level steps.
+/// Occupied part of a square: everything above a line of level steps, with y downwards.
 class Skyline {
  public:
   explicit Skyline(int size) : size_(size), steps_{{0, 0, size}} {}

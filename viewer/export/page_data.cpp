@@ -15,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// 21 bits a coordinate, three to 8 bytes: half a step is 2.4 micrometres in a room of 10 m.
+/// Largest coordinate in 21 bits; three coordinates take 8 bytes. Half a step is 2.4 micrometres in
+/// a room of 10 m.
 constexpr double largest_place = (1 << 21) - 1;
 
 Json vector(const Eigen::Vector3d& v) {
@@ -60,8 +61,8 @@ void append_faces(const BakedModel& model, PageData& page) {
   page.bytes.resize((page.bytes.size() + 3) / 4 * 4);
 }
 
-/// Half floats times a scale that puts the largest near the top of their range: 11 bits for
-/// everything down to 2e-9 of it.
+/// Appends values as half floats, divided by a scale that maps the largest to 32768. Values down to
+/// 2e-9 of the largest keep 11 bits. Returns offset and scale.
 template <class Values>
 Json append_halves(const Values& values, std::string& bytes) {
   float largest = 0.0f;
@@ -88,7 +89,7 @@ Json append_channel(const BakedChannel& channel, std::string& bytes) {
   return basis;
 }
 
-/// What the light is a sum of: the channels, or one basis for all.
+/// Terms whose weighted sum is the light: the channels, or one basis for all light.
 Json append_bases(const BakedModel& model, std::string& bytes) {
   Json bases = Json::array();
   for (const BakedChannel& channel : model.channels) {
@@ -102,7 +103,7 @@ Json append_bases(const BakedModel& model, std::string& bytes) {
   return bases;
 }
 
-// Where pictures lie, what of the light their texels are of, and they themselves.
+// Appends picture coordinates, picture gains and the pictures as PNG.
 void append_pictures(const BakedModel& model, PageData& page) {
   if (model.pictures.empty()) return;
   page.about["places"] = {{"offset", page.bytes.size()}};
@@ -127,7 +128,7 @@ void append_pictures(const BakedModel& model, PageData& page) {
   page.about["pictures"] = std::move(pictures);
 }
 
-/// Rows of `axes` are north, east and up in the page's axes.
+/// Appends sky and sun. Rows of `axes` are north, east and up in the page's axes.
 void append_sky(const BakedModel& model, PageData& page) {
   if (!model.sky) return;
   const BakedSky& sky = *model.sky;
@@ -199,7 +200,7 @@ Json false_colors_of(const BakedModel& model, const LuxRange& range) {
       palette += fmt::format("{:02x}", static_cast<int>(255.0f * c + 0.5f));
     }
   }
-  // The page's radiance is linear RGB, of whatever bands the solution has.
+  // The page's radiance is linear RGB for every set of bands.
   const auto luminance = luminous_rows(model.radiance, rgb_bands(model.bands.lumens_per_watt));
   return {{"illuminance", scale_of(range)},
           {"luminance", scale_of(lux_range(luminance))},
@@ -220,7 +221,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range) {
                 {"relative_units", model.relative_units},
                 {"lumens_per_watt", model.bands.lumens_per_watt},
                 {"is_spectral", !model.bands.wavelengths_nm.empty()}};
-  Json to_scene = Json::array();  // p of the page is here: rotation (p + origin) in the scene
+  Json to_scene = Json::array();  // p_scene = to_scene (p_page + origin)
   for (int c = 0; c < 3; ++c) to_scene.push_back(vector(model.to_y_up.col(c)));
   page.about["to_scene"] = std::move(to_scene);
   page.about["origin"] = vector(box.low);

@@ -18,7 +18,7 @@ namespace {
 
 using Texel = ChartTexels::Texel;
 
-/// Share of a face's edge that places to gather at keep from it.
+/// Weight of the face's centre in the position of a gather point, which so keeps off the border.
 constexpr float hair = 1e-3f;
 
 /// Texels of all charts of an atlas, chart after chart.
@@ -26,7 +26,7 @@ std::vector<Texel> texels_of(const LightmapLayout& layout, int atlas, const Bake
                              const PatchMesh& mesh) {
   std::vector<int> charts;
   for (std::size_t c = 0; c < layout.charts.size(); ++c) {
-    // What is laid into another's gap is left to be filled.
+    // A chart in its host's gap is not painted: fill_texels fills the gap.
     const bool is_painted = layout.charts[c].host < 0 && layout.place[c].atlas == atlas;
     if (is_painted) charts.push_back(static_cast<int>(c));
   }
@@ -44,7 +44,7 @@ std::vector<Texel> texels_of(const LightmapLayout& layout, int atlas, const Bake
   return all;
 }
 
-/// Value at a texel of what is given at the mesh's vertices.
+/// Value at a texel, interpolated from values at the mesh's vertices.
 Spectrum at_texel(const BakedModel& model, const BandArray& of_mesh, const Texel& texel) {
   Spectrum value = Spectrum::Zero(of_mesh.cols());
   const auto& corners = model.faces[texel.face];
@@ -84,7 +84,7 @@ bool has_light(const BakedModel& model, const Texel& texel) {
   return false;
 }
 
-/// E at each texel, as Pass says.
+/// E at each texel, W/m^2, texels x bands, computed as options.pass asks.
 BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& model,
                         const SolvedScene& solved, const Scene& scene,
                         const LightmapOptions& options) {
@@ -105,7 +105,7 @@ BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& mode
   std::vector<GatherPoint> points;
   std::vector<int> number;
   for (std::size_t i = 0; i < texels.size(); ++i) {
-    // What is covered by another surface has none, and stays so.
+    // Faces covered by another surface have no light and stay dark.
     if (!has_light(model, texels[i])) continue;
     number.push_back(static_cast<int>(i));
     points.push_back(gather_point(model, solved.mesh, texels[i], i));

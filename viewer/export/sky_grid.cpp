@@ -9,7 +9,7 @@ namespace lightwell {
 std::optional<Sky> effective_sky(const Scene& scene, const PatchMesh& mesh) {
   std::optional<Sky> sky = scene.sky;
   if (!sky || mesh.source_scale.rows() == 0) return sky;
-  // Of free sources the dome comes after the lamps, and the sun after it.
+  // Order of free sources: lamps, dome, sun.
   auto source = static_cast<Eigen::Index>(scene.lamps.size());
   if (has_dome(*sky)) {
     const Spectrum scale = mesh.source_scale.row(source++).transpose();
@@ -33,7 +33,7 @@ SkyGrid sky_grid(const Sky& sky, int columns) {
   grid.radiance = BandArray::Zero(Eigen::Index{grid.rows()} * columns, sky.scale.size());
   parallel_for(grid.rows(), 1, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) {
-      // To a hair's breadth at its own side of the horizon.
+      // The rows at the horizon stay on their own side, dome or ground, by a tiny angle.
       constexpr double hair = 1e-4;  // degrees
       const double altitude = row < grid.rows_above ? std::max(row_altitude(grid, row), hair)
                                                     : std::min(row_altitude(grid, row), -hair);

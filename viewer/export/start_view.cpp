@@ -12,7 +12,8 @@ namespace {
 
 constexpr double outside_fov_degrees = 40.0;
 constexpr double inside_fov_degrees = 75.0;
-/// Share of a picture from outside that must show light, or the scene is a closed room.
+/// Least share of lit pixels in a picture from outside; below this share the scene counts as a
+/// closed room.
 constexpr double lit_share = 0.15;
 constexpr int coarse_width = 48;
 
@@ -91,7 +92,7 @@ Camera find_start(const ElementCaster& caster, const std::vector<ElementKind>& k
     const Camera camera = frame_all(bounds, way, up_axis, width, height);
     const double share =
         share_of_light(coarse_picture(caster, kinds, radiance, camera, coarse_width));
-    // A little better is not worth another direction than the first that will do.
+    // A direction replaces the best so far only with more than 20 % more lit pixels.
     if (share > 1.2 * best_share) {
       best = camera;
       best_share = share;
