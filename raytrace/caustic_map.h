@@ -12,29 +12,30 @@
 
 namespace lightwell {
 
-/// Irradiance by photons that lie on surfaces (Jensen 1996), as sharp as there are photons: each is
-/// spread over a disc of its own radius r by Epanechnikov's kernel, 2 / (pi r^2) (1 - (d / r)^2).
-/// The radius is the distance to its k-th neighbour, k growing as N^(2/3) of N photons: both the
-/// noise, k^(-1/2), and the area that is blurred, k / N, shrink, in the balance that makes their
-/// sum least (Silverman 1986).
+/// Irradiance of photons on surfaces (Jensen 1996). Each photon is spread over a disc of its own
+/// radius r by Epanechnikov's kernel, 2 / (pi r^2) (1 - (d / r)^2). The radius is the distance to
+/// the photon's k-th neighbour, with k proportional to N^(2/3) for N photons. Both the noise,
+/// k^(-1/2), and the blurred area, k / N, then shrink with N, in the balance that minimizes their
+/// sum (Silverman 1986).
 ///
-/// No light is lost or leaks: a photon gives to places of its own region alone, see LightRegions,
-/// and what of its disc lies beyond the region's boundary is folded back, so that the irradiance
-/// adds up to the power of the photons.
+/// Energy is conserved. A photon contributes to points of its own region alone (see LightRegions),
+/// and the part of its disc beyond the region's boundary is folded back, so the integral of
+/// irradiance equals the power of the photons.
 class CausticMap {
  public:
   CausticMap(const PatchMesh& mesh, const CausticPhotons& photons);
 
-  /// W/m^2 at a place on an element; `normal` is the surface's own there, unit.
+  /// Irradiance at `point` of `element`, W/m^2 per band. `normal` is the unit normal of the surface
+  /// at `point`. A photon counts if its normal is within 60 degrees of `normal`.
   Spectrum irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                       int element) const;
 
-  /// Of `count` photons, how many a disc reaches over.
+  /// Number of neighbours k that a disc reaches over, for `count` photons in all; at least 16.
   static int neighbours(std::size_t count);
 
  private:
   void set_radii(int region, int k);
-  /// What the disc's power is multiplied by, and where it is once more.
+  /// Result of folding a disc: the factor of its power, and the centres of its mirror images.
   struct Folded {
     float weight = 0.0f;
     std::vector<Eigen::Vector3f> mirrored{};
@@ -45,13 +46,14 @@ class CausticMap {
   void insert(const std::vector<Folded>& folded, const BandArray& power);
 
   LightRegions regions_;
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the discs' coordinates
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // m; disc centres are relative to this point
   DiscTree tree_;
-  BandArray power_;        // per disc, over pi r^2 / 2 and the share of the kernel that is within
-  std::vector<int> root_;  // per region; -1: no photons
+  BandArray power_;  // per disc: power / (pi r^2 / 2) / the share of the kernel within the region
+  std::vector<int> root_;  // root node per region; -1: no photons
 };
 
-/// Shoots photons, see shoot_photons, and makes the map of them.
+/// Returns the map of `photons` photons of shoot_photons(), which follow up to `max_specular_depth`
+/// mirrors and glass surfaces. Throws as shoot_photons().
 std::shared_ptr<const CausticMap> trace_caustics(const Scene& scene, const ElementCaster& caster,
                                                  const DirectLight& direct_light, int photons,
                                                  int max_specular_depth,

@@ -8,30 +8,36 @@
 
 namespace lightwell {
 
-/// Epanechnikov's kernel over a disc of radius 1, K(s) = 2 / pi (1 - s^2), integrates to 1.
+/// Integral of Epanechnikov's kernel beyond a directed edge: over the part of the unit disc that
+/// lies beyond the edge, between the directions of the edge's ends. The kernel is K(s) = 2 / pi (1
+/// - s^2), whose integral over the disc is 1.
 ///
-/// What a directed edge, in the plane of the disc and relative to its centre, cuts off: the
-/// kernel's integral over the part of the disc that lies beyond it, between the directions of its
-/// ends; negative if the edge runs clockwise. Counter-clockwise edges all around an area thus leave
-/// 1 minus their sum of the kernel within it (Green's theorem).
+/// The ends lie in the plane of the disc, relative to its centre, in units of its radius. The
+/// result is negative if the edge runs clockwise about the centre. For counter-clockwise edges all
+/// around an area, 1 minus the sum over edges is the integral of the kernel within the area
+/// (Green's theorem).
 double kernel_beyond(const Eigen::Vector2d& from, const Eigen::Vector2d& to);
 
-/// The same of the disc's area, the whole of which counts as 1.
+/// Share of the unit disc's area beyond a directed edge, with ends and sign as for kernel_beyond().
+/// The whole disc counts as 1.
 double disc_beyond(const Eigen::Vector2d& from, const Eigen::Vector2d& to);
 
-/// A disc that reaches over a boundary: what lies beyond is folded back, as at a mirror (Schuster
-/// 1985), so that even light stays even up to a straight edge and into a right corner.
+/// A disc that reaches over a boundary, with the part beyond the boundary folded back as at a
+/// mirror (Schuster 1985). Even light thus stays even up to a straight edge and into a right
+/// corner.
 struct FoldedDisc {
-  std::vector<Eigen::Vector3d> mirrored{};  ///< centres of the discs behind those mirrors
-  double within = 1.0;  ///< of the kernels of all, what lies within the boundary; 0.02 at least
+  std::vector<Eigen::Vector3d> mirrored{};  ///< centres of the disc's mirror images
+  /// integral within the boundary of the disc's kernel and those of its mirror images; at least
+  /// 0.02
+  double within = 1.0;
 };
 
-/// All edges of the boundary that the disc reaches over are given, counter-clockwise about the
-/// inside seen against its unit normal; they are seen along that.
+/// Folds a disc at `edges`: all edges of the boundary that the disc reaches over, counter-clockwise
+/// about the inside when seen against the disc's unit normal. Edges are projected along the normal.
 FoldedDisc fold(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius,
                 std::span<const LightRegions::Edge> edges);
 
-/// The share of the disc's area that lies within; 0.02 at least.
+/// Share of the disc's area within the boundary, at least 0.02. `edges` as for fold().
 double disc_within(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius,
                    std::span<const LightRegions::Edge> edges);
 

@@ -5,15 +5,15 @@
 
 namespace lightwell {
 
-/// Discs that lie on surfaces, and trees of boxes over them: one over each run of discs that
-/// build() is given.
+/// Discs on surfaces, and binary trees of axis-aligned boxes over them. Each call of build() makes
+/// one tree over a run of discs.
 struct DiscTree {
   struct Disc {
     Eigen::Vector3f center, normal;
-    float radius2 = 0.0f;  ///< the radius squared
-    int photon = 0;        ///< that it is of
+    float radius2 = 0.0f;  ///< squared radius
+    int photon = 0;        ///< number of the disc's photon
   };
-  /// Children of node i are i + 1 and `second`.
+  /// Box of a run of discs. The children of node i are i + 1 and `second`.
   struct Node {
     Eigen::Array3f low, high;
     int begin = 0, end = 0;  ///< discs
@@ -24,19 +24,20 @@ struct DiscTree {
   std::vector<Disc> discs{};
   std::vector<Node> nodes{};
 
-  /// Orders the discs from `begin` to `end`, at least one, and puts boxes around their centres; the
-  /// root's number.
+  /// Sorts the discs from `begin` to `end`, at least one, into a tree of boxes around their
+  /// centres. Returns the number of the root node.
   int build(int begin, int end);
-  /// Appends the largest nodes at and below `n` that hold no more than `most` discs, or are leaves.
+  /// Appends the highest nodes at and below `n` that are leaves or hold at most `most` discs.
   void collect(int n, int most, std::vector<int>& found) const;
 };
 
-/// Finds the k-th nearest disc's centre.
+/// Search for the k-th nearest disc centre.
 class NearestDiscs {
  public:
   NearestDiscs(const DiscTree& tree, int k);
 
-  /// Squared distance to the k-th of the discs below `root`, of which there are k at least.
+  /// Squared distance from `from` to the k-th nearest centre of the discs below `root`, of which
+  /// there must be at least k.
   float distance2_to_last(int root, const Eigen::Vector3f& from);
 
  private:

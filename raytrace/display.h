@@ -6,7 +6,7 @@
 
 namespace lightwell {
 
-/// Display values: 1 is the screen's white.
+/// Display values: 1 is the white of the screen.
 
 /// The shoulder of the automatic tone mapping, one channel: x up to 0.5, above that
 /// 0.5 + 0.5 (1 - exp(-(x - 0.5) / 0.5)), which continues value and slope and tends to 1.
@@ -16,11 +16,11 @@ float shoulder(float x);
 /// and more is white. (J. Hable, "Uncharted 2: HDR Lighting", GDC 2010.)
 float filmic(float x);
 
-/// sRGB transfer function (IEC 61966-2-1) of a linear value; what lies outside [0,1] is clipped.
+/// sRGB transfer function (IEC 61966-2-1) of a linear value, clipped to [0,1].
 float srgb_encode(float linear);
 
-/// What a pixel shows, linear, [0,1]: scaled linear RGB through the curve. Values that are no
-/// numbers show black, so that one bad pixel is seen and does no harm.
+/// Linear display RGB of a pixel, [0,1]: `linear` times `scale`, through the curve. NaN becomes 0,
+/// so a bad pixel is visible as black and harms nothing else.
 Eigen::Array3f display_rgb(const Eigen::Array3f& linear, double scale,
                            ToneCurve curve = ToneCurve::shoulder);
 
