@@ -26,7 +26,7 @@ class CausticMap {
   CausticMap(const PatchMesh& mesh, const CausticPhotons& photons);
 
   /// Irradiance at `point` of `element`, W/m^2 per band. `normal` is the unit normal of the surface
-  /// at `point`. A photon counts if its normal is within 60 degrees of `normal`.
+  /// at `point`. Photons on elements whose normal is within 60 degrees of `normal` count.
   Spectrum irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                       int element) const;
 

@@ -36,9 +36,9 @@ struct ImageDifference {
   /// spectral bands.
   std::vector<BandDifference> bands{};
   // The figures below are means over all pixels, excluded ones too.
-  /// mean distance in Oklab of the pictures tone-mapped under the reference's exposure, [0,1]
+  /// Mean distance in Oklab of the pictures tone-mapped under the reference's exposure, [0,1].
   double perceptual = 0.0;
-  /// mean FLIP of the pictures tone-mapped under the reference's exposure, [0,1]
+  /// Mean FLIP of the pictures tone-mapped under the reference's exposure, [0,1].
   double flip = 0.0;
   double hdr_flip = 0.0;  ///< mean HDR-FLIP, the largest FLIP of all exposures, [0,1]
 };
@@ -52,7 +52,7 @@ ImageDifference compare_images(const Image& a, const Image& b, const CompareOpti
 
 /// Difference from a noisy reference, without the reference's noise.
 struct HalvesDifference {
-  /// mean (A-H1)(A-H2) over pixels and bands. Its expectation is that of (A - truth)^2, since the
+  /// Mean (A-H1)(A-H2) over pixels and bands. Its expectation is that of (A - truth)^2, since the
   /// noise of the two halves is independent. The value may be negative by chance where A is exact.
   double mean_square = 0.0;
   double rmse = 0.0;             ///< sqrt(mean_square), 0 where mean_square is negative

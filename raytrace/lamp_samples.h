@@ -9,30 +9,33 @@
 
 namespace lightwell {
 
-/// A direction in which a lamp lies.
+/// A sampled direction towards a lamp.
 struct LampSample {
   const Emitter* emitter = nullptr;
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
   double distance = 0.0;                                 ///< m
-  double density = 0.0;                                  ///< 1/sr
+  double density = 0.0;                                  ///< probability density, 1/sr
 };
 
-/// Directions towards the emitters of DirectLight, for rough surfaces: a highlight that is left to
-/// the lobe's own directions is noise, since few of them find a small lamp (Veach & Guibas 1995).
-/// An emitter is drawn by about what it would send to the place, one of more than `most_weighed` by
-/// its power; a polygon's points evenly by area, a sphere's by solid angle.
+/// Sampled directions towards the emitters of DirectLight, for rough surfaces. A highlight sampled
+/// by the lobe alone is noisy, since few directions of the lobe meet a small lamp (Veach & Guibas
+/// 1995).
+///
+/// The probability of an emitter is proportional to its approximate irradiance at the point, or to
+/// its power if there are more than `most_weighed` emitters. Points of polygons are uniform in
+/// area, points of spheres uniform in solid angle.
 class LampSamples {
  public:
-  static constexpr int most_weighed = 64;  ///< so that a draw takes less time than its shadow ray
+  static constexpr int most_weighed = 64;  ///< a draw takes less time than its shadow ray
 
   explicit LampSamples(const DirectLight& direct_light);
 
-  /// From a place on a facet; three numbers in [0,1). Nothing where the lamp drawn sends no light
-  /// to it. What lies between is not looked at.
+  /// Draws a direction from a point on a facet by three numbers in [0,1). Empty if the drawn lamp
+  /// sends no light to the point or is the facet itself. Visibility is not tested.
   std::optional<LampSample> draw(const Eigen::Vector3d& from, int facet, double which, double u,
                                  double v) const;
-  /// Density of draw() in the direction of a place on the lit side of a facet; 0 if that is none of
-  /// DirectLight's emitters.
+  /// Probability density of draw(), 1/sr, in the direction of a point on the lit side of a facet; 0
+  /// if the facet is no emitter of DirectLight.
   double density(const Eigen::Vector3d& from, const Eigen::Vector3d& point, int facet) const;
 
  private:
@@ -43,10 +46,10 @@ class LampSamples {
   std::size_t drawn(const Eigen::Vector3d& from, double which) const;
 
   const std::vector<Emitter>& emitters_;
-  std::vector<double> share_{};  // of all power
+  std::vector<double> share_{};  // per emitter: share of the total power
   std::vector<Eigen::Vector3d> center_{};
-  std::vector<double> cdf_{};    // its running sum
-  std::vector<int> of_facet_{};  // emitter of a facet; -1: none
+  std::vector<double> cdf_{};    // running sum of share_
+  std::vector<int> of_facet_{};  // emitter per facet; -1: none
 };
 
 }  // namespace lightwell

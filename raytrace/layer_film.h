@@ -9,22 +9,23 @@
 
 namespace lightwell {
 
-/// Fills Image::layers beside Image::radiance. Different pixels from any number of threads.
+/// Writer of Image::layers. Any number of threads may set different pixels.
 class LayerFilm {
  public:
-  /// Makes the columns. `image` has its radiance's size already.
+  /// Makes the columns of `layers` in `image`, whose radiance must have its size already.
   LayerFilm(const std::vector<Layer>& layers, Image& image);
 
-  /// The mean of a pixel's samples.
+  /// Sets the sampled layers of a pixel to the mean of its samples.
   void set_sampled(Eigen::Index pixel, const SampledLayers& mean);
-  /// What a row's pixels show at their centres, and what follows from their radiance.
+  /// Fills the remaining layers of row y: depth and patch at the pixels' centres, and luminance
+  /// from radiance.
   void finish_row(int y, const Bands& bands, const Camera& camera, const CameraRays& rays,
                   const ElementCaster& caster);
 
  private:
   struct Placed {
     Layer layer;
-    int column, count;  // of its channels
+    int column, count;  // first of the layer's columns in LayerColumns, and their number
   };
   void trace_centres(int y, const Camera& camera, const CameraRays& rays,
                      const ElementCaster& caster);

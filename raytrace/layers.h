@@ -11,29 +11,31 @@
 
 namespace lightwell {
 
-/// What a picture can hold beside its radiance, about the surface that a pixel shows: the first
-/// that its eye rays meet.
+/// Layers of a picture beside its radiance, about the surface that a pixel shows: the first that
+/// its eye rays meet.
 enum class Layer {
-  albedo,       ///< diffuse reflectance, as RGB under equal-energy light, white = 1
-  normal,       ///< towards the eye, in the scene's axes; smooth where light is
-  depth,        ///< metres along the camera's direction, of the pixel's centre; infinity: nothing
-  direct,       ///< rho E_direct / pi: light straight from lamps, W/(m^2 sr), as linear RGB
-  indirect,     ///< rho E_indirect / pi
-  specular,     ///< what is seen in mirrors and through glass
-  emission,     ///< M / pi; direct + indirect + specular + emission = the picture
-  luminance,    ///< of the picture, cd/m^2
-  illuminance,  ///< on the surface, lx; of clear glass on what is seen straight through it
-  patch,        ///< of the solution, at the pixel's centre; -1: none
+  albedo,     ///< diffuse reflectance, as RGB under equal-energy light, white = 1
+  normal,     ///< towards the eye, in the scene's axes; smoothed like the shading
+  depth,      ///< m along the camera's direction, at the pixel's centre; infinity: nothing is there
+  direct,     ///< rho E_direct / pi, W/(m^2 sr), as linear RGB
+  indirect,   ///< rho E_indirect / pi, the same
+  specular,   ///< light from mirrors and through glass
+  emission,   ///< M / pi; direct + indirect + specular + emission = the picture
+  luminance,  ///< luminance of the picture, cd/m^2
+  /// Illuminance of the surface, lx; for clear glass, of the surface seen straight through the
+  /// glass.
+  illuminance,
+  patch,  ///< patch number in the solution, at the pixel's centre; -1: none
 };
 
 struct NamedLayer {
   Layer layer;
   std::string_view name;
-  std::string_view components;  ///< a letter each; of the patch, one word
+  std::string_view components;  ///< one letter per channel; for `patch` one word
   std::string_view unit;
 };
 
-/// All there are, in their order.
+/// All layers, in the order of their channels in a picture.
 inline constexpr std::array<NamedLayer, 10> named_layers = {{
     {Layer::albedo, "albedo", "RGB", "share, 0 to 1"},
     {Layer::normal, "normal", "XYZ", "unit vector"},
@@ -48,9 +50,10 @@ inline constexpr std::array<NamedLayer, 10> named_layers = {{
 }};
 
 const NamedLayer& named(Layer layer);
-/// Nothing if there is none of that name.
+/// Returns the layer of a name; empty if the name is unknown.
 std::optional<Layer> layer_named(std::string_view name);
-/// As OpenEXR has them: "albedo.R", "albedo.G", "albedo.B"; "depth.Z"; "patch.id".
+/// Names of a layer's channels as in OpenEXR: "albedo.R", "albedo.G", "albedo.B"; "depth.Z";
+/// "patch.id".
 std::vector<std::string> channel_names(Layer layer);
 
 /// One column for each channel of a picture's layers; rows as in Image::radiance.
@@ -61,11 +64,11 @@ struct LayerColumns {
   bool is_empty() const { return names.empty(); }
 };
 
-/// The layers of one sample that are averaged over a pixel, whether asked for or not: their columns
-/// one after another.
+/// Columns of all layers that are averaged over a pixel's samples, one layer after another, whether
+/// or not a picture holds the layer.
 using SampledLayers = Eigen::Array<float, 19, 1>;
 
-/// Where a layer starts in SampledLayers; -1 for those that are not sampled.
+/// First column of a layer in SampledLayers; -1 for layers that are not sampled.
 constexpr int first_sampled_column(Layer layer) {
   switch (layer) {
     case Layer::albedo:

@@ -7,15 +7,16 @@
 
 namespace lightwell {
 
-/// Elements over which light is continuous: those that mesh vertices join. A wall that stands on a
-/// floor from side to side parts it in two; the edges of a block are those of its faces.
+/// Regions of elements over which light is continuous: elements connected by shared mesh vertices.
+/// A wall that crosses a floor from side to side divides the floor into two regions. At the edges
+/// of a block each face ends its own region.
 struct LightRegions {
-  /// Of a region's boundary, counter-clockwise seen from the side that is lit.
+  /// Edge of a region's boundary, counter-clockwise seen from the lit side.
   struct Edge {
     Eigen::Vector3d from, to;
   };
-  std::vector<int> of_element{};            ///< numbered from 0
-  std::vector<std::vector<Edge>> bounds{};  ///< per region
+  std::vector<int> of_element{};            ///< region of each element, numbered from 0
+  std::vector<std::vector<Edge>> bounds{};  ///< boundary edges per region
 
   int count() const { return static_cast<int>(bounds.size()); }
 };

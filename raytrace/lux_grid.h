@@ -9,54 +9,61 @@
 
 namespace lightwell {
 
-/// Greatest distance between points of a grid over `length` metres, p = 0.2 * 5^log10(length), at
-/// most 10 m (EN 12464-1:2011, formula 2). `length` > 0.
+/// Greatest spacing of a grid over `length` > 0 metres: p = 0.2 * 5^log10(length), at most 10 m (EN
+/// 12464-1:2011, formula 2).
 double greatest_grid_spacing(double length);
 
 struct LuxGridOptions {
   double height = 0.0;   ///< m above the surface, along its normal
-  double margin = 0.0;   ///< m along the outline that is left out, >= 0
-  double spacing = 0.0;  ///< m between points, at most; 0: as EN 12464-1 has it
+  double margin = 0.0;   ///< m, width of the strip along the outline without points, >= 0
+  double spacing = 0.0;  ///< m, greatest distance between points; 0: that of EN 12464-1
 };
 
-/// Points over a plane surface at which illuminance is asked for, in the middles of even cells.
+/// Points over a plane surface at which illuminance is measured: the centres of equal cells.
 struct LuxGrid {
   std::string name{};
-  LuxGridOptions options{};  ///< with the spacing that was asked for, or the standard's
-  Eigen::Vector3d corner = Eigen::Vector3d::Zero();  ///< m, of the first cell, outer end
+  LuxGridOptions options{};                          ///< with the standard's spacing in place of 0
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero();  ///< m, outer corner of the first cell
   Eigen::Vector3d u = Eigen::Vector3d::UnitX(), v = Eigen::Vector3d::UnitY();  ///< unit, in plane
-  double step_u = 0.0, step_v = 0.0;  ///< m, sizes of a cell
+  double step_u = 0.0, step_v = 0.0;  ///< m, size of a cell
   int columns = 0, rows = 0;
-  double area = 0.0;            ///< m^2 of the surface, the margin included
+  double area = 0.0;            ///< m^2, area of the surface, margin included
   std::vector<int> cell{};      ///< row * columns + column of each point, rising
-  std::vector<Probe> points{};  ///< those inside of the surface's outline less the margin
+  std::vector<Probe> points{};  ///< points inside the surface's outline less the margin
 };
 
-/// The grid over a surface: over those of its facets that lie in one plane and have most area of
-/// all such; of two alike, over those that face more to `up`. Its axes follow the longest edge. By
-/// EN 12464-1 the length that decides the spacing is the longer side, or the shorter of sides that
-/// are more than 2 : 1. Throws InputError for a sphere, and where the margin leaves nothing.
+/// Returns the grid over a surface: over the largest set of its facets that lie in one plane, or
+/// over the one that faces more towards `up` of two equal in area. The axis u follows the longest
+/// edge of the outline.
+///
+/// By EN 12464-1 the longer side decides the spacing, or the shorter side if their ratio exceeds 2
+/// : 1. Throws InputError if:
+/// - the surface is a sphere;
+/// - the margin leaves nothing, or no point lies within the outline;
+/// - a side would have more than 1000 points.
 LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
                  const LuxGridOptions& options = {});
 
-/// The grid without points that are inside of bodies or on their faces, as those of a working plane
-/// that a cupboard reaches through: from there, or from just beside, every ray that leaves the
-/// plane meets the back of a surface. Where that is so of all points, the scene's surfaces face
-/// away from its rooms, and all stay.
+/// Returns the grid without buried points: points inside bodies or on their faces, such as points
+/// of a working plane inside a cupboard. A point is buried if every ray of the plane's upper
+/// hemisphere from the point, or from a point just beside it, meets the back of a surface. If all
+/// points are buried, the scene's surfaces face away from its rooms, and the grid is returned as it
+/// is.
 LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid);
 
-/// What a grid measured, lx.
+/// Illuminance over a grid, lx.
 struct LuxField {
   Eigen::ArrayXd lux{};  ///< at each point
   double mean = 0.0, least = 0.0, greatest = 0.0;
   double uniformity = 0.0;  ///< U_0 = least / mean; 0 without light
-  /// Twice the standard error that the rays of the gathers leave (odds of 19 to 1), relative, in
-  /// one point, and in the mean.
+  /// Twice the standard error (odds of 19 to 1) from the rays of the gathers, relative: of one
+  /// point, and of the mean.
   double point_within = 0.0, mean_within = 0.0;
 };
 
-/// Illuminance at the points of a grid, times `factor` (a maintenance factor, say): two independent
-/// gathers with half of the rays each, whose differences tell the error.
+/// Illuminance at the points of a grid, times `factor` (for example a maintenance factor). The
+/// result is the mean of two independent gathers with half of the rays each; their differences give
+/// the standard error.
 LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const RadiositySolution& solution,
                       const LuxGrid& grid, double factor, const GatherOptions& options);

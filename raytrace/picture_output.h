@@ -9,17 +9,17 @@
 
 namespace lightwell {
 
-/// Throws std::runtime_error that names the file.
+/// Throws std::runtime_error with the file's name and the reason.
 [[noreturn]] void fail_write(const std::filesystem::path& path, const std::string& why);
 
-/// A picture's file on its way: written under a temporary name, which is removed unless finish()
-/// gave it its own.
+/// Output file of a picture. The file has a temporary name until finish() renames it, and is
+/// removed without finish().
 class PictureOutput {
  public:
-  /// Throws as fail_write if it cannot be made.
+  /// Throws as fail_write if the file cannot be created.
   explicit PictureOutput(const std::filesystem::path& path);
   std::ofstream& stream() { return stream_; }
-  /// Throws as fail_write if not everything has been written.
+  /// Closes and renames the file. Throws as fail_write if a write failed.
   void finish();
 
  private:
@@ -28,7 +28,7 @@ class PictureOutput {
   std::ofstream stream_;
 };
 
-/// An attribute as people read it.
+/// Returns an attribute as text: numbers with 9 significant digits, vectors as three numbers.
 std::string to_text(const ImageAttribute& value);
 
 }  // namespace lightwell

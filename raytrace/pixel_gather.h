@@ -14,27 +14,30 @@
 
 namespace lightwell {
 
-/// A place that a pixel shows.
+/// A point that a pixel shows.
 struct ShadingPoint {
-  Eigen::Vector3d position, normal;  ///< the surface's own, unit, towards the eye
-  Eigen::Vector3d smooth_normal;     ///< that light is measured about
+  Eigen::Vector3d position, normal;  ///< geometric normal, unit, on the side of the eye
+  Eigen::Vector3d smooth_normal;     ///< shading normal, the axis of the gather's hemisphere, unit
   int facet = -1;
 };
 
-/// Final gather (Reichert 1992) at places of a picture: indirect irradiance, E = (1/N) sum B over
-/// cosine-distributed rays of a scrambled Sobol sequence that read the solution's radiosity
-/// where they end, going on through mirrors and clear glass, and a quarter as many more towards
-/// bright patches where there are any (see BrightPatches). Light that emitters of DirectLight send
-/// by way of mirrors and glass is not in it: see RadiositySolution::caustic_irradiance. That of the
-/// sky's dome is.
+/// Final gather (Reichert 1992) at points of a picture: indirect irradiance E = (1/N) sum B over N
+/// cosine-distributed rays of a scrambled Sobol sequence. B is the solution's radiosity at the end
+/// of a ray, which is followed through mirrors and clear glass. If there are bright patches, a
+/// quarter as many rays are aimed at them (see BrightPatches).
+///
+/// Light of emitters of DirectLight through mirrors and glass is not included: see
+/// RadiositySolution::caustic_irradiance. Light of the sky's dome through mirrors and glass is
+/// included.
 class PixelGather {
  public:
-  /// `most_rays` per place, at least 1; a power of two stratifies best.
+  /// `most_rays` is the number of rays per point, at least 1; a power of two stratifies best.
   PixelGather(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
               const RadiositySolution& solution, int most_rays, int max_specular_depth);
 
-  /// By about `share`, (0, 1], of the rays: the nearest power of two less, at least 8. `caster` is
-  /// the one given, or what ElementCaster::at() makes of it.
+  /// Indirect irradiance at a point, W/m^2 per band, with about `share`, (0, 1], of the rays:
+  /// `most_rays` halved until the share is reached, but at least 8 rays. `caster` is the caster of
+  /// the constructor or its ElementCaster::at().
   Spectrum indirect_irradiance(const ElementCaster& caster, const ShadingPoint& at,
                                std::uint64_t key, float share) const;
 
@@ -46,10 +49,10 @@ class PixelGather {
 
   LightPaths paths_;
   BandArray radiosity_{};               // vertices x bands, W/m^2
-  Spectrum dome_{};                     // factor of the sky's light; empty if there is none
-  std::vector<HemisphereSets> sets_{};  // each of half as many rays as the one before
+  Spectrum dome_{};                     // irradiance factor of the sky's dome; empty: no dome
+  std::vector<HemisphereSets> sets_{};  // each with half the rays of the set before
   BrightPatches bright_;
-  SobolPoints aims_;  // towards those
+  SobolPoints aims_;  // Sobol points of the rays towards bright_
 };
 
 }  // namespace lightwell

@@ -9,13 +9,13 @@
 
 namespace lightwell {
 
-/// Places about a pixel's centre with the density of the Blackman-Harris window over three pixels
-/// (Harris 1978), a reconstruction filter without negative lobes: a plain mean of samples at such
-/// places is the filtered picture (Ernst, Stamminger & Greiner 2006).
+/// Sampler of positions about a pixel's centre, distributed by the Blackman-Harris window over
+/// three pixels (Harris 1978), a reconstruction filter without negative lobes. The plain mean of
+/// samples at such positions is the filtered picture (Ernst, Stamminger & Greiner 2006).
 class FilterSampler {
  public:
   FilterSampler();
-  /// Of u in [0,1): -1.5 to 1.5 pixels.
+  /// Offset from the pixel's centre along one axis for u in [0,1): -1.5 to 1.5 pixels.
   double offset(double u) const;
 
  private:
@@ -23,38 +23,40 @@ class FilterSampler {
   std::array<double, steps_ + 1> cdf_{};
 };
 
-/// What looks through one pixel saw.
+/// Sums over the samples of one pixel.
 struct PixelTally {
-  RaySample sum{};  ///< of all samples; its fingerprint means nothing
+  RaySample sum{};  ///< sum over samples; the fingerprint has no meaning
   int count = 0;
   double light = 0.0, square = 0.0;  ///< sums of the bands' mean radiance and of its square
 
-  /// Whether the standard error of the mean is at most `noise`, above 0, of it: that of as many
-  /// independent samples; stratified ones are better.
+  /// Returns whether the standard error of the mean is at most the share `noise` of the mean; false
+  /// for `noise` 0 or fewer than two samples. The standard error is that of independent samples;
+  /// stratified samples have a smaller one.
   bool is_good(float noise) const;
 };
 
-/// While a shutter is open; a picture is the mean over that time.
+/// Interval in which a shutter is open; a picture is the mean over the interval.
 struct Exposure {
-  ElementCaster caster;                 ///< knows what moves
+  ElementCaster caster;                 ///< caster with the scene's motions
   double open = 0.0, close = 0.0;       ///< s
-  std::optional<RigidMotion> camera{};  ///< of the camera itself
+  std::optional<RigidMotion> camera{};  ///< motion of the camera; none: the camera stands still
 };
 
-/// A pixel by many samples, each through a place of its own of picture and lens: for what no
-/// subdivision of the pixel's square resolves, gloss, depth of field and motion (Cook, Porter &
-/// Carpenter 1984). Samples are points of one scrambled Sobol sequence per pixel, in picture, lens
-/// and time, and neighbours share none.
+/// Sampler of a pixel by many samples, each through its own point of picture and lens: for gloss,
+/// depth of field and motion, which no subdivision of the pixel's square resolves (Cook, Porter &
+/// Carpenter 1984). The samples are points of one scrambled Sobol sequence per pixel, in picture,
+/// lens and time. Neighbours share no samples.
 class PixelSamples {
  public:
   PixelSamples(const CameraRays& rays, const RayTree& tree, const SampleOptions& options,
                std::optional<Exposure> exposure = {});
 
-  /// SampleOptions::least samples.
+  /// Takes the first SampleOptions::least samples of pixel (x, y), but at most SampleOptions::most.
   PixelTally first_samples(int x, int y) const;
-  /// More, until the error is what SampleOptions::noise asks for, at most SampleOptions::most.
-  /// Beside a pixel whose first samples are not good, four times `least` come before the first
-  /// judgement: what is small and bright may have escaped them.
+  /// Takes more samples of pixel (x, y) until the error is at most SampleOptions::noise, and at
+  /// most SampleOptions::most samples in all. Beside a pixel whose first samples are too noisy,
+  /// four times SampleOptions::least samples are taken before the first test of the error, since
+  /// the first samples may have missed something small and bright.
   void take_more(int x, int y, bool is_beside_noise, PixelTally& tally) const;
 
   const SampleOptions& options() const { return options_; }
@@ -66,7 +68,7 @@ class PixelSamples {
   const CameraRays& rays_;
   const RayTree& tree_;
   SampleOptions options_;
-  std::optional<Exposure> exposure_;  // none: nothing moves
+  std::optional<Exposure> exposure_;  // empty: nothing moves
   SobolPoints points_;
   FilterSampler filter_;
 };

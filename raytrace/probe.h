@@ -10,38 +10,42 @@
 
 namespace lightwell {
 
-/// Where and facing which way irradiance is wanted; metres.
+/// A point at which irradiance is measured; metres.
 struct Probe {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, direction that the probe faces
 };
 
-/// Reads columns x,y,z,nx,ny,nz (a header line names them; more columns are ignored) in the scene
-/// file's units. Throws InputError naming file, line and value.
+/// Reads probes from the columns x,y,z,nx,ny,nz of a CSV file, in the scene file's units. A header
+/// line names the columns; more columns are ignored. Throws InputError that names file, line and
+/// value.
 std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_per_unit);
 
-/// A solve that finds what probe_irradiance reads and nothing else: no mesh of elements refined to
-/// be looked at, no estimate of its error.
+/// Options of a solve for probe_irradiance alone: elements are not refined, and the error of their
+/// light is not estimated.
 SolveOptions options_for_probes();
 
-/// Irradiance (W/m^2) at each probe, probes x bands: a fresh gather of the solved scene.
+/// Irradiance at each probe, probes x bands, W/m^2, by a final gather in the solved scene.
 BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            std::span<const Probe> probes,
                            const GatherOptions& options = {.rays = 1024});
 
-/// The same by mesh interpolation; probes must lie on a surface (within 1e-4 of the scene's
-/// diagonal). Throws InputError naming the first probe that does not.
+/// Irradiance at each probe, probes x bands, W/m^2, interpolated on the solution's mesh. Throws
+/// InputError that names the first probe that lies on no surface facing its way, within 1e-4 of the
+/// scene's diagonal, or on the back of a one-sided surface.
 BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySolution& solution,
                                  std::span<const Probe> probes);
 
-/// What that is off by at most, with odds of about 19 to 1 (see error_bound): lux, one per probe.
-/// Empty if the solution does not know.
+/// Bound on the error of interpolate_irradiance(), lx, one per probe, with odds of about 19 to 1
+/// (see error_bound). Empty if the solution has no error estimate. Throws as
+/// interpolate_irradiance().
 Eigen::ArrayXd interpolation_bound(const ElementCaster& caster, const RadiositySolution& solution,
                                    std::span<const Probe> probes);
 
-/// Writes x,y,z,nx,ny,nz,E_<band>...,lux and, unless it is empty, lux_within; coordinates in file
-/// units. Temporary name, then renamed.
+/// Writes columns x,y,z,nx,ny,nz,E_<band>...,lux and, unless `lux_within` is empty, lux_within;
+/// coordinates are in file units. The file is written under a temporary name and renamed. Throws
+/// std::runtime_error that names the file.
 void write_probes(const std::filesystem::path& csv, std::span<const Probe> probes,
                   const BandArray& irradiance, const Bands& bands, double metres_per_unit,
                   const Eigen::ArrayXd& lux_within = {});

@@ -16,20 +16,21 @@ namespace lightwell {
 
 class CausticMap;
 
-/// How a diffuse hit is shaded.
+/// Source of irradiance at a diffuse hit.
 enum class Pass {
-  interpolate,  ///< the solution as it is
-  direct,       ///< direct light re-traced with shadow rays, indirect light interpolated
-  gather,       ///< direct light as above, indirect light by a final gather at every hit
+  interpolate,  ///< direct and indirect light interpolated from the solution
+  direct,       ///< direct light by shadow rays, indirect light interpolated
+  gather,       ///< direct light by shadow rays, indirect light by a final gather at every hit
 };
 
-/// Many samples per pixel instead of subdivision: for pictures with gloss, a lens or
+/// Options of many samples per pixel in place of subdivision, for pictures with gloss, a lens or
 /// motion.
 struct SampleOptions {
-  int most = 0;  ///< 0: most_by_default where a lens, motion or rough surfaces ask for it
-  int least = 16;
-  /// A pixel is done when its standard error is below this share of it. A half of it takes four
-  /// times as many samples.
+  /// Most samples; 0: most_by_default with a lens, motion or rough surfaces, else none.
+  int most = 0;
+  int least = 16;  ///< first samples of every pixel
+  /// Greatest standard error of a pixel, relative to its mean. Half the error takes four times as
+  /// many samples.
   float noise = 0.02f;
 
   static constexpr int most_by_default = 256;
@@ -38,57 +39,66 @@ struct SampleOptions {
 
 struct RenderOptions {
   Pass pass = Pass::direct;
-  int max_depth = 10;              ///< mirror and glass events along one path of the ray tree
-  float min_contribution = 1e-3f;  ///< branches that weigh less are not followed
+  int max_depth = 10;              ///< most mirror and glass events along one path of the ray tree
+  float min_contribution = 1e-3f;  ///< branches of less weight are not followed
   ShadowOptions shadows{};
-  int gather_rays = 256;  ///< over the hemisphere of a hit, for Pass::gather; 1 to most_gather_rays
-  /// Sent from emitters by way of mirrors and glass, for caustics of Pass::direct and
-  /// Pass::gather: see CausticMap. 0: those of the solution, as sharp as its mesh.
+  /// Rays over the hemisphere of a hit, for Pass::gather; 1 to most_gather_rays.
+  int gather_rays = 256;
+  /// Photons from emitters through mirrors and glass, for caustics of Pass::direct and
+  /// Pass::gather: see CausticMap. 0: the solution's caustics, as sharp as its mesh.
   int photons = 1 << 19;
-  /// What trace_caustics() found with as many photons and this depth, for pictures that share it
-  /// (see SceneRenderer). Null: found anew.
+  /// Result of trace_caustics() for the same number of photons and depth, shared by several
+  /// pictures (see SceneRenderer). Null: traced for this picture.
   std::shared_ptr<const CausticMap> caustics{};
-  int glossy_rays = 8;  ///< from the first rough surface; one from those behind it. 1 to 256
+  /// Rays from the first rough surface of a path, 1 to 256; one from each rough surface behind it.
+  int glossy_rays = 8;
   SampleOptions sampling{};
-  /// Whitted's adaptive supersampling: a pixel whose corners differ by more than `contrast`
+  /// Adaptive supersampling (Whitted 1980): a pixel whose corners differ by more than `contrast`
   /// (relative) or show different surfaces is split in four, at most `max_subdivision` times, 0 to
   /// 6. Measured on the Cornell box: contrast 0.05 takes 1.7 times as long as 0.1 for the same
   /// error.
   int max_subdivision = 2;
   float contrast = 0.1f;
-  std::vector<Layer> layers{};  ///< what Image::layers shall hold
-  RunControl run{};             ///< the journal keeps finished tiles, of this scene and no other
+  std::vector<Layer> layers{};  ///< layers of Image::layers
+  RunControl run{};  ///< its journal keeps finished tiles; a journal belongs to one scene
   /// Called when rows first_row to first_row + rows - 1 of the picture are done, from the top down,
-  /// by the thread that renders: to show what there is so far.
+  /// by the rendering thread. For viewers that show unfinished
+  /// pictures.
   std::function<void(const Image& image, int first_row, int rows)> rows_done{};
 };
 
 constexpr int most_gather_rays = 1 << 16;
 
-/// Deeper recursion might exhaust a thread's stack.
+/// Greatest RenderOptions::max_depth; deeper recursion might exhaust a thread's stack.
 constexpr int deepest_tree = 1000;
 
-/// Throws std::invalid_argument where a number lies out of its range.
+/// Throws std::invalid_argument if a number is out of its range.
 void validate(const RenderOptions& options);
 
-/// Whether pictures with these options ask for trace_caustics().
+/// Returns whether pictures with these options use the photons of trace_caustics().
 bool needs_caustic_photons(const RadiositySolution& solution, const RenderOptions& options);
 
 struct RenderReport {
   double seconds = 0.0;
   std::int64_t eye_rays = 0;   ///< pixel samples
-  std::int64_t depth_cut = 0;  ///< branches that max_depth ended
-  /// Their weight, a mean over the samples: the share of the picture that is missing, if what they
-  /// did not see is as bright as the rest.
+  std::int64_t depth_cut = 0;  ///< branches that ended at max_depth
+  /// Mean weight of cut branches per sample: the share of the picture that is missing, if the cut
+  /// light is as bright as the rest.
   double cut_share = 0.0;
-  int tiles = 0, recalled_tiles = 0;  ///< all, and those the journal had; no rays are counted there
+  /// All tiles, and tiles recalled from the journal, which trace no rays.
+  int tiles = 0, recalled_tiles = 0;
 };
 
 /// Second pass: Whitted's recursive ray tracing (1980) over the radiosity solution. A pixel is the
-/// mean radiance over its square or, with a lens, gloss or motion, what PixelSamples finds. The
-/// same bits for any number of threads. Throws InputError where Camera's shutter has its middle at
-/// another time than RigidMotion::rest_time: light is solved for one instant, and carried along by
-/// what moves; shadows and what is gathered are sampled in time.
+/// mean radiance over its square, or the result of PixelSamples with a lens, gloss or motion.
+/// Pictures have the same bits for any number of threads.
+///
+/// Light is solved for one instant and moves with the surfaces; shadows and gathers are sampled in
+/// time. Throws:
+/// - InputError if anything moves and the middle of the shutter's interval is not
+///   RigidMotion::rest_time, or as CameraRays does;
+/// - std::invalid_argument as validate();
+/// - Interrupted when progress says stop.
 Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
              const RadiositySolution& solution, const Camera& camera,
              const RenderOptions& options = {}, RenderReport* report = nullptr);

@@ -9,15 +9,16 @@
 
 namespace lightwell {
 
-/// What rows of a picture took.
+/// Work spent on rows of a picture.
 struct SampledRows {
   std::int64_t samples = 0, depth_cut = 0;
   double cut_weight = 0.0;
 };
 
-/// Fills some rows of a picture, and their sampled layers, by many samples per pixel. Rows do not
-/// depend on which others are filled with them: the first samples of those above and below are
-/// taken too, see PixelSamples::take_more. Reports `part` of the picture as done all along.
+/// Fills `rows` rows of a picture from `first_row` on, and their sampled layers, by many samples
+/// per pixel. The result of a row does not depend on the other rows filled with it: the first
+/// samples of the rows above and below are taken too, see PixelSamples::take_more. Reports progress
+/// `part` throughout.
 SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
                         const Progress& progress, double part, Image& image, LayerFilm& layers);
 

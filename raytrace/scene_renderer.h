@@ -10,15 +10,15 @@
 
 namespace lightwell {
 
-/// Renders pictures of one solution. What all of them share is made once: the caster of rays, what
-/// is known of lamps and sky, and the photons of caustics, which take a second or two. Each picture
-/// has the same bits as by render() alone. Keeps references to what it is made of.
+/// Renderer of several pictures of one solution. The caster, the data on lamps and sky, and the
+/// photons of caustics, which take a second or two, are shared by all pictures. Each picture has
+/// the same bits as by render() alone. Keeps references to scene, mesh and solution.
 class SceneRenderer {
  public:
   SceneRenderer(const Scene& scene, const PatchMesh& mesh, const RadiositySolution& solution);
 
-  /// As render(); RenderOptions::caustics is found here. By any number of threads at once, of which
-  /// one traces the photons while the others wait.
+  /// Renders a picture as render() does, with RenderOptions::caustics set here. May be called by
+  /// any number of threads at once, of which one traces the photons while the others wait.
   Image render(const Camera& camera, RenderOptions options = {}, RenderReport* report = nullptr);
 
  private:
@@ -28,9 +28,9 @@ class SceneRenderer {
   const RadiositySolution& solution_;
   ElementCaster caster_;
   DirectLight direct_light_;
-  std::mutex mutex_{};  // of those below
+  std::mutex mutex_{};  // guards the members below
   int photons_ = 0, max_depth_ = 0;
-  std::shared_ptr<const CausticMap> caustics_{};  // by so many photons, followed so far
+  std::shared_ptr<const CausticMap> caustics_{};  // map of photons_ photons, followed to max_depth_
 };
 
 }  // namespace lightwell

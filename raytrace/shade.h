@@ -22,60 +22,66 @@
 
 namespace lightwell {
 
-/// What one look along a ray found.
+/// Result of tracing a ray.
 struct RaySample {
   Spectrum radiance{};  ///< W/(m^2 sr)
-  /// What a pixel averages beside radiance; zero unless RenderOptions::layers has any of them.
+  /// Layers that are averaged over a pixel; zero unless RenderOptions::layers has any of the
+  /// sampled layers.
   SampledLayers layers = SampledLayers::Zero();
-  std::uint64_t fingerprint = 0;  ///< of the surfaces seen, see RayTree
-  std::int64_t depth_cut = 0;     ///< branches that max_depth ended
-  float cut_weight = 0.0f;        ///< sum of what they weighed, the largest of the bands
+  std::uint64_t fingerprint = 0;  ///< identifies the surfaces seen, see RayTree
+  std::int64_t depth_cut = 0;     ///< branches that ended at max_depth
+  float cut_weight = 0.0f;        ///< sum over these branches of the largest weight of any band
 };
 
-/// Whitted's ray tree (1980) over a radiosity solution. Where a ray meets something diffuse,
-/// L = (M + rho E) / pi; mirrors add specular * L(reflected); clear dielectrics add
-/// R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R. Rough ones add the mean over some
-/// directions of their lobe, see sample_scattering. Within a body that absorbs, L is less by Beer
-/// and Lambert's law, see Media.
+/// Whitted's ray tree (1980) over a radiosity solution. Radiance at a hit is the sum over the parts
+/// of the material:
+/// - diffuse: L = (M + rho E) / pi;
+/// - mirror: specular * L(reflected);
+/// - clear dielectric: R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R;
+/// - rough mirror or dielectric: the mean over some directions of its lobe, see sample_scattering.
 ///
-/// L inside a dielectric is the basic radiance L/n^2, which refraction leaves unchanged; a path
-/// that ends outside again needs no factor n^2.
+/// Within an absorbing body L falls by the law of Beer and Lambert, see Media. L inside a
+/// dielectric is the basic radiance L/n^2, which refraction leaves unchanged; a path that ends
+/// outside again needs no factor n^2.
 ///
 /// The *fingerprint* is equal for two rays whose trees see the same smooth surfaces from the same
-/// sides in the same order; branches that weigh less than RenderOptions::contrast are left out, for
-/// they alone cannot change a pixel by more, and so is what is seen by way of rough surfaces.
+/// sides in the same order. Branches that weigh less than RenderOptions::contrast are left out,
+/// since a single such branch cannot change a pixel by more than the contrast. Surfaces seen by way
+/// of rough surfaces are left out too.
 ///
-/// Where a surface gives normals at vertices, mirrors, glass and what is diffuse take those for it
-/// (Phong 1975), while the facets decide which side is seen and what hides what. Nothing goes on
-/// below the facet that it was to leave (see visible_normal), and shadow rays leave from the smooth
-/// surface that the facet stands for, so that the facets around do not shade it (Hanika 2021,
-/// "Hacking the Shadow Terminator"): they are real rays from a place before the facet, and no light
-/// comes through it.
+/// If a surface has normals at vertices, diffuse reflection, mirrors and glass use the interpolated
+/// normals (Phong 1975). The facets alone decide which side is seen and what is hidden. No branch
+/// continues below the facet that it should leave (see visible_normal). Shadow rays start on the
+/// smooth surface that the facets approximate, so that neighbouring facets do not shade it (Hanika
+/// 2021, "Hacking the Shadow Terminator"); since the start lies before the facet, no light comes
+/// through the facet.
 ///
-/// Textures are filtered over what a ray's pixel covers: a cone (Amanatides 1984) as wide as
-/// `pixel_width` times the way it has gone, as if all surfaces on the way were flat.
+/// Textures are filtered over the footprint of a ray's pixel: a cone (Amanatides 1984) whose width
+/// is `pixel_width` times the length of the path, as if all surfaces on the way were flat.
 class RayTree {
  public:
   RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
           const RadiositySolution& solution, const RenderOptions& options,
           double pixel_width = 0.0);
 
-  /// `key` decides the shadow samples; `effort`, (0, 1], scales their number, for samples that are
-  /// averaged with others.
+  /// Traces a ray. `key` decides the shadow samples; `effort`, (0, 1], scales their number, for
+  /// samples that are averaged with others.
   RaySample trace(const Ray& ray, std::uint64_t key, float effort = 1.0f) const;
-  /// One of many samples that are averaged with others of the same key, numbered from 0: with few
-  /// shadow and gather rays and one direction per rough surface, well spread over all of them.
+  /// Traces one of many samples of the same key that are averaged, numbered from 0. Each has few
+  /// shadow and gather rays and one direction per rough surface; these are well spread over all
+  /// samples.
   RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number) const {
     return trace_one_of_many(ray, key, number, caster_);
   }
-  /// The same by what ElementCaster::at() makes of a caster of the scene that knows what moves.
+  /// Traces one of many samples with `caster`, the result of ElementCaster::at() of a caster that
+  /// knows the scene's motions.
   RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
                               const ElementCaster& caster) const;
-  /// The fingerprint alone, without shadow rays.
+  /// Returns the fingerprint of a ray, without shadow rays.
   std::uint64_t fingerprint(const Ray& ray) const;
 
  private:
-  /// How a facet meets a ray.
+  /// Geometry and material of a facet.
   struct FacetShape {
     int material = 0;
     int smooth_surface = 0;  ///< the same for facets that share vertices
@@ -83,11 +89,12 @@ class RayTree {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the plane, or the sphere's centre
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
-  /// A place that was met; the normal is unit and on the side the ray came from.
+  /// A point hit by a ray. The normal is unit and on the side that the ray came from.
   struct ShadingPoint {
     Eigen::Vector3d position, normal;
-    Eigen::Vector3d rest, rest_normal;        ///< the same where what moves rests
-    const Eigen::Isometry3d* pose = nullptr;  ///< from there; null: it stands still
+    Eigen::Vector3d rest, rest_normal;  ///< position and normal in the rest pose
+    /// from the rest pose; null: the surface stands still
+    const Eigen::Isometry3d* pose = nullptr;
 
     Eigen::Vector3d turned(const Eigen::Vector3d& v) const { return pose ? pose->linear() * v : v; }
     Eigen::Vector3d turned_back(const Eigen::Vector3d& v) const {
@@ -97,32 +104,34 @@ class RayTree {
   /// A ray of the tree.
   struct Branch {
     Ray ray{};
-    Spectrum weight{};  ///< share of what it sees that reaches the eye
+    Spectrum weight{};  ///< share of the ray's radiance that reaches the eye, per band
     int depth = 0;
-    /// 1 for the root, 2 p and 2 p + 1 for the children of p; any for those off rough surfaces.
+    /// Number in the tree: 1 for the root, 2 p and 2 p + 1 for the children of p, a random key for
+    /// branches off rough surfaces.
     std::uint64_t node = 1;
     bool is_sharp = true;  ///< no rough surface on the way
-    /// Of its direction, 1/sr, off a rough surface, which samples lamps beside; else 0.
+    /// Probability density of the direction, 1/sr, off a rough surface, which samples lamps as
+    /// well; else 0.
     double lobe_density = 0.0;
-    /// By which that draws directions towards bright patches, too; null: it does not.
+    /// View by which that rough surface aims at bright patches as well; null: no such rays.
     const BrightPatches::View* bright = nullptr;
-    bool is_aimed = false;  ///< such a direction
-    double width = 0.0;     ///< m, of the cone where the ray begins
+    bool is_aimed = false;  ///< aimed at a bright patch
+    double width = 0.0;     ///< m, width of the cone at the ray's origin
     Media media{};
   };
-  /// Irradiance at a place, W/m^2, by the way light takes.
+  /// Irradiance at a point, W/m^2, direct and indirect.
   struct Arriving {
     Spectrum direct{}, indirect{};
   };
-  /// What is gathered while the tree grows.
+  /// State and result of a tree while it grows.
   struct TreeState {
     RaySample result{};
     std::uint64_t key = 0;
     float effort = 1.0f;
     const ElementCaster* caster = nullptr;
-    bool shades = true;
-    std::optional<int> number{};  ///< of many samples of one key
-    std::uint64_t gloss_key = 0;  ///< the same in all of them
+    bool shades = true;           ///< false: fingerprint alone
+    std::optional<int> number{};  ///< number among many samples of one key; none: a sample alone
+    std::uint64_t gloss_key = 0;  ///< the same for all samples of one key
   };
 
   void follow(Branch branch, TreeState& state) const;
@@ -148,7 +157,7 @@ class RayTree {
             const ElementHit& hit, const ShadingPoint& at, TreeState& state) const;
   ShadingPoint shading_point(const Ray& ray, const ElementHit& hit,
                              const ElementCaster& caster) const;
-  /// Where shadow rays leave from, and the facet they leave; -1: none.
+  /// Origin of shadow rays, and the facet that the rays leave; -1: none.
   struct ShadowOrigin {
     Eigen::Vector3d position;
     int facet = -1;
@@ -172,21 +181,22 @@ class RayTree {
   const DirectLight& direct_light_;
   const RadiositySolution& solution_;
   const RenderOptions& options_;
-  double pixel_width_;                               ///< m, one metre away
-  std::shared_ptr<const FacetTextures> textures_{};  ///< null: nothing varies over facets
+  double pixel_width_;                               ///< m at a distance of one metre
+  std::shared_ptr<const FacetTextures> textures_{};  ///< null: no textures
   FacetNormals normals_;
-  double least_lift_ = 0.0;  ///< m, off a facet: more than rounding may move a ray's origin
+  /// m, least height of a shadow ray's origin over its facet, beyond rounding
+  double least_lift_ = 0.0;
   bool with_layers_ = false;
-  Eigen::Array3f white_rgb_;             ///< of what reflects everything, under equal-energy light
+  Eigen::Array3f white_rgb_;             ///< RGB of a reflectance of 1 under equal-energy light
   std::optional<PixelGather> gather_{};  ///< for Pass::gather
-  std::shared_ptr<const CausticMap> caustics_{};  ///< in place of the solution's; null: none
+  std::shared_ptr<const CausticMap> caustics_{};  ///< replaces the solution's caustics; null: none
   static constexpr int gloss_point_count = 1024;
-  SobolPoints gloss_points_;  ///< of samples of one key; later ones use a new scrambling
+  SobolPoints gloss_points_;  ///< samples of one key; further samples use a new scrambling
   LampSamples lamps_;
-  BrightPatches bright_{};  ///< what rough mirrors aim at beside the lamps
-  /// Of the front and the back of each material; empty if it is not rough.
+  BrightPatches bright_{};  ///< rough mirrors aim at these beside the lamps
+  /// Lobes of the front and the back of each material; empty if the material is not rough.
   std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};
-  bool absorbs_ = false;  ///< there is a body that does
+  bool absorbs_ = false;  ///< whether any body absorbs light
   std::vector<FacetShape> facets_{};
 };
 

@@ -7,8 +7,8 @@
 
 namespace lightwell {
 
-/// A room of the table, in heights H = 2 m of its luminaires above the eye: across the line of
-/// sight and along it.
+/// A room of the table: its sizes across and along the line of sight, in units of H = 2 m, the
+/// height of the luminaires above the eye.
 struct UgrRoom {
   int across = 0, along = 0;
 };
@@ -38,21 +38,26 @@ struct UgrReflectances {
 inline constexpr std::array<UgrReflectances, 5> ugr_reflectances = {
     {{0.7, 0.5, 0.2}, {0.7, 0.3, 0.2}, {0.5, 0.5, 0.2}, {0.5, 0.3, 0.2}, {0.3, 0.3, 0.2}}};
 
-/// The unified glare rating of one luminaire in all standard rooms: a row for each of `ugr_rooms`,
-/// a column for each of `ugr_reflectances`. 0 where none is seen.
+/// Unified glare ratings of one luminaire in all standard rooms: a row for each of `ugr_rooms`, a
+/// column for each of `ugr_reflectances`. 0 if no luminaire is in sight.
 struct UgrTable {
   using Ratings = Eigen::Array<double, ugr_rooms.size(), ugr_reflectances.size()>;
-  /// Looking along C0 and along C90: EULUMDAT's crosswise and endwise, and the other way about in
-  /// IES files, whose C0 runs along a luminaire's length.
+  /// Ratings for lines of sight along C0 and along C90: crosswise and endwise in EULUMDAT files,
+  /// endwise and crosswise in IES files, whose C0 runs along a luminaire's length.
   Ratings along_c0{}, along_c90{};
 };
 
-/// The table that makers print, for the file's own flux (CIE 117-1995, CIE 190:2010). Luminaires
-/// hang in an even grid 0.25 H apart, the eye is at the middle of a wall and looks level at the
-/// opposite one. A luminaire's luminance is its intensity over the area seen of its opening and
-/// luminous sides, where that counts_for_glare(). The background is what walls receive
-/// indirectly in a room of three surfaces, ceiling, walls and the plane at the eye, each evenly
-/// lit. Throws InputError if the file is radiant or says of no luminous area.
+/// Returns the table of a luminaire as in data sheets, for the flux of its file (CIE 117-1995, CIE
+/// 190:2010).
+///
+/// - Luminaires hang in an even grid 0.25 H apart. The eye is at the middle of a wall and looks
+///   level at the opposite wall.
+/// - The luminance of a luminaire is its intensity over the projected area of its opening and
+///   luminous sides, within counts_for_glare().
+/// - The background is the indirect illuminance of the walls over pi, in a room of three evenly lit
+///   surfaces: ceiling, walls and the plane at the eye.
+///
+/// Throws InputError if the file's intensities are radiant or the file gives no luminous area.
 UgrTable ugr_table(const LuminaireFile& luminaire);
 
 }  // namespace lightwell
