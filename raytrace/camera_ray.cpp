@@ -89,7 +89,7 @@ Eigen::Vector2d CameraRays::lens_point(double u, double v) const {
   if (blades_ == 0) {
     return cosine_direction(static_cast<float>(u), static_cast<float>(v)).head<2>();
   }
-  // One of the triangles between the centre and a side; the first corner is at the top.
+  // A point of one of the triangles between the centre and a side; the first corner is at the top.
   const double turn = u * blades_;
   const int blade = std::min(static_cast<int>(turn), blades_ - 1);
   const Eigen::Vector3d w = triangle_point(static_cast<float>(turn - blade), static_cast<float>(v));

@@ -15,12 +15,12 @@
 namespace lightwell {
 namespace {
 
-constexpr int subtree_size = 4096;  // what one thread works on
+constexpr int subtree_size = 4096;  // most discs of a thread's unit of work
 
 }  // namespace
 
 int CausticMap::neighbours(std::size_t count) {
-  // Measured on the glass sphere's focus in the Cornell box.
+  // The scale is measured on the focus of the glass sphere in the Cornell box.
   constexpr double scale = 0.04;
   constexpr int least = 16;
   return std::max(least, static_cast<int>(scale * std::pow(static_cast<double>(count), 2.0 / 3.0)));
@@ -65,7 +65,7 @@ void CausticMap::set_radii(int region, int k) {
   const int root = root_[static_cast<std::size_t>(region)];
   const DiscTree::Node& all = tree_.nodes[static_cast<std::size_t>(root)];
   const auto& bounds = regions_.bounds[static_cast<std::size_t>(region)];
-  // Of fewer photons each is spread over the whole region.
+  // With at most k photons, each is spread over the whole region.
   const bool are_few = all.end - all.begin <= k;
   float size2 = (all.high - all.low).square().sum();
   for (const LightRegions::Edge& edge : bounds) {
@@ -84,7 +84,8 @@ void CausticMap::set_radii(int region, int k) {
     NearestDiscs nearest(tree_, k);
     for (int s = begin; s < end; ++s) {
       const int subtree = subtrees[static_cast<std::size_t>(s)];
-      // A few neighbours share a radius, which changes little over a small part of a disc.
+      // About k / 10 neighbouring discs share a radius, which varies little over a small part of a
+      // disc.
       constexpr int part = 10;
       std::vector<int> groups;
       tree_.collect(subtree, k / part, groups);
@@ -92,7 +93,8 @@ void CausticMap::set_radii(int region, int k) {
         const DiscTree::Node& group = tree_.nodes[static_cast<std::size_t>(g)];
         set(group, nearest.distance2_to_last(root, 0.5f * (group.low + group.high)));
       }
-      // Where a part of a disc is beyond, it had to reach farther for its neighbours.
+      // The radius of a disc that reaches over the boundary was too large, since only its area
+      // within has neighbours.
       const auto near = edges_about(tree_.nodes[static_cast<std::size_t>(subtree)], bounds);
       for (const int g : groups) {
         const DiscTree::Node& group = tree_.nodes[static_cast<std::size_t>(g)];
@@ -106,7 +108,7 @@ void CausticMap::set_radii(int region, int k) {
   });
 }
 
-// Edges that the discs of a node may reach over.
+// Returns the edges whose boxes the discs of a node may reach.
 std::vector<LightRegions::Edge> CausticMap::edges_about(
     const DiscTree::Node& node, std::span<const LightRegions::Edge> edges) const {
   float radius2 = 0.0f;
@@ -156,7 +158,8 @@ void CausticMap::fold_discs(int region, std::vector<Folded>& folded) const {
   });
 }
 
-// Puts the mirrored discs beside their own, and boxes around all.
+// Inserts mirror images after their own discs, and fits the boxes of all nodes to the discs'
+// extents.
 void CausticMap::insert(const std::vector<Folded>& folded, const BandArray& power) {
   std::size_t count = tree_.discs.size();
   for (const Folded& disc : folded) count += disc.mirrored.size();
@@ -164,7 +167,8 @@ void CausticMap::insert(const std::vector<Folded>& folded, const BandArray& powe
   all.reserve(count);
   power_.resize(static_cast<Eigen::Index>(count), power.cols());
   const auto add = [&](const DiscTree::Disc& disc, float weight) {
-    // What is close in space is close in memory.
+    // Rows of power_ follow the order of the discs, so that discs close in space are close in
+    // memory.
     power_.row(static_cast<Eigen::Index>(all.size())) = weight * power.row(disc.photon);
     all.push_back(disc);
   };
@@ -209,7 +213,8 @@ Spectrum CausticMap::irradiance(const Eigen::Vector3d& point, const Eigen::Vecto
       root_[static_cast<std::size_t>(regions_.of_element[static_cast<std::size_t>(element)])];
   if (root < 0) return E;
   const Eigen::Vector3f p = (point - origin_).cast<float>(), n = normal.cast<float>();
-  constexpr float most_bend = 0.5f;  // cosine: beyond, light that falls on one misses the other
+  // cosine of 60 degrees: surfaces at larger angles do not receive the same light
+  constexpr float most_bend = 0.5f;
   std::array<int, 64> stack;
   int depth = 0;
   stack[depth++] = root;

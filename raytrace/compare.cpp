@@ -34,7 +34,8 @@ void check_comparable(const Image& a, const Image& b) {
   }
 }
 
-// RGB as it is; other bands, whose meaning an Image does not carry, as grey of their mean.
+// Returns RGB as given, and the grey of the bands' mean for any other bands, whose meaning an Image
+// does not carry.
 Image as_rgb(const Image& image) {
   if (image.radiance.cols() == 3) return image;
   Image rgb{.width = image.width, .height = image.height};
@@ -42,8 +43,9 @@ Image as_rgb(const Image& image) {
   return rgb;
 }
 
-// Lightness and two opponent axes in which equal distances look about equally different (Ottosson
-// 2020, "A perceptual color space for image processing"); black to white is 1.
+// Oklab: lightness and two opponent axes in which equal distances look about equally different
+// (Ottosson 2020, "A perceptual color space for image processing"). The distance of black and white
+// is 1.
 Eigen::Array3f oklab(const Eigen::Array3f& linear) {
   static const Eigen::Matrix3f cones =
       (Eigen::Matrix3f() << 0.4122214708f, 0.5363325363f, 0.0514459929f, 0.2119034982f,
@@ -58,7 +60,8 @@ Eigen::Array3f oklab(const Eigen::Array3f& linear) {
   return (opponents * lms).array();
 }
 
-// As a screen shows it under the reference's exposure, linear: a change of brightness must count.
+// Linear display values of both pictures under the reference's exposure, so that a difference of
+// brightness counts.
 Image shown(const Image& rgb, const Image& reference) {
   const double scale = exposure_scale(reference, rgb_bands());
   Image result{.width = rgb.width, .height = rgb.height};
@@ -81,7 +84,7 @@ double perceptual_difference(const Image& a, const Image& b) {
   return sum / static_cast<double>(b.radiance.rows());
 }
 
-// Spectral bands that came with the picture, by what they are called: "400-404nm".
+// Names of the spectral bands among the layers, such as "400-404nm".
 std::vector<std::string> band_names(const Image& image) {
   std::vector<std::string> names;
   for (const std::string& name : image.layers.names) {
@@ -97,7 +100,7 @@ BandArray column(const Image& image, const std::string& name) {
 
 void check_bands(const Image& a, const Image& b) {
   const std::vector<std::string> of_a = band_names(a), of_b = band_names(b);
-  if (of_a.empty() || of_b.empty()) return;  // their RGB can be compared
+  if (of_a.empty() || of_b.empty()) return;  // RGB alone is compared
   const auto require_all = [](const std::vector<std::string>& names, const auto& in,
                               const char* which) {
     for (const std::string& name : names) {
@@ -122,7 +125,7 @@ void check_bands(const Image& a, const Image& b) {
   }
 }
 
-// Which pixels count, and in which squares.
+// Pixels that count, and their squares.
 class Kept {
  public:
   Kept(const Image& reference, const CompareOptions& options)
@@ -149,7 +152,7 @@ class Kept {
     return static_cast<double>(out_count_) / static_cast<double>(out_.size());
   }
 
-  // Means over each square with anything in it: squares x bands.
+  // Means over each square that has any pixel: squares x bands.
   Eigen::ArrayXXd means(const BandArray& values) const {
     const Eigen::Index across = (width_ + block_ - 1) / block_,
                        down = (height_ + block_ - 1) / block_;
@@ -185,7 +188,8 @@ BandDifference difference(const std::string& band, const Eigen::ArrayXXd& A,
   return result;
 }
 
-// Colours of a glowing body, even in lightness: black, violet, red, orange, yellow, white.
+// Colours of a glowing body, even in lightness, for `share` from 0 to 1: black, violet, red,
+// orange, yellow, white.
 std::array<std::uint8_t, 3> false_colour(double share) {
   static constexpr std::array<std::array<double, 3>, 6> stops = {
       {{0, 0, 0}, {68, 13, 110}, {186, 40, 60}, {240, 120, 20}, {252, 215, 80}, {255, 255, 255}}};

@@ -9,15 +9,17 @@
 namespace lightwell {
 namespace {
 
-// In the sharpest corner worth the name some percent are left, and less is rounding.
+// Least share within the boundary. The sharpest corners that matter leave some percent of the disc;
+// smaller shares are rounding.
 constexpr double least_within = 0.02;
 
 struct FlatEdge {
   Eigen::Vector2d from, to;
 };
 
-// The part of an edge that a disc of radius 1 about the origin reaches, from x0 to x1 along it at
-// distance h, which is above 0 if it runs counter-clockwise, and the angle that is seen under.
+// Part of an edge within the unit disc about the origin: from x0 to x1 along the edge, at distance
+// h from the origin, which is positive if the edge runs counter-clockwise. `angle` is the angle of
+// the part at the origin, radians.
 struct Chord {
   double h = 0.0, x0 = 0.0, x1 = 0.0, angle = 0.0;
 };
@@ -27,7 +29,7 @@ Chord chord(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   if (!(length > 0.0)) return {};
   const Eigen::Vector2d along = (to - from) / length;
   const double h = from.x() * along.y() - from.y() * along.x();
-  // An edge through the very centre has no side to be on; it cuts off nothing.
+  // An edge through the centre cuts off nothing, since its side is undefined.
   if (!(std::abs(h) < 1.0) || h == 0.0) return {};
   const double half = std::sqrt(1.0 - h * h);
   const double x0 = std::clamp(from.dot(along), -half, half);
@@ -35,7 +37,7 @@ Chord chord(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   return {h, x0, x1, std::atan(x1 / h) - std::atan(x0 / h)};
 }
 
-// Edges in the plane of a disc, which has radius 1 there and lies about the origin.
+// Edges in the plane of a disc, in coordinates where the disc has radius 1 about the origin.
 struct FlatBoundary {
   Eigen::Vector3d right, up;
   std::vector<FlatEdge> edges{};
@@ -49,20 +51,22 @@ struct FlatBoundary {
     }
   }
 
-  // What is left of the kernel of a disc elsewhere. If that is outside, the edges turn around its
-  // centre by nothing, which leaves what they cut off with the other sign.
+  // Integral within the boundary of the kernel of the unit disc about `of`. If the centre is
+  // outside, the edges' winding number around it is 0, and the integral is minus the sum over
+  // edges.
   double kernel_within(const Eigen::Vector2d& of, bool is_inside) const {
     double beyond = 0.0;
     for (const FlatEdge& edge : edges) beyond += kernel_beyond(edge.from - of, edge.to - of);
     if (is_inside) return std::clamp(1.0 - beyond, 0.0, 1.0);
-    // Mirrored across a thin gap, a centre may lie within again.
+    // The image of a centre across a thin gap may lie inside the boundary again.
     constexpr double rounding = 1e-9;
     return std::clamp(beyond > rounding ? 1.0 - beyond : -beyond, 0.0, 1.0);
   }
 };
 
-// The nearest places of edges that are seen at a right angle, once each: at a corner that juts in
-// a mirror as long as its line would show what is there anyway.
+// Feet of the perpendiculars from the origin to edges in reach, each foot once. An edge without its
+// foot is no mirror: at a reflex corner, the mirror of the edge's whole line would show what is
+// there anyway.
 std::vector<Eigen::Vector2d> mirrors_in_reach(std::span<const FlatEdge> edges) {
   constexpr std::size_t most = 8;
   constexpr double alike = 1e-4;  // of the radius
@@ -83,7 +87,8 @@ std::vector<Eigen::Vector2d> mirrors_in_reach(std::span<const FlatEdge> edges) {
   return feet;
 }
 
-// Once across each edge, and across both edges of a right corner that is within reach.
+// Images of the disc's centre across each mirror, and across both mirrors of a right corner within
+// reach.
 std::vector<Eigen::Vector2d> mirrored_centers(const std::vector<Eigen::Vector2d>& feet) {
   constexpr double nearly_right = 0.05;  // cosine
   std::vector<Eigen::Vector2d> centers;
@@ -102,9 +107,9 @@ std::vector<Eigen::Vector2d> mirrored_centers(const std::vector<Eigen::Vector2d>
 
 double kernel_beyond(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const Chord c = chord(from, to);
-  // Around the centre by an angle t, the kernel within the edge at x = h tan(t) is
-  //   G(s) dt, G = (s^2 - s^4 / 2) / pi with s^2 = h^2 / cos^2(t),
-  // and 1 / (2 pi) dt without it.
+  // The kernel within the edge at x = h tan(t), for a sector of angle dt at the centre, is
+  //       G(s) dt, G = (s^2 - s^4 / 2) / pi with s^2 = h^2 / cos^2(t),
+  // the kernel of the whole sector is 1 / (2 pi) dt.
   const auto within = [&](double x) {
     return (c.h * x - 0.5 * (c.h * c.h * c.h * x + c.h * x * x * x / 3.0)) / std::numbers::pi;
   };

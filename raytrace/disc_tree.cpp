@@ -8,7 +8,7 @@
 namespace lightwell {
 namespace {
 
-// Squared distance of a place from a box.
+// Squared distance of a point from a box.
 float distance2(const Eigen::Array3f& p, const Eigen::Array3f& low, const Eigen::Array3f& high) {
   return (low - p).max(p - high).max(0.0f).square().sum();
 }

@@ -25,8 +25,9 @@ namespace {
 
 const std::array<const char*, 3> rgb_names = {"R", "G", "B"};
 
-// OpenEXR writes its line table in a destructor, which keeps errors to itself; a stream of our own
-// remembers them.
+// Output stream that throws on errors. OpenEXR writes its line table in a destructor, which
+// swallows exceptions, but the underlying ofstream keeps its error state for
+// PictureOutput::finish().
 class ExrStream : public Imf::OStream {
  public:
   ExrStream(std::ofstream& stream, const std::string& name)
@@ -51,7 +52,7 @@ void check_size(const Image& image, const std::filesystem::path& path) {
   }
 }
 
-// One plane of numbers of an EXR file; every `step`th from `first` on is a pixel's.
+// One channel of an EXR file: the values first[0], first[step], first[2 step], ... are the pixels'.
 struct ChannelPlane {
   std::string name{};
   const float* first = nullptr;
@@ -59,7 +60,8 @@ struct ChannelPlane {
   bool may_be_half = true;
 };
 
-// Half floats would spoil distances, patch numbers, and light in cd/m^2 and lx, which pass 65504.
+// Returns false for channels that half floats would spoil: distances, patch numbers, and light in
+// cd/m^2 and lx, which exceeds 65504.
 bool may_be_half(const std::string& channel) {
   return std::ranges::none_of(
       std::array{Layer::depth, Layer::patch, Layer::luminance, Layer::illuminance},
@@ -153,7 +155,7 @@ void require_full_resolution(const Imf::Channel& channel, const std::string& cha
       "{}: channel '{}' is subsampled; save the image with full resolution", name, channel_name));
 }
 
-// Channels of a file, a column each.
+// Reads channels of a file, one per column.
 BandArray read_exr_channels(Imf::InputFile& file, const std::vector<std::string>& channels,
                             const std::string& name) {
   const auto [width, height] = window_size(file, name);
@@ -215,7 +217,8 @@ void write_exr(const std::filesystem::path& path, const Image& image, const Band
   if (!is_rgb) add_planes(planes, bands.names, image.radiance);
   add_planes(planes, image.layers.names, image.layers.values);
 
-  std::vector<std::vector<half>> kept;  // until they are written
+  // half floats of all planes, needed until the file is written
+  std::vector<std::vector<half>> kept;
   for (const ChannelPlane& plane : planes) {
     if (options.half && plane.may_be_half) kept.push_back(halves(plane, image, path));
   }

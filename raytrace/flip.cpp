@@ -18,10 +18,10 @@ namespace {
 /// One channel of a picture.
 using PixelPlane = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Planes = std::array<PixelPlane, 3>;
-/// Weights of a filter along one axis, its middle in the middle.
+/// Weights of a filter along one axis; the middle element belongs to offset 0.
 using Kernel = std::vector<double>;
 
-// Linear sRGB to CIE XYZ under D65, and its white.
+// Matrix from linear sRGB to CIE XYZ under D65, its inverse, and the XYZ of white.
 const Eigen::Matrix3d& xyz_of_rgb() {
   static const Eigen::Matrix3d matrix = (Eigen::Matrix3d() << 10135552, 8788810, 4435075, 5226144,
                                          17577620, 1774030, 475104, 8788810.0 / 3, 70074185.0 / 3)
@@ -38,8 +38,8 @@ const Eigen::Array3d& white() {
   return xyz;
 }
 
-// A linear opponent space: brightness, red-green, yellow-blue. The same steps, after the cube root,
-// lead to L*a*b*.
+// Linear opponent space: brightness, red-green, yellow-blue. Applied to the cube roots of XYZ, the
+// same map gives L*a*b*.
 Eigen::Array3d opponents(const Eigen::Array3d& xyz) {
   return {116.0 * xyz[1] - 16.0, 500.0 * (xyz[0] - xyz[1]), 200.0 * (xyz[1] - xyz[2])};
 }
@@ -48,7 +48,7 @@ Eigen::Array3d xyz_of_opponents(const Eigen::Array3d& ycc) {
   return {y + ycc[1] / 500.0, y, y - ycc[2] / 200.0};
 }
 
-// L*a*b*, colours less far apart where it is dark (Hunt's effect).
+// L*a*b* with a and b scaled by L, so that colours differ less where they are dark (Hunt's effect).
 Eigen::Array3d hunt_lab(const Eigen::Array3d& rgb) {
   const Eigen::Array3d xyz = (xyz_of_rgb() * rgb.matrix()).array() / white();
   Eigen::Array3d lab = opponents(xyz.unaryExpr([](double t) {
@@ -82,8 +82,8 @@ Kernel scaled(Kernel k, double factor) {
   return k;
 }
 
-// Along rows by one kernel, along columns by the other. Beyond its edges a picture goes on as it is
-// there.
+// Filters rows by one kernel and columns by the other. Beyond its edges a picture repeats its
+// outermost pixels.
 PixelPlane filtered(const PixelPlane& plane, const Kernel& along_rows,
                     const Kernel& along_columns) {
   const auto width = static_cast<int>(plane.cols()), height = static_cast<int>(plane.rows());
@@ -116,7 +116,8 @@ PixelPlane filtered(const PixelPlane& plane, const Kernel& along_rows,
   return result;
 }
 
-// The eye's contrast sensitivity for one opponent channel: a sum of two Gaussians over the angle.
+// Contrast sensitivity of the eye in one opponent channel: a sum of two Gaussians over the angle in
+// degrees.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
@@ -142,8 +143,8 @@ PixelPlane seen(const PixelPlane& plane, const Sensitivity& eye, double pixels_p
   return result;
 }
 
-// How strong edges and points are at each pixel: first and second derivatives of a Gaussian as wide
-// as those that people find edges with.
+// Strength of edges and points at each pixel: first and second derivatives of a Gaussian of the
+// width with which people detect edges.
 struct Features {
   PixelPlane edges, points;
 };
@@ -154,7 +155,7 @@ Features features(const PixelPlane& brightness, double pixels_per_degree) {
   const int radius = static_cast<int>(std::ceil(3.0 * sd));
   const auto gaussian = [&](double x) { return std::exp(-x * x / (2.0 * sd * sd)); };
   const Kernel smooth = kernel(radius, gaussian);
-  // Positive weights shall sum to 1 and negative ones to -1.
+  // Positive weights sum to 1 and negative ones to -1.
   const auto strength = [&](Kernel derivative) {
     double positive = 0.0, negative = 0.0;
     for (const double w : derivative) (w > 0.0 ? positive : negative) += std::abs(w);
@@ -177,7 +178,7 @@ void for_each_flip_pixel(int count, Body body) {
   });
 }
 
-// What of a picture FLIP compares.
+// Colours and features of a picture, which FLIP compares.
 struct Impression {
   Planes lab;
   Features features;
@@ -209,7 +210,7 @@ Impression impression(const Image& shown, double pixels_per_degree) {
   return result;
 }
 
-// Colour differences, spread over [0,1] so that most of the range is for those that occur.
+// Colour difference, [0,1], compressed so that most of the range covers common differences.
 double colour_error(const Eigen::Array3d& a, const Eigen::Array3d& b) {
   constexpr double exponent = 0.7, share = 0.4, target = 0.95;
   static const double largest =
@@ -230,8 +231,8 @@ void require_comparable(const Image& picture, const Image& reference) {
   }
 }
 
-// Narkowicz's fit to the ACES curve, k0 to k5 of (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5), its
-// exposure taken back by 0.6 as HDR-FLIP does.
+// Narkowicz's fit to the ACES curve: k0 to k5 of (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5), with x
+// multiplied by 0.6 as in HDR-FLIP.
 constexpr double k0 = 0.6 * 0.6 * 2.51, k1 = 0.6 * 0.03, k3 = 0.6 * 0.6 * 2.43, k4 = 0.6 * 0.59,
                  k5 = 0.14;
 
@@ -241,7 +242,7 @@ float aces(float x) {
   return static_cast<float>(std::min(1.0, (k0 * y * y + k1 * y) / (k3 * y * y + k4 * y + k5)));
 }
 
-// Where that curve is t.
+// The inverse of aces().
 double aces_inverse(double t) {
   const double b = (k1 - k4 * t) / (k0 - k3 * t), c = -k5 * t / (k0 - k3 * t);
   return -0.5 * b + std::sqrt(0.25 * b * b - c);

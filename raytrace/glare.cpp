@@ -15,14 +15,14 @@ namespace {
 
 using std::numbers::pi;
 
-/// A piece of a source is small if it is so many times further away than long: then its middle
-/// stands for it, to 1e-3 of its solid angle.
+/// A piece of a source is represented by its middle if its distance is at least this many times its
+/// length; the error of its solid angle is then at most 1e-3.
 constexpr double far_enough = 16.0;
 constexpr int most_halvings = 8;
-/// Places of an opening that are looked for, each way.
+/// Sample points of an opening along each axis.
 constexpr int opening_grid = 8;
 
-/// Adds up what is seen of each luminaire.
+/// Sums over the visible parts of each luminaire.
 class GlareSum {
  public:
   GlareSum(const Camera& eye, const ElementCaster& caster) : eye_(eye), caster_(caster) {}
@@ -33,7 +33,7 @@ class GlareSum {
     return counts_for_glare(way.dot(eye_.direction), way.dot(eye_.direction.cross(eye_.up)),
                             way.dot(eye_.up));
   }
-  /// What the ray to a point meets within this share of the way.
+  /// Returns the first hit of the ray from the eye to a point, up to `share` of the distance.
   ElementHit first_hit(const Eigen::Vector3d& point, double share) const {
     const Ray ray{.origin = eye_.position, .direction = point - eye_.position, .t_max = share};
     ElementHit hit;
@@ -55,7 +55,7 @@ class GlareSum {
     }
     GlareSource& source = sources_[number_[name]];
     source.solid_angle += solid_angle;
-    source.luminance += luminance * solid_angle;  // until finish
+    source.luminance += luminance * solid_angle;  // sum of L w until finish()
     source.share += luminance * luminance / (p * p) * solid_angle;
   }
   std::vector<GlareSource> finish() {
@@ -76,7 +76,7 @@ class GlareSum {
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
-/// A part of an emitting element; in four until it is small.
+/// Adds a part of an emitting element, split in four until it is small.
 void add_triangle(const std::string& name, const Triangle& t, const Eigen::Vector3d& normal,
                   int facet, double luminance, int halvings, GlareSum& sum) {
   const Eigen::Vector3d middle = (t[0] + t[1] + t[2]) / 3.0;
@@ -94,7 +94,7 @@ void add_triangle(const std::string& name, const Triangle& t, const Eigen::Vecto
   }
   const double cosine = -normal.dot(way) / d;
   if (!(cosine > 0.0) || !sum.counts(middle)) return;
-  constexpr double beyond = 1.01;  // spheres are met a little off their elements
+  constexpr double beyond = 1.01;  // a ray hits a sphere slightly off its elements
   if (sum.first_hit(middle, beyond).facet != facet) return;
   const double area = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
   sum.add(name, middle, area * cosine / (d * d), luminance);
@@ -115,20 +115,21 @@ void add_surfaces(const Scene& scene, const PatchMesh& mesh, GlareSum& sum) {
   }
 }
 
-/// Of each of its places, all of which give the same share of its intensity (see LampOpening), the
-/// luminance is I / A and the solid angle A / d^2, with the area A that is seen from the eye.
+/// Adds a lamp by sample points of its opening, each with an equal share of the intensity (see
+/// LampOpening). The luminance of a point is I / A and its solid angle A / d^2 over the number of
+/// points, with the projected area A seen from the eye.
 void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, double height,
               GlareSum& sum) {
   const double candela = luminous(scene.bands, light);
   if (!(candela > 0.0)) return;
-  // Edge on, where a flat opening has no area, a real one has its rim.
+  // A flat opening seen edge on has no area, but a real one has a rim.
   constexpr double rim = 0.05;
   const double least = rim * luminous_area(lamp.opening, 0.0, Eigen::Vector3d::UnitZ());
   constexpr int places = opening_grid * opening_grid;
   for (int i = 0; i < places; ++i) {
     const Eigen::Vector3d point = opening_point(lamp, (i % opening_grid + 0.5) / opening_grid,
                                                 (i / opening_grid + 0.5) / opening_grid);
-    constexpr double before = 0.999;  // a lamp hangs in what holds it
+    constexpr double before = 0.999;  // the holder around a lamp does not hide the lamp
     if (!sum.counts(point) || sum.first_hit(point, before).facet >= 0) continue;
     const Eigen::Vector3d from = sum.position() - point;
     const double d = from.norm();
@@ -139,7 +140,7 @@ void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, doubl
   }
 }
 
-/// What surfaces reflect onto the eye, lx.
+/// Illuminance of the eye by reflected light alone, lx.
 double reflected_illuminance(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const RadiositySolution& solution,
                              const Camera& eye, const GatherOptions& gathering) {

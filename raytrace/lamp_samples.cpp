@@ -12,7 +12,8 @@
 namespace lightwell {
 namespace {
 
-// Of the cone a sphere fills seen from a distance above its radius, 1 - cos, without cancellation.
+// 1 - cos of the half angle of the cone that a sphere fills, seen from a distance above its radius,
+// without cancellation.
 double cone_height(const Sphere& sphere, double distance) {
   const double sine = sphere.radius / distance;
   return sine * sine / (1.0 + std::sqrt(std::max(0.0, 1.0 - sine * sine)));
@@ -46,7 +47,8 @@ LampSamples::LampSamples(const DirectLight& direct_light) : emitters_(direct_lig
   for (double& share : cdf_) share = sum > 0.0 ? share / sum : 0.0;
 }
 
-// About what an emitter sends to a place, by its middle; 0 only where it sends nothing.
+// Approximate irradiance at a point by emitter e, from its middle; 0 only if the emitter sends
+// nothing.
 double LampSamples::weight(std::size_t e, const Eigen::Vector3d& from) const {
   const Emitter& emitter = emitters_[e];
   const Eigen::Vector3d to = from - center_[e];
@@ -57,7 +59,7 @@ double LampSamples::weight(std::size_t e, const Eigen::Vector3d& from) const {
   }
   const double height = to.dot(emitter.normal);
   if (!emitter.emits_both_sides && !(height > 0.0)) return 0.0;
-  // Beside a large one, some of it is nearer than its middle and seen less from the edge.
+  // Beside a large emitter, parts of it are nearer than its middle and seen less edge on.
   const double size2 = emitter.area / std::numbers::pi;
   return share_[e] * (std::abs(height) + 0.1 * std::sqrt(size2)) /
          (std::sqrt(distance2 + size2) * (distance2 + size2));

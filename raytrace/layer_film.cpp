@@ -57,7 +57,7 @@ void LayerFilm::trace_centres(int y, const Camera& camera, const CameraRays& ray
                     ? std::numeric_limits<float>::infinity()
                     : static_cast<float>(hit.t * view_rays[x].direction.dot(camera.direction));
       } else if (layer == Layer::patch) {
-        // Exact up to 2^24 patches.
+        // A float holds patch numbers exactly up to 2^24.
         value = hit.element < 0 ? -1.0f : static_cast<float>(caster.mesh().patch[hit.element]);
       }
     }

@@ -44,7 +44,8 @@ PointKey key_of(const Eigen::Vector3d& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-// Elements that meet without sharing vertices, at reflex corners, bound nothing there.
+// Removes edges between elements that meet without sharing vertices, as at reflex corners: such
+// edges bound nothing.
 void drop_seams(std::vector<LightRegions::Edge>& bounds) {
   std::set<std::pair<PointKey, PointKey>> all;
   for (const auto& edge : bounds) all.insert({key_of(edge.from), key_of(edge.to)});

@@ -20,7 +20,7 @@ namespace {
 
 using Edge = std::pair<int, int>;
 
-/// Facets of one plane.
+/// Facets that lie in one plane.
 struct MeshPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -46,7 +46,7 @@ std::vector<MeshPlane> planes_of(const PolygonMesh& mesh, double size) {
   return planes;
 }
 
-/// Edges that only one facet has.
+/// Returns the edges of the outline, each of which belongs to one facet alone.
 std::vector<Edge> outline_of(const MeshPlane& plane) {
   std::set<Edge> edges;
   const auto add = [&](const std::vector<int>& loop) {
@@ -62,7 +62,7 @@ std::vector<Edge> outline_of(const MeshPlane& plane) {
   return {edges.begin(), edges.end()};
 }
 
-/// The outline in the plane's own coordinates.
+/// The outline in coordinates of the plane.
 struct FlatOutline {
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> edges{};
 
@@ -113,7 +113,7 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
   double longest = 0.0;
   for (const auto& [a, b] : edges) {
     const Eigen::Vector3d along = place(b) - place(a);
-    // Of edges as long as each other the first stays, whatever the rounding.
+    // The first of equally long edges is kept, in spite of rounding.
     if (along.norm() <= longest * (1.0 + 1e-9)) continue;
     longest = along.norm();
     grid.u = along.normalized();
@@ -179,9 +179,9 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
 LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
   constexpr int ray_count = 64;
   const SobolPoints sobol(ray_count);
-  // Which side of a face a point is on that lies in it is for rounding to say; light of its inside
-  // is none of the plane's.
-  constexpr double beside = 1e-5;  // of the scene
+  // Rounding decides on which side of a face a point in its plane lies, so points beside it are
+  // tested too. Light inside a body is not light of the plane.
+  constexpr double beside = 1e-5;  // share of the scene's diagonal
   const double aside = beside * mesh_bounds(caster.mesh()).diagonal();
   const auto is_inside = [&](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
     Eigen::Vector3d a, b;
@@ -237,8 +237,9 @@ LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
   field.greatest = field.lux.maxCoeff();
   if (!(field.mean > 0.0)) return field;
   field.uniformity = field.least / field.mean;
-  // The standard error of a mean of two is half of their difference; of one point that is a guess,
-  // of all together it is good. Where there is next to no light it would be all of it.
+  // The standard error of a mean of two values is half of their difference: a rough guess for one
+  // point, a good one for all points together. In near darkness the relative error would reach 100
+  // %, so 0.1 of the mean is the least divisor.
   const Eigen::ArrayXd error = 0.5 * (halves[0] - halves[1]) / field.lux.max(0.1 * field.mean);
   field.point_within = 2.0 * std::sqrt(error.square().mean());
   field.mean_within = field.point_within / std::sqrt(static_cast<double>(count));

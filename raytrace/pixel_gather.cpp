@@ -14,14 +14,16 @@ namespace {
 
 constexpr int batch = 64;
 
-// A smooth normal's hemisphere reaches below the surface it rounds off; what would go there meets
-// that surface's neighbourhood, of which the side above is the best picture.
+// Returns the direction, mirrored at the facet if it points below. The hemisphere of a smooth
+// normal reaches below the facet, where a ray would meet the facet's own neighbourhood; the
+// mirrored direction is the best estimate of that light.
 Eigen::Vector3d above(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal) {
   const double height = direction.dot(normal);
   return height < 0.0 ? Eigen::Vector3d(direction - 2.0 * height * normal) : direction;
 }
 
-// pi times the density of a direction once above() has turned up what went below.
+// pi times the probability density of a direction after above() has mirrored the directions that
+// point below.
 double measure(const ShadingPoint& at, const Eigen::Vector3d& direction) {
   const double height = direction.dot(at.normal);
   if (!(height > 0.0)) return 0.0;
@@ -82,7 +84,8 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
   return (sum / static_cast<double>(points.size())).cast<float>();
 }
 
-// Light straight from bright patches, each ray for the one it was drawn for.
+// Adds light of bright patches by aimed rays. A ray counts only if the element it was aimed at is
+// its first hit.
 void PixelGather::aim(const ElementCaster& caster, const ShadingPoint& at,
                       const BrightPatches::View& view, int rays, std::uint64_t key,
                       Eigen::ArrayXd& sum) const {
@@ -101,7 +104,8 @@ void PixelGather::aim(const ElementCaster& caster, const ShadingPoint& at,
   }
 }
 
-// B of what the ray ends on, of which what comes straight from there counts by its share.
+// Radiosity B at the end of a ray. Light of the first hit itself is weighted by `share`; light
+// through mirrors and glass has weight 1.
 Spectrum PixelGather::arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                                std::uint64_t key, double share) const {
   const PatchMesh& mesh = caster.mesh();

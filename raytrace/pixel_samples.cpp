@@ -11,7 +11,7 @@ namespace {
 
 constexpr double filter_radius = 1.5;  // pixels
 
-// x in [-1, 1] over the window's width; 1 in the middle.
+// Blackman-Harris window for x in [-1, 1]; 1 in the middle.
 double blackman_harris(double x) {
   const double a = std::numbers::pi * (x + 1.0);
   return 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2.0 * a) -

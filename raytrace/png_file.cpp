@@ -15,8 +15,8 @@
 namespace lightwell {
 namespace {
 
-// libpng reports through longjmp, which must not cross C++ objects: everything that owns memory is
-// made by the caller, and this frame holds plain data alone.
+// Data of one call of libpng. libpng reports errors through longjmp, which must not skip
+// destructors of C++ objects: the caller owns all memory, and run_png() holds plain data alone.
 struct PngJob {
   std::ostream* stream;
   int width, height;
@@ -84,7 +84,7 @@ bool is_ascii(const std::string& text) {
 
 png_text png_entry(const std::string& key, const std::string& value) {
   png_text text{};
-  // tEXt is Latin-1; anything beyond ASCII goes into iTXt, which is UTF-8.
+  // tEXt is Latin-1, iTXt is UTF-8; texts beyond ASCII go into iTXt.
   const bool ascii = is_ascii(value);
   text.compression = ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
   text.key = const_cast<char*>(key.c_str());
@@ -117,7 +117,7 @@ void write_png(const std::filesystem::path& path, int width, int height,
                                  width, height, rgb.size(), max_image_pixels));
   }
   std::vector<png_bytep> rows = row_pointers(height, rgb);
-  std::vector<std::string> values;  // png_text only points at them
+  std::vector<std::string> values;  // png_text holds pointers to these strings
   for (const auto& [key, value] : metadata) values.push_back(to_text(value));
   std::vector<png_text> texts;
   for (std::size_t i = 0; i < metadata.size(); ++i) {

@@ -14,7 +14,7 @@
 namespace lightwell {
 namespace {
 
-// How near a surface a probe must be to lie on it, as a share of the scene's diagonal.
+// Greatest distance of a probe from its surface, as a share of the scene's diagonal.
 constexpr double reach_share = 1e-4;
 
 double diagonal(const PatchMesh& mesh) {
@@ -23,8 +23,8 @@ double diagonal(const PatchMesh& mesh) {
   return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
-// Unit normal of what was hit, on the side of the probe or its opposite; the back of a one-sided
-// surface has no element, but its front does.
+// Unit normal at a hit, on the side of the probe or the opposite one. The back of a one-sided
+// surface has no element, so the normal is that of its front.
 Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
                            const Eigen::Vector3d& at) {
   for (const SphereGrid& grid : mesh.sphere_grids) {
@@ -37,7 +37,7 @@ Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
   return Eigen::Vector3d::Zero();
 }
 
-// Finds the surface a probe lies on.
+// Search for the surface that a probe lies on.
 class ProbeSurface {
  public:
   struct SurfacePoint {
@@ -48,8 +48,9 @@ class ProbeSurface {
   explicit ProbeSurface(const ElementCaster& caster)
       : caster_(caster), reach_(reach_share * diagonal(caster.mesh())) {}
 
-  // A probe on an edge, or where another surface stands on its own, is moved by a hair to where it
-  // is clear on which side of what it lies: on the surface, and in front of what stands there.
+  // Returns the surface point of a probe; empty if there is none. A probe on an edge, or where
+  // another surface stands on its own surface, is moved by a tenth of the reach to a point that
+  // lies clearly within its facet and in front of what stands there.
   std::optional<SurfacePoint> find(const Probe& probe) const {
     Frame frame{.normal = probe.normal};
     tangent_frame(probe.normal, frame.a, frame.b);
@@ -72,14 +73,14 @@ class ProbeSurface {
 
  private:
   struct Frame {
-    Eigen::Vector3d normal, a{}, b{};  // a and b lie in the surface
+    Eigen::Vector3d normal, a{}, b{};  // a and b are tangent to the surface
   };
 
-  // Of all that lies within reach above or below the point and faces the probe's way, the nearest;
-  // what can give light back comes before black backs.
+  // Returns the nearest point of the surfaces within reach above or below `position` that face
+  // along `normal` or against it. Surfaces with an element come before black backs.
   std::optional<SurfacePoint> below(const Eigen::Vector3d& position,
                                     const Eigen::Vector3d& normal) const {
-    constexpr double min_facing = 0.9;  // a wall touched from the side is not what it lies on
+    constexpr double min_facing = 0.9;  // cosine; excludes a wall touched from the side
     constexpr int max_layers = 8;
     std::optional<SurfacePoint> best;
     double best_distance = 0.0;
@@ -99,7 +100,7 @@ class ProbeSurface {
         best = SurfacePoint{.hit = hit, .position = at};
         best_distance = distance;
       }
-      // From a little before this surface, for another may lie in the same plane.
+      // The next ray starts a little before this surface, since another may lie in the same plane.
       ray.origin = at + 1e-3 * reach_ * normal;
       ray.t_max = 2.0 * reach_ - (top - ray.origin).dot(normal);
       ray.origin_group = hit.facet;
@@ -107,8 +108,9 @@ class ProbeSurface {
     return best;
   }
 
-  // Whether the place's facet goes on for `radius` around the point and nothing stands on it there.
-  // A neighbour in nearly the same plane counts as an end: at their common edge it would shade.
+  // Returns whether the facet continues for `radius` around the point and nothing stands on it
+  // there. A neighbour in nearly the same plane ends the facet, since the neighbour would shade the
+  // probe at their common edge.
   bool is_inside(const SurfacePoint& point_on_surface, const Eigen::Vector3d& position,
                  const Frame& frame, double radius) const {
     const auto continues = [&](const Eigen::Vector3d& at) {
@@ -129,7 +131,8 @@ class ProbeSurface {
     return true;
   }
 
-  // Whether what stands on the surface between the point and point + 2 `way` shows its back.
+  // Returns whether the first surface that stands between the point and point + 2 `way` shows its
+  // back.
   bool is_behind(const Eigen::Vector3d& position, const Eigen::Vector3d& way,
                  const Frame& frame) const {
     const Ray ray{.origin = position + reach_ * frame.normal, .direction = way, .t_max = 2.0};
@@ -145,7 +148,8 @@ class ProbeSurface {
 }  // namespace
 
 SolveOptions options_for_probes() {
-  // Light on vertices is read by many rays of many probes, which add up what few rays leave in it.
+  // 64 rays suffice: the light of vertices is read by many rays of many probes, whose means average
+  // out its noise.
   return {.gather = {.rays = 64, .shadows = {.min_rays = 16, .max_rays = 64}},
           .refine = {.tolerance = 0.0},
           .error_points = 0};
@@ -156,8 +160,8 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
                            std::span<const Probe> probes, const GatherOptions& options) {
   const ProbeSurface surface(caster);
   const bool has_caustics = solution.caustic_irradiance.size() > 0;
-  // What emitters send by way of mirrors and glass is not found by rays from the probe: the mesh
-  // has it.
+  // Rays from the probe do not find light of emitters through mirrors and glass; the mesh holds
+  // this light.
   BandArray caustic =
       BandArray::Zero(static_cast<Eigen::Index>(probes.size()), scene.bands.count());
   std::vector<GatherPoint> points;
@@ -182,7 +186,7 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
 
 namespace {
 
-// The elements they lie on. Throws InputError naming the first that lies on none.
+// Hits of probes on elements. Throws InputError that names the first probe without an element.
 std::vector<ElementHit> on_elements(const ElementCaster& caster, const RadiositySolution& solution,
                                     std::span<const Probe> probes) {
   const ProbeSurface surface(caster);

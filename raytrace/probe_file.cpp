@@ -35,7 +35,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   }
 }
 
-// Where an error lies, in front of every message.
+// Position of an error, which precedes every message.
 struct FileLocation {
   std::string file{};
   int line = 0;

@@ -93,7 +93,7 @@ class RayTree {
   struct ShadingPoint {
     Eigen::Vector3d position, normal;
     Eigen::Vector3d rest, rest_normal;  ///< position and normal in the rest pose
-    /// from the rest pose; null: the surface stands still
+    /// Motion from the rest pose; null: the surface stands still.
     const Eigen::Isometry3d* pose = nullptr;
 
     Eigen::Vector3d turned(const Eigen::Vector3d& v) const { return pose ? pose->linear() * v : v; }
@@ -113,7 +113,8 @@ class RayTree {
     /// Probability density of the direction, 1/sr, off a rough surface, which samples lamps as
     /// well; else 0.
     double lobe_density = 0.0;
-    /// View by which that rough surface aims at bright patches as well; null: no such rays.
+    /// View by which the rough surface at the branch's origin aims at bright patches as well; null:
+    /// no such rays.
     const BrightPatches::View* bright = nullptr;
     bool is_aimed = false;  ///< aimed at a bright patch
     double width = 0.0;     ///< m, width of the cone at the ray's origin
@@ -184,7 +185,7 @@ class RayTree {
   double pixel_width_;                               ///< m at a distance of one metre
   std::shared_ptr<const FacetTextures> textures_{};  ///< null: no textures
   FacetNormals normals_;
-  /// m, least height of a shadow ray's origin over its facet, beyond rounding
+  /// Least height of a shadow ray's origin over its facet, m, beyond rounding.
   double least_lift_ = 0.0;
   bool with_layers_ = false;
   Eigen::Array3f white_rgb_;             ///< RGB of a reflectance of 1 under equal-energy light
