@@ -132,7 +132,7 @@ class Kept {
       : width_(reference.width), height_(reference.height), block_(options.block) {
     if (block_ < 1) throw InputError(fmt::format("a block of {} pixels; 1 is least", block_));
     if (!(options.exclude_above > 0.0)) {
-      throw InputError(fmt::format("what is above {} cannot be left out; give a number above 0",
+      throw InputError(fmt::format("pixels above {} cannot be left out; give a number above 0",
                                    options.exclude_above));
     }
     for (Eigen::Index i = 0; i < reference.radiance.rows(); ++i) {

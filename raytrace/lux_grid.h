@@ -32,12 +32,12 @@ struct LuxGrid {
   std::vector<Probe> points{};  ///< points inside the surface's outline less the margin
 };
 
-/// Returns the grid over a surface: over the largest set of its facets that lie in one plane, or
-/// over the one that faces more towards `up` of two equal in area. The axis u follows the longest
-/// edge of the outline.
+/// Returns the grid over a surface: over the largest set of its facets that lie in one plane. Of
+/// two sets equal in area, the one that faces more towards `up` is taken. The axis u follows the
+/// longest edge of the outline.
 ///
-/// By EN 12464-1 the longer side decides the spacing, or the shorter side if their ratio exceeds 2
-/// : 1. Throws InputError if:
+/// The spacing follows from the longer side, or from the shorter side if their ratio exceeds 2:1
+/// (EN 12464-1). Throws InputError if:
 /// - the surface is a sphere;
 /// - the margin leaves nothing, or no point lies within the outline;
 /// - a side would have more than 1000 points.

@@ -86,7 +86,7 @@ Probe read_row(const std::vector<std::string_view>& cells, const Columns& column
   const Eigen::Vector3d normal(values[3], values[4], values[5]);
   const double length = normal.stableNorm();
   if (!(length > 0.0)) {
-    location.fail("the normal nx,ny,nz has no length; it says which way the probe faces");
+    location.fail("the normal nx,ny,nz has no length; give the direction that the probe faces");
   }
   return {.position = metres_per_unit * Eigen::Vector3d(values[0], values[1], values[2]),
           .normal = normal / length};

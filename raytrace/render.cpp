@@ -28,14 +28,14 @@
 namespace lightwell {
 namespace {
 
-// Samples are keyed by their place on a lattice of this many steps per pixel, whatever the
-// subdivision in force, so that a finer picture keeps the samples of a coarser one.
+// Samples are keyed by their point on a lattice of this many steps per pixel, whatever the
+// subdivision, so a finer picture keeps the samples of a coarser one.
 constexpr int max_levels = 6;
 constexpr int lattice_steps = 1 << max_levels;
 
 struct Counters {
   std::atomic<std::int64_t> eye_rays{0}, depth_cut{0};
-  // Weight of what was cut, in steps that add up to the same in any order.
+  // Weight of cut branches in integer steps, whose sum does not depend on the order.
   static constexpr double weight_step = 0x1p-30;
   std::atomic<std::int64_t> cut_steps{0};
 
@@ -44,7 +44,7 @@ struct Counters {
   }
 };
 
-// Looks at points of the picture, given in lattice steps from its top left corner.
+// Tracer of points of the picture, given in lattice steps from the top left corner.
 class Eye {
  public:
   Eye(const CameraRays& rays, const RayTree& tree, Counters& counters)
@@ -71,21 +71,21 @@ class Eye {
   Counters& counters_;
 };
 
-// What a pixel is the mean of: radiance, and the layers that go with it.
+// Radiance and sampled layers, averaged together.
 struct PixelValue {
   Spectrum radiance{};
   SampledLayers layers = SampledLayers::Zero();
 
   static PixelValue zero(int bands) { return {.radiance = Spectrum::Zero(bands)}; }
-  template <class Seen>  // a RaySample or another PixelValue
+  template <class Seen>  // RaySample or PixelValue
   void add(const Seen& seen, float share) {
     radiance += share * seen.radiance;
     layers += share * seen.layers;
   }
 };
 
-// Mean radiance over one pixel's square by adaptive subdivision (Whitted 1980): the mean of the
-// four corners where they agree, else of the four quarters.
+// Mean radiance over a pixel's square by adaptive subdivision (Whitted 1980): the mean of the four
+// corners if they agree, else of the four quarters.
 class PixelMean {
  public:
   PixelMean(const Eye& eye, const RenderOptions& options)
@@ -120,7 +120,7 @@ class PixelMean {
 
   const RaySample* sample(int i, int j) {
     if (!known_[slot(i, j)]) {
-      // Samples of a finer level are more to average.
+      // Finer levels average more samples, so each sample gets less effort.
       int step = cells_;
       while ((i | j) % step != 0) step /= 2;
       const float effort = static_cast<float>(step) / static_cast<float>(cells_);
@@ -149,7 +149,8 @@ class PixelMean {
     return {.radiance = share * value.radiance, .layers = share * value.layers};
   }
 
-  // Largest difference between corners in any band, over the bands' mean of the largest value.
+  // Contrast of a cell: the largest difference between corners in any band, over the bands' mean of
+  // the largest value.
   static float spread(const Corners& c) {
     float widest = 0.0f, sum = 0.0f;
     for (Eigen::Index k = 0; k < c[0]->radiance.size(); ++k) {
@@ -167,9 +168,10 @@ class PixelMean {
     return scaled(sum, 0.25f);
   }
 
-  // The smallest cell with an edge in it: each corner weighs what share of the cell looks like it.
-  // Shares come from rays without shadow rays, which makes edges many times finer than samples; a
-  // lamp's edge against a wall a hundred times darker needs that.
+  // Mean over a cell of the finest level with an edge in it. The weight of a corner is the share of
+  // the cell that looks like the corner. The shares come from rays without shadow rays, so edges
+  // are resolved many times finer than samples, as the edge of a lamp against a wall a hundred
+  // times darker needs.
   PixelValue edge_mean(int i, int j, const Corners& c) const {
     const double x = x_ + i * steps_per_cell_, y = y_ + j * steps_per_cell_;
     const std::uint64_t key = random_key(static_cast<std::uint64_t>(x),
@@ -182,7 +184,7 @@ class PixelMean {
           eye_.fingerprint(x + u[0] * steps_per_cell_, y + u[1] * steps_per_cell_);
       const auto alike = [&](const RaySample* sample) { return sample->fingerprint == seen; };
       const auto count = std::count_if(c.begin(), c.end(), alike);
-      if (count == 0) continue;  // a third thing, which no corner shows
+      if (count == 0) continue;  // a surface that no corner shows
       ++votes;
       for (const RaySample* sample : c) {
         if (alike(sample)) sum.add(*sample, 1.0f / static_cast<float>(count));
@@ -201,7 +203,7 @@ class PixelMean {
     if (size < 2) return false;
     if (!are_alike(c)) return true;
     if (!(spread(c) <= options_.contrast)) return true;
-    // Something thin may pass between the corners; to see what is in the middle costs no shadow
+    // Something thin may pass between the corners. The fingerprint at the middle costs no shadow
     // rays.
     const int half = size * steps_per_cell_ / 2;
     return eye_.fingerprint(x_ + i * steps_per_cell_ + half, y_ + j * steps_per_cell_ + half) !=
@@ -213,7 +215,7 @@ class PixelMean {
   const SobolPoints edge_points_{16};
   int cells_, steps_per_cell_;
   int x_ = 0, y_ = 0;
-  std::vector<RaySample> lattice_samples_;  // of this pixel's lattice points
+  std::vector<RaySample> lattice_samples_;  // samples at this pixel's lattice points
   std::vector<char> known_;
 };
 
@@ -249,7 +251,7 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
   });
 }
 
-// What happens while the shutter is open, if anything does.
+// Returns the interval of the shutter; empty if nothing moves while it is open.
 std::optional<Exposure> exposure_of(const Scene& scene, const PatchMesh& mesh,
                                     const Camera& camera) {
   const auto moves = [](const auto& thing) { return thing.motion >= 0; };
@@ -271,7 +273,8 @@ std::optional<Exposure> exposure_of(const Scene& scene, const PatchMesh& mesh,
   return exposure;
 }
 
-// Rough surfaces, lenses and motion show nothing sharp that subdivision could find the edges of.
+// Returns the options of many samples per pixel, by default for rough surfaces, lenses and motion,
+// which have no sharp edges for subdivision to find.
 SampleOptions sampling_for(const Scene& scene, const CameraRays& rays, bool is_exposure,
                            const RenderOptions& options) {
   SampleOptions sampling = options.sampling;
@@ -293,7 +296,7 @@ void add_motion(Fingerprint& print, const RigidMotion& motion) {
   }
 }
 
-// Of what moves while the shutter is open.
+// Adds motions and the shutter's interval.
 void add_exposure(Fingerprint& print, const Scene& scene, const Exposure& exposure) {
   print.add(exposure.open);
   print.add(exposure.close);
@@ -302,7 +305,7 @@ void add_exposure(Fingerprint& print, const Scene& scene, const Exposure& exposu
   if (exposure.camera) add_motion(print, *exposure.camera);
 }
 
-// All that decides a picture, but what the journal is of.
+// Adds all inputs of a picture except the scene, which identifies the journal.
 void add_inputs(Fingerprint& print, const ElementCaster& caster, const RadiositySolution& solution,
                 const Camera& camera, const RenderOptions& options) {
   print.add(caster.mesh());
@@ -311,7 +314,8 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
   // add_exposure() has the camera's motion and shutter.
   const auto& [name, position, direction, up, fov_degrees, width, height, lens_radius,
                focus_distance, blades, shutter_open, shutter_close, motion] = camera;
-  // `photons` decides `caustics`; render() adds the names of layers; the run decides no bit.
+  // Left out are `caustics`, which follows from `photons`; `layers`, whose names render() adds;
+  // `run` and `rows_done`, which change no bit.
   const auto& [pass, max_depth, min_contribution, shadows, gather_rays, photons, caustics,
                glossy_rays, sampling, max_subdivision, contrast, layers, run, rows_done] = options;
   const auto& [min_shadow_rays, max_shadow_rays] = shadows;
@@ -339,14 +343,14 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
   print.add(noise);
 }
 
-// A strip of the picture, as wide as it is: its rows are together in memory.
+// Returns the values of full rows of the picture, which are contiguous in memory.
 std::span<float> rows_of(BandArray& values, int width, int first_row, int rows) {
   const auto row = static_cast<std::size_t>(width * values.cols());
   return {values.data() + first_row * row, rows * row};
 }
 
-// Renders tile by tile: strips that share a row of corners, or strips of many samples per pixel if
-// there are `samples`.
+// Renderer of tiles, which are strips of full rows. Strips share a row of corners, or hold many
+// samples per pixel if there are `samples`.
 class TileRenderer {
  public:
   TileRenderer(const Eye& eye, const PixelSamples* samples, const RenderOptions& options,
@@ -359,14 +363,15 @@ class TileRenderer {
         layers_(layers),
         corners_(tile_rows() + 1, CornerRow(image.width + 1)) {}
 
-  /// Small ones, to stop soon and to lose little; large enough to keep all threads busy.
+  /// Rows of a tile: few enough to stop soon and to lose little, enough to keep all threads busy.
   int tile_rows() const {
-    constexpr int sampled_rows = 16;  // and those beside them, whose first samples are lost
+    // Each tile also takes, and discards, the first samples of a row on either side.
+    constexpr int sampled_rows = 16;
     if (samples_) return sampled_rows;
     constexpr int pixels_per_tile = 8192;
     return std::max(1, pixels_per_tile / image_.width);
   }
-  /// Its radiance and sampled layers.
+  /// Fills radiance and sampled layers of a tile.
   void render(int first_row, int rows) {
     if (samples_) {
       const double part = static_cast<double>(first_row) / image_.height;
@@ -393,7 +398,7 @@ class TileRenderer {
   Image& image_;
   LayerFilm& layers_;
   std::vector<CornerRow> corners_;
-  int row_of_corners_ = -1;  // that the first of them is
+  int row_of_corners_ = -1;  // row of corners_.front(); -1: none yet
 };
 
 }  // namespace

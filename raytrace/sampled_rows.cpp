@@ -8,8 +8,8 @@
 namespace lightwell {
 namespace {
 
-// Calls body(x, y) for each pixel of rows `first` to `end`, in slices that keep progress and
-// interruption on this thread.
+// Calls body(x, y) for each pixel of rows `first` to `end`, in slices, so that this thread reports
+// progress and handles interruption between slices.
 template <class Body>
 void for_each_pixel(int width, int first, int end, const Progress& progress, double part,
                     Body&& body) {

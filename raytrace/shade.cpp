@@ -16,7 +16,7 @@ namespace {
 
 constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
 
-// What one of many samples does with light: a share of the rays of a sample that stands alone.
+// Effort of one of many samples, as a share of the rays of a sample that stands alone.
 constexpr float share_of_many = 1.0f / 16.0f;
 
 int root_facet(std::vector<int>& parent, int i) {
@@ -24,8 +24,8 @@ int root_facet(std::vector<int>& parent, int i) {
   return i;
 }
 
-// Facets that share mesh vertices are one smooth surface: a tessellated column is not an edge at
-// every facet.
+// Returns the smooth surface of each facet: facets that share mesh vertices belong together, so
+// that the facets of a tessellated column do not count as edges.
 std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
   std::vector<int> parent(facet_count);
   std::iota(parent.begin(), parent.end(), 0);
@@ -42,8 +42,8 @@ std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
   return parent;
 }
 
-// Noise that weighs less may be larger: half the weight, half the rays. Powers of two stay ones,
-// which stratify best.
+// Returns shadow options for a branch: half the weight, half the rays, since the noise of a light
+// branch may be larger. Halving keeps powers of two, which stratify best.
 ShadowOptions shadows_for(ShadowOptions shadows, float weight, int fewest) {
   for (; weight <= 0.5f && shadows.min_rays >= 2 * fewest; weight *= 2.0f) {
     shadows.min_rays /= 2;
@@ -71,7 +71,7 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       gloss_points_(gloss_point_count),
       lamps_(direct_light) {
   if (textures_->is_empty()) textures_ = nullptr;
-  constexpr double rounding = 1e-6;  // of the diagonal
+  constexpr double rounding = 1e-6;  // share of the scene's diagonal
   if (!normals_.is_empty()) least_lift_ = rounding * scene_bounds(scene).diagonal();
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
@@ -168,8 +168,8 @@ void RayTree::follow(Branch branch, TreeState& state) const {
   split(branch, hit, at, state);
 }
 
-// The sky; and the sun, but off rough surfaces, which draw directions towards it: see
-// add_free_source.
+// Adds radiance of the sky, and of the sun except off rough surfaces, which sample the sun in
+// add_free_source().
 void RayTree::add_background(const Branch& branch, TreeState& state) const {
   if (!state.shades || !scene_.sky) return;
   const Eigen::Vector3d direction = branch.ray.direction.normalized();
@@ -247,7 +247,8 @@ RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& h
   if (facet.is_sphere) {
     at.rest_normal = (at.rest - facet.point).normalized();
   } else {
-    // The caster's distances are float; the plane is known in double.
+    // The point is projected onto the facet's plane in double, since the caster's distances are
+    // float.
     at.rest -= facet.normal.dot(at.rest - facet.point) * facet.normal;
   }
   if (at.rest_normal.dot(at.turned_back(ray.direction)) > 0.0) at.rest_normal = -at.rest_normal;
@@ -256,8 +257,8 @@ RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& h
   return at;
 }
 
-// What the file says; else the mesh's normals at vertices round off a tessellated surface, and are
-// the facet's own on a flat one.
+// Normals of the file if given; else normals of the mesh's vertices, which round off a tessellated
+// surface and equal the facet's normal on a flat one.
 Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const ShadingPoint& at) const {
   if (facets_[hit.facet].is_sphere) return at.normal;
   if (normals_.is_given(hit.facet)) {
@@ -273,7 +274,7 @@ Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const ShadingPoint
 
 RayTree::ShadowOrigin RayTree::shadow_origin(const ElementHit& hit, const ShadingPoint& at) const {
   const PatchMesh& mesh = caster_.mesh();
-  // A lamp would see itself from before it.
+  // An origin above a lamp's facet would be lit by the lamp itself.
   const bool shines = (mesh.emission.row(mesh.patch[hit.element]) > 0.0f).any();
   if (!normals_.is_given(hit.facet) || shines) return {at.position, hit.facet};
   if (normals_.at(hit.facet, at.rest, at.rest_normal) == at.rest_normal) {
@@ -283,7 +284,8 @@ RayTree::ShadowOrigin RayTree::shadow_origin(const ElementHit& hit, const Shadin
   return {at.position + std::max(height, least_lift_) * at.normal, -1};
 }
 
-// The texture's at the place, over what the pixel covers of the surface; else the patch's.
+// Reflectance of the texture, averaged over the pixel's footprint on the surface; of the patch
+// without a texture.
 Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
                               const ShadingPoint& at) const {
   const PatchMesh& mesh = caster_.mesh();
@@ -296,7 +298,7 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
   const double width = cone_width(branch, at);
   const Eigen::Vector3d direction = at.turned_back(branch.ray.direction.normalized());
   const Eigen::Vector3d& normal = at.rest_normal;
-  constexpr double grazing = 1e-3;  // of a cosine: then a texture is a streak anyway
+  constexpr double grazing = 1e-3;  // cosine; a texture seen at a smaller one is a streak anyway
   const double cosine = std::max(grazing, std::abs(direction.dot(normal)));
   const Eigen::Vector3d across = normal.cross(direction);
   const double sine = across.norm();
@@ -307,7 +309,7 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
   return textures_->reflectance(hit.facet, at.rest, footprint);
 }
 
-// L = (M + rho E) / pi.
+// Adds L = (M + rho E) / pi, weighted by share_of_bright().
 void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                     TreeState& state) const {
   const float share = share_of_bright(branch, hit, at);
@@ -348,7 +350,8 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   return E;
 }
 
-// What is gathered has no caustics yet; the solution's indirect light has its own.
+// Adds caustics. Gathered light has none yet; the solution's indirect light includes the solution's
+// own, which photons replace.
 void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at,
                            Spectrum& indirect) const {
   if (solution_.caustic_irradiance.size() == 0) return;
@@ -357,7 +360,7 @@ void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at,
     return;
   }
   if (!gather_) {
-    // What rounding leaves of nothing may lie below.
+    // The difference may be slightly negative by rounding.
     indirect -= interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
     indirect = indirect.max(0.0f);
   }
@@ -375,7 +378,8 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
     return linear_rgb(bands, L);
   };
   if (branch.node == 1) {
-    // Bands that do not make up white, such as infrared, have no colour.
+    // Bands without a white, such as infrared, have no colour; their albedo is the grey of the
+    // mean.
     three(Layer::albedo) = (white_rgb_ > 0.0f).all()
                                ? Eigen::Array3f(linear_rgb(bands, rho) / white_rgb_)
                                : Eigen::Array3f::Constant(rho.mean());
@@ -385,7 +389,8 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
   } else {
     three(Layer::specular) += light(M + rho * (E.direct + E.indirect));
   }
-  // Refracted children alone have odd places, so that straight through glass all bits are ones.
+  // Refracted children alone have odd numbers, so all bits of a number straight through glass are
+  // ones.
   const bool is_straight = branch.is_sharp && (branch.node & (branch.node + 1)) == 0;
   if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
     const Spectrum all = E.direct + E.indirect;

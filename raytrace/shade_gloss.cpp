@@ -1,4 +1,4 @@
-// What RayTree sees by way of rough surfaces.
+// Steps of RayTree at rough surfaces.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 namespace lightwell {
 namespace {
 
-// Whether a direction is on one side of a facet and on the other of the smooth surface that it
-// stands for: light from there would come through the facet.
+// Returns whether a direction lies on one side of a facet and on the other side of the smooth
+// surface that the facet approximates. Light from there would come through the facet.
 bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d& smooth,
                          const Eigen::Vector3d& flat) {
   return (direction.dot(smooth) < 0.0) != (direction.dot(flat) < 0.0);
@@ -20,7 +20,7 @@ bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d
 
 }  // namespace
 
-// The mean over directions of a rough surface's lobe.
+// Adds the mean over sampled directions of a rough surface's lobe.
 void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interaction,
                       const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
   if (!state.shades) return;
@@ -31,7 +31,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
   const int first = state.number.value_or(0);
   const std::uint64_t key = random_key(state.gloss_key, branch.node, RandomPurpose::gloss,
                                        static_cast<std::uint64_t>(first / gloss_point_count));
-  // As many as a picture takes of one place or so.
+  // Typical number of samples of one point in a picture.
   constexpr int usual_samples = 64;
   BrightPatches::View view;
   if (!bright_.is_empty() && !interaction.material.dielectric) {
@@ -56,7 +56,8 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
       add_bright_patch(branch, interaction, hit, at, view, bright_u,
                        1.0f / static_cast<float>(count), state);
     }
-    // Places of many samples are alike, so that theirs are spread over what lies behind as well.
+    // The number of the branch is the same in all samples of one key, so that their Sobol points
+    // stay spread over surfaces behind this one as well.
     const auto node = random_key(branch.node, RandomPurpose::gloss, static_cast<std::uint64_t>(i),
                                  sample.crosses);
     Branch spread = branch;
@@ -70,8 +71,9 @@ const RoughLobe& RayTree::lobe(int material, bool from_back) const {
   return *lobes_[static_cast<std::size_t>(material)][from_back ? 1 : 0];
 }
 
-// Light of a lamp off a rough surface, by a direction drawn towards the lamp; those of the lobe
-// that meet it count for the rest (balance heuristic of Veach & Guibas 1995).
+// Adds light of a lamp off a rough surface, by a direction drawn towards the lamp. Directions of
+// the lobe that meet the lamp carry the rest of the weight (balance heuristic of Veach & Guibas
+// 1995).
 void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interaction,
                        const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u,
                        float share, TreeState& state) const {
@@ -107,8 +109,9 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
   }
 }
 
-// Light of a source that is no surface, off a rough one: no direction of the lobe meets it, so this
-// counts for all. One is drawn by what it would send here.
+// Adds light of a source that is no surface off a rough surface. No direction of the lobe meets
+// such a source, so this sample has the full weight. The probability of a source is proportional to
+// its unobstructed irradiance at the point.
 void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& interaction,
                               const ElementHit& hit, const ShadingPoint& at,
                               const Eigen::Array4d& u, float share, TreeState& state) const {
@@ -138,7 +141,8 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
                 .direction = source_sample.direction,
                 .t_max = source_sample.distance,
                 .origin_group = hit.facet};
-  // What a lobe averages is radiance; a point's is E as a peak of solid angle 0.
+  // A lobe with density p averages radiance, int L p dw. A source of irradiance E and solid angle 0
+  // contributes E p.
   Spectrum seen = branch.weight * scattering_weight(interaction, sample.crosses) *
                   sources[i].light * direct_light_.passed(*state.caster, ray) *
                   (share * static_cast<float>(density * source_sample.irradiance / chance));
@@ -155,7 +159,7 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
   }
 }
 
-// What a bright patch reflects, off a rough mirror: as add_lamp does for lamps.
+// Adds light of a bright patch off a rough mirror by an aimed direction, weighted as in add_lamp().
 void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& interaction,
                                const ElementHit& hit, const ShadingPoint& at,
                                const BrightPatches::View& view, const Eigen::Array4d& u,
@@ -193,7 +197,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   shade(aimed, met, there, state);
 }
 
-// Of what a branch meets, what add_bright_patch leaves to it.
+// Weight of a branch's hit on a bright patch beside add_bright_patch(), by the balance heuristic.
 float RayTree::share_of_bright(const Branch& branch, const ElementHit& hit,
                                const ShadingPoint& at) const {
   if (!branch.bright) return 1.0f;
@@ -204,7 +208,7 @@ float RayTree::share_of_bright(const Branch& branch, const ElementHit& hit,
   return static_cast<float>(branch.lobe_density / (branch.lobe_density + aimed));
 }
 
-// M of the side that was met, without what add_lamp counts.
+// Exitance M of the side that was hit, less the share that add_lamp() samples.
 Spectrum RayTree::emission(const Branch& branch, const ElementHit& hit,
                            const ShadingPoint& at) const {
   const PatchMesh& mesh = caster_.mesh();

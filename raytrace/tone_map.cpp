@@ -11,7 +11,7 @@ namespace {
 
 constexpr int pixel_grain = 4096;
 
-// ITU-R BT.709.
+// Luminance Y of linear RGB (ITU-R BT.709).
 double luminance(const Eigen::Array3f& rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }
@@ -21,7 +21,7 @@ Eigen::Array3f pixel_rgb(const Image& image, const Bands& bands, Eigen::Index i)
   return linear_rgb(bands, L);
 }
 
-// Luminance of every pixel that shows something.
+// Luminances of all pixels that are positive and finite.
 std::vector<double> positive_luminances(const Image& image, const Bands& bands) {
   std::vector<double> result;
   result.reserve(image.radiance.rows());
@@ -32,8 +32,8 @@ std::vector<double> positive_luminances(const Image& image, const Bands& bands) 
   return result;
 }
 
-// Geometric mean of what lies within `spread` of the median: lamps and windows above, black corners
-// below do not pull the exposure.
+// Geometric mean of the luminances within a factor `spread` of the median, so that lamps and
+// windows above and black corners below do not shift the exposure.
 double typical_luminance(std::vector<double> Y) {
   constexpr double spread = 10.0;
   const auto middle = Y.begin() + static_cast<std::ptrdiff_t>(Y.size() / 2);
@@ -49,7 +49,7 @@ double typical_luminance(std::vector<double> Y) {
   return std::exp(sum / count);
 }
 
-// Linear RGB after exposure, white = 1.
+// Picture in linear RGB after exposure; white is 1.
 class ScaledPicture {
  public:
   ScaledPicture(const Image& image, const Bands& bands, double scale)
@@ -63,10 +63,10 @@ class ScaledPicture {
 
   const Eigen::Array3f& at(int x, int y) const { return rgb_[std::size_t(y) * width_ + x]; }
 
-  // A pixel on the edge of a lamp is the mean of lamp and wall, which is still far above white: it
-  // would show as lamp, and the edge as a staircase. It is shown as the mean of what lamp and wall
-  // show: its brightest neighbour and the pixel opposite, in the proportion that makes its own
-  // luminance.
+  // Display value of a pixel, softened at the edge of a lamp. The mean of lamp and wall in such a
+  // pixel is still far above white, so the pixel would show as lamp and the edge as a staircase.
+  // The softened value is the mean of the display values of the brightest neighbour and the pixel
+  // opposite, in the proportion that gives the pixel's own luminance.
   Eigen::Array3f shown_softly(int x, int y, ToneCurve curve) const {
     const auto shown = [&](int i, int j) { return display_rgb(at(i, j), 1.0, curve); };
     Eigen::Array3f own = shown(x, y);
@@ -82,7 +82,8 @@ class ScaledPicture {
         dy = j;
       }
     }
-    constexpr double lamp = 2.0;  // of white; below that the shoulder is not flat yet
+    // In units of white; below this value the shoulder is not flat yet.
+    constexpr double lamp = 2.0;
     const double darker = luminance(at(x - dx, y - dy)), Y = luminance(at(x, y));
     if (!(brightest > lamp && brightest > Y && Y >= darker)) return own;
     const auto covered = static_cast<float>((Y - darker) / (brightest - darker));
@@ -134,7 +135,7 @@ Eigen::Array3f display_rgb(const Eigen::Array3f& linear, double scale, ToneCurve
 }
 
 double luminance_of_white(double ev100) {
-  constexpr double q = 0.65;  // of lens and vignetting
+  constexpr double q = 0.65;  // factor of lens and vignetting
   return 78.0 / (100.0 * q) * std::exp2(ev100);
 }
 
@@ -146,8 +147,9 @@ double exposure_scale(const Image& image, const Bands& bands, const ToneMapping&
   const double stops = std::exp2(options.exposure_ev);
   if (options.ev100) return stops * bands.lumens_per_watt / luminance_of_white(*options.ev100);
   if (!options.automatic) return stops;
-  // Where the typical luminance of the picture lands, of white = 1 (sRGB byte 124): a little above
-  // the photographic 0.18, because a room seen whole has no sky to leave headroom for.
+  // Display luminance of the typical luminance of the picture, with white = 1 (sRGB byte 124). The
+  // value is a little above the photographic 0.18, since a room seen whole has no sky that needs
+  // headroom.
   constexpr double key = 0.2;
   const std::vector<double> Y = positive_luminances(image, bands);
   return Y.empty() ? stops : stops * key / typical_luminance(Y);
@@ -156,7 +158,7 @@ double exposure_scale(const Image& image, const Bands& bands, const ToneMapping&
 std::vector<std::uint8_t> tone_map(const Image& image, const Bands& bands,
                                    const ToneMapping& options) {
   const ScaledPicture picture(image, bands, exposure_scale(image, bands, options));
-  // Equal radiance shall mean equal bytes where the curve is linear.
+  // Under the linear curve equal radiance gives equal bytes, so nothing is softened.
   const bool is_soft = options.curve != ToneCurve::linear;
   std::vector<std::uint8_t> bytes(std::size_t{3} * image.width * image.height);
   parallel_for(image.height, 1, [&](int begin, int end) {

@@ -17,12 +17,12 @@ namespace {
 
 using std::numbers::pi;
 constexpr double degrees = 180.0 / pi;
-constexpr double H = 2.0;  // m, of the luminaires above the eye
+constexpr double H = 2.0;  // m, height of the luminaires above the eye
 constexpr double apart = 0.25 * H;
 
-/// Light that leaves a luminaire within a small solid angle downwards.
+/// Flux that leaves a luminaire within a small solid angle downwards.
 struct FluxRay {
-  std::array<double, 2> reach{};  ///< m, how far it goes along C0 and C90 on its way to the floor
+  std::array<double, 2> reach{};  ///< m, distances along C0 and C90 on the way to the floor
   double lumens = 0.0;
 };
 
@@ -53,14 +53,14 @@ Flux flux_of(const PhotometricWeb& web) {
   return flux;
 }
 
-/// Of `count` luminaires in a row between two walls, how many send a ray that far without its
-/// meeting one.
+/// Number of luminaires, of `count` in a row between two walls, that send a ray this far without
+/// meeting a wall.
 double within(int count, double reach) {
   return std::clamp(std::ceil(count - 0.5 - reach / apart), 0.0, static_cast<double>(count));
 }
 
-/// A room with its luminaires; `sight` is the axis of the luminaire's frame, 0 or 1, that the eye
-/// looks along.
+/// A room with its luminaires. `sight` is the axis of the luminaire's frame, 0 or 1, along which
+/// the eye looks.
 class Room {
  public:
   Room(const UgrRoom& room, int sight) : sight_(sight) {
@@ -69,7 +69,7 @@ class Room {
     for (int a = 0; a < 2; ++a) count_[a] = static_cast<int>(std::lround(size_[a] / apart));
   }
 
-  /// sum L^2 w / p^2 of what the eye sees, cd^2/m^4 sr.
+  /// sum L^2 w / p^2 over the luminaires in sight, cd^2/m^4 sr.
   double glare(const LuminaireFile& luminaire) const {
     double sum = 0.0;
     for (int i = 0; i < count_[sight_]; ++i) {
@@ -94,7 +94,8 @@ class Room {
     return sum;
   }
 
-  /// E - E_direct of the walls, lx, for each set of reflectances.
+  /// E - E_direct of the walls, lx, for each set of reflectances, by the radiosity solution of
+  /// three surfaces.
   std::array<double, ugr_reflectances.size()> indirect(const Flux& flux) const {
     const double luminaires = count_[0] * count_[1];
     double to_floor = 0.0, down = 0.0;
@@ -133,13 +134,13 @@ class Room {
 
 UgrTable ugr_table(const LuminaireFile& luminaire) {
   if (luminaire.is_radiometric) {
-    throw InputError(fmt::format("{}: its intensities are W/sr, and UGR is for candela",
-                                 luminaire.file.string()));
+    throw InputError(
+        fmt::format("{}: the intensities are in W/sr; UGR needs candela", luminaire.file.string()));
   }
   const LampOpening& opening = luminaire.opening;
   if (!(opening.along_c0 > 0.0 && opening.along_c90 > 0.0)) {
     throw InputError(fmt::format(
-        "{}: it says nothing of a luminous area, without which there is no luminance and no UGR",
+        "{}: the file gives no luminous area, without which luminance and UGR are undefined",
         luminaire.file.string()));
   }
   UgrTable table;
