@@ -7,9 +7,9 @@ namespace lightwell {
 
 /// Rays of a camera. The picture plane at distance 1 spans 2 tan(fov/2) in width; its x axis is
 /// direction x up, and pixels are square. With a lens, the rays of one picture point leave from all
-/// points of the lens and meet again on the plane at Camera::focus_distance (thin lens; Cook,
-/// Porter & Carpenter 1984): a point at distance d appears on the plane at distance f as a disk |d
-/// - f| / d times the size of the lens.
+/// points of the lens and meet again on the plane at f = Camera::focus_distance (thin lens; Cook,
+/// Porter & Carpenter 1984). On that plane a point at distance d appears as a disk whose size,
+/// relative to the lens, is |d-f| / d.
 class CameraRays {
  public:
   /// Throws InputError unless:

@@ -213,7 +213,7 @@ Spectrum CausticMap::irradiance(const Eigen::Vector3d& point, const Eigen::Vecto
       root_[static_cast<std::size_t>(regions_.of_element[static_cast<std::size_t>(element)])];
   if (root < 0) return E;
   const Eigen::Vector3f p = (point - origin_).cast<float>(), n = normal.cast<float>();
-  // cosine of 60 degrees: surfaces at larger angles do not receive the same light
+  // The cosine of 60 degrees: between surfaces at larger angles light is not shared.
   constexpr float most_bend = 0.5f;
   std::array<int, 64> stack;
   int depth = 0;

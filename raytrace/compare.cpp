@@ -60,8 +60,8 @@ Eigen::Array3f oklab(const Eigen::Array3f& linear) {
   return (opponents * lms).array();
 }
 
-// Linear display values of both pictures under the reference's exposure, so that a difference of
-// brightness counts.
+// Returns the linear display values of a picture under the reference's exposure, so that a
+// difference of brightness counts.
 Image shown(const Image& rgb, const Image& reference) {
   const double scale = exposure_scale(reference, rgb_bands());
   Image result{.width = rgb.width, .height = rgb.height};

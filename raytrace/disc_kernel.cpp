@@ -17,9 +17,9 @@ struct FlatEdge {
   Eigen::Vector2d from, to;
 };
 
-// Part of an edge within the unit disc about the origin: from x0 to x1 along the edge, at distance
-// h from the origin, which is positive if the edge runs counter-clockwise. `angle` is the angle of
-// the part at the origin, radians.
+// Part of an edge within the unit disc about the origin: from x0 to x1 along the edge, at a signed
+// distance h from the origin, positive for counter-clockwise edges. `angle` is the angle of the
+// part at the origin, radians.
 struct Chord {
   double h = 0.0, x0 = 0.0, x1 = 0.0, angle = 0.0;
 };

@@ -9,8 +9,9 @@
 namespace lightwell {
 
 /// Integral of Epanechnikov's kernel beyond a directed edge: over the part of the unit disc that
-/// lies beyond the edge, between the directions of the edge's ends. The kernel is K(s) = 2 / pi (1
-/// - s^2), whose integral over the disc is 1.
+/// lies beyond the edge, between the directions of the edge's ends. The kernel is
+///
+///     K(s) = 2 / pi (1 - s^2), with the integral 1 over the disc.
 ///
 /// The ends lie in the plane of the disc, relative to its centre, in units of its radius. The
 /// result is negative if the edge runs clockwise about the centre. For counter-clockwise edges all
@@ -27,8 +28,8 @@ double disc_beyond(const Eigen::Vector2d& from, const Eigen::Vector2d& to);
 /// corner.
 struct FoldedDisc {
   std::vector<Eigen::Vector3d> mirrored{};  ///< centres of the disc's mirror images
-  /// integral within the boundary of the disc's kernel and those of its mirror images; at least
-  /// 0.02
+  /// Integral within the boundary of the disc's kernel and those of its mirror images; at least
+  /// 0.02.
   double within = 1.0;
 };
 

@@ -217,7 +217,7 @@ void write_exr(const std::filesystem::path& path, const Image& image, const Band
   if (!is_rgb) add_planes(planes, bands.names, image.radiance);
   add_planes(planes, image.layers.names, image.layers.values);
 
-  // half floats of all planes, needed until the file is written
+  // Values of the half-float planes until the file is written.
   std::vector<std::vector<half>> kept;
   for (const ChannelPlane& plane : planes) {
     if (options.half && plane.may_be_half) kept.push_back(halves(plane, image, path));

@@ -24,9 +24,9 @@ struct FlipExposures {
   int count = 2;
 };
 
-/// Exposures of HDR-FLIP for a reference. At the first its brightest pixel reaches 85 % of white,
-/// at the last its median; steps are about one stop. If more than half of the reference is black,
-/// the median is that of the other pixels.
+/// Exposures of HDR-FLIP for a reference. At the first exposure the reference's brightest pixel
+/// reaches 85 % of white, at the last its median; steps are about one stop. If more than half of
+/// the reference is black, the median is that of the other pixels.
 FlipExposures flip_exposures(const Image& reference);
 
 /// HDR-FLIP, per pixel, [0,1]: the largest FLIP over the exposures of flip_exposures(), each

@@ -16,7 +16,7 @@ namespace {
 using std::numbers::pi;
 
 /// A piece of a source is represented by its middle if its distance is at least this many times its
-/// length; the error of its solid angle is then at most 1e-3.
+/// length. The error of the piece's solid angle is then at most 1e-3.
 constexpr double far_enough = 16.0;
 constexpr int most_halvings = 8;
 /// Sample points of an opening along each axis.

@@ -48,7 +48,7 @@ struct Glare {
   /// no luminaire is in sight or the background is black.
   std::optional<double> ugr{};
   double background = 0.0;  ///< L_b = E_i / pi, cd/m^2
-  /// luminaires in sight, surfaces first, in the order of the scene
+  /// Luminaires in sight, surfaces first, in the order of the scene.
   std::vector<GlareSource> sources{};
   /// Lamps without a luminous area, for which UGR is undefined.
   std::vector<std::string> left_out{};

@@ -61,9 +61,8 @@ struct RenderOptions {
   float contrast = 0.1f;
   std::vector<Layer> layers{};  ///< layers of Image::layers
   RunControl run{};  ///< its journal keeps finished tiles; a journal belongs to one scene
-  /// Called when rows first_row to first_row + rows - 1 of the picture are done, from the top down,
-  /// by the rendering thread. For viewers that show unfinished
-  /// pictures.
+  /// Called by the rendering thread when rows first_row to first_row + rows - 1 of the picture are
+  /// done, from the top down: lets viewers show unfinished pictures.
   std::function<void(const Image& image, int first_row, int rows)> rows_done{};
 };
 
