@@ -200,9 +200,11 @@ class Reconstruction : public testing::TestWithParam<double> {};  // tolerance o
 INSTANTIATE_TEST_SUITE_P(Refined, Reconstruction, testing::Values(0.0, 0.01, 0.002));
 
 TEST_P(Reconstruction, DoesNotJumpAcrossAnyEdgeInsideASurface) {
-  const Lit lit(walled(40), {.gather = {.rays = 64},
-                             .refine = {.tolerance = GetParam(), .max_elements = 1000000},
-                             .error_points = 0});
+  SolveOptions options{.error_points = 0};
+  options.gather.rays = 64;
+  options.refine.tolerance = GetParam();
+  options.refine.max_elements = 1000000;
+  const Lit lit(walled(40), options);
   double most = 0.0;
   int inside = 0;
   for (const int surface : {0, 2}) {  // floor and wall
