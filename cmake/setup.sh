@@ -66,13 +66,13 @@ want_packages() {
   (need_packages "$@") || say "Going on without $*."
 }
 
-# Compiling against CGAL or VTK takes up to 1.6 GB at a time: as many jobs as cores and free memory allow.
+# A compilation takes up to 1.2 GB: as many jobs as cores and free memory allow.
 # LIGHTWELL_JOBS overrides.
 job_count() {
   local cores memory_kb
   cores=$(nproc)
   memory_kb=$(awk '/^MemAvailable:/ {print $2}' /proc/meminfo 2>/dev/null || true)
-  local jobs=$((${memory_kb:-1600000} / 1600000))
+  local jobs=$((${memory_kb:-1200000} / 1200000))
   [ "$jobs" -lt "$cores" ] || jobs=$cores
   [ "$jobs" -ge 1 ] || jobs=1
   echo "${LIGHTWELL_JOBS:-$jobs}"
