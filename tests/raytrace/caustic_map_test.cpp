@@ -46,7 +46,7 @@ double irradiance_at(const ElementCaster& caster, const CausticMap& map, double 
 
 // Constant irradiance on a floor stays constant up to edges and corners.
 TEST(CausticMap, EvenLightIsEvenUpToTheEdge) {
-  const LitScene lit(
+  const TracedScene lit(
       SceneBuilder().square(white, Vector3d::Zero(), Vector3d::UnitZ(), 1.0).build());
   constexpr int count = 1 << 15;
   const CausticPhotons photons = spread(
@@ -69,7 +69,7 @@ TEST(CausticMap, EvenLightIsEvenUpToTheEdge) {
 
 // The integral of irradiance over an L-shaped floor is the power of the photons.
 TEST(CausticMap, IrradianceAddsUpToThePowerOfThePhotons) {
-  const LitScene lit(
+  const TracedScene lit(
       SceneBuilder()
           .polygon(white, {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}})
           .build());
@@ -99,10 +99,10 @@ TEST(CausticMap, IrradianceAddsUpToThePowerOfThePhotons) {
 // A wall divides a floor: light in front of the wall stays off the floor behind for any disc
 // radius.
 TEST(CausticMap, NoLightPassesBeneathAWall) {
-  const LitScene lit(SceneBuilder()
-                         .square(white, Vector3d::Zero(), Vector3d::UnitZ(), 1.0)
-                         .polygon(white, {{0, -1, 0}, {0, 1, 0}, {0, 1, 1}, {0, -1, 1}})
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .square(white, Vector3d::Zero(), Vector3d::UnitZ(), 1.0)
+                            .polygon(white, {{0, -1, 0}, {0, 1, 0}, {0, 1, 1}, {0, -1, 1}})
+                            .build());
   const CausticPhotons photons = spread(
       lit.caster, 64, [](float u, float v) { return Vector3d(-0.1 * u, v - 0.5, 0); }, 1.0f);
   const CausticMap map(lit.mesh, photons);
@@ -115,11 +115,11 @@ TEST(CausticMap, NoLightPassesBeneathAWall) {
 class MirroredLamp {
  public:
   static constexpr float M = 10.0f, rho = 0.8f;
-  LitScene lit{SceneBuilder()
-                   .square({.exitance = M, .one_sided = true}, {0, 0, 1}, {0, 0, -1}, 0.1)
-                   .square({.specular = rho, .one_sided = true}, {0, 0, 0}, {0, 0, 1}, 0.5)
-                   .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 2}, {0, 0, -1}, 4.0)
-                   .build()};
+  TracedScene lit{SceneBuilder()
+                      .square({.exitance = M, .one_sided = true}, {0, 0, 1}, {0, 0, -1}, 0.1)
+                      .square({.specular = rho, .one_sided = true}, {0, 0, 0}, {0, 0, 1}, 0.5)
+                      .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 2}, {0, 0, -1}, 4.0)
+                      .build()};
 
   MirroredLamp() { lit.solution.caustic_irradiance = lit.solution.indirect_irradiance; }
 

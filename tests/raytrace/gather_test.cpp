@@ -18,11 +18,11 @@ const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 // corner (Howell, B-4).
 TEST(PixelGather, ReadsTheSolutionWhereItsRaysEnd) {
   constexpr double h = 1.0, half = 2.0;
-  LitScene lit(SceneBuilder()
-                   .square({.reflectance = 0.5f}, {0, 0, 0}, up, 0.5)
-                   .square({.reflectance = 1.0f}, {0, 0, h}, -up, half)
-                   .build(),
-               0.05);
+  TracedScene lit(SceneBuilder()
+                      .square({.reflectance = 0.5f}, {0, 0, 0}, up, 0.5)
+                      .square({.reflectance = 1.0f}, {0, 0, h}, -up, half)
+                      .build(),
+                  0.05);
   lit.set_indirect([](const Eigen::Vector3d& p) { return p.z() > 0.5 ? 3.0f : 0.0f; });
   const PixelGather gather(lit.scene, lit.caster, lit.direct_light, lit.solution, 1024, 4);
   const ShadingPoint at{.position = {0, 0, 0}, .normal = up, .smooth_normal = up, .facet = 0};
@@ -44,19 +44,19 @@ TEST(PixelGather, ReadsTheSolutionWhereItsRaysEnd) {
 TEST(PixelGather, AMirrorDoublesWhatIsBesideIt) {
   // A lit wall with a black back; its light reaches a floor directly and by a mirror that faces the
   // wall.
-  LitScene lit(SceneBuilder()
-                   .square({.reflectance = 0.5f}, {0, 0, 0}, up, 0.2)
-                   .square({.reflectance = 1.0f}, {0, 0, 2}, -up, 0.5)
-                   .square({.specular = 1.0f}, {0.8, 0, 1}, {-1, 0, 0}, 1.0)
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .square({.reflectance = 0.5f}, {0, 0, 0}, up, 0.2)
+                      .square({.reflectance = 1.0f}, {0, 0, 2}, -up, 0.5)
+                      .square({.specular = 1.0f}, {0.8, 0, 1}, {-1, 0, 0}, 1.0)
+                      .build());
   lit.set_indirect([](const Eigen::Vector3d& p) { return p.z() > 1.9 ? 1.0f : 0.0f; });
   const PixelGather gather(lit.scene, lit.caster, lit.direct_light, lit.solution, 1 << 14, 4);
   const ShadingPoint at{.position = {0, 0, 0}, .normal = up, .smooth_normal = up, .facet = 0};
-  LitScene open(SceneBuilder()
-                    .square({.reflectance = 0.5f}, {0, 0, 0}, up, 0.2)
-                    .square({.reflectance = 1.0f}, {0, 0, 2}, -up, 0.5)
-                    .square({.reflectance = 1.0f}, {1.6, 0, 2}, -up, 0.5)  // the wall's image
-                    .build());
+  TracedScene open(SceneBuilder()
+                       .square({.reflectance = 0.5f}, {0, 0, 0}, up, 0.2)
+                       .square({.reflectance = 1.0f}, {0, 0, 2}, -up, 0.5)
+                       .square({.reflectance = 1.0f}, {1.6, 0, 2}, -up, 0.5)  // the wall's image
+                       .build());
   open.set_indirect([](const Eigen::Vector3d& p) { return p.z() > 1.9 ? 1.0f : 0.0f; });
   const PixelGather without(open.scene, open.caster, open.direct_light, open.solution, 1 << 14, 4);
   // From the point the image lies wholly within the mirror: rays to x = 1.1 to 2.1, z = 2 cross

@@ -42,11 +42,11 @@ constexpr double single = 1e-6;  // relative error of sums of a few floats
 constexpr float M = 1000.0f, rho = 0.5f, E = 2.0f;
 
 /// A room of constant reflected light, L_b = rho E / pi, with a small luminaire.
-LitScene& lit_room(const Eigen::Vector3d& luminaire) {
-  static std::unique_ptr<LitScene> lit;
+TracedScene& lit_room(const Eigen::Vector3d& luminaire) {
+  static std::unique_ptr<TracedScene> lit;
   const Paint wall{.reflectance = rho, .one_sided = true};
   const Eigen::Vector3d towards = (Eigen::Vector3d(2, 1, 1.2) - luminaire).normalized();
-  lit = std::make_unique<LitScene>(
+  lit = std::make_unique<TracedScene>(
       SceneBuilder()
           .box(wall, {0, 0, 0}, {4, 6, 3}, true)
           .square({.reflectance = rho, .exitance = M, .one_sided = true}, luminaire, towards, 0.05)
@@ -62,7 +62,8 @@ Camera eye() {
           .up = Eigen::Vector3d::UnitZ()};
 }
 
-Glare rating(const LitScene& lit, const Camera& camera, const std::vector<double>& heights = {}) {
+Glare rating(const TracedScene& lit, const Camera& camera,
+             const std::vector<double>& heights = {}) {
   const DirectLight direct_light(lit.scene, lit.caster.mesh());  // includes lamps added later
   return unified_glare_rating(lit.scene, lit.caster, direct_light, lit.solution, camera,
                               {.rays = 256}, heights);
@@ -70,7 +71,7 @@ Glare rating(const LitScene& lit, const Camera& camera, const std::vector<double
 
 /// CIE 117 by hand for a square of 0.1 m at 4 m and 1.2 m above the line of sight, facing the eye.
 TEST(UnifiedGlareRating, OfASmallLuminaireIsTheFormulas) {
-  const LitScene& lit = lit_room({2, 5, 2.4});
+  const TracedScene& lit = lit_room({2, 5, 2.4});
   const Glare glare = rating(lit, eye());
   const double d2 = 4.0 * 4.0 + 1.2 * 1.2;
   const double L = luminous(lit.scene.bands, constant_spectrum(lit.scene.bands, M)) / pi;
@@ -99,11 +100,11 @@ TEST(UnifiedGlareRating, EndsWhereTheStandardsTableEnds) {
 TEST(UnifiedGlareRating, IsEmptyBehindTheEyeAndBehindAWall) {
   EXPECT_FALSE(rating(lit_room({2, 0.5, 2.4}), eye()).ugr.has_value());
   const Paint wall{.reflectance = rho};
-  LitScene hidden(SceneBuilder()
-                      .box({.reflectance = rho, .one_sided = true}, {0, 0, 0}, {4, 6, 3}, true)
-                      .square({.exitance = M, .one_sided = true}, {2, 5, 2.4}, {0, -1, 0}, 0.05)
-                      .square(wall, {2, 4, 2}, {0, -1, 0}, 0.9)
-                      .build());
+  TracedScene hidden(SceneBuilder()
+                         .box({.reflectance = rho, .one_sided = true}, {0, 0, 0}, {4, 6, 3}, true)
+                         .square({.exitance = M, .one_sided = true}, {2, 5, 2.4}, {0, -1, 0}, 0.05)
+                         .square(wall, {2, 4, 2}, {0, -1, 0}, 0.9)
+                         .build());
   hidden.set_indirect([](const auto&) { return E; });
   EXPECT_FALSE(rating(hidden, eye()).ugr.has_value());
 }
@@ -118,7 +119,7 @@ Lamp downlight() {
 
 /// L = I / (A cos), w = A cos / d^2.
 TEST(UnifiedGlareRating, OfALampGoesByItsOpening) {
-  LitScene& lit = lit_room({2, 0.5, 2.4});  // the surface is behind
+  TracedScene& lit = lit_room({2, 0.5, 2.4});  // the surface is behind
   const Lamp lamp = downlight();
   lit.scene.lamps = {lamp, {.name = "bulb", .position = {2, 3, 2}}};
   lit.scene.lamps[1].intensity = lamp.intensity;
@@ -149,7 +150,7 @@ TEST(LuminousArea, IsThatOfOpeningAndSides) {
 }
 
 TEST(UnifiedGlareRating, OfALampCountsItsLuminousSides) {
-  LitScene& lit = lit_room({2, 0.5, 2.4});  // the surface is behind
+  TracedScene& lit = lit_room({2, 0.5, 2.4});  // the surface is behind
   lit.scene.lamps = {downlight()};
   const Glare glare = rating(lit, eye(), {0.05});
   const double I = luminous(lit.scene.bands, downlight().intensity);

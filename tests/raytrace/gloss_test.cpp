@@ -17,7 +17,7 @@ namespace {
 constexpr auto pi_f = std::numbers::pi_v<float>;
 const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 
-float radiance(const LitScene& lit, const Ray& ray, const RenderOptions& options = {},
+float radiance(const TracedScene& lit, const Ray& ray, const RenderOptions& options = {},
                std::uint64_t key = 1) {
   return RayTree(lit.scene, lit.caster, lit.direct_light, lit.solution, options)
       .trace(ray, key)
@@ -31,11 +31,11 @@ class GlossInAFurnace : public testing::TestWithParam<Paint> {};
 
 // Rough surfaces neither absorb nor emit: in a world of radiance 1 they are invisible.
 TEST_P(GlossInAFurnace, IsInvisible) {
-  const LitScene lit(SceneBuilder()
-                         .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
-                         .sphere(GetParam(), {0.1, 0, 0}, 1.0)
-                         .box(GetParam(), {1.5, -1, -1}, {2.5, 1, 1}, false)
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
+                            .sphere(GetParam(), {0.1, 0, 0}, 1.0)
+                            .box(GetParam(), {1.5, -1, -1}, {2.5, 1, 1}, false)
+                            .build());
   for (int i = 0; i <= 60; ++i) {
     const Ray ray{.origin = {-1.0 + 3.5 * i / 60.0, 0.3, 2.5}, .direction = -up};
     EXPECT_NEAR(radiance(lit, ray, to_the_end, static_cast<std::uint64_t>(i)), 1.0, 1e-3) << i;
@@ -53,10 +53,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Paint{.index_of_refraction = 1.5f, .roughness = 0.3f, .thin = true}));
 
 TEST(Gloss, ReflectsTheShareThatItIsGiven) {
-  const LitScene lit(SceneBuilder()
-                         .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
-                         .square({.specular = 0.6f, .roughness = 0.5f}, {0, 0, 0}, up, 1.0)
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
+                            .square({.specular = 0.6f, .roughness = 0.5f}, {0, 0, 0}, up, 1.0)
+                            .build());
   EXPECT_NEAR(radiance(lit, {.origin = {0.5, 0.1, 2}, .direction = -up}), 0.6, 1e-6);
 }
 
@@ -73,7 +73,7 @@ TEST(Gloss, ScattersAlikeInBothPasses) {
         const Eigen::Vector3d at(-0.8, 0.1, z);
         is_sphere ? builder.sphere(shines, at, 0.5) : builder.square(shines, at, -z * up, 0.5);
       }
-      const LitScene lit(builder.build());
+      const TracedScene lit(builder.build());
       ASSERT_EQ(lit.direct_light.emitters().size(), 2U);
       const RayTree tree(lit.scene, lit.caster, lit.direct_light, lit.solution, to_the_end);
       const LightPaths paths(lit.scene, lit.caster, 400);
@@ -127,10 +127,11 @@ TEST(Gloss, NeitherTakesNorGivesLightInTheFirstPass) {
 // An index of 1 neither refracts nor reflects: through the middle exp(-a 2 r) of the world's
 // radiance is transmitted.
 TEST(Absorption, FollowsBeerAndLambertThroughABall) {
-  const LitScene lit(SceneBuilder()
-                         .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
-                         .sphere({.index_of_refraction = 1.0f, .absorption = 0.7f}, {0, 0, 0}, 1.0)
-                         .build());
+  const TracedScene lit(
+      SceneBuilder()
+          .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
+          .sphere({.index_of_refraction = 1.0f, .absorption = 0.7f}, {0, 0, 0}, 1.0)
+          .build());
   for (const double off : {0.0, 0.3, 0.8}) {
     const double chord = 2.0 * std::sqrt(1.0 - off * off);
     EXPECT_NEAR(radiance(lit, {.origin = {off, 0, 2}, .direction = -up}), std::exp(-0.7 * chord),
@@ -143,7 +144,7 @@ TEST(Absorption, FollowsBeerAndLambertThroughABall) {
 // Transmission of a slab with all inner reflections: T = (1-R)^2 a / (1 - R^2 a^2), with
 // a = exp(-absorption d).
 TEST(Absorption, SlabPassesWhatItsManyReflectionsLeave) {
-  const LitScene lit(
+  const TracedScene lit(
       SceneBuilder()
           .box({.index_of_refraction = 1.5f, .absorption = 2.0f}, {-5, -5, 0}, {5, 5, 0.25}, false)
           .square({.exitance = pi_f}, {0, 0, -4}, up, 20)
@@ -156,11 +157,11 @@ TEST(Absorption, SlabPassesWhatItsManyReflectionsLeave) {
 // Transmission of two panes: T1 T2 / (1 - R1 R2), 0.857142... for index 1.5.
 TEST(ThinPanes, TwoPassWhatTheirReflectionsLeave) {
   const Paint pane{.index_of_refraction = 1.5f, .thin = true};
-  const LitScene lit(SceneBuilder()
-                         .square(pane, {0, 0, 0}, up, 5)
-                         .square(pane, {0, 0, 0.5}, up, 5)
-                         .square({.exitance = pi_f}, {0, 0, -4}, up, 20)
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .square(pane, {0, 0, 0}, up, 5)
+                            .square(pane, {0, 0, 0.5}, up, 5)
+                            .square({.exitance = pi_f}, {0, 0, -4}, up, 20)
+                            .build());
   const double R = pane_reflectance(1.0, 1.5);
   EXPECT_NEAR(radiance(lit, {.origin = {0.1, 0.2, 3}, .direction = -up}, to_the_end),
               (1 - R) * (1 - R) / (1 - R * R), 1e-6);
@@ -168,7 +169,7 @@ TEST(ThinPanes, TwoPassWhatTheirReflectionsLeave) {
 }
 
 TEST(Gloss, GivesTheSameBitsOnOneTwoAndThreeThreads) {
-  const LitScene lit(
+  const TracedScene lit(
       SceneBuilder()
           .box({.reflectance = 0.6f}, {-3, -3, -3}, {3, 3, 3}, true)
           .sphere({.specular = 0.9f, .roughness = 0.2f}, {-1, 0, 0}, 0.9)
@@ -191,10 +192,10 @@ TEST(Gloss, GivesTheSameBitsOnOneTwoAndThreeThreads) {
 }
 
 TEST(Depth, OfAThousandMirrorsIsFollowedAndBeyondRefused) {
-  const LitScene lit(SceneBuilder()
-                         .square({.specular = 1.0f}, {0, 0, 0}, up, 5)
-                         .square({.specular = 1.0f}, {0, 0, 1}, -up, 5)
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .square({.specular = 1.0f}, {0, 0, 0}, up, 5)
+                            .square({.specular = 1.0f}, {0, 0, 1}, -up, 5)
+                            .build());
   const Camera camera = camera_towards({0, 0, 0.5}, {0, 0, 1}, 1, 2);
   RenderReport report;
   lit.render(camera, {.max_depth = deepest_tree}, &report);
@@ -203,11 +204,11 @@ TEST(Depth, OfAThousandMirrorsIsFollowedAndBeyondRefused) {
 }
 
 TEST(Eye, WithinAnOpaqueObjectSeesItsInside) {
-  LitScene lit(SceneBuilder()
-                   .sphere({.reflectance = 0.5f}, {0, 0, 0}, 1.0)
-                   .sphere({.reflectance = 0.5f, .one_sided = true}, {3, 0, 0}, 1.0)
-                   .square({.exitance = pi_f}, {0, 0, 5}, -up, 1)
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .sphere({.reflectance = 0.5f}, {0, 0, 0}, 1.0)
+                      .sphere({.reflectance = 0.5f, .one_sided = true}, {3, 0, 0}, 1.0)
+                      .square({.exitance = pi_f}, {0, 0, 5}, -up, 1)
+                      .build());
   const Image within = lit.render(camera_towards({0, 0, 0}, {1, 0, 0}, 60, 8));
   const Image behind = lit.render(camera_towards({3, 0, 0}, {4, 0, 0}, 60, 8));
   EXPECT_TRUE((within.radiance == 0.0f).all());  // no light gets in

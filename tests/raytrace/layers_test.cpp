@@ -30,16 +30,16 @@ BandArray layer(const Image& image, Layer which) {
 }
 
 /// A room with a lamp, a mirroring block and a glass sphere.
-struct Furnished : LitScene {
+struct Furnished : TracedScene {
   explicit Furnished(const Bands& bands)
-      : LitScene(SceneBuilder(bands)
-                     .box({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, {2, 2, 2}, true)
-                     .square({.reflectance = 0.2f, .exitance = 10.0f, .one_sided = true},
-                             {1, 1.99, 1}, {0, -1, 0}, 0.3)
-                     .box({.reflectance = 0.3f, .specular = 0.4f, .one_sided = true}, {0.3, 0, 1.2},
-                          {0.8, 1, 1.6}, false)
-                     .sphere({.index_of_refraction = 1.5f}, {1.4, 0.4, 0.9}, 0.4)
-                     .build()) {
+      : TracedScene(SceneBuilder(bands)
+                        .box({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, {2, 2, 2}, true)
+                        .square({.reflectance = 0.2f, .exitance = 10.0f, .one_sided = true},
+                                {1, 1.99, 1}, {0, -1, 0}, 0.3)
+                        .box({.reflectance = 0.3f, .specular = 0.4f, .one_sided = true},
+                             {0.3, 0, 1.2}, {0.8, 1, 1.6}, false)
+                        .sphere({.index_of_refraction = 1.5f}, {1.4, 0.4, 0.9}, 0.4)
+                        .build()) {
     set_direct([](const Eigen::Vector3d& p) { return static_cast<float>(1.0 - 0.2 * p.y()); });
     set_indirect([](const Eigen::Vector3d& p) { return static_cast<float>(0.2 + 0.1 * p.y()); });
   }
@@ -94,7 +94,7 @@ TEST(Layers, AreInTheOrderOfTheListWhateverOrderTheyAreAskedIn) {
 TEST(Layers, OfAWallSeenAskew) {
   // z = 0 from (0, 0, 3), 30 degrees off straight down. Depth is measured along the camera's
   // direction d: for a ray r that meets z = 0 at t = 3 / -r.z it is 3 (r.d) / -r.z.
-  LitScene lit(SceneBuilder().square({.reflectance = 0.25f}, {0, 0, 0}, {0, 0, 1}, 50).build());
+  TracedScene lit(SceneBuilder().square({.reflectance = 0.25f}, {0, 0, 0}, {0, 0, 1}, 50).build());
   lit.set_direct([](const auto&) { return 2.0f; });
   const Camera camera = camera_towards({0, 0, 3}, {std::sqrt(3.0), 0, 0}, 20, 8);
   const Image image = lit.render(camera, {.pass = Pass::interpolate, .layers = all_layers()});
@@ -127,7 +127,8 @@ TEST(Layers, OfAWallSeenAskew) {
 }
 
 TEST(Layers, WhereNothingIsDepthIsInfiniteAndThereIsNoPatch) {
-  const LitScene lit(SceneBuilder().square({.reflectance = 1}, {0, 0, 0}, {0, 0, 1}, 0.1).build());
+  const TracedScene lit(
+      SceneBuilder().square({.reflectance = 1}, {0, 0, 0}, {0, 0, 1}, 0.1).build());
   const Image image = lit.render(camera_towards({0, 0, 3}, {0, 0, 0}, 40, 9),
                                  {.pass = Pass::interpolate, .layers = all_layers()});
   EXPECT_EQ(layer(image, Layer::depth)(0, 0), std::numeric_limits<float>::infinity());
@@ -140,7 +141,7 @@ TEST(Layers, WhereNothingIsDepthIsInfiniteAndThereIsNoPatch) {
 TEST(Layers, AlbedoIsAMeanOverThePixel) {
   // The floor is black left of x = 0 and white right of x = 0. The middle one of an odd number of
   // pixel columns is half of each, to the 16 points that sample an edge in each of 4 x 4 cells.
-  const LitScene lit(
+  const TracedScene lit(
       SceneBuilder()
           .polygon({.reflectance = 0.0f}, {{-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0}})
           .polygon({.reflectance = 0.8f}, {{0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0}})
@@ -161,7 +162,7 @@ TEST(Layers, AlbedoIsAMeanOverThePixel) {
 }
 
 TEST(Layers, IlluminanceIsSeenThroughGlassButNotInMirrors) {
-  LitScene lit(
+  TracedScene lit(
       SceneBuilder()
           .square({.reflectance = 0.5f}, {0, 0, 0}, {0, 0, 1}, 50)
           .polygon({.index_of_refraction = 1.5f}, {{-9, -9, 1}, {0, -9, 1}, {0, 9, 1}, {-9, 9, 1}})

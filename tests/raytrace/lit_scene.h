@@ -105,11 +105,11 @@ class SceneBuilder {
 };
 
 /// A scene with its mesh and a given irradiance in place of a solution.
-class LitScene {
+class TracedScene {
  public:
   using Field = std::function<float(const Eigen::Vector3d& position)>;
 
-  explicit LitScene(Scene built, double patch_size = 0.0)
+  explicit TracedScene(Scene built, double patch_size = 0.0)
       : scene(std::move(built)),
         mesh(build_patches(scene, {.max_patch_size = patch_size, .auto_patch_count = 100})),
         caster(mesh),
@@ -118,8 +118,8 @@ class LitScene {
     solution.direct_irradiance.setZero(mesh.vertex_count(), scene.bands.count());
     solution.indirect_irradiance = solution.direct_irradiance;
   }
-  LitScene(const LitScene&) = delete;
-  LitScene& operator=(const LitScene&) = delete;
+  TracedScene(const TracedScene&) = delete;
+  TracedScene& operator=(const TracedScene&) = delete;
 
   void set_indirect(const Field& E) { set(solution.indirect_irradiance, E); }
   void set_direct(const Field& E) { set(solution.direct_irradiance, E); }

@@ -89,10 +89,10 @@ TEST(LuxGrid, SaysWhatItCannotDo) {
 
 /// A chest of 0.8 m reaches through the plane at 0.75 m.
 TEST(LuxGrid, LeavesOutWhatIsInsideOfBodies) {
-  const LitScene lit(SceneBuilder()
-                         .box({}, {0, 0, 0}, {4, 4, 3}, true)
-                         .box({}, {1, 1, 0}, {2, 2, 0.8}, false)
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .box({}, {0, 0, 0}, {4, 4, 3}, true)
+                            .box({}, {1, 1, 0}, {2, 2, 0.8}, false)
+                            .build());
   const Scene& scene = lit.scene;
   const LuxGrid grid = lux_grid(scene, 0, up, {.height = 0.75, .spacing = 0.5});
   const LuxGrid open = without_buried_points(lit.caster, grid);
@@ -110,10 +110,10 @@ TEST(LuxGrid, LeavesOutWhatIsInsideOfBodies) {
 /// Points every metre, of which two lie on the sides of a chest, one to its left and one to its
 /// right, and one inside.
 TEST(LuxGrid, LeavesOutWhatIsOnTheFacesOfBodies) {
-  const LitScene lit(SceneBuilder()
-                         .box({}, {0, 0, 0}, {5, 5, 3}, true)
-                         .box({}, {1.5, 1.2, 0}, {3.5, 1.8, 0.8}, false)
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .box({}, {0, 0, 0}, {5, 5, 3}, true)
+                            .box({}, {1.5, 1.2, 0}, {3.5, 1.8, 0.8}, false)
+                            .build());
   const LuxGrid grid = lux_grid(lit.scene, 0, up, {.height = 0.75, .spacing = 1.0});
   ASSERT_EQ(grid.points.size(), 25u);
   const LuxGrid open = without_buried_points(lit.caster, grid);
@@ -128,10 +128,10 @@ TEST(LuxGrid, LeavesOutWhatIsOnTheFacesOfBodies) {
 /// light without occluders needs no shadow rays and has no noise.
 TEST(LuxGrid, MeasuresAPanelOverAFloorAsTheFormulaHasIt) {
   const Paint panel{.exitance = 10.0f, .one_sided = true};
-  const LitScene lit(SceneBuilder()
-                         .polygon({}, {{0, 0, 0}, {4, 0, 0}, {4, 5, 0}, {0, 5, 0}})
-                         .polygon(panel, {{1, 1, 2.5}, {1, 2, 2.5}, {2, 2, 2.5}, {2, 1, 2.5}})
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .polygon({}, {{0, 0, 0}, {4, 0, 0}, {4, 5, 0}, {0, 5, 0}})
+                            .polygon(panel, {{1, 1, 2.5}, {1, 2, 2.5}, {2, 2, 2.5}, {2, 1, 2.5}})
+                            .build());
   const LuxGrid grid = lux_grid(lit.scene, 0, up, {.height = 0.75, .margin = 0.5});
   constexpr double maintenance = 0.8;
   const LuxField field = measure_grid(lit.scene, lit.caster, lit.direct_light, lit.solution, grid,
@@ -157,9 +157,9 @@ TEST(LuxGrid, MeasuresAPanelOverAFloorAsTheFormulaHasIt) {
 /// Reflected light is gathered by rays, with an estimated error. The mean square error over 1000
 /// points is known to 5 %, and agrees with the error against a gather of many more rays.
 TEST(LuxGrid, TellsHowSureItIs) {
-  LitScene lit(SceneBuilder()
-                   .box({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, {4, 5, 3}, true)
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .box({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, {4, 5, 3}, true)
+                      .build());
   lit.set_indirect([](const Eigen::Vector3d& p) { return static_cast<float>(p.x() + p.z()); });
   const LuxGrid grid = lux_grid(lit.scene, 0, up, {.height = 0.75, .margin = 0.5, .spacing = 0.1});
   ASSERT_GT(grid.points.size(), 1000u);

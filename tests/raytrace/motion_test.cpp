@@ -51,7 +51,7 @@ const RenderOptions many_samples{.pass = Pass::interpolate,
 
 Image picture_of(const Scene& scene, const Camera& camera,
                  const RenderOptions& options = many_samples) {
-  LitScene lit(scene);
+  TracedScene lit(scene);
   lit.set_direct([](const Vector3d&) { return pi_f; });
   return lit.render(camera, options);
 }
@@ -143,7 +143,7 @@ TEST(Motion, PictureIsTheMeanOfItsInstants) {
                               .sampling = {.most = 1024, .least = 1024, .noise = 0.0f}};
   Scene scene = shadowed_floor();
   place_at_rest(scene, 0.5);
-  const Image moving = LitScene(scene).render(camera, options);
+  const Image moving = TracedScene(scene).render(camera, options);
   constexpr int instants = 32;
   BandArray mean = BandArray::Zero(moving.radiance.rows(), moving.radiance.cols());
   for (int i = 0; i < instants; ++i) {
@@ -152,7 +152,7 @@ TEST(Motion, PictureIsTheMeanOfItsInstants) {
     place_at_rest(still, time);
     camera.shutter_open = camera.shutter_close = time;
     mean +=
-        LitScene(still)
+        TracedScene(still)
             .render(camera, {.photons = 0, .sampling = {.most = 32, .least = 32, .noise = 0.0f}})
             .radiance /
         static_cast<float>(instants);
@@ -177,7 +177,7 @@ TEST(Motion, GatheredPictureIsTheMeanOfItsInstantsToo) {
   const auto render = [&](double open, double close, int samples) {
     Scene scene = room();
     place_at_rest(scene, 0.5 * (open + close));
-    LitScene lit(scene);
+    TracedScene lit(scene);
     // Only the block is bright; its light on the walls moves with the block.
     lit.set_indirect([](const Vector3d& p) {
       return p.head<2>().cwiseAbs().maxCoeff() < 1.9 && p.z() > 0.1 && p.z() < 2.9 ? pi_f : 0.0f;
@@ -222,10 +222,10 @@ TEST(Motion, WithTheShutterClosedNothingMovesAndNoBitChanges) {
   camera.shutter_open = camera.shutter_close = 0.5;
   Scene scene = shadowed_floor();
   place_at_rest(scene, 0.5);
-  const Image instant = LitScene(scene).render(camera);
+  const Image instant = TracedScene(scene).render(camera);
   for (Surface& surface : scene.surfaces) surface.motion = -1;
   camera.shutter_close = 0.7;  // open, but nothing moves
-  EXPECT_TRUE((LitScene(scene).render(camera).radiance == instant.radiance).all());
+  EXPECT_TRUE((TracedScene(scene).render(camera).radiance == instant.radiance).all());
 }
 
 TEST(Motion, ShuttersThatCannotBeAreRefused) {

@@ -35,7 +35,8 @@ TEST(FilterSampler, HaveTheMomentsOfTheWindow) {
 }
 
 TEST(PixelSamples, EvenlyLitPixelsAreDoneAtOnceAndExact) {
-  const LitScene lit(SceneBuilder().box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true).build());
+  const TracedScene lit(
+      SceneBuilder().box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true).build());
   const Camera camera = camera_towards({0, 0, 0}, {1, 1, 0}, 50, 8);
   RenderReport report;
   const Image image = lit.render(camera, {.sampling = {.most = 512, .least = 16}}, &report);
@@ -45,10 +46,10 @@ TEST(PixelSamples, EvenlyLitPixelsAreDoneAtOnceAndExact) {
 
 TEST(PixelSamples, StopWhereTheErrorIsAskedFor) {
   // Half of the picture's middle column is bright: samples there are 0 or 1.
-  const LitScene lit(SceneBuilder()
-                         .polygon({.exitance = pi_f, .emits_both_sides = true},
-                                  {{0, -9, -9}, {0, 9, -9}, {0, 9, 0}, {0, -9, 0}})
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .polygon({.exitance = pi_f, .emits_both_sides = true},
+                                     {{0, -9, -9}, {0, 9, -9}, {0, 9, 0}, {0, -9, 0}})
+                            .build());
   const Camera camera{.position = {-5, 0, 0},
                       .direction = {1, 0, 0},
                       .up = {0, 0, 1},
@@ -67,7 +68,7 @@ TEST(PixelSamples, StopWhereTheErrorIsAskedFor) {
 // the total light of a pinhole's picture.
 TEST(DepthOfField, BlursAPointToADiskOfTheThinLens) {
   const double d = 2.0, lamp_radius = 0.01;
-  const LitScene lit(SceneBuilder().sphere({.exitance = pi_f}, {d, 0, 0}, lamp_radius).build());
+  const TracedScene lit(SceneBuilder().sphere({.exitance = pi_f}, {d, 0, 0}, lamp_radius).build());
   for (const double f : {1.2, 2.0, 4.0}) {
     Camera camera{.position = {0, 0, 0},
                   .direction = {1, 0, 0},

@@ -15,23 +15,23 @@ namespace {
 constexpr auto pi_f = std::numbers::pi_v<float>;
 const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 
-BandArray interpolated(const LitScene& lit, const std::vector<Probe>& probes) {
+BandArray interpolated(const TracedScene& lit, const std::vector<Probe>& probes) {
   return interpolate_irradiance(lit.caster, lit.solution, probes);
 }
-BandArray gathered(const LitScene& lit, const std::vector<Probe>& probes, int rays = 256) {
+BandArray gathered(const TracedScene& lit, const std::vector<Probe>& probes, int rays = 256) {
   return probe_irradiance(lit.scene, lit.caster, lit.direct_light, lit.solution, probes,
                           {.rays = rays});
 }
 
 /// A closed room with a block on the floor; all surfaces emit M and reflect rho, E = M / (1 - rho).
 constexpr float rho = 0.5f, M = 1.0f, B = M / (1.0f - rho);
-const LitScene& furnace() {
+const TracedScene& furnace() {
   static const auto lit = [] {
     const Paint paint{.reflectance = rho, .exitance = M, .one_sided = true};
-    auto scene = std::make_unique<LitScene>(SceneBuilder()
-                                                .box(paint, {0, 0, 0}, {2, 2, 2}, true)
-                                                .box(paint, {0.5, 0.5, 0}, {1, 1, 1}, false)
-                                                .build());
+    auto scene = std::make_unique<TracedScene>(SceneBuilder()
+                                                   .box(paint, {0, 0, 0}, {2, 2, 2}, true)
+                                                   .box(paint, {0.5, 0.5, 0}, {1, 1, 1}, false)
+                                                   .build());
     scene->set_indirect([](const auto&) { return B; });
     return scene;
   }();
@@ -66,9 +66,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& place) { return place.param.name; });
 
 TEST(InterpolateIrradiance, IsExactForALinearField) {
-  LitScene lit(SceneBuilder()
-                   .polygon({.reflectance = 0.5f}, {{0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {0, 1, 1}})
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .polygon({.reflectance = 0.5f}, {{0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {0, 1, 1}})
+                      .build());
   const auto E = [](const Eigen::Vector3d& p) { return static_cast<float>(3 + p.x() - p.y()); };
   lit.set_indirect(E);
   std::vector<Probe> probes;
@@ -83,7 +83,7 @@ TEST(InterpolateIrradiance, IsExactForALinearField) {
 }
 
 TEST(InterpolateIrradiance, TellsTheSidesOfAWallApart) {
-  LitScene lit(SceneBuilder().square({.reflectance = 0.5f}, {0, 0, 0}, up, 1).build());
+  TracedScene lit(SceneBuilder().square({.reflectance = 0.5f}, {0, 0, 0}, up, 1).build());
   for (int v = 0; v < lit.mesh.vertex_count(); ++v) {
     lit.solution.direct_irradiance.row(v) = lit.mesh.vertex_normal[v].z() > 0 ? 5.0f : 1.0f;
   }
@@ -93,7 +93,7 @@ TEST(InterpolateIrradiance, TellsTheSidesOfAWallApart) {
 }
 
 TEST(InterpolateIrradiance, ProbeOffEverySurfaceIsNamedInFileUnits) {
-  LitScene lit(
+  TracedScene lit(
       SceneBuilder().square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1).build());
   lit.solution.metres_per_unit = 1e-3;
   lit.solution.unit_name = "mm";
@@ -115,10 +115,10 @@ TEST(ProbeIrradiance, UnderASmallLampIsTheClosedForm) {
   constexpr double a = 0.5, h = 2.0;
   const double X = a / h, root = std::sqrt(1 + X * X);
   const double F = 4.0 / (2 * std::numbers::pi) * 2 * (X / root) * std::atan(X / root);
-  const LitScene lit(SceneBuilder()
-                         .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 5)
-                         .square({.exitance = 7.0f, .one_sided = true}, {0, 0, h}, -up, a)
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 5)
+                            .square({.exitance = 7.0f, .one_sided = true}, {0, 0, h}, -up, a)
+                            .build());
   ASSERT_EQ(lit.direct_light.emitters().size(), 1u);
   const BandArray E = gathered(lit, {{{0, 0, 0}, up}, {{0, 0, 1e-4}, up}, {{0, 0, 0}, -up}});
   EXPECT_NEAR(E(0, 0), 7.0 * F, 1e-5 * 7.0 * F);
@@ -128,13 +128,13 @@ TEST(ProbeIrradiance, UnderASmallLampIsTheClosedForm) {
 
 TEST(ProbeIrradiance, OnTheFoldOfABentFloorIsShadedByNeitherHalf) {
   // Two triangles of a quadrilateral that deviates from a plane by 2 mm meet along the diagonal.
-  LitScene lit(SceneBuilder()
-                   .polygon({.reflectance = 0.5f, .one_sided = true},
-                            {{-1, -1, 0}, {1, -1, 2e-3}, {1, 1, 0}})
-                   .polygon({.reflectance = 0.5f, .one_sided = true},
-                            {{-1, -1, 0}, {1, 1, 0}, {-1, 1, 2e-3}})
-                   .square({.exitance = 7.0f, .one_sided = true}, {0, 0, 2}, -up, 0.2)
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .polygon({.reflectance = 0.5f, .one_sided = true},
+                               {{-1, -1, 0}, {1, -1, 2e-3}, {1, 1, 0}})
+                      .polygon({.reflectance = 0.5f, .one_sided = true},
+                               {{-1, -1, 0}, {1, 1, 0}, {-1, 1, 2e-3}})
+                      .square({.exitance = 7.0f, .one_sided = true}, {0, 0, 2}, -up, 0.2)
+                      .build());
   ASSERT_EQ(lit.direct_light.emitters().size(), 1u);
   const BandArray E = gathered(lit, {{{0.1, 0.1, 0}, up}, {{0.11, 0.09, 1e-5}, up}});
   EXPECT_GT(E(1, 0), 0.0f);
@@ -143,11 +143,11 @@ TEST(ProbeIrradiance, OnTheFoldOfABentFloorIsShadedByNeitherHalf) {
 
 TEST(ProbeIrradiance, BelowAStackOfTwoFloorsSeesNeither) {
   // Two sheets lie in one plane. The caster may hit either; the other must not shade the probe.
-  LitScene lit(SceneBuilder()
-                   .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1)
-                   .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 0.5)
-                   .square({.exitance = pi_f}, {0, 0, 1}, -up, 100)
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1)
+                      .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 0.5)
+                      .square({.exitance = pi_f}, {0, 0, 1}, -up, 100)
+                      .build());
   const BandArray E = gathered(lit, {{{0.1, 0.2, 0}, up}}, 1024);
   EXPECT_NEAR(E(0, 0), pi_f, 1e-3 * pi_f);  // the lamp fills the hemisphere to (1/100)^2
 }

@@ -22,7 +22,7 @@ class Furnace : public ::testing::TestWithParam<std::tuple<Pass, int>> {};
 TEST_P(Furnace, EveryPixelShowsBOverPi) {
   const auto [pass, bands] = GetParam();
   constexpr float M = 1.0f, rho = 0.6f, B = M / (1.0f - rho);
-  LitScene lit(
+  TracedScene lit(
       SceneBuilder(bands == 3 ? rgb_bands() : spectral_bands(400, 700, bands))
           .box({.reflectance = rho, .exitance = M, .one_sided = true}, {0, 0, 0}, {2, 1, 1.5}, true)
           .box({.reflectance = rho, .exitance = M, .one_sided = true}, {0.5, 0, 0.5},
@@ -47,9 +47,9 @@ INSTANTIATE_TEST_SUITE_P(PassesAndBands, Furnace,
 TEST(Render, InterpolatedLinearIrradianceIsExactInEveryPixel) {
   // E = 1 + x + 2 y on the floor: vertices interpolate it exactly, and the mean over a pixel's
   // square of a function that is nearly linear across it is its value at the centre.
-  LitScene lit(SceneBuilder()
-                   .polygon({.reflectance = 1.0f}, {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}})
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .polygon({.reflectance = 1.0f}, {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}})
+                      .build());
   const auto E = [](const Eigen::Vector3d& p) { return static_cast<float>(1 + p.x() + 2 * p.y()); };
   lit.set_direct(E);
   const Camera camera{.position = {1, 0.5, 4},
@@ -71,7 +71,7 @@ TEST(Render, InterpolatedLinearIrradianceIsExactInEveryPixel) {
 
 TEST(Render, PixelsAreMeansOverTheirSquares) {
   // A slanted half-plane of radiance 1: the sum over the picture is the area it covers.
-  const LitScene lit(
+  const TracedScene lit(
       SceneBuilder()
           .polygon({.exitance = pi_f}, {{-9, -8.9, 0}, {9, -8.9, 0}, {9, 3.3, 0}, {-9, -2.7, 0}})
           .build());
@@ -109,12 +109,12 @@ TEST(Render, StripThinnerThanAPixelIsNotLost) {
   // A strip of 0.4 pixels runs through the middle of a column of pixels, between all their corners.
   const double pixel = 0.1;
   const double half = 0.2 * pixel, middle = 0.5 * pixel;
-  const LitScene lit(SceneBuilder()
-                         .polygon({.exitance = pi_f}, {{middle - half, -5, 0},
-                                                       {middle + half, -5, 0},
-                                                       {middle + half, 5, 0},
-                                                       {middle - half, 5, 0}})
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .polygon({.exitance = pi_f}, {{middle - half, -5, 0},
+                                                          {middle + half, -5, 0},
+                                                          {middle + half, 5, 0},
+                                                          {middle - half, 5, 0}})
+                            .build());
   const Camera camera{.position = {0, 0, 8},
                       .direction = {0, 0, -1},
                       .up = {0, 1, 0},
@@ -127,7 +127,7 @@ TEST(Render, StripThinnerThanAPixelIsNotLost) {
 }
 
 TEST(Render, WorldOutsideIsBlack) {
-  LitScene lit(SceneBuilder().square({.reflectance = 1.0f}, {0, 0, 0}, {0, 0, 1}, 0.5).build());
+  TracedScene lit(SceneBuilder().square({.reflectance = 1.0f}, {0, 0, 0}, {0, 0, 1}, 0.5).build());
   lit.set_direct([](const auto&) { return 1.0f; });
   const Camera camera = camera_towards({0, 0, 3}, {0, 0, 0}, 40, 16);
   const Image image = lit.render(camera, {.pass = Pass::interpolate});
@@ -136,10 +136,10 @@ TEST(Render, WorldOutsideIsBlack) {
 }
 
 TEST(Render, EveryPathBetweenTwoMirrorsIsCutOnce) {
-  const LitScene lit(SceneBuilder()
-                         .square({.specular = 1.0f}, {0, 0, 0}, {0, 0, 1}, 1000)
-                         .square({.specular = 1.0f}, {0, 0, 1}, {0, 0, -1}, 1000)
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .square({.specular = 1.0f}, {0, 0, 0}, {0, 0, 1}, 1000)
+                            .square({.specular = 1.0f}, {0, 0, 1}, {0, 0, -1}, 1000)
+                            .build());
   const Camera camera = camera_towards({0, 0, 0.5}, {1, 0, 0}, 30, 8);
   Camera tilted = camera_towards({0, 0, 0.5}, {1, 0.2, 1}, 30, 8);
   RenderReport report;
@@ -148,18 +148,18 @@ TEST(Render, EveryPathBetweenTwoMirrorsIsCutOnce) {
   EXPECT_EQ(report.depth_cut, report.eye_rays);
   EXPECT_DOUBLE_EQ(report.cut_share, 1.0);
   // A branch at a lossy mirror ends when its contribution is negligible, and is not counted as cut.
-  const LitScene dim(SceneBuilder()
-                         .square({.specular = 0.1f}, {0, 0, 0}, {0, 0, 1}, 1000)
-                         .square({.specular = 0.1f}, {0, 0, 1}, {0, 0, -1}, 1000)
-                         .build());
+  const TracedScene dim(SceneBuilder()
+                            .square({.specular = 0.1f}, {0, 0, 0}, {0, 0, 1}, 1000)
+                            .square({.specular = 0.1f}, {0, 0, 1}, {0, 0, -1}, 1000)
+                            .build());
   dim.render(tilted, {.max_depth = 5, .min_contribution = 1e-3f}, &report);
   EXPECT_EQ(report.depth_cut, 0);
   EXPECT_EQ(report.cut_share, 0.0);
 }
 
 /// A room with a small lamp, a block, a mirror and a glass sphere.
-LitScene& furnished_room() {
-  static LitScene lit(
+TracedScene& furnished_room() {
+  static TracedScene lit(
       SceneBuilder()
           .box({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, {2, 2, 2}, true)
           .square({.exitance = 10.0f, .one_sided = true}, {1, 1.99, 1}, {0, -1, 0}, 0.3)
@@ -172,7 +172,7 @@ LitScene& furnished_room() {
 }
 
 TEST(Render, OneThreadAndTwoGiveTheSameBits) {
-  const LitScene& lit = furnished_room();
+  const TracedScene& lit = furnished_room();
   ASSERT_EQ(lit.direct_light.emitters().size(), 1u);
   const Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 40);
   Image one, two;
@@ -189,7 +189,7 @@ TEST(Render, OneThreadAndTwoGiveTheSameBits) {
 }
 
 TEST(Render, FinerSubdivisionConvergesToTheSamePicture) {
-  const LitScene& lit = furnished_room();
+  const TracedScene& lit = furnished_room();
   const Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 24);
   const Image reference = lit.render(camera, {.max_subdivision = 4, .contrast = 0.01f});
   double previous = 1e9;
@@ -202,7 +202,7 @@ TEST(Render, FinerSubdivisionConvergesToTheSamePicture) {
 }
 
 TEST(Render, ProgressRisesToOneAndStopsTheWork) {
-  const LitScene& lit = furnished_room();
+  const TracedScene& lit = furnished_room();
   Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 8);
   camera.height = 3000;  // several strips
   std::vector<double> shares;
@@ -231,7 +231,7 @@ Camera tall_camera() {
 }
 
 TEST(Render, StoppedAnywhereAndGoneOnWithItHasTheSameBits) {
-  const LitScene& lit = furnished_room();
+  const TracedScene& lit = furnished_room();
   const Camera camera = tall_camera();
   RenderOptions options{.pass = Pass::interpolate,
                         .max_subdivision = 1,
@@ -262,7 +262,7 @@ TEST(Render, StoppedAnywhereAndGoneOnWithItHasTheSameBits) {
 }
 
 TEST(Render, TilesOfAnotherPictureAreNotTaken) {
-  LitScene& lit = furnished_room();
+  TracedScene& lit = furnished_room();
   const Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 8);
   const TemporaryFolder folder;
   const auto recalled = [&](const Camera& from, const RenderOptions& asked) {
@@ -291,7 +291,7 @@ TEST(Render, TilesOfAnotherPictureAreNotTaken) {
 }
 
 TEST(Render, ImpossibleOptionsAreRefused) {
-  const LitScene& lit = furnished_room();
+  const TracedScene& lit = furnished_room();
   const Camera camera = camera_towards({1, 1, 0.05}, {1, 0.8, 2}, 80, 8);
   EXPECT_THROW(lit.render(camera, {.max_depth = -1}), std::invalid_argument);
   EXPECT_THROW(lit.render(camera, {.max_subdivision = 7}), std::invalid_argument);

@@ -11,11 +11,11 @@ namespace {
 
 // A lamp over a mirror, which reflects light to the ceiling.
 struct MirroredLamp {
-  LitScene lit{SceneBuilder()
-                   .square({.exitance = 10.0f, .one_sided = true}, {0, 0, 1}, {0, 0, -1}, 0.1)
-                   .square({.specular = 0.8f, .one_sided = true}, {0, 0, 0}, {0, 0, 1}, 0.5)
-                   .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 2}, {0, 0, -1}, 4.0)
-                   .build()};
+  TracedScene lit{SceneBuilder()
+                      .square({.exitance = 10.0f, .one_sided = true}, {0, 0, 1}, {0, 0, -1}, 0.1)
+                      .square({.specular = 0.8f, .one_sided = true}, {0, 0, 0}, {0, 0, 1}, 0.5)
+                      .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 2}, {0, 0, -1}, 4.0)
+                      .build()};
   MirroredLamp() { lit.solution.caustic_irradiance = lit.solution.indirect_irradiance; }
 };
 

@@ -36,7 +36,7 @@ Eigen::Vector3d downwards(double degrees) {
 }
 
 // Radiance of the first band; all bands are equal in these grey scenes.
-float radiance(const LitScene& lit, const Ray& ray, const RenderOptions& options = {}) {
+float radiance(const TracedScene& lit, const Ray& ray, const RenderOptions& options = {}) {
   return RayTree(lit.scene, lit.caster, lit.direct_light, lit.solution, options)
       .trace(ray, 1)
       .radiance[0];
@@ -44,12 +44,12 @@ float radiance(const LitScene& lit, const Ray& ray, const RenderOptions& options
 
 /// A glass surface z = 0 between a lamp of radiance 1 far above and one of radiance 100 far below:
 /// radiance separates reflected from refracted light.
-LitScene& glass_between_lamps() {
-  static LitScene lit(SceneBuilder()
-                          .square({.index_of_refraction = 1.5f}, {0, 0, 0}, up, 1000)
-                          .square({.exitance = pi_f}, {0, 0, 10}, -up, 1000)
-                          .square({.exitance = 100 * pi_f}, {0, 0, -10}, up, 1000)
-                          .build());
+TracedScene& glass_between_lamps() {
+  static TracedScene lit(SceneBuilder()
+                             .square({.index_of_refraction = 1.5f}, {0, 0, 0}, up, 1000)
+                             .square({.exitance = pi_f}, {0, 0, 10}, -up, 1000)
+                             .square({.exitance = 100 * pi_f}, {0, 0, -10}, up, 1000)
+                             .build());
   return lit;
 }
 
@@ -75,10 +75,10 @@ TEST(RayTree, SlabPassesWhatItsManyReflectionsLeave) {
   // (1-R)/(1+R).
   for (const float tint : {1.0f, 0.5f}) {
     const Paint glass{.index_of_refraction = 1.5f, .tint = tint};
-    const LitScene lit(SceneBuilder()
-                           .box(glass, {-5, -5, 0}, {5, 5, 1}, false)
-                           .square({.exitance = pi_f}, {0, 0, -4}, up, 20)
-                           .build());
+    const TracedScene lit(SceneBuilder()
+                              .box(glass, {-5, -5, 0}, {5, 5, 1}, false)
+                              .square({.exitance = pi_f}, {0, 0, -4}, up, 20)
+                              .build());
     const Ray ray{.origin = {0.1, 0.2, 3}, .direction = -up};
     const double T = closed_forms("slab_transmittance")["T"].get<double>() * tint * tint;
     EXPECT_NEAR(radiance(lit, ray, {.max_depth = 20, .min_contribution = 1e-9f}), T, 1e-6);
@@ -95,10 +95,10 @@ TEST(RayTree, SlabShiftsARaySideways) {
     const Eigen::Vector3d sideways(-std::cos(angle * pi / 180.0), 0, -std::sin(angle * pi / 180.0));
     const Eigen::Vector3d lamp = eye + 9.0 * d + shift * sideways;
     constexpr double radius = 1e-3;
-    const LitScene lit(SceneBuilder()
-                           .box({.index_of_refraction = 1.5f}, {-9, -9, 0.5}, {9, 9, 1.5}, false)
-                           .sphere({.exitance = pi_f}, lamp, radius)
-                           .build());
+    const TracedScene lit(SceneBuilder()
+                              .box({.index_of_refraction = 1.5f}, {-9, -9, 0.5}, {9, 9, 1.5}, false)
+                              .sphere({.exitance = pi_f}, lamp, radius)
+                              .build());
     // A ray aimed at the lamp hits; a ray beyond the lamp's edge by a tenth of its radius does not.
     const auto seen_at = [&](double off) {
       return radiance(lit, {.origin = eye + off * radius * sideways, .direction = d});
@@ -118,10 +118,10 @@ TEST(RayTree, MirrorShowsAPointAtItsImage) {
     Eigen::Vector3d n = vector(test["plane_normal"]).normalized();
     if ((point - q).dot(n) < 0) n = -n;
     constexpr double radius = 1e-3;
-    const LitScene lit(SceneBuilder()
-                           .square({.specular = 0.9f}, q, n, 60)
-                           .sphere({.exitance = pi_f}, point, radius)
-                           .build());
+    const TracedScene lit(SceneBuilder()
+                              .square({.specular = 0.9f}, q, n, 60)
+                              .sphere({.exitance = pi_f}, point, radius)
+                              .build());
     const Eigen::Vector3d eye = q + 2.5 * n + 1.7 * n.unitOrthogonal();
     const Eigen::Vector3d d = (image - eye).normalized();
     const Eigen::Vector3d across = d.unitOrthogonal();
@@ -138,20 +138,20 @@ TEST(RayTree, MirrorShowsAPointAtItsImage) {
 
 TEST(RayTree, MirrorPathMeetsTheLampWhereTheImageMethodSays) {
   const auto path = closed_forms("mirror_path");
-  const LitScene lit(SceneBuilder()
-                         .square({.specular = 1.0f}, {0, 0, 0}, up, 10)
-                         .sphere({.exitance = pi_f}, vector(path["light"]), 1e-3)
-                         .build(),
-                     5.0);
+  const TracedScene lit(SceneBuilder()
+                            .square({.specular = 1.0f}, {0, 0, 0}, up, 10)
+                            .sphere({.exitance = pi_f}, vector(path["light"]), 1e-3)
+                            .build(),
+                        5.0);
   const Eigen::Vector3d eye = vector(path["eye"]);
   EXPECT_FLOAT_EQ(radiance(lit, {.origin = eye, .direction = vector(path["hit"]) - eye}), 1.0f);
 }
 
 TEST(RayTree, MirrorAndDiffuseSharesOfOneSurfaceAdd) {
-  LitScene lit(SceneBuilder()
-                   .square({.reflectance = 0.5f, .specular = 0.25f}, {0, 0, 0}, up, 1)
-                   .square({.exitance = 8 * pi_f}, {0, 0, 5}, -up, 50)
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .square({.reflectance = 0.5f, .specular = 0.25f}, {0, 0, 0}, up, 1)
+                      .square({.exitance = 8 * pi_f}, {0, 0, 5}, -up, 50)
+                      .build());
   lit.set_indirect([](const auto&) { return 2 * pi_f; });
   // The lamp is the larger part of the scene, so its light is part of indirect irradiance:
   // 0.5 * 2 pi / pi + 0.25 * 8.
@@ -163,7 +163,7 @@ TEST(RayTree, LightIsSeenFromTheSideThatEmits) {
   const Ray above{.origin = {0.1, 0.1, 1}, .direction = -up};
   const Ray below{.origin = {0.1, 0.1, -1}, .direction = up};
   const auto lamp = [](const Paint& paint) {
-    return LitScene(SceneBuilder().square(paint, {0, 0, 0}, up, 1).build());
+    return TracedScene(SceneBuilder().square(paint, {0, 0, 0}, up, 1).build());
   };
   EXPECT_FLOAT_EQ(radiance(lamp({.exitance = 2 * pi_f}), above), 2.0f);
   EXPECT_FLOAT_EQ(radiance(lamp({.exitance = 2 * pi_f}), below), 0.0f);
@@ -171,10 +171,10 @@ TEST(RayTree, LightIsSeenFromTheSideThatEmits) {
 }
 
 TEST(RayTree, BackOfAOneSidedSurfaceIsBlack) {
-  LitScene lit(SceneBuilder()
-                   .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1)
-                   .square({.specular = 1.0f, .one_sided = true}, {0, 0, 3}, up, 1)
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1)
+                      .square({.specular = 1.0f, .one_sided = true}, {0, 0, 3}, up, 1)
+                      .build());
   lit.set_indirect([](const auto&) { return 2 * pi_f; });
   EXPECT_FLOAT_EQ(radiance(lit, {.origin = {0.1, 0.1, 1}, .direction = -up}), 1.0f);
   EXPECT_EQ(radiance(lit, {.origin = {0.1, 0.1, -1}, .direction = up}), 0.0f);
@@ -182,10 +182,10 @@ TEST(RayTree, BackOfAOneSidedSurfaceIsBlack) {
 }
 
 TEST(RayTree, GlassStandingOnAFloorShowsTheFloor) {
-  LitScene lit(SceneBuilder()
-                   .square({.reflectance = 1.0f, .one_sided = true}, {0, 0, 0}, up, 10)
-                   .box({.index_of_refraction = 1.5f}, {-1, -1, 0}, {1, 1, 1}, false)
-                   .build());
+  TracedScene lit(SceneBuilder()
+                      .square({.reflectance = 1.0f, .one_sided = true}, {0, 0, 0}, up, 10)
+                      .box({.index_of_refraction = 1.5f}, {-1, -1, 0}, {1, 1, 1}, false)
+                      .build());
   lit.set_indirect([](const auto&) { return pi_f; });
   // Straight down, the floor of radiance 1 lies behind one surface if floor and base coincide, and
   // behind two surfaces with their reflections if air is between them.
@@ -204,10 +204,10 @@ TEST(RayTree, GlassSphereInAUniformWorldIsInvisible) {
   // has radiance 1, except for the share of the deepest branch: after k internal reflections
   // (1-R) R^k < 1 / (e k) for any R.
   constexpr int depth = 500;
-  const LitScene lit(SceneBuilder()
-                         .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
-                         .sphere({.index_of_refraction = 1.5f}, {0.1, 0, 0}, 1.0)
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .box({.exitance = pi_f}, {-3, -3, -3}, {3, 3, 3}, true)
+                            .sphere({.index_of_refraction = 1.5f}, {0.1, 0, 0}, 1.0)
+                            .build());
   for (int i = 0; i <= 400; ++i) {
     const double off = 1.05 * i / 400.0;
     const Ray ray{.origin = {0.1 + off, 0, 2.5}, .direction = -up};
@@ -218,11 +218,11 @@ TEST(RayTree, GlassSphereInAUniformWorldIsInvisible) {
 }
 
 TEST(RayTree, DirectLightHasTheExactPenumbra) {
-  const LitScene lit(SceneBuilder()
-                         .square({.reflectance = 1.0f}, {0, 0, 0}, up, 5)
-                         .square({.exitance = pi_f, .one_sided = true}, {0, 0, 2}, -up, 0.5)
-                         .polygon({}, {{0, -50, 1}, {0, 50, 1}, {-50, 50, 1}, {-50, -50, 1}})
-                         .build());
+  const TracedScene lit(SceneBuilder()
+                            .square({.reflectance = 1.0f}, {0, 0, 0}, up, 5)
+                            .square({.exitance = pi_f, .one_sided = true}, {0, 0, 2}, -up, 0.5)
+                            .polygon({}, {{0, -50, 1}, {0, 50, 1}, {-50, 50, 1}, {-50, -50, 1}})
+                            .build());
   const RenderOptions options{.shadows = {.min_rays = 64, .max_rays = 64}};
   const RayTree tree(lit.scene, lit.caster, lit.direct_light, lit.solution, options);
   constexpr int keys = 64;
@@ -258,7 +258,7 @@ TEST(RayTree, FingerprintTellsFacesNotFacetsOfASmoothSurface) {
       .shape = PolygonMesh{.vertices = {{-9, 5, -9}, {9, 5, -9}, {9, 5, 9}, {-9, 5, 9}},
                            .facets = {{.boundary = {0, 1, 2, 3}}}}};
   scene.surfaces.push_back({.name = "column", .shape = column});
-  const LitScene lit(scene);
+  const TracedScene lit(scene);
   const RenderOptions options;
   const RayTree tree(lit.scene, lit.caster, lit.direct_light, lit.solution, options);
   const auto print = [&](double x) {

@@ -64,7 +64,7 @@ Image side_lit_ball(Ball ball) {
   scene.materials.back().reflectance = constant_spectrum(scene.bands, 0.5f);
   scene.materials.back().emission.setZero();
   add_ball(scene, ball, 1);
-  const LitScene lit(scene);
+  const TracedScene lit(scene);
   Camera camera = camera_towards({0, -8, 0}, {0, 0, 0}, 18, 96);
   camera.up = Vector3d::UnitZ();
   return lit.render(camera);
@@ -121,7 +121,7 @@ Image mirrored_room(Ball ball, const Paint& paint) {
   const Scene painted = SceneBuilder().sphere(paint, {0, 0, 0}, 1.0).build();
   scene.materials.push_back(painted.materials[0]);
   add_ball(scene, ball, 1);
-  LitScene lit(scene);
+  TracedScene lit(scene);
   lit.set_indirect([](const Vector3d& p) {
     return static_cast<float>(2.0 * pi * (1.0 + 0.1 * (p.x() + 0.5 * p.y() - 0.7 * p.z())));
   });
@@ -179,7 +179,7 @@ Eigen::ArrayXf ball_in_furnace(Ball ball, const Paint& paint) {
   scene.materials.push_back(SceneBuilder().sphere(paint, {0, 0, 0}, 1.0).build().materials[0]);
   add_ball(scene, ball, 1);
   const RenderOptions options{.pass = Pass::gather, .gather_rays = 64, .photons = 0};
-  return LitScene(scene)
+  return TracedScene(scene)
       .render(camera_towards({0, -4, 0}, {0, 0, 0}, 34, 24), options)
       .radiance.col(0);
 }
@@ -226,7 +226,7 @@ Eigen::ArrayXd thrown_on_ceiling(Ball ball) {
   scene.materials.push_back(
       SceneBuilder().sphere({.specular = 1.0f}, {0, 0, 0}, 1.0).build().materials[0]);
   add_ball(scene, ball, 2);
-  const LitScene lit(scene);
+  const TracedScene lit(scene);
   const CausticMap map(lit.mesh, shoot_photons({scene, lit.caster, lit.direct_light}, 1 << 18, 4));
   constexpr int across = 24;
   Eigen::ArrayXd E(across * across);
@@ -272,7 +272,7 @@ TEST(SmoothNormals, NoLightComesThroughASheet) {
     scene.surfaces.resize(1);
     scene.surfaces.push_back({.name = "sheet", .material = 1, .shape = mesh.mesh()});
     ASSERT_FALSE(FacetNormals(scene).is_empty());
-    const LitScene lit(scene);
+    const TracedScene lit(scene);
     const Image image = lit.render(camera_towards({0, 0, 8}, {0, 0, 0}, 12, 16));
     EXPECT_EQ(image.radiance.maxCoeff(), 0.0f);
   }

@@ -53,7 +53,7 @@ TEST_P(InEveryPass, APixelShowsTextureTimesIrradianceOverPi) {
   constexpr int texels = 8, pixels = 64;
   constexpr float E = 3.0f;
   const std::vector<float> shares = noise(texels * texels);
-  LitScene lit(square(picture_of(texels, texels, shares)), 0.2);
+  TracedScene lit(square(picture_of(texels, texels, shares)), 0.2);
   // The scene has no emitter: its only light is the irradiance of the mesh.
   if (GetParam() == Pass::gather) GTEST_SKIP() << "there is nothing to gather from";
   lit.set_indirect([](const auto&) { return E; });
@@ -79,7 +79,7 @@ TEST(Textures, AFinalGatherShowsTheTextureToo) {
   SurfaceTexture halves = picture_of(2, 1, {0.2f, 0.8f});
   halves.wrap.fill(TextureWrap::clamp);  // samples lie on the square's very edge
   put_picture(scene, 0, halves);
-  LitScene lit(std::move(scene), 20.0);
+  TracedScene lit(std::move(scene), 20.0);
   ASSERT_TRUE(lit.direct_light.emitters().empty());
   Camera camera = from_above(8);
   const Image image = lit.render(camera, {.pass = Pass::gather, .gather_rays = 64});
@@ -98,7 +98,7 @@ TEST(Textures, AFinalGatherShowsTheTextureToo) {
 // deviation of 0.26. The mean of 256 independent texels has 0.26 / 16.
 TEST(Textures, FineTexturesDoNotShimmer) {
   constexpr int texels = 512, pixels = 32;
-  LitScene lit(square(picture_of(texels, texels, noise(texels * texels))), 0.2);
+  TracedScene lit(square(picture_of(texels, texels, noise(texels * texels))), 0.2);
   lit.set_indirect([](const auto&) { return pi_f; });
   const Image image = lit.render(from_above(pixels), {.pass = Pass::interpolate});
   const float mean = image.radiance.col(0).mean();
@@ -108,7 +108,7 @@ TEST(Textures, FineTexturesDoNotShimmer) {
 }
 
 TEST(Textures, TheAlbedoLayerIsTheTexture) {
-  LitScene lit(square(picture_of(2, 2, {0.1f, 0.4f, 0.7f, 1.0f})), 0.2);
+  TracedScene lit(square(picture_of(2, 2, {0.1f, 0.4f, 0.7f, 1.0f})), 0.2);
   const Image image = lit.render(from_above(8), {.layers = {Layer::albedo, Layer::indirect}});
   const auto albedo = [&](int x, int y) { return image.layers.values(8 * y + x, 0); };
   EXPECT_NEAR(albedo(1, 1), 0.1f, rounding);
@@ -124,7 +124,7 @@ TEST(Textures, TheEyeSeesThroughHoles) {
                     .polygon({.exitance = pi_f}, {{-1, -1, 0}, {2, -1, 0}, {2, 2, 0}, {-1, 2, 0}})
                     .build();
   put_mask(scene, 0, picture_of(4, 1, {1, 0, 0, 1}));
-  const LitScene lit(std::move(scene), 0.5);
+  const TracedScene lit(std::move(scene), 0.5);
   const Image image = lit.render(from_above(32), {.pass = Pass::interpolate});
   for (int x = 0; x < 32; ++x) {
     if (x % 8 == 0 || x % 8 == 7) continue;
@@ -135,7 +135,7 @@ TEST(Textures, TheEyeSeesThroughHoles) {
 TEST(Textures, BitsOfAPictureDoNotDependOnTheNumberOfThreads) {
   const auto rendered = [&](int threads) {
     const ThreadLimit limit(threads);
-    LitScene lit(square(picture_of(32, 32, noise(32 * 32))), 0.2);
+    TracedScene lit(square(picture_of(32, 32, noise(32 * 32))), 0.2);
     lit.set_indirect([](const Eigen::Vector3d& p) { return static_cast<float>(1.0 + p.x()); });
     return lit.render(from_above(40)).radiance;
   };

@@ -31,7 +31,7 @@ Scene prism(int sides) {
 }
 
 std::vector<LightmapChart> charts_of(const Scene& scene, double patch_size) {
-  LitScene lit(scene, patch_size);
+  TracedScene lit(scene, patch_size);
   lit.set_direct([](const Vector3d&) { return 1.0f; });
   const SolvedScene solved{lit.mesh, lit.solution};
   const BakedModel model = bake_model(solved, scene);

@@ -17,20 +17,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-SolvedScene solved_of(const LitScene& lit) {
+SolvedScene solved_of(const TracedScene& lit) {
   return {lit.mesh, lit.solution};
 }
 
 /// A room with a block, a ball and smoothly varying light.
-const LitScene& furnished() {
+const TracedScene& furnished() {
   static const auto lit = [] {
     const Paint paint{.reflectance = 0.5f, .one_sided = true};
-    auto scene = std::make_unique<LitScene>(SceneBuilder()
-                                                .box(paint, {0, 0, 0}, {4, 3, 2.5}, true)
-                                                .box(paint, {1, 1, 0}, {1.6, 1.5, 0.7}, false)
-                                                .sphere(paint, {2.8, 1.4, 0.5}, 0.4)
-                                                .build(),
-                                            0.5);
+    auto scene = std::make_unique<TracedScene>(SceneBuilder()
+                                                   .box(paint, {0, 0, 0}, {4, 3, 2.5}, true)
+                                                   .box(paint, {1, 1, 0}, {1.6, 1.5, 0.7}, false)
+                                                   .sphere(paint, {2.8, 1.4, 0.5}, 0.4)
+                                                   .build(),
+                                               0.5);
     scene->set_direct([](const Vector3d& p) {
       return static_cast<float>(5.0 + std::sin(1.3 * p.x()) + std::cos(1.7 * p.y()) * p.z());
     });
@@ -71,7 +71,7 @@ TEST(Lightmap, BilinearLightIsReadAsItIs) {
 }
 
 /// Relative RMS difference over the room between filtered lightmaps and the solution.
-double reading_error(const LitScene& lit, int size) {
+double reading_error(const TracedScene& lit, int size) {
   const SolvedScene solved = solved_of(lit);
   const BakedModel model = bake_model(solved, lit.scene);
   const LightmapLayout layout = lay_out_lightmap(model, solved.mesh, {.size = size});
@@ -181,11 +181,11 @@ TEST(Lightmap, PaddingHasTheLightOfItsChart) {
 /// 0 on one side to 1 on the other.
 TEST(Lightmap, NothingLeaksThroughAThinWall) {
   const Paint paint{.reflectance = 0.5f};
-  LitScene lit(SceneBuilder()
-                   .polygon(paint, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}})
-                   .polygon(paint, {{2, 0, 0}, {2, 2, 0}, {2, 2, 1}, {2, 0, 1}})
-                   .build(),
-               0.5);
+  TracedScene lit(SceneBuilder()
+                      .polygon(paint, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}})
+                      .polygon(paint, {{2, 0, 0}, {2, 2, 0}, {2, 2, 1}, {2, 0, 1}})
+                      .build(),
+                  0.5);
   std::vector<Vector3d> beside(lit.mesh.vertex_count(), Vector3d::Zero());
   for (int e = 0; e < lit.mesh.element_count(); ++e) {
     for (int c = 0; c < lit.mesh.corner_count(e); ++c) {
@@ -232,11 +232,11 @@ TEST(Lightmap, NothingLeaksThroughAThinWall) {
 /// foot.
 TEST(Lightmap, NothingDarkShowsAtABlocksFoot) {
   const Paint paint{.reflectance = 0.5f, .one_sided = true};
-  LitScene lit(SceneBuilder()
-                   .polygon(paint, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}})
-                   .box(paint, {1, 1, 0}, {2, 2, 1}, false)
-                   .build(),
-               0.5);
+  TracedScene lit(SceneBuilder()
+                      .polygon(paint, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}})
+                      .box(paint, {1, 1, 0}, {2, 2, 1}, false)
+                      .build(),
+                  0.5);
   for (int e = 0; e < lit.mesh.element_count(); ++e) {
     const PatchPoint at = element_center(lit.mesh, e);
     const bool is_under =
@@ -302,11 +302,11 @@ TEST(Lightmap, ABallIsRolledOffByLongitudeAndLatitude) {
 TEST(Lightmap, DirectLightIsTracedAnewAtTexelCentres) {
   const Paint white{.reflectance = 0.5f, .one_sided = true};
   const Paint lamp{.exitance = 100.0f, .one_sided = true};
-  LitScene lit(SceneBuilder()
-                   .polygon(white, {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}})
-                   .polygon(lamp, {{0.9, 0.9, 1}, {0.9, 1.1, 1}, {1.1, 1.1, 1}, {1.1, 0.9, 1}})
-                   .build(),
-               2.0);
+  TracedScene lit(SceneBuilder()
+                      .polygon(white, {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}})
+                      .polygon(lamp, {{0.9, 0.9, 1}, {0.9, 1.1, 1}, {1.1, 1.1, 1}, {1.1, 0.9, 1}})
+                      .build(),
+                  2.0);
   lit.set_direct([](const Vector3d&) { return 1.0f; });
   lit.set_indirect([](const Vector3d&) { return 0.25f; });
   const SolvedScene solved = solved_of(lit);
@@ -336,7 +336,7 @@ TEST(Lightmap, DirectLightIsTracedAnewAtTexelCentres) {
 /// In a closed room of constant radiosity a final gather has the same value everywhere.
 TEST(Lightmap, AGatherInAFurnaceIsTheSameEverywhere) {
   const Paint paint{.reflectance = 0.5f, .exitance = 1.0f, .one_sided = true};
-  LitScene lit(SceneBuilder().box(paint, {0, 0, 0}, {2, 2, 2}, true).build(), 1.0);
+  TracedScene lit(SceneBuilder().box(paint, {0, 0, 0}, {2, 2, 2}, true).build(), 1.0);
   lit.set_indirect([](const Vector3d&) { return 2.0f; });
   const SolvedScene solved = solved_of(lit);
   const BakedModel model = bake_model(solved, lit.scene);
