@@ -24,7 +24,8 @@ Eigen::Quaterniond orientation(const Camera& camera) {
   return Eigen::Quaterniond(axes);
 }
 
-// The two axes of a camera, made unit and upright to each other. False if they are not axes.
+// Makes direction and up of a camera orthonormal. False if a vector is zero or not finite, or if
+// the two are parallel.
 bool straighten_camera(Camera& camera) {
   if (!(camera.direction.norm() > 1e-9) || !camera.direction.allFinite()) return false;
   camera.direction.normalize();
@@ -71,7 +72,8 @@ Camera camera_of(const Json& json) {
   return camera;
 }
 
-// At a share s of an interval of length h: the cubic with the values and slopes of its ends.
+// Cubic Hermite interpolation at a share s in [0,1] of an interval of length h, with values p and
+// slopes m at the ends.
 Eigen::Vector3d hermite(const Eigen::Vector3d& p0, const Eigen::Vector3d& m0,
                         const Eigen::Vector3d& p1, const Eigen::Vector3d& m1, double h, double s) {
   const double s2 = s * s, s3 = s2 * s;

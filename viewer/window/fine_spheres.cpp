@@ -8,19 +8,20 @@
 namespace lightwell {
 namespace {
 
-/// Around a sphere: a chord of 1/128 of the circle is off it by r (1 - cos 1.4 degrees) = 3e-4 r, a
-/// tenth of a pixel where the sphere is 600 pixels wide.
+/// Faces around a sphere. The sagitta of a chord of 1/128 of the circle is
+/// r (1 - cos 1.4 degrees) = 3e-4 r, a tenth of a pixel where the sphere is 600 pixels wide.
 constexpr int pieces_around = 128;
-/// Of all spheres together; a scene of very many has coarser ones.
+/// Bound on the faces of all spheres together; the spheres of a scene with very many are coarser.
 constexpr double most_faces = 2e5;
 
+// Faces around each of `spheres` spheres.
 int pieces(std::size_t spheres) {
-  // n around and n / 2 from pole to pole, on two sides.
+  // A sphere has n faces around and n / 2 from pole to pole, on two sides: n^2 in all.
   const double afforded = std::sqrt(most_faces / static_cast<double>(spheres));
   return std::min(pieces_around, static_cast<int>(afforded));
 }
 
-/// Splits one element of a grid into `columns` x `rows`.
+/// Splits elements of one sphere's grid into columns x rows of faces.
 class Splitter {
  public:
   Splitter(const PatchMesh& mesh, const SphereGrid& grid, int pieces)
@@ -33,7 +34,7 @@ class Splitter {
     const int first = static_cast<int>(out.points.size());
     const auto at = [&](int column, int row) { return first + row * (columns_ + 1) + column; };
     const auto& c = mesh_.corners[element];
-    // The other side's corners run the other way round.
+    // Corners of an inner element run in the opposite sense.
     const std::array<int, 4> vertices = is_outside ? c
                                         : mesh_.corner_count(element) < 4
                                             ? std::array{c[0], c[2], c[1], c[3]}
@@ -64,7 +65,7 @@ class Splitter {
         out.faces.push_back({element, corner});
       }
     }
-    // The southern and the western edge; the others are those of neighbours.
+    // Outlines of the southern and the western edge; neighbours draw the other two.
     for (int column = 0; column < columns_ && ring < grid_.rings - 1; ++column) {
       out.outlines.push_back({at(column, 0), at(column + 1, 0)});
     }

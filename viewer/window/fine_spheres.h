@@ -8,24 +8,27 @@
 
 namespace lightwell {
 
-/// Elements of spheres split finer, on the exact sphere, so that spheres are drawn as round as rays
-/// find them; their light stays what the elements' vertices have.
+/// Elements of spheres, split into smaller faces on the exact sphere. A drawn sphere is then as
+/// round as the one that rays hit. The light of a point is interpolated from the vertices of its
+/// element.
 struct FineSpheres {
   struct Point {
-    Eigen::Vector3d position, normal;  ///< m; unit, away from the side that is drawn
-    std::array<int, 4> vertex{};       ///< of the mesh, whose light, weighted, is the point's
-    Eigen::Array4f weight{};           ///< add up to 1, bilinear in angle
+    Eigen::Vector3d position, normal;  ///< m; unit, pointing out of the drawn side
+    std::array<int, 4> vertex{};       ///< mesh vertices of the element; -1: none
+    Eigen::Array4f weight{};           ///< of each vertex's light, bilinear in angle; sum 1
   };
   struct Face {
-    int element = 0;              ///< that it is a part of
-    std::array<int, 4> corner{};  ///< points, counter-clockwise; [3] is -1 for a triangle
+    int element = 0;  ///< mesh element that contains the face
+    std::array<int, 4>
+        corner{};  ///< indices into points, counter-clockwise; [3] is -1 for a triangle
   };
   std::vector<Point> points{};
   std::vector<Face> faces{};
-  std::vector<std::array<int, 2>> outlines{};  ///< points, along the edges of the elements
-  std::vector<char> has_faces{};               ///< by element; empty: there are no spheres
+  std::vector<std::array<int, 2>> outlines{};  ///< pairs of points along element edges
+  std::vector<char> has_faces{};               ///< by element; empty: no spheres
 };
 
+/// Splits every element of the mesh's sphere grids.
 FineSpheres fine_spheres(const PatchMesh& mesh);
 
 }  // namespace lightwell

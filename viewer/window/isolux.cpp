@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t most_labels = 60;
 
-// The triangles that are drawn, with light and normals at their corners.
+// The drawn triangles without glass, with illuminance (lx) and normals at their corners.
 vtkSmartPointer<vtkPolyData> lit_triangles(const PatchMesh& mesh, const FineSpheres& spheres,
                                            const std::vector<ElementKind>& kinds,
                                            const std::vector<float>& lux,
@@ -149,11 +149,12 @@ void IsoluxLines::set(const PatchMesh& mesh, const FineSpheres& spheres,
       segments_.push_back(segment);
     }
   }
-  constexpr double apart = 300.0;  // of the lift, so a third of the scene's size
+  constexpr double apart =
+      300.0;  // times the lift; SolutionView's lift makes this 0.3 of the scene's diagonal
   place_labels(apart * lift);
 }
 
-// Where there is none of the same number nearby, until there are enough.
+// Labels are at least `apart` (m) from labels of the same level, and a tenth of that from others.
 void IsoluxLines::place_labels(double apart) {
   labels_.clear();
   for (const Segment& segment : segments_) {
@@ -200,7 +201,8 @@ void IsoluxLines::look_from(const ElementCaster& caster, const std::vector<Eleme
   }
   const std::vector<VisibleHit> seen = visible_hits(caster, kinds, rays, options);
   for (std::size_t i = 0; i < labels_.size(); ++i) {
-    constexpr double just_before = 0.999;  // the label is lifted off what it is seen on
+    constexpr double just_before =
+        0.999;  // share of the distance: a label is lifted off its surface
     const bool faces = labels_[i].normal.dot(rays[i].direction) < 0.0;
     const bool in_front = rays[i].direction.dot(camera.direction) > 0.0;
     const bool is_free = !seen[i] || seen[i].distance > just_before;

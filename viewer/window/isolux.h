@@ -14,21 +14,22 @@ class vtkTextActor;
 
 namespace lightwell {
 
-/// Lines of equal illuminance on the surfaces, with the number beside some of them. Like the
-/// surfaces themselves they are drawn on the side that faces the eye.
+/// Lines of equal illuminance on the surfaces, some with their level beside them. A line is drawn
+/// only where its side of the surface faces the eye.
 class IsoluxLines {
  public:
   IsoluxLines();
   ~IsoluxLines();
 
   void add_to(vtkRenderer* renderer) const;
-  /// At the levels, lx; `lux` is one a vertex, `radiance` splits quads as they are drawn. Lines are
-  /// lifted off the surfaces by `lift`, m.
+  /// Contours the illuminance at `levels` (lx). `lux` has one value a vertex; `radiance` (vertices
+  /// x bands) splits quads as SolutionActor does. `lift` is the distance of lines from surfaces, m.
   void set(const PatchMesh& mesh, const FineSpheres& spheres, const std::vector<ElementKind>& kinds,
            const std::vector<float>& lux, const BandArray& radiance,
            const std::vector<double>& levels, double lift);
   void show(bool shown);
-  /// Draws what faces the eye, and numbers where they are seen.
+  /// Draws the lines that face the camera, and the labels that nothing hides. No effect while the
+  /// lines are hidden.
   void look_from(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                  const Camera& camera, const VisibleHitOptions& options);
   int segment_count() const { return static_cast<int>(segments_.size()); }
@@ -46,7 +47,7 @@ class IsoluxLines {
 
   bool shown_ = false;
   std::vector<Segment> segments_{};
-  std::vector<Label> labels_{};  ///< no more than texts_
+  std::vector<Label> labels_{};  ///< at most as many as texts_
   std::vector<vtkSmartPointer<vtkTextActor>> texts_{};
   vtkSmartPointer<vtkPolyData> data_;
   vtkSmartPointer<vtkActor> dark_,

@@ -16,7 +16,7 @@
 namespace lightwell {
 namespace {
 
-/// A word as VTK draws it, white on nothing; row 0 on top.
+/// A word as VTK draws text: coverage of each pixel by white letters, row 0 on top.
 struct Word {
   int width = 0, height = 0;
   std::vector<std::uint8_t> cover{};
@@ -34,7 +34,7 @@ Word draw(const std::string& text, int font_size) {
       !renderer->RenderString(property, vtkStdString(text), image, size.data(), dots_per_inch)) {
     throw std::runtime_error(fmt::format("VTK cannot draw the text '{}'", text));
   }
-  // The image may be larger than the text; it begins at its lower left corner.
+  // The image may be larger than the text, which begins at the image's lower left corner.
   Word word{.width = size[0], .height = size[1]};
   for (int y = word.height - 1; y >= 0; --y) {
     for (int x = 0; x < word.width; ++x) {
@@ -81,7 +81,7 @@ struct Layout {
   int font, margin, bar_width, bar_top, bar_height;
 };
 
-/// Where a value is on the bar, 0 at its low end.
+/// Position of a value on the bar: 0 at the low end, 1 at the high end.
 double place_of(double value, const LuxRange& range) {
   return range.is_even() ? value / range.high
                          : std::log(value / range.low) / std::log(range.high / range.low);

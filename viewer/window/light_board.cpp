@@ -11,13 +11,13 @@
 namespace lightwell {
 namespace {
 
-constexpr float most = 100.0f, least = 0.01f;
+constexpr float most = 100.0f, least = 0.01f;  ///< factors of a channel that is on
 
 struct Preset {
   const char* name;
   const char* colour;  ///< as channel_setting() takes it; empty: the channel's own
 };
-/// Blackbody colours against white of 6500 K, sRGB.
+/// Colours of blackbodies relative to a white of 6500 K, sRGB.
 constexpr std::array<Preset, 4> presets = {
     {{"", ""}, {"2700 K", "#ffa957"}, {"4000 K", "#ffd1a3"}, {"9000 K", "#d6e1ff"}}};
 
@@ -33,7 +33,7 @@ LightBoard::LightBoard(const RadiositySolution& solution) : bands_(solution.band
     Dimmer dimmer;
     dimmer.factor = channel.scale.size() > 0 ? channel.scale.maxCoeff() : 1.0f;
     if (channel.scale.size() == 3 && bands_.wavelengths_nm.empty()) {
-      // The factor of flux that a colour and a dimmer have together.
+      // Ratio of scaled to full luminous flux: colour and dimmer together.
       const Spectrum flux = channel.energy.row(0).transpose().cast<float>();
       const double own = luminous(bands_, flux);
       const double now = luminous(bands_, channel.scale * flux);
@@ -58,7 +58,7 @@ void LightBoard::dim(int steps) {
   const float now = dimmer.factor > 0.0f ? dimmer.factor : (steps > 0 ? 0.5f * least : 0.0f);
   const float wanted = now * std::exp2(static_cast<float>(steps) / 3.0f);
   dimmer.factor = wanted < 0.99f * least && steps < 0 ? 0.0f : std::clamp(wanted, least, most);
-  // Third stops meet full light again, whatever rounding did on the way.
+  // Rounding of third stops does not miss full light.
   if (std::abs(dimmer.factor - 1.0f) < 1e-3f) dimmer.factor = 1.0f;
   if (dimmer.factor > 0.0f) dimmer.before = dimmer.factor;
 }

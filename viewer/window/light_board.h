@@ -7,37 +7,41 @@
 
 namespace lightwell {
 
-/// The dimmers of a solution's light channels, and which of them the keys move.
+/// Dimmers of a solution's light channels, one of which the keys can change.
 class LightBoard {
  public:
-  /// Begins with the scales in force.
+  /// Begins with the solution's effective scales.
   explicit LightBoard(const RadiositySolution& solution);
 
   bool has_channels() const { return !names_.empty(); }
-  /// A channel is chosen; else keys are for something else.
+  /// Whether the keys change a channel.
   bool is_chosen() const { return chosen_ >= 0; }
-  /// The next channel (1) or the one before (-1); behind the last comes none.
+  /// Chooses the next channel (1) or the previous one (-1). After the last comes no channel.
   void choose(int step);
-  /// A third of a stop brighter (1) or darker (-1); from off it comes on at 1 %.
+  /// Brightens (1) or dims (-1) the chosen channel by a third of a stop, within 1 % to 10000 %.
+  /// Below 1 % the channel is off; from off, brightening switches it on at 1 %.
   void dim(int steps);
-  /// Off, or as it was before.
+  /// Switches the chosen channel off, or back on at the factor before.
   void switch_chosen();
-  /// Its own colour, then warmer and cooler whites: a filter, by relight.h's channel_scale. Says
-  /// why where bands are no RGB.
+  /// Gives the chosen channel its next colour: its own, then warmer and cooler whites, as filters
+  /// of channel_scale() in relight.h. Returns a message: the new colour, or the reason for no
+  /// change (no channel is chosen,
+  /// the bands are not RGB, or none of the channel's light passes the filter).
   std::string next_colour();
 
-  /// For relight().
+  /// Scales of all channels, per band, as relight() takes them.
   std::vector<Spectrum> scales() const;
-  /// Channels and factors in a line; the chosen one in brackets. Empty without channels.
+  /// A line with each channel's name and factor, the chosen channel in brackets. Empty without
+  /// channels.
   std::string text() const;
 
  private:
   struct Dimmer {
-    float factor = 1.0f, before = 1.0f;  ///< `before` it was switched off
+    float factor = 1.0f, before = 1.0f;  ///< `before`: the last above 0
     Spectrum colour{};                   ///< scale at factor 1
     int preset = 0;
   };
-  std::vector<LightChannel> channels_;  // without their light
+  std::vector<LightChannel> channels_;  // without irradiance
   Bands bands_;
   std::vector<std::string> names_;
   std::vector<Dimmer> dimmers_;
