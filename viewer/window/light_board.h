@@ -25,8 +25,8 @@ class LightBoard {
   void switch_chosen();
   /// Gives the chosen channel its next colour: its own, then warmer and cooler whites, as filters
   /// of channel_scale() in relight.h. Returns a message: the new colour, or the reason for no
-  /// change (no channel is chosen,
-  /// the bands are not RGB, or none of the channel's light passes the filter).
+  /// change (no channel is chosen, the bands are not RGB, or no light of the channel passes the
+  /// filter).
   std::string next_colour();
 
   /// Scales of all channels, per band, as relight() takes them.

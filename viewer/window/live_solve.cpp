@@ -21,7 +21,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The first shots are each worth a look; later ones are many, and found side by side.
+/// Shots that are shown one by one; later shots change little each, and are made in parallel
+/// rounds.
 constexpr int single_shots = 100;
 constexpr std::chrono::milliseconds between_lights{50};
 
@@ -61,7 +62,8 @@ struct LiveSolve::Impl {
     });
   }
 
-  // One shot, or one round that ends at `shots` at the latest.
+  // Makes one shot, or one round up to a total of `shots`. False, with nothing
+  // done, if the tolerance, max_shots or `shots` is reached.
   bool step(int shots) {
     const int done = progressive.shots();
     const int most = done < single_shots ? 1 : shots - done;
@@ -120,7 +122,7 @@ struct LiveSolve::Impl {
   VertexLight vertex_light;
   double shooting_seconds = 0.0;
 
-  // Shared with the thread.
+  // State shared with the thread of start().
   mutable std::mutex mutex{};
   std::condition_variable wake{};
   std::atomic<bool> ending{false};
@@ -133,7 +135,7 @@ struct LiveSolve::Impl {
   std::thread thread{};
 };
 
-// How many may shoot before it is asked again; 0: shooting is to end.
+// Waits while paused. Returns the shots to make until the next call; 0: shooting is to end.
 int LiveSolve::Impl::wait_for_leave() {
   std::unique_lock lock(mutex);
   shown.phase = paused && single_steps == 0 ? LivePhase::paused : LivePhase::shooting;
@@ -248,7 +250,8 @@ LiveSolve::LiveSolve(const Scene& scene, const SolveOptions& options, const Prov
 LiveSolve::~LiveSolve() {
   impl_->ending = true;
   {
-    const std::lock_guard lock(impl_->mutex);  // so that the thread is not just about to wait
+    const std::lock_guard lock(
+        impl_->mutex);  // no wake-up is lost between the thread's test and its wait
   }
   impl_->wake.notify_all();
   if (impl_->thread.joinable()) impl_->thread.join();

@@ -8,14 +8,15 @@
 
 namespace lightwell {
 
-/// Light on a mesh while it is being solved for.
+/// Light on a mesh during progressive refinement.
 struct LiveLight {
-  /// At vertices, W/m^2: what was shot so far. A column for each band, or for each band of each
-  /// channel after channel.
+  /// Irradiance of each vertex by the shots so far, W/m^2, vertices x columns: one column a band,
+  /// or with channels the bands of the first channel, then of the second, and so on.
   BandArray irradiance{};
-  /// What the unshot light would add everywhere, W/m^2 (Cohen et al. 1988), by the same columns.
+  /// Ambient term: the estimated irradiance of every vertex by unshot light, W/m^2, a value for
+  /// each of these columns (Cohen et al. 1988).
   Eigen::ArrayXf ambient{};
-  Eigen::ArrayXf unshot{};  ///< what each patch is still to shoot, lm/m^2, with all channels on
+  Eigen::ArrayXf unshot{};  ///< unshot light of each patch, lm/m^2, with all channels on
   int shots = 0;
   double unshot_share = 0.0;  ///< unshot power over emitted power, all bands together
 };
@@ -23,8 +24,8 @@ struct LiveLight {
 enum class LivePhase {
   shooting,
   paused,
-  gathering,  ///< shooting is over: light is gathered to vertices for a solution worth keeping
-  done,       ///< there is a solution
+  gathering,  ///< shooting is over; light is gathered to vertices for the solution
+  done,       ///< the solution is ready
   failed,
 };
 
@@ -32,63 +33,67 @@ struct LiveState {
   LivePhase phase = LivePhase::paused;
   int shots = 0;
   double unshot_share = 1.0;
-  double seconds = 0.0;     ///< of work, pauses left out
-  std::string step{};       ///< what is being gathered
-  double step_share = 0.0;  ///< of that done, [0,1]
-  bool converged = false;   ///< the tolerance was reached before the gathering
-  /// The scene has mirrors or glass, and what light they send on is seen once there is a solution.
+  double seconds = 0.0;     ///< of work, without pauses
+  std::string step{};       ///< step of the gathering
+  double step_share = 0.0;  ///< share of the step that is done, [0,1]
+  bool converged = false;   ///< shooting reached the tolerance
+  /// The scene has mirrors or glass; light that they pass on appears only in the solution.
   bool lacks_specular = false;
-  std::string failure{};  ///< why, if it failed
+  std::string failure{};  ///< the reason, if the phase is failed
 };
 
-/// Puts light into `shown`, which is of the mesh on which it arrives: in direct_irradiance what was
-/// shot, in indirect_irradiance the ambient term or nothing. Where light is kept apart, by the
-/// channels' scales in force.
+/// Sets the irradiance of `shown`, a solution of the same mesh: direct_irradiance to the light shot
+/// so far, indirect_irradiance to the ambient term or 0. With channels, both are the sums of the
+/// channels by their effective scales.
 void show_light(const LiveLight& light, bool with_ambient, SolvedScene& shown);
 
-/// The convergence meter: shots, unshot power in percent of what is emitted, seconds.
+/// A line for the convergence meter: shots, unshot power in percent of the emitted power, seconds.
 std::string text_of(const LiveState& state);
 
-/// Progressive refinement that can be watched: patches shoot, vertices receive after every shot,
-/// and at the end a solution is gathered as solve_scene does. In the caller's thread with shoot()
-/// and finish(), or in one of its own after start(); all members may then be called from the
-/// thread that made it. With `options.channels` the light of each is kept apart from the first shot
-/// on. Keeps a reference to the scene.
+/// Progressive refinement that can be watched. Patches shoot, vertices receive after every shot,
+/// and at the end a solution is gathered as solve_scene() does. Two ways to run:
+/// - in the caller's thread: shoot(), light() and finish();
+/// - in a thread of the object's own: start(). The thread that made the object may then call
+///   dark() and the members declared below start().
+/// With `options.channels` the light of each channel is kept apart from the first shot on. Keeps a
+/// reference to the scene.
 class LiveSolve {
  public:
-  /// Cuts the scene into patches. `options.run.journal` is not used; `progress` is not by the
-  /// thread that start() begins. Throws InputError where nothing emits light.
+  /// Cuts the scene into patches. `options.run.journal` is ignored; the thread of start() ignores
+  /// `options.run.progress` too. Throws InputError where nothing emits light.
   LiveSolve(const Scene& scene, const SolveOptions& options, const Provenance& provenance);
-  /// Ends the thread after the shot it is at, or within a second of gathering.
+  /// Ends the thread: after the current step of shooting, or within a second while gathering.
   ~LiveSolve();
   LiveSolve(const LiveSolve&) = delete;
   LiveSolve& operator=(const LiveSolve&) = delete;
 
-  /// The mesh with no light but the emitters' own, with channels where there are any.
+  /// Returns the mesh before the first shot: irradiance 0, radiosity that of the emitters, channels
+  /// if the options have them.
   SolvedScene dark() const;
 
-  /// Shoots until `shots` patches have shot in all, or the tolerance is reached: one by one up to a
-  /// hundred, then in rounds. The same bits for any number of threads. Not after start(). Throws
-  /// Interrupted when progress says stop.
+  /// Shoots until `shots` patches have shot in all, or the tolerance is reached: one patch at a
+  /// time up to a hundred, then in rounds. The same bits for any number of threads. Not to be
+  /// called after start(). Throws Interrupted when `options.run.progress` returns false.
   void shoot(int shots);
-  /// The light now. Not after start().
+  /// Returns the light by the shots so far. Not to be called after start().
   LiveLight light() const;
-  /// Gathers a solution from the shots so far. Its energy balance says what was left unshot, its
-  /// outcome whether the tolerance was reached. Not after start().
+  /// Gathers a solution from the shots so far. The solution's energy balance has the unshot power,
+  /// its outcome whether the tolerance was reached. Not to be called after start().
   SolvedScene finish();
 
-  /// Begins to shoot; when the tolerance is reached, gathers.
+  /// Begins a thread that shoots until the tolerance is reached, and then gathers.
   void start();
   void set_paused(bool paused);
-  /// Shoots once and pauses again.
+  /// Shoots one patch, then pauses.
   void step_once();
-  /// Ends shooting, good enough, and gathers.
+  /// Ends the shooting before the tolerance is reached, and gathers.
   void stop_shooting();
 
   LiveState state() const;
-  /// Light since the last call, if there is any: at most some twenty times a second.
+  /// Returns the latest light if there is new light since the last call, at most about twenty times
+  /// a second.
   std::optional<LiveLight> take_light();
-  /// Once, when it is there.
+  /// Returns the solution in the first call after the gathering; else nothing.
   std::optional<SolvedScene> take_solution();
 
  private:

@@ -15,7 +15,7 @@ Marks::Marks()
     : data_(vtkSmartPointer<vtkPolyData>::New()), actor_(vtkSmartPointer<vtkActor>::New()) {
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data_);
-  // Pulled to the front of all depths.
+  // Offsets in depth large enough to be in front of every surface.
   mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, -1e6);
   mapper->SetRelativeCoincidentTopologyPointOffsetParameter(-1e6);
   mapper->SetResolveCoincidentTopologyToPolygonOffset();

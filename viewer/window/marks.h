@@ -11,14 +11,15 @@ class vtkRenderer;
 
 namespace lightwell {
 
-/// Points in the scene, joined by a line: what was clicked or measured. Seen through walls too,
-/// since a distance may well go through one.
+/// Points that were clicked or measured, joined by a line. Walls do not hide marks, since a
+/// measured distance may pass through a wall.
 class Marks {
  public:
   Marks();
   ~Marks();
 
   void add_to(vtkRenderer* renderer) const;
+  /// Replaces the points, m. Without points nothing is drawn.
   void set(const std::vector<Eigen::Vector3d>& points);
 
  private:

@@ -11,7 +11,7 @@ namespace lightwell {
 namespace {
 
 constexpr int status_size = 13, panel_size = 13, help_size = 14, least_size = 7;
-/// Of a letter of the Courier that VTK brings, as shares of its size.
+/// Of a letter of VTK's built-in Courier, as shares of the font size.
 constexpr double letter_width = 0.62, line_height = 1.25;
 
 vtkSmartPointer<vtkTextActor> make_overlay_text(int size, bool framed) {
@@ -31,7 +31,7 @@ void place(vtkTextActor* text, double x, double y, bool from_top) {
   if (from_top) text->GetTextProperty()->SetVerticalJustificationToTop();
 }
 
-// A space around every line keeps letters off the edge of their background.
+// A space before and after each line keeps letters off the edge of the background.
 void show(vtkTextActor* actor, const std::string& text) {
   actor->SetVisibility(!text.empty());
   std::istringstream lines(text);
@@ -74,7 +74,7 @@ void Overlay::set_panel(const std::string& text) {
 }
 
 void Overlay::set_cursor(const std::string& text, int x, int y, int width, int height) {
-  constexpr int gap = 16;  // so that the pointer hides no letter
+  constexpr int gap = 16;  // pixels; the pointer hides no letter
   show(cursor_, text);
   vtkTextProperty* property = cursor_->GetTextProperty();
   const bool on_left = x > width / 2, above = y > height / 2;

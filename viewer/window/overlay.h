@@ -9,8 +9,8 @@ class vtkTextActor;
 
 namespace lightwell {
 
-/// The text over the picture: a status line below, a panel and the list of keys above, and what
-/// goes with the cursor. An empty text shows nothing.
+/// Text over the picture: a status line at the bottom, a panel and the list of keys at the top, and
+/// a note beside the cursor. An empty text hides its box.
 class Overlay {
  public:
   Overlay();
@@ -19,10 +19,11 @@ class Overlay {
   void add_to(vtkRenderer* renderer) const;
   void set_status(const std::string& text);
   void set_panel(const std::string& text);
-  /// At a place of a window of width x height, pixels from the left and from the top: beside it, on
-  /// the side that has room.
+  /// Sets the note beside the cursor at (x, y), pixels from the left and from the top of a window
+  /// of width x height. The note is on the side of the cursor with more room.
   void set_cursor(const std::string& text, int x, int y, int width, int height);
-  /// In letters that fit a window of width x height; hides the panel meanwhile.
+  /// Sets the list of keys, in letters that fit a window of width x height pixels. A list that is
+  /// not empty hides the panel.
   void set_help(const std::string& text, int width, int height);
 
  private:

@@ -28,7 +28,7 @@ std::string name_of(const std::vector<Named>* named, int index, const char* what
 }
 
 std::string per_band(const Spectrum& values, const Bands& bands) {
-  // Eight bands fill a line; of a spectrum the ends and the steps between tell its shape.
+  // Eight bands fit on a line; of more bands the first, the last and six between are shown.
   constexpr Eigen::Index most = 8;
   const Eigen::Index count = values.size(), shown = std::min(count, most);
   std::string text;
@@ -51,7 +51,7 @@ PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArr
   reading.patch = mesh.patch[seen.hit.element];
   reading.irradiance = interpolate(mesh, irradiance, seen.hit);
   reading.reflectance = mesh.reflectance.row(reading.patch).transpose();
-  // A picture's patch knows its mean; a black back shows none of it.
+  // A textured patch has the texture's mean reflectance; a black back has no texture.
   const int facet = mesh.facet[seen.hit.element];
   const bool is_black = !(reading.reflectance > 0.0f).any();
   if (mesh.textures && mesh.textures->is_textured(facet) && !is_black) {
@@ -71,7 +71,7 @@ PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArr
 }
 
 std::string full_text(const PointReading& reading, const Bands& bands, const ShownUnits& units) {
-  // What rounding of rays leaves of a zero is not worth digits.
+  // A coordinate that is 0 up to the rounding of rays is shown as 0.
   const double distance = reading.position.norm();
   const Eigen::Vector3d p = reading.position.unaryExpr(
       [&](double x) { return std::abs(x) < 1e-6 * distance ? 0.0 : x / units.metres_per_unit; });

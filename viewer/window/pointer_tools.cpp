@@ -77,7 +77,7 @@ std::string PointerTools::panel(const SolutionView& view) const {
                                : "measuring: click the second point";
     }
     const double scale = solution.metres_per_unit;
-    // What rounding of rays leaves is not worth digits.
+    // A component that is 0 up to the rounding of rays is shown as 0.
     const Eigen::Vector3d way = (measured_[1] - measured_[0]).unaryExpr([&](double along) {
       return std::abs(along) < 1e-6 * *length ? 0.0 : along / scale;
     });

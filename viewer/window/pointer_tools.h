@@ -9,38 +9,38 @@
 
 namespace lightwell {
 
-/// What the mouse asks of the scene: the light at a point that was clicked, at what the pointer is
-/// over, and the distance between two points.
+/// Tools of the mouse: the light at a clicked point, the light under the pointer, and the distance
+/// between two points.
 class PointerTools {
  public:
-  /// What read_point() takes for names.
+  /// `scene` and `names` as read_point() takes them.
   explicit PointerTools(const Scene* scene, const JoinedSurfaces* names = nullptr)
       : scene_(scene), names_(names) {}
 
-  // Places are pixels of the look's picture from the left and from the top.
+  // x and y are pixels of the look's picture, from the left and from the top.
   void click(const SolutionView& view, double x, double y);
   void hover(const SolutionView& view, double x, double y);
   void leave() { under_pointer_.reset(); }
-  /// The probe that goes with the pointer, on or off.
+  /// Switches the reading under the pointer on or off.
   void switch_probe() { probing_ = !probing_; }
   bool is_probing() const { return probing_; }
-  /// The next two clicks are the ends of what is measured; again: not.
+  /// Switches measuring on or off: two clicks are the ends of the distance.
   void switch_measuring();
   bool is_measuring() const { return measuring_; }
-  /// Forgets what was clicked.
+  /// Forgets all clicked points.
   void clear();
-  /// Reads the same points again, since their light is another now. Forgets them where `same_mesh`
+  /// Reads the clicked point again after a change of the light. Forgets the reading if `same_mesh`
   /// is false.
   void light_changed(const SolutionView& view, bool same_mesh);
 
   const std::optional<PointReading>& reading() const { return reading_; }
-  /// Between the points, m; nothing before both are there.
+  /// Returns the distance between the two measured points, m; nothing before the second click.
   std::optional<double> distance() const;
-  /// What was clicked, in full.
+  /// Text of the panel: the full reading of the clicked point, or the distance while measuring.
   std::string panel(const SolutionView& view) const;
-  /// What goes with the pointer.
+  /// Text of the note beside the pointer; empty without a reading under the pointer.
   std::string beside_pointer(const SolutionView& view) const;
-  /// Where marks belong.
+  /// Positions of the clicked points, m.
   std::vector<Eigen::Vector3d> marks() const;
 
  private:

@@ -23,12 +23,13 @@
 namespace lightwell {
 namespace {
 
-constexpr int azimuths = 1025;  ///< 0.35 degrees; the sun, which needs finer ones, is no texel
-/// Of the dome's facets, over which places in the texture are even: at 5 degrees these are off by
-/// less than a texel.
+constexpr int azimuths =
+    1025;  ///< columns, 0.35 degrees each; too coarse for the sun, a disc of its own
+/// Facets of the dome, 5 degrees each. Texture coordinates are linear over a facet, which puts them
+/// off by less than a texel.
 constexpr int facets_around = 72, facets_upwards = 18;
 constexpr int sun_corners = 48;
-constexpr double sun_distance = 0.95;  ///< of the dome's
+constexpr double sun_distance = 0.95;  ///< share of the dome's radius
 
 vtkSmartPointer<vtkActor> make_sky_actor(vtkPolyData* data) {
   vtkNew<vtkPolyDataMapper> mapper;
@@ -36,12 +37,13 @@ vtkSmartPointer<vtkActor> make_sky_actor(vtkPolyData* data) {
   auto actor = vtkSmartPointer<vtkActor>::New();
   actor->SetMapper(mapper);
   actor->PickableOff();
-  actor->UseBoundsOff();  // it is not what one looks at
+  actor->UseBoundsOff();  // the dome is not part of the scene's bounds
   actor->GetProperty()->LightingOff();
   return actor;
 }
 
-/// A half of the unit sphere; its texture coordinates are those of the grid's rows there.
+/// Adds the upper or the lower half of the unit sphere, with texture coordinates in the grid's rows
+/// above or below the horizon.
 void add_half(const Sky& sky, const SkyGrid& grid, bool is_above, vtkPoints* points,
               vtkFloatArray* places, vtkCellArray* quads) {
   const auto first = static_cast<vtkIdType>(points->GetNumberOfPoints());
@@ -78,7 +80,7 @@ vtkSmartPointer<vtkPolyData> dome_of(const Sky& sky, const SkyGrid& grid) {
   return data;
 }
 
-/// Its disc, nearer than the dome.
+/// The disc of the sun, nearer than the dome.
 vtkSmartPointer<vtkPolyData> disc_of(const Sky& sky) {
   const Sun& sun = *sky.sun;
   const double radius = std::tan(0.5 * sun.angle_degrees * std::numbers::pi / 180.0);

@@ -13,18 +13,20 @@ class vtkRenderer;
 
 namespace lightwell {
 
-/// Sky, ground and sun behind the scene: a dome that goes along with the eye, far behind all else.
+/// Sky, ground and sun, on a dome around the eye, behind all surfaces of the scene.
 class SkyActor {
  public:
   explicit SkyActor(const Sky& sky);
   ~SkyActor();
 
   void add_to(vtkRenderer* renderer) const;
-  /// The same sky, otherwise bright.
+  /// Sets the brightness: `sky` differs from the constructor's in nothing else. Takes effect with
+  /// expose().
   void set_sky(const Sky& sky);
-  /// `scale`: from radiance to display values, as display_colors takes it.
+  /// Colours dome and sun. `scale` is the factor from radiance to display values, as in
+  /// display_colors().
   void expose(const Bands& bands, double scale);
-  /// `radius` (m): of the dome, which is to be seen from its middle.
+  /// Puts the centre of the dome at the eye, with a radius in m.
   void place(const Eigen::Vector3d& eye, double radius);
   void show(bool shown);
 
@@ -32,7 +34,7 @@ class SkyActor {
   Sky sky_;
   SkyGrid grid_;
   vtkSmartPointer<vtkImageData> texels_;
-  vtkSmartPointer<vtkActor> dome_, sun_;  // without a sun: null
+  vtkSmartPointer<vtkActor> dome_, sun_;  ///< sun_ is null without a sun
 };
 
 }  // namespace lightwell

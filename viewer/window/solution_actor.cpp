@@ -40,9 +40,9 @@ vtkSmartPointer<vtkActor> make_part_actor(vtkPolyData* data, bool is_glass) {
   return actor;
 }
 
-/// Where a lit wall stands on a floor that is black under it, the edge is the wall's: dots of the
-/// black would else show along it. In pixels of the black face's slope in depth; dots were seen at
-/// 1, none from 2 on.
+/// Moves unlit faces back in depth, by the change of their depth over 4 pixels. Where a lit wall
+/// stands on a floor that is black underneath, dots of black would show along the edge otherwise.
+/// Dots were seen at 1 pixel, none from 2 on.
 void draw_behind(vtkActor* actor) {
   actor->GetShaderProperty()->AddFragmentShaderReplacement(
       "//VTK::Light::Impl", true,
@@ -50,7 +50,7 @@ void draw_behind(vtkActor* actor) {
       false);
 }
 
-/// Where the light of an element ends, along the true sphere.
+/// Edges of the spheres' elements, along the exact sphere.
 vtkSmartPointer<vtkActor> make_outlines(vtkPoints* points, int first, const FineSpheres& spheres) {
   vtkNew<vtkCellArray> lines;
   for (const auto& [from, to] : spheres.outlines) {
@@ -83,7 +83,7 @@ vtkSmartPointer<vtkTexture> make_texture(const DrawnPicture& picture) {
   texture->SetColorModeToDirectScalars();
   texture->SetInterpolate(picture.is_smooth);
   texture->SetMipmap(picture.is_smooth);
-  // VTK has one way for both directions.
+  // VTK has one wrap mode for both directions.
   switch (picture.wrap[0]) {
     case TextureWrap::repeat:
       texture->SetWrap(vtkTexture::Repeat);
@@ -104,7 +104,7 @@ SolutionActor::SolutionActor(const PatchMesh& mesh, const FineSpheres& spheres,
                              const std::vector<ElementKind>& kinds, const BandArray& radiance,
                              const DrawnPictures& drawn)
     : spheres_(spheres), colors_(vtkSmartPointer<vtkUnsignedCharArray>::New()) {
-  // The mesh's vertices, and after them the spheres' points.
+  // Points: the mesh's vertices, then the points of FineSpheres.
   const vtkIdType count = mesh.vertex_count() + static_cast<vtkIdType>(spheres.points.size());
   colors_->SetNumberOfComponents(3);
   colors_->SetNumberOfTuples(count);
@@ -170,7 +170,7 @@ void SolutionActor::add_pictures(const PatchMesh& mesh, const DrawnPictures& dra
   }
 }
 
-/// Elements that show a picture are left to others, where they are lit.
+/// The part's elements, without lit elements that show a texture: PicturedPart has those.
 vtkSmartPointer<vtkCellArray> SolutionActor::polygons_of(const PatchMesh& mesh, const Part& part,
                                                          const std::vector<ElementKind>& kinds,
                                                          const BandArray& radiance) const {
@@ -230,7 +230,7 @@ void SolutionActor::set_colors(const std::vector<std::uint8_t>& plain,
                                const std::vector<std::uint8_t>& codes) {
   unsigned char* next = std::copy(plain.begin(), plain.end(), colors_->GetPointer(0));
   for (const FineSpheres::Point& point : spheres_.points) {
-    Eigen::Array3f color = Eigen::Array3f::Constant(0.5f);  // to be rounded
+    Eigen::Array3f color = Eigen::Array3f::Constant(0.5f);  // rounds to the nearest byte
     for (int c = 0; c < 4; ++c) {
       if (point.vertex[c] < 0) continue;
       const auto* const bytes = &plain[3 * static_cast<std::size_t>(point.vertex[c])];
@@ -252,9 +252,9 @@ void SolutionActor::set_colors(const std::vector<std::uint8_t>& plain,
   }
 }
 
-// Light and picture meet before tone mapping, as in all other pictures: light far above white keeps
-// its colour where a dark texel brings it down. VTK multiplies the vertex colour, here the light's
-// code, with the texel, so the texel is had back by division.
+// Light and texture are multiplied before tone mapping, as in all other pictures: light far above
+// white keeps its colour where a dark texel reduces it. VTK multiplies the vertex colour, here the
+// light's code, with the texel; a division recovers the texel.
 void SolutionActor::show_picture(const PicturedPart& pictured, bool shown) {
   vtkShaderProperty* const shaders = pictured.part.actor->GetShaderProperty();
   if (shown == (pictured.part.actor->GetTexture() != nullptr)) return;

@@ -19,47 +19,46 @@ class vtkUnsignedCharArray;
 
 namespace lightwell {
 
-/// The mesh in VTK's terms: unlit, Gouraud-shaded polygons whose vertex colours are shown as they
-/// are. Every side of a surface has elements of its own, so what faces away from the eye is left
-/// out: a room can be looked into from outside, and the two sides of a wall never fight for a
-/// pixel.
+/// The mesh as VTK actors: Gouraud-shaded polygons whose vertex colours are shown without VTK's
+/// lighting. Every side of a surface has elements of its own, so back faces are culled. A room can
+/// then be seen from outside, and the two sides of a wall never overlap in a pixel.
 class SolutionActor {
  public:
-  /// `radiance` (vertices x bands) decides how quads are split: along the diagonal whose ends
-  /// differ less, so that the crease follows the light. Lit elements show their pictures. Keeps a
-  /// reference to `spheres`.
+  /// `radiance` (vertices x bands) splits each quad along the diagonal whose ends differ less, so
+  /// that the crease follows the light. Lit elements show their textures. Keeps a reference to
+  /// `spheres`.
   SolutionActor(const PatchMesh& mesh, const FineSpheres& spheres,
                 const std::vector<ElementKind>& kinds, const BandArray& radiance,
                 const DrawnPictures& drawn);
   ~SolutionActor();
 
-  /// Of the same mesh: what its elements are, and how quads are split, with other light.
+  /// Sets the kinds of elements and the splits of quads for other light on the same mesh.
   void set_shapes(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
                   const BandArray& radiance);
 
   void add_to(vtkRenderer* renderer) const;
-  /// 3 bytes a vertex: sRGB of elements without a picture, and for those with one light_codes of a
-  /// white texel. Without the latter no pictures are shown.
+  /// Sets vertex colours, 3 bytes a vertex. `plain`: sRGB for elements without a texture. `codes`:
+  /// light_codes() of a white texel for elements with a texture; empty: textures are not shown.
   void set_colors(const std::vector<std::uint8_t>& plain, const std::vector<std::uint8_t>& codes);
-  /// Draws the elements' outlines.
+  /// Shows or hides the outlines of elements.
   void show_mesh(bool shown);
-  /// Whether surfaces without any light are drawn (black) or looked through.
+  /// Draws surfaces without light in black, or leaves them out.
   void show_unlit(bool shown);
 
  private:
   struct Part {
     ElementKind kind;
-    bool is_fine = false;  ///< of spheres, whose outlines are drawn by themselves
+    bool is_fine = false;  ///< faces of FineSpheres; outlines_ has their elements' edges
     vtkSmartPointer<vtkPolyData> data;
     vtkSmartPointer<vtkActor> actor;
   };
-  /// Elements that show one picture, if they are lit. Each corner is a point of its own, with its
-  /// place in the picture.
+  /// Elements that show one texture, if they are lit. Each corner of an element is a point of its
+  /// own, with its texture coordinates.
   struct PicturedPart {
     Part part;
     vtkSmartPointer<vtkTexture> texture;
     vtkSmartPointer<vtkUnsignedCharArray> colors;
-    std::vector<int> element{}, mesh_vertex{};  ///< of each point the vertex
+    std::vector<int> element{}, mesh_vertex{};  ///< mesh_vertex: of each point
     bool has_holes = false;
   };
   vtkSmartPointer<vtkCellArray> polygons_of(const PatchMesh& mesh, const Part& part,
@@ -73,7 +72,7 @@ class SolutionActor {
   vtkSmartPointer<vtkActor> outlines_;  ///< of the spheres' elements
   vtkSmartPointer<vtkUnsignedCharArray> colors_;
   std::vector<PicturedPart> pictured_;
-  std::vector<char> has_picture_;  ///< by element; empty: none has
+  std::vector<char> has_picture_;  ///< by element; empty: no textures
 };
 
 }  // namespace lightwell

@@ -25,22 +25,23 @@
 namespace lightwell {
 namespace {
 
-/// Texels along a picture; what a window shows has hardly more pixels.
+/// Texels along a texture's longer side; a window has hardly more pixels.
 constexpr int longest_picture = 2048;
 
 DrawnPictures pictures_of(const ViewOptions& options) {
   return DrawnPictures(options.scene ? *options.scene : Scene{}, longest_picture);
 }
 
-/// Drawing sixteen times instead of sixteen times as large: text and lines keep their size, and no
-/// driver's largest picture or memory is the limit. The samples are Hammersley's set: sixteen
-/// different places across and up, so that edges along rows and columns, and gaps thinner than a
-/// pixel, are as smooth as slanted ones. A grid makes dotted lines of them.
+/// Pictures drawn and averaged, each shifted by a fraction of a pixel. Compared with one picture of
+/// sixteen times the pixels, text and lines keep their size, and neither the driver's largest
+/// picture nor its memory is a limit. The shifts are a Hammersley set: sixteen different offsets in
+/// x and in y smooth edges along rows and columns, and gaps thinner than a pixel, as well as
+/// slanted edges. A regular grid turns such gaps into dotted lines.
 constexpr int samples_of_pixel = 16;
 
-/// Of a sample from the pixel's middle, in pixels.
+/// Offset of a sample from the pixel's centre, in pixels.
 Eigen::Vector2d sample_offset(int sample) {
-  int turned = 0;  // its four bits in the other order
+  int turned = 0;  // the sample's four bits in reverse order
   for (int bit = 0; bit < 4; ++bit) turned |= ((sample >> bit) & 1) << (3 - bit);
   return (Eigen::Vector2d(sample, turned).array() + 0.5) / samples_of_pixel - 0.5;
 }
@@ -72,7 +73,8 @@ vtkSmartPointer<vtkScalarBarActor> make_legend() {
   legend->SetMaximumWidthInPixels(80);
   legend->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   legend->SetHeight(0.5);
-  legend->SetVerticalTitleSeparation(10);  // pixels; the highest label is as high as the bar
+  legend->SetVerticalTitleSeparation(
+      10);  // pixels; the highest label is level with the top of the bar
   for (vtkTextProperty* text : {legend->GetTitleTextProperty(), legend->GetLabelTextProperty()}) {
     text->SetFontSize(14);
     text->ItalicOff();
@@ -83,8 +85,8 @@ vtkSmartPointer<vtkScalarBarActor> make_legend() {
   return legend;
 }
 
-/// Keeps the legend as wide as its text, which does not shrink with the picture, from 256 pixels
-/// on.
+/// Keeps the legend 92 pixels wide at the right edge, since its text does not shrink with the
+/// picture; in a picture below 256 pixels, 36 % of the width.
 void keep_at_edge(vtkRenderer* renderer, vtkScalarBarActor* legend) {
   vtkNew<vtkCallbackCommand> before_drawing;
   before_drawing->SetClientData(legend);
@@ -109,7 +111,8 @@ std::array<float, 256> srgb_table() {
   return table;
 }
 
-/// Bytes of the mean of `passes` sums of linear light; turns VTK's rows, which begin at the bottom.
+/// sRGB bytes of `sums` / `passes` (linear light). Row 0 of the result is on top; VTK's is at the
+/// bottom.
 std::vector<std::uint8_t> encode(const std::vector<float>& sums, int width, int height,
                                  int passes) {
   std::vector<std::uint8_t> picture;
@@ -227,10 +230,11 @@ std::vector<double> SolutionView::isolux_levels() const {
   return levels;
 }
 
-// Found when they are first looked at.
+// Isolux lines are computed when first shown.
 void SolutionView::apply_isolux() {
   if (look_.isolux && isolux_is_stale_) {
-    constexpr double lift = 1e-3;  // of the scene, so that no depth buffer mixes them with walls
+    constexpr double lift =
+        1e-3;  // share of the diagonal that keeps lines in front of walls in the depth buffer
     isolux_.set(solved_->mesh, spheres_, kinds_, lux_, radiance_, isolux_levels(),
                 lift * bounds_.diagonal());
     isolux_is_stale_ = false;
@@ -270,7 +274,7 @@ void SolutionView::light_arrived() {
 }
 
 void SolutionView::apply_colors() {
-  // No light falls on the sky.
+  // The sky has neither irradiance nor interpolation error.
   if (outside_) outside_->show(!look_.interpolation_error && !look_.illuminance);
   if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_), {});
   if (look_.illuminance) return actor_.set_colors(false_colors(measured(), measured_range()), {});
@@ -317,7 +321,7 @@ void SolutionView::apply_legend() {
   legend_->SetVisibility(look_.illuminance || look_.interpolation_error);
   if (look_.interpolation_error) {
     legend_->SetTitle("%");
-    return set_range(legend_, {.low = 0.1, .high = 10.0});  // those of error_colors
+    return set_range(legend_, {.low = 0.1, .high = 10.0});  // range of error_colors()
   }
   if (!look_.illuminance) return;
   const char* const unit = look_.measure == Measure::illuminance ? "lx"
@@ -337,12 +341,14 @@ void SolutionView::apply_camera() {
   eye->SetViewUp(camera.up.data());
   eye->SetUseHorizontalViewAngle(true);
   eye->SetViewAngle(camera.fov_degrees);
-  // All of the bounding sphere; from inside, as near as a depth buffer of 24 bits affords.
+  // The depth range covers the bounding sphere. From inside, the near plane is as near as a depth
+  // buffer of 24 bits affords.
   const double to_center = (0.5 * (bounds_.low + bounds_.high) - camera.position).norm();
   const double nearest = std::max(to_center - 0.51 * size, 5e-4 * size);
   const double farthest = std::max(to_center + 0.51 * size, 2.0 * nearest);
-  // How finely a depth buffer tells apart what is near depends on the nearest plane alone, so a far
-  // dome costs nothing: this one is behind all else up to 84 degrees beside the line of sight.
+  // The resolution of a depth buffer near the eye depends on the near plane alone, so a far dome
+  // costs nothing. At 10 times the farthest distance the dome is behind all surfaces up to 84
+  // degrees from the line of sight.
   constexpr double dome = 10.0;
   if (outside_) outside_->place(camera.position, dome * farthest);
   eye->SetClippingRange(nearest, outside_ ? 1.1 * dome * farthest : farthest);
@@ -362,7 +368,8 @@ std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, in
   vtkCamera* eye = view.renderer()->GetActiveCamera();
   for (int sample = 0; sample < samples_of_pixel; ++sample) {
     const Eigen::Vector2d offset = sample_offset(sample);
-    eye->SetWindowCenter(2.0 * offset.x() / width, 2.0 * offset.y() / height);  // 2 wide, 2 high
+    eye->SetWindowCenter(2.0 * offset.x() / width,
+                         2.0 * offset.y() / height);  // window coordinates span 2 in x and y
     window->Render();
     const int* drawn = window->GetActualSize();
     if (drawn[0] == width && drawn[1] == height) {

@@ -18,20 +18,20 @@ class vtkScalarBarActor;
 
 namespace lightwell {
 
-/// All that decides a picture of a solution.
+/// Parameters of a picture of a solution.
 struct Look {
   Camera camera{};
   double metered_scale = 1.0;  ///< automatic exposure, from radiance to display values
-  double exposure_ev = 0.0;    ///< stops on top
+  double exposure_ev = 0.0;    ///< stops on top of metered_scale
   bool mesh = false;           ///< outlines of the elements
-  bool unlit = true;           ///< surfaces without light are drawn, black; else looked through
-  bool illuminance = false;    ///< false colours with a legend instead of light
-  Measure measure = Measure::illuminance;  ///< what those show
-  bool interpolation_error = false;        ///< see error_colors; goes before illuminance
+  bool unlit = true;           ///< draw surfaces without light in black; else leave them out
+  bool illuminance = false;    ///< false colours of `measure`, with a legend
+  Measure measure = Measure::illuminance;  ///< quantity of the false colours
+  bool interpolation_error = false;        ///< error_colors() instead of light or false colours
   bool isolux = false;                     ///< lines of equal illuminance
 };
 
-/// A solution set up for drawing with VTK. Keeps a reference to the solution and its mesh.
+/// A solution as a VTK renderer with its actors. Keeps a reference to the solution and its mesh.
 class SolutionView {
  public:
   SolutionView(const SolvedScene& solved, const ViewOptions& options);
@@ -39,21 +39,22 @@ class SolutionView {
 
   const Look& look() const { return look_; }
   void set_look(const Look& look);
-  /// Shows the light that the solution has now, in colours of the same scale.
+  /// Updates the picture after a change of the solution's light. The scale of false colours stays.
   void light_changed();
-  /// From now on shows the light of another solution, of the same mesh, which must outlive it.
+  /// Shows the light of `other` instead, a solution of the same mesh that must outlive the view.
   void follow(const SolvedScene& other);
-  /// The same while light is arriving: its scale of false colours follows it, unless the options
-  /// name one. What has no direct irradiance counts as unlit, for the rest is foretold.
+  /// Updates the picture during progressive refinement. The scale of false colours follows the
+  /// light, unless the options have a range of illuminance. Elements without direct irradiance
+  /// count as unlit, since the ambient term is an estimate.
   void light_arrived();
-  /// What each patch is still to shoot, lm/m^2: for Measure::unshot.
+  /// Sets the unshot light of each patch, lm/m^2, for Measure::unshot.
   void set_unshot(const Eigen::ArrayXf& unshot);
-  /// The exposure_scale of the picture the camera sees.
+  /// Returns the automatic exposure of a camera's picture (see metered_scale()).
   double meter(const Camera& camera) const;
 
   const ElementCaster& caster() const { return caster_; }
   const std::vector<ElementKind>& kinds() const { return kinds_; }
-  /// At vertices, W/m^2, vertices x bands.
+  /// Irradiance, W/m^2, vertices x bands.
   const BandArray& irradiance() const { return irradiance_; }
   const SolvedScene& solved() const { return *solved_; }
   /// Levels of the isolux lines, lx.
@@ -68,11 +69,11 @@ class SolutionView {
   void apply_colors();
   void apply_legend();
   void apply_isolux();
-  /// What false colours show, at vertices; and their scale.
+  /// Values of the false colours at vertices, in the unit of look().measure, and their range.
   std::vector<float> measured() const;
   LuxRange measured_range() const;
 
-  /// What is seen outside, as bright as the solution has it; null: black.
+  /// The sky outside, scaled as in the solution; null: black.
   const Sky* sky() const { return sky_ ? &*sky_ : nullptr; }
 
   const SolvedScene* solved_;
@@ -87,7 +88,7 @@ class SolutionView {
   BandArray irradiance_;
   BandArray radiance_;
   DrawnPictures drawn_;
-  BandArray picture_gain_;  ///< see picture_gains; empty without pictures
+  BandArray picture_gain_;  ///< see picture_gains(); empty without textures
   std::vector<float> lux_;
   LuxRange lux_range_;  ///< of illuminance
   Bounds bounds_;
@@ -100,14 +101,14 @@ class SolutionView {
   std::optional<SkyActor> outside_;
   vtkSmartPointer<vtkRenderer> renderer_;
   vtkSmartPointer<vtkScalarBarActor> legend_;
-  std::vector<double> isolux_levels_;  ///< asked for; empty: they suit the scale
+  std::vector<double> isolux_levels_;  ///< of the options; empty: chosen from lux_range_
   bool isolux_is_stale_ = true;
   IsoluxLines isolux_;
 };
 
-/// Draws off screen, 16 samples a pixel (a Hammersley set), averaged in linear light. 8-bit sRGB,
-/// 3 bytes a pixel, row 0 on top. Needs a DisplayConnection. Throws std::runtime_error if the
-/// graphics driver cannot draw.
+/// Draws a view off screen with 16 samples a pixel (a Hammersley set), averaged in linear light.
+/// Returns 8-bit sRGB, 3 bytes a pixel, row 0 on top. Needs a DisplayConnection. Throws
+/// std::runtime_error if the graphics driver cannot draw.
 std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, int height);
 
 }  // namespace lightwell

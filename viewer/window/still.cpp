@@ -19,7 +19,8 @@
 namespace lightwell {
 namespace {
 
-// What render() reads of a solution; channels may be many times as large.
+// The parts of a solution that render() reads. Light channels, which may be many times as large,
+// are left out.
 SolvedScene for_rendering(const SolvedScene& solved) {
   SolvedScene copy;
   copy.mesh = solved.mesh;
@@ -36,7 +37,8 @@ bool is_same(const BandArray& a, const BandArray& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() && (a == b).all();
 }
 
-// Of one scene, whose elements and lamps dimming alone can change.
+// True if two solutions of one scene have the same light. Between them only dimming can change
+// elements and lamps.
 bool is_same_light(const SolvedScene& a, const SolvedScene& b) {
   return a.mesh.element_count() == b.mesh.element_count() &&
          is_same(a.mesh.emission, b.mesh.emission) &&
@@ -51,7 +53,7 @@ bool is_same_light(const SolvedScene& a, const SolvedScene& b) {
 struct Still::Kept {
   Kept(const Scene& of_scene, const SolvedScene& of) : scene(of_scene), solved(for_rendering(of)) {}
 
-  // Made by the first thread that asks, beside the window.
+  // Made by the first job, in the job's thread, so that the window stays alive.
   SceneRenderer& renderer() {
     const std::lock_guard lock(mutex);
     if (!made) made = std::make_unique<SceneRenderer>(scene, solved.mesh, solved.solution);
@@ -60,7 +62,7 @@ struct Still::Kept {
 
   const Scene& scene;
   const SolvedScene solved;
-  std::mutex mutex{};  // of what is made
+  std::mutex mutex{};  ///< guards `made`
   std::unique_ptr<SceneRenderer> made{};
 };
 
@@ -86,7 +88,7 @@ struct Still::Job {
       };
       image = kept->renderer().render(camera, options);
     } catch (const Interrupted&) {
-      // Nobody waits for it.
+      // The job was cancelled.
     } catch (const std::exception& error) {
       failure = error.what();
     }
@@ -106,10 +108,10 @@ struct Still::Job {
   Image image{};
   std::string failure{};
   std::mutex mutex{};
-  std::vector<std::uint8_t> fresh{};  ///< rows that nobody has taken yet; guarded by the mutex
+  std::vector<std::uint8_t> fresh{};  ///< rows not taken over yet; guarded by the mutex
   std::atomic<double> progress{0.0};
   std::atomic<bool> cancelled{false}, done{false};
-  std::thread thread;  // last: it uses the others
+  std::thread thread;  // last, since the thread uses the other members
 };
 
 Still::Still()
@@ -157,7 +159,7 @@ double Still::progress() const {
 
 bool Still::advance() {
   if (phase_ != StillPhase::rendering) return false;
-  // Asked for first: what comes after the last rows is known to be all.
+  // Read before the rows: if the job was done, the rows taken below include the last.
   const bool is_done = job_->done;
   std::vector<std::uint8_t> fresh;
   {
@@ -182,7 +184,7 @@ bool Still::advance() {
   return true;
 }
 
-// VTK's rows begin at the bottom: those that are there lie at the window's top.
+// VTK's rows begin at the bottom, so the finished rows are reversed and placed at the window's top.
 void Still::draw() {
   data_->SetDimensions(camera_.width, rows_, 1);
   data_->AllocateScalars(VTK_UNSIGNED_CHAR, 3);

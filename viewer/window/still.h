@@ -18,8 +18,8 @@ namespace lightwell {
 
 enum class StillPhase { none, rendering, shown, failed };
 
-/// The second pass's picture of a view, rendered beside the window in a thread of its own. It
-/// covers the window from the top down, strip by strip as they are done.
+/// The second pass's picture of a view, rendered in a thread of its own while the window stays
+/// alive. Finished strips cover the window from the top down.
 class Still {
  public:
   Still();
@@ -28,25 +28,26 @@ class Still {
   Still(const Still&) = delete;
   Still& operator=(const Still&) = delete;
 
-  /// Before the text, which is drawn over it.
+  /// To be called before the text is added, which is then drawn over the picture.
   void add_to(vtkRenderer* renderer) const;
-  /// Begins to render what the camera sees, as large as it says, exposed by `scale`. Copies of the
-  /// solution what it needs, once for as long as its light is the same; keeps a reference to the
-  /// scene.
+  /// Begins to render the camera's picture, of the camera's size, with `scale` as the factor from
+  /// radiance to display values. Copies the parts of the solution that rendering needs, again only
+  /// when the light has changed. Keeps a reference to the scene.
   void begin(const Scene& scene, const SolvedScene& solved, const Camera& camera, double scale);
-  /// Stops, and shows nothing.
+  /// Stops the rendering and hides the picture.
   void discard();
-  /// Takes over what has been rendered since. True if there is something new to draw.
+  /// Takes over the strips rendered since the last call. True if the picture or the phase changed.
   bool advance();
 
   StillPhase phase() const { return phase_; }
+  /// Share of the rendering that is done, [0,1].
   double progress() const;
   const std::string& failure() const { return failure_; }
-  /// Rows from the top that are shown.
+  /// Number of rows shown, from the top.
   int rows() const { return rows_; }
-  /// What is shown; once all of it is there.
+  /// The radiance of the complete picture; valid in phase `shown`.
   const Image& image() const { return image_; }
-  /// The same as it is drawn, 8-bit sRGB, row 0 on top; black where nothing is shown yet.
+  /// The picture as drawn, 8-bit sRGB, row 0 on top; rows that are not rendered yet are black.
   const std::vector<std::uint8_t>& picture() const { return picture_; }
   const Camera& camera() const { return camera_; }
 
@@ -55,9 +56,9 @@ class Still {
   struct Kept;
   void draw();
 
-  std::shared_ptr<Kept> kept_;  ///< what pictures of the same light share
+  std::shared_ptr<Kept> kept_;  ///< data that pictures of the same light share
   std::unique_ptr<Job> job_;
-  std::vector<std::unique_ptr<Job>> ending_{};  ///< told to stop; nobody waits for them
+  std::vector<std::unique_ptr<Job>> ending_{};  ///< cancelled jobs whose threads may still run
   StillPhase phase_ = StillPhase::none;
   std::string failure_;
   Image image_{};
