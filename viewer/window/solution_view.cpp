@@ -73,8 +73,7 @@ vtkSmartPointer<vtkScalarBarActor> make_legend() {
   legend->SetMaximumWidthInPixels(80);
   legend->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   legend->SetHeight(0.5);
-  legend->SetVerticalTitleSeparation(
-      10);  // pixels; the highest label is level with the top of the bar
+  legend->SetVerticalTitleSeparation(10);  // pixels; the highest label is level with the bar's top
   for (vtkTextProperty* text : {legend->GetTitleTextProperty(), legend->GetLabelTextProperty()}) {
     text->SetFontSize(14);
     text->ItalicOff();
@@ -233,8 +232,8 @@ std::vector<double> SolutionView::isolux_levels() const {
 // Isolux lines are computed when first shown.
 void SolutionView::apply_isolux() {
   if (look_.isolux && isolux_is_stale_) {
-    constexpr double lift =
-        1e-3;  // share of the diagonal that keeps lines in front of walls in the depth buffer
+    // Share of the diagonal that keeps the lines in front of walls in the depth buffer.
+    constexpr double lift = 1e-3;
     isolux_.set(solved_->mesh, spheres_, kinds_, lux_, radiance_, isolux_levels(),
                 lift * bounds_.diagonal());
     isolux_is_stale_ = false;
@@ -368,8 +367,8 @@ std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, in
   vtkCamera* eye = view.renderer()->GetActiveCamera();
   for (int sample = 0; sample < samples_of_pixel; ++sample) {
     const Eigen::Vector2d offset = sample_offset(sample);
-    eye->SetWindowCenter(2.0 * offset.x() / width,
-                         2.0 * offset.y() / height);  // window coordinates span 2 in x and y
+    // Window coordinates span 2 in x and in y.
+    eye->SetWindowCenter(2.0 * offset.x() / width, 2.0 * offset.y() / height);
     window->Render();
     const int* drawn = window->GetActualSize();
     if (drawn[0] == width && drawn[1] == height) {

@@ -53,7 +53,7 @@ bool is_same_light(const SolvedScene& a, const SolvedScene& b) {
 struct Still::Kept {
   Kept(const Scene& of_scene, const SolvedScene& of) : scene(of_scene), solved(for_rendering(of)) {}
 
-  // Made by the first job, in the job's thread, so that the window stays alive.
+  // Made by the first job, in the job's thread, which does not block the window.
   SceneRenderer& renderer() {
     const std::lock_guard lock(mutex);
     if (!made) made = std::make_unique<SceneRenderer>(scene, solved.mesh, solved.solution);

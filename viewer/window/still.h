@@ -18,8 +18,8 @@ namespace lightwell {
 
 enum class StillPhase { none, rendering, shown, failed };
 
-/// The second pass's picture of a view, rendered in a thread of its own while the window stays
-/// alive. Finished strips cover the window from the top down.
+/// The second pass's picture of a view, rendered in a thread of its own that does not block the
+/// window. Finished strips cover the window from the top down.
 class Still {
  public:
   Still();

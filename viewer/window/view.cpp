@@ -48,17 +48,19 @@ void require_within(const ViewOptions& options, const Eigen::Vector2d& place) {
                                place.x(), place.y(), options.width, options.height));
 }
 
-/// Draws pictures as a window shows them after the keys and clicks of the options' annotations.
+/// Draws pictures with the options' annotations, as a window shows them after these keys and
+/// clicks.
 class AnnotatedPictures {
  public:
-  /// Keeps references to both.
+  /// Keeps references to the view and the options.
   AnnotatedPictures(SolutionView& view, const ViewOptions& options)
       : view_(view), options_(options) {
     overlay_.add_to(view.renderer());
     marks_.add_to(view.renderer());
   }
 
-  /// Of what the view looks at; throws InputError for a place outside of the picture.
+  /// Returns the picture from the view's camera, 8-bit sRGB. Throws InputError for an annotation
+  /// outside of the picture.
   std::vector<std::uint8_t> draw() {
     const Annotations& asked = options_.annotations;
     const int width = options_.width, height = options_.height;
@@ -86,7 +88,7 @@ class AnnotatedPictures {
                           width, height);
     }
     if (asked.keys) overlay_.set_help(walk_help(), width, height);
-    const VtkMessages messages;  // text that finds no room in a tiny picture complains
+    const VtkMessages messages;  // VTK warns of text that does not fit in a tiny picture
     return draw_offscreen(view_, width, height);
   }
 

@@ -5,7 +5,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int max_layers = 16;
+constexpr int max_layers = 16;  ///< surfaces along a ray
 
 bool counts(const ElementHit& hit, const std::vector<ElementKind>& kinds,
             const VisibleHitOptions& options) {

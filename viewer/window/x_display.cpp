@@ -14,7 +14,7 @@
 namespace lightwell {
 namespace {
 
-/// How long to go on trying: a server that starts anew is back in a fraction of this.
+/// Attempts to open a display; a server that restarts is back in a fraction of their time.
 constexpr int tries = 10;
 constexpr std::chrono::milliseconds between_tries{50};
 
@@ -28,8 +28,8 @@ constexpr std::chrono::milliseconds between_tries{50};
 
 }  // namespace
 
-/// The X library's functions. VTK has loaded it already; asking it by name saves a build
-/// dependency.
+/// The X library's functions, found by name in the library that VTK has loaded already, which saves
+/// a build dependency.
 struct DisplayConnection::Impl {
   Impl() : library(dlopen("libX11.so.6", RTLD_LAZY)) {}
   ~Impl() {
@@ -61,7 +61,7 @@ struct DisplayConnection::Impl {
 };
 
 DisplayConnection::DisplayConnection() : impl_(std::make_unique<Impl>()) {
-  // Making the window object says which back end VTK was built with; it opens nothing yet.
+  // The class of a new window object shows VTK's back end; no display is opened by its constructor.
   if (!vtkSmartPointer<vtkRenderWindow>::New()->IsA("vtkXOpenGLRenderWindow")) return;
   const char* name = std::getenv("DISPLAY");
   if (!name || !*name) fail("there is no X display (DISPLAY is not set), and drawing needs one");

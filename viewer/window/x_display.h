@@ -4,13 +4,15 @@
 
 namespace lightwell {
 
-/// Holds an X display open. VTK's X11 back end ends the whole program when it finds none, and a
-/// display server such as Xvfb starts anew, turning clients away, when its last client leaves: so
-/// this is opened before VTK draws and closed after. Holds nothing where VTK needs no X display.
+/// Holds an X display open, from before VTK draws until after. There are two reasons:
+/// - VTK's X11 back end ends the whole program if no display can be opened;
+/// - a display server such as Xvfb restarts, and refuses clients meanwhile, when its last client
+///   leaves.
+/// The object is empty if VTK needs no X display.
 class DisplayConnection {
  public:
-  /// Throws std::runtime_error, saying what is missing and what to do, unless the display that the
-  /// environment's DISPLAY names can be opened and draws OpenGL.
+  /// Opens the display that the environment's DISPLAY names. Throws std::runtime_error, with the
+  /// cause and advice, if the display cannot be opened or cannot draw OpenGL.
   DisplayConnection();
   ~DisplayConnection();
   DisplayConnection(const DisplayConnection&) = delete;
@@ -21,8 +23,9 @@ class DisplayConnection {
   std::unique_ptr<Impl> impl_;
 };
 
-/// X reports a key held down as a quick series of releases and presses. Asks it for presses alone,
-/// until the one release. `display` is an X Display; where that is impossible, nothing changes.
+/// Makes X report a key held down as presses alone until the key's release, instead of a quick
+/// series of releases and presses. `display` is an X Display or null. No effect if X does not offer
+/// this mode.
 void report_held_keys_once(void* display);
 
 }  // namespace lightwell
