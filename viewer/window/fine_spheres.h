@@ -18,9 +18,8 @@ struct FineSpheres {
     Eigen::Array4f weight{};           ///< of each vertex's light, bilinear in angle; sum 1
   };
   struct Face {
-    int element = 0;  ///< mesh element that contains the face
-    std::array<int, 4>
-        corner{};  ///< indices into points, counter-clockwise; [3] is -1 for a triangle
+    int element = 0;              ///< mesh element that contains the face
+    std::array<int, 4> corner{};  ///< indices into points, counter-clockwise; [3] -1: a triangle
   };
   std::vector<Point> points{};
   std::vector<Face> faces{};

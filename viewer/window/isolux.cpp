@@ -149,8 +149,8 @@ void IsoluxLines::set(const PatchMesh& mesh, const FineSpheres& spheres,
       segments_.push_back(segment);
     }
   }
-  constexpr double apart =
-      300.0;  // times the lift; SolutionView's lift makes this 0.3 of the scene's diagonal
+  // Multiple of the lift; with SolutionView's lift, 0.3 of the scene's diagonal.
+  constexpr double apart = 300.0;
   place_labels(apart * lift);
 }
 
@@ -201,8 +201,8 @@ void IsoluxLines::look_from(const ElementCaster& caster, const std::vector<Eleme
   }
   const std::vector<VisibleHit> seen = visible_hits(caster, kinds, rays, options);
   for (std::size_t i = 0; i < labels_.size(); ++i) {
-    constexpr double just_before =
-        0.999;  // share of the distance: a label is lifted off its surface
+    // Share of the distance to a label: labels are lifted off their surface.
+    constexpr double just_before = 0.999;
     const bool faces = labels_[i].normal.dot(rays[i].direction) < 0.0;
     const bool in_front = rays[i].direction.dot(camera.direction) > 0.0;
     const bool is_free = !seen[i] || seen[i].distance > just_before;

@@ -14,7 +14,7 @@ class LightBoard {
   explicit LightBoard(const RadiositySolution& solution);
 
   bool has_channels() const { return !names_.empty(); }
-  /// Whether the keys change a channel.
+  /// True if a channel is chosen, which the keys then change.
   bool is_chosen() const { return chosen_ >= 0; }
   /// Chooses the next channel (1) or the previous one (-1). After the last comes no channel.
   void choose(int step);

@@ -250,8 +250,8 @@ LiveSolve::LiveSolve(const Scene& scene, const SolveOptions& options, const Prov
 LiveSolve::~LiveSolve() {
   impl_->ending = true;
   {
-    const std::lock_guard lock(
-        impl_->mutex);  // no wake-up is lost between the thread's test and its wait
+    // The lock keeps the wake-up from falling between the thread's test and the thread's wait.
+    const std::lock_guard lock(impl_->mutex);
   }
   impl_->wake.notify_all();
   if (impl_->thread.joinable()) impl_->thread.join();

@@ -11,7 +11,7 @@ namespace lightwell {
 namespace {
 
 constexpr int status_size = 13, panel_size = 13, help_size = 14, least_size = 7;
-/// Of a letter of VTK's built-in Courier, as shares of the font size.
+/// Width of a letter and height of a line in VTK's built-in Courier, as shares of the font size.
 constexpr double letter_width = 0.62, line_height = 1.25;
 
 vtkSmartPointer<vtkTextActor> make_overlay_text(int size, bool framed) {

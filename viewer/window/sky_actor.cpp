@@ -23,8 +23,9 @@
 namespace lightwell {
 namespace {
 
-constexpr int azimuths =
-    1025;  ///< columns, 0.35 degrees each; too coarse for the sun, a disc of its own
+/// Columns of the sky's texture, 0.35 degrees each: too coarse for the sun, which is a disc of its
+/// own.
+constexpr int azimuths = 1025;
 /// Facets of the dome, 5 degrees each. Texture coordinates are linear over a facet, which puts them
 /// off by less than a texel.
 constexpr int facets_around = 72, facets_upwards = 18;

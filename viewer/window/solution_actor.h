@@ -58,7 +58,7 @@ class SolutionActor {
     Part part;
     vtkSmartPointer<vtkTexture> texture;
     vtkSmartPointer<vtkUnsignedCharArray> colors;
-    std::vector<int> element{}, mesh_vertex{};  ///< mesh_vertex: of each point
+    std::vector<int> element{}, mesh_vertex{};  ///< mesh_vertex: one a point
     bool has_holes = false;
   };
   vtkSmartPointer<vtkCellArray> polygons_of(const PatchMesh& mesh, const Part& part,
@@ -69,7 +69,7 @@ class SolutionActor {
 
   const FineSpheres& spheres_;
   std::vector<Part> parts_;
-  vtkSmartPointer<vtkActor> outlines_;  ///< of the spheres' elements
+  vtkSmartPointer<vtkActor> outlines_;  ///< edges of the spheres' elements
   vtkSmartPointer<vtkUnsignedCharArray> colors_;
   std::vector<PicturedPart> pictured_;
   std::vector<char> has_picture_;  ///< by element; empty: no textures

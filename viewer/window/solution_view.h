@@ -79,7 +79,7 @@ class SolutionView {
   const SolvedScene* solved_;
   const Scene* scene_;
   std::vector<Material> materials_;
-  std::optional<LuxRange> given_range_;  ///< of given_measure_
+  std::optional<LuxRange> given_range_;  ///< range of given_measure_
   Measure given_measure_;
   bool has_relative_units_;
   std::vector<float> unshot_{};  ///< at vertices
@@ -90,7 +90,7 @@ class SolutionView {
   DrawnPictures drawn_;
   BandArray picture_gain_;  ///< see picture_gains(); empty without textures
   std::vector<float> lux_;
-  LuxRange lux_range_;  ///< of illuminance
+  LuxRange lux_range_;  ///< range of illuminance
   Bounds bounds_;
   Eigen::Vector3d up_axis_;
   Camera start_camera_;
@@ -101,7 +101,7 @@ class SolutionView {
   std::optional<SkyActor> outside_;
   vtkSmartPointer<vtkRenderer> renderer_;
   vtkSmartPointer<vtkScalarBarActor> legend_;
-  std::vector<double> isolux_levels_;  ///< of the options; empty: chosen from lux_range_
+  std::vector<double> isolux_levels_;  ///< levels of the options; empty: see isolux_levels()
   bool isolux_is_stale_ = true;
   IsoluxLines isolux_;
 };

@@ -50,7 +50,7 @@ struct ViewOptions {
   bool relative_units = false;  ///< the numbers of the scale have no known unit
   /// File to which a key saves the solution; empty: a free name in screenshot_folder.
   std::filesystem::path solution_file{};
-  std::filesystem::path screenshot_folder{"."};  ///< for files that keys save
+  std::filesystem::path screenshot_folder{"."};  ///< for pictures and solutions that keys save
   /// File in which keys save bookmarks and paths (JSON); empty: both last as long as the window.
   std::filesystem::path bookmark_file{};
   /// Levels of isolux lines, lx, which are then shown from the beginning. Empty: hidden at first,

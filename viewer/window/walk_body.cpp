@@ -10,17 +10,17 @@
 namespace lightwell {
 namespace {
 
-constexpr int around = 16, below = 8;
-constexpr int fan = 12;      ///< rays of each half of the fan ahead, and one in the middle
-constexpr int uprights = 6;  ///< the same of the half circle of upright rays
+constexpr int around = 16, below = 8;  ///< rays around the body; rays down, beside the middle one
+constexpr int fan = 12;      ///< half of the steps across the fan ahead, which has 2 fan - 1 rays
+constexpr int uprights = 6;  ///< steps in a quarter circle of upright rays, 2 uprights + 1 in all
 constexpr int most_pushes = 6;
-/// Tilt from which a surface is a wall and not a slope: the level share of its normal.
+/// Level part of the unit normal from which a surface is a wall, not a slope.
 constexpr double steep = 0.7;
-constexpr double moment = 1.0 / 120.0;  ///< s
-constexpr double step_seconds = 0.06;   ///< tau with which a step is taken
-constexpr double ring_share = 0.7;      ///< of the radius: where feet look for ground
-constexpr double slack = 1e-3;          ///< of the radius, that counts as touching
-constexpr double board = 0.02;          ///< of the radius: half of the thinnest board that is felt
+constexpr double moment = 1.0 / 120.0;  ///< s, time step of gravity
+constexpr double step_seconds = 0.06;   ///< s, time constant with which the eye follows a step
+constexpr double ring_share = 0.7;      ///< radius of the ring of rays down, over the body's
+constexpr double slack = 1e-3;          ///< overlap that counts as touching, over the radius
+constexpr double board = 0.02;          ///< half of the thinnest detected board, over the radius
 
 }  // namespace
 
@@ -44,7 +44,7 @@ WalkPhysics::WalkPhysics(const WalkBody& body, const Eigen::Vector3d& up_axis)
 
 namespace {
 
-/// What is met of a wall, as an outwards level direction; nothing of floors and slopes.
+/// Returns the level part of a wall's normal, unit; nothing for floors, slopes and a miss.
 std::optional<Eigen::Vector3d> wall_normal(const Obstacles& obstacles, const VisibleHit& seen,
                                            const Eigen::Vector3d& up) {
   if (!seen) return std::nullopt;
@@ -56,8 +56,8 @@ std::optional<Eigen::Vector3d> wall_normal(const Obstacles& obstacles, const Vis
 
 }  // namespace
 
-// How far below the eye level rays go out: five heights from the knee to the head, and a hair above
-// the underside of what juts out between them.
+// Distances below the eye of the level rays, m: five from the knee to the head, and for each
+// obstacle that juts out ahead, a height just above its underside.
 std::vector<double> WalkPhysics::heights(const Obstacles& obstacles, const Eigen::Vector3d& eye,
                                          const Eigen::Vector3d& ahead) const {
   const double knee = body_.eye_height - 1.05 * body_.step;
@@ -79,7 +79,7 @@ std::vector<double> WalkPhysics::heights(const Obstacles& obstacles, const Eigen
   return drops;
 }
 
-// Of the walls around, as planes.
+// The deepest overlap with the walls around the body, each taken as a plane.
 WalkPhysics::Contact WalkPhysics::deepest_around(const Obstacles& obstacles,
                                                  const Eigen::Vector3d& eye,
                                                  const std::vector<double>& drops) const {
@@ -104,7 +104,7 @@ WalkPhysics::Contact WalkPhysics::deepest_around(const Obstacles& obstacles,
   return deepest;
 }
 
-// Of what the fan of rays meets on the way, as points: the body is round there.
+// The deepest overlap with the points that the fan of rays hits ahead. The body is a cylinder here.
 WalkPhysics::Contact WalkPhysics::deepest_ahead(const Obstacles& obstacles,
                                                 const Eigen::Vector3d& eye,
                                                 const std::vector<double>& drops,
@@ -128,13 +128,14 @@ WalkPhysics::Contact WalkPhysics::deepest_ahead(const Obstacles& obstacles,
     const Eigen::Vector3d from = eye - met.position, level = from - from.dot(up_) * up_;
     const double distance = level.norm();
     if (!(body_.radius - distance > deepest.depth)) continue;
-    // What is met in the very middle is left by the way it faces.
+    // For a point on the body's axis, the wall's normal gives the direction.
     deepest = {body_.radius - distance, distance > slack * body_.radius ? level / distance : *wall};
   }
   return deepest;
 }
 
-// Out of what is nearer than the radius, by the deepest first. False if that leads nowhere.
+// Pushes the eye out of obstacles nearer than the radius, the deepest first. False if most_pushes
+// do not suffice.
 bool WalkPhysics::push_out(const Obstacles& obstacles, Eigen::Vector3d& eye,
                            const Eigen::Vector3d& way) const {
   const bool goes = way.norm() > 0.0;
@@ -154,7 +155,7 @@ bool WalkPhysics::push_out(const Obstacles& obstacles, Eigen::Vector3d& eye,
 
 Eigen::Vector3d WalkPhysics::move(const Obstacles& obstacles, const Eigen::Vector3d& eye,
                                   const Eigen::Vector3d& way) const {
-  // Half a radius at a time never crosses what the body keeps a radius away from.
+  // Steps of half a radius cannot cross an obstacle from which the body stays a radius away.
   const int pieces = std::max(1, static_cast<int>(std::ceil(way.norm() / (0.5 * body_.radius))));
   Eigen::Vector3d at = eye;
   for (int i = 0; i < pieces; ++i) {
@@ -187,7 +188,7 @@ Eigen::Vector3d WalkPhysics::settle_a_moment(const Obstacles& obstacles, const E
   rays.push_back({.origin = eye, .direction = up_});
   const std::vector<VisibleHit> seen =
       visible_hits(obstacles.caster, obstacles.kinds, rays, obstacles.options);
-  std::optional<double> ground;  // above the feet
+  std::optional<double> ground;  // m above the feet
   for (std::size_t i = 0; i + 1 < seen.size(); ++i) {
     if (!seen[i]) continue;
     ground = std::max(ground.value_or(-1e300), body_.step - seen[i].distance);
@@ -197,7 +198,7 @@ Eigen::Vector3d WalkPhysics::settle_a_moment(const Obstacles& obstacles, const E
     on_ground_ = true;
     return eye;
   }
-  // Feet stay on steps going down too, unless they have just left the ground in a jump.
+  // The feet follow steps down too, except in a jump.
   if (rising_ <= 0.0 && *ground >= (on_ground_ ? -body_.step : 0.0)) {
     on_ground_ = true;
     rising_ = 0.0;

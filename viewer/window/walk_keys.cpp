@@ -102,7 +102,7 @@ void WalkWindow::press(const std::string& key_symbol) {
   std::string key = lower_case(key_symbol);
   const bool with_control = held_.count("control_l") > 0 || held_.count("control_r") > 0;
   if (with_control && key.rfind("control", 0) != 0) key = "ctrl+" + key;
-  // A key held down reports again and again; switches act once.
+  // A key held down is reported repeatedly, but acts once.
   if (!held_.insert(key).second) return;
   const char last = key.back();
   if (last >= '1' && last <= '9' && (key.size() == 1 || key == std::string("ctrl+") + last)) {
@@ -118,7 +118,7 @@ void WalkWindow::release(const std::string& key_symbol) {
   const std::string key = lower_case(key_symbol);
   held_.erase(key);
   held_.erase("ctrl+" + key);
-  // With Shift let go first, the key reports its other symbol.
+  // If Shift is released first, the key reports its other symbol.
   if (key == "plus") held_.erase("equal");
   if (key == "equal") held_.erase("plus");
   if (key == "slash") held_.erase("question");

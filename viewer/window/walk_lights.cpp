@@ -9,10 +9,11 @@
 namespace lightwell {
 namespace {
 
-/// So long the picture is exposed anew as light arrives; later it has about its final brightness.
+/// Shots up to which the exposure is metered again; the picture has about its final brightness
+/// then.
 constexpr int shots_to_meter = 64;
 
-/// The first name that is free, as STEM-1.vtp.
+/// Returns the first free name of STEM-1.vtp, STEM-2.vtp ...
 std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& stem,
                                 const char* extension) {
   for (int i = 1;; ++i) {
@@ -113,8 +114,7 @@ void WalkWindow::show_arriving_light() {
 
 void WalkWindow::show_solution(SolvedScene solved) {
   auto solution = std::make_unique<SolvedScene>(std::move(solved));
-  if (lights_.has_channels())
-    relight(*solution, lights_.scales());  // as they were dimmed meanwhile
+  if (lights_.has_channels()) relight(*solution, lights_.scales());  // dimmed during the solving
   replace_view(*solution);
   own_ = std::move(solution);
   pointer_.light_changed(*view_, false);

@@ -9,11 +9,13 @@ namespace lightwell {
 namespace {
 
 constexpr double run_factor = 3.0;
-constexpr double turning_speed = 1.2;   ///< rad/s: half a turn in a little under three seconds
-constexpr double response_time = 0.08;  ///< tau, s: soft, and not felt as a delay
+constexpr double turning_speed = 1.2;   ///< rad/s: half a turn in 2.6 s
+constexpr double response_time = 0.08;  ///< tau, s: smooth without a noticeable delay
 constexpr double closest_to_pole = 5.0 * std::numbers::pi / 180.0;
 
-/// Distance covered in `seconds` while `value` relaxes towards `wanted`; updates `value`.
+/// Returns the integral of `value` over `seconds` while `value` relaxes towards `wanted`:
+///   v(t) = wanted + (v(0) - wanted) exp(-t / tau).
+/// Updates `value`.
 template <class T>
 T relax(T& value, const T& wanted, double seconds) {
   const double left = std::exp(-seconds / response_time);
@@ -36,8 +38,8 @@ void WalkState::place(const Camera& camera) {
 Eigen::Vector3d WalkState::wanted_velocity(const WalkKeys& keys) const {
   const Eigen::Vector3d right = camera_.direction.cross(camera_.up);
   Eigen::Vector3d level = up_axis_.cross(right);
-  // Upright cameras make this the line of sight without its height; one that is rolled onto its
-  // side has no level forward, and goes where it looks.
+  // For an upright camera, `level` is the horizontal part of the line of sight. A camera rolled
+  // onto its side has no level forward direction, and moves along the line of sight.
   if (level.norm() > 1e-3) {
     level.normalize();
   } else {
@@ -54,8 +56,7 @@ bool WalkState::advance(const WalkKeys& keys, double seconds) {
   const Eigen::Vector3d covered = relax(velocity_, wanted_velocity(keys), seconds);
   const double turned =
       relax(turning_, (keys.turn_right - keys.turn_left) * turning_speed, seconds);
-  // What is too slow to see (a thousandth of the speed) is standing still, so that drawing can
-  // rest.
+  // A thousandth of the speed is too slow to see, and counts as standing still: drawing can rest.
   if (velocity_.norm() < 1e-3 * walking_speed_) velocity_.setZero();
   if (std::abs(turning_) < 1e-3 * turning_speed) turning_ = 0.0;
   camera_.position += covered;
@@ -73,10 +74,10 @@ void WalkState::orbit(const Eigen::Vector3d& pivot, double yaw, double pitch) {
   velocity_.setZero();
 }
 
-// Turns the eye, and returns by what.
+// Turns the eye and returns the rotation.
 Eigen::Matrix3d WalkState::turn(double yaw, double pitch) {
   const double from_zenith = std::acos(std::clamp(camera_.direction.dot(up_axis_), -1.0, 1.0));
-  // A start closer to the pole than the limit may stay there, but goes no closer.
+  // A camera that begins closer to the pole than the limit may stay, but not move closer.
   const double lowest = std::min(from_zenith, closest_to_pole);
   const double highest = std::max(from_zenith, std::numbers::pi - closest_to_pole);
   const double allowed_pitch = from_zenith - std::clamp(from_zenith - pitch, lowest, highest);

@@ -6,38 +6,38 @@
 
 namespace lightwell {
 
-/// Which movements are asked for at the moment.
+/// Movements whose keys are held down.
 struct WalkKeys {
   bool forward = false, back = false, left = false, right = false, up = false, down = false;
   bool turn_left = false, turn_right = false;
   bool run = false;
 };
 
-/// A person with a camera walking through the scene. Steps follow the exact solution of
-/// dv/dt = (v_wanted - v) / tau, so that where a walk ends does not depend on the frame rate.
+/// A camera that a person moves through the scene. Steps follow the exact solution of
+/// dv/dt = (v_wanted - v) / tau, so that the end of a walk does not depend on the frame rate.
 class WalkState {
  public:
-  /// `up_axis` (unit) is what turning turns about and walking keeps level; `walking_speed` in m/s.
+  /// `up_axis`: unit, the axis of yaw and the normal of level walking. `walking_speed`: m/s.
   WalkState(const Camera& camera, const Eigen::Vector3d& up_axis, double walking_speed);
 
   const Camera& camera() const { return camera_; }
-  /// Stands still at another camera.
+  /// Moves to another camera, with speed 0.
   void place(const Camera& camera);
 
-  /// Moves on for `seconds`; false if nothing moved. Forward is level, whatever the pitch.
+  /// Moves for `seconds`. Returns false if nothing moved. Forward is level for any pitch.
   bool advance(const WalkKeys& keys, double seconds);
 
   /// Turns the eye, radians: `yaw` to the right, `pitch` upwards, as far as 5 degrees from the
   /// zenith or the nadir.
   void look(double yaw, double pitch);
 
-  /// The same about a point: the eye goes around it, and what it looked at stays in view.
+  /// Turns the eye as look() does, and moves the eye by the same rotation about `pivot`.
   void orbit(const Eigen::Vector3d& pivot, double yaw, double pitch);
 
-  /// Moves along the line of sight, metres.
+  /// Moves along the line of sight by `distance`, m.
   void dolly(double distance);
 
-  /// Puts the eye where it came to, on foot; speed and direction stay.
+  /// Sets the position of the eye, m. Speed and direction stay.
   void move_eye_to(const Eigen::Vector3d& position) { camera_.position = position; }
 
  private:

@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-/// A hand that clicks trembles, pixels.
+/// Largest movement of a click, pixels: a hand trembles.
 constexpr int click_reach = 3;
 
 class WalkStyle : public vtkInteractorStyle {
@@ -29,7 +29,7 @@ class WalkStyle : public vtkInteractorStyle {
   void OnKeyRelease() override {
     if (const char* key = Interactor->GetKeySym()) walk_->release(key);
   }
-  // A key released while another window has the keyboard is never reported.
+  // The release of a key is not reported while another window has the keyboard.
   void OnLeave() override {
     walk_->release_all();
     walk_->pointer_left();

@@ -7,8 +7,8 @@ namespace lightwell {
 
 class WalkWindow;
 
-/// Hands what happens in the window on, and keeps VTK's own keys (w, s, e, q, p ...) from acting.
-/// Points at the window, which must outlive it.
+/// Returns the interactor style that passes events of keys, mouse and timer to a window, without
+/// VTK's own keys (w, s, e, q, p ...). Keeps a pointer to the window, which must outlive the style.
 vtkSmartPointer<vtkInteractorStyle> make_walk_style(WalkWindow* window);
 
 }  // namespace lightwell

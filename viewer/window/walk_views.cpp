@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double record_every = 0.1;  ///< s
+constexpr double record_every = 0.1;  ///< s, between cameras of a path
 
 }  // namespace
 
@@ -20,7 +20,7 @@ bool WalkWindow::advance(double seconds) {
   const Eigen::Vector3d before = walk_.camera().position;
   bool moved = walk_.advance(keys, seconds);
   if (moved && pivot_ && walk_.camera().position != before) {
-    pivot_.reset();  // who steps aside has left the orbit
+    pivot_.reset();  // a step ends the orbit
     update_text();
   }
   if (walking_) moved |= walk_on_foot(before, seconds);
@@ -29,7 +29,6 @@ bool WalkWindow::advance(double seconds) {
 }
 
 bool WalkWindow::walk_on_foot(const Eigen::Vector3d& before, double seconds) {
-  // What takes longer than a moment was spent elsewhere, and is not fallen through.
   const Obstacles obstacles{
       view_->caster(), view_->kinds(), {.glass = true, .unlit = view_->look().unlit}};
   const Eigen::Vector3d way = walk_.camera().position - before;
@@ -37,7 +36,7 @@ bool WalkWindow::walk_on_foot(const Eigen::Vector3d& before, double seconds) {
   if (way.norm() > 0.0) eye = physics_.move(obstacles, eye, way);
   eye = physics_.settle(obstacles, eye, seconds);
   walk_.move_eye_to(eye);
-  // Less than a thousandth of a step is not seen, and drawing can rest.
+  // A thousandth of a step's height a second is too slow to see: drawing can rest.
   return (eye - before).norm() > 1e-3 * physics_.body().step * seconds;
 }
 
@@ -119,7 +118,7 @@ bool WalkWindow::play(double seconds) {
   Camera camera = views_.path.at(path_seconds_);
   camera.width = walk_.camera().width;
   camera.height = walk_.camera().height;
-  // The angle of view is the walker's own: a path is where one went.
+  // The walker's own angle of view stays: a path gives position and direction.
   camera.fov_degrees = walk_.camera().fov_degrees;
   walk_.place(camera);
   if (path_seconds_ >= views_.path.duration()) playing_ = false;

@@ -20,13 +20,14 @@ namespace lightwell {
 namespace {
 
 constexpr unsigned long frame_milliseconds = 15;
-/// A drawing that takes longer slows the walk instead of jumping.
+/// Longest time step of a walk, s. Time beyond the step does not count: after a long
+/// drawing the walk slows instead of jumping, and the body has not fallen meanwhile.
 constexpr double longest_step = 0.25;
-constexpr double message_duration = 4.0;  ///< seconds
-constexpr double drag_degrees = 120.0;    ///< a drag across the whole window
-constexpr double wheel_share = 0.03;      ///< of the scene's diagonal per click
+constexpr double message_duration = 4.0;  ///< s
+constexpr double drag_degrees = 120.0;    ///< angle of a drag across the whole window
+constexpr double wheel_share = 0.03;      ///< share of the scene's diagonal per click of the wheel
 
-/// What there is to see before the first shot: the emitters, and the ambient term.
+/// The light before the first shot: emitters and ambient term.
 std::unique_ptr<SolvedScene> begin(const LiveSolve& live, SolvedScene dark) {
   auto begun = std::make_unique<SolvedScene>(std::move(dark));
   show_light(live.light(), true, *begun);
@@ -86,7 +87,7 @@ WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> ow
   change(current_look());
 }
 
-// The style points at this object.
+// The interactor style keeps a pointer to this object.
 WalkWindow::~WalkWindow() {
   interactor_->SetInteractorStyle(nullptr);
 }
@@ -98,7 +99,7 @@ vtkRenderWindowInteractor* WalkWindow::interactor() const {
 void WalkWindow::run() {
   const VtkMessages messages;
   window_->Render();
-  // A processor that plays graphics card has no power to spare for four samples a pixel.
+  // Software drivers are too slow for four samples a pixel.
   const std::string driver = window_->ReportCapabilities();
   for (const char* software : {"llvmpipe", "softpipe", "SWR", "SwiftShader"}) {
     if (driver.find(software) != std::string::npos) window_->SetMultiSamples(0);
@@ -164,7 +165,7 @@ void WalkWindow::tick(double seconds) {
   changed_ = false;
   drawn_width_ = width;
   drawn_height_ = height;
-  const VtkMessages messages;  // text that finds no room in a tiny window complains
+  const VtkMessages messages;  // VTK warns of text that does not fit in a tiny window
   window_->Render();
 }
 
@@ -218,7 +219,7 @@ void WalkWindow::switch_false_colours() {
   change(look);
 }
 
-// Luminance, unshot light while there is any, and back to the picture.
+// The order is luminance, unshot light (only during the solving), picture.
 void WalkWindow::switch_measure() {
   Look look = current_look();
   const bool is_solving = live_ && live_state_.phase < LivePhase::done;
@@ -343,7 +344,7 @@ void WalkWindow::save_screenshot() {
     file = options_.screenshot_folder / fmt::format("lightwell-{}.png", i);
   }
   const auto [width, height] = size();
-  // A renderer belongs to one window; the picture gets one of its own, without the text.
+  // A renderer belongs to one window, so the picture has a renderer of its own, without text.
   try {
     SolutionView picture(solved(), options_);
     picture.set_look(view_->look());

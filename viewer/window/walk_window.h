@@ -26,39 +26,40 @@ class vtkRenderWindowInteractor;
 
 namespace lightwell {
 
-/// Metres a second for a scene of this diagonal: a fifth of it up to 7 m, a person's 1.4 m/s there,
-/// and growing with the root above, so that a hall is neither tedious nor a blur.
+/// Returns the walking speed, m/s, for a scene of diagonal d, m: 0.2 d up to 7 m, and
+/// 1.4 sqrt(d / 7 m) above. 1.4 m/s is a person's speed; the root makes a hall neither tedious nor
+/// a blur.
 double walking_speed(double scene_diagonal);
 
-/// The list of keys that the window shows.
+/// Returns the list of keys that the window shows, in two columns.
 std::string walk_help();
 
-/// The window's behaviour: keys and mouse in, a SolutionView's look out.
+/// Behaviour of the window: keys and mouse change the look of a SolutionView.
 class WalkWindow {
  public:
   WalkWindow(const SolvedScene& solved, const ViewOptions& options);
-  /// Shows light as it arrives, and the solution once it is there. Begins with live.dark(), or that
-  /// with its channels dimmed. Keeps a reference; the solving is started by the caller.
+  /// Shows light during progressive refinement, then the solution. `dark` is live.dark(), possibly
+  /// with dimmed channels. The caller calls live.start(). Keeps a reference to `live`.
   WalkWindow(LiveSolve& live, SolvedScene dark, const ViewOptions& options);
   ~WalkWindow();
   WalkWindow(const WalkWindow&) = delete;
   WalkWindow& operator=(const WalkWindow&) = delete;
 
-  /// Opens the window and returns when it is closed.
+  /// Opens the window and returns when the user closes the window.
   void run();
 
-  // What the interactor style reports. `key` is an X key symbol, such as "w", "Left" or "F12".
+  // Events from the interactor style. `key` is an X key symbol, such as "w", "Left" or "F12".
   void press(const std::string& key);
   void release(const std::string& key);
   void release_all() { held_.clear(); }
-  /// The mouse moved with its button held, pixels, y downwards.
+  /// The mouse moved with a button held; pixels to the right and down.
   void drag(int right, int down);
   void wheel(int clicks);
-  /// The pointer is, or was clicked without a drag, at a pixel; y upwards, as VTK counts.
+  /// The pointer is at pixel (x, y), or was clicked there without a drag; y upwards, as in VTK.
   void hover(int x, int y);
   void click(int x, int y);
   void pointer_left();
-  /// `seconds` went by: moves on, and draws if anything changed.
+  /// Advances walk, solving and ray-traced picture by `seconds`, and draws after a change.
   void tick(double seconds);
 
   const Look& look() const { return view_->look(); }
@@ -67,16 +68,16 @@ class WalkWindow {
   const PointerTools& pointer() const { return pointer_; }
   bool is_walking() const { return walking_; }
   const Still& still() const { return still_; }
-  /// What is shown.
+  /// The solution that is shown.
   const SolvedScene& solved() const { return view_->solved(); }
   vtkRenderWindowInteractor* interactor() const;
 
  private:
-  /// A key, or a few that do the same, and a line of help.
+  /// A line of help, and the keys that have the same effect.
   struct Key {
     const char* shown;
     const char* does;
-    std::vector<std::string> symbols{};  ///< in lower case; empty: held_keys() looks after it
+    std::vector<std::string> symbols{};  ///< in lower case; empty: not handled by `act`
     void (WalkWindow::*act)() = nullptr;
   };
   static std::span<const Key> keys();
@@ -87,7 +88,7 @@ class WalkWindow {
   WalkKeys held_keys() const;
   void press_digit(int digit);
   void keep_bookmark(int digit);
-  /// The look from where the walk is now, in the window as large as it is now.
+  /// Returns the look with the walk's current camera, fitted to the window's current size.
   Look current_look() const;
   void go_to(const Camera& camera);
   void go_to_start();
@@ -136,12 +137,12 @@ class WalkWindow {
   void choose_channel(int step);
   void switch_channel();
   void next_colour();
-  /// The chosen channel, or without one the exposure.
+  /// Changes the chosen channel, or without a chosen channel the exposure, by thirds of a stop.
   void light_up(int steps);
   void relight_now();
   void save_solution();
 
-  // Solving while it is watched.
+  // Progressive refinement.
   void watch();
   void show_arriving_light();
   void show_solution(SolvedScene solved);
@@ -149,17 +150,17 @@ class WalkWindow {
   void shoot_once();
   void switch_ambient();
   void stop_shooting();
-  /// Another solution takes the place of the one that is shown.
+  /// Shows another solution, which may have another mesh.
   void replace_view(const SolvedScene& solved);
 
   ViewOptions options_;
-  std::unique_ptr<SolvedScene> own_;  ///< of which the light changes; null: it does not
+  std::unique_ptr<SolvedScene> own_;  ///< copy whose light changes; null: the caller's is shown
   LiveSolve* live_;
   std::unique_ptr<SolutionView> view_;
   WalkState walk_;
   WalkPhysics physics_;
   bool walking_ = false, recording_ = false, playing_ = false;
-  std::optional<Eigen::Vector3d> pivot_{};  ///< of orbiting
+  std::optional<Eigen::Vector3d> pivot_{};  ///< centre of the orbit; empty: no orbit
   KeptViews views_{};
   CameraPath recorded_{};
   double path_seconds_ = 0.0;
