@@ -8,13 +8,15 @@
 
 namespace lightwell {
 
-/// A name for the scene's next camera that no other has and that pictures can be called after:
-/// `wanted`, its slashes replaced, or "camera1", "camera2" ...
+/// Returns a unique name for the scene's next camera that is usable as a file name: `wanted`, its
+/// slashes replaced by '_', or "camera1", "camera2" ... where `wanted` is empty, begins with a dot,
+/// is longer than 200 bytes or is taken.
 std::string camera_name(std::string wanted, const Scene& scene);
 
-/// Puts a camera where a file's transformation has it: at its translation, upright along its y axis
-/// and looking along `ahead`, a direction before the transformation. A picture is never mirrored,
-/// which is remarked upon. False if the transformation leaves no direction or no upright.
+/// Sets a camera's position and axes by a file's transformation: position at the translation, view
+/// direction `ahead` (given before the transformation), up along the transformed y axis. A
+/// mirroring transformation adds a remark and leaves the picture unmirrored. Returns false if the
+/// view direction vanishes or is parallel to the up direction.
 bool place_camera(const Eigen::Affine3d& to_world, const Eigen::Vector3d& ahead, Camera& camera,
                   Remarks& remarks);
 

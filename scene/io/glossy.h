@@ -5,29 +5,30 @@
 
 namespace lightwell {
 
-/// Largest GGX width alpha of a metal or a highlight that is read as glossy. Rougher ones are read
-/// as diffuse, which they nearly are: the first pass then solves for them, and need not follow rays
-/// that most of the room may be at the end of.
+/// Largest GGX width alpha of a metal or a highlight that is read as glossy. Rougher metals and
+/// highlights are nearly diffuse and are read as diffuse, so that the first pass solves for their
+/// light without rays into most of the room.
 inline constexpr double glossy_alpha = 0.5;
 
-/// Up to here (a lobe of a thirtieth of a degree) a surface is read as smooth.
+/// Largest alpha of a surface that is read as smooth: a lobe of a thirtieth of a degree.
 inline constexpr double smooth_alpha = 1e-3;
 
-/// Least share of clear glass in a material that is read as wholly clear; the others are opaque.
+/// Least share of clear glass in a mixed material that is read as wholly clear. Materials with a
+/// smaller share are read as opaque.
 inline constexpr double mostly_clear = 0.5;
 
-/// Light that a smooth dielectric of this index (> 0, relative to outside) reflects of light that
-/// comes from all sides evenly: 2 integral F(cos) cos dcos, [0,1].
+/// Reflectance of a smooth dielectric for diffuse light: 2 integral F(cos) cos dcos, [0,1]. `index`
+/// > 0 is relative to the outside.
 double diffuse_fresnel(double index);
 
-/// Light that a diffuse base of reflectance rho under a smooth coat of index n gives back of light
-/// that comes from all sides evenly, the coat's own reflection (times `specular`) included:
-/// specular F_o + (1 - F_o)(1 - F_i) rho / (1 - rho F_i), F_i from within (Saunderson 1942). With
-/// `saturating` false, rho in the denominator is taken as 1, a common simplification.
+/// Reflectance for diffuse light of a diffuse base rho under a smooth coat of index n, the coat's
+/// own reflection times `specular` included (Saunderson 1942): specular F_o + (1 - F_o)(1 - F_i)
+/// rho / (1 - rho F_i), at most 1. F_o and F_i are diffuse_fresnel() from outside and from within.
+/// With `saturating` false, rho in the denominator is taken as 1, a common simplification.
 Spectrum coated_reflectance(const Spectrum& rho, double index, bool saturating,
                             const Spectrum& specular);
 
-/// The same coat over many bases, without a new integral for each.
+/// coated_reflectance() of one coat over many bases: F_o and F_i are integrated once.
 class Coat {
  public:
   Coat(double index, bool saturating, const Spectrum& specular);
@@ -39,27 +40,28 @@ class Coat {
   Spectrum specular_;
 };
 
-/// Reflectance under diffuse light of a metal of refractive index eta + i k, by Fresnel's equations
-/// (Born & Wolf, 14.2). Materials reflect the same at every angle, and light that bounces meets a
-/// metal at all of them: a dim one such as tungsten reflects a tenth more than straight on.
+/// Reflectance of a metal of refractive index eta + i k for diffuse light, by Fresnel's equations
+/// (Born & Wolf, 14.2). The diffuse mean is used because a Material reflects the same at every
+/// angle: a dim metal such as tungsten reflects a tenth more of diffuse light than at normal
+/// incidence.
 Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k);
 
-/// Share of light that crosses a thin pane of this index at normal incidence, reflections between
-/// its two faces included: (1 - F) / (1 + F).
+/// Transmittance of a thin pane of this index at normal incidence, reflections between its two
+/// faces included: (1 - F) / (1 + F).
 double pane_transmittance(double index);
 
-/// A pane without thickness of that index, which passes `tint` of what it does not reflect.
+/// Pane without thickness; `tint` is the transmittance of the light that is not reflected.
 Dielectric thin_pane(double index, const Spectrum& tint, double alpha = 0.0);
 
-/// A share of light that is mirrored with a lobe of that width: glossy, or diffuse beyond
-/// glossy_alpha.
+/// Adds a reflected share of light with a lobe of GGX width `alpha`: specular up to glossy_alpha,
+/// diffuse beyond.
 void add_highlight(Material& material, const Spectrum& share, double alpha);
 
-/// The roughness of a surface of that alpha: none up to smooth_alpha, at most 1.
+/// Roughness of a surface of GGX width `alpha`: 0 up to smooth_alpha, at most 1.
 float roughness_of(double alpha);
 
-/// What a surface is called that is part metal (share `metallic` of it, [0,1]) and part diffuse, of
-/// one color: diffuse below, with the metal as a highlight.
+/// Sets a material of one color that is part metal and part diffuse: diffuse reflectance (1 -
+/// metallic) color, highlight metallic color. `metallic` in [0,1].
 void set_metallic(Material& material, const Spectrum& color, double metallic, double alpha);
 
 }  // namespace lightwell

@@ -8,25 +8,28 @@
 
 namespace lightwell {
 
-/// Whether a mesh file's own materials matter; if not, everything is of one material, and neither
-/// its MTL file nor its lack of one is spoken of. Facets keep their texture coordinates, v pointing
-/// down from a picture's top, for materials of the file that show a picture, and `with_uv`.
+/// Use of a mesh file's own materials.
+/// from_file: the file's materials.
+/// ignored: one material for everything; neither the MTL file nor its absence adds a note.
+/// with_uv: as ignored, with texture coordinates kept (v points down from a picture's top).
+/// With from_file, facets keep texture coordinates where their material has a picture.
 enum class MeshMaterials { from_file, ignored, with_uv };
 
-/// What tells a polygon's front: the order of its corners, or the side that the vertex normals the
-/// file gives lie on, where it gives any.
+/// Definition of a polygon's front: by the order of its corners, or by the side of the file's
+/// vertex normals where the file has any.
 enum class MeshFronts { from_winding, from_normals };
 
-/// Which polygon of a mesh file, counted from 0 in the file's order, each facet of the scene is or
-/// is a piece of. Polygons that were dropped have no facet.
+/// Polygon of the mesh file (counted from 0 in the file's order) to which each facet of the scene
+/// belongs. A polygon may be split into several facets. Polygons that were dropped have no facet.
 struct FilePolygons {
   int count = 0;
   std::vector<int> of_facet{};  ///< by scene-wide facet number
   Repairs repairs{};
-  bool has_normals = false;  ///< known if fronts were asked for from normals
+  bool has_normals = false;  ///< set only with MeshFronts::from_normals
 };
 
-/// What read_obj() and read_geometry() do, but for the choice.
+/// read_obj() and read_geometry() with a choice of materials and fronts. `polygons`, if not null,
+/// receives the polygon of each facet.
 Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit,
                     MeshMaterials materials, FilePolygons* polygons = nullptr,
                     MeshFronts fronts = MeshFronts::from_winding);

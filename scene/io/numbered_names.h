@@ -6,10 +6,10 @@
 
 namespace lightwell {
 
-/// Names told apart by a number: "lamp", "lamp 2", "lamp 3".
+/// Distinguishes equal names by a number: "lamp", "lamp 2", "lamp 3".
 class NumberedNames {
  public:
-  /// `name`, or the first of its numbered forms that was not given before.
+  /// Returns `name`, or the first of its numbered forms that was not returned before.
   std::string unique(const std::string& name) {
     std::string result = name;
     int& times = times_named_.emplace(name, 1).first->second;

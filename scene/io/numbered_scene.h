@@ -8,27 +8,27 @@
 
 namespace lightwell {
 
-/// A scene whose polygons keep the numbers their file gives them, whatever became of them on the
-/// way: some were dropped, some cut into several facets, some put together.
+/// A scene whose facets refer to the polygon numbers of its file, although some polygons were
+/// dropped, some cut into several facets, and some combined.
 struct NumberedScene {
-  /// A polygon of the file, or what the file puts together under one number.
+  /// A polygon of the file, or several polygons that the file combines under one number.
   struct Row {
-    std::string name{};      ///< of the surface it belongs to; empty if it was dropped
-    double emittance = 1.0;  ///< as the file gives it, [0,1]
+    std::string name{};      ///< name of its surface; empty if the polygon was dropped
+    double emittance = 1.0;  ///< as in the file, [0,1]
   };
   Scene scene{};
   std::vector<Row> rows{};          ///< in the order of the file
-  std::vector<int> row_of_facet{};  ///< by scene-wide facet; -1: opaque, but of no number
-  bool is_enclosure = false;        ///< the file says that its surfaces close a space
+  std::vector<int> row_of_facet{};  ///< by scene-wide facet; -1: an obstruction without a number
+  bool is_enclosure = false;        ///< the file declares that its surfaces close a space
 };
 
-/// Reads what read_scene() reads. Rows are faces in .obj, .ply and .stl, the S records of .vs3 less
-/// those combined with an earlier one, and what facets and spheres the scene has in other formats,
-/// where a polygon that was dropped has no number. Throws InputError naming file, line or object,
-/// value and remedy.
+/// Reads a scene of any format of read_scene(). Rows by format: faces (.obj, .ply, .stl), S records
+/// less those combined with an earlier one (.vs3), and facets and spheres of the scene (other
+/// formats; a dropped polygon has no row). Throws InputError naming file, line or object, value and
+/// remedy.
 NumberedScene read_numbered_scene(const std::filesystem::path& path);
 
-/// The same for one .vs3 file.
+/// read_numbered_scene() for a .vs3 file.
 NumberedScene read_numbered_vs3(const std::filesystem::path& path);
 
 }  // namespace lightwell

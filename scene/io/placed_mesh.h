@@ -9,47 +9,51 @@
 
 namespace lightwell {
 
-/// Facets, some 5 GB of them, that no scene may exceed: instances multiply quickly.
+/// Largest number of facets in a scene, some 5 GB: instances multiply quickly.
 inline constexpr std::int64_t most_facets = 20'000'000;
 
-/// Loops of simple shapes, counter-clockwise seen from outside or from +z, as formats define them.
+/// Loops of simple shapes as the file formats define them, counter-clockwise seen from outside or
+/// from +z.
 std::vector<Loop> rectangle_loops();  ///< x and y from -1 to 1, z = 0
 std::vector<Loop> cube_loops();       ///< all coordinates from -1 to 1
-/// A regular polygon about the origin, z = 0, of the area of the disk of radius 1.
+/// Regular polygon about the origin, z = 0, with the area of the disk of radius 1.
 std::vector<Loop> disk_loops();
 /// Rectangles round the z axis from z = 0 to 1, with the area of the cylinder of radius 1; no caps.
 std::vector<Loop> cylinder_loops();
-/// Quadrilaterals (triangles where a radius is 0) round the z axis between circles at z = 0 and
-/// `height`, with the area of the cone that is cut off there; no caps. Radii >= 0, not both 0.
+/// Quadrilaterals (triangles where a radius is 0) round the z axis between circles at z = 0 and z =
+/// `height`, with the area of the truncated cone; no caps. Radii >= 0, not both 0.
 std::vector<Loop> cone_loops(double radius, double top_radius, double height);
-/// A regular polygon about the origin, z = 0, with a hole of the same kind unless `inner` is 0, of
-/// the area of the ring between those radii.
+/// Regular polygon about the origin, z = 0, with the area of the ring between the radii; its hole
+/// is a regular polygon too (no hole if `inner` is 0).
 Polygon ring_polygon(double inner, double outer);
-/// Quadrilaterals and triangles between circles of latitude, of the area of the sphere of radius 1.
+/// Quadrilaterals and triangles between circles of latitude, with the area of the sphere of radius
+/// 1.
 std::vector<Loop> sphere_loops();
 
-/// Whether a transformation keeps angles: it turns, moves, mirrors and scales evenly, to 1e-6.
+/// True if a transformation keeps angles to 1e-6: a rotation, translation, mirroring, uniform
+/// scaling, or a product of these.
 bool keeps_angles(const Eigen::Affine3d& transform);
 
-/// What a transformation does to normals, but for their length and side: its cofactors, which are
-/// finite even where it flattens.
+/// Transformation of normals, up to length and sign: the cofactor matrix, which is finite even for
+/// a transformation that flattens.
 Eigen::Matrix3d normal_transform(const Eigen::Affine3d& transform);
 
-/// Takes the normals away that a file gives at vertices.
+/// Removes the vertex normals of the file from a mesh.
 void drop_normals(PolygonMesh& mesh);
 
-/// Turns every facet's front to the other side.
+/// Exchanges front and back of every facet.
 void turn_over(PolygonMesh& mesh);
 
-/// The loops where `transform` puts them, turned over if `flip` says so. Normals keep their side of
-/// the surface even where the transformation mirrors. Polygons that it flattens are dropped.
-/// `uv` and `normals`, as they are before: of each loop, or empty.
+/// Loops transformed by `transform`, with front and back exchanged if `flip`. Fronts stay on their
+/// side of the surface even where the transformation mirrors. Polygons without area after the
+/// transformation are dropped. `uv` and `normals` are given before the transformation, one entry
+/// for each loop, or empty.
 PolygonMesh placed_loops(const std::vector<Loop>& loops, const Eigen::Affine3d& transform,
                          bool flip, Repairs& repairs, const std::vector<UvLoop>& uv = {},
                          const std::vector<NormalLoop>& normals = {});
 
-/// The same for a mesh of sound facets without holes; with `mirror_turns` false the order of the
-/// corners alone says where the front is, so that a mirrored mesh is turned inside out.
+/// placed_loops() for a mesh of valid facets without holes. With `mirror_turns` false, the order of
+/// the corners alone defines the front, so that mirroring turns the mesh inside out.
 PolygonMesh placed_mesh(PolygonMesh mesh, const Eigen::Affine3d& transform, bool flip,
                         bool mirror_turns, Repairs& repairs);
 

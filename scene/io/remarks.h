@@ -9,13 +9,13 @@
 
 namespace lightwell {
 
-/// What a reader left out or approximated, told once however often it happens: a sentence and the
-/// things it holds for.
+/// Collects the approximations and omissions of a reader: one sentence for each kind, with the
+/// names of the objects concerned.
 class Remarks {
  public:
-  /// Notes that `what` ("textures were left out in") holds for the thing called `name`.
+  /// Records that `what` ("textures were left out in") concerns the object `name`.
   void add(std::string_view what, std::string_view name);
-  /// One sentence for every `what`, in the order of their first mention, with at most five names.
+  /// One sentence for every `what`, in the order of first mention, with at most five names.
   std::vector<std::string> sentences() const;
 
  private:
@@ -27,14 +27,14 @@ class Remarks {
   std::vector<Remark> remarks_;
 };
 
-/// Says of which surfaces with a picture some facets have no texture coordinates: the picture
-/// counts there by its mean, and a mask not at all.
+/// Adds a remark on surfaces whose material has a picture or a mask and whose facets lack texture
+/// coordinates: there the mean of the picture is used, and no mask.
 void remark_pictures_without_uv(const Scene& scene, Remarks& remarks);
 
-/// Takes texture coordinates off surfaces whose material shows no picture.
+/// Removes texture coordinates from surfaces whose material has neither picture nor mask.
 void drop_unused_uv(Scene& scene);
 
-/// Adds a note to a scene without an emitter.
+/// Adds a note if the scene has no light source.
 void note_if_dark(Scene& scene);
 
 }  // namespace lightwell

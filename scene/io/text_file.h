@@ -8,7 +8,7 @@
 
 namespace lightwell {
 
-/// A file of input, whole in memory. Lines end in LF or CRLF and are numbered from 1.
+/// An input file, whole in memory. Lines end in LF or CRLF and are numbered from 1.
 class TextFile {
  public:
   /// Throws InputError naming the file if it is missing, no regular file, or unreadable.
@@ -16,7 +16,7 @@ class TextFile {
 
   const std::filesystem::path& path() const { return path_; }
   const std::string& text() const { return text_; }
-  /// Views into text(), which live as long as the TextFile.
+  /// Visits every line. The views point into text() and live as long as the TextFile.
   void for_each_line(const std::function<void(int line, std::string_view text)>& visit) const;
   /// Throws InputError "file:line: problem".
   [[noreturn]] void fail(int line, std::string_view problem) const;
@@ -26,19 +26,19 @@ class TextFile {
   std::string text_;
 };
 
-/// Throws InputError, naming the file, unless it is there and can be read as a file.
+/// Throws InputError naming the file unless `path` is a readable regular file.
 void require_readable(const std::filesystem::path& path);
 
-/// The extension in small letters: ".obj".
+/// The extension in lower case: ".obj".
 std::string lower_extension(const std::filesystem::path& path);
 
-/// Without blanks at either end.
+/// `text` without blanks at either end.
 std::string_view trimmed(std::string_view text);
 
-/// The next word of `text`, which loses it; empty at the end.
+/// Removes the next word from `text` and returns the word; empty at the end.
 std::string_view next_word(std::string_view& text);
 
-/// The number that `text` consists of, if it is one and finite.
+/// Value of `text` as a finite number; empty if `text` is none.
 std::optional<double> parse_finite(std::string_view text);
 
 }  // namespace lightwell

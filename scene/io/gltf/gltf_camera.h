@@ -8,8 +8,9 @@
 
 namespace lightwell {
 
-/// Adds a perspective camera of a glTF file, 512 pixels high, since glTF names no size; other kinds
-/// are remarked upon. `node` is where it stands. Throws InputError naming its place in the file.
+/// Adds a perspective camera of a glTF file, 512 pixels high since glTF has no picture size. Other
+/// kinds of camera add a remark. `node` places the camera. Throws InputError naming the place in
+/// the file.
 void add_gltf_camera(const GltfObject& camera, const GltfObject& node,
                      const Eigen::Affine3d& to_world, Scene& scene, Remarks& remarks);
 

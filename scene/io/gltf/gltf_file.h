@@ -14,8 +14,7 @@
 
 namespace lightwell {
 
-/// A glTF 2.0 file, text or binary, and its buffers. Whatever names a part of it by number is
-/// checked when it is asked for.
+/// A glTF 2.0 file, text or binary, and its buffers. References by index are checked on access.
 class GltfFile {
  public:
   /// Throws InputError naming the file and, for torn JSON, the line.
@@ -29,16 +28,16 @@ class GltfFile {
   /// Member `index` of a list ("nodes"). Throws InputError naming `asking` if there is none.
   const GltfObject& at(const char* list, std::size_t index, const GltfObject& asking) const;
 
-  /// The vectors of an accessor (VEC3 of floats or integers), all finite.
+  /// Elements of a VEC3 accessor (floats or integers), all finite.
   std::vector<Eigen::Vector3d> vectors(std::size_t accessor, const GltfObject& asking) const;
-  /// The same of VEC2: texture coordinates.
+  /// Elements of a VEC2 accessor (texture coordinates), all finite.
   std::vector<Eigen::Vector2d> pairs(std::size_t accessor, const GltfObject& asking) const;
-  /// The whole numbers of an accessor (SCALAR), all below `limit`.
+  /// Elements of a SCALAR accessor of whole numbers, all below `limit`.
   std::vector<int> indices(std::size_t accessor, std::size_t limit, const GltfObject& asking) const;
-  /// Mean of a texture's picture; empty if its format is not read.
+  /// Mean of a texture's picture; empty if the picture's format is not supported.
   std::optional<PictureMean> texture_mean(std::size_t texture, PictureCode code,
                                           const GltfObject& asking) const;
-  /// The same with all of its pixels.
+  /// A texture's picture with all pixels; empty if the picture's format is not supported.
   std::optional<Picture> texture_picture(std::size_t texture, PictureCode code,
                                          const GltfObject& asking) const;
 
@@ -47,7 +46,7 @@ class GltfFile {
   struct Content;
   void read_json(std::string_view json);
   void read_buffers(std::string_view binary_chunk);
-  // `read` of the bytes of a texture's picture and of what that is called.
+  // Calls `read` with the bytes and the name of a texture's picture.
   template <class Read>
   auto read_texture(std::size_t texture, const GltfObject& asking, Read read) const
       -> decltype(read(std::string_view(), std::string()));

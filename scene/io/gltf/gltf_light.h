@@ -8,9 +8,10 @@
 
 namespace lightwell {
 
-/// Adds a point or a spot light of KHR_lights_punctual as a lamp: candela are taken as emission is,
-/// as relative. `node` is where it stands; it shines along its -z. Directional lights, and ranges,
-/// beyond which the light would end, are remarked upon. Throws InputError naming its place.
+/// Adds a light of KHR_lights_punctual. Point and spot lights become lamps whose candela are taken
+/// as relative, as emission is; a spot's axis is the -z of `node`. A directional light becomes the
+/// scene's sun, which is remarked upon. A second sun, other types, and ranges (distances beyond
+/// which a light ends) are left out with a remark. Throws InputError naming the place in the file.
 void add_gltf_light(const GltfObject& light, const GltfObject& node,
                     const Eigen::Affine3d& to_world, Scene& scene, Remarks& remarks);
 

@@ -11,18 +11,19 @@
 
 namespace lightwell {
 
-/// Materials of a glTF file as materials of a scene; docs/scene-format.md says what becomes what.
+/// Converts materials of a glTF file (mapping in docs/scene-format.md).
 class GltfMaterials {
  public:
   GltfMaterials(const GltfFile& file, Scene& scene, Remarks& remarks)
       : file_(file), scene_(scene), remarks_(remarks) {}
 
-  /// Index of the scene's material for a mesh's primitive, added where it is new. On a closed body
-  /// clear materials refract, and what shines does so outwards only; on an open sheet they are thin
-  /// panes, and shine to both sides where the file says double-sided.
+  /// Index of the scene's material for a mesh's primitive, added if new.
+  /// On a closed body a clear material refracts and emission leaves on the outside only.
+  /// On an open sheet a clear material is a thin pane, and emission leaves on both sides where the
+  /// file declares the material double-sided.
   int of_primitive(const GltfObject& primitive, bool is_closed);
-  /// Which of a primitive's sets of texture coordinates its base colour lies on ("TEXCOORD_0");
-  /// empty if the base colour is no picture.
+  /// Name of the primitive's set of texture coordinates for its base colour ("TEXCOORD_0"); empty
+  /// if the base colour has no picture.
   std::string texture_coordinates(const GltfObject& primitive) const;
 
  private:
@@ -33,12 +34,12 @@ class GltfMaterials {
   void set_clear(const GltfObject& from, const Spectrum& base, double alpha, bool is_closed,
                  Material& material);
   Spectrum emission(const GltfObject& from);
-  // What baseColorTexture or diffuseTexture shows, if it is of a format that is read.
+  // Picture of baseColorTexture or diffuseTexture; empty if absent or of an unsupported format.
   std::optional<Picture> base_picture(const GltfObject& from);
   void lay_on_picture(const GltfObject& from, const Spectrum& base, Material& material);
   SurfaceTexture laid_on(const GltfObject& info, std::shared_ptr<const Texture> picture) const;
-  // Mean of the texture that `owner` names with `key`: white without one, grey 0.5 with a remark if
-  // its format is not read. `from` is the material.
+  // Mean of the texture under `key` of `owner`: white without a texture, grey 0.5 with a remark if
+  // its format is not supported. `from` is the material.
   PictureMean texture_mean(const std::optional<GltfObject>& owner, const char* key,
                            PictureCode code, const GltfObject& from);
 

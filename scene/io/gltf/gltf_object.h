@@ -10,9 +10,9 @@
 
 namespace lightwell {
 
-/// An object of a glTF file's JSON that knows its place ("meshes[2].primitives[0]"). Every accessor
-/// throws InputError "file: place: ..." if a value is of another type than asked for. Refers to the
-/// document, which must outlive it.
+/// A JSON object of a glTF file with its place ("meshes[2].primitives[0]"). Every accessor throws
+/// InputError "file: place: ..." if a value has another type than requested. Refers to the
+/// document, which must outlive the GltfObject.
 class GltfObject {
  public:
   GltfObject(const std::filesystem::path& file, const nlohmann::json& value, std::string place);
@@ -21,7 +21,7 @@ class GltfObject {
   double number_or(const char* key, double otherwise) const;
   bool boolean_or(const char* key, bool otherwise) const;
   std::string string_or(const char* key, std::string_view otherwise) const;
-  /// A whole number that is at least 0, below 2^53.
+  /// A whole number in [0, 2^53).
   std::optional<std::size_t> index(const char* key) const;
   std::size_t index_or(const char* key, std::size_t otherwise) const;
   /// The numbers of an array of exactly `count`; empty if the key is missing.
@@ -34,7 +34,7 @@ class GltfObject {
   std::optional<GltfObject> extension(const char* name) const;
 
   const std::string& place() const { return place_; }
-  /// Its name in the file, or its place if it has none.
+  /// Name of the object in the file, or its place if unnamed.
   std::string name() const;
   [[noreturn]] void fail(std::string_view problem) const;
 

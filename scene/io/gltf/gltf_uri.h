@@ -6,10 +6,11 @@
 
 namespace lightwell {
 
-/// The bytes of "data:TYPE;base64,..." (RFC 2397, RFC 4648); empty if it is no such thing.
+/// Bytes of "data:TYPE;base64,..." (RFC 2397, RFC 4648); empty if `uri` is no such URI.
 std::optional<std::string> decode_data_uri(std::string_view uri);
 
-/// "my%20room.bin" is "my room.bin" (RFC 3986); what is no %XX stays as it is.
+/// Decodes percent escapes (RFC 3986): "my%20room.bin" becomes "my room.bin". Malformed escapes are
+/// kept.
 std::string decode_percent(std::string_view text);
 
 }  // namespace lightwell

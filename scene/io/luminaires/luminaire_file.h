@@ -11,63 +11,65 @@
 
 namespace lightwell {
 
-/// What a photometric file says of a luminaire, in the conventions of Lamp: gamma = 0 is -z, C0 is
-/// +x, and the opening lies across that axis.
+/// Contents of a photometric file in the conventions of Lamp: gamma = 0 is -z, C0 is +x, and the
+/// opening lies perpendicular to the axis.
 struct LuminaireFile {
   std::filesystem::path file{};
   std::string format{};  ///< "IES LM-63-1995", "EULUMDAT"
   std::string name{}, maker{};
-  /// Candela, with all the file's factors; W/sr if `is_radiometric`.
+  /// Candela, all factors of the file applied; W/sr if `is_radiometric`.
   SharedWeb web{};
   bool is_radiometric = false;
-  double lamp_lumens = 0.0;     ///< of all its lamps; 0: measured absolutely, they are not known
+  double lamp_lumens = 0.0;     ///< sum over its lamps; 0: absolute photometry, lamp flux unknown
   double watts = 0.0;           ///< input; 0: unknown
   std::string symmetry{};       ///< in words
   LampOpening opening{};        ///< m
-  double opening_height = 0.0;  ///< m, which light is not taken to come from
-  std::vector<std::string> notes{};  ///< what was assumed or left out: one sentence each
+  double opening_height = 0.0;  ///< m; light leaves from the opening, none from the sides
+  std::vector<std::string> notes{};  ///< assumptions and omissions: one sentence each
 
   double flux() const { return web ? web->integral() : 0.0; }
 };
 
 /// Reads IES LM-63 (1986, 1991, 1995, 2002, 2019; .ies) or EULUMDAT (.ldt), by the extension.
-/// `lamp_set`, from 1, chooses among the sets of lamps of an EULUMDAT file. Throws InputError
-/// naming file, line, what is wrong and what would be right.
+/// `lamp_set`, counted from 1, selects among the lamp sets of an EULUMDAT file. Throws InputError
+/// naming file, line, fault and remedy.
 LuminaireFile read_luminaire(const std::filesystem::path& path, int lamp_set = 1);
 
-/// Gives `lamp` the distribution and opening of a luminaire, and an intensity of that colour: of
-/// whatever brightness, light keeps its candela. What is measured in W/sr has as much in every
-/// band. Throws InputError if the luminaire gives no light.
+/// Sets distribution, opening and intensity of `lamp` from a luminaire. The intensity is the
+/// spectrum of 1 cd with the hue of `colour` (the brightness of `colour` cancels); for radiometric
+/// files 1 in every band. Throws InputError if all intensities of the luminaire are 0.
 void place_luminaire(const LuminaireFile& luminaire, const Bands& bands, const Spectrum& colour,
                      Lamp& lamp);
 
-/// Its notes for a scene: sentences that begin with the name of the file.
+/// Notes of a luminaire for a scene, each prefixed with the name of the file.
 std::vector<std::string> luminaire_notes(const LuminaireFile& luminaire);
 
-/// Whether the extension is one that read_luminaire knows.
+/// True if read_luminaire() reads files with this extension.
 bool is_luminaire_file(const std::filesystem::path& path);
 
-/// IES LM-63: type C photometry. Sizes are taken as 2002 has them, with C0 along the length; TILT
-/// factors are those of a luminaire that hangs level.
+/// Reads IES LM-63, type C photometry. Luminous dimensions follow LM-63-2002, with C0 along the
+/// length. TILT factors are those of a level luminaire.
 LuminaireFile read_ies(const std::filesystem::path& path);
 
-/// EULUMDAT (Stockmar 1990), every symmetry, with C0 across the length.
+/// Reads EULUMDAT (Stockmar 1990), every symmetry, with C0 across the length.
 LuminaireFile read_eulumdat(const std::filesystem::path& path, int lamp_set = 1);
 
-/// Angle in degrees within which intensity is above `share` of the largest, in the plane through C
-/// and C + 180: 0.5 is the beam angle, 0.1 the field angle. 0 for a luminaire without light there.
+/// Full angle in degrees within which intensity is at least `share` of the largest, in the plane
+/// through C and C + 180 (`plane`, degrees). Share 0.5 gives the beam angle, 0.1 the field angle. 0
+/// for a luminaire without light in that plane.
 double beam_angle(const PhotometricWeb& web, double plane, double share);
 
-/// Text of a file in whatever 8-bit encoding, as UTF-8: what is no UTF-8 is taken for Latin-1.
+/// Converts 8-bit text to UTF-8. Bytes that are not valid UTF-8 are taken as Latin-1.
 std::string as_utf8(std::string_view text);
 
-/// The first `planes` of a measurement and what symmetry says of the others, with rising angles
-/// from 0 to below 360. `mirrored`: planes that mirror those there, as pairs of (angle, row).
+/// C-planes in degrees, rising in [0, 360), and the intensities in each (one row per plane).
 struct PlaneTable {
   std::vector<double> planes{};
   Eigen::ArrayXXd values{};
 };
-/// Puts planes of any angles, mirrored ones too, into order; those that come twice are taken once.
+/// Sorts planes given as pairs of (angle, row of `rows`) into a PlaneTable. Angles are reduced to
+/// [0, 360); of equal angles the first is kept. Symmetry is expressed by several angles with one
+/// row.
 PlaneTable sorted_planes(const std::vector<std::pair<double, Eigen::Index>>& planes,
                          const Eigen::ArrayXXd& rows);
 

@@ -9,26 +9,27 @@
 
 namespace lightwell {
 
-/// An f line; its corners are a range of ObjContent::corners.
+/// A face (an f line). Its corners are `count` entries of ObjContent::corners from `first`.
 struct ObjFace {
   int line = 0;
   int group = 0, material = -1;
   std::size_t first = 0, count = 0;
 };
 
-/// What an OBJ file says, numbers checked.
+/// Contents of an OBJ file with checked numbers.
 struct ObjContent {
   std::vector<Eigen::Vector3d> vertices{};
   std::vector<int> corners{};
-  std::vector<Eigen::Vector3d> normals{};  ///< of any length; zero where the file has no numbers
+  std::vector<Eigen::Vector3d> normals{};  ///< of any length; zero where the file lacks numbers
   std::vector<int> corner_normals{};  ///< by corner; -1: none; empty if the file has no normals
-  std::vector<Eigen::Vector2d> uv{};  ///< v points down from the picture's top, unlike in the file
-  std::vector<int> corner_uv{};       ///< by corner; -1: none; empty if the file has no uv
+  std::vector<Eigen::Vector2d>
+      uv{};                      ///< v points down from the picture's top, opposite to the file's
+  std::vector<int> corner_uv{};  ///< by corner; -1: none; empty if the file has no uv
   std::vector<ObjFace> faces{};
   std::vector<std::string> groups{};
   std::vector<std::string> material_names{};
   std::vector<std::string> material_files{};
-  int free_form = 0;  ///< curves and surfaces
+  int free_form = 0;  ///< number of curves and surfaces
 };
 
 /// Reads an OBJ file's lines; vertices are scaled by `metres_per_unit`. Throws InputError naming

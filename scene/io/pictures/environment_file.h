@@ -7,10 +7,9 @@
 
 namespace lightwell {
 
-/// Reads an environment map with radiance in linear r, g and b: OpenEXR (.exr) or a picture of
-/// RADIANCE (.hdr, .pic, .rgbe), whose EXPOSURE is divided out. Throws InputError naming the file
-/// and what is wrong: missing, torn, without R, G and B, negative or not finite, or larger than
-/// 2^26 pixels.
+/// Reads an environment map of linear r, g, b radiance: OpenEXR (.exr) or a RADIANCE picture (.hdr,
+/// .pic, .rgbe), whose EXPOSURE is divided out. Throws InputError naming the file and the fault:
+/// missing, truncated, without R, G and B, values negative or not finite, more than 2^26 pixels.
 std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem::path& path);
 
 }  // namespace lightwell

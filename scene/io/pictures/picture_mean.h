@@ -13,13 +13,13 @@
 
 namespace lightwell {
 
-/// How the numbers of a picture stand for light.
+/// Encoding of a picture's values.
 enum class PictureCode { srgb, linear };
 
-/// Mean of a picture's pixels: what a texture amounts to for the light in a room.
+/// Mean of a picture's pixels: the reflectance of a texture in the radiosity solution.
 struct PictureMean {
   Eigen::Array3d color = Eigen::Array3d::Zero();  ///< r, g, b, linear, [0,1]
-  /// The same, each pixel weighted by its alpha; `color` if the picture is transparent throughout.
+  /// Mean colour weighted by alpha; `color` if every pixel is transparent.
   Eigen::Array3d covered_color = Eigen::Array3d::Zero();
   double alpha = 1.0;
 };
@@ -31,13 +31,13 @@ struct Picture {
   PictureMean mean{};
 };
 
-/// Decodes a PNG or JPEG of at most 1e8 pixels; sRGB is made linear (IEC 61966-2-1). Empty for
-/// other formats (OpenEXR, Radiance HDR ...). Throws InputError "`called` ..." for a
-/// picture that is damaged or too large.
+/// Mean of a PNG or JPEG picture of at most 1e8 pixels; sRGB values are made linear (IEC
+/// 61966-2-1). Empty for other formats (OpenEXR, Radiance HDR ...). Throws InputError "`called`
+/// ..." for a picture that is damaged or too large.
 std::optional<PictureMean> picture_mean(std::string_view bytes, PictureCode code,
                                         const std::string& called);
 
-/// The same with all of its pixels.
+/// Decodes a picture as picture_mean() does, with all pixels.
 std::optional<Picture> read_picture(std::string_view bytes, PictureCode code,
                                     const std::string& called);
 
@@ -53,7 +53,7 @@ class PictureFiles {
   std::map<std::pair<std::filesystem::path, PictureCode>, std::optional<PictureMean>> known_;
 };
 
-/// Linear value of an sRGB one, both [0,1].
+/// Linear value of an sRGB value, both in [0,1] (IEC 61966-2-1).
 double linear_from_srgb(double value);
 
 }  // namespace lightwell
