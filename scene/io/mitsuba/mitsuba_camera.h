@@ -6,8 +6,8 @@
 
 namespace lightwell {
 
-/// Adds the camera of a <sensor> (perspective or thinlens, its lens a point); other kinds and what
-/// has no meaning here are remarked upon. Throws InputError naming file and line.
+/// Adds the camera of a <sensor> (perspective, or thinlens with its lens). Other kinds and
+/// properties without an equivalent add a remark. Throws InputError naming file and line.
 void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scene& scene,
                         Remarks& remarks);
 

@@ -14,37 +14,40 @@
 
 namespace lightwell {
 
-/// Which of a picture's pixels count: all, or each by its opacity, where a mask cuts the rest away.
+/// Weights of a picture's pixels in its mean: all equal, or by opacity (the rest is cut away by a
+/// mask).
 enum class Pixels { all, by_opacity };
 
-/// A reflectance that is a picture, and its mean.
+/// A reflectance texture and its mean.
 struct MitsubaTexture {
   ReflectanceTexture texture{};
   Spectrum mean{};
 };
 
-/// Spectra and textures of a Mitsuba scene as RGB bands (linear, Rec. 709). Wavelengths become r, g
-/// and b as in native files: means over 600-700, 500-600 and 400-500 nm. A texture becomes the mean
-/// of its colours, with a remark.
+/// Converts spectra and textures of a Mitsuba scene to RGB bands (linear, Rec. 709). Wavelengths
+/// become r, g and b as in native files: means over 600-700, 500-600 and 400-500 nm. Where no
+/// texture can be kept, its mean colour is used, with a remark.
 class MitsubaColors {
  public:
   MitsubaColors(const MitsubaTree& tree, Remarks& remarks) : tree_(tree), remarks_(remarks) {}
 
-  /// A property that lies in [0,1]; what exceeds 1 is cut off, with a remark. `owner` is the plugin
-  /// that has the property. Throws InputError naming file, line and value.
+  /// Value of a property in [0,1]; values above 1 are cut off at 1, with a remark. `owner` is the
+  /// plugin with the property. Throws InputError naming file, line and value.
   Spectrum share_or(const MitsubaNode& owner, std::string_view property, float otherwise,
                     Pixels pixels);
-  /// A property that is at least 0: radiance, a metal's eta and k.
+  /// Value of a property that is at least 0: radiance, a metal's eta and k.
   Spectrum positive_or(const MitsubaNode& owner, std::string_view property, float otherwise);
   std::optional<Spectrum> positive(const MitsubaNode& owner, std::string_view property,
                                    Pixels pixels = Pixels::all);
-  /// A property that is one number, such as a roughness; of a spectrum or texture the mean.
+  /// Value of a property that is one number, such as a roughness; the mean of a spectrum or
+  /// texture.
   double number_or(const MitsubaNode& owner, std::string_view property, double otherwise);
-  /// A property in [0,1] that is a bitmap or a checkerboard, scaled or not; else nothing.
+  /// Texture of a property in [0,1]: a bitmap or a checkerboard, scaled or not; empty for other
+  /// properties.
   std::optional<MitsubaTexture> texture(const MitsubaNode& owner, std::string_view property,
                                         Pixels pixels);
-  /// Where a mask's bitmap leaves holes; nothing if it is no bitmap. A picture's alpha counts, or,
-  /// if it is opaque, its red.
+  /// Mask of an opacity bitmap: the picture's alpha, or its colour if the picture has no alpha.
+  /// Empty if the property is no bitmap.
   std::optional<Mask> mask(const MitsubaNode& owner, std::string_view property);
 
  private:
@@ -66,7 +69,8 @@ class MitsubaColors {
   const MitsubaTree& tree_;
   Remarks& remarks_;
   PictureFiles pictures_;
-  std::map<std::pair<const MitsubaNode*, Pixels>, Spectrum> known_;  // textures share their parts
+  std::map<std::pair<const MitsubaNode*, Pixels>, Spectrum>
+      known_;  // several textures may share a part
 };
 
 }  // namespace lightwell

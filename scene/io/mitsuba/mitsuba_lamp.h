@@ -6,8 +6,8 @@
 
 namespace lightwell {
 
-/// Adds an <emitter> of the plugins point and spot (0.6 and 2, 3) as a lamp; false if it is of
-/// another. A spot shines along its +z, in full up to beam_width from its axis and with nothing
+/// Adds an <emitter> of the plugins point and spot (0.6, 2 and 3) as a lamp; false for other
+/// plugins. The axis of a spot is its +z. Intensity is full up to beam_width from the axis and 0
 /// from cutoff_angle on. Throws InputError naming file and line.
 bool add_mitsuba_lamp(const MitsubaNode& emitter, MitsubaColors& colors, Scene& scene);
 

@@ -14,8 +14,8 @@ class xml_node;
 
 namespace lightwell {
 
-/// Fills a MitsubaTree from XML: replaces `$name`s by their <default>s, in the order of the file,
-/// and puts included files where they are included.
+/// Builds a MitsubaTree from XML. `$name`s are replaced by the <default>s before them in the file;
+/// included files replace their <include> elements.
 class MitsubaLoader {
  public:
   explicit MitsubaLoader(MitsubaTree& tree) : tree_(tree) {}
@@ -30,7 +30,8 @@ class MitsubaLoader {
 
   MitsubaTree& tree_;
   std::map<std::string, std::string, std::less<>> defaults_;
-  std::vector<std::filesystem::path> open_;  // the files that include the current one, and it
+  std::vector<std::filesystem::path>
+      open_;  // the current file and the files that include it, outermost first
   int files_ = 0;
 };
 

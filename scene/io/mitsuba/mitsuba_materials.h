@@ -14,14 +14,14 @@
 
 namespace lightwell {
 
-/// BSDFs and area emitters of a Mitsuba scene as materials; docs/scene-format.md says which become
-/// what. One material for every pair of a BSDF and an emitter that occurs.
+/// Converts BSDFs and area emitters of a Mitsuba scene to materials (mapping in
+/// docs/scene-format.md). Every pair of a BSDF and an emitter that occurs makes one material.
 class MitsubaMaterials {
  public:
   MitsubaMaterials(const MitsubaTree& tree, Scene& scene, Remarks& remarks)
       : tree_(tree), scene_(scene), remarks_(remarks), colors_(tree, remarks) {}
 
-  /// Index of the material of a shape, which is added to the scene where it is new.
+  /// Index of a shape's material in the scene, added if new.
   int of_shape(const MitsubaNode& shape, const std::string& shape_name);
 
  private:
@@ -45,7 +45,7 @@ class MitsubaMaterials {
   Remarks& remarks_;
   MitsubaColors colors_;
   std::map<std::pair<const MitsubaNode*, Pixels>, Material> known_;
-  std::set<const MitsubaNode*> open_;  // being read: what finds itself here refers to itself
+  std::set<const MitsubaNode*> open_;  // BSDFs being read; one met again refers to itself
   std::map<std::pair<const MitsubaNode*, const MitsubaNode*>, int> index_of_;
 };
 

@@ -17,20 +17,20 @@
 
 namespace lightwell {
 
-/// Shapes of a Mitsuba scene as surfaces; docs/scene-format.md says which become what.
+/// Converts shapes of a Mitsuba scene to surfaces (mapping in docs/scene-format.md).
 class MitsubaShapes {
  public:
   MitsubaShapes(const MitsubaTree& tree, Scene& scene, Remarks& remarks)
       : tree_(tree), scene_(scene), remarks_(remarks), materials_(tree, scene, remarks) {}
 
-  /// Adds the surface of a <shape>, or those of the group it is an instance of. Throws InputError
-  /// naming file, line and what is wrong.
+  /// Adds the surface of a <shape>, or the surfaces of the shape group of an instance. Throws
+  /// InputError naming file, line and fault.
   void add(const MitsubaNode& shape);
-  /// What had to be done to the polygons so far.
+  /// Counts of repaired polygons so far.
   const Repairs& repairs() const { return repairs_; }
 
  private:
-  // A mesh file as it was read: instances and repeated shapes use it again.
+  // A mesh file before placement, shared by instances and repeated shapes.
   struct MeshFile {
     PolygonMesh mesh{};
     Repairs repairs{};

@@ -7,9 +7,9 @@
 
 namespace lightwell {
 
-/// Takes an <emitter> that is infinitely far away into the scene's sky: constant, envmap and
-/// directional. False for other plugins. What cannot be kept (a second sky or sun) gets a remark.
-/// Throws InputError naming file, line and what is wrong.
+/// Adds an infinitely distant <emitter> (constant, envmap, directional) to the scene's sky; false
+/// for other plugins. A second sky or sun is left out with a remark. Throws InputError naming file,
+/// line and fault.
 bool add_mitsuba_sky(const MitsubaNode& emitter, const MitsubaTree& tree, Scene& scene,
                      Remarks& remarks);
 

@@ -11,37 +11,39 @@
 
 namespace lightwell {
 
-/// An element of a Mitsuba scene as it stands once `$name`s are replaced and includes are in place.
+/// An element of a Mitsuba scene after substitution of `$name`s and includes.
 struct MitsubaNode {
   std::string tag{};   ///< "bsdf", "shape", "float" ...
   std::string type{};  ///< the plugin's name
   std::string id{};
-  std::string name{};  ///< of a property, in the spelling of Mitsuba 2 and 3: "to_world"
-  std::vector<std::pair<std::string, std::string>> attributes{};  ///< the others
+  std::string name{};  ///< property name in the spelling of Mitsuba 2 and 3: "to_world"
+  std::vector<std::pair<std::string, std::string>>
+      attributes{};  ///< attributes other than those above
   std::vector<MitsubaNode> children{};
   const std::filesystem::path* file = nullptr;
   int line = 0;
 
-  /// An attribute other than the four above; nullptr if there is none.
+  /// Attribute other than tag, type, id and name; nullptr if missing.
   const std::string* attribute(std::string_view key) const;
-  /// What notes call it: its id, or its type and line.
+  /// Label of the element in notes: its id, or its type and line.
   std::string label() const;
   /// Throws InputError "file:line: <tag> `problem`".
   [[noreturn]] void fail(std::string_view problem) const;
 
-  /// The first child with that property name, as it stands; nullptr if there is none.
+  /// First child with this property name, refs unresolved; nullptr if missing.
   const MitsubaNode* property(std::string_view property_name) const;
-  /// Values of properties that are there. Each throws InputError if it is of another type; numbers
-  /// must be finite.
+  /// Value of a property of this element. Each accessor throws InputError if the property has
+  /// another type or is a number that is not finite.
   std::optional<double> number(std::string_view property_name) const;
   double number_or(std::string_view property_name, double otherwise) const;
   bool boolean_or(std::string_view property_name, bool otherwise) const;
   std::string string_or(std::string_view property_name, std::string_view otherwise) const;
-  /// An attribute that is a finite number; throws InputError if it is no number or missing.
+  /// A finite number from an attribute; throws InputError if the attribute is missing or no finite
+  /// number.
   double number_attribute(std::string_view key) const;
 };
 
-/// The numbers of "1, 2 3"; throws InputError naming `node` if there is anything else.
+/// Parses "1, 2 3"; throws InputError naming `node` if `text` contains anything but numbers.
 std::vector<double> parse_numbers(const MitsubaNode& node, std::string_view text);
 
 /// A scene file of Mitsuba 0.5, 0.6, 2 or 3 and the files it includes.
@@ -54,12 +56,12 @@ class MitsubaTree {
   MitsubaTree& operator=(const MitsubaTree&) = delete;
 
   const MitsubaNode& root() const { return root_; }
-  /// What `node` stands for: the element a <ref> names, or `node` itself. Throws InputError naming
-  /// the ids there are if it names none.
+  /// The element referenced by a <ref>, or `node` itself if it is no <ref>. Throws InputError
+  /// naming the known ids if the reference matches none.
   const MitsubaNode& resolved(const MitsubaNode& node) const;
-  /// The children, refs resolved, whose tag is `tag`.
+  /// Children with tag `tag`, refs resolved.
   std::vector<const MitsubaNode*> children(const MitsubaNode& node, std::string_view tag) const;
-  /// The file a node names, beside the file it stands in or beside the main one.
+  /// Path of a file named by a node, beside the file of the node or beside the main file.
   std::filesystem::path file_named(const MitsubaNode& node, const std::string& name) const;
 
  private:

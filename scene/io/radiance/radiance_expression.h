@@ -10,8 +10,8 @@
 namespace lightwell {
 
 /// A formula of a generator, such as "1+.05*sin(PI*t)": numbers, + - * / ^, parentheses, PI, the
-/// functions of RADIANCE's calculator, and hermite, bezier and bspline. As there, a sign binds
-/// tighter than a power (-2^2 is 4) and powers group from the right.
+/// functions of RADIANCE's calculator, and hermite, bezier and bspline. As in RADIANCE, a sign
+/// binds tighter than a power (-2^2 is 4) and powers group from the right.
 class RadianceExpression {
  public:
   /// Throws InputError naming the place if the text is no formula of these variables.
@@ -20,9 +20,10 @@ class RadianceExpression {
   ~RadianceExpression();
   RadianceExpression(RadianceExpression&&) noexcept;
 
-  /// Its value where the variables, in their order, have these values; finite, or InputError.
+  /// Value of the formula for `values` of the variables, in their order; throws InputError if not
+  /// finite.
   double operator()(std::span<const double> values) const;
-  /// The same, or not a number, for formulas that are only tried.
+  /// Value of the formula, NaN where evaluation fails; for formulas that are only tried.
   double value_or_nan(std::span<const double> values) const;
 
  private:

@@ -17,29 +17,30 @@ struct RadianceCall {
   const std::vector<std::string>& words;
   const RadianceLocation& location;
   Remarks& remarks;
-  /// Opens a file that the call names, or throws InputError.
+  /// Opens a file named in the call, or throws InputError.
   std::function<TextFile(const std::string& name)> open;
-  /// To be told of facets before they are computed; throws InputError if the scene has too many.
+  /// Must be called with the number of facets before they are computed; throws InputError if the
+  /// scene has too many.
   std::function<void(std::int64_t facets)> account;
 
   /// Throws InputError "file:line: genbox: problem".
   [[noreturn]] void fail(std::string_view problem) const;
-  /// The number that word `i` is.
+  /// Word `i` as a number.
   double number(std::size_t i, std::string_view what) const;
-  /// The same, greater than 0.
+  /// Word `i` as a number greater than 0.
   double positive(std::size_t i, std::string_view what) const;
-  /// The same, whole, from 1 to 100 000.
+  /// Word `i` as a whole number from 1 to 100 000.
   int count(std::size_t i, std::string_view what) const;
-  /// Throws InputError with `usage` unless there are as many words.
+  /// Throws InputError with `usage` if the call has fewer than `least` words.
   void require_words(std::size_t least, std::string_view usage) const;
 };
 
-/// Gives `sink` polygons called NAME.1, NAME.2, ... of the material that word 1 of a call names;
-/// NAME is word 2.
+/// Passes polygons named NAME.1, NAME.2, ... to `sink`. Word 1 of the call is their material, word
+/// 2 is NAME.
 class GeneratedPolygons {
  public:
   GeneratedPolygons(const RadianceCall& call, const RadianceSink& sink);
-  /// Passes over a loop without area.
+  /// Adds a polygon; a loop without area is skipped.
   void add(const Loop& loop);
 
  private:
@@ -49,11 +50,11 @@ class GeneratedPolygons {
   int count_ = 0;
 };
 
-/// Whether RADIANCE has a generator of this name that is evaluated here.
+/// True if `program` is a generator of RADIANCE that this reader evaluates.
 bool is_radiance_generator(std::string_view program);
 
-/// Gives `sink` what the generator writes: genbox, genprism, genblinds, genrev, gensurf, genworm.
-/// Throws InputError naming the place for arguments that it does not take.
+/// Passes the output of a generator to `sink`: genbox, genprism, genblinds, genrev, gensurf,
+/// genworm. Throws InputError naming the place for invalid arguments.
 void run_radiance_generator(const RadianceCall& call, const RadianceSink& sink);
 
 void run_genbox(const RadianceCall& call, const RadianceSink& sink);

@@ -12,24 +12,25 @@
 
 namespace lightwell {
 
-/// Reads the files of a RADIANCE scene and evaluates the commands in them, xform, cat and the
-/// generators, itself: no line of a file is ever given to a shell. Ends with an InputError where
-/// files include each other in a circle, or beyond what any scene holds.
+/// Reads the files of a RADIANCE scene and evaluates the commands in them (xform, cat and the
+/// generators). No text of a file is ever passed to a shell. Throws InputError for files that
+/// include each other in a circle and for scenes beyond the limits on commands, bytes and facets.
 class RadianceLoader {
  public:
-  /// `folder`: of the scene, where files are looked for if they are not beside what names them; its
-  /// "lib" comes last.
+  /// `folder` is the folder of the scene. A file is looked up beside the file that names it, then
+  /// in `folder`, last in its subfolder "lib".
   RadianceLoader(std::filesystem::path folder, Remarks& remarks)
       : folder_(std::move(folder)), remarks_(remarks) {}
 
-  /// Gives `sink` all primitives of a file, those of its commands in their places.
+  /// Passes all primitives of a file to `sink`, with the output of a command in the command's
+  /// place.
   void read(const std::filesystem::path& path, const RadianceSink& sink);
-  /// The same for the file or, after an exclamation mark, the command that `name` is.
+  /// Passes the primitives of a file, or of a command if `name` begins with an exclamation mark.
   void read_named(const std::string& name, const RadianceLocation& location,
                   const RadianceSink& sink);
-  /// The file that something in another one names. Throws InputError if there is none.
+  /// Path of a file named at `location`. Throws InputError if there is none.
   std::filesystem::path find(const std::string& name, const RadianceLocation& location) const;
-  /// A path that stays where it is as long as the loader.
+  /// Stores a path; the reference is valid as long as the loader.
   const std::filesystem::path& keep(const std::filesystem::path& path) {
     return *paths_.insert(path).first;
   }
@@ -48,10 +49,11 @@ class RadianceLoader {
   std::filesystem::path folder_;
   Remarks& remarks_;
   std::set<std::filesystem::path> paths_;
-  std::vector<std::filesystem::path> open_;  // files that include the current one, and it
+  std::vector<std::filesystem::path>
+      open_;  // the current file and the files that include it, outermost first
   int commands_ = 0;
   std::uintmax_t bytes_ = 0;
-  std::int64_t facets_ = 0;  // of generators, also those without area
+  std::int64_t facets_ = 0;  // output of generators, facets without area included
 };
 
 }  // namespace lightwell

@@ -12,36 +12,35 @@
 
 namespace lightwell {
 
-/// What patterns multiply a material's colour with.
+/// Product of the patterns of a material, a factor of its colour.
 struct RadiancePattern {
   Spectrum factor = Spectrum::Ones(3);
-  bool is_known = true;  ///< false: a pattern that changes from place to place was taken as 1
+  bool is_known = true;  ///< false: a spatially varying pattern was taken as 1
 };
 
-/// A RADIANCE material as one of the Scene, or nothing for those that cannot be seen (antimatter,
-/// mist); not for mixtures. What is approximated is remarked upon. Throws InputError for arguments
-/// that are missing or out of range.
+/// Converts a RADIANCE material; empty for invisible ones (antimatter, mist). Mixtures are not
+/// accepted. Approximations add a remark. Throws InputError for arguments that are missing or out
+/// of range.
 std::optional<Material> read_radiance_material(const RadiancePrimitive& material,
                                                const RadiancePattern& pattern, Remarks& remarks);
 
-/// The modifiers of a RADIANCE scene: a name means what was defined last under it.
+/// The modifiers of a RADIANCE scene. A name refers to its latest definition.
 class RadianceMaterials {
  public:
   RadianceMaterials(Scene& scene, Remarks& remarks) : scene_(scene), remarks_(remarks) {}
 
-  /// Takes a material, pattern, texture, mixture or alias.
+  /// Records a material, pattern, texture, mixture or alias.
   void define(const RadiancePrimitive& primitive);
-  /// Index of a surface's material, which is added to the scene where it is new; nothing for
-  /// surfaces that cannot be seen.
+  /// Index of a surface's material in the scene, added if new; empty for invisible surfaces.
   std::optional<int> of_surface(const RadiancePrimitive& surface);
 
  private:
   static constexpr int none = -1;
   struct Definition {
     RadiancePrimitive primitive{};
-    int parent = none;           // its modifier
-    std::vector<int> parts{};    // of a mixture; an illum's other material
-    std::optional<int> index{};  // into the scene's materials; none: cannot be seen
+    int parent = none;           // index of its modifier
+    std::vector<int> parts{};    // the materials of a mixture; an illum's alternate material
+    std::optional<int> index{};  // into the scene's materials; none: invisible
   };
   int index_of(const std::string& name, const RadiancePrimitive& user) const;
   Definition aliased(const RadiancePrimitive& alias) const;
@@ -55,7 +54,8 @@ class RadianceMaterials {
   Remarks& remarks_;
   std::vector<Definition> definitions_;
   std::map<std::string, int, std::less<>> latest_;
-  std::map<int, std::optional<Material>> known_;  // mixtures of mixtures would be read 2^n times
+  std::map<int, std::optional<Material>>
+      known_;  // without it, a mixture of mixtures would be read 2^n times
   NumberedNames names_;
 };
 

@@ -8,7 +8,7 @@
 
 namespace lightwell {
 
-/// Where something stands in the files of a RADIANCE scene.
+/// A position in the files of a RADIANCE scene.
 struct RadianceLocation {
   const std::filesystem::path* file = nullptr;
   int line = 0;
@@ -17,14 +17,13 @@ struct RadianceLocation {
   [[noreturn]] void fail(std::string_view problem) const;
 };
 
-/// What a primitive's type makes of it.
+/// Class of a primitive by its type.
 enum class RadianceKind { surface, material, pattern, texture, mixture, alias, unknown };
 
 RadianceKind radiance_kind(std::string_view type);
 
-/// A primitive of a RADIANCE scene as its file gives it: what it is made of (another primitive),
-/// what it is, what it is called, and its arguments. An alias has the name it stands for in
-/// `strings`.
+/// A primitive of a RADIANCE scene as in its file: modifier, type, name and arguments. `strings` of
+/// an alias holds the original name.
 struct RadiancePrimitive {
   std::string modifier{}, type{}, name{};
   std::vector<std::string> strings{};
@@ -34,14 +33,14 @@ struct RadiancePrimitive {
   RadianceKind kind() const { return radiance_kind(type); }
   /// Throws InputError "file:line: type 'name' problem".
   [[noreturn]] void fail(std::string_view problem) const;
-  /// Throws InputError unless there are as many real arguments.
+  /// Throws InputError unless there are exactly `count` real arguments.
   void require_reals(std::size_t count) const;
 };
 
-/// Takes a scene's primitives one by one, in their order.
+/// Receives a scene's primitives one by one, in file order.
 using RadianceSink = std::function<void(const RadiancePrimitive&)>;
 
-/// The modifier of what has none.
+/// Modifier of a primitive without one.
 inline constexpr std::string_view radiance_void = "void";
 
 }  // namespace lightwell

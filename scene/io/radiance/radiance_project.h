@@ -8,8 +8,8 @@
 
 namespace lightwell {
 
-/// The variables of a file for RADIANCE's program rad (.rif): NAME = value, where a name may be cut
-/// short, # begins a comment and a backslash joins lines.
+/// The variables of a file for RADIANCE's program rad (.rif), in lines NAME = value. Names may be
+/// abbreviated, # begins a comment and a backslash joins lines.
 class RadianceProject {
  public:
   struct Value {
@@ -17,14 +17,14 @@ class RadianceProject {
     RadianceLocation location{};
   };
 
-  /// `file` must outlive the project. Throws InputError for a variable that rad does not know.
+  /// `file` must outlive the project. Throws InputError for a variable unknown to rad.
   explicit RadianceProject(const TextFile& file);
 
-  /// The values of a variable, called by its full name, in their order.
+  /// Values of a variable, by its full name, in file order.
   std::vector<Value> values(std::string_view variable) const;
-  /// The words of all these values; quotes keep a word together.
+  /// Words of all values of a variable; quotes keep a word together.
   std::vector<Value> words(std::string_view variable) const;
-  /// The variables that are given, each once.
+  /// Variables that the file sets, each once.
   std::vector<std::string> given() const;
 
  private:

@@ -13,20 +13,20 @@
 
 namespace lightwell {
 
-/// Primitives of a RADIANCE scene as surfaces and materials; docs/radiance-scenes.md says which
-/// become what. Polygons of one material that follow each other and are called alike but for a last
+/// Converts primitives of a RADIANCE scene to surfaces and materials (mapping in
+/// docs/radiance-scenes.md). Successive polygons of one material whose names differ only in a last
 /// number (box.1, box.2) become one surface.
 class RadianceShapes {
  public:
   RadianceShapes(Scene& scene, Remarks& remarks)
       : scene_(scene), remarks_(remarks), materials_(scene, remarks) {}
 
-  /// Adds a primitive of any kind, in the order of the files. Throws InputError naming file, line
-  /// and what is wrong.
+  /// Adds a primitive of any kind; the order of calls is the order of the files. Throws InputError
+  /// naming file, line and fault.
   void add(const RadiancePrimitive& primitive);
   /// Completes the last surface; to be called once, at the end.
   void finish();
-  /// What had to be done to the polygons so far.
+  /// Counts of repaired polygons so far.
   const Repairs& repairs() const { return repairs_; }
 
  private:
@@ -45,7 +45,7 @@ class RadianceShapes {
   Repairs repairs_;
   NumberedNames names_;
   std::int64_t primitives_ = 0, polygons_ = 0;
-  // Polygons that may be continued.
+  // The surface to which further polygons may be added.
   std::string stem_;
   int material_ = -1;
   MeshBuilder mesh_;

@@ -8,20 +8,19 @@
 
 namespace lightwell {
 
-/// A line that begins with an exclamation mark, joined with the lines it goes on in and without the
-/// mark.
+/// A command line without its leading exclamation mark, continuation lines joined.
 struct RadianceCommand {
   std::string text{};
   RadianceLocation location{};
 };
 
-/// Splits the text of a RADIANCE file into primitives and commands. Words are parted by blanks of
-/// any kind and may be quoted; # begins a comment where a word could begin.
+/// Splits the text of a RADIANCE file into primitives and commands. Words are separated by blanks
+/// of any kind and may be quoted; # begins a comment where a word could begin.
 class RadianceText {
  public:
   using Item = std::variant<std::monostate, RadiancePrimitive, RadianceCommand>;
 
-  /// Both must outlive what is read from them.
+  /// `text` and `file` must outlive everything read from them.
   RadianceText(std::string_view text, const std::filesystem::path& file)
       : rest_(text), location_{&file, 1} {}
 
@@ -29,7 +28,7 @@ class RadianceText {
   Item next();
   /// The next word, or an empty one at the end of the text.
   std::string_view next_word();
-  /// Where the last word stands.
+  /// Position of the last word.
   const RadianceLocation& location() const { return location_; }
 
  private:

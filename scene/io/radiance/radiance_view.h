@@ -13,7 +13,7 @@
 
 namespace lightwell {
 
-/// A view as RADIANCE's options say it, beginning with its defaults.
+/// A view by RADIANCE's view options; initial values are RADIANCE's defaults.
 struct RadianceView {
   char type = 'v';  ///< v: perspective
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -22,25 +22,25 @@ struct RadianceView {
   double horizontal = 45.0, vertical = 45.0;  ///< full angles, degrees
   double fore = 0.0, aft = 0.0;               ///< clipping planes
   double shift = 0.0, lift = 0.0;
-  double width = 512.0, height = 512.0;  ///< pixels that the picture has at most
-  int line = 1;                          ///< of the view file
+  double width = 512.0, height = 512.0;  ///< largest size of the picture in pixels
+  int line = 1;                          ///< line of the view file
 };
 
-/// Changes a view by the options among the words (-vp x y z, ..., and -x, -y for the picture's
-/// size); other words are passed over. Throws InputError naming the place where an option lacks its
+/// Applies the view options among the words to a view (-vp x y z, ..., and -x, -y for the picture's
+/// size); other words are skipped. Throws InputError naming the place of an option without its
 /// numbers.
 void apply_view_options(std::span<const std::string> words, const RadianceLocation& location,
                         RadianceView& view);
 
-/// Lines of a view file: those that begin with VIEW= or the name of a program that takes views.
-/// Each goes on from the view before it, the first from `view`.
+/// Views of a view file: its lines that begin with VIEW= or the name of a program that accepts
+/// views. Each view starts from the previous one, the first from `view`.
 std::vector<RadianceView> read_radiance_views(const TextFile& file, RadianceView view);
 
-/// Adds a camera to the scene; views that are no perspectives are remarked upon and left out.
+/// Adds a camera to the scene; non-perspective views are left out with a remark.
 void add_radiance_camera(const RadianceView& view, const std::string& name,
                          const RadianceLocation& location, Scene& scene, Remarks& remarks);
 
-/// Words parted by blanks.
+/// Splits text at blanks.
 std::vector<std::string> words_of(std::string_view text);
 
 }  // namespace lightwell

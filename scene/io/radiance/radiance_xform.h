@@ -9,28 +9,29 @@
 
 namespace lightwell {
 
-/// What an xform command does to the primitives that pass through it.
+/// Effect of an xform command on the primitives of its input.
 struct RadianceXform {
-  /// One of the copies that an array (-a) makes.
+  /// One copy made by an array (-a).
   struct Copy {
     Eigen::Affine3d to_world = Eigen::Affine3d::Identity();
     double scale = 1.0;        ///< > 0
     bool is_mirrored = false;  ///< the determinant is negative
-    std::string prefix{};      ///< of the names of surfaces, with its dot
+    std::string prefix{};      ///< prefix of the names of surfaces, with its dot
   };
   std::vector<Copy> copies{};
   bool inverts = false;              ///< -I: fronts become backs
-  std::string modifier{};            ///< -m: of all surfaces; empty: none
-  std::vector<std::string> files{};  ///< what is read; nothing: what is piped in
+  std::string modifier{};            ///< -m: replaces the modifier of all surfaces; empty: none
+  std::vector<std::string> files{};  ///< input files; empty: the output of the previous program
 };
 
-/// Reads xform's arguments. Transformations apply from left to right; -i n repeats n times what
-/// follows it, -a n makes n copies, the k-th (from 0) with what follows repeated k times. Throws
-/// InputError naming the place, also where there are more copies or repetitions than any scene has.
+/// Parses xform's arguments. Transformations apply from left to right. "-i n" repeats the following
+/// transformations n times. "-a n" makes n copies, the k-th (from 0) with the following
+/// transformations repeated k times. Throws InputError naming the place, also for more copies or
+/// repetitions than the limits allow.
 RadianceXform parse_radiance_xform(std::span<const std::string> arguments,
                                    const RadianceLocation& location);
 
-/// Gives `sink` all copies of a primitive. Materials pass once, unmoved.
+/// Passes all copies of a primitive to `sink`. Materials are passed once, untransformed.
 void apply_xform(const RadianceXform& xform, const RadiancePrimitive& primitive,
                  const RadianceSink& sink);
 

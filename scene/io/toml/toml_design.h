@@ -5,10 +5,10 @@
 
 namespace lightwell {
 
-/// The [[grids]] of a native file over surfaces of the scene, which are there by now.
+/// Reads the [[grids]] of a native file. The surfaces of `scene` must be complete.
 std::vector<CalculationGrid> read_toml_grids(const TomlValue& grids, const Scene& scene);
 
-/// Adds watts and luminous height of a [[lamps]] table to the design.
+/// Appends watts and luminous height of a [[lamps]] table to the design.
 void read_toml_lamp_design(const TomlValue& lamp, LightingDesign& design);
 
 }  // namespace lightwell

@@ -6,8 +6,8 @@
 
 namespace lightwell {
 
-/// Adds the lamp of a [[lamps]] table, the `number`th, to the scene. Photometric files are looked
-/// for beside the scene file.
+/// Adds the lamp of the `number`th [[lamps]] table to the scene. Paths of photometric files are
+/// relative to the scene file.
 void read_toml_lamp(const TomlValue& value, std::size_t number, const TomlBands& bands,
                     Scene& scene);
 

@@ -11,7 +11,7 @@
 
 namespace lightwell {
 
-/// The [bands] of a native file and where they lie.
+/// The [bands] of a native file and their edges in nm.
 struct TomlBands {
   Bands bands = rgb_bands();
   BandEdges edges = {{600.0, 700.0}, {500.0, 600.0}, {400.0, 500.0}};
@@ -19,12 +19,13 @@ struct TomlBands {
 
 TomlBands read_toml_bands(const TomlValue& value);
 
-/// A quantity that is emitted, >= 0: a number, a number for each band, or a spectrum.
+/// Reads an emitted quantity, >= 0: a number, a number for each band, or a spectrum.
 Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands);
-/// A share, in [0,1], in the same ways.
+/// Reads a share in [0,1]: a number, a number for each band, or a spectrum.
 Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands);
 
-/// A [materials.NAME] table. Its `power` becomes an exitance once the area is known.
+/// A [materials.NAME] table. Its `power` becomes an exitance once the area is known
+/// (spread_power()).
 struct TomlMaterial {
   Material material{};
   std::optional<Spectrum> power{};  ///< W per band over all surfaces of the material
@@ -33,8 +34,9 @@ struct TomlMaterial {
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures);
 
-/// Sets the emission of every material that was given as a power: M = power / area, both sides
-/// counted where both shine. `materials` are the first of the scene's. Notes those without surface.
+/// Sets the emission of every material given by its power: M = power / area, with both sides
+/// counted where both emit. `materials` correspond to the first materials of the scene. Unused
+/// materials add a note.
 void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene);
 
 }  // namespace lightwell

@@ -6,7 +6,7 @@
 
 namespace lightwell {
 
-/// The [sky] table of a native file; see docs/daylight.md. Throws InputError naming place and
+/// Reads the [sky] table of a native file (docs/daylight.md). Throws InputError naming place and
 /// value.
 Sky read_toml_sky(const TomlValue& value, const TomlBands& bands);
 

@@ -8,8 +8,8 @@
 
 namespace lightwell {
 
-/// Adds what a [[surfaces]] table describes: one surface, or several for a mesh of several objects.
-/// The scene's materials are there already; those of an OBJ file are added as they are needed.
+/// Adds the surface of a [[surfaces]] table, or several surfaces for a mesh of several objects. The
+/// scene's materials must be complete; materials of an OBJ file are added at first use.
 void read_toml_surface(const TomlValue& value, std::size_t number, Scene& scene);
 
 }  // namespace lightwell

@@ -15,9 +15,9 @@ namespace lightwell {
 
 class TomlTable;
 
-/// A value of a TOML file that knows its place and what it is called there ("reflectance of
-/// material 'white'"). Every accessor throws InputError "file:line:column: what ..." unless the
-/// value is of the type asked for. Refers to the document, which must outlive it.
+/// A value of a TOML file with its place and its description ("reflectance of material 'white'").
+/// Every accessor throws InputError "file:line:column: what ..." unless the value has the requested
+/// type. Refers to the document, which must outlive the TomlValue.
 class TomlValue {
  public:
   TomlValue(const std::filesystem::path& file, const toml::node& node, std::string what);
@@ -34,21 +34,21 @@ class TomlValue {
   bool boolean() const;
   std::string string() const;
   std::string name() const;  ///< a string that is not empty
-  /// A string that is one of `words`.
+  /// A string among `words`.
   std::string one_of(std::initializer_list<const char*> words) const;
   Eigen::Vector3d vector() const;  ///< [x, y, z]
-  /// The members of an array, called "`member` 1 of ..." and so on.
+  /// Members of an array, described as "`member` 1 of ..." and so on.
   std::vector<TomlValue> elements(std::string_view member) const;
-  /// A table that has no other keys than these.
+  /// A table without keys other than `keys`.
   TomlTable table(std::initializer_list<const char*> keys) const;
-  /// One member of a table, whatever its other keys.
+  /// One member of a table with any other keys.
   std::optional<TomlValue> member(std::string_view key) const;
-  /// The members of a table, whatever their keys, called "`member` 'KEY'".
+  /// Members of a table with any keys, described as "`member` 'KEY'".
   std::vector<std::pair<std::string, TomlValue>> members(std::string_view member) const;
 
   const std::string& what() const { return what_; }
   const std::filesystem::path& file() const { return *file_; }
-  /// The same value under another name, for what only its contents tell.
+  /// The same value with another description, for values whose name is part of their contents.
   TomlValue renamed(std::string what) const { return {*file_, *node_, std::move(what)}; }
 
   /// Throws InputError "file:line:column: `what` `problem`".
@@ -69,7 +69,7 @@ class TomlTable {
   bool has(std::string_view key) const { return table_->contains(key); }
   std::optional<TomlValue> find(std::string_view key) const;
   TomlValue require(std::string_view key) const;
-  /// The keys of `choices` that are there.
+  /// The keys among `choices` that the table has.
   std::vector<std::string> present(std::initializer_list<const char*> choices) const;
   const TomlValue& value() const { return value_; }
   [[noreturn]] void fail(std::string_view problem) const { value_.fail(problem); }
