@@ -5,9 +5,9 @@
 namespace lightwell {
 namespace {
 
-constexpr double on_the_line = 1e-9;  // of the hole's size: far above rounding
+constexpr double on_the_line = 1e-9;  // relative to the hole's size; far above rounding
 
-// The part of a convex loop in which `side` * distance is not negative (Sutherland & Hodgman 1974).
+// Clips a convex loop to the part where `side` * distance >= 0 (Sutherland & Hodgman 1974).
 Loop clip(const Loop& loop, const std::vector<double>& distance, double side) {
   Loop kept;
   for (std::size_t i = 0; i < loop.size(); ++i) {

@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-// Mean over the hemisphere, weighted by the cosine, of what depends on it alone.
+// Cosine-weighted mean over the hemisphere of a function of the cosine.
 template <class F>
 double diffuse_mean(F&& of_cosine) {
   // Midpoint rule in cos^2: 2 cos dcos = d(cos^2), so the weights are equal.
@@ -19,7 +19,7 @@ double diffuse_mean(F&& of_cosine) {
   return sum / steps;
 }
 
-// Of unpolarised light; the index is complex.
+// Fresnel reflectance of a metal for unpolarised light; `index` = eta + i k.
 double metal_reflectance(double cosine, std::complex<double> index) {
   if (!(std::abs(index) > 0.0)) return 1.0;
   const std::complex<double> inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));

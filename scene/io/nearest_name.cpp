@@ -33,10 +33,11 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string did_you_mean(std::string_view given, const std::vector<std::string>& known) {
-  constexpr std::size_t longest = 64;  // names are words; the table is quadratic
+  constexpr std::size_t longest =
+      64;  // names are short words; the table of edit distances is quadratic
   if (given.size() > longest) return {};
-  // Up to about a third of the letters: "reflectivity" still finds "reflectance", "x" finds
-  // nothing.
+  // At most about a third of the letters may differ: "reflectivity" still finds "reflectance", "x"
+  // finds nothing.
   std::size_t best = given.size() / 3 + 2;
   const std::string* nearest = nullptr;
   for (const std::string& name : known) {

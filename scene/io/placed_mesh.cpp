@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-// Sides of a round shape: the outline of a disk then stays within 0.5 % of its radius.
+// Sides of a round shape: the outline of a disk stays within 0.5 % of its radius.
 constexpr int round_sides = 32;
 constexpr int rings = 16;
 
@@ -32,7 +32,7 @@ std::vector<Loop> rectangle_loops() {
 }
 
 std::vector<Loop> cube_loops() {
-  // Corner number bits: x, y, z at 1.
+  // Bits of a corner's number: x, y, z = 1.
   constexpr std::array<std::array<int, 4>, 6> faces = {
       {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
   std::vector<Loop> loops;
@@ -71,8 +71,9 @@ std::vector<Loop> cylinder_loops() {
 }
 
 std::vector<Loop> cone_loops(double radius, double top_radius, double height) {
-  // n trapezia have the area n k (r + R) sin(pi/n) sqrt(h^2 + (k (R - r) cos(pi/n))^2) with radii
-  // made larger by k; that is to be pi (r + R) sqrt(h^2 + (R - r)^2), a quadratic equation in k^2.
+  // With radii scaled by k, n trapezia have the area n k (r + R) sin(pi/n) sqrt(h^2 + (k (R - r)
+  // cos(pi/n))^2). Equating that area to pi (r + R) sqrt(h^2 + (R - r)^2) gives a quadratic
+  // equation in k^2.
   const double half = std::numbers::pi / round_sides, hh = height * height;
   const double dd = (top_radius - radius) * (top_radius - radius);
   const double d = dd * std::cos(half) * std::cos(half);
@@ -109,7 +110,7 @@ std::vector<Loop> sphere_loops() {
   double area = 0.0;
   const auto point = [](int ring, int side) {
     const double latitude = std::numbers::pi * (static_cast<double>(ring) / rings - 0.5);
-    // Poles exactly on the axis, so that the triangles there share one vertex.
+    // Poles lie exactly on the axis, so that the triangles there share one vertex.
     const bool is_pole = ring == 0 || ring == rings;
     const Eigen::Vector2d p = on_circle(side, is_pole ? 0.0 : std::cos(latitude));
     return Eigen::Vector3d(p.x(), p.y(), std::sin(latitude));
@@ -185,7 +186,7 @@ PolygonMesh placed_mesh(PolygonMesh mesh, const Eigen::Affine3d& transform, bool
   const bool turned = (mirror_turns && is_mirrored) != flip;
   if (!turned && transform.matrix().isIdentity(0.0)) return mesh;
   if (!keeps_angles(transform)) {
-    // What was as good as planar may be bent now.
+    // Facets planar within the tolerance may exceed it after the transformation.
     std::vector<Loop> loops;
     std::vector<UvLoop> uv;
     std::vector<NormalLoop> normals;

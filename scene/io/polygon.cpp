@@ -16,7 +16,7 @@ namespace {
 using Point = Eigen::Vector2d;
 using FlatLoop = std::vector<Point>;
 
-// Points closer than this share of the size are one: far below `flatness`, far above rounding.
+// Points closer than this share of the size coincide: far below `flatness`, far above rounding.
 constexpr double coincident = 1e-9;
 
 Eigen::Vector3d newell(const Loop& loop) {
@@ -29,11 +29,12 @@ Eigen::Vector3d newell(const Loop& loop) {
 
 Eigen::Vector3d mean_point(const Loop& loop) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const auto& p : loop) sum += p - loop[0];  // relative: keeps digits far from the origin
+  for (const auto& p : loop)
+    sum += p - loop[0];  // relative to loop[0]: keeps digits far from the origin
   return loop[0] + sum / static_cast<double>(loop.size());
 }
 
-// The plane's own coordinates, in which the boundary runs counter-clockwise and has size 1.
+// Coordinates in the plane, in which the boundary runs counter-clockwise and has size 1.
 struct Plane {
   Eigen::Vector3d origin, normal, x, y;
   double size = 0.0;
@@ -53,7 +54,7 @@ struct Plane {
   }
 };
 
-// Twice the area of (a, b, c), zero where that is rounding.
+// Twice the signed area of (a, b, c); 0 if the area is within rounding.
 double orientation(const Point& a, const Point& b, const Point& c) {
   const Point ab = b - a, ac = c - a;
   const double area = ab.x() * ac.y() - ab.y() * ac.x();
@@ -120,7 +121,7 @@ bool loops_meet(const FlatLoop& p, const FlatLoop& q) {
   return false;
 }
 
-// Even-odd rule; the point is not on the loop.
+// Point in polygon by the even-odd rule; the point must not lie on the loop.
 bool is_inside(const Point& p, const FlatLoop& loop) {
   bool inside = false;
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -182,7 +183,8 @@ double size_of(const Loop& loop) {
   return 2.0 * radius;
 }
 
-// Twice the area over the squared size, so about the width over the length of a thin strip.
+// The test value, twice the area over the squared size, is about width over length for a thin
+// strip.
 bool is_thin(const Loop& loop) {
   const double size = size_of(loop);
   return !(newell(loop).norm() > 0.5 * flatness * size * size);
@@ -206,7 +208,7 @@ std::string fault(const Polygon& polygon) {
   if (!(size_of(polygon.boundary) > 0.0)) return "has all its vertices in one point";
   const Plane plane(polygon.boundary);
   const FlatLoop boundary = plane.flatten(polygon.boundary);
-  // The area of a crossing loop may cancel, so the crossing is the better explanation.
+  // A crossing is tested first because the areas of a crossing loop may cancel.
   if (auto what = loop_fault(boundary); !what.empty() && polygon.boundary.size() > 3) return what;
   if (is_thin(polygon.boundary)) return "has no area (it is thinner than 1e-6 of its size)";
   return holes_fault(polygon, plane, boundary);
@@ -220,7 +222,7 @@ std::vector<std::array<int, 3>> split_into_triangles(const Loop& loop) {
   std::vector<std::array<int, 3>> triangles;
   while (left.size() >= 3) {
     const std::size_t n = left.size();
-    // Vertex 1 first, so that a quadrilateral is cut along 0-2.
+    // The search begins at vertex 1, so that a quadrilateral is cut along 0-2.
     std::size_t ear = 0;
     while (ear < n && !is_ear(p, left, (ear + 1) % n)) ++ear;
     if (ear == n) return {};
@@ -234,7 +236,7 @@ std::vector<std::array<int, 3>> split_into_triangles(const Loop& loop) {
 std::vector<int> MeshBuilder::indices(const Loop& loop) {
   std::vector<int> result;
   for (const auto& p : loop) {
-    // + 0.0: -0 and 0 are one position.
+    // Adding 0.0 turns -0 into 0, so that both are one position.
     const std::array<double, 3> key = {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};
     const auto [found, is_new] = index_of_.emplace(key, static_cast<int>(mesh_.vertices.size()));
     if (is_new) mesh_.vertices.push_back(p);
@@ -245,7 +247,7 @@ std::vector<int> MeshBuilder::indices(const Loop& loop) {
 
 namespace {
 
-// What texture coordinates may be off by: a tenth of a texel of a thousand.
+// Tolerance of texture coordinates: a tenth of a texel in a picture of a thousand.
 double uv_tolerance(const UvLoop& uv) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& at : uv) box.extend(at);
@@ -260,8 +262,8 @@ bool agrees(const UvMap& map, const Loop& loop, const UvLoop& uv) {
   return true;
 }
 
-// Values at the corners as a linear map over the loop's plane, exact at three corners far from each
-// other: gradient and offset. The loop may have no area.
+// Linear map of corner values over the loop's plane, exact at three corners far from each other.
+// The loop may have no area.
 template <int size>
 struct LinearMap {
   Eigen::Matrix<double, size, 3> gradient;
@@ -287,7 +289,7 @@ std::optional<LinearMap<size>> linear_over(
   const Eigen::Vector3d b = loop[other] - loop[0], normal = a.cross(b);
   const double area = normal.squaredNorm();
   if (!(area > 0.0)) return std::nullopt;
-  // The rows that take a to (1, 0), b to (0, 1), and the normal to nothing.
+  // Matrix that maps a to (1, 0), b to (0, 1), and the normal to 0.
   Eigen::Matrix<double, 2, 3> to_sides;
   to_sides << b.cross(normal).transpose() / area, normal.cross(a).transpose() / area;
   Eigen::Matrix<double, size, 2> sides;
@@ -298,7 +300,8 @@ std::optional<LinearMap<size>> linear_over(
   return map;
 }
 
-// Unit normals on the front of the loop; none if there are none, or they are the plane's.
+// Unit normals on the front of the loop; empty if a normal is missing or unusable, or if all equal
+// the plane's normal.
 NormalLoop bent_normals(const Loop& loop, const NormalLoop& normals) {
   if (normals.size() != loop.size()) return {};
   const Eigen::Vector3d flat = newell(loop).normalized();
@@ -317,8 +320,10 @@ NormalLoop bent_normals(const Loop& loop, const NormalLoop& normals) {
   return is_flat ? NormalLoop{} : unit;
 }
 
-constexpr double linear = 2e-3;  // how far unit normals may be off what is linear over a polygon,
-constexpr double alike = 3e-4;   // and off another facet's, with files of four decimals in mind
+constexpr double linear =
+    2e-3;  // largest deviation of unit normals from a linear map over a polygon
+constexpr double alike =
+    3e-4;  // largest deviation from another facet's map; suits files of four decimals
 
 bool agrees(const NormalMap& map, const Loop& loop, const NormalLoop& unit, double tolerance) {
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -353,8 +358,7 @@ bool is_even(const Loop& loop, const NormalLoop& normals) {
   return unit.empty() || map_of_unit_normals(loop, unit);
 }
 
-// A facet shares one of the last few maps where that fits: facets of one flat piece follow each
-// other in files.
+// Number of latest maps tried for a new facet: facets of one flat piece are adjacent in files.
 constexpr int looked_at = 8;
 
 int MeshBuilder::uv_map(const Loop& loop, const UvLoop& uv) {
@@ -410,7 +414,7 @@ std::vector<std::string> Repairs::notes() const {
 
 namespace {
 
-// Takes corners out that repeat the one before them.
+// Removes corners that repeat the previous corner.
 void join_repeated(Loop& loop, UvLoop& uv, NormalLoop& normals) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -438,8 +442,8 @@ void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv, Nor
   if (sound && (uv.empty() || uv_map_over(loop, uv)) && is_even(loop, normals)) {
     return mesh.add({std::move(loop)}, uv, normals);
   }
-  // Exporters join a hole to its polygon by a bridge that runs there and back; such a loop is no
-  // simple polygon, yet ears can be clipped from it.
+  // Some exporters join a hole to its polygon by a bridge, an edge in both directions. Such a loop
+  // is no simple polygon, but ear clipping triangulates it.
   const auto triangles = split_into_triangles(loop);
   if (triangles.empty()) {
     ++repairs.crossing;

@@ -23,7 +23,8 @@ namespace {
   throw InputError(fmt::format("{}: {}", path.string(), what));
 }
 
-// The PLY reader of assimp 5.2 never returns from a header that ends early, and believes any count.
+// Checks the header because the PLY reader of assimp 5.2 never returns from a truncated header and
+// trusts any count.
 void check_ply_header(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   const auto bytes = static_cast<double>(std::filesystem::file_size(path));

@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-// Vertices by number; equal positions are one.
+// Vertex numbers of a loop; equal positions share a number.
 class Numbered {
  public:
   explicit Numbered(const Loop& loop) {
@@ -24,7 +24,7 @@ class Numbered {
     tolerance_ = flatness * size_of(loop);
   }
 
-  // The loop's edges, parted at the vertices that lie on them.
+  // The loop's edges, split at the vertices that lie on them.
   std::vector<std::pair<int, int>> edges() const {
     std::vector<std::pair<int, int>> result;
     for (std::size_t i = 0; i < corners_.size(); ++i) {
@@ -67,7 +67,7 @@ class Numbered {
   double tolerance_ = 0.0;
 };
 
-// Edges by where they begin, without those that run there and back.
+// Edges by their first vertex, without pairs of opposite edges.
 std::multimap<int, int> without_seams(const std::vector<std::pair<int, int>>& edges) {
   std::multimap<int, int> kept;
   for (const auto& [from, to] : edges) {

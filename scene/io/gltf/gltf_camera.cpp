@@ -20,7 +20,7 @@ void add_gltf_camera(const GltfObject& from, const GltfObject& node,
   const auto lens = from.object("perspective");
   if (!lens) from.fail("lacks 'perspective'");
   const double yfov = lens->number_or("yfov", 0.0), aspect = lens->number_or("aspectRatio", 1.0);
-  constexpr double extreme = 32.0;  // beyond, the picture is a line
+  constexpr double extreme = 32.0;  // the picture would be a line beyond
   if (!(yfov > 0.0 && yfov < std::numbers::pi)) {
     lens->fail(fmt::format("has a yfov of {}; it must lie between 0 and pi", yfov));
   }
@@ -31,7 +31,7 @@ void add_gltf_camera(const GltfObject& from, const GltfObject& node,
   camera.fov_degrees = 2.0 * std::atan(aspect * std::tan(0.5 * yfov)) * 180.0 / std::numbers::pi;
   camera.height = 512;
   camera.width = static_cast<int>(std::lround(camera.height * aspect));
-  // It looks along its -z, y upwards (glTF 2.0, 3.10).
+  // A glTF camera looks along its -z, y upwards (glTF 2.0, 3.10).
   if (!place_camera(to_world, -Eigen::Vector3d::UnitZ(), camera, remarks)) {
     node.fail("leaves its camera no direction or no upright");
   }

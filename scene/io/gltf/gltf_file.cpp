@@ -55,7 +55,7 @@ Chunks split_glb(const std::filesystem::path& path, std::string_view bytes) {
 
 struct Component {
   std::size_t size = 0;
-  double largest = 0.0;  // that stands for 1 where integers are normalised; 0 for floats
+  double largest = 0.0;  // integer that means 1 if normalised; 0 for floats
   double (*read)(const char*) = nullptr;
 };
 
@@ -92,11 +92,11 @@ struct GltfFile::Content {
   TextFile file;
   nlohmann::json json{};
   std::map<std::string, std::vector<GltfObject>, std::less<>> lists{};
-  std::vector<std::string> loaded{};        // buffers of their own
-  std::vector<std::string_view> buffers{};  // views of these, or of the file
+  std::vector<std::string> loaded{};        // decoded or loaded buffers
+  std::vector<std::string_view> buffers{};  // views into `loaded` or the file
 };
 
-// Where an accessor's elements lie; element i begins at data + i * stride.
+// Memory layout of an accessor; element i begins at data + i * stride.
 struct GltfFile::Elements {
   const char* data = nullptr;
   std::size_t count = 0, stride = 0;
@@ -129,7 +129,8 @@ void GltfFile::read_json(std::string_view json) {
     content_->json = nlohmann::json::parse(json);
   } catch (const nlohmann::json::exception& error) {
     std::string_view what = error.what();
-    // "[json.exception.parse_error.101] parse error at line 3, column 7: syntax error ..."
+    // Format of nlohmann's messages: "[json.exception.parse_error.101] parse error at line 3,
+    // column 7: syntax error ..."
     what.remove_prefix(std::min(what.size(), what.find("] ") + 2));
     std::string line;
     if (const auto at = what.find("line "); at != std::string_view::npos) {
@@ -272,7 +273,7 @@ template <class Read>
 auto GltfFile::read_texture(std::size_t texture, const GltfObject& asking, Read read) const
     -> decltype(read(std::string_view(), std::string())) {
   const auto source = at("textures", texture, asking).index("source");
-  if (!source) return std::nullopt;  // by an extension, in a format of its own
+  if (!source) return std::nullopt;  // the source is in an extension, in a format of its own
   const GltfObject& image = at("images", *source, asking);
   const std::string called = fmt::format("{}: {}", path_.string(), image.place());
   if (const auto number = image.index("bufferView")) return read(view(*number, image), called);

@@ -20,7 +20,8 @@ SpotCone read_gltf_cone(const GltfObject& light) {
   return cone;
 }
 
-// Directional light comes along -z of its node, and its intensity is illuminance across it.
+// A directional light shines along the -z of its node; its intensity is illuminance on a
+// perpendicular plane.
 void add_sun(const Eigen::Vector3d& towards, const Spectrum& irradiance, const GltfObject& node,
              const std::string& name, Scene& scene, Remarks& remarks) {
   if (!(towards.stableNorm() > 0.0)) node.fail("leaves its light no direction");

@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-// Factors of a colour; white where they are missing.
+// Colour factors; white if missing.
 Spectrum color(const std::optional<GltfObject>& owner, const char* key, std::size_t count) {
   Spectrum result = Spectrum::Ones(3);
   if (!owner) return result;
@@ -31,25 +31,26 @@ double share_or(const std::optional<GltfObject>& owner, const char* key, double 
   return std::clamp(number_or(owner, key, otherwise), 0.0, 1.0);
 }
 
-// What passes KHR_materials_volume's attenuationDistance; nothing where it does not absorb.
+// Transmitted colour after the attenuationDistance of KHR_materials_volume; empty without
+// absorption.
 std::optional<Spectrum> attenuation(const std::optional<GltfObject>& volume) {
   if (!(number_or(volume, "attenuationDistance", 0.0) > 0.0)) return std::nullopt;
   return color(volume, "attenuationColor", 3).max(0.0f).min(1.0f);
 }
 
-// 1/m: exp(-absorption distance) is the attenuation colour.
+// Absorption coefficient in 1/m: exp(-absorption distance) is the attenuation colour.
 Spectrum absorption(const std::optional<GltfObject>& volume) {
   const auto passed = attenuation(volume);
   if (!passed) return {};
   constexpr double shortest = 1e-6;  // m
   const auto distance =
       static_cast<float>(std::max(shortest, number_or(volume, "attenuationDistance", 0.0)));
-  constexpr float black = 1e-6f;  // a colour of 0 would absorb without bound
+  constexpr float black = 1e-6f;  // a colour of 0 would mean infinite absorption
   return (-passed->max(black).log() / distance).min(highest_absorption);
 }
 
-// Share that a body passes on a straight way through it, for each of the two crossings of its
-// surface.
+// Transmittance of a sheet per crossing of its two surfaces, that is of half its thickness at
+// normal incidence.
 Spectrum passed_by_each_face(const std::optional<GltfObject>& volume, double thickness) {
   const auto passed = attenuation(volume);
   if (!passed) return Spectrum::Ones(3);
@@ -57,7 +58,7 @@ Spectrum passed_by_each_face(const std::optional<GltfObject>& volume, double thi
   return passed->pow(static_cast<float>(0.5 * thickness / distance));
 }
 
-// What a base colour is told in: a picture and a factor, and who names the picture how.
+// Source of a base colour: the object with the picture and the keys of factor and picture.
 struct BaseColor {
   std::optional<GltfObject> owner{};
   const char* factor = "baseColorFactor";
@@ -86,8 +87,8 @@ TextureWrap wrap_of(const GltfObject& sampler, const char* key) {
                           : TextureWrap::repeat;
 }
 
-// KHR_texture_transform: scaled, turned, then moved. A turn is counter-clockwise as seen with v
-// pointing down.
+// KHR_texture_transform: scale, then rotation, then offset. Rotations are counter-clockwise as seen
+// with v pointing down.
 Eigen::Matrix<double, 2, 3> placement_of(const GltfObject& info) {
   Eigen::Matrix<double, 2, 3> placement = Eigen::Matrix<double, 2, 3>::Identity();
   const auto transform = info.extension("KHR_texture_transform");
@@ -120,7 +121,7 @@ int GltfMaterials::of_primitive(const GltfObject& primitive, bool is_closed) {
   } else {
     remarks_.add("Surfaces without a material got a diffuse reflectance of 0.5", primitive.place());
   }
-  // Closed or not is often the same: one material is enough then.
+  // Closed and open bodies often get the same material, which is then stored once.
   const auto other = index_of_.find({index, !is_closed});
   if (other != index_of_.end()) {
     const Material& known = scene_.materials[static_cast<std::size_t>(other->second)];
@@ -188,7 +189,7 @@ SurfaceTexture GltfMaterials::laid_on(const GltfObject& info,
   return image;
 }
 
-// `material` is what a surface of the even colour `base` is.
+// `material` is the conversion for the uniform colour `base`.
 void GltfMaterials::lay_on_picture(const GltfObject& from, const Spectrum& base,
                                    Material& material) {
   const BaseColor color_from(from);
@@ -272,8 +273,8 @@ void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, boo
   }
   const auto pbr = from.object("pbrMetallicRoughness");
   const auto transmission = from.extension("KHR_materials_transmission");
-  // A metal passes no light; but who asks for transmission and leaves metallic at its default of 1
-  // means glass.
+  // A metal transmits no light. A file with transmission and the default metallic factor of 1 means
+  // glass.
   const double otherwise = transmission && !(pbr && pbr->has("metallicFactor")) ? 0.0 : 1.0;
   const auto mean = texture_mean(pbr, "metallicRoughnessTexture", PictureCode::linear, from).color;
   const double roughness = share_or(pbr, "roughnessFactor", 1.0) * mean[1];
@@ -301,7 +302,7 @@ void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, boo
 void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, double alpha,
                               bool is_closed, Material& material) {
   double index = number_or(from.extension("KHR_materials_ior"), "ior", 1.5);
-  if (index == 0.0) index = 1.5;  // a mode of old, without an index
+  if (index == 0.0) index = 1.5;  // an ior of 0 selects a legacy mode without an index
   if (!(index >= 1.0 && index <= highest_index))
     from.fail("has an index of refraction below 1 or beyond all");
   const auto volume = from.extension("KHR_materials_volume");
@@ -309,7 +310,8 @@ void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, doub
   Dielectric glass = thin_pane(index, base, alpha);
   if (is_closed || thickness > 0.0) {
     glass.thin = false;
-    // A body is as thick as it is; only where it is none does the file's thickness matter.
+    // The path length in a closed body follows from its geometry; thicknessFactor matters for open
+    // sheets only.
     if (is_closed) {
       glass.absorption = absorption(volume);
     } else {

@@ -10,7 +10,8 @@
 namespace lightwell {
 namespace {
 
-constexpr double most_exact = 9007199254740992.0;  // 2^53: whole numbers a double holds exactly
+constexpr double most_exact =
+    9007199254740992.0;  // 2^53: a double holds smaller whole numbers exactly
 
 }  // namespace
 

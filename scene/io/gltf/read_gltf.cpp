@@ -19,7 +19,7 @@
 namespace lightwell {
 namespace {
 
-// Extensions that are read, or that change nothing about the light where they are passed over.
+// Extensions that are read, or that do not affect the light.
 constexpr std::array known_extensions = {"KHR_materials_emissive_strength",
                                          "KHR_materials_transmission",
                                          "KHR_materials_ior",
@@ -37,7 +37,7 @@ constexpr std::size_t triangle_list = 4, triangle_strip = 5, triangle_fan = 6;
 Eigen::Affine3d local_transform(const GltfObject& node) {
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   if (const auto matrix = node.numbers("matrix", 16); !matrix.empty()) {
-    result.matrix() = Eigen::Map<const Eigen::Matrix4d>(matrix.data());  // by columns, as there
+    result.matrix() = Eigen::Map<const Eigen::Matrix4d>(matrix.data());  // by columns, as in glTF
   } else {
     const auto t = node.numbers("translation", 3);
     const auto r = node.numbers("rotation", 4);
@@ -56,14 +56,14 @@ Eigen::Affine3d local_transform(const GltfObject& node) {
   return result;
 }
 
-// Corners of triangle `i` in a list, a strip or a fan.
+// Vertex positions of triangle `i` in a list, a strip or a fan.
 std::array<std::size_t, 3> corners_of(std::size_t mode, std::size_t i) {
   if (mode == triangle_strip) return {i, i + 1 + i % 2, i + 2 - i % 2};
   if (mode == triangle_fan) return {i + 1, i + 2, 0};
   return {3 * i, 3 * i + 1, 3 * i + 2};
 }
 
-// Whether every edge is run along once each way.
+// True if every edge occurs exactly once in each direction.
 bool is_closed(const PolygonMesh& mesh) {
   std::vector<std::pair<int, int>> forwards, backwards;
   for (const Facet& facet : mesh.facets) {
@@ -123,7 +123,7 @@ class GltfReader {
     }
   }
 
-  // Of the scene to show; without scenes, the nodes that are nobody's children.
+  // Root nodes of the default scene; without scenes, the nodes that are no node's children.
   std::vector<std::size_t> roots() const {
     const GltfObject& root = file_.root();
     if (file_.count("scenes") > 0) {
@@ -160,7 +160,7 @@ class GltfReader {
         add_gltf_camera(file_.at("cameras", *camera, node), node, to_world, scene_, remarks_);
       }
       add_light(node, to_world);
-      // Backwards, because the last one in is the first one out.
+      // Pushed backwards, since the stack returns the last one first.
       const auto children = node.indices("children");
       for (auto child = children.rbegin(); child != children.rend(); ++child) {
         open.push_back({.node = *child, .parent = to_world});
@@ -248,7 +248,7 @@ class GltfReader {
         if (!uv.empty()) of_loop.push_back(uv[vertex]);
         if (!normals.empty()) normals_there.push_back(normals[vertex]);
       }
-      if (is_mirrored) {  // the front stays the front
+      if (is_mirrored) {  // mirroring must not exchange front and back
         std::swap(loop[1], loop[2]);
         if (!uv.empty()) std::swap(of_loop[1], of_loop[2]);
         if (!normals.empty()) std::swap(normals_there[1], normals_there[2]);
@@ -258,7 +258,7 @@ class GltfReader {
     return mesh.mesh();
   }
 
-  // By vertex, in the world; empty if the mesh has none.
+  // Vertex normals in world coordinates; empty if the mesh has none.
   NormalLoop vertex_normals(const GltfObject& attributes, const Eigen::Affine3d& to_world,
                             std::size_t vertex_count) const {
     const auto accessor = attributes.index("NORMAL");
@@ -272,7 +272,7 @@ class GltfReader {
     return normals;
   }
 
-  // By vertex; empty if the material shows no picture, or the mesh does not say where.
+  // Texture coordinates by vertex; empty if the material has no picture or the mesh no coordinates.
   std::vector<Eigen::Vector2d> texture_coordinates(
       const GltfObject& primitive, const GltfObject& attributes,
       const std::vector<Eigen::Vector3d>& vertices) const {

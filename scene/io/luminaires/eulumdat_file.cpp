@@ -13,7 +13,7 @@ namespace {
 
 constexpr int most_eulumdat_angles = 4000;
 
-// Lines in their order; numbers from 1.
+// The lines of a file in order, numbered from 1.
 class Lines {
  public:
   explicit Lines(const TextFile& file) : file_(file) {
@@ -31,7 +31,7 @@ class Lines {
     }
     return lines_[at_++];
   }
-  // Some programs write decimal commas.
+  // Some programs write decimal commas, which are accepted.
   std::optional<double> number_or_text(const char* what) {
     std::string word(text(what));
     std::ranges::replace(word, ',', '.');
@@ -74,7 +74,7 @@ struct LampSet {
 
 LampSet read_lamp_set(Lines& lines) {
   LampSet set;
-  // A number of lamps below 0: the flux is that of the luminaire.
+  // A negative number of lamps marks absolute photometry: the flux is the luminaire's.
   set.is_absolute = lines.number("the number of lamps") < 0.0;
   lines.text("the type of lamps");
   set.lumens = lines.number("the flux of the lamps");
@@ -86,7 +86,7 @@ LampSet read_lamp_set(Lines& lines) {
   return set;
 }
 
-// Which of the file's planes are stored, as EULUMDAT numbers them from 0.
+// First index and number of the stored planes, numbered from 0 as in EULUMDAT.
 std::pair<int, int> stored_planes(int symmetry, int count) {
   switch (symmetry) {
     case all_around:

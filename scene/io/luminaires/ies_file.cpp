@@ -21,7 +21,7 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-// The numbers after the TILT line, with the lines they are on.
+// The numbers after the TILT line, with their lines.
 class Numbers {
  public:
   Numbers(const TextFile& file, int after) : file_(file) {
@@ -138,7 +138,7 @@ void read_tilt(const Header& header, Numbers& numbers, LuminaireFile& result, do
   const int pairs = numbers.whole("the number of TILT angles", 1, most_ies_angles);
   const std::vector<double> angles = numbers.list(pairs, "TILT angle");
   const std::vector<double> factors = numbers.list(pairs, "TILT factor");
-  // Level is an angle of 0.
+  // A level luminaire has a tilt of 0.
   for (int i = 0; i < pairs; ++i) {
     if (angles[static_cast<std::size_t>(i)] == 0.0) factor *= factors[static_cast<std::size_t>(i)];
   }
@@ -155,7 +155,7 @@ void check_rising(const Numbers& numbers, const std::vector<double>& angles, con
   }
 }
 
-// All planes, from those that the file has.
+// Completes the planes of the file by its symmetry.
 PlaneTable all_ies_planes(const Numbers& numbers, const std::vector<double>& angles,
                           const Eigen::ArrayXXd& rows, std::string& symmetry) {
   std::vector<std::pair<double, Eigen::Index>> planes;
@@ -193,7 +193,8 @@ PlaneTable all_ies_planes(const Numbers& numbers, const std::vector<double>& ang
   return sorted_planes(planes, rows);
 }
 
-// LM-63-2002, table 1, read for those of 1995 as well: below 0 is round.
+// Luminous dimensions by LM-63-2002, table 1, also for files of 1995: a negative number marks a
+// round opening.
 void read_ies_sizes(double width, double length, double height, LuminaireFile& result) {
   const bool is_round = width < 0.0 || length < 0.0;
   result.opening = {

@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-// Bytes of the UTF-8 character that begins at `at`; 0 if none does.
+// Length in bytes of the UTF-8 character at `at`; 0 if there is none.
 std::size_t utf8_length(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(at);
@@ -121,7 +121,7 @@ PlaneTable sorted_planes(const std::vector<std::pair<double, Eigen::Index>>& pla
 double beam_angle(const PhotometricWeb& web, double plane, double share) {
   constexpr double step = 0.1;
   constexpr int steps = 1800;
-  // Along the half-planes C (positive) and C + 180 (negative).
+  // Half-plane C for i >= 0, half-plane C + 180 for i < 0.
   const auto value = [&](int i) {
     const double gamma = std::abs(i) * step * degree;
     const double turn = (i < 0 ? plane + 180.0 : plane) * degree;

@@ -14,14 +14,14 @@
 namespace lightwell {
 namespace {
 
-// Tangent of half the angle across the picture's width.
+// Tangent of half the horizontal angle of view.
 double half_width(const MitsubaNode& sensor, double width, double height) {
   double fov = 0.0;
   std::string axis = sensor.string_or("fov_axis", "x");
   if (const auto given = sensor.number("fov")) {
     fov = *given;
   } else {
-    // Of a 35 mm film, 36 mm x 24 mm: "50mm".
+    // Focal lengths such as "50mm" refer to 35 mm film, 36 mm x 24 mm.
     const std::string text = sensor.string_or("focal_length", "50mm");
     const MitsubaNode* node = sensor.property("focal_length");
     const auto millimetres = parse_numbers(node ? *node : sensor, text.substr(0, text.find("mm")));
@@ -55,7 +55,8 @@ int pixels(const MitsubaNode* film, const char* property, int otherwise) {
   return static_cast<int>(count);
 }
 
-// Scene units are metres there; without an aperture Mitsuba refuses the file.
+// Lens radius and focus distance in scene units, taken as metres. Mitsuba rejects a thin lens
+// without an aperture; here an aperture of 0 is a pinhole.
 void read_mitsuba_lens(const MitsubaNode& sensor, Camera& camera) {
   camera.lens_radius = sensor.number_or("aperture_radius", 0.0);
   camera.focus_distance = sensor.number_or("focus_distance", 1.0);

@@ -23,7 +23,7 @@ Spectrum spectrum_of(const Eigen::Array3d& rgb) {
   return rgb.cast<float>();
 }
 
-// Samples hold their end values beyond their ends.
+// Means over the RGB bands; the spectrum is constant beyond its first and last sample.
 Spectrum band_means(const MitsubaNode& node, SpectrumSamples samples) {
   for (std::size_t i = 1; i < samples.values.size(); ++i) {
     if (!(samples.wavelengths_nm[i] > samples.wavelengths_nm[i - 1])) {
@@ -48,7 +48,7 @@ Spectrum band_means(const MitsubaNode& node, SpectrumSamples samples) {
   return result;
 }
 
-// "400:0.1, 500:0.2"
+// Samples of an attribute such as "400:0.1, 500:0.2".
 SpectrumSamples samples_in_place(const MitsubaNode& node, std::string text) {
   for (char& c : text) {
     if (c == ':') c = ' ';
@@ -63,7 +63,7 @@ SpectrumSamples samples_in_place(const MitsubaNode& node, std::string text) {
   return samples;
 }
 
-// Lines of a wavelength (nm) and a value; # begins a comment.
+// Samples of a file with a wavelength (nm) and a value on each line; # begins a comment.
 SpectrumSamples samples_of_file(const std::filesystem::path& path) {
   const TextFile file(path);
   SpectrumSamples samples;
@@ -79,14 +79,14 @@ SpectrumSamples samples_of_file(const std::filesystem::path& path) {
   return samples;
 }
 
-// Planck's law, W/(m^2 sr nm).
+// Planck's law, spectral radiance in W/(m^2 sr nm).
 double planck(double nm, double kelvin) {
   constexpr double h = 6.62607015e-34, c = 299792458.0, k = 1.380649e-23;
   const double metres = 1e-9 * nm;
   return 1e-9 * 2.0 * h * c * c / std::pow(metres, 5.0) / std::expm1(h * c / (metres * k * kelvin));
 }
 
-// 0.5 and 0.6 say "gamma", 2 and 3 "raw".
+// Mitsuba 0.5 and 0.6 use "gamma", 2 and 3 "raw".
 PictureCode code_of(const MitsubaNode& bitmap) {
   const bool is_linear = bitmap.boolean_or("raw", false) || bitmap.number_or("gamma", 0.0) == 1.0;
   return is_linear ? PictureCode::linear : PictureCode::srgb;
@@ -120,7 +120,8 @@ std::optional<Spectrum> MitsubaColors::positive(const MitsubaNode& owner, std::s
   return values;
 }
 
-// The texture that a property is, or that its scaling texture scales.
+// The texture of a property, inside any number of scale textures; nullptr if neither bitmap nor
+// checkerboard.
 const MitsubaNode* MitsubaColors::texture_node(const MitsubaNode& owner,
                                                std::string_view property) const {
   const MitsubaNode* given = owner.property(property);
@@ -148,7 +149,7 @@ std::optional<MitsubaTexture> MitsubaColors::texture(const MitsubaNode& owner,
   }
   if (!(factor >= 0.0f).all()) owner.fail(fmt::format("has a negative scale of '{}'", property));
   if ((factor > 1.0f).any()) {
-    // Only texels that it brings above 1 are cut off.
+    // Only texels above 1 after scaling are cut off.
     const Texture& picture = *result->texture.image.picture;
     if ((factor * picture.largest() > 1.0f).any()) {
       remarks_.add(fmt::format("'{}' exceeds 1 and was cut off there in", property), owner.label());
@@ -212,7 +213,7 @@ std::optional<MitsubaTexture> MitsubaColors::bitmap(const MitsubaNode& node, Pix
                         .mean = spectrum_of(mean)};
 }
 
-// Two colours in two by two squares.
+// A checkerboard as a texture of two by two texels.
 MitsubaTexture MitsubaColors::checkerboard(const MitsubaNode& node, Pixels pixels) {
   const Spectrum colors[] = {part_or(node, "color0", 0.4f, pixels, 0),
                              part_or(node, "color1", 0.2f, pixels, 0)};
@@ -265,7 +266,7 @@ Spectrum MitsubaColors::read_rgb(const MitsubaNode& node) const {
   return spectrum_of({numbers[0], numbers[1], numbers[2]});
 }
 
-// "#rrggbb", or three numbers in [0,1], with the sRGB curve.
+// sRGB values "#rrggbb", or three numbers in [0,1].
 Spectrum MitsubaColors::read_srgb(const MitsubaNode& node) const {
   const std::string* value = node.attribute("value");
   if (!value) node.fail("lacks the attribute 'value'");

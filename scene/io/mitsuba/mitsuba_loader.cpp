@@ -17,7 +17,7 @@ constexpr std::size_t most_nested_scenes = 16;  // files
 constexpr int most_files = 1000;
 constexpr std::size_t longest = 1 << 16;  // bytes of an attribute with a $name
 
-// "toWorld" and "intIOR" of Mitsuba 0.6 are "to_world" and "int_ior" of 2 and 3.
+// Converts names of Mitsuba 0.6 ("toWorld", "intIOR") to those of 2 and 3 ("to_world", "int_ior").
 std::string snake_case(std::string_view name) {
   std::string result;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -36,7 +36,7 @@ bool is_name_character(char c) {
 
 }  // namespace
 
-// One XML file while it is being converted.
+// An XML file during its conversion.
 struct MitsubaLoader::Source {
   const std::filesystem::path* path = nullptr;
   pugi::xml_document document{};
@@ -148,7 +148,7 @@ std::string MitsubaLoader::substituted(const MitsubaNode& node, std::string_view
     text.remove_prefix(dollar + 1);
     std::size_t length = 0;
     while (length < text.size() && is_name_character(text[length])) ++length;
-    // "$resx_big" is resx followed by "_big" if only resx is known.
+    // "$resx_big" means resx followed by "_big" if only resx is defined.
     auto found = defaults_.end();
     std::size_t used = length;
     for (; used > 0 && found == defaults_.end(); --used)
@@ -159,7 +159,7 @@ std::string MitsubaLoader::substituted(const MitsubaNode& node, std::string_view
     }
     result += found->second;
     text.remove_prefix(used + 1);
-    // Defaults that name each other could grow without end.
+    // Defaults that refer to each other could grow without bound.
     if (result.size() > longest) node.fail("has an attribute that grows beyond all measure");
   }
   return result;

@@ -76,7 +76,8 @@ int MitsubaMaterials::of_shape(const MitsubaNode& shape, const std::string& shap
 
 void MitsubaMaterials::add_emission(const MitsubaNode& emitter, const std::string& name,
                                     Material& material) {
-  const auto intensity = colors_.positive(emitter, "intensity");  // its name in Mitsuba 0.3
+  const auto intensity =
+      colors_.positive(emitter, "intensity");  // the property's name in Mitsuba 0.3
   const Spectrum radiance = intensity ? *intensity : colors_.positive_or(emitter, "radiance", 1.0f);
   material.emission = static_cast<float>(std::numbers::pi) * radiance;
   if (!material.emission.isFinite().all()) emitter.fail("has a radiance that is too large");
@@ -164,14 +165,15 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
   return material;
 }
 
-// GGX's alpha, also of Beckmann's distribution, whose middle is alike; the larger one of two.
+// GGX alpha; the larger of two anisotropic values. Beckmann's alpha is used unchanged, since both
+// lobes agree in the middle.
 double MitsubaMaterials::roughness(const MitsubaNode& bsdf) {
   const double alpha =
       std::max(colors_.number_or(bsdf, "alpha_u", 0.0), colors_.number_or(bsdf, "alpha_v", 0.0));
   return colors_.number_or(bsdf, "alpha", alpha > 0.0 ? alpha : 0.1);
 }
 
-// A number, or the name of a material.
+// Refractive index given as a number or as the name of a material.
 double MitsubaMaterials::index(const MitsubaNode& bsdf, std::string_view property,
                                double otherwise) {
   const MitsubaNode* node = bsdf.property(property);
@@ -184,7 +186,7 @@ double MitsubaMaterials::index(const MitsubaNode& bsdf, std::string_view propert
                   name, did_you_mean(name, index_preset_names())));
 }
 
-// Of the inside over the outside.
+// Relative refractive index, inside over outside.
 double MitsubaMaterials::index_ratio(const MitsubaNode& bsdf, double inside) {
   const double ratio = index(bsdf, "int_ior", inside) / index(bsdf, "ext_ior", air);
   if (!(ratio >= lowest_index && ratio <= highest_index)) {
@@ -313,7 +315,7 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
     sum.specular += weights[i] * part.specular;
     sum.specular_roughness = std::max(sum.specular_roughness, part.specular_roughness);
   }
-  // Weights of a mixture may add up to more than 1; light must not.
+  // The weights of a mixture may add up to more than 1; the reflectance must not exceed 1.
   const Spectrum excess = (sum.reflectance + sum.specular).max(1.0f);
   sum.reflectance /= excess;
   sum.specular /= excess;

@@ -28,8 +28,8 @@ struct NamedMetal {
   std::array<float, 3> reflectance;  // r, g, b at normal incidence
 };
 
-// Akenine-Moeller, Haines & Hoffman, "Real-Time Rendering", 4th ed. 2018, table 9.2, to two digits;
-// gold's red, 1.00 there, kept below 1.
+// Akenine-Moeller, Haines & Hoffman, "Real-Time Rendering", 4th ed. 2018, table 9.2, to two digits.
+// The red of gold, 1.00 in the table, is kept below 1.
 constexpr std::array named_metals = {
     NamedMetal{"none", {1.0f, 1.0f, 1.0f}},  NamedMetal{"Ag", {0.97f, 0.96f, 0.92f}},
     NamedMetal{"Al", {0.91f, 0.92f, 0.92f}}, NamedMetal{"Au", {0.99f, 0.78f, 0.34f}},

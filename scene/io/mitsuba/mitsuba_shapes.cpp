@@ -27,7 +27,7 @@ Eigen::Vector3d point_or(const MitsubaNode& shape, const char* property,
   return node ? read_mitsuba_point(*node) : otherwise;
 }
 
-// All surfaces of a file as one: a shape has one material, whatever groups its file has.
+// Joins all surfaces of a file: a shape has one material, whatever groups its file has.
 PolygonMesh joined(Scene&& scene) {
   PolygonMesh all = std::get<PolygonMesh>(std::move(scene.surfaces.front().shape));
   for (std::size_t s = 1; s < scene.surfaces.size(); ++s) {
@@ -51,7 +51,7 @@ PolygonMesh joined(Scene&& scene) {
 }  // namespace
 
 void MitsubaShapes::add(const MitsubaNode& shape) {
-  if (shape.type == "shapegroup") return;  // seen by way of its instances
+  if (shape.type == "shapegroup") return;  // visible through its instances only
   if (shape.type == "instance") return add_instance(shape);
   add_placed(shape, read_to_world(shape), "");
 }
@@ -133,7 +133,7 @@ std::variant<PolygonMesh, Sphere> MitsubaShapes::sphere(const MitsubaNode& shape
   }
   remarks_.add("Spheres that are turned inside out or no longer round became polygons", name);
   const Eigen::Affine3d place = to_world * Eigen::Translation3d(center) * Eigen::Scaling(radius);
-  // Of a sphere about the origin a corner's place is its normal.
+  // The corners of a unit sphere about the origin are its normals.
   return placed_loops(sphere_loops(), place, flip, repairs_, {}, sphere_loops());
 }
 
@@ -155,8 +155,8 @@ PolygonMesh MitsubaShapes::cylinder(const MitsubaNode& shape, const Eigen::Affin
 
 PolygonMesh MitsubaShapes::mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
                                 const std::string& name) {
-  // Mitsuba tells sides by the shading normals, but where a shape says that it has none. Where both
-  // sides are alike the file's own order stays, so that its faults can be told.
+  // Mitsuba defines the front by the shading normals, except with face_normals. Where both sides of
+  // a material are alike, the winding of the file is kept, so that its faults can be reported.
   const Material& material =
       scene_.materials[static_cast<std::size_t>(materials_.of_shape(shape, name))];
   const bool sides_differ =
@@ -169,7 +169,7 @@ PolygonMesh MitsubaShapes::mesh(const MitsubaNode& shape, const Eigen::Affine3d&
   PolygonMesh placed = placed_mesh(file.mesh, to_world, shape.boolean_or("flip_normals", false),
                                    file.has_normals, repairs_);
   if (shape.boolean_or("face_normals", false)) drop_normals(placed);
-  // OBJ files count v from the bottom of a picture, unless the shape says otherwise.
+  // v points up in OBJ files unless the shape overrides that convention.
   if (shape.boolean_or("flip_tex_coords", shape.type == "obj")) return placed;
   for (UvMap& map : placed.uv_maps) {
     map.gradient.row(1) = -map.gradient.row(1);
@@ -205,7 +205,7 @@ const MitsubaShapes::MeshFile& MitsubaShapes::mesh_file(const MitsubaNode& shape
   return files_.emplace(std::tuple(path, with_uv, fronts), std::move(file)).first->second;
 }
 
-// Surfaces are told apart by name: by id where there is one, else by file or plugin.
+// Unique name of a surface: the shape's id if given, else its file or plugin.
 std::string MitsubaShapes::unique_name(const MitsubaNode& shape, const std::string& prefix) {
   const bool is_mesh = shape.type == "obj" || shape.type == "ply";
   const std::string file = is_mesh ? shape.string_or("filename", "") : "";

@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-// Black, for whichever of sky and sun comes first.
+// The scene's sky; created black if neither a sky nor a sun has been read before.
 Sky& sky_of(Scene& scene) {
   if (!scene.sky) {
     scene.sky = Sky{.name = "dark",

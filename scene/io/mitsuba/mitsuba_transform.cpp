@@ -43,7 +43,7 @@ Eigen::Vector3d vector_attribute(const MitsubaNode& node, const char* key) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-// Maps +z to the direction of view, +y upwards and +x to the left.
+// Maps +z to the view direction, +y to the up direction and +x to the left.
 Eigen::Affine3d look_at(const MitsubaNode& node) {
   const Eigen::Vector3d origin = vector_attribute(node, "origin");
   const Eigen::Vector3d ahead = vector_attribute(node, "target") - origin;
@@ -99,7 +99,7 @@ Eigen::Affine3d step(const MitsubaNode& node) {
 Eigen::Affine3d read_mitsuba_transform(const MitsubaNode& node) {
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   for (const MitsubaNode& child : node.children) result = step(child) * result;
-  // It may flatten: a rectangle scaled by 0 along its normal is still one.
+  // Flattening is accepted: a rectangle scaled by 0 along its normal is a rectangle.
   if (!result.matrix().allFinite() || !(result.linear().norm() > 0.0)) {
     node.fail("shrinks everything to a point, or overflows");
   }

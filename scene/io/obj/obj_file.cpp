@@ -87,15 +87,15 @@ class ObjParser {
     return p;
   }
 
-  // What is no number leaves its facets without texture coordinates, and is no reason to do without
-  // the file.
+  // A malformed number does not make the file unreadable: facets that use the entry have no texture
+  // coordinates.
   void read_uv(std::string_view text) {
     const auto u = parse_finite(next_word(text)), v = parse_finite(next_word(text));
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     content_.uv.emplace_back(u.value_or(none), u ? 1.0 - v.value_or(0.0) : none);
   }
 
-  // The same of normals.
+  // As for texture coordinates: a malformed normal is stored as zero.
   void read_normal(std::string_view text) {
     const auto x = parse_finite(next_word(text)), y = parse_finite(next_word(text)),
                z = parse_finite(next_word(text));
@@ -115,7 +115,7 @@ class ObjParser {
       if (error != std::errc() || (end != word.data() + word.size() && *end != '/')) {
         file_.fail(line_, fmt::format("'{}' is not a vertex index", word));
       }
-      // Counted from 1, or backwards from the latest vertex.
+      // OBJ indices count from 1, or backwards from the latest vertex.
       const long vertex =
           index < 0 ? static_cast<long>(content_.vertices.size()) + index : index - 1;
       if (vertex < 0 || vertex > std::numeric_limits<int>::max()) {
@@ -138,21 +138,21 @@ class ObjParser {
     content_.faces.push_back(face);
   }
 
-  // The last number of "vertex/texture/normal"; -1 if there is none or it names no normal.
+  // The last number of "vertex/texture/normal"; -1 if missing or out of range.
   int normal_of(std::string_view corner) const {
     const std::size_t slash = corner.rfind('/');
     if (slash == corner.find('/')) return -1;
     return index_within(corner.substr(slash + 1), content_.normals.size());
   }
 
-  // The middle number; -1 if there is none or it names no texture coordinates.
+  // The middle number of "vertex/texture/normal"; -1 if missing or out of range.
   int uv_of(std::string_view corner) const {
     const std::size_t slash = corner.find('/');
     if (slash == std::string_view::npos) return -1;
     return index_within(corner.substr(slash + 1), content_.uv.size());
   }
 
-  // Counted from 1, or backwards from the latest.
+  // Zero-based index of an OBJ index, which counts from 1 or backwards from the latest.
   static int index_within(std::string_view word, std::size_t size) {
     long index = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
@@ -162,7 +162,7 @@ class ObjParser {
     return is_known ? static_cast<int>(place) : -1;
   }
 
-  // Only when all is read: a file may list its faces before its vertices.
+  // Checked after reading, because a file may list its faces before its vertices.
   void check_indices() const {
     for (const ObjFace& face : content_.faces) {
       for (std::size_t i = 0; i < face.count; ++i) {
@@ -176,7 +176,7 @@ class ObjParser {
     }
   }
 
-  // A "g" after an "o" divides the object; without one the group stands alone.
+  // A "g" after an "o" divides the object; without an "o" the group is a surface of its own.
   int current_group() {
     if (current_group_ < 0) {
       const std::string name = !in_group_ || group_.empty() ? object_

@@ -16,7 +16,7 @@
 namespace lightwell {
 namespace {
 
-// A newmtl block as it stands in the file.
+// A newmtl block of the file.
 struct MtlBlock {
   std::string name{};
   int line = 0;
@@ -27,7 +27,7 @@ struct MtlBlock {
   bool has_other_map = false;
 };
 
-// Materials that share something worth a note.
+// Names of materials by the note that they share.
 struct MtlRemarks {
   std::vector<std::string> highlights{}, textures{}, scaled{}, dissolved{}, dark_glass{}, unread{},
       glowing_holes{};
@@ -60,7 +60,7 @@ class MtlParser {
   void read_property(std::string_view key, std::string_view rest, MtlBlock& block) {
     constexpr float no_limit = std::numeric_limits<float>::max();
     if (key == "Kd") block.diffuse = rgb(key, rest, 1.0f);
-    // A highlight's Ks may have any size; a mirror's is checked once the block is known.
+    // The Ks of a highlight is unbounded; the Ks of a mirror is checked once the block is complete.
     if (key == "Ks") block.mirror = rgb(key, rest, no_limit);
     if (key == "Tf") block.filter = rgb(key, rest, 1.0f);
     if (key == "Ke") block.radiance = rgb(key, rest, no_limit);
@@ -92,7 +92,7 @@ class MtlParser {
     return static_cast<float>(*value);
   }
 
-  // One number stands for all three.
+  // One number gives all three components.
   Spectrum rgb(std::string_view key, std::string_view rest, float most) {
     std::string_view first = next_word(rest);
     if (first == "spectral" || first == "xyz") {
@@ -169,7 +169,7 @@ Material make_material(const TextFile& file, const MtlBlock& b, MtlRemarks& rema
   return material;
 }
 
-// A map_ statement: options, then a file's name, which may have blanks.
+// A map_ statement: options, then a file name, which may contain blanks.
 struct MapStatement {
   std::string file{};
   SurfaceTexture image{};
@@ -183,7 +183,7 @@ MapStatement read_map_statement(std::string_view text) {
     std::string_view rest = text;
     const std::string_view option = next_word(rest);
     std::vector<std::string_view> values;
-    // -mm has two numbers, -s, -o and -t up to three; all others one word.
+    // Numbers of values: two for -mm, up to three for -s, -o and -t, one for all other options.
     const std::size_t most = option == "-mm"                                      ? 2
                              : option == "-s" || option == "-o" || option == "-t" ? 3
                                                                                   : 1;
@@ -206,12 +206,12 @@ MapStatement read_map_statement(std::string_view text) {
   }
   map.file = text;
   std::ranges::replace(map.file, '\\', '/');
-  // Of v that points up: v' = s v + o, and 1 - v' is what points down.
+  // With v upwards v' = s v + o; with v downwards v' = s v + 1 - s - o.
   map.image.placement << scale.x(), 0.0, offset.x(), 0.0, scale.y(), 1.0 - scale.y() - offset.y();
   return map;
 }
 
-// What map_Kd and map_d say of a material that is otherwise done.
+// Adds the pictures of map_Kd and map_d to a finished material.
 class MapReader {
  public:
   MapReader(const TextFile& file, MtlRemarks& remarks) : file_(file), remarks_(remarks) {}

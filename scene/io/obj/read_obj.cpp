@@ -18,7 +18,7 @@
 namespace lightwell {
 namespace {
 
-// "mtllib a.mtl b.mtl" names two files, "mtllib my room.mtl" usually one.
+// Paths in an mtllib line: "a.mtl b.mtl" names two files, "my room.mtl" usually one.
 std::vector<std::filesystem::path> files_named(const std::filesystem::path& folder,
                                                std::string names) {
   std::replace(names.begin(), names.end(), '\\', '/');
@@ -53,8 +53,8 @@ std::vector<Material> read_material_files(const std::filesystem::path& path,
   return materials;
 }
 
-// The file's materials in the order of their first use; -1, the faces without one, maps to the
-// default.
+// Adds the file's materials to the scene in the order of first use. The key -1 (faces without a
+// material) maps to the default material.
 std::map<int, int> take_materials(const ObjContent& content, std::vector<Material> available,
                                   Scene& scene) {
   std::map<int, int> taken;
@@ -87,7 +87,7 @@ std::map<int, int> take_materials(const ObjContent& content, std::vector<Materia
   return taken;
 }
 
-// At the corners of a face; none unless all have some.
+// Texture coordinates at the corners of a face; empty if a corner has none.
 UvLoop uv_of(const ObjContent& content, const ObjFace& face) {
   UvLoop uv;
   for (std::size_t i = face.first; i < face.first + face.count; ++i) {
@@ -99,7 +99,7 @@ UvLoop uv_of(const ObjContent& content, const ObjFace& face) {
   return uv;
 }
 
-// Of a face's corners; none if one has none.
+// Normals at the corners of a face; empty if a corner has none.
 NormalLoop normals_of(const ObjContent& content, const ObjFace& face) {
   NormalLoop normals;
   for (std::size_t i = face.first; i < face.first + face.count; ++i) {
@@ -110,7 +110,7 @@ NormalLoop normals_of(const ObjContent& content, const ObjFace& face) {
   return normals;
 }
 
-// Whether the normals at the corners lie on the other side than the order of the corners says.
+// True if the corner normals lie on the side opposite to the front by winding.
 bool turned_by_normals(const ObjContent& content, const ObjFace& face, const Loop& loop) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = face.first; i < face.first + face.count; ++i) {
@@ -122,7 +122,7 @@ bool turned_by_normals(const ObjContent& content, const ObjFace& face, const Loo
 
 void build_surfaces(const ObjContent& content, const std::map<int, int>& materials,
                     MeshMaterials wanted, MeshFronts fronts, Scene& scene, FilePolygons& polygons) {
-  // Of a material that comes from elsewhere it is not known here whether it shows a picture.
+  // Texture coordinates of a material from another source are kept if the caller requests them.
   const auto keeps_uv = [&](int material) {
     const Material& m = scene.materials[static_cast<std::size_t>(material)];
     return wanted == MeshMaterials::with_uv || m.texture || m.mask;

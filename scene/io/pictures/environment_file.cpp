@@ -56,7 +56,7 @@ EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
     Imf::FrameBuffer buffer;
     constexpr std::array names = {"R", "G", "B"};
     constexpr std::ptrdiff_t pixel = 3 * sizeof(float);
-    // The frame buffer counts pixels from the file's own origin.
+    // OpenEXR addresses pixels relative to the origin of the data window.
     const std::ptrdiff_t origin = window.min.x + window.min.y * std::ptrdiff_t{width};
     for (std::size_t k = 0; k < names.size(); ++k) {
       const Imf::Channel* channel = file.header().channels().findChannel(names[k]);
@@ -78,8 +78,8 @@ EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
   }
 }
 
-// A picture of RADIANCE (Ward 1991, "Real pixels"): lines of text, an empty one, the resolution,
-// and rows of shared-exponent pixels, packed by runs or not.
+// A RADIANCE picture (Ward 1991, "Real pixels"): header lines, an empty line, the resolution, and
+// rows of shared-exponent pixels, run-length encoded or not.
 class RgbeFile {
  public:
   explicit RgbeFile(const std::filesystem::path& path) : path_(path), file_(path) {
@@ -176,7 +176,7 @@ class RgbeFile {
     while (x < width) {
       std::array<std::uint8_t, 4> p{};
       for (std::uint8_t& value : p) value = byte();
-      if (p[0] == 1 && p[1] == 1 && p[2] == 1 && x > 0) {  // the last pixel again
+      if (p[0] == 1 && p[1] == 1 && p[2] == 1 && x > 0) {  // a run: repeats the last pixel
         const std::size_t count = std::size_t{p[3]} << shift;
         if (shift > 16 || count > width - x)
           fail_environment(path_, "has a run beyond the end of its row");

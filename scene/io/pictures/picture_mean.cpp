@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-// After <cstdio>, which it needs but does not include.
+// jpeglib.h needs <cstdio> but does not include it.
 #include <jpeglib.h>
 
 #include "scene/errors.h"
@@ -20,9 +20,10 @@
 namespace lightwell {
 namespace {
 
-constexpr double most_picture_pixels = 1e8;  // 10 000 x 10 000: more takes seconds and gigabytes
+constexpr double most_picture_pixels =
+    1e8;  // 10 000 x 10 000: larger pictures take seconds and gigabytes
 
-// Eight bits for each of r, g, b and alpha, rows from the top.
+// Eight bits each of r, g, b and alpha, rows from the top.
 struct PicturePixels {
   std::size_t width = 0, height = 0, count = 0;
   std::vector<unsigned char> bytes{};
@@ -50,7 +51,8 @@ PicturePixels decode_png(std::string_view bytes, const std::string& called) {
   } const guard{image};
   check_picture_size(image.width, image.height, called);
   image.format = PNG_FORMAT_RGBA;
-  image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // as the 8-bit ones, where the file does not say
+  image.flags |=
+      PNG_IMAGE_FLAG_16BIT_sRGB;  // 16-bit files without a statement are sRGB, as 8-bit ones are
   PicturePixels pixels{.width = image.width,
                        .height = image.height,
                        .count = std::size_t{image.width} * image.height};
@@ -73,7 +75,8 @@ void leave(j_common_ptr decoder) {
   std::longjmp(error->jump, 1);
 }
 
-// Between setjmp and longjmp nothing with a destructor is made: `row` and `rgb` are the caller's.
+// longjmp skips destructors, so no object with a destructor is created here: `rgb` belongs to the
+// caller.
 bool read_jpeg(std::string_view bytes, JpegError& error, jpeg_decompress_struct& decoder,
                std::vector<unsigned char>& rgb) {
   if (setjmp(error.jump)) return false;
@@ -98,7 +101,7 @@ PicturePixels decode_jpeg(std::string_view bytes, const std::string& called) {
   jpeg_decompress_struct decoder{};
   decoder.err = jpeg_std_error(&error.base);
   error.base.error_exit = &leave;
-  error.base.emit_message = [](j_common_ptr, int) {};  // warnings: a little of it is missing
+  error.base.emit_message = [](j_common_ptr, int) {};  // warnings: parts of the picture are missing
   jpeg_create_decompress(&decoder);
   std::vector<unsigned char> rgb;
   const bool is_read = read_jpeg(bytes, error, decoder, rgb);
@@ -116,7 +119,7 @@ PicturePixels decode_jpeg(std::string_view bytes, const std::string& called) {
   return pixels;
 }
 
-// What each of the 256 codes stands for.
+// Linear values of the 256 codes.
 std::array<double, 256> linear_values(PictureCode code) {
   std::array<double, 256> linear{};
   for (std::size_t i = 0; i < linear.size(); ++i) {

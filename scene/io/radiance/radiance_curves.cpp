@@ -1,4 +1,4 @@
-// Generators that follow formulas: genrev, gensurf, genworm.
+// Generators that evaluate formulas: genrev, gensurf, genworm.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ int segments(const RadianceCall& call, std::size_t word) {
   return static_cast<int>(value);
 }
 
-// A formula of t at 0, 1 / count, ..., 1.
+// Samples a formula of t at 0, 1 / count, ..., 1.
 std::vector<double> samples(const RadianceCall& call, std::size_t word, int count) {
   const RadianceExpression formula(call.words[word], {"t"}, call.location);
   std::vector<double> result;
@@ -46,8 +46,8 @@ std::vector<double> samples(const RadianceCall& call, std::size_t word, int coun
 
 }  // namespace
 
-// The outline turns about the z axis; the front is on the right of its direction, z upwards and r
-// to the right.
+// genrev: an outline revolved about the z axis. The front is to the right of the outline's
+// direction in the (r, z) plane, z upwards and r to the right.
 void run_genrev(const RadianceCall& call, const RadianceSink& sink) {
   call.require_words(6, "genrev material name 'z(t)' 'r(t)' segments");
   refuse_options(call, 6);
@@ -59,7 +59,7 @@ void run_genrev(const RadianceCall& call, const RadianceSink& sink) {
   if (!(*std::ranges::min_element(r) >= 0.0)) {
     call.fail(fmt::format("the radius '{}' is negative somewhere", call.words[4]));
   }
-  // Polygons about the axis with the circumference of the circle, so that cylinders keep their
+  // Cross-sections are polygons with the circumference of the circle, so that cylinders keep their
   // area.
   const double half = std::numbers::pi / sides, outside = half / std::sin(half);
   const auto point = [&](std::size_t i, int side) -> Eigen::Vector3d {
@@ -107,7 +107,7 @@ void run_gensurf(const RadianceCall& call, const RadianceSink& sink) {
       const Loop square = {a, b, c, d};
       if (!is_thin(square) && deviation_from_plane({square}) <= flatness) {
         polygons.add(square);
-      } else if (j % 2 == 1) {  // diagonals that alternate follow a curve on both sides
+      } else if (j % 2 == 1) {  // alternating diagonals follow a curve on both sides
         polygons.add({a, b, d});
         polygons.add({d, b, c});
       } else {
@@ -119,7 +119,7 @@ void run_gensurf(const RadianceCall& call, const RadianceSink& sink) {
   }
 }
 
-// Spheres along a curve and, between each two, the cone that touches both.
+// genworm: spheres along a curve and, between each two, the cone tangent to both.
 void run_genworm(const RadianceCall& call, const RadianceSink& sink) {
   call.require_words(8, "genworm material name 'x(t)' 'y(t)' 'z(t)' 'r(t)' segments");
   refuse_options(call, 8);
@@ -137,7 +137,7 @@ void run_genworm(const RadianceCall& call, const RadianceSink& sink) {
     const Eigen::Vector3d center(xyz[0][i], xyz[1][i], xyz[2][i]);
     const double r = radius[i];
     const double length = (center - last).norm();
-    // One sphere may hold the other; nothing lies between them then.
+    // A sphere inside its neighbour has no tangent cone.
     const double slope = i > 0 && length > 0.0 ? (radius[i - 1] - r) / length : 1.0;
     if (i > 0 && std::abs(slope) < 1.0) {
       const Eigen::Vector3d axis = (center - last) / length;

@@ -15,7 +15,7 @@ double chosen(double condition, double yes, double no) {
   return condition > 0.0 ? yes : no;
 }
 
-// Cubic curves over t in [0,1] by their coefficients; Foley et al. 1990, section 11.2.
+// Cubic curves over t in [0,1] by their control values; Foley et al. 1990, section 11.2.
 double hermite(double p0, double p1, double r0, double r1, double t) {
   return p0 * ((2 * t - 3) * t * t + 1) + p1 * (3 - 2 * t) * t * t + r0 * ((t - 2) * t + 1) * t +
          r1 * (t - 1) * t * t;
@@ -75,7 +75,7 @@ void define_functions(mu::Parser& parser) {
   parser.DefineConst("PI", std::numbers::pi);
 }
 
-// What of a formula is fit for a message.
+// Beginning of a formula, short enough for a message.
 std::string beginning(const std::string& text) {
   constexpr std::size_t longest = 80;
   return text.size() <= longest ? text : std::string(text, 0, longest).append("...");
@@ -85,7 +85,7 @@ std::string beginning(const std::string& text) {
 
 struct RadianceExpression::Impl {
   mu::Parser parser;
-  std::vector<double> values;  // where the parser looks for its variables
+  std::vector<double> values;  // storage of the parser's variables
   std::string text;
   RadianceLocation location;
 };
@@ -104,7 +104,7 @@ RadianceExpression::RadianceExpression(const std::string& text,
       impl_->parser.DefineVar(variables[i], &impl_->values[i]);
     }
     impl_->parser.SetExpr(text);
-    impl_->parser.Eval();  // whatever is wrong with the text shows here
+    impl_->parser.Eval();  // reports faults of the text
     if (impl_->parser.GetNumResults() != 1) {
       location.fail(fmt::format("the formula '{}' gives several values", beginning(text)));
     }

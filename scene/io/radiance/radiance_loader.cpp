@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t most_nested_includes = 32;  // files
 constexpr int most_commands = 200'000;            // files that include each other multiply quickly
-constexpr std::uintmax_t most_bytes = 1 << 30;    // read in all, again for every time
+constexpr std::uintmax_t most_bytes = 1 << 30;    // total, repeated files counted each time
 constexpr std::int64_t most_generated = 4'000'000;
 
 const std::vector<std::string> known_programs = {"xform",     "cat",      "genbox",  "genprism",
@@ -82,7 +82,7 @@ void RadianceLoader::read_named(const std::string& name, const RadianceLocation&
   read(path, sink);
 }
 
-// Time that no picture of the scene shows: files without primitives, included again and again.
+// Limits the reading time of files without primitives that are included over and over.
 void RadianceLoader::account(std::uintmax_t bytes, const RadianceLocation& location) {
   if (++commands_ > most_commands) {
     location.fail(
@@ -118,7 +118,7 @@ void RadianceLoader::run(const std::string& command, const RadianceLocation& loc
   run_last(pipe, location, sink);
 }
 
-// The last program of a pipe, those before it giving it what it reads.
+// Runs the last program of a pipe; the programs before it produce its input.
 void RadianceLoader::run_last(std::span<const Program> pipe, const RadianceLocation& location,
                               const RadianceSink& sink) {
   const Program& program = pipe.back();
@@ -167,7 +167,8 @@ void RadianceLoader::run_xform(std::span<const Program> pipe, const RadianceLoca
   for (const std::string& file : xform.files) read_named(file, location, placing);
 }
 
-// The pattern a sky's generator defines stays known, so that what it modifies can be read.
+// Passes on the pattern of a sky's generator, so that primitives modified by the pattern can be
+// read.
 void RadianceLoader::skip_sky(const Program& program, const RadianceLocation& location,
                               const RadianceSink& sink) {
   remarks_.add("Skies give no light here; they were left out", program.front());

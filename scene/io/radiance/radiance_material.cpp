@@ -1,4 +1,4 @@
-// What becomes of each of RADIANCE's material types; Ward & Shakespeare, Rendering with Radiance,
+// Conversion of RADIANCE's material types. Sources: Ward & Shakespeare, Rendering with Radiance,
 // 1998, and the reference manual.
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ struct Given {
 
   void remark(const char* what) const { remarks.add(what, p.name); }
 
-  // Three real arguments, at least 0.
+  // Three real arguments, each at least 0.
   Spectrum rgb(std::size_t first) const {
     Spectrum result(3);
     for (int k = 0; k < 3; ++k) {
@@ -38,7 +38,7 @@ struct Given {
     }
     return result;
   }
-  // The same, multiplied by the pattern and at most 1.
+  // A reflectance: three arguments times the pattern, at most 1.
   Spectrum color(std::size_t first) const {
     const Spectrum result = rgb(first) * pattern.factor;
     if ((result > 1.0f).any()) remark("Colours beyond 1, which would make light, were cut off");
@@ -72,8 +72,8 @@ Material clear(double index, const Spectrum& tint) {
   return material;
 }
 
-// Diffuse light and a highlight. Ward's roughness (1992) is the width of a Gaussian of slopes, and
-// GGX's alpha that of a lobe with the same middle.
+// A diffuse material with a highlight. Ward's roughness (1992), the width of a Gaussian of slopes,
+// is used as GGX alpha; both lobes agree in the middle.
 Material glossy(const Given& given, const Spectrum& diffuse, const Spectrum& specular,
                 double roughness) {
   Material material = opaque(diffuse);
@@ -82,12 +82,13 @@ Material glossy(const Given& given, const Spectrum& diffuse, const Spectrum& spe
     given.remark("Highlights of a roughness above 0.5 were read as diffuse light");
   }
   add_highlight(material, specular, roughness);
-  // Rounding alone could make this exceed 1.
+  // Rounding could make the sum exceed 1.
   material.reflectance = material.reflectance.min(1.0f - material.specular);
   return material;
 }
 
-// plastic and metal: red green blue specularity roughness [roughness of the other direction].
+// plastic and metal. Arguments: red green blue specularity roughness [roughness of the other
+// direction].
 Material reflecting(const Given& given, bool is_metal, double roughness) {
   const Spectrum color = given.color(0);
   const float specular = given.share(3, "specularity");
@@ -105,14 +106,15 @@ Maybe plastic_or_metal(const Given& given) {
   return reflecting(given, is_metal, std::max(given.roughness(4), given.roughness(5)));
 }
 
-// plasfunc, metfunc and their like: the highlight is a function that only RADIANCE evaluates.
+// plasfunc, metfunc, plasdata and metdata: the highlight is a function that is not evaluated here;
+// a wide lobe replaces the function.
 Maybe with_function(const Given& given) {
   if (given.p.reals.size() < 4) given.p.fail("needs a colour and a specularity");
   constexpr double wide = 1.0;
   return reflecting(given, given.p.type.starts_with("met"), wide);
 }
 
-// red green blue specularity roughness transmissivity transmitted-specularity.
+// trans. Arguments: red green blue specularity roughness transmissivity transmitted-specularity.
 Material translucent(const Given& given, std::size_t transmissivity, double roughness) {
   const Spectrum color = given.color(0);
   const float specular = given.share(3, "specularity");
@@ -143,7 +145,8 @@ Maybe transfunc(const Given& given) {
   return translucent(given, 4, wide);
 }
 
-// Ashikhmin & Shirley 2000: diffuse and specular colours and the exponents of the highlight.
+// ashik2 (Ashikhmin & Shirley 2000): diffuse and specular colours and the exponents of the
+// highlight.
 Maybe ashik2(const Given& given) {
   given.p.require_reals(8);
   const double exponent = std::min(given.p.reals[6], given.p.reals[7]);
@@ -161,8 +164,8 @@ double refractive_index(const Given& given, std::size_t i) {
   return index;
 }
 
-// A pane of which the file gives the transmissivity t, the share that crosses it once inside. With
-// its two faces (1-F)^2 t / (1 - F^2 t^2) pass at normal incidence.
+// A pane of transmissivity t, the share of light that crosses the glass once inside. At normal
+// incidence (1-F)^2 t / (1 - F^2 t^2) passes through the pane with its two faces.
 Maybe glass(const Given& given) {
   if (given.p.reals.size() != 4) given.p.require_reals(3);
   const double index = given.p.reals.size() == 4 ? refractive_index(given, 3) : window_glass;
@@ -212,7 +215,7 @@ Maybe light(const Given& given) {
   return shining(given, 1.0f);
 }
 
-// A Lambertian emitter sends the share sin^2 of its power into the cone of that half angle.
+// A Lambertian emitter sends the share sin^2(a) of its power into the cone of half angle a.
 Maybe spotlight(const Given& given) {
   given.p.require_reals(7);
   const double angle = given.p.reals[3];
@@ -222,7 +225,7 @@ Maybe spotlight(const Given& given) {
   return shining(given, static_cast<float>(std::sin(half) * std::sin(half)));
 }
 
-// The diffuse part of the front.
+// Keeps the diffuse reflectance of the front.
 Maybe by_diffuse_part(const Given& given) {
   if (given.p.reals.size() < 3) {
     given.remark("Materials whose data stand in other files got a diffuse reflectance of 0.5");

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int deepest_modifier = 64;  // modifiers of modifiers; real scenes stay below ten
 
-// The value of a function that needs no function file and no place, such as ".5" or "A1/2".
+// Value of a formula that needs neither a function file nor a position, such as ".5" or "A1/2".
 double constant_value(const std::string& formula, const RadiancePrimitive& of) {
   std::vector<std::string> names;
   for (std::size_t i = 1; i <= of.reals.size(); ++i) names.push_back(fmt::format("A{}", i));
@@ -67,7 +67,7 @@ void RadianceMaterials::define(const RadiancePrimitive& primitive) {
   const auto [entry, is_new] =
       latest_.emplace(definition.primitive.name, static_cast<int>(definitions_.size()));
   if (!is_new) {
-    // A file that is included often defines the same things again and again.
+    // Repeated includes define the same primitive again and again.
     const Definition& last = definitions_[static_cast<std::size_t>(entry->second)];
     if (is_same(last.primitive, definition.primitive) && last.parent == definition.parent &&
         last.parts == definition.parts) {
@@ -105,7 +105,7 @@ std::optional<Material> RadianceMaterials::read(int index, int depth) {
   return known_.emplace(index, read_new(index, depth)).first->second;
 }
 
-// A material may hide behind patterns, which have it as their modifier.
+// Follows the modifiers from patterns to the material behind them.
 std::optional<Material> RadianceMaterials::read_new(int index, int depth) {
   for (; index != none; ++depth) {
     const Definition& definition = definitions_[static_cast<std::size_t>(index)];
@@ -117,7 +117,8 @@ std::optional<Material> RadianceMaterials::read_new(int index, int depth) {
     if (kind == RadianceKind::mixture) return mixed(definition, depth);
     if (kind == RadianceKind::material) {
       const RadiancePattern pattern = pattern_of(definition);
-      // Light by way of a window or a luminaire, of which the file does not say how much.
+      // An illum stands for light through a window or a luminaire; with an unknown pattern its
+      // amount is unknown.
       if (definition.primitive.type == "illum" && !pattern.is_known && !definition.parts.empty()) {
         remarks_.add("Illums with a pattern were read as the material behind them, without light",
                      definition.primitive.name);
@@ -133,7 +134,7 @@ std::optional<Material> RadianceMaterials::read_new(int index, int depth) {
 std::optional<Material> RadianceMaterials::mixed(const Definition& mixture, int depth) {
   const RadiancePrimitive& p = mixture.primitive;
   if (mixture.parts.size() < 2) p.fail("needs the names of two materials and a mixing function");
-  // mixtext and mixpict vary from place to place by their nature.
+  // mixtext and mixpict vary over the surface.
   double share = std::nan("");
   if (p.type == "mixfunc" && p.strings.size() > 2) share = constant_value(p.strings[2], p);
   if (!std::isfinite(share)) {
@@ -143,7 +144,7 @@ std::optional<Material> RadianceMaterials::mixed(const Definition& mixture, int 
   share = std::clamp(share, 0.0, 1.0);
   const auto front = read(mixture.parts[0], depth + 1), back = read(mixture.parts[1], depth + 1);
   const auto& larger = share >= 0.5 ? front : back;
-  // What is clear, or cannot be seen, has no mean with what is not.
+  // A clear or invisible material has no mean with an opaque one.
   if (!front || !back || front->dielectric || back->dielectric) return larger;
   Material sum = *larger;
   const auto a = static_cast<float>(share), b = static_cast<float>(1.0 - share);
@@ -184,7 +185,7 @@ void RadianceMaterials::apply(const Definition& pattern, RadiancePattern& result
     is_constant = factor[i] >= 0.0 && std::isfinite(factor[i]);
   }
   if (p.type.ends_with("pict")) {
-    // A picture is its surface's whole colour, on a material of white.
+    // A picture is the whole colour of its surface, over a white material.
     remarks_.add("Pictures on surfaces were taken as a medium grey of 0.5", p.name);
     is_constant = true;
     factor.fill(0.5);

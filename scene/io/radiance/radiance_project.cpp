@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-// A variable of rad and how many letters of it are enough.
+// A variable of rad and the least number of letters of an abbreviation.
 struct Variable {
   std::string_view name;
   std::size_t least;

@@ -17,13 +17,13 @@ namespace {
 
 constexpr std::int64_t most_primitives = 2'000'000;
 constexpr std::int64_t most_shape_polygons = 4'000'000;  // some 1 GB
-constexpr std::size_t most_corners = 2000;               // of a polygon: checked in their square
+constexpr std::size_t most_corners = 2000;  // of a polygon: checks are quadratic in their number
 
 Eigen::Vector3d point(const RadiancePrimitive& p, std::size_t first) {
   return {p.reals[first], p.reals[first + 1], p.reals[first + 2]};
 }
 
-// "box" of "box.12".
+// Name without a last number: "box" of "box.12".
 std::string stem_of(const std::string& name) {
   const std::size_t dot = name.rfind('.');
   if (dot == std::string::npos || dot == 0 || dot + 1 == name.size()) return name;
@@ -32,7 +32,7 @@ std::string stem_of(const std::string& name) {
   return is_number ? name.substr(0, dot) : name;
 }
 
-// Numbers within a scene's bounds, so that nothing overflows on the way to Scene's own check.
+// Bounds the numbers, so that nothing overflows before Scene's own check.
 void require_moderate(const RadiancePrimitive& p) {
   for (const double value : p.reals) {
     if (!(std::abs(value) <= farthest_coordinate)) {
@@ -143,7 +143,7 @@ void RadianceShapes::add_surface(const RadiancePrimitive& p, int material,
       {.name = names_.unique(p.name), .material = material, .shape = std::move(shape)});
 }
 
-// A negative radius turns a shape inside out, as in RADIANCE.
+// A negative radius turns a sphere inside out, as in RADIANCE.
 void RadianceShapes::add_sphere(const RadiancePrimitive& p, int material) {
   p.require_reals(4);
   const double radius = std::abs(p.reals[3]);
@@ -181,7 +181,7 @@ void RadianceShapes::add_ring(const RadiancePrimitive& p, int material) {
   const double inner = std::min(p.reals[6], p.reals[7]), outer = std::max(p.reals[6], p.reals[7]);
   if (!(inner >= 0.0)) p.fail(fmt::format("has the radius {}; it must not be negative", inner));
   if (!(normal.stableNorm() > 0.0)) p.fail("has no normal: its fourth to sixth number are 0");
-  // Thinner rings have no area worth the name.
+  // Thinner rings count as rings without area.
   if (!(outer - inner > flatness * outer)) {
     return remarks_.add("Shapes without area were left out", p.name);
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double right_angle = std::numbers::pi / 2.0;
 
-// A box whose edges and corners are cut or rounded: a core box, moved outwards by `radius`.
+// A box with bevelled or rounded edges and corners: a core box, offset outwards by `radius`.
 class RoundedBox {
  public:
   RoundedBox(const Eigen::Vector3d& size, double radius, int segments, bool inward,
@@ -42,12 +42,12 @@ class RoundedBox {
   }
 
  private:
-  // Where the surface leaves the corner with those signs in the (absolute) direction.
+  // Point of the surface at the corner with these signs, offset in the (absolute) direction.
   Eigen::Vector3d point(const Eigen::Vector3d& signs, const Eigen::Vector3d& direction) const {
     return center_ + signs.cwiseProduct(core_ + radius_ * direction);
   }
 
-  // The body is convex, so its center tells outside.
+  // The body is convex, so a face points outwards if it faces away from the centre.
   void add(Loop loop) {
     const bool outward = area_vector(loop).dot(loop[0] - center_) > 0.0;
     if (outward == inward_) std::reverse(loop.begin(), loop.end());
@@ -84,7 +84,7 @@ class RoundedBox {
     }
   }
 
-  // An eighth of a sphere in triangles whose corners on its sides are those of the edges.
+  // An eighth of a sphere in triangles; corners on its sides coincide with those of the edges.
   void add_corner(const Eigen::Vector3d& signs) {
     const auto at = [&](int i, int j) {
       const auto part = [&](int n) { return std::sin(right_angle * n / segments_); };
@@ -144,7 +144,7 @@ std::vector<Eigen::Vector2d> prism_corners(const RadianceCall& call, std::size_t
     next = 4;
     corners = corners_from_file(call, call.words[3]);
   }
-  // A polygon is checked in the square of the number of its corners.
+  // Checks are quadratic in the number of corners.
   constexpr std::size_t most = 2000;
   if (corners.size() < 3 || corners.size() > most) {
     call.fail(fmt::format("has {} corners; give from 3 to {}", corners.size(), most));
@@ -180,7 +180,7 @@ void run_genbox(const RadianceCall& call, const RadianceSink& sink) {
   if (!(2.0 * radius <= size.minCoeff())) {
     call.fail(fmt::format("edges cannot be cut by {}, more than half of a side", radius));
   }
-  // Four segments keep within 2 % of the radius; nobody sees more than 16.
+  // Four segments keep within 2 % of the radius; more than 16 are not visible.
   constexpr int usual = 4, most = 16;
   if (segments == 0) segments = usual;
   if (rounded) call.remarks.add("Rounded edges of boxes were read as facets", call.words[2]);
@@ -231,7 +231,7 @@ void run_genblinds(const RadianceCall& call, const RadianceSink& sink) {
   const double height = call.positive(5, "height");
   const int slats = call.count(6, "number of slats");
   const double angle = call.number(7, "angle") * std::numbers::pi / 180.0;
-  double bulge = 0.0;  // radius of a slat that is curved; > 0: upwards
+  double bulge = 0.0;  // radius of a curved slat; > 0: bulges upwards
   if (call.words.size() > 8) {
     const std::string& option = call.words[8];
     if (option != "-r" && option != "+r") {
@@ -243,8 +243,8 @@ void run_genblinds(const RadianceCall& call, const RadianceSink& sink) {
       call.fail(fmt::format("a slat of depth {} cannot be curved with radius {}", depth, radius));
     }
   }
-  // The slat seen from its end: a chord of length `depth`, or facets along its arc. A facet's
-  // 3 degrees are what RADIANCE takes.
+  // The cross-section of a slat: a chord of length `depth`, or facets along its arc. Facets span 3
+  // degrees, as in RADIANCE.
   const double half = bulge != 0.0 ? std::asin(depth / (2.0 * std::abs(bulge))) : 0.0;
   constexpr double rounding = 1e-9;
   const int facets =

@@ -18,7 +18,7 @@ void RadianceText::advance(std::size_t length) {
   rest_.remove_prefix(length);
 }
 
-// False at the end of the text.
+// Skips blanks and comments; returns false at the end of the text.
 bool RadianceText::skip_blanks() {
   while (true) {
     advance(std::min(rest_.find_first_not_of(radiance_blanks), rest_.size()));
@@ -53,7 +53,7 @@ RadianceCommand RadianceText::command() {
   rest_.remove_prefix(1);
   while (!rest_.empty() && rest_.front() != '\n') {
     const std::size_t escaped = rest_.starts_with("\\\r\n") ? 3 : rest_.starts_with("\\\n") ? 2 : 0;
-    // Other escapes are for whoever splits the command into words.
+    // Other escapes are kept for the split of the command into words.
     const std::size_t length = escaped ? escaped : rest_.front() == '\\' ? 2 : 1;
     if (escaped) {
       result.text += ' ';

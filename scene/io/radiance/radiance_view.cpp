@@ -66,7 +66,7 @@ bool begins_a_view(std::string_view word) {
   return std::ranges::any_of(beginnings, [&](auto b) { return word.starts_with(b); });
 }
 
-// Square pixels: the picture is as wide or as high as it may be.
+// Sets the picture's size: as wide or as high as allowed, with square pixels.
 void set_size(const RadianceView& view, double half_width, double half_height, Camera& camera) {
   const double aspect = half_height / half_width;
   const double width = std::min(view.width, view.height / aspect);

@@ -15,7 +15,7 @@ namespace {
 constexpr int most_copies = 100'000;
 constexpr int most_repetitions = 1'000'000;
 
-// Transformations between two of -i and -a, and how often they apply.
+// A group of transformations between two of the options -i and -a, with its repeat count.
 struct Group {
   Eigen::Affine3d step = Eigen::Affine3d::Identity();
   int count = 1;
@@ -162,7 +162,7 @@ class XformParser {
 };
 
 void transform(std::vector<double>& reals, std::size_t first, const Eigen::Affine3d& by) {
-  if (reals.size() < first + 3) return;  // whoever uses the primitive will say so
+  if (reals.size() < first + 3) return;  // the reader of the primitive reports the fault
   Eigen::Map<Eigen::Vector3d> p(reals.data() + first);
   p = (by * p).eval();
 }
@@ -196,7 +196,7 @@ std::string inverse_of(const std::string& type) {
   return found == inverse.end() ? type : found->second;
 }
 
-// A surface where the copy has it; only what says a place, a direction or a length changes.
+// Transforms a surface by a copy; only arguments that are positions, directions or lengths change.
 void place_surface(RadiancePrimitive& p, const RadianceXform::Copy& copy, bool inverts) {
   if (p.type == "polygon") {
     transform_polygon(p.reals, copy, copy.is_mirrored != inverts);

@@ -18,7 +18,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double radiance_lumens_per_watt = 179.0;  // of white; Ward & Shakespeare 1998
+constexpr double radiance_lumens_per_watt = 179.0;  // lm/W of white light; Ward & Shakespeare 1998
 
 class RadianceReader {
  public:
@@ -84,7 +84,7 @@ class RadianceReader {
     }
   }
 
-  // A file for one picture of the scene in its .rad: room.vf or room.vp beside room.rad.
+  // Reads the view file beside a .rad file: room.vf or room.vp beside room.rad.
   void read_views_beside() {
     std::error_code error;
     for (const char* extension : {".vf", ".vp"}) {
@@ -112,7 +112,7 @@ class RadianceReader {
       defaults.height = words.size() > 1 ? positive(words[1], location) : defaults.width;
     }
     auto views = project.values("view");
-    // As rad has it.
+    // rad's default view.
     if (views.empty()) views.push_back({"X", {&loader_.keep(path_), 1}});
     for (const auto& [text, location] : views)
       add_view(project, defaults, words_of(text), location);
@@ -147,14 +147,15 @@ class RadianceReader {
       if (views.empty()) {
         location.fail(fmt::format("the view file '{}' holds no view", file.string()));
       }
-      view = views.back();  // the program that writes them appends
+      view = views.back();  // programs append views to a file, so the last one is the latest
     }
     apply_view_options(words, location, view);
     add_radiance_camera(view, name, location, scene_, remarks_);
   }
 
-  // "X", "xYz", "Zl": from the side or corner of the zone that the letters name, small letters for
-  // its lower end, towards its middle; a last letter tells the view's type.
+  // Sets a standard view such as "X", "xYz" or "Zl". Letters select a side or corner of the zone,
+  // from which the view is towards its middle; small letters mean the lower end. A last letter
+  // gives the view's type.
   void set_standard_view(const RadianceProject& project, const std::string& name,
                          RadianceView& view) const {
     Eigen::Vector3d side = Eigen::Vector3d::Zero();
@@ -172,7 +173,7 @@ class RadianceReader {
       return;  // a name like any other
     }
     const auto [zone, is_interior] = zone_of(project);
-    // A scene that is flat is looked at nevertheless.
+    // A flat scene gets a least extent, so that views keep a distance from it.
     const Eigen::Vector3d size =
         (zone.high - zone.low).cwiseMax(0.01 * (zone.high - zone.low).norm());
     const double distance = is_interior ? 0.45 : 2.0;

@@ -51,7 +51,7 @@ Eigen::Vector3d read_view_direction(const TomlTable& table, const Eigen::Vector3
   return direction.stableNormalized();
 }
 
-// An f-number is that of a camera with a film 36 mm wide, whose focal length follows from fov.
+// An f-number refers to a film 36 mm wide, so the focal length follows from fov.
 void read_toml_lens(const TomlTable& table, double metres_per_unit, Camera& camera) {
   const auto given = table.present({"aperture_radius", "f_number"});
   if (given.size() > 1) {
@@ -193,7 +193,7 @@ Scene read_toml(const std::filesystem::path& path) {
     }
   }
   settle_toml_motions(document, have_shutter, scene);
-  // They do not belong to the light, but are to be right when the scene is first used.
+  // Grids do not affect the light; reading the table here reports its errors early.
   if (const auto grids = document.find("grids")) read_toml_grids(*grids, scene);
   validate(scene);
   return scene;

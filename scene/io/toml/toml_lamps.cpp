@@ -19,7 +19,7 @@ Eigen::Vector3d read_direction(const TomlValue& value) {
   return direction.stableNormalized();
 }
 
-// The rotation that 'aim' or 'look_at', and 'c0', ask for.
+// Lamp axes from the keys 'aim' or 'look_at', and 'c0'.
 Eigen::Matrix3d read_axes(const TomlTable& table, const Eigen::Vector3d& position,
                           bool has_direction) {
   const auto given = table.present({"aim", "look_at"});
@@ -90,7 +90,7 @@ Spectrum read_colour(const TomlTable& table, const TomlBands& bands) {
   return values;
 }
 
-// W/sr for each unit of the shape, from one of the ways to say how much.
+// Sets intensity, W/sr per unit of the shape, from exactly one of the four keys.
 void read_strength(const TomlTable& table, const TomlBands& bands, Lamp& lamp) {
   const auto given = table.present({"intensity", "candela", "power", "lumens"});
   if (given.size() != 1) {
@@ -116,7 +116,7 @@ void read_strength(const TomlTable& table, const TomlBands& bands, Lamp& lamp) {
   if (!lamp.intensity.isFinite().all()) value.fail("is too large a number");
 }
 
-// Of a photometric file.
+// Sets a lamp's distribution and intensity from a photometric file.
 void read_measured(const TomlTable& table, const TomlBands& bands, Scene& scene, Lamp& lamp) {
   for (const auto& key : table.present({"intensity", "candela", "power", "cone"})) {
     table.require(key).fail("is given by the 'file' as well; keep one of them");

@@ -248,7 +248,7 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
   material.specular = spectral_or(table, "specular", bands, 0.0f);
   for (int k = 0; k < bands.bands.count(); ++k) {
-    constexpr float rounding = 1e-5f;  // decimals that should add up to 1
+    constexpr float rounding = 1e-5f;  // tolerance for decimals that should add up to 1
     if (material.reflectance[k] + material.specular[k] > 1.0f + rounding) {
       table.require("specular")
           .fail(fmt::format(

@@ -7,7 +7,7 @@
 namespace lightwell {
 namespace {
 
-// A picture's file, and what a table says of how it lies on surfaces.
+// A picture and its placement on surfaces by a table.
 struct Laid {
   Picture picture{};
   SurfaceTexture image{};

@@ -16,8 +16,9 @@
 namespace lightwell {
 namespace {
 
-// Of daylight, lm/W of its whole spectrum: the mean of what Littlefair 1985 collected for clear and
-// overcast skies. For input in watts of irradiance meters, which count the infrared.
+// Luminous efficacy of daylight over its whole spectrum, lm/W: the mean of the values collected by
+// Littlefair 1985 for clear and overcast skies. Converts readings of irradiance meters, in W
+// including infrared.
 constexpr double daylight_efficacy = 110.0;
 
 Eigen::Vector3d direction(const TomlValue& value) {
@@ -26,7 +27,7 @@ Eigen::Vector3d direction(const TomlValue& value) {
   return v.stableNormalized();
 }
 
-// Light of a colour that comes to so many lux (or cd/m^2).
+// Spectrum with the hue of `colour` and a luminous value in lux or cd/m^2.
 Spectrum photometric(double luminous_value, const Spectrum& colour, const TomlValue& place,
                      const TomlBands& bands) {
   const double unit = luminous(bands.bands, colour);
@@ -43,7 +44,7 @@ Spectrum colour_of(const TomlTable& table, const TomlBands& bands) {
   return given ? read_toml_emission(*given, bands) : constant_spectrum(bands.bands, 1.0f);
 }
 
-// Which of some keys is given; fails unless it is at most one.
+// Returns the key of `keys` that the table has, or an empty string; throws if there are several.
 std::string one_of_present(const TomlTable& table, std::initializer_list<const char*> keys) {
   const auto given = table.present(keys);
   if (given.size() > 1) {
@@ -81,7 +82,7 @@ When read_when(const TomlTable& table) {
   return when;
 }
 
-// Towards the sun.
+// Unit direction towards the sun.
 Eigen::Vector3d read_sun_direction(const TomlTable& table, const Sky& sky) {
   const std::string how = one_of_present(table, {"direction", "altitude", "date"});
   if (how.empty()) {
@@ -184,13 +185,13 @@ void read_sky_map(const TomlTable& table, Sky& sky) {
   }
   sky.name = fmt::format("map '{}', {} x {}", path.filename().string(), sky.map->width(),
                          sky.map->height());
-  // The middle of the picture is in the north, or so many degrees further clockwise.
+  // The picture's centre lies in the north, `rotation` degrees further clockwise.
   const double turn = table.has("rotation") ? table.require("rotation").number() : 0.0;
   const Eigen::Vector3d middle = sky_direction(sky, turn, 0.0);
   sky.to_map << sky.up.cross(middle).transpose(), sky.up.transpose(), middle.transpose();
 }
 
-// How bright the dome is: exactly one statement.
+// Sets the sky's scale from exactly one of four keys.
 void read_scale(const TomlTable& table, const TomlBands& bands, Sky& sky) {
   const std::string how =
       one_of_present(table, {"illuminance", "zenith_luminance", "radiance", "diffuse_horizontal"});
@@ -221,7 +222,7 @@ void read_scale(const TomlTable& table, const TomlBands& bands, Sky& sky) {
   }
   const Spectrum zenith = sky_radiance(sky, sky.up);
   if (how == "radiance") {
-    // Of the zenith, whatever phi and f are there.
+    // The radiance is the zenith's, for any phi and f there (Sky).
     const float factor = zenith.maxCoeff() / sky.scale.maxCoeff();
     sky.scale = read_toml_emission(amount, bands) / factor;
   } else {

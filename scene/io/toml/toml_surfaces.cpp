@@ -21,7 +21,7 @@ namespace {
 constexpr std::initializer_list<const char*> shape_keys = {"polygon", "polygons", "box", "sphere",
                                                            "mesh"};
 
-// Where a shape goes: x -> scale * rotation * x + offset, in metres.
+// Placement of a shape: x -> scale * rotation * x + offset, in metres.
 struct Placement {
   double scale = 1.0;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
@@ -40,7 +40,7 @@ struct Placement {
   }
 };
 
-// Exact for quarter turns, so that a wall turned by 90 degrees stays parallel to the axes.
+// Cosine and sine, exact for quarter turns: a wall turned by 90 degrees stays parallel to the axes.
 Eigen::Vector2d cos_sin(double degrees) {
   const double quarters = std::remainder(degrees, 360.0) / 90.0;
   if (quarters == std::round(quarters)) {
@@ -85,7 +85,7 @@ Loop read_loop(const TomlValue& value, const Placement& place) {
   return loop;
 }
 
-// A surface that one [[surfaces]] table describes, on its way into the scene.
+// Builds the surface of one [[surfaces]] table.
 class SurfaceReader {
  public:
   SurfaceReader(const TomlValue& value, const TomlTable& table, std::string name, Scene& scene)
@@ -250,7 +250,7 @@ class SurfaceReader {
     }
     const auto inward = t.find("inward");
     const bool turned = inward && inward->boolean();
-    // Corner number bits: x, y, z at max.
+    // Bits of a corner's number: x, y, z at max.
     constexpr std::array<std::array<int, 4>, 6> faces = {
         {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
     for (const auto& face : faces) {
@@ -311,7 +311,8 @@ class SurfaceReader {
     }
   }
 
-  // The scene's own material of that name comes first; two files may use one name for two things.
+  // A material of the scene with the same name takes precedence. Two files may use one name for
+  // different materials, hence the qualified name.
   int import_material(Material material, const std::string& file, const TomlValue& value) {
     const std::string qualified = fmt::format("{} ({})", material.name, file);
     for (const Material& m : scene_.materials) {

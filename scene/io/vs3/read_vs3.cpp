@@ -38,7 +38,7 @@ class Vs3Builder {
     file_.fail(content_.surfaces[i].line, fmt::format("surface {} {}", i + 1, what));
   }
 
-  // What a surface that names others needs of them, and its place taken out of its base.
+  // Checks the references of a surface to others and cuts the surface out of its base.
   void check_and_cut(std::size_t i) {
     const Vs3Record& record = content_.surfaces[i];
     const int count = static_cast<int>(content_.surfaces.size());
@@ -90,7 +90,7 @@ class Vs3Builder {
     if (!is_convex(hole) || !is_convex(of.loop)) {
       fail(i, fmt::format("and its base surface {} must be convex", base + 1));
     }
-    // View3D's own files are single precision.
+    // View3D computes in single precision.
     constexpr double tolerance = 1e-5;
     for (const Eigen::Vector3d& p : hole) {
       const double distance = (p - of.loop[0]).dot(base_area.normalized());
@@ -179,7 +179,7 @@ class Vs3Builder {
   const TextFile& file_;
   const Vs3Content& content_;
   NumberedScene numbered_;
-  std::vector<std::vector<Loop>> pieces_;  // by record: what of it is not taken up by subsurfaces
+  std::vector<std::vector<Loop>> pieces_;  // by record: the parts not covered by subsurfaces
   std::vector<int> row_of_record_;
   std::map<std::string, int> material_;
   Repairs repairs_;

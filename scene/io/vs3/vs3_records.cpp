@@ -12,7 +12,7 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-// Blanks and commas part words; a word that begins with / or ! begins a comment.
+// Blanks and commas separate words; a word that begins with / or ! begins a comment.
 Words split(std::string_view text) {
   constexpr std::string_view separators = " ,\t\r\f\v";
   Words words;
@@ -114,7 +114,7 @@ class Vs3Parser {
     if (!has_format_) fail("an F record must come before vertices and surfaces; write 'F 3'");
   }
 
-  // "encl=1 eps = 1e-4": a word and its number, parted by blanks or equal signs.
+  // Control words and numbers such as "encl=1 eps = 1e-4", separated by blanks or equal signs.
   void read_control(const Words& words) {
     std::string joined;
     for (const std::string_view word : words) joined.append(word).append(" ");
@@ -158,7 +158,8 @@ class Vs3Parser {
 
   void read_surface(Vs3Record::Kind kind, const Words& words) {
     const bool is_obstruction = kind == Vs3Record::Kind::obstruction;
-    const std::size_t places = is_shape_format_ ? 1 : 4;  // for a letter or vertex numbers
+    const std::size_t places =
+        is_shape_format_ ? 1 : 4;  // words for a shape's letter or vertex numbers
     const std::size_t least = 2 + places + (is_obstruction ? 0 : 3);
     if (words.size() < least) {
       fail(fmt::format("a surface of {} words is too short; write '{} {}{}'", words.size(),
@@ -192,7 +193,7 @@ class Vs3Parser {
     }
   }
 
-  // Vertices may follow the surfaces that name them.
+  // Resolved at the end, because vertices may follow the surfaces that use them.
   void resolve_vertices() {
     for (std::size_t s = 0; s < corners_.size(); ++s) {
       Vs3Record& record = content_.surfaces[s];
@@ -236,8 +237,8 @@ class Vs3Parser {
     }
   }
 
-  // The plane's azimuth is that of its normal, clockwise from +y (north); tilt 0 faces up, 90 is
-  // vertical. Within the plane u runs to the right seen from its front, v upwards.
+  // The azimuth of a plane is that of its normal, clockwise from +y (north). Tilt 0 faces up, 90 is
+  // vertical. In the plane u points to the right as seen from the front, v upwards.
   void finish_shape() {
     const double radians = std::numbers::pi / 180.0;
     const double azimuth = numbers_[3] * radians, tilt = numbers_[4] * radians;
@@ -261,9 +262,9 @@ class Vs3Parser {
   int line_ = 1;
   bool is_over_ = false, has_format_ = false, is_shape_format_ = false, has_obstructions_ = false;
   std::vector<Eigen::Vector3d> vertices_;
-  std::vector<std::array<int, 4>> corners_;  // by surface; fourth 0: a triangle
+  std::vector<std::array<int, 4>> corners_;  // by surface; fourth number 0: a triangle
   char shape_ = 'R';
-  std::size_t numbers_wanted_ = 0;  // of the surface being read
+  std::size_t numbers_wanted_ = 0;  // number count of the surface being read
   std::vector<double> numbers_;
 };
 
