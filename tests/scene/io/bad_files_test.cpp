@@ -9,8 +9,8 @@
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 
-// One small file per error. Its message must name the place (file:line:column), the faulty value
-// and the remedy.
+// One small file for each kind of error, and the required parts of its message: the place
+// (file:line:column), the object and the remedy.
 
 namespace lightwell {
 namespace {
@@ -171,7 +171,7 @@ TEST(BadScenes, AreAllInTheTable) {
   for (const BadFile& file : bad_files) listed.insert(file.name);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
-    if (extension == ".mtl" || extension == ".csv") continue;  // read by other files
+    if (extension == ".mtl" || extension == ".csv") continue;  // files that others refer to
     EXPECT_TRUE(listed.contains(entry.path().filename().string())) << entry.path();
   }
 }
@@ -186,7 +186,7 @@ TEST(BadPaths, AreNamedWithWhatIsPossible) {
             std::string::npos);
 }
 
-// Reading a file that is cut off at any byte returns a scene or throws InputError.
+// Reading a truncated file results in a scene or in an InputError.
 TEST(CutOffFiles, AreRefusedOrReadButNeverCrash) {
   const TemporaryFolder temporary;
   for (const char* name : {"everything.toml", "room.obj", "room.mtl", "cube.ply", "cube.stl"}) {

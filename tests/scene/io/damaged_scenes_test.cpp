@@ -1,4 +1,5 @@
-// Damaged files: a reader returns a scene or throws InputError, in bounded time, for any bytes.
+// Damaged files: a reader must return a scene or throw InputError within bounded time, and never
+// crash.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -14,8 +15,8 @@ namespace {
 
 const std::filesystem::path folder = LIGHTWELL_TEST_DATA "/scene";
 
-// One to eight changes: a byte replaced, a range removed or doubled, a digit made large, the end
-// cut off.
+// Applies one to eight changes: a byte replaced, a range removed or doubled, a digit made large,
+// the end cut off.
 std::string damaged(std::string bytes, unsigned seed) {
   std::mt19937 random(seed);
   const auto below = [&](std::size_t n) {
@@ -65,7 +66,8 @@ void expect_answers(const TemporaryFolder& where, const std::string& name, const
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     EXPECT_LT(seconds.count(), 10.0) << name << ", seed " << seed;
   }
-  // Some files are read and some refused, so the damage is neither too small nor too large.
+  // Both outcomes occur, so the damage is neither too small to matter nor so large that every file
+  // fails at its start.
   EXPECT_GT(read, 0) << name;
   EXPECT_GT(refused, 0) << name;
 }

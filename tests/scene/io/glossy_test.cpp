@@ -11,9 +11,9 @@ Spectrum grey(float value) {
   return Spectrum::Constant(3, value);
 }
 
-// Radiance is n^2 larger inside, and by reciprocity the transmittances of both directions differ by
-// this factor: (1 - F_i) n^2 = 1 - F_o (Saunderson 1942). The error of the midpoint rule over 1000
-// steps at the square-root edge of total reflection is less than a step, 1e-3.
+// Radiance is n^2 larger inside; otherwise the transmittances in both directions are equal by
+// reciprocity: (1 - F_i) n^2 = 1 - F_o (Saunderson 1942). The midpoint rule over 1000 steps misses
+// the square-root edge of total reflection by less than a step, 1e-3.
 TEST(Glossy, WhatPassesInwardsAndOutwardsDiffersByTheSquareOfTheIndex) {
   for (const double n : {1.1, 1.33, 1.5, 2.4}) {
     const double outside = diffuse_fresnel(n), inside = diffuse_fresnel(1.0 / n);
@@ -37,7 +37,7 @@ TEST(Glossy, ABlackBaseLeavesTheCoatsReflection) {
   EXPECT_EQ(coated_reflectance(grey(0.0f), 1.5, true, grey(0.0f))[0], 0.0f);
 }
 
-// A metal with extinction 0 reflects like glass; one with huge extinction reflects everything.
+// A metal without absorption reflects as glass; with a huge one it reflects everything.
 TEST(Glossy, MetalsReflectByTheirComplexIndex) {
   EXPECT_NEAR(diffuse_metal_reflectance(grey(1.5f), grey(0.0f))[0], diffuse_fresnel(1.5), 1e-7);
   EXPECT_NEAR(diffuse_metal_reflectance(grey(1.5f), grey(1e6f))[0], 1.0, 1e-6);
@@ -52,7 +52,7 @@ TEST(Glossy, MetalsReflectTheMeanOverTheHemisphere) {
   EXPECT_LT((mean - expected).abs().maxCoeff(), 3e-5f);
 }
 
-// Transmission of a pane with all inner reflections: sum (1-F)^2 F^2k.
+// The transmittance is the sum (1-F)^2 F^2k over the reflections between the faces.
 TEST(Glossy, APanePassesWhatItsTwoFacesLeave) {
   double sum = 0.0;
   for (int k = 0; k < 20; ++k) sum += 0.96 * 0.96 * std::pow(0.04, 2 * k);

@@ -1,4 +1,4 @@
-// Lighting design of native files: grids and power of lamps.
+// The lighting design in a native file.
 #include "scene/io/lighting_design.h"
 
 #include <gtest/gtest.h>
@@ -59,8 +59,8 @@ surface = "floor"
   EXPECT_FALSE(design.grids[1].margin.has_value());
 }
 
-/// `watts` of a lamp overrides the power in its photometric file. With a flux other than the file's
-/// the luminaire is another one, of unknown power.
+/// The key `watts` takes precedence over the photometric file. A flux other than the file's belongs
+/// to another luminaire, of unknown power.
 TEST_F(Design, KnowsThePowerOfLamps) {
   const double of_file = read_luminaire(LIGHTWELL_DOCS "/luminaires/bracket.ies").watts;
   ASSERT_GT(of_file, 0.0);

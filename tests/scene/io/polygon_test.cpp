@@ -18,7 +18,7 @@ Loop square(double low, double high, double z = 0.0) {
   return {{low, low, z}, {high, low, z}, {high, high, z}, {low, high, z}};
 }
 
-// `polygon` rotated and moved to a general position, and scaled down.
+// A polygon turned and moved out of every symmetry, and scaled down.
 Polygon moved(Polygon polygon) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -73,7 +73,7 @@ TEST(PolygonFault, DoesNotDependOnPlaceAndOrientation) {
 
 TEST(DeviationFromPlane, IsTheShareOfTheSize) {
   Loop loop = square(0, 1);
-  loop[2].z() = 0.04;  // the plane through the mean passes 0.01 from each vertex
+  loop[2].z() = 0.04;  // the plane through the mean is 0.01 from each vertex
   EXPECT_NEAR(deviation_from_plane({loop}), 0.01 / std::sqrt(2.0), 1e-5);
   EXPECT_NEAR(deviation_from_plane(moved({loop})), 0.01 / std::sqrt(2.0), 1e-5);
 }
@@ -88,7 +88,7 @@ TEST(SplitIntoTriangles, CutsAQuadrilateralFromTheFirstVertex) {
 }
 
 TEST(SplitIntoTriangles, StaysInsideAConcaveQuadrilateral) {
-  // The diagonal v0-v2 would be outside, beyond the notch at v1.
+  // The diagonal v0-v2 would run outside, past the notch at v1.
   const Loop arrow = {{0, 0, 0}, {1, 1, 0.01}, {4, 0, 0}, {1, 4, 0}};
   const auto triangles = split_into_triangles(arrow);
   ASSERT_EQ(triangles.size(), 2u);
@@ -156,7 +156,8 @@ TEST(AddRepaired, KeepsWhatIsSoundAndCountsTheRest) {
 }
 
 TEST(AddRepaired, OpensAHoleThatIsJoinedByABridge) {
-  // The boundary runs from (0,0) to the hole's corner, clockwise around the hole, and back.
+  // The loop runs from (0,0) to the hole's corner, clockwise round the hole, and back along the
+  // same edge.
   MeshBuilder builder;
   Repairs repairs;
   add_repaired(builder,

@@ -14,7 +14,7 @@ const SpectrumSamples hat{.wavelengths_nm = {400, 500, 700}, .values = {0, 2, 0}
 TEST(SpectrumMean, IsTheExactMeanOfTheBrokenLine) {
   EXPECT_NEAR(mean(hat, 400, 700), 1.0, 1e-12);  // a triangle of height 2
   EXPECT_NEAR(mean(hat, 400, 500), 1.0, 1e-12);
-  EXPECT_NEAR(mean(hat, 410, 420), 0.3, 1e-12);  // between two samples: the midpoint's value
+  EXPECT_NEAR(mean(hat, 410, 420), 0.3, 1e-12);  // the value in the middle between two samples
   // 450-500: mean 1.5 over 50 nm; 500-600: 1.5 over 100 nm.
   EXPECT_NEAR(mean(hat, 450, 600), 1.5, 1e-12);
 }

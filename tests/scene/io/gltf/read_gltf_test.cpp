@@ -47,7 +47,7 @@ TEST(GltfFile, StrengthMultipliesEmissionInBothMaterialModels) {
     const float factor = model == "pbr" ? 0.9f : 0.3f;
     EXPECT_NEAR(weak[0], pi * factor, 1e-6f);
     EXPECT_NEAR(strong[2], pi * 0.9f * 5.0f, 1e-5f);
-    // The texture scales both by the same factor.
+    // The picture dims both materials alike.
     const float dim = material_called(scene, model + "EmissiveGrayTexture").emission[0];
     EXPECT_GT(dim, 0.0f);
     EXPECT_LT(dim, pi * 0.9f);
@@ -67,7 +67,7 @@ TEST(GltfFile, ClosedBodiesOfClearMaterialKeepTheirIndex) {
 }
 
 TEST_F(Gltf, NodesPlaceTheirChildren) {
-  // The node scales by 2 and rotates by 90 degrees about z; its parent translates.
+  // The child is scaled by 2, turned by 90 degrees about z, then moved by its parent.
   const Scene scene = read(square_gltf(
       R"(,"scenes":[{"nodes":[0]}],"nodes":[{"translation":[10,0,0],"children":[1,2]},
       {"mesh":0,"name":"turned","rotation":[0,0,0.70710678118654752,0.70710678118654752],"scale":[2,2,2]},
@@ -137,7 +137,7 @@ TEST_F(Gltf, ClearSheetsAreThinPanesUnlessTheyHaveAThickness) {
   EXPECT_TRUE(pane.dielectric->thin);
   EXPECT_FLOAT_EQ(pane.dielectric->index_of_refraction, 1.5f);
   EXPECT_FLOAT_EQ(pane.dielectric->tint[0], 0.5f);
-  // The transmittance is a half after 1 m and a quarter after 2 m, so each crossing has a half.
+  // Transmittance is 1/2 after 1 m and 1/4 after 2 m, so 1/2 for each crossing.
   const Material solid = material(base + R"(,"KHR_materials_ior":{"ior":1.3},"KHR_materials_volume":
       {"thicknessFactor":2,"attenuationDistance":1,"attenuationColor":[0.5,0.5,0.5]}}})");
   ASSERT_TRUE(solid.dielectric.has_value());

@@ -39,14 +39,15 @@ struct Measured {
 
 class RealFiles : public testing::TestWithParam<Measured> {};
 
-// Flux of the table by the trapezoid rule with exact solid angles, computed with another program.
+// Expected fluxes: the whole table by the trapezoid rule with exact solid angles, computed by
+// another program.
 TEST_P(RealFiles, FluxAndPeakAreThoseOfTheTable) {
   const LuminaireFile luminaire = read_luminaire(data(GetParam().file));
   EXPECT_NEAR(luminaire.flux() / GetParam().lumens, 1.0, 0.015);
   EXPECT_NEAR(luminaire.web->peak() / GetParam().candela, 1.0, 1e-3);
   EXPECT_FALSE(luminaire.is_radiometric);
 
-  // Drawn directions have the same flux, with weights that hardly vary.
+  // Sampled directions give the same flux, with nearly constant weights.
   double sum = 0.0, squares = 0.0;
   constexpr int draws = 1 << 14;
   for (int i = 0; i < draws; ++i) {
@@ -77,9 +78,10 @@ TEST(Luminaires, RadiantIntensityIsNotCandela) {
   EXPECT_EQ(uv.lamp_lumens, 0.0);
 }
 
-// The table is per 1000 lm of lamps and integrates to 10 times the light output ratio in percent.
+// The table is per 1000 lm of lamp flux and integrates to 10 times the light output ratio in
+// percent.
 TEST(Luminaires, EulumdatFilesKeepTheirLightOutputRatio) {
-  // All five have a light output ratio of 1, or were measured without lamps.
+  // In all five files the luminaire emits the whole lamp flux, or photometry is absolute.
   for (const auto& [file, lumens] :
        {std::pair("sample1.ldt", 1983.0), std::pair("sample3.ldt", 12800.0),
         std::pair("sample5.ldt", 611.9), std::pair("sample6.ldt", 1800.0),
@@ -126,7 +128,7 @@ TEST(Luminaires, PlanesGoOnAcrossTheLastToTheFirst) {
   EXPECT_NEAR(at(spot, 30.0, 352.5), between, 1e-9);
 }
 
-// A table whose values encode their angles: I = 100 + gamma + C / 10.
+// A table in which every value identifies its direction: I = 100 + gamma + C / 10.
 std::string ies(const std::string& planes, const std::vector<double>& angles,
                 const std::string& before = "IESNA:LM-63-1995\n",
                 const std::string& tilt = "NONE") {

@@ -25,7 +25,7 @@ class Mitsuba : public test::SceneFileTest {
   Scene read(const std::string& content) const {
     return read_file("scene.xml", "<scene version=\"3.0.0\">\n" + content + "</scene>");
   }
-  // The material of a rectangle with the BSDF.
+  // Material of a rectangle with this BSDF.
   Material material(const std::string& bsdf) const {
     return first_material(read("<shape type=\"rectangle\">" + bsdf + "</shape>"));
   }
@@ -52,8 +52,8 @@ TEST(MitsubaFile, TheCornellBoxIsReadWhole) {
   EXPECT_FALSE(shining.emits_both_sides);
   expect_near(normal_of(scene, 7), {0, -1, 0}, 1e-6);  // six digits in the file
   EXPECT_NEAR(area_of(mesh_of(scene, 7)), 4 * 0.235 * 0.19, 1e-6);
-  // Five sides of a cube of edge 2 around (0, 1, 0), at distance 1. Some matrices of the file turn
-  // the front outwards, without effect for two-sided materials.
+  // Five sides of a cube of edge 2 about (0, 1, 0), at distance 1 from the centre. Some of the
+  // file's matrices turn the front outwards, which has no effect on two-sided materials.
   const Eigen::Vector3d middle(0, 1, 0);
   for (std::size_t wall = 0; wall < 5; ++wall) {
     EXPECT_NEAR(area_of(mesh_of(scene, wall)), 4.0, 1e-5);
@@ -148,7 +148,7 @@ TEST_F(Mitsuba, MirroredShapesKeepTheirFront) {
   }
 }
 
-// The front of a facet is that of the mesh's normals, otherwise that of the order of its corners.
+// The normals of a mesh define its front; without normals the order of the corners does.
 TEST_F(Mitsuba, NormalsOfAMeshTellItsFront) {
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   folder.write("plain.obj", corners + "f 1 2 3\n");
@@ -172,7 +172,7 @@ TEST_F(Mitsuba, RoundShapesKeepTheirArea) {
   const std::string tube = R"(<shape type="cylinder"><point name="p0" x="1"/>
       <point name="p1" x="1" y="2"/><float name="radius" value="0.5"/></shape>)";
   EXPECT_NEAR(area_of(mesh_of(read(tube))), 2 * pi * 0.5 * 2, 1e-9);
-  // A sphere turned inside out becomes a polygon mesh with normals towards the centre.
+  // A sphere turned inside out is a polygon mesh with normals towards its centre.
   const Scene hollow = read(R"(<shape type="sphere"><float name="radius" value="2"/>
       <boolean name="flip_normals" value="true"/></shape>)");
   EXPECT_NEAR(area_of(mesh_of(hollow)), 16 * pi, 1e-9);
@@ -274,7 +274,7 @@ TEST_F(Mitsuba, PicturesBecomeTheirMeanColour) {
   const std::string picture = R"(<texture type="bitmap" name="reflectance">
       <string name="filename" value="my picture.png"/></texture>)";
   EXPECT_FLOAT_EQ(material("<bsdf type='diffuse'>" + picture + "</bsdf>").reflectance[0], 0.5f);
-  // A mask removes the black, transparent half.
+  // A mask cuts away the black, transparent half.
   EXPECT_FLOAT_EQ(material("<bsdf type='mask'><bsdf type='diffuse'>" + picture + "</bsdf></bsdf>")
                       .reflectance[0],
                   1.0f);
@@ -299,7 +299,7 @@ TEST_F(Mitsuba, AMaskCutsOnlyWhereItIs) {
 }
 
 TEST_F(Mitsuba, TexturesThatShareTheirPartsAreReadOnce) {
-  // Read anew for each reference, these would be 2^32 checkerboards.
+  // Without sharing, these would be 2^32 checkerboards.
   std::string boards = R"(<texture type="checkerboard" id="t0"/>)";
   for (int i = 1; i < 32; ++i) {
     boards += "<texture type='checkerboard' id='t" + std::to_string(i) + "'>";
@@ -310,7 +310,7 @@ TEST_F(Mitsuba, TexturesThatShareTheirPartsAreReadOnce) {
   }
   const Scene scene = read(boards + R"(<shape type="cube"><bsdf type="diffuse">
       <ref name="reflectance" id="t31"/></bsdf></shape>)");
-  EXPECT_FLOAT_EQ(scene.materials.at(0).reflectance[0], 0.3f);  // mean of the defaults 0.4 and 0.2
+  EXPECT_FLOAT_EQ(scene.materials.at(0).reflectance[0], 0.3f);  // mean of the defaults, 0.4 and 0.2
 }
 
 TEST_F(Mitsuba, TexturesOfANumberCountByTheirMean) {
@@ -377,8 +377,8 @@ TEST_F(Mitsuba, FlattenedFacesAreDroppedWithACount) {
   EXPECT_EQ(scene.dropped_polygons, 4);
 }
 
-// The fourth corner lies 1e-6 of the square's edge off the plane of the others: planar as given,
-// but not after scaling by 1000 in height.
+// The fourth corner is 1e-6 of the square's edge off the plane of the others: planar as given, but
+// not after a scaling of the height by 1000.
 TEST_F(Mitsuba, WhatAnUnevenScaleBendsIsSplit) {
   folder.write("tile.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1e-6\nf 1 2 3 4\n");
   const auto tile = [&](const std::string& scale) {

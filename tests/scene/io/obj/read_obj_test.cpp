@@ -44,7 +44,7 @@ void expect_rgb(const Spectrum& actual, float r, float g, float b) {
   EXPECT_FLOAT_EQ(actual[2], b);
 }
 
-// The scene of an OBJ file with this text, beside an MTL file.
+// Reads an OBJ file (and an MTL file) with these lines from one folder.
 Scene read_text(const std::string& obj, const std::string& mtl = "") {
   const TemporaryFolder folder;
   if (!mtl.empty()) folder.write("text.mtl", mtl);
@@ -67,7 +67,7 @@ TEST(ReadObj, KeepsPolygonsAsTheyAre) {
   ASSERT_EQ(floor_and_ceiling.facets.size(), 2u);
   EXPECT_EQ(floor_and_ceiling.facets[0].boundary.size(), 4u);
   EXPECT_DOUBLE_EQ(facet_area(floor_and_ceiling, floor_and_ceiling.facets[0]), 12.0);
-  // Negative indices in reverse order: the ceiling faces down.
+  // Backwards indices in reverse order: the ceiling faces down.
   EXPECT_EQ(facet_normal(floor_and_ceiling, floor_and_ceiling.facets[1]),
             -Eigen::Vector3d::UnitZ());
   const PolygonMesh& concave = mesh(room(), "fittings/right (forgotten)");
@@ -92,7 +92,7 @@ TEST(ReadObj, NamesTheLineWhereAContinuedOneBegins) {
     }
     return "nothing was refused";
   };
-  // The text follows a line with mtllib.
+  // An mtllib line precedes these lines.
   EXPECT_EQ(line_of("v 0 0 0\nv 1 0\\\nx\nv 0 1 0\n"), "3");
   EXPECT_EQ(line_of("v 0 0 0\nv 1 0 0\nv 1 0\\\n x \\\n"), "4") << "where the file ends";
 }

@@ -11,7 +11,7 @@ namespace {
 const std::filesystem::path folder = LIGHTWELL_TEST_DATA "/scene";
 
 TEST(PictureMean, IsTakenOfLightNotOfItsCode) {
-  // One white pixel, opaque, and one black one, transparent.
+  // A white, opaque pixel and a black, transparent one.
   const auto mean = picture_mean(content_of(folder / "two-pixels.png"), PictureCode::srgb, "it");
   ASSERT_TRUE(mean.has_value());
   EXPECT_DOUBLE_EQ(mean->color[0], 0.5);
@@ -19,8 +19,8 @@ TEST(PictureMean, IsTakenOfLightNotOfItsCode) {
   EXPECT_DOUBLE_EQ(mean->alpha, 0.5);
 }
 
-// A grey of code 188 is ((188/255 + 0.055) / 1.055)^2.4 = 0.5029. JPEG may be off by one code,
-// which is 0.006 there.
+// A grey of 188 of 255: ((188/255 + 0.055) / 1.055)^2.4 = 0.5029. A JPEG decoder may be off by one
+// code, a difference of 0.006 there.
 TEST(PictureMean, DecodesJpegAndTheSrgbCurve) {
   PictureFiles files;
   const auto mean = files.mean(folder / "grey.jpg", PictureCode::srgb);

@@ -1,4 +1,4 @@
-// Commands in RADIANCE files: transformations, generators, formulas, and what is refused.
+// Commands in RADIANCE files: transformations, generators, formulas, refused commands.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -32,7 +32,7 @@ class RadianceCommands : public test::SceneFileTest {
   Scene read(const std::string& content) const {
     return read_file("scene.rad", grey + content + "\n");
   }
-  // The square (1,0) to (2,1) after xform with these arguments; its first corner.
+  // First corner of the square (1,0) to (2,1) after xform with these arguments.
   Eigen::Vector3d corner(const std::string& arguments) const {
     return mesh_of(read("!xform " + arguments + " square.rad")).vertices.at(0);
   }
@@ -45,7 +45,7 @@ void expect_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tole
   EXPECT_LT((a - b).norm(), tolerance) << a.transpose() << " is not " << b.transpose();
 }
 
-// A mesh is closed if every edge is crossed once in either direction. 1e-9: rounding of positions.
+// True if every edge of a mesh occurs once in either direction. Positions are rounded to 1e-9.
 bool is_closed(const PolygonMesh& mesh) {
   std::map<std::array<long, 6>, int> crossed;
   for (const Facet& facet : mesh.facets) {
@@ -65,7 +65,7 @@ bool is_closed(const PolygonMesh& mesh) {
   return std::ranges::all_of(crossed, [](const auto& edge) { return edge.second == 0; });
 }
 
-// Volume as a third of the sum of p . n dA (Gauss); positive if the fronts face outwards.
+// Volume, positive where the fronts face outwards: a third of the sum of p . n dA (Gauss).
 double volume(const PolygonMesh& mesh) {
   double sum = 0.0;
   for (const Facet& facet : mesh.facets) {
@@ -156,7 +156,7 @@ TEST_F(RadianceCommands, ABevelledBoxLosesItsEdges) {
   const PolygonMesh box = mesh_of(read("!genbox grey box 4 4 4 -b 1"));
   EXPECT_EQ(box.facets.size(), 6u + 12u + 8u);
   EXPECT_TRUE(is_closed(box));
-  // The volume is 64 minus 12 edges of length 2 and section 1/2, minus 8 corners of 1 - 1/6.
+  // 64 minus 12 edges of length 2 and section 1/2, and 8 corners of 1 - 1/6.
   EXPECT_NEAR(volume(box), 64.0 - 12.0 - 8.0 * 5.0 / 6.0, 1e-12);
 }
 
@@ -213,8 +213,8 @@ TEST_F(RadianceCommands, ASurfaceOfRevolutionIsClosedWhereItsOutlineIs) {
       mesh_of(read("!genrev grey torus '.25*sin(2*PI*t)' '1+.25*cos(2*PI*t)' 32 -s"));
   EXPECT_EQ(torus.facets.size(), 32u * 32u);
   EXPECT_TRUE(is_closed(torus));
-  // The volume is 2 pi^2 R r^2, minus the loss of the tube's section by 32 chords (0.64 %), plus
-  // the gain by enlarged polygons about the axis (R^2 by 0.32 %, less 0.64 % of a disk's).
+  // 2 pi^2 R r^2, minus the loss of 32 chords in the tube's section (0.64 %), plus the gain of the
+  // enlarged polygons about the axis (R^2 by 0.32 %, less 0.64 % of a disk's).
   const double exact = 2 * pi * pi * 0.25 * 0.25;
   EXPECT_NEAR(volume(torus), exact, 0.01 * exact);
   EXPECT_GT(volume(torus), 0.0);
@@ -250,9 +250,9 @@ TEST_F(RadianceCommands, AWormIsSpheresAndConesThatTouchThem) {
   const Scene straight = read("!genworm grey w 0 0 '3*t' .5 3");
   EXPECT_EQ(straight.surfaces.size(), 4u + 3u);
   EXPECT_NEAR(area_of(mesh_of(straight, 1)), 2 * pi * 0.5 * 1.0, 1e-12);
-  // The cone is tangent to both spheres, so its generator is perpendicular to their radii: from
-  // radius 1 to 0.5 at distance 1 it has length sqrt(1 - 0.25), and the radii of its ends are those
-  // of the spheres times sqrt(1 - 0.25).
+  // A cone tangent to both spheres is perpendicular to their radii at the contacts. From radius 1
+  // to 0.5 at distance 1 its slant length is sqrt(1 - 0.25), and its end radii are those of the
+  // spheres times sqrt(1 - 0.25).
   const Scene thinner = read("!genworm grey w 0 0 t '1-t/2' 1");
   const double shrink = std::sqrt(0.75);
   EXPECT_NEAR(area_of(mesh_of(thinner, 1)), pi * (1 + 0.5) * shrink * shrink, 1e-12);
@@ -329,11 +329,12 @@ TEST_F(RadianceCommands, WrongArgumentsAreNamed) {
   wrong("genblinds grey b 1 1 1 2.5 0", "whole number");
 }
 
-// Files that would take hours or all memory; the reader must refuse them in bounded time.
+// Limits on time: without limits each scene would run for hours or exhaust the memory.
 class RadianceRunaway : public RadianceCommands {
  protected:
   void expect_refused_soon(const std::string& content, const std::string& says_this) const {
-    const std::clock_t start = std::clock();  // processor time, since the machine may be busy
+    const std::clock_t start =
+        std::clock();  // CPU time, since other processes may load the machine
     EXPECT_TRUE(says(error(content), says_this)) << content.substr(0, 80);
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20.0);
   }
@@ -365,7 +366,7 @@ TEST_F(RadianceRunaway, CirclesOfFilesAreRefused) {
 }
 
 TEST_F(RadianceRunaway, FilesThatMultiplyAreRefused) {
-  // Inclusion ten levels deep, ten times per level, reads 10^10 empty files.
+  // Nested ten deep with ten includes each: 10^10 empty files.
   for (int level = 0; level < 10; ++level) {
     std::string text;
     for (int i = 0; i < 10; ++i) text += "!cat level" + std::to_string(level + 1) + ".rad\n";

@@ -77,7 +77,7 @@ TEST_F(RadianceProjects, StandardViewsLookFromTheZonesSides) {
   const Camera down = camera(zone + "view= Z\nUP= Z\n");
   expect_near(down.direction, {0, 0, -1});
   expect_near(down.up, {0, 1, 0});
-  expect_near(camera("").direction, {-1, 0, 0});  // rad's default view, by the scene's bounds
+  expect_near(camera("").direction, {-1, 0, 0});  // rad's default view of the scene's bounds
   expect_near(camera("view= Z\nUP= Y\n").direction, {0, 0, -1});  // the scene is flat in z
 }
 

@@ -1,4 +1,4 @@
-// RADIANCE's primitives, materials, projects and views.
+// Conversion of RADIANCE's primitives, materials, projects and views.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -29,11 +29,11 @@ class Radiance : public test::SceneFileTest {
   Scene read(const std::string& content, const std::string& name = "scene.rad") const {
     return read_file(name, content);
   }
-  // The scene of a surface of this type with material `grey` and these real arguments.
+  // A surface of material `grey` with this type and these real arguments.
   Scene shape(const std::string& type, const std::string& arguments) const {
     return read(grey + "grey " + type + " thing 0 0 " + arguments);
   }
-  // The material of a square, defined by the text under the name m.
+  // Material of a square; the definitions name it m.
   Material material(const std::string& definitions) const {
     return first_material(read(definitions + "\nm " + square));
   }
@@ -52,7 +52,7 @@ void expect_rgb(const Spectrum& spectrum, const std::array<double, 3>& rgb) {
   }
 }
 
-// Share of facets whose front faces away from the z axis.
+// Share of the facets whose front faces away from the z axis.
 double outward_share(const PolygonMesh& mesh) {
   int outward = 0;
   for (const Facet& facet : mesh.facets) {
@@ -120,7 +120,7 @@ TEST_F(Radiance, SpheresAreExact) {
   const auto& sphere = std::get<Sphere>(scene.surfaces.at(0).shape);
   expect_near(sphere.center, {1, 2, 3});
   EXPECT_EQ(sphere.radius, 0.5);
-  // Plastic is two-sided.
+  // Plastic has two equal sides.
   EXPECT_TRUE(std::holds_alternative<Sphere>(shape("bubble", "4 0 0 0 1").surfaces[0].shape));
 }
 
@@ -151,7 +151,7 @@ TEST_F(Radiance, ConesAndCupsHaveTheirAreaAndFront) {
   const Scene cup = shape("cup", "8 0 0 0 0 0 4 1 4");
   EXPECT_NEAR(area_of(mesh_of(cup)), pi * (1 + 4) * 5, 1e-12);
   EXPECT_EQ(outward_share(mesh_of(cup)), 0.0);
-  // Cones as flat as a ring and as steep as a cylinder.
+  // Limits of a cone: as flat as a ring, and as steep as a cylinder.
   EXPECT_NEAR(area_of(mesh_of(shape("cone", "8 0 0 0 0 0 1e-5 1 2"))), pi * 3, 1e-6);
   EXPECT_NEAR(area_of(mesh_of(shape("cone", "8 0 0 0 0 0 1 2 2"))), 2 * pi * 2, 1e-12);
 }
@@ -190,7 +190,8 @@ TEST_F(Radiance, LightIsPiTimesItsRadianceFromTheFrontAt179LumensPerWatt) {
   expect_rgb(light.emission / static_cast<float>(pi), {1, 2, 3});
   EXPECT_TRUE(light.one_sided && !light.emits_both_sides);
   expect_rgb(light.reflectance, {0, 0, 0});
-  // RADIANCE weighs its primaries by 0.265, 0.670, 0.065; white (1, 1, 1) has the same luminance.
+  // RADIANCE weights its primaries by 0.265, 0.670 and 0.065; the weights agree for white (1, 1,
+  // 1).
   EXPECT_NEAR(luminous(scene.bands, Spectrum::Ones(3)), 179.0, 179e-6);
 }
 
@@ -202,7 +203,8 @@ TEST_F(Radiance, AGlowHasFourNumbersAndASpotThePowerOfItsBeam) {
 }
 
 TEST_F(Radiance, GlassPassesWhatItsTwoFacesAndItsBodyLeave) {
-  // F = ((n - 1) / (n + 1))^2; with t = 1 a pane transmits (1 - F) / (1 + F), without absorption.
+  // F = ((n - 1) / (n + 1))^2. A pane with t = 1 passes (1 - F) / (1 + F), all light that is not
+  // reflected.
   const Material clear = material("void glass m 0 0 3 1 1 1");
   EXPECT_TRUE(clear.dielectric->thin);
   EXPECT_FLOAT_EQ(clear.dielectric->index_of_refraction, 1.52f);

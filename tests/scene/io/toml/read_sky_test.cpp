@@ -1,4 +1,4 @@
-// Skies of scene files: native, Mitsuba, environment maps.
+// Skies in scene files: native, Mitsuba, environment maps.
 #include <ImfArray.h>
 #include <ImfRgbaFile.h>
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST_F(NativeSky, OvercastSkyComesToItsIlluminance) {
   ASSERT_TRUE(scene.sky);
   EXPECT_EQ(scene.sky->kind, SkyKind::overcast);
   EXPECT_NEAR(lux(scene), 10000.0, 2e-6 * 10000.0);  // summed in floats
-  // The ground reflects 0.2 by default.
+  // The default reflectance of the ground is 0.2.
   EXPECT_NEAR(luminous(scene.bands, scene.sky->ground), 0.2 * 10000.0 / pi,
               2e-6 * 0.2 * 10000.0 / pi);
   EXPECT_TRUE(scene.sky->up.isApprox(Eigen::Vector3d::UnitZ()));
@@ -100,7 +100,7 @@ illuminance = 90000
 TEST_F(NativeSky, SunAloneIsAllowedAndOneBelowTheHorizonIsNoSun) {
   const Scene day =
       read("[sky]\nkind = 'none'\n[sky.sun]\nazimuth = 180\naltitude = 30\nirradiance = 800\n");
-  EXPECT_EQ(free_source_count(day), 2);  // the ground, which reflects the sun, and the sun
+  EXPECT_EQ(free_source_count(day), 2);  // sun, and ground lit by the sun
   const Scene night =
       read("[sky]\nkind = 'none'\n[sky.sun]\nazimuth = 180\naltitude = -3\nirradiance = 800\n");
   EXPECT_FALSE(night.sky->sun);
@@ -143,7 +143,7 @@ TEST_F(NativeSky, FaultsAreSentences) {
             std::string::npos);
 }
 
-// A picture of 16 x 2 pixels, the upper row run-length encoded, the lower row uncompressed.
+// A picture of 16 x 2 pixels, the upper row run-length encoded, the lower row flat.
 std::string rgbe_picture() {
   std::string file = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 16\n";
   file += std::string("\x02\x02\x00\x10", 4);
@@ -234,7 +234,7 @@ TEST_F(MitsubaSky, MapIsTurnedByItsTransform) {
                                                               "\x80\x80\x80\x81\x40\x40\x40\x81"
                                                               "\x20\x20\x20\x81\x10\x10\x10\x81",
                                                               16);
-  // The pixels are centred an eighth of a turn beyond the longitudes of -z, +x, +z and -x.
+  // Pixel centres are an eighth of a turn beyond the longitudes of -z, +x, +z and -x.
   const std::string file = "<string name=\"filename\" value=\"sky.hdr\"/>";
   const Scene plain = read("<emitter type=\"envmap\">" + file + "</emitter>");
   const Eigen::Vector3d place = Eigen::Vector3d(1, 0, -1).normalized();

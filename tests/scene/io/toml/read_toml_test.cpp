@@ -53,7 +53,7 @@ double volume(const PolygonMesh& m) {
 void expect_spectrum(const Spectrum& actual, std::vector<float> expected) {
   ASSERT_EQ(actual.size(), static_cast<int>(expected.size()));
   for (int k = 0; k < actual.size(); ++k) {
-    // Errors are the rounding of a value to float, and one product.
+    // The tolerance covers a value rounded to float and one product.
     EXPECT_NEAR(actual[k], expected[static_cast<std::size_t>(k)],
                 2e-7f * expected[static_cast<std::size_t>(k)])
         << "band " << k;
@@ -138,7 +138,7 @@ focus_distance = 50
   EXPECT_FLOAT_EQ(frosted.absorption[2], 3.0f);  // per metre, whatever the unit
   EXPECT_FALSE(frosted.thin);
   EXPECT_TRUE(scene.materials.at(2).dielectric.value().thin);
-  // 90 degrees over 36 mm are a focal length of 18 mm and an aperture of 9 mm diameter.
+  // A field of 90 degrees over 36 mm: focal length 18 mm, aperture diameter 9 mm.
   EXPECT_NEAR(scene.cameras.at(0).lens_radius, 0.0045, 1e-12);
   EXPECT_DOUBLE_EQ(scene.cameras.at(0).focus_distance, 1.5);
   EXPECT_EQ(scene.cameras.at(0).blades, 6);
@@ -150,7 +150,7 @@ TEST(ReadToml, MaterialsEmit) {
   // M = pi L; twice the band means 17, 11.8 and 4 of the broken line.
   expect_spectrum(material_of(s, "tube").emission, {pi * 34.0f, pi * 23.6f, pi * 8.0f});
   expect_spectrum(material_of(s, "spot").emission, {1, 1, 1});  // 0.01 W/nm in 100 nm
-  // The power is that of two screens of 1 m^2, two sides each.
+  // Two screens of 1 m^2 with two emitting sides each.
   expect_spectrum(material_of(s, "screen").emission, {0.5f, 1.0f, 1.5f});
   EXPECT_TRUE(material_of(s, "screen").emits_both_sides);
   EXPECT_FALSE(material_of(s, "tube").emits_both_sides);
@@ -175,7 +175,7 @@ TEST(ReadToml, ShapesAreScaledTurnedAndMoved) {
   for (const auto& v : crate.vertices) box.extend(v);
   EXPECT_TRUE(box.min().isApprox(Eigen::Vector3d(2.1, 1.6, 0.0), 1e-12));
   EXPECT_TRUE(box.max().isApprox(Eigen::Vector3d(2.9, 2.4, 0.8), 1e-12));
-  // (0,0,60) about x by 90 degrees around (0,0,50): 10 above the pivot becomes y = -10.
+  // (0,0,60), rotated about x by 90 degrees around (0,0,50): 10 above the pivot becomes y = -10.
   const PolygonMesh& mirrors = mesh(everything(), "surface4");
   const auto& corner = mirrors.vertices[static_cast<std::size_t>(mirrors.facets[1].boundary[0])];
   EXPECT_TRUE(corner.isApprox(Eigen::Vector3d(0.1, 3.8, 0.5), 1e-12)) << corner.transpose();
@@ -217,7 +217,7 @@ TEST(ReadToml, QuarterTurnsAreExact) {
 }
 
 TEST(ReadToml, HolesOfEitherWindingAreTakenOut) {
-  // The area is 1 m^2 minus two panes of 0.35 x 0.8.
+  // 1 m^2 minus two panes of 0.35 x 0.8.
   EXPECT_NEAR(area(mesh(everything(), "window frame")), 1.0 - 2 * 0.35 * 0.8, 1e-12);
 }
 
@@ -318,7 +318,7 @@ TEST(SceneFormatPage, ItsExampleIsAScene) {
   EXPECT_TRUE(s.notes.empty());
   EXPECT_EQ(s.surfaces.size(), 7u);
   EXPECT_EQ(s.cameras.size(), 1u);
-  // The panel emits 12 W from 1 m^2; floor and ceiling close the room, which faces inwards.
+  // The panel emits 12 W from 1 m^2. Floor and ceiling close the room, which faces inwards.
   expect_spectrum(material_of(s, "panel").emission, {12, 12, 11});
   const double shell = volume(mesh(s, "floor")) + volume(mesh(s, "ceiling")) +
                        volume(mesh(s, "panel")) + volume(mesh(s, "walls"));

@@ -158,7 +158,7 @@ O 2  1  2  3  4
 }
 
 TEST(ReadVs3, PlanesWithShapesAreTheSamePolygons) {
-  // Azimuth 90 faces east (+x), tilt 0 faces up. u points to the right as seen from the front.
+  // Azimuth 90 faces east (+x); tilt 0 faces up. u points to the right as seen from the front.
   const NumberedScene numbered = read(R"(F 3a
 S 1 R 0 0 0.9 east
   1. 2. 3.   90. 90.   4. 5.
@@ -175,7 +175,7 @@ O 3 T
     const auto& mesh = std::get<PolygonMesh>(numbered.scene.surfaces[s].shape);
     return facet_normal(mesh, mesh.facets[0]);
   };
-  // Seen from the east, a face that faces east has north (+y) on the right.
+  // Seen from the east, looking west at the east face, north (+y) is on the right.
   const std::vector<Eigen::Vector3d> east = {{1, 2, 8}, {1, 2, 3}, {1, 6, 3}, {1, 6, 8}};
   const std::vector<Eigen::Vector3d> floor = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -221,7 +221,7 @@ f 3 2 1
 g first
 f 1 2 3 4
 )"));
-  // The last facet is not planar and becomes two triangles of one row; the second has no area.
+  // The last polygon is not planar and becomes two triangles of one row; the second has no area.
   ASSERT_EQ(numbered.rows.size(), 4u);
   EXPECT_EQ(numbered.rows[0].name, "first");
   EXPECT_EQ(numbered.rows[1].name, "");
@@ -248,7 +248,7 @@ TEST_P(BadVs3, SaysWhatIsWrongAndWhere) {
   for (const char* part : GetParam().message) EXPECT_TRUE(says(message, part));
 }
 
-// Lines 1 to 14 are the wall's, so the first surface stands on line 15 ("\n" begins each text).
+// The wall has lines 1 to 14, so the first surface is on line 15 ("\n" begins each text).
 const std::vector<BadCase> bad_cases = {
     {"TwoDimensional", "F 2\n", {"bad.vs3:1:", "'2'", "3 and 3a"}},
     {"TwoDimensionalG", "G 2\n", {"bad.vs3:1:", "two-dimensional"}},
