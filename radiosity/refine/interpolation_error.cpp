@@ -7,7 +7,6 @@
 #include "radiosity/refine/error_reference.h"
 #include "radiosity/refine/refine_solution.h"
 #include "scene/parallel.h"
-#include "scene/random_purpose.h"
 
 namespace lightwell {
 namespace {
