@@ -59,7 +59,7 @@ enum class ToneCurve {
   shoulder,  ///< linear up to half of white, then an exponential towards white
   linear,    ///< linear, clipped at white
   reinhard,  ///< Reinhard et al. 2002, equation 4, of luminance; white is 4 times the exposed white
-  filmic,    ///< toe and shoulder of photographic film
+  filmic,    ///< toe and shoulder of photographic film (Hable 2010)
 };
 
 struct ToneMapping {
