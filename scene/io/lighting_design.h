@@ -23,8 +23,8 @@ struct LightingDesign {
   std::vector<CalculationGrid> grids{};
   // Indexed like Scene::lamps; empty without lamps, or where the format holds no such data.
   std::vector<double> watts{};  ///< electric power; 0: unknown
-  std::vector<double>
-      luminous_height{};  ///< m, height of the luminous sides in the lamp's photometric file
+  /// Height in m of the luminous sides in the lamp's photometric file.
+  std::vector<double> luminous_height{};
 };
 
 /// Reads the design from the file of `scene`: the [[grids]] tables and the electric power of the

@@ -33,8 +33,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string did_you_mean(std::string_view given, const std::vector<std::string>& known) {
-  constexpr std::size_t longest =
-      64;  // names are short words; the table of edit distances is quadratic
+  // Names are short words; the table of edit distances is quadratic.
+  constexpr std::size_t longest = 64;
   if (given.size() > longest) return {};
   // At most about a third of the letters may differ: "reflectivity" still finds "reflectance", "x"
   // finds nothing.

@@ -18,7 +18,7 @@ struct NumberedScene {
   };
   Scene scene{};
   std::vector<Row> rows{};          ///< in the order of the file
-  std::vector<int> row_of_facet{};  ///< by scene-wide facet; -1: an obstruction without a number
+  std::vector<int> row_of_facet{};  ///< by scene-wide facet; -1: opaque, without a number
   bool is_enclosure = false;        ///< the file declares that its surfaces close a space
 };
 

@@ -29,8 +29,8 @@ Eigen::Vector3d newell(const Loop& loop) {
 
 Eigen::Vector3d mean_point(const Loop& loop) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const auto& p : loop)
-    sum += p - loop[0];  // relative to loop[0]: keeps digits far from the origin
+  // Relative to loop[0]: keeps digits far from the origin.
+  for (const auto& p : loop) sum += p - loop[0];
   return loop[0] + sum / static_cast<double>(loop.size());
 }
 
@@ -320,10 +320,10 @@ NormalLoop bent_normals(const Loop& loop, const NormalLoop& normals) {
   return is_flat ? NormalLoop{} : unit;
 }
 
-constexpr double linear =
-    2e-3;  // largest deviation of unit normals from a linear map over a polygon
-constexpr double alike =
-    3e-4;  // largest deviation from another facet's map; suits files of four decimals
+// Largest deviation of unit normals from a linear map over a polygon.
+constexpr double linear = 2e-3;
+// Largest deviation from another facet's map; suits files of four decimals.
+constexpr double alike = 3e-4;
 
 bool agrees(const NormalMap& map, const Loop& loop, const NormalLoop& unit, double tolerance) {
   for (std::size_t i = 0; i < loop.size(); ++i) {

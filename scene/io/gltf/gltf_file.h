@@ -24,6 +24,7 @@ class GltfFile {
   GltfFile& operator=(const GltfFile&) = delete;
 
   const GltfObject& root() const { return *root_; }
+  /// Number of members of a list ("nodes"); 0 if the file lacks the list.
   std::size_t count(const char* list) const;
   /// Member `index` of a list ("nodes"). Throws InputError naming `asking` if there is none.
   const GltfObject& at(const char* list, std::size_t index, const GltfObject& asking) const;

@@ -10,8 +10,8 @@
 namespace lightwell {
 namespace {
 
-constexpr double most_exact =
-    9007199254740992.0;  // 2^53: a double holds smaller whole numbers exactly
+// 2^53: a double holds smaller whole numbers exactly.
+constexpr double most_exact = 9007199254740992.0;
 
 }  // namespace
 

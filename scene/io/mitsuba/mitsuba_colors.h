@@ -46,7 +46,7 @@ class MitsubaColors {
   /// properties.
   std::optional<MitsubaTexture> texture(const MitsubaNode& owner, std::string_view property,
                                         Pixels pixels);
-  /// Mask of an opacity bitmap: the picture's alpha, or its colour if the picture has no alpha.
+  /// Mask of an opacity bitmap: the picture's alpha, or its red channel if the picture is opaque.
   /// Empty if the property is no bitmap.
   std::optional<Mask> mask(const MitsubaNode& owner, std::string_view property);
 
@@ -69,8 +69,8 @@ class MitsubaColors {
   const MitsubaTree& tree_;
   Remarks& remarks_;
   PictureFiles pictures_;
-  std::map<std::pair<const MitsubaNode*, Pixels>, Spectrum>
-      known_;  // several textures may share a part
+  // Several textures may share a part.
+  std::map<std::pair<const MitsubaNode*, Pixels>, Spectrum> known_;
 };
 
 }  // namespace lightwell

@@ -19,6 +19,7 @@ namespace lightwell {
 class MitsubaLoader {
  public:
   explicit MitsubaLoader(MitsubaTree& tree) : tree_(tree) {}
+  /// Fills the tree from a scene file; throws InputError as the constructor of MitsubaTree does.
   void load(const std::filesystem::path& path);
 
  private:
@@ -30,8 +31,8 @@ class MitsubaLoader {
 
   MitsubaTree& tree_;
   std::map<std::string, std::string, std::less<>> defaults_;
-  std::vector<std::filesystem::path>
-      open_;  // the current file and the files that include it, outermost first
+  // The current file and the files that include it, outermost first.
+  std::vector<std::filesystem::path> open_;
   int files_ = 0;
 };
 

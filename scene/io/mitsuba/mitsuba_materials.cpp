@@ -76,8 +76,8 @@ int MitsubaMaterials::of_shape(const MitsubaNode& shape, const std::string& shap
 
 void MitsubaMaterials::add_emission(const MitsubaNode& emitter, const std::string& name,
                                     Material& material) {
-  const auto intensity =
-      colors_.positive(emitter, "intensity");  // the property's name in Mitsuba 0.3
+  // The property's name in Mitsuba 0.3.
+  const auto intensity = colors_.positive(emitter, "intensity");
   const Spectrum radiance = intensity ? *intensity : colors_.positive_or(emitter, "radiance", 1.0f);
   material.emission = static_cast<float>(std::numbers::pi) * radiance;
   if (!material.emission.isFinite().all()) emitter.fail("has a radiance that is too large");

@@ -17,8 +17,8 @@ struct MitsubaNode {
   std::string type{};  ///< the plugin's name
   std::string id{};
   std::string name{};  ///< property name in the spelling of Mitsuba 2 and 3: "to_world"
-  std::vector<std::pair<std::string, std::string>>
-      attributes{};  ///< attributes other than those above
+  /// Attributes other than those above.
+  std::vector<std::pair<std::string, std::string>> attributes{};
   std::vector<MitsubaNode> children{};
   const std::filesystem::path* file = nullptr;
   int line = 0;

@@ -95,7 +95,7 @@ class ObjParser {
     content_.uv.emplace_back(u.value_or(none), u ? 1.0 - v.value_or(0.0) : none);
   }
 
-  // As for texture coordinates: a malformed normal is stored as zero.
+  // A malformed normal is stored as zero, for the same reason as malformed texture coordinates.
   void read_normal(std::string_view text) {
     const auto x = parse_finite(next_word(text)), y = parse_finite(next_word(text)),
                z = parse_finite(next_word(text));
@@ -176,7 +176,7 @@ class ObjParser {
     }
   }
 
-  // A "g" after an "o" divides the object; without an "o" the group is a surface of its own.
+  // A "g" after an "o" divides the object; without an "o" the name is the group's alone.
   int current_group() {
     if (current_group_ < 0) {
       const std::string name = !in_group_ || group_.empty() ? object_

@@ -22,8 +22,8 @@ struct ObjContent {
   std::vector<int> corners{};
   std::vector<Eigen::Vector3d> normals{};  ///< of any length; zero where the file lacks numbers
   std::vector<int> corner_normals{};  ///< by corner; -1: none; empty if the file has no normals
-  std::vector<Eigen::Vector2d>
-      uv{};                      ///< v points down from the picture's top, opposite to the file's
+  /// v points down from the picture's top, opposite to the file's direction.
+  std::vector<Eigen::Vector2d> uv{};
   std::vector<int> corner_uv{};  ///< by corner; -1: none; empty if the file has no uv
   std::vector<ObjFace> faces{};
   std::vector<std::string> groups{};

@@ -122,7 +122,8 @@ bool turned_by_normals(const ObjContent& content, const ObjFace& face, const Loo
 
 void build_surfaces(const ObjContent& content, const std::map<int, int>& materials,
                     MeshMaterials wanted, MeshFronts fronts, Scene& scene, FilePolygons& polygons) {
-  // Texture coordinates of a material from another source are kept if the caller requests them.
+  // A material from another source is unknown here, so the caller decides (with_uv) on texture
+  // coordinates.
   const auto keeps_uv = [&](int material) {
     const Material& m = scene.materials[static_cast<std::size_t>(material)];
     return wanted == MeshMaterials::with_uv || m.texture || m.mask;

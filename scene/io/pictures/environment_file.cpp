@@ -56,7 +56,8 @@ EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
     Imf::FrameBuffer buffer;
     constexpr std::array names = {"R", "G", "B"};
     constexpr std::ptrdiff_t pixel = 3 * sizeof(float);
-    // OpenEXR addresses pixels relative to the origin of the data window.
+    // OpenEXR addresses pixels by the file's absolute coordinates, so the base pointer is shifted
+    // by the minimum of the data window.
     const std::ptrdiff_t origin = window.min.x + window.min.y * std::ptrdiff_t{width};
     for (std::size_t k = 0; k < names.size(); ++k) {
       const Imf::Channel* channel = file.header().channels().findChannel(names[k]);

@@ -20,8 +20,8 @@
 namespace lightwell {
 namespace {
 
-constexpr double most_picture_pixels =
-    1e8;  // 10 000 x 10 000: larger pictures take seconds and gigabytes
+// 10 000 x 10 000: larger pictures take seconds and gigabytes.
+constexpr double most_picture_pixels = 1e8;
 
 // Eight bits each of r, g, b and alpha, rows from the top.
 struct PicturePixels {
@@ -51,8 +51,8 @@ PicturePixels decode_png(std::string_view bytes, const std::string& called) {
   } const guard{image};
   check_picture_size(image.width, image.height, called);
   image.format = PNG_FORMAT_RGBA;
-  image.flags |=
-      PNG_IMAGE_FLAG_16BIT_sRGB;  // 16-bit files without a statement are sRGB, as 8-bit ones are
+  // 16-bit files without a statement are sRGB, as 8-bit ones are.
+  image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
   PicturePixels pixels{.width = image.width,
                        .height = image.height,
                        .count = std::size_t{image.width} * image.height};

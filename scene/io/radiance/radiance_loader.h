@@ -49,8 +49,8 @@ class RadianceLoader {
   std::filesystem::path folder_;
   Remarks& remarks_;
   std::set<std::filesystem::path> paths_;
-  std::vector<std::filesystem::path>
-      open_;  // the current file and the files that include it, outermost first
+  // The current file and the files that include it, outermost first.
+  std::vector<std::filesystem::path> open_;
   int commands_ = 0;
   std::uintmax_t bytes_ = 0;
   std::int64_t facets_ = 0;  // output of generators, facets without area included

@@ -54,8 +54,8 @@ class RadianceMaterials {
   Remarks& remarks_;
   std::vector<Definition> definitions_;
   std::map<std::string, int, std::less<>> latest_;
-  std::map<int, std::optional<Material>>
-      known_;  // without it, a mixture of mixtures would be read 2^n times
+  // A cache: mixtures of mixtures would be read 2^n times.
+  std::map<int, std::optional<Material>> known_;
   NumberedNames names_;
 };
 

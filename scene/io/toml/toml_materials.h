@@ -17,6 +17,7 @@ struct TomlBands {
   BandEdges edges = {{600.0, 700.0}, {500.0, 600.0}, {400.0, 500.0}};
 };
 
+/// Reads the [bands] table: kind "rgb", or "spectral" with equally wide bands. Throws InputError.
 TomlBands read_toml_bands(const TomlValue& value);
 
 /// Reads an emitted quantity, >= 0: a number, a number for each band, or a spectrum.
@@ -31,6 +32,8 @@ struct TomlMaterial {
   std::optional<Spectrum> power{};  ///< W per band over all surfaces of the material
 };
 
+/// Reads a [materials.NAME] table, pictures through `pictures`. Throws InputError naming file,
+/// line, key and remedy, also if reflectance + specular exceed 1 in a band.
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures);
 

@@ -68,6 +68,7 @@ class TomlTable {
 
   bool has(std::string_view key) const { return table_->contains(key); }
   std::optional<TomlValue> find(std::string_view key) const;
+  /// Throws InputError if the table lacks `key`.
   TomlValue require(std::string_view key) const;
   /// The keys among `choices` that the table has.
   std::vector<std::string> present(std::initializer_list<const char*> choices) const;

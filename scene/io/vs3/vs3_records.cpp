@@ -158,8 +158,8 @@ class Vs3Parser {
 
   void read_surface(Vs3Record::Kind kind, const Words& words) {
     const bool is_obstruction = kind == Vs3Record::Kind::obstruction;
-    const std::size_t places =
-        is_shape_format_ ? 1 : 4;  // words for a shape's letter or vertex numbers
+    // Words for a shape's letter or vertex numbers.
+    const std::size_t places = is_shape_format_ ? 1 : 4;
     const std::size_t least = 2 + places + (is_obstruction ? 0 : 3);
     if (words.size() < least) {
       fail(fmt::format("a surface of {} words is too short; write '{} {}{}'", words.size(),

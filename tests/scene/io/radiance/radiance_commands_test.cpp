@@ -333,8 +333,8 @@ TEST_F(RadianceCommands, WrongArgumentsAreNamed) {
 class RadianceRunaway : public RadianceCommands {
  protected:
   void expect_refused_soon(const std::string& content, const std::string& says_this) const {
-    const std::clock_t start =
-        std::clock();  // CPU time, since other processes may load the machine
+    // CPU time, since other processes may load the machine.
+    const std::clock_t start = std::clock();
     EXPECT_TRUE(says(error(content), says_this)) << content.substr(0, 80);
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20.0);
   }
