@@ -33,8 +33,7 @@ constexpr int most_photons = 1 << 24;
 ///   the target is the first surface it meets, so each path belongs to one pair and the sum of
 ///   powers has no bias.
 /// - LightPaths follows the photon, by smooth normals where there are any. A photon keeps its
-/// power,
-///   so all light that a facet catches goes where the curved surface sends it.
+///   power, so all light that a facet catches goes where the curved surface sends it.
 /// - Light that only passes straight through smooth thin panes is left out: it is direct light.
 ///
 /// The same photons for any number of threads. Throws std::invalid_argument if the count is out of
