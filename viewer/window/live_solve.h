@@ -14,7 +14,7 @@ struct LiveLight {
   /// or with channels the bands of the first channel, then of the second, and so on.
   BandArray irradiance{};
   /// Ambient term: the estimated irradiance of every vertex by unshot light, W/m^2, a value for
-  /// each of these columns (Cohen et al. 1988).
+  /// each column of `irradiance` (Cohen et al. 1988).
   Eigen::ArrayXf ambient{};
   Eigen::ArrayXf unshot{};  ///< unshot light of each patch, lm/m^2, with all channels on
   int shots = 0;
@@ -81,7 +81,7 @@ class LiveSolve {
   /// its outcome whether the tolerance was reached. Not to be called after start().
   SolvedScene finish();
 
-  /// Begins a thread that shoots until the tolerance is reached, and then gathers.
+  /// Begins a thread that shoots until the tolerance or max_shots is reached, and then gathers.
   void start();
   void set_paused(bool paused);
   /// Shoots one patch, then pauses.

@@ -103,7 +103,7 @@ void show_live_window(const Scene& scene, const LiveViewOptions& live, const Vie
 /// Writes a strip of pictures of the light after each of `shots` (rising numbers of shots), from
 /// left to right, drawn as write_snapshot() does, all with the last one's exposure. If the
 /// tolerance is reached at fewer shots, the light at that point is shown. Returns the number of
-/// shots in the end, which does not depend on the computer, and neither does the picture. Throws as
+/// shots in the end. Number and pictures do not depend on the computer. Throws as
 /// write_snapshot() does, for the size of the strip too, and InputError if nothing emits light.
 int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::span<const int> shots,
                         const ViewOptions& options, const std::filesystem::path& png);

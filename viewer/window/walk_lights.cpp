@@ -9,8 +9,8 @@
 namespace lightwell {
 namespace {
 
-/// Shots up to which the exposure is metered again; the picture has about its final brightness
-/// then.
+/// Shots during which the exposure is metered again. Afterwards the picture has about its final
+/// brightness.
 constexpr int shots_to_meter = 64;
 
 /// Returns the first free name of STEM-1.vtp, STEM-2.vtp ...
