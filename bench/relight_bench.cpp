@@ -15,6 +15,7 @@
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
 #include "radiosity/solution/relight.h"
+#include "radiosity/solve.h"
 #include "scene/io/read_scene.h"
 #include "scene/parallel.h"
 
