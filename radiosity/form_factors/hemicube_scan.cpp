@@ -63,7 +63,8 @@ int first_cell_from(double x, int count) {
 }
 
 // Factor of inverse distance that counts as nearer. Coincident surfaces then show as one, the first
-// drawn, instead of a speckle of rounding errors.
+// drawn, instead of a speckle of rounding errors. An element shows before a coincident black back:
+// at the silhouette of a block the faces on both sides of the edge are equally far.
 constexpr float nearer = 1.0f + 1e-6f;
 // Inverse distance of a surface that lies on the eye.
 constexpr float covered = std::numeric_limits<float>::infinity();
@@ -71,7 +72,9 @@ constexpr float covered = std::numeric_limits<float>::infinity();
 void paint_span(float* inverse_distance, int* items, int count, float first, float step, int item) {
   for (int i = 0; i < count; ++i) {
     const float here = first + step * static_cast<float>(i);
-    const bool shows = here > inverse_distance[i] * nearer;
+    const bool is_before_back = item >= 0 && items[i] < hemicube_item::nothing;
+    const bool shows = here > inverse_distance[i] * nearer ||
+                       (is_before_back && here * nearer >= inverse_distance[i]);
     inverse_distance[i] = shows ? here : inverse_distance[i];
     items[i] = shows ? item : items[i];
   }

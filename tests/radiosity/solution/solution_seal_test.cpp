@@ -117,7 +117,8 @@ TEST_F(ResealedSolution, IndicesOutOfRangeAreRefused) {
   using Poly = vtkPolyData*;
   expect_refused_after([&](Poly p) { set(p->GetCellData(), "twin", 0, 3); }, "'twin' holds 3");
   expect_refused_after([&](Poly p) { set(p->GetCellData(), "patch", 2, -1); }, "'patch' holds -1");
-  expect_refused_after([&](Poly p) { set(p->GetCellData(), "patch", 2, 0); }, "whose elements");
+  expect_refused_after([&](Poly p) { set(p->GetCellData(), "patch", 2, 0); },
+                       "names patch 0, which does not include");
   expect_refused_after([&](Poly p) { set(p->GetCellData(), "area", 1, 0.0); }, "not positive");
   expect_refused_after([&](Poly p) { set(p->GetFieldData(), "patch_material", 0, -4); },
                        "'patch_material' holds -4");
