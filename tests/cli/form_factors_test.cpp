@@ -282,7 +282,7 @@ TEST_F(FormFactorsCommand, AcceptsTheOptionsItRecords) {
 
 TEST_F(FormFactorsCommand, HelpTellsHowFactorsAreFoundInOnePlace) {
   const std::string help = run({"form-factors", "--help"}).out;
-  const std::size_t group = help.find("How they are found");
+  const std::size_t group = help.find("How form factors are found");
   ASSERT_NE(group, std::string::npos);
   for (const char* option : {"--method", "--hemicube-resolution", "--target-error"}) {
     EXPECT_NE(help.find(option, group), std::string::npos) << option;
