@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-constexpr const char* head = R"(<!DOCTYPE html>
+constexpr const char* page_head = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <meta name="generator" content="Lightwell"><title>{0}</title>
 <style>
@@ -244,7 +244,7 @@ std::optional<PowerDensity> power_density(const LightingReport& report,
 
 std::string lighting_page(const LightingReport& report, const std::optional<LuxRange>& range) {
   const Provenance& made = report.provenance;
-  std::string page = fmt::format(fmt::runtime(head), escaped(report.title));
+  std::string page = fmt::format(fmt::runtime(page_head), escaped(report.title));
   const auto out = std::back_inserter(page);
   fmt::format_to(out, "<p>Computed with Lightwell {} from {} ({:016x}).</p>\n",
                  escaped(made.version), escaped(made.scene_file), made.scene_hash);
