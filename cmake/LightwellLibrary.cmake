@@ -21,9 +21,9 @@ function(lightwell_compile_settings target)
   endif()
 endfunction()
 
-# Unity builds: LIGHTWELL_UNITY_BATCH sources of a target, in the order in which they are listed (by folder), are compiled
-# as one file, which reads their headers and makes their templates once. Sources with SKIP_UNITY_BUILD_INCLUSION stay on
-# their own.
+# lightwell_unity(TARGET [BATCH]): BATCH sources of a target (LIGHTWELL_UNITY_BATCH unless told), in the order in which
+# they are listed (by folder), are compiled as one file, which reads their headers and makes their templates once.
+# Sources with SKIP_UNITY_BUILD_INCLUSION stay on their own.
 function(lightwell_unity target)
   if(NOT LIGHTWELL_UNITY)
     return()
@@ -37,8 +37,12 @@ function(lightwell_unity target)
     endif()
   endforeach()
   # Batches of equal size: 13 files make 7 + 6, not 12 + 1.
+  set(batch_size ${LIGHTWELL_UNITY_BATCH})
+  if(ARGC GREATER 1)
+    set(batch_size ${ARGV1})
+  endif()
   list(LENGTH sources count)
-  math(EXPR batches "(${count} + ${LIGHTWELL_UNITY_BATCH} - 1) / ${LIGHTWELL_UNITY_BATCH}")
+  math(EXPR batches "(${count} + ${batch_size} - 1) / ${batch_size}")
   set(index 0)
   foreach(source IN LISTS sources)
     math(EXPR batch "${index} * ${batches} / ${count}")
@@ -54,7 +58,7 @@ endfunction()
 
 # Headers of the standard library and of other libraries, which are read once instead of for every source. A target of
 # its own has them precompiled: with GCC, targets may share what was read under no more macros than they define, and
-# under the same options. Programs are compiled with -fPIE, libraries with -fPIC.
+# under the same options: one target for libraries, one for programs.
 set(lightwell_precompiled_headers
     <algorithm> <array> <charconv> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory>
     <mutex> <numbers> <numeric> <optional> <set> <span> <stdexcept> <string> <string_view> <tuple> <utility> <variant>
@@ -70,7 +74,24 @@ if(LIGHTWELL_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_link_libraries(lightwell_precompiled PRIVATE Eigen3::Eigen fmt::fmt OpenMeshCore)
   lightwell_compile_settings(lightwell_precompiled)
   lightwell_precompile(lightwell_precompiled)
+
+  add_library(lightwell_precompiled_programs OBJECT EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/precompiled.cpp)
+  target_link_libraries(lightwell_precompiled_programs PRIVATE Eigen3::Eigen fmt::fmt OpenMeshCore)
+  lightwell_compile_settings(lightwell_precompiled_programs)
+  # As CMake compiles programs; GCC shares nothing between -fPIC and -fPIE.
+  set_target_properties(lightwell_precompiled_programs PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  target_compile_options(lightwell_precompiled_programs PRIVATE -fPIE)
+  lightwell_precompile(lightwell_precompiled_programs)
 endif()
+
+# lightwell_program(TARGET): the settings of a program that links lightwell::radiosity or what is above it, and fmt.
+function(lightwell_program target)
+  lightwell_compile_settings(${target})
+  lightwell_unity(${target})
+  if(TARGET lightwell_precompiled_programs)
+    target_precompile_headers(${target} REUSE_FROM lightwell_precompiled_programs)
+  endif()
+endfunction()
 
 # lightwell_library(NAME HEADERS ... SOURCES ... PUBLIC ... PRIVATE ...)
 # One static library per room, lightwell::NAME, with headers beside the sources, included as "room/header.h".

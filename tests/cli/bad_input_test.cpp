@@ -9,7 +9,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::bad_input_test {
 namespace {
 
 std::string with(std::string text, const std::string& from, const std::string& to) {
@@ -310,4 +310,4 @@ TEST_F(Solved, AFailedRenderKeepsTheOldPicture) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::bad_input_test

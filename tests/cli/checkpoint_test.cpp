@@ -12,7 +12,7 @@
 #include "radiosity/solution/solution_file.h"
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::checkpoint_test {
 namespace {
 using namespace std::chrono_literals;
 using Words = std::vector<std::string>;
@@ -298,4 +298,4 @@ TEST_F(CheckpointTest, KilledAnywhereAndResumedItHasTheSameBits) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::checkpoint_test

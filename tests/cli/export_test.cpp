@@ -9,7 +9,7 @@
 #include "scene/io/read_scene.h"
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::export_test {
 namespace {
 using Words = std::vector<std::string>;
 
@@ -136,4 +136,4 @@ TEST_F(ExportCommand, RefusesTheSceneOfAnotherSolution) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::export_test

@@ -11,7 +11,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::form_factors_test {
 namespace {
 using Words = std::vector<std::string>;
 
@@ -320,4 +320,4 @@ TEST_F(FormFactorsCommand, MistakesHaveTheirExitCodesAndLeaveNothing) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::form_factors_test

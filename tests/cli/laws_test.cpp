@@ -9,7 +9,7 @@
 #include "radiosity/solution/solution_file.h"
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::laws_test {
 namespace {
 using Words = std::vector<std::string>;
 
@@ -93,4 +93,4 @@ TEST(Threads, OneAndTwoGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::laws_test

@@ -10,7 +10,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::lighting_test {
 namespace {
 using Words = std::vector<std::string>;
 using Json = nlohmann::json;
@@ -200,4 +200,4 @@ TEST_F(InfoCommand, PrintsAndHandsOverTheUgrTable) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::lighting_test

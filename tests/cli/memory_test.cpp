@@ -7,17 +7,11 @@
 #include <string>
 
 #include "tests/cli/program.h"
+#include "tests/sanitizers.h"
 
-namespace lightwell {
+namespace lightwell::memory_test {
 namespace {
 using Words = std::vector<std::string>;
-
-// False with a sanitizer, which takes memory for shadow bytes and keeps freed blocks.
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-constexpr bool memory_is_its_own = false;
-#else
-constexpr bool memory_is_its_own = true;
-#endif
 
 class Memory : public CommandTest {
  protected:
@@ -41,7 +35,7 @@ int needed_mb(const std::string& refusal) {
 }
 
 TEST_F(Memory, TheLeastThatIsEnoughIsSaidAndKept) {
-  if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
+  if (!test::memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
   const Ended unlimited = factors("F.mtx", {});
   ASSERT_EQ(unlimited.code, 0) << unlimited.err;
   const auto free = nlohmann::json::parse(unlimited.out);
@@ -91,7 +85,7 @@ TEST_F(Memory, SolveAndRunKeepToItToo) {
 // Shooting takes 16 MB for its rays and 144 bytes a patch; rows take 1.2 kB a patch beside a slice
 // of 16 MB. A budget between the two, for 12 000 patches, allows shooting alone.
 TEST_F(Memory, PatchesShootWhereRowsDoNotFit) {
-  if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
+  if (!test::memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
   const auto solve = [&](const char* output, const std::string& memory) {
     return run(Words{"solve", "room.toml", "-o", output, "--json", "--max-patch-size", "0.1",
                      "--elements-per-patch-edge", "1", "--refine", "off", "--rays", "64",
@@ -111,7 +105,7 @@ TEST_F(Memory, PatchesShootWhereRowsDoNotFit) {
 }
 
 TEST_F(Memory, NoMoreElementsAreMadeThanFit) {
-  if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
+  if (!test::memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
   const auto solve = [&](const Words& more) {
     return run(Words{"solve", "room.toml", "-o", "S.vtp", "--json", "--max-patch-size", "0.3",
                      "--gather-rays", "32", "--refine", "0.01%", "--max-elements", "200000"} +
@@ -147,7 +141,7 @@ TEST_F(Memory, AmountsThatAreNoneAreRefused) {
 // The program inherits the limit. A write beyond it raises SIGXFSZ, which would end the program by
 // default.
 TEST_F(Memory, AFileThatMayNotGrowIsAnError) {
-  if (!memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
+  if (!test::memory_is_its_own) GTEST_SKIP() << "a sanitizer uses memory too";
   const int needed = needed_mb(factors("F.mtx", {"--memory", "2M"}).err);
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -161,4 +155,4 @@ TEST_F(Memory, AFileThatMayNotGrowIsAnError) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::memory_test

@@ -18,7 +18,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::mesh_test {
 namespace {
 using Words = std::vector<std::string>;
 
@@ -223,4 +223,4 @@ TEST_F(MeshCommand, AMeshIsNoSolution) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::mesh_test

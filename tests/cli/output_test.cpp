@@ -14,7 +14,7 @@
 #include "raytrace/image.h"
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::output_test {
 namespace {
 using Words = std::vector<std::string>;
 
@@ -273,4 +273,4 @@ TEST_F(Output, StoppedBeforeTheToleranceIsCodeFourAndStillWritten) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::output_test

@@ -10,7 +10,7 @@
 #include "raytrace/image.h"
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::picture_test {
 namespace {
 using namespace std::chrono_literals;
 using Words = std::vector<std::string>;
@@ -239,4 +239,4 @@ TEST_F(Pictures, CompareTakesTwoNoisyReferences) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::picture_test

@@ -9,7 +9,7 @@
 #include "raytrace/image.h"
 #include "tests/cli/program.h"
 
-namespace lightwell {
+namespace lightwell::relight_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -243,4 +243,4 @@ TEST_F(RelightCommand, MistakesAreExplained) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::relight_test

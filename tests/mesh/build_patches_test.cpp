@@ -10,10 +10,10 @@
 #include "scene/parallel.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::build_patches_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector3d;
 
 void expect_facet_areas(const Scene& scene, const PatchMesh& mesh) {
@@ -427,4 +427,4 @@ TEST(BuildPatches, NeedlesOfInputSurvive) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::build_patches_test

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-namespace lightwell::testing {
+namespace lightwell::test {
 
 using Eigen::Vector3d;
 
@@ -421,4 +421,4 @@ double smallest_angle(const PatchMesh& mesh) {
   return least;
 }
 
-}  // namespace lightwell::testing
+}  // namespace lightwell::test

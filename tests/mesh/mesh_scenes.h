@@ -8,7 +8,7 @@
 #include "mesh/patches/patch_mesh.h"
 #include "scene/scene.h"
 
-namespace lightwell::testing {
+namespace lightwell::test {
 
 using Loop = std::vector<Eigen::Vector3d>;
 
@@ -72,4 +72,4 @@ int hanging_vertices(const PatchMesh& mesh);
 /// Smallest angle of all elements, degrees.
 double smallest_angle(const PatchMesh& mesh);
 
-}  // namespace lightwell::testing
+}  // namespace lightwell::test

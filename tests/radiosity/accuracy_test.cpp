@@ -16,7 +16,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/two_lamps.h"
 
-namespace lightwell {
+namespace lightwell::accuracy_test {
 namespace {
 
 SolveOptions quick() {
@@ -299,4 +299,4 @@ TEST(ErrorEstimate, SeesWhatReflectionsHide) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::accuracy_test

@@ -11,7 +11,7 @@
 #include "radiosity/emitters/direct_light.h"
 #include "tests/radiosity/lit_places.h"
 
-namespace lightwell {
+namespace lightwell::artefacts_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -322,4 +322,4 @@ TEST_P(ThinLeg, IsDarkBehindItsFootWhereLightIsGathered) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::artefacts_test

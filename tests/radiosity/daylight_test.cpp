@@ -12,7 +12,7 @@
 #include "scene/parallel.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::daylight_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -207,4 +207,4 @@ TEST(Daylight, SceneWithoutLightIsStillRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::daylight_test

@@ -13,7 +13,7 @@
 #include "radiosity/refine/interpolated_vertices.h"
 #include "tests/radiosity/two_lamps.h"
 
-namespace lightwell {
+namespace lightwell::reconstruct_test {
 namespace {
 
 // A room with solved patches, for pilot gathers.
@@ -246,4 +246,4 @@ TEST_P(Pool, GivesTheRoomItsLight) {
 INSTANTIATE_TEST_SUITE_P(Sizes, Pool, testing::Values(0.25, 0.4, 0.5));
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::reconstruct_test

@@ -10,7 +10,7 @@
 #include "mesh/cleaning/planar_regions.h"
 #include "tests/radiosity/lit_places.h"
 
-namespace lightwell {
+namespace lightwell::smoothness_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -252,4 +252,4 @@ TEST(Scale, IrradianceIsThatOfTheSameRoomInAnyUnit) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::smoothness_test

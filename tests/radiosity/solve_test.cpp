@@ -11,7 +11,7 @@
 #include "tests/radiosity/test_scenes.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::solve_test {
 namespace {
 
 class Furnace : public testing::TestWithParam<std::tuple<float, bool>> {};
@@ -313,4 +313,4 @@ TEST(SolveScene, SaysWhatToDoWhenNothingEmits) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::solve_test

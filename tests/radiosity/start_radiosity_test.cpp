@@ -6,7 +6,7 @@
 #include "scene/errors.h"
 #include "tests/radiosity/two_lamps.h"
 
-namespace lightwell {
+namespace lightwell::start_radiosity_test {
 namespace {
 
 SolveOptions jacobi() {
@@ -83,4 +83,4 @@ TEST(StartRadiosity, OtherPatchesAreRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::start_radiosity_test

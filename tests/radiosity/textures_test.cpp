@@ -11,7 +11,7 @@
 #include "tests/pictures.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::textures_test {
 namespace {
 
 // A closed room with a lamp below the ceiling; surface 4 is its floor.
@@ -180,4 +180,4 @@ TEST(Textures, BitsDoNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::textures_test

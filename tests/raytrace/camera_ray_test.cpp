@@ -10,7 +10,7 @@
 
 #include "scene/errors.h"
 
-namespace lightwell {
+namespace lightwell::camera_ray_test {
 namespace {
 
 double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -122,4 +122,4 @@ TEST(CameraRays, ImpossibleCamerasAreRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::camera_ray_test

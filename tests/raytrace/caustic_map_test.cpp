@@ -12,7 +12,7 @@
 #include "scene/sampling.h"
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::caustic_map_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -198,4 +198,4 @@ TEST(CausticMap, PicturesHaveTheSameBitsOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::caustic_map_test

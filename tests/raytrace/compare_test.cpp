@@ -9,7 +9,7 @@
 #include "scene/sampling.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::compare_test {
 namespace {
 
 Image flat_image(int width, int height, float L) {
@@ -199,4 +199,4 @@ TEST(DifferencePicture, BlackWhereEqualWhiteAtFullScale) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::compare_test

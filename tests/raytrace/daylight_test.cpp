@@ -9,7 +9,7 @@
 #include "raytrace/render.h"
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::daylight_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -91,4 +91,4 @@ TEST(DaylightPictures, PassesAgreeInARoomWithAWindow) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::daylight_test

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace lightwell {
+namespace lightwell::disc_kernel_test {
 namespace {
 
 double kernel(double x, double y) {
@@ -121,4 +121,4 @@ TEST(FoldedDisc, FarFromEdgesItIsWhole) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::disc_kernel_test

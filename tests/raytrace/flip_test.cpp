@@ -6,7 +6,7 @@
 #include "scene/parallel.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::flip_test {
 namespace {
 
 constexpr int width = 32, height = 24;
@@ -118,4 +118,4 @@ TEST(Flip, PicturesOfOtherSizeAreRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::flip_test

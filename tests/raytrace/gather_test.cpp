@@ -8,7 +8,7 @@
 #include "radiosity/solve.h"
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::gather_test {
 namespace {
 
 constexpr auto pi_f = std::numbers::pi_v<float>;
@@ -95,4 +95,4 @@ TEST(Passes, AgreeOnADiffuseRoom) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::gather_test

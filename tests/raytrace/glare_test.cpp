@@ -11,7 +11,7 @@
 
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::glare_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -163,4 +163,4 @@ TEST(UnifiedGlareRating, OfALampCountsItsLuminousSides) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::glare_test

@@ -11,7 +11,7 @@
 #include "scene/sampling.h"
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::gloss_test {
 namespace {
 
 constexpr auto pi_f = std::numbers::pi_v<float>;
@@ -216,4 +216,4 @@ TEST(Eye, WithinAnOpaqueObjectSeesItsInside) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::gloss_test

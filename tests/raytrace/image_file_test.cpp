@@ -18,7 +18,7 @@
 #include "scene/sampling.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::image_file_test {
 namespace {
 
 // A picture of different floats: huge, tiny and negative.
@@ -312,4 +312,4 @@ TEST(Png, FailuresNameTheFileAndLeaveNothing) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::image_file_test

@@ -11,7 +11,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::lamp_samples_test {
 namespace {
 
 // A room of 4 m with emitting squares that face down, and an uplight in its middle.
@@ -85,4 +85,4 @@ TEST(LampSamples, AreOfLampsThatFaceThePlace) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::lamp_samples_test

@@ -9,7 +9,7 @@
 #include "raytrace/render.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::lamps_test {
 namespace {
 
 Scene room(const Material* floor = nullptr) {
@@ -107,4 +107,4 @@ TEST(LampPictures, HighlightIsThatOfASmallBall) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::lamps_test

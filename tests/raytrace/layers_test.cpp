@@ -9,7 +9,7 @@
 #include "raytrace/render.h"
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::layers_test {
 namespace {
 
 constexpr auto pi_f = std::numbers::pi_v<float>;
@@ -185,4 +185,4 @@ TEST(Layers, IlluminanceIsSeenThroughGlassButNotInMirrors) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::layers_test

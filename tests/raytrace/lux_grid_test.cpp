@@ -9,7 +9,7 @@
 #include "tests/raytrace/lit_scene.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::lux_grid_test {
 namespace {
 
 const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
@@ -175,4 +175,4 @@ TEST(LuxGrid, TellsHowSureItIs) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::lux_grid_test

@@ -10,7 +10,7 @@
 #include "scene/place_at_rest.h"
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::motion_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -258,4 +258,4 @@ TEST(Motion, LampsStandStill) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::motion_test

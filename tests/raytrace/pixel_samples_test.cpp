@@ -7,7 +7,7 @@
 
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::pixel_samples_test {
 namespace {
 
 constexpr auto pi_f = std::numbers::pi_v<float>;
@@ -98,4 +98,4 @@ TEST(DepthOfField, BlursAPointToADiskOfTheThinLens) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::pixel_samples_test

@@ -7,7 +7,7 @@
 #include "scene/errors.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::probe_file_test {
 namespace {
 
 std::string text_of(const std::filesystem::path& path) {
@@ -114,4 +114,4 @@ TEST(WriteProbes, FailureNamesTheFile) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::probe_file_test

@@ -9,7 +9,7 @@
 #include "tests/raytrace/lit_scene.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::probe_test {
 namespace {
 
 constexpr auto pi_f = std::numbers::pi_v<float>;
@@ -153,4 +153,4 @@ TEST(ProbeIrradiance, BelowAStackOfTwoFloorsSeesNeither) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::probe_test

@@ -7,7 +7,7 @@
 #include "raytrace/render.h"
 #include "tests/radiosity/two_lamps.h"
 
-namespace lightwell {
+namespace lightwell::relit_test {
 namespace {
 
 constexpr Eigen::Index size = 32;
@@ -99,4 +99,4 @@ TEST(Relit, ALampThatIsOffIsDarkItself) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::relit_test

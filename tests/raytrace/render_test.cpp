@@ -11,7 +11,7 @@
 #include "tests/raytrace/lit_scene.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::render_test {
 namespace {
 
 constexpr auto pi_f = std::numbers::pi_v<float>;
@@ -303,4 +303,4 @@ TEST(Render, ImpossibleOptionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::render_test

@@ -6,7 +6,7 @@
 
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::scene_renderer_test {
 namespace {
 
 // A lamp over a mirror, which reflects light to the ceiling.
@@ -61,4 +61,4 @@ TEST(SceneRenderer, StoppedWhileItTracesPhotonsItStartsAgain) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::scene_renderer_test

@@ -10,7 +10,7 @@
 #include "scene/sampling.h"
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::shade_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -271,4 +271,4 @@ TEST(RayTree, FingerprintTellsFacesNotFacetsOfASmoothSurface) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::shade_test

@@ -13,7 +13,7 @@
 #include "scene/io/polygon.h"
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::smooth_normals_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -279,4 +279,4 @@ TEST(SmoothNormals, NoLightComesThroughASheet) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::smooth_normals_test

@@ -9,7 +9,7 @@
 #include "tests/pictures.h"
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::textures_test {
 namespace {
 
 constexpr auto pi_f = std::numbers::pi_v<float>;
@@ -145,4 +145,4 @@ TEST(Textures, BitsOfAPictureDoNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::textures_test

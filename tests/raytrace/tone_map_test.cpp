@@ -8,7 +8,7 @@
 #include "raytrace/image.h"
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::tone_map_test {
 namespace {
 
 Image flat_image(int width, int height, const Eigen::Array3f& L) {
@@ -202,4 +202,4 @@ TEST(ToneMap, SpectralWhiteIsBrightAndColoursHaveTheirHue) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::tone_map_test

@@ -14,7 +14,7 @@
 
 #include "scene/errors.h"
 
-namespace lightwell {
+namespace lightwell::ugr_table_test {
 namespace {
 
 const std::filesystem::path folder =
@@ -125,4 +125,4 @@ TEST(UgrTable, NeedsCandelaAndAnArea) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::ugr_table_test

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace lightwell {
+namespace lightwell::bands_test {
 namespace {
 
 // The fit of each colour-matching function is exact to 1 % of the peak (Wyman et al. 2013).
@@ -101,4 +101,4 @@ TEST(SpectralBands, RefuseImpossibleRanges) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::bands_test

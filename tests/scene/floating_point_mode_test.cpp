@@ -6,7 +6,7 @@
 #include "scene/parallel.h"
 #include "scene/rays/ray_caster.h"
 
-namespace lightwell {
+namespace lightwell::floating_point_mode_test {
 namespace {
 
 /// A square of n x n quads in the plane y = 0.
@@ -59,4 +59,4 @@ TEST(FloatingPointMode, RaysLeaveTheirOwnPlaneInParallelLoops) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::floating_point_mode_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace lightwell {
+namespace lightwell::hemisphere_sets_test {
 namespace {
 
 constexpr int count = 1024;
@@ -88,4 +88,4 @@ TEST(HemisphereSets, NeighboursPointNearlyAlike) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::hemisphere_sets_test

@@ -13,7 +13,7 @@
 #include "tests/scene/expected_messages.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::lamp_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -266,4 +266,4 @@ TEST(LampsOfOtherFormats, MitsubaPointsAndSpots) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::lamp_test

@@ -8,7 +8,7 @@
 
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::microfacet_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -73,4 +73,4 @@ TEST(SmithsLambda, VanishesHeadOnAndOnSmoothSurfaces) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::microfacet_test

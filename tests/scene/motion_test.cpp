@@ -7,7 +7,7 @@
 #include "scene/place_at_rest.h"
 #include "tests/scene/scene_file_test.h"
 
-namespace lightwell {
+namespace lightwell::motion_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -110,4 +110,4 @@ TEST_F(Motions, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::motion_test

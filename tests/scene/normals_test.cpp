@@ -13,7 +13,7 @@
 #include "tests/scene/gltf_text.h"
 #include "tests/scene/scene_file_test.h"
 
-namespace lightwell {
+namespace lightwell::normals_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -208,4 +208,4 @@ TEST(VisibleNormal, MirrorsNothingBelowTheSurface) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::normals_test

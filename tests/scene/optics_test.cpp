@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-namespace lightwell {
+namespace lightwell::optics_test {
 namespace {
 
 // Both values are doubles of the same closed form; near the critical angle the square root
@@ -100,4 +100,4 @@ TEST(Optics, GrazingLightIsReflectedAndEqualIndicesDoNothing) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::optics_test

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace lightwell {
+namespace lightwell::parallel_test {
 namespace {
 
 TEST(ParallelFor, VisitsEveryIndexOnceInPiecesOfAtMostOneGrain) {
@@ -71,4 +71,4 @@ TEST(ThreadLimit, HoldsWhileItLives) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::parallel_test

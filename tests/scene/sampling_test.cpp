@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-namespace lightwell {
+namespace lightwell::sampling_test {
 namespace {
 
 class ScrambledSobol : public testing::TestWithParam<int> {};
@@ -187,4 +187,4 @@ TEST(TrianglePoint, WeightsAreUniformOverTheTriangle) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::sampling_test

@@ -8,7 +8,7 @@
 
 #include "scene/errors.h"
 
-namespace lightwell {
+namespace lightwell::scene_test {
 namespace {
 
 // A valid scene: a square with a square hole, a sphere and three materials.
@@ -238,4 +238,4 @@ TEST(Validate, NamesWhatIsWrongAndWhere) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::scene_test

@@ -9,7 +9,7 @@
 
 #include "scene/sun_position.h"
 
-namespace lightwell {
+namespace lightwell::sky_test {
 namespace {
 
 constexpr double pi = std::numbers::pi, degree = pi / 180.0;
@@ -231,4 +231,4 @@ TEST(SunPosition, WrongDatesAndPlacesAreRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::sky_test

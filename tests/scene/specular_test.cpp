@@ -10,7 +10,7 @@
 #include "scene/optics.h"
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::specular_test {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
@@ -223,4 +223,4 @@ TEST(Media, BodiesWithinBodiesBeyondAllMeasureAreForgottenNotWrittenBeyond) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::specular_test

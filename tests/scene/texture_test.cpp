@@ -6,7 +6,7 @@
 
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::texture_test {
 namespace {
 
 // Half a step of the code at a share s, where steps are 2 sqrt(s) / 65535, plus float rounding.
@@ -144,4 +144,4 @@ TEST(Texture, TexelsMustFillIt) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::texture_test

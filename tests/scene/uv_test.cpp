@@ -8,7 +8,7 @@
 #include "tests/scene/gltf_text.h"
 #include "tests/scene/scene_file_test.h"
 
-namespace lightwell {
+namespace lightwell::uv_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -288,4 +288,4 @@ TEST_F(Pictures, DecideTheLight) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::uv_test

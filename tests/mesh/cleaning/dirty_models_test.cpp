@@ -15,10 +15,10 @@
 #include "scene/errors.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::dirty_models_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector3d;
 
 constexpr double degree = std::numbers::pi / 180.0;
@@ -310,4 +310,4 @@ TEST(DirtyModels, HeapsWithTooManyCrossingsAreRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::dirty_models_test

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace lightwell {
+namespace lightwell::facet_check_test {
 namespace {
 
 // The unit cube with outward faces; face f is turned inside out if reversed[f].
@@ -78,4 +78,4 @@ TEST(FacetCheck, CornersThatDifferByARoundingAreOne) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::facet_check_test

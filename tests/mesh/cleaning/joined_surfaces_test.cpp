@@ -10,10 +10,10 @@
 #include "mesh/patches/element_quality.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::joined_surfaces_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector3d;
 
 const PolygonMesh& mesh_of(const Scene& scene, int surface) {
@@ -172,4 +172,4 @@ TEST(JoinedSurfaces, OtherPolygonsOfASurfaceStay) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::joined_surfaces_test

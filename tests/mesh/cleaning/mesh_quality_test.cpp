@@ -6,7 +6,7 @@
 
 #include "scene/io/placed_mesh.h"
 
-namespace lightwell {
+namespace lightwell::mesh_quality_test {
 namespace {
 
 Scene scene_of(const std::vector<Loop>& loops) {
@@ -75,4 +75,4 @@ TEST(MeshQuality, HolesAddTriangles) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::mesh_quality_test

@@ -11,10 +11,10 @@
 #include "mesh/geometry/cross.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::contact_lines_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -297,4 +297,4 @@ TEST(ContactLines, TouchingBoxesConformAfterRoundingToSinglePrecision) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::contact_lines_test

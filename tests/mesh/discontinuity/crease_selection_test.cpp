@@ -9,10 +9,10 @@
 #include "mesh/build_patches.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::crease_selection_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector3d;
 
 void scale_scene(Scene& scene, double scale) {
@@ -178,4 +178,4 @@ TEST(CreaseSelection, ABudgetLeavesOutTheLeastImportantAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::crease_selection_test

@@ -9,10 +9,10 @@
 #include "mesh/geometry/cross.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::critical_lines_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -474,4 +474,4 @@ TEST(CriticalLines, ShadowsOfCornersOnTheLampsEdgesAreLinesOfAnEdge) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::critical_lines_test

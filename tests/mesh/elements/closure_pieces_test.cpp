@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <set>
 
-namespace lightwell {
+namespace lightwell::closure_pieces_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -59,4 +59,4 @@ TEST_P(Closure, CoversTheElementOnceAndUsesEveryVertexOfItsBoundary) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::closure_pieces_test

@@ -10,10 +10,10 @@
 #include "scene/sampling.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::element_caster_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector3d;
 
 Vector3d random_direction(std::uint64_t key) {
@@ -191,4 +191,4 @@ TEST(ElementCaster, SphereIsMetExactlyFromOutsideAndInside) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::element_caster_test

@@ -13,8 +13,10 @@
 #include "scene/sampling.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell::testing {
+namespace lightwell::element_tree_test {
 namespace {
+
+using namespace test;
 
 using Eigen::Vector3d;
 
@@ -122,4 +124,4 @@ TEST(ElementTree, IsOfElementsThatAreNotSplitTwice) {
 }
 
 }  // namespace
-}  // namespace lightwell::testing
+}  // namespace lightwell::element_tree_test

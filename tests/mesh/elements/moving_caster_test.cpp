@@ -6,17 +6,17 @@
 #include "scene/place_at_rest.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::moving_caster_test {
 namespace {
 
 using Eigen::Vector3d;
 
 Scene scene_with_motions() {
-  Scene scene = testing::empty_scene();
-  testing::add_box(scene, "room", {-3, -3, -3}, {3, 3, 3});
-  testing::add_box(scene, "block", {-1, -1, -1}, {0, 0.5, 0.2});
-  testing::add_box(scene, "bar", {0.2, -2, 0.4}, {0.6, 2, 0.6});
-  testing::add_sphere(scene, "ball", {.center = {1.2, 0.4, -0.8}, .radius = 0.6});
+  Scene scene = test::empty_scene();
+  test::add_box(scene, "room", {-3, -3, -3}, {3, 3, 3});
+  test::add_box(scene, "block", {-1, -1, -1}, {0, 0.5, 0.2});
+  test::add_box(scene, "bar", {0.2, -2, 0.4}, {0.6, 2, 0.6});
+  test::add_sphere(scene, "ball", {.center = {1.2, 0.4, -0.8}, .radius = 0.6});
   scene.motions = {
       {.pivot = {0.3, 0, 0},
        .axis = Vector3d(1, 2, 2) / 3.0,
@@ -33,7 +33,7 @@ TEST(MovingCaster, MeetsWhatACasterOfTheMovedMeshDoes) {
   place_at_rest(rest, 0.25);
   const PatchMesh mesh = build_patches(rest, {.max_patch_size = 0.7});
   const ElementCaster moving(mesh, rest);
-  testing::Numbers numbers(7);
+  test::Numbers numbers(7);
   for (const double time : {0.0, 0.25, 0.6, 1.0}) {
     Scene moved = scene_with_motions();
     place_at_rest(moved, time);
@@ -73,7 +73,7 @@ TEST(MovingCaster, RaysLeaveTheFacetTheyStartOn) {
   place_at_rest(scene, 0.25);
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.7});
   const ElementCaster caster = ElementCaster(mesh, scene).at(0.9);
-  testing::Numbers numbers(3);
+  test::Numbers numbers(3);
   for (int i = 0; i < 2000; ++i) {
     const Vector3d d(numbers.between(-1, 1), numbers.between(-1, 1), numbers.between(-1, 1));
     Ray ray{.origin = {0, 0, 2.9}, .direction = d};
@@ -102,4 +102,4 @@ TEST(MovingCaster, KnowsWhereWhatMovesIs) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::moving_caster_test

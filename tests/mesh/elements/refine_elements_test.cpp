@@ -12,8 +12,10 @@
 #include "mesh/build_patches.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell::testing {
+namespace lightwell::refine_elements_test {
 namespace {
+
+using namespace test;
 
 using Eigen::Vector3d;
 
@@ -338,4 +340,4 @@ TEST(Spheres, StayWhatTheyAre) {
 }
 
 }  // namespace
-}  // namespace lightwell::testing
+}  // namespace lightwell::refine_elements_test

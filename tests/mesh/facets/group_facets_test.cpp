@@ -12,10 +12,10 @@
 #include "mesh/patches/patch_sampler.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::group_facets_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector3d;
 
 Vector3d mean_normal(const PatchMesh& mesh, int patch) {
@@ -185,4 +185,4 @@ TEST(GroupFacets, SamplesAreEvenOverAPatchOfManyFacets) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::group_facets_test

@@ -7,7 +7,7 @@
 
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::box_tree_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -87,4 +87,4 @@ TEST(BoxTree, FindsWhatReachesBeforeAllPlanes) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::box_tree_test

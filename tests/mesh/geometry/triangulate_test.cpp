@@ -8,7 +8,7 @@
 #include "mesh/facets/pair_triangles.h"
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::triangulate_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -121,4 +121,4 @@ TEST(GroupPatches, LeftoversJoinTheirNeighbourAndPartsStayApart) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::triangulate_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lightwell {
+namespace lightwell::welded_points_test {
 namespace {
 
 TEST(WeldedPoints, JoinsWithinTheToleranceAcrossCellBorders) {
@@ -31,4 +31,4 @@ TEST(WeldedPoints, TakesTheNearestAndKeepsPointsOfSmallRadiusApart) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::welded_points_test

@@ -8,10 +8,10 @@
 #include "mesh/build_patches.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::element_quality_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector3d;
 
 // Rounding of a few operations on numbers of order one.
@@ -103,4 +103,4 @@ TEST(ElementQuality, SharesCountNeedles) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::element_quality_test

@@ -10,10 +10,10 @@
 #include "mesh/build_patches.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::patch_colors_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 
 // The patches of front elements by edge, with ends rounded to 1e-7 m: far above the rounding of
 // positions in these scenes of about a metre, far below the size of their elements.
@@ -76,4 +76,4 @@ TEST(PatchColors, AGridTakesTwoAndBacksHaveTheirFronts) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::patch_colors_test

@@ -8,10 +8,10 @@
 #include "mesh/patches/patch_sampler.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::patch_geometry_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector3d;
 
 // The midpoints of an n x n division of the unit square.
@@ -174,4 +174,4 @@ TEST(BuildTopology, RefusesElementsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::patch_geometry_test

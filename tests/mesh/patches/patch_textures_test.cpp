@@ -11,7 +11,7 @@
 #include "scene/parallel.h"
 #include "tests/pictures.h"
 
-namespace lightwell {
+namespace lightwell::patch_textures_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -191,4 +191,4 @@ TEST(PatchTextures, BitsDoNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::patch_textures_test

@@ -13,7 +13,7 @@
 #include "scene/io/polygon.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::smooth_edges_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -50,7 +50,7 @@ Scene bent_sheet(Given given) {
   }
   const Loop strip = {{0, 1, 0}, {-1, 1, 0}, {-1, 1, 1}, {0, 1, 1}};
   add(strip, given == Given::nothing ? NormalLoop{} : NormalLoop(4, Vector3d::UnitY()));
-  Scene scene = testing::empty_scene();
+  Scene scene = test::empty_scene();
   scene.surfaces.push_back({.name = "sheet", .shape = mesh.mesh()});
   validate(scene);
   return scene;
@@ -77,7 +77,7 @@ TEST(SmoothEdges, TrianglesOfOneChordAreJoinedAndKeepTheirNormals) {
 }
 
 TEST(SmoothEdges, FacetsOnWhichNormalsDoNotGoOnStayApart) {
-  Scene scene = testing::empty_scene();
+  Scene scene = test::empty_scene();
   MeshBuilder mesh;
   const Vector3d up = Vector3d::UnitZ(), lean = {0.5, 0, 1};
   mesh.add({.boundary = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}}, {}, {up, lean, up});
@@ -113,4 +113,4 @@ TEST(SmoothEdges, VerticesAreSharedWhereNormalsAgree) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::smooth_edges_test

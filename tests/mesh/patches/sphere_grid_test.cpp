@@ -9,10 +9,10 @@
 #include "mesh/build_patches.h"
 #include "tests/mesh/mesh_scenes.h"
 
-namespace lightwell {
+namespace lightwell::sphere_grid_test {
 namespace {
 
-using namespace lightwell::testing;
+using namespace lightwell::test;
 using Eigen::Vector3d;
 
 PatchMesh sphere_mesh(double radius, double size, int k, int material = 0) {
@@ -131,4 +131,4 @@ TEST(SphereGrid, OneSidedSphereHasNoInside) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::sphere_grid_test

@@ -8,7 +8,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/view_factor_cases.h"
 
-namespace lightwell {
+namespace lightwell::polygon_exchange_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -107,4 +107,4 @@ TEST(PolygonExchange, BoxesCloseWhateverTheirShape) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::polygon_exchange_test

@@ -9,7 +9,7 @@
 
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::polygon_form_factor_test {
 namespace {
 
 Eigen::Vector3d vec(const nlohmann::json& j) {
@@ -121,4 +121,4 @@ TEST(PointToSphere, IsCosineTimesSquaredSineOfTheHalfAngleAboveTheHorizon) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::polygon_form_factor_test

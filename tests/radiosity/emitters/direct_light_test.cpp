@@ -10,7 +10,7 @@
 #include "mesh/build_patches.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::direct_light_test {
 namespace {
 
 Loop loop(const nlohmann::json& j) {
@@ -142,4 +142,4 @@ TEST(DirectLight, SphereLampObeysTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::direct_light_test

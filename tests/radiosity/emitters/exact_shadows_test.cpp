@@ -10,7 +10,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::exact_shadows_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -183,4 +183,4 @@ TEST(ExactShadows, AreCastFromBothSidesOfALampThatGlowsThere) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::exact_shadows_test

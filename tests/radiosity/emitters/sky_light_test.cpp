@@ -12,7 +12,7 @@
 #include "scene/parallel.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::sky_light_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -301,4 +301,4 @@ TEST(SkyLight, ShadowOfABrightPlaceIsFoundWithoutNoise) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::sky_light_test

@@ -9,7 +9,7 @@
 #include "mesh/build_patches.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::solid_angle_sampler_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -108,4 +108,4 @@ TEST(SolidAngleSampler, WhatASlatHidesOfAWindowIsFoundWithFewRays) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::solid_angle_sampler_test

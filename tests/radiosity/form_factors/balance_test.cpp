@@ -4,7 +4,7 @@
 
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::balance_test {
 namespace {
 
 auto product_with(const Eigen::ArrayXXd& S) {
@@ -32,7 +32,8 @@ TEST(SymmetricScaling, ClosesEveryRowOfANoisySymmetricMatrix) {
 }
 
 TEST(SymmetricScaling, LeavesAnAlreadyClosedMatrixAlone) {
-  const Eigen::ArrayXXd S = (Eigen::ArrayXXd(2, 2) << 0.25, 0.5, 0.5, 0.125).finished();
+  Eigen::ArrayXXd S(2, 2);
+  S << 0.25, 0.5, 0.5, 0.125;
   const Eigen::ArrayXd d =
       symmetric_scaling(product_with(S), Eigen::Array2d(0.25, 0.375), Eigen::Array2d(1.0, 1.0));
   EXPECT_NEAR(d[0], 1.0, 1e-12);
@@ -61,4 +62,4 @@ TEST(SymmetricScaling, ColumnsDoNotTouchEachOther) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::balance_test

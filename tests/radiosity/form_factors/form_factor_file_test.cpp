@@ -15,7 +15,7 @@
 #include "scene/errors.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::form_factor_file_test {
 namespace {
 
 /// A given matrix of form factors, whose rows close by the escaped share.
@@ -235,4 +235,4 @@ TEST(FormFactorFiles, ADiskThatFillsUpLeavesTheOldFile) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::form_factor_file_test

@@ -13,7 +13,7 @@
 #include "tests/radiosity/test_scenes.h"
 #include "tests/radiosity/view_factor_cases.h"
 
-namespace lightwell {
+namespace lightwell::form_factor_methods_test {
 namespace {
 
 using test::add_box;
@@ -252,4 +252,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, Room, testing::ValuesIn(form_factor_methods),
                          test::name_of_method);
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::form_factor_methods_test

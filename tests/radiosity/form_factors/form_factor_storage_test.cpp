@@ -12,7 +12,7 @@
 #include "tests/radiosity/test_scenes.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::form_factor_storage_test {
 namespace {
 
 using test::add_box;
@@ -171,4 +171,4 @@ TEST(SolveWithRowsOnDisk, IsTheSameSolution) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::form_factor_storage_test

@@ -6,7 +6,7 @@
 #include "radiosity/form_factors/form_factors.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::form_factors_test {
 namespace {
 
 struct Solved {
@@ -228,4 +228,4 @@ TEST(FormFactors, FewRaysAmongMirrorsStayFiniteShares) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::form_factors_test

@@ -8,7 +8,7 @@
 
 #include "radiosity/closed_forms/polygon_form_factor.h"
 
-namespace lightwell {
+namespace lightwell::hemicube_cells_test {
 namespace {
 
 class HemicubeCellsOfSize : public testing::TestWithParam<int> {};
@@ -84,4 +84,4 @@ TEST(HemicubeCells, RefusesSizesItCannotCut) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::hemicube_cells_test

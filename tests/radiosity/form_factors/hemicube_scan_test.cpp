@@ -12,7 +12,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::hemicube_scan_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -336,4 +336,4 @@ TEST(HemicubeScan, EyeOfAnLShapedPatchLiesOnIt) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::hemicube_scan_test

@@ -17,7 +17,7 @@
 #include "scene/parallel.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::hemicube_test {
 namespace {
 
 using BackEnd = HemicubeOptions::BackEnd;
@@ -299,4 +299,4 @@ TEST(HemicubeRows, ReportsProgressAndStopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::hemicube_test

@@ -6,7 +6,7 @@
 #include "tests/radiosity/test_scenes.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::transport_test {
 namespace {
 
 constexpr std::int64_t megabyte = 1 << 20;
@@ -112,4 +112,4 @@ TEST(Transport, ElementsGoByWhatIsLeft) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::transport_test

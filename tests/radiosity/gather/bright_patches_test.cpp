@@ -13,7 +13,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::bright_patches_test {
 namespace {
 
 // A room of 4 m with a tile of `side` metres a little below the middle of its ceiling, and
@@ -169,4 +169,4 @@ TEST(BrightPatches, AreTheSameBitsAgain) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::bright_patches_test

@@ -16,7 +16,7 @@
 #include "scene/parallel.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::journal_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -484,4 +484,4 @@ TEST(Fingerprint, EveryBitAndTheOrderCount) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::journal_test

@@ -4,7 +4,7 @@
 
 #include "radiosity/form_factors/estimated_row.h"
 
-namespace lightwell {
+namespace lightwell::packed_test {
 namespace {
 
 EstimatedRow row() {
@@ -88,4 +88,4 @@ TEST(Packed, ASpanKeepsItsSize) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::packed_test

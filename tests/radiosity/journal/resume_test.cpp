@@ -12,7 +12,7 @@
 #include "tests/radiosity/two_lamps.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::resume_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -336,4 +336,4 @@ TEST(Resume, AnotherSolvesJournalMustBeOfThisVersion) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::resume_test

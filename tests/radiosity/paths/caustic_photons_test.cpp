@@ -10,7 +10,7 @@
 #include "radiosity/paths/specular_targets.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::caustic_photons_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -152,4 +152,4 @@ TEST(SpecularTargets, TheFacesOfABlockAreOneAndBallsApartAreTwo) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::caustic_photons_test

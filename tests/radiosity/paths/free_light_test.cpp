@@ -13,7 +13,7 @@
 #include "scene/parallel.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::free_light_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -311,4 +311,4 @@ TEST(FreeLight, RoomOfLampsAloneThatReflectsNothingIsSolved) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::free_light_test

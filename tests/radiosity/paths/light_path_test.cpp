@@ -8,7 +8,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::light_path_test {
 namespace {
 
 using test::add_box;
@@ -89,4 +89,4 @@ TEST(LightPaths, BlockOfGlassThatStandsOnTheFloorLightsIt) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::light_path_test

@@ -6,7 +6,7 @@
 #include "radiosity/solve.h"
 #include "tests/radiosity/two_lamps.h"
 
-namespace lightwell {
+namespace lightwell::effort_test {
 namespace {
 
 TEST(Effort, NoTargetChangesNothing) {
@@ -68,4 +68,4 @@ TEST(Effort, LooseAccuracySolvesWithFewerPatches) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::effort_test

@@ -4,7 +4,7 @@
 
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::emitter_visibility_list_test {
 namespace {
 
 TEST(EmitterVisibilityList, KeepsABitOfEachLight) {
@@ -35,4 +35,4 @@ TEST(EmitterVisibilityList, KeepsABitOfEachLight) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::emitter_visibility_list_test

@@ -9,7 +9,7 @@
 #include "radiosity/solve.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::gather_noise_test {
 namespace {
 
 // A room whose wall x0 is bright, seen from the floor.
@@ -91,4 +91,4 @@ TEST(GatherNoise, OfASolutionFallsWithRays) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::gather_noise_test

@@ -10,7 +10,7 @@
 #include "tests/radiosity/lit_places.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::refine_solution_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -252,4 +252,4 @@ TEST(Refinement, IsNotMisledByTheSearchForCaustics) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::refine_solution_test

@@ -15,19 +15,13 @@
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
+#include "tests/sanitizers.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::row_store_test {
 namespace {
 
 constexpr std::int64_t megabyte = 1 << 20;
-
-// The thread sanitizer uses several bytes of shadow memory per byte.
-#ifdef __SANITIZE_THREAD__
-constexpr bool memory_is_our_own = false;
-#else
-constexpr bool memory_is_our_own = true;
-#endif
 
 std::shared_ptr<MemoryBudget> budget_of(std::int64_t rows, const TemporaryFolder& folder) {
   return std::make_shared<MemoryBudget>(MemoryOptions{.rows = rows, .folder = folder / ""});
@@ -204,7 +198,7 @@ TEST(SpilledRows, DoNotStayResidentOnceRead) {
   rows.close();
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(rows.row(i)[8191].value, 0.5f);
   // 16 MB of rows, the window, the chunk being filled, and some memory for the rest of the process.
-  if (memory_is_our_own) {
+  if (test::memory_is_its_own) {
     EXPECT_LT(resident_memory().now - before, 24 * megabyte);
   }
 }
@@ -280,11 +274,11 @@ TEST(MemoryBudget, KnowsWhatThisProcessUses) {
   const std::vector<char> more(30 * megabyte, 1);
   const auto added = static_cast<double>(resident_memory().now - before.now);
   EXPECT_GE(added, 27.0 * megabyte);
-  if (memory_is_our_own) {
+  if (test::memory_is_its_own) {
     EXPECT_LE(added, 33.0 * megabyte);
   }
   EXPECT_GT(usable_memory(), before.now);
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::row_store_test

@@ -9,7 +9,7 @@
 #include "scene/errors.h"
 #include "tests/radiosity/small_solution.h"
 
-namespace lightwell {
+namespace lightwell::channel_arrays_test {
 namespace {
 
 using ChannelArrays = SolutionFile;
@@ -144,4 +144,4 @@ const Damage damages[] = {
 INSTANTIATE_TEST_SUITE_P(OneByOne, DamagedChannels, testing::ValuesIn(damages));
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::channel_arrays_test

@@ -5,7 +5,7 @@
 #include "scene/errors.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::emitter_channels_test {
 namespace {
 
 using Patterns = std::vector<ChannelPattern>;
@@ -92,4 +92,4 @@ TEST(EmitterChannels, TooManyAreRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::emitter_channels_test

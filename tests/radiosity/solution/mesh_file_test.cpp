@@ -7,7 +7,7 @@
 
 #include "tests/radiosity/small_solution.h"
 
-namespace lightwell {
+namespace lightwell::mesh_file_test {
 namespace {
 
 std::string failure_of(const fs::path& path) {
@@ -38,4 +38,4 @@ TEST_F(MeshFile, ADiskThatFillsUpLeavesTheOldFile) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::mesh_file_test

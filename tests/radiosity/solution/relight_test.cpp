@@ -11,7 +11,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/two_lamps.h"
 
-namespace lightwell {
+namespace lightwell::relight_test {
 namespace {
 
 SolvedScene solve_by_channel(const Scene& scene, SolveOptions options = test::exact_and_even()) {
@@ -308,4 +308,4 @@ TEST(ChannelSetting, AColourWithoutThatLightIsRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::relight_test

@@ -14,7 +14,7 @@
 
 #include "tests/radiosity/small_solution.h"
 
-namespace lightwell {
+namespace lightwell::solution_file_test {
 namespace {
 
 template <class A>
@@ -229,4 +229,4 @@ TEST_F(SolutionFile, ASolutionOfAnotherSceneIsRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::solution_file_test

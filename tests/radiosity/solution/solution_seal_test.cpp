@@ -13,7 +13,7 @@
 #include "radiosity/solution/solution_seal.h"
 #include "tests/radiosity/small_solution.h"
 
-namespace lightwell {
+namespace lightwell::solution_seal_test {
 namespace {
 
 using SolutionSeal = SolutionFile;
@@ -159,4 +159,4 @@ TEST_F(ResealedSolution, MissingArraysAreNamed) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::solution_seal_test

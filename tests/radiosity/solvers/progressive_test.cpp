@@ -10,7 +10,7 @@
 #include "scene/parallel.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::progressive_test {
 namespace {
 
 using test::add_box;
@@ -312,4 +312,4 @@ TEST(Progressive, WithoutLightThereIsNothingToDo) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::progressive_test

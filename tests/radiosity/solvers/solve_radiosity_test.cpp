@@ -11,7 +11,7 @@
 #include "tests/radiosity/given_form_factors.h"
 #include "tests/radiosity/named_methods.h"
 
-namespace lightwell {
+namespace lightwell::solve_radiosity_test {
 namespace {
 
 using test::GivenFormFactors;
@@ -466,4 +466,4 @@ TEST(Solvers, RestartedGmresAndGivenRelaxationGetThereToo) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::solve_radiosity_test

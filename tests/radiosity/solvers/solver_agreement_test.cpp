@@ -12,7 +12,7 @@
 #include "tests/radiosity/test_scenes.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::solver_agreement_test {
 namespace {
 
 using test::add_box;
@@ -149,4 +149,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, SameBits, testing::ValuesIn(solver_methods),
                          test::name_of_solver);
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::solver_agreement_test

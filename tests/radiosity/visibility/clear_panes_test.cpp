@@ -12,7 +12,7 @@
 #include "scene/optics.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell {
+namespace lightwell::clear_panes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -135,4 +135,4 @@ TEST(ClearPanes, WhatTheyPassIsNoCaustic) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::clear_panes_test

@@ -8,7 +8,7 @@
 
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::convex_polygon_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -117,4 +117,4 @@ TEST(ConvexHull, HoldsAllPointsThoughManyLieOnItsEdges) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::convex_polygon_test

@@ -11,7 +11,7 @@
 #include "scene/parallel.h"
 #include "tests/radiosity/polygons.h"
 
-namespace lightwell {
+namespace lightwell::point_form_factor_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -234,4 +234,4 @@ TEST(PointFormFactor, DependsOnNothingButShooterAndPoint) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::point_form_factor_test

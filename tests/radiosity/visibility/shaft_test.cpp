@@ -9,7 +9,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/polygons.h"
 
-namespace lightwell {
+namespace lightwell::shaft_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -154,4 +154,4 @@ TEST(Shaft, NeverMissesWhatBlocksARay) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::shaft_test

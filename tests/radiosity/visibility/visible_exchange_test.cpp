@@ -9,7 +9,7 @@
 #include "scene/sampling.h"
 #include "tests/radiosity/polygons.h"
 
-namespace lightwell {
+namespace lightwell::visible_exchange_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -194,4 +194,4 @@ TEST(VisibleExchange, KnowsItsError) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::visible_exchange_test

@@ -12,7 +12,7 @@
 // One small file for each kind of error, and the required parts of its message: the place
 // (file:line:column), the object and the remedy.
 
-namespace lightwell {
+namespace lightwell::bad_files_test {
 namespace {
 
 const std::filesystem::path folder = LIGHTWELL_TEST_DATA "/scene/bad";
@@ -215,4 +215,4 @@ TEST(CutOffFiles, AreRefusedOrReadButNeverCrash) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::bad_files_test

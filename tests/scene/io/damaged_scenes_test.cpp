@@ -7,10 +7,11 @@
 
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
+#include "tests/sanitizers.h"
 #include "tests/scene/gltf_text.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::damaged_scenes_test {
 namespace {
 
 const std::filesystem::path folder = LIGHTWELL_TEST_DATA "/scene";
@@ -64,7 +65,7 @@ void expect_answers(const TemporaryFolder& where, const std::string& name, const
       ADD_FAILURE() << name << ", seed " << seed << ": " << error.what();
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    EXPECT_LT(seconds.count(), 10.0) << name << ", seed " << seed;
+    EXPECT_LT(seconds.count(), 10.0 * test::slowdown) << name << ", seed " << seed;
   }
   // Both outcomes occur, so the damage is neither too small to matter nor so large that every file
   // fails at its start.
@@ -135,4 +136,4 @@ TEST(DamagedScenes, PicturesAreDecodedOrRefused) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::damaged_scenes_test

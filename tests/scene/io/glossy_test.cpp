@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace lightwell {
+namespace lightwell::glossy_test {
 namespace {
 
 Spectrum grey(float value) {
@@ -70,4 +70,4 @@ TEST(Glossy, SmoothMetalsAreMirrorsAndRoughOnesDiffuse) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::glossy_test

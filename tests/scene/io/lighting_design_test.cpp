@@ -10,7 +10,7 @@
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::lighting_design_test {
 namespace {
 
 const std::string room = R"(
@@ -92,4 +92,4 @@ TEST_F(Design, RefusesGridsOfNothing) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::lighting_design_test

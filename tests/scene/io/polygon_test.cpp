@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
-namespace lightwell {
+namespace lightwell::polygon_test {
 namespace {
 
 double area(const PolygonMesh& mesh) {
@@ -177,4 +177,4 @@ TEST(AddRepaired, OpensAHoleThatIsJoinedByABridge) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::polygon_test

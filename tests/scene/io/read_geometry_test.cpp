@@ -2,7 +2,7 @@
 
 #include "scene/io/read_scene.h"
 
-namespace lightwell {
+namespace lightwell::read_geometry_test {
 namespace {
 
 struct Cube {
@@ -40,4 +40,4 @@ TEST(ReadGeometry, MetresPerUnitScales) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::read_geometry_test

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace lightwell {
+namespace lightwell::remarks_test {
 namespace {
 
 TEST(Remarks, NameEveryThingOnce) {
@@ -21,4 +21,4 @@ TEST(Remarks, NameEveryThingOnce) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::remarks_test

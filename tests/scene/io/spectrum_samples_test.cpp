@@ -6,7 +6,7 @@
 
 #include "scene/errors.h"
 
-namespace lightwell {
+namespace lightwell::spectrum_samples_test {
 namespace {
 
 const SpectrumSamples hat{.wavelengths_nm = {400, 500, 700}, .values = {0, 2, 0}};
@@ -44,4 +44,4 @@ TEST(SpectrumCsv, ReadsTheNamedColumn) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::spectrum_samples_test

@@ -12,7 +12,7 @@
 #include "scene/rays/ray_caster.h"
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::cell_sheets_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -219,4 +219,4 @@ TEST(CellSheets, RaysMeetTheCellsThatTheyMetApart) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::cell_sheets_test

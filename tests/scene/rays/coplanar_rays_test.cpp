@@ -12,7 +12,7 @@
 
 #include "scene/rays/ray_caster.h"
 
-namespace lightwell {
+namespace lightwell::coplanar_rays_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -305,4 +305,4 @@ TEST(CoplanarRays, ManySheetsOnAFloorEachHideWhatIsBelow) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::coplanar_rays_test

@@ -11,7 +11,7 @@
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
-namespace lightwell {
+namespace lightwell::ray_caster_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -383,4 +383,4 @@ TEST(RayCaster, CountsItsPrimitivesAndRefusesMissingGroups) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::ray_caster_test

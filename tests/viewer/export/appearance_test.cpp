@@ -9,7 +9,7 @@
 #include "tests/viewer/solved_box.h"
 #include "viewer/export/start_view.h"
 
-namespace lightwell {
+namespace lightwell::appearance_test {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
@@ -171,4 +171,4 @@ TEST(FalseColor, AScaleFromZeroIsEven) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::appearance_test

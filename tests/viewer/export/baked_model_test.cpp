@@ -14,7 +14,7 @@
 #include "tests/viewer/shared_floor.h"
 #include "viewer/export/appearance.h"
 
-namespace lightwell {
+namespace lightwell::baked_model_test {
 namespace {
 
 TEST(BakedModel, OfTwoSidesOneWithoutLightIsLeftOut) {
@@ -167,4 +167,4 @@ TEST(BakedModel, WhatIsNoNumberShowsBlack) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::baked_model_test

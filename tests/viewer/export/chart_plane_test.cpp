@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace lightwell {
+namespace lightwell::chart_plane_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -58,4 +58,4 @@ TEST(ChartPlane, WholeFacesAndSharpTipsAreNotCut) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::chart_plane_test

@@ -7,7 +7,7 @@
 #include "tests/viewer/pictured_wall.h"
 #include "viewer/export/baked_model.h"
 
-namespace lightwell {
+namespace lightwell::drawn_pictures_test {
 namespace {
 
 float linear(std::uint8_t srgb) {
@@ -115,4 +115,4 @@ TEST(DrawnPictures, VerticesAreNotSharedAcrossMaps) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::drawn_pictures_test

@@ -10,7 +10,7 @@
 #include "tests/viewer/lit_sides.h"
 #include "viewer/export/export.h"
 
-namespace lightwell {
+namespace lightwell::export_lightmap_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -155,4 +155,4 @@ TEST_F(ExportLightmap, AFileThatCannotBeWrittenIsNamedAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::export_lightmap_test

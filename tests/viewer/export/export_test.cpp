@@ -19,7 +19,7 @@
 #include "tests/viewer/lit_sides.h"
 #include "tests/viewer/pictured_wall.h"
 
-namespace lightwell {
+namespace lightwell::export_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -261,4 +261,4 @@ TEST_F(Export, AFileThatCannotBeWrittenIsNamedAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::export_test

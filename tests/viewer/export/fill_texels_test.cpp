@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-namespace lightwell {
+namespace lightwell::fill_texels_test {
 namespace {
 
 /// Two bright squares in the dark, eight texels apart.
@@ -63,4 +63,4 @@ TEST(FillTexels, WhatIsKnownIsKeptAndNothingIsInvented) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::fill_texels_test

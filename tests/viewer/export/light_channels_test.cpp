@@ -11,7 +11,7 @@
 #include "viewer/export/appearance.h"
 #include "viewer/export/export.h"
 
-namespace lightwell {
+namespace lightwell::light_channels_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -202,4 +202,4 @@ TEST(ChannelsThatAreNotKept, LeaveOneBasis) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::light_channels_test

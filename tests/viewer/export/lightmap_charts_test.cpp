@@ -8,7 +8,7 @@
 
 #include "tests/raytrace/lit_scene.h"
 
-namespace lightwell {
+namespace lightwell::lightmap_charts_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -68,4 +68,4 @@ TEST(LightmapCharts, PlanesKeepTheirLengths) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::lightmap_charts_test

@@ -12,7 +12,7 @@
 #include "tests/viewer/lightmap_reader.h"
 #include "tests/viewer/lit_sides.h"
 
-namespace lightwell {
+namespace lightwell::lightmap_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -392,4 +392,4 @@ TEST(Lightmap, ADensityAskedForMayTakeSeveralAtlases) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::lightmap_test

@@ -8,7 +8,7 @@
 #include "tests/viewer/in_browser.h"
 #include "viewer/export/appearance.h"
 
-namespace lightwell {
+namespace lightwell::lights_in_browser_test {
 namespace {
 
 /// Script that dims, recolours and switches lamps, and reads the light after each change.
@@ -125,4 +125,4 @@ TEST_P(InBrowser, SlidersRelightTheScene) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::lights_in_browser_test

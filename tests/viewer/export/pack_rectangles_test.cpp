@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lightwell {
+namespace lightwell::pack_rectangles_test {
 namespace {
 
 std::vector<Eigen::Vector2i> many_sizes() {
@@ -52,4 +52,4 @@ TEST(PackRectangles, WhatIsTooLongFitsNowhere) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::pack_rectangles_test

@@ -12,7 +12,7 @@
 #include "tests/viewer/page_values.h"
 #include "viewer/export/export.h"
 
-namespace lightwell {
+namespace lightwell::page_data_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -177,4 +177,4 @@ TEST(PageSize, OfAHundredThousandElementsIsBelowFifteenMegabytes) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::page_data_test

@@ -10,7 +10,7 @@
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_model.h"
 
-namespace lightwell {
+namespace lightwell::sky_grid_test {
 namespace {
 
 /// The CIE overcast sky above ground.
@@ -92,4 +92,4 @@ TEST(BakedSky, TellsChannelsAndAxes) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::sky_grid_test

@@ -13,7 +13,7 @@
 #include "tests/viewer/pictured_wall.h"
 #include "viewer/export/appearance.h"
 
-namespace lightwell {
+namespace lightwell::walkthrough_test {
 namespace {
 
 /// Script that presses keys, moves the mouse, and leaves the state of the page as JSON.
@@ -313,4 +313,4 @@ INSTANTIATE_TEST_SUITE_P(Pages, InBrowser,
                          name_of_browser);
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::walkthrough_test

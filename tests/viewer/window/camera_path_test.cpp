@@ -8,7 +8,7 @@
 #include "viewer/window/view.h"
 #include "viewer/window/walk_window.h"
 
-namespace lightwell {
+namespace lightwell::camera_path_test {
 namespace {
 
 CameraPath straight_path() {
@@ -217,4 +217,4 @@ TEST(WalkWindowViews, WalksOnTheFloorAndStopsAtTheWall) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::camera_path_test

@@ -12,7 +12,7 @@
 #include "viewer/window/solution_view.h"
 #include "viewer/window/x_display.h"
 
-namespace lightwell {
+namespace lightwell::fine_spheres_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -124,4 +124,4 @@ TEST(FineSpheres, AreNoneWithoutSpheres) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::fine_spheres_test

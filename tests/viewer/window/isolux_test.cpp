@@ -7,7 +7,7 @@
 #include "viewer/window/walk_window.h"
 #include "viewer/window/x_display.h"
 
-namespace lightwell {
+namespace lightwell::isolux_test {
 namespace {
 
 /// A wall 2 m wide with illuminance that rises linearly from left to right, seen from the front.
@@ -73,4 +73,4 @@ TEST(Isolux, KeySwitchesLinesAtTheStepsOfTheScale) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::isolux_test

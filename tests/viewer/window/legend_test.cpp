@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace lightwell {
+namespace lightwell::legend_test {
 namespace {
 
 const std::uint8_t* pixel(const LegendPicture& picture, int x, int y) {
@@ -92,4 +92,4 @@ TEST_F(Legend, SmallPictureIsPutBesideAScaleThatIsWhole) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::legend_test

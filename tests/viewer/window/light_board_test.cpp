@@ -8,7 +8,7 @@
 #include "tests/viewer/channel_room.h"
 #include "viewer/window/walk_window.h"
 
-namespace lightwell {
+namespace lightwell::light_board_test {
 namespace {
 
 const SolvedScene& room() {
@@ -116,4 +116,4 @@ TEST(LightKeys, SayWhenThereAreNoChannels) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::light_board_test

@@ -15,7 +15,7 @@
 #include "tests/viewer/solved_box.h"
 #include "viewer/window/x_display.h"
 
-namespace lightwell {
+namespace lightwell::pointer_tools_test {
 namespace {
 
 /// A patch has the mean reflectance of its texture; a reading has that of the texel, whose codes
@@ -167,4 +167,4 @@ TEST_F(PointerToolsTest, OtherLightIsReadAtOnceAtTheSamePoint) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::pointer_tools_test

@@ -11,7 +11,7 @@
 #include "viewer/export/appearance.h"
 #include "viewer/window/walk_window.h"
 
-namespace lightwell {
+namespace lightwell::still_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -132,4 +132,4 @@ TEST_F(StillTest, NeedsTheScene) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::still_test

@@ -22,7 +22,7 @@
 #include "viewer/window/walk_window.h"
 #include "viewer/window/x_display.h"
 
-namespace lightwell {
+namespace lightwell::view_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -551,4 +551,4 @@ TEST_F(SnapshotFile, AWindowStopsAtWallsAndReadsWhatIsClicked) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::view_test

@@ -6,7 +6,7 @@
 
 #include "tests/viewer/solved_box.h"
 
-namespace lightwell {
+namespace lightwell::walk_body_test {
 namespace {
 
 constexpr double frame = 1.0 / 60.0;
@@ -188,4 +188,4 @@ TEST(WalkBody, IsStoppedByATablesTop) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::walk_body_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lightwell {
+namespace lightwell::walk_state_test {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
@@ -124,4 +124,4 @@ TEST(WalkState, ACameraLookingStraightDownCanStillWalkAndTurn) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::walk_state_test

@@ -9,7 +9,7 @@
 
 #include "tests/viewer/solved_box.h"
 
-namespace lightwell {
+namespace lightwell::walk_window_test {
 namespace {
 
 class WalkWindowTest : public testing::Test {
@@ -190,4 +190,4 @@ TEST(WalkingSpeed, FollowsTheSizeOfTheScene) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::walk_window_test

@@ -8,7 +8,7 @@
 #include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
 
-namespace lightwell {
+namespace lightwell::read_gltf_test {
 namespace {
 
 using test::area_of;
@@ -247,4 +247,4 @@ TEST_F(Gltf, MistakesAreToldWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::read_gltf_test

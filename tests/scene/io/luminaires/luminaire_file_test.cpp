@@ -10,7 +10,7 @@
 #include "tests/scene/expected_messages.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::luminaire_file_test {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
@@ -216,4 +216,4 @@ TEST_F(WrittenFiles, MistakesAreToldWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::luminaire_file_test

@@ -9,7 +9,7 @@
 #include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
 
-namespace lightwell {
+namespace lightwell::read_mitsuba_test {
 namespace {
 
 using test::area_of;
@@ -461,4 +461,4 @@ TEST_F(Mitsuba, MistakesAreToldWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::read_mitsuba_test

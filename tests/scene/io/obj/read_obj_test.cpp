@@ -10,7 +10,7 @@
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::read_obj_test {
 namespace {
 
 const Scene& room() {
@@ -185,4 +185,4 @@ TEST(ReadObj, MetresPerUnitScales) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::read_obj_test

@@ -5,7 +5,7 @@
 #include "scene/errors.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::picture_mean_test {
 namespace {
 
 const std::filesystem::path folder = LIGHTWELL_TEST_DATA "/scene";
@@ -59,4 +59,4 @@ TEST(PictureMean, DamageAndHugeSizesAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::picture_mean_test

@@ -9,7 +9,7 @@
 #include "tests/scene/scene_questions.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::radiance_views_test {
 namespace {
 
 using test::has_note;
@@ -120,4 +120,4 @@ TEST_F(RadianceProjects, WrongProjectsAreNamedWithFileAndLine) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::radiance_views_test

@@ -11,7 +11,7 @@
 #include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
 
-namespace lightwell {
+namespace lightwell::read_radiance_test {
 namespace {
 
 using test::area_of;
@@ -378,4 +378,4 @@ TEST(RadianceOffice, IsReadWhole) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::read_radiance_test

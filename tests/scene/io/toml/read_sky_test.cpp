@@ -14,7 +14,7 @@
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::read_sky_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -255,4 +255,4 @@ TEST_F(MitsubaSky, SecondSkyIsNamed) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::read_sky_test

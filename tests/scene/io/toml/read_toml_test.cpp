@@ -9,7 +9,7 @@
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::read_toml_test {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
@@ -326,4 +326,4 @@ TEST(SceneFormatPage, ItsExampleIsAScene) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::read_toml_test

@@ -8,7 +8,7 @@
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::read_vs3_test {
 namespace {
 
 NumberedScene read(const std::string& text) {
@@ -305,4 +305,4 @@ INSTANTIATE_TEST_SUITE_P(Files, BadVs3, testing::ValuesIn(bad_cases),
                          [](const auto& p) { return std::string(p.param.name); });
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::read_vs3_test
