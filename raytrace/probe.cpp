@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "radiosity/refine/error_reference.h"
+#include "raytrace/specular_light.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 
@@ -155,6 +156,35 @@ SolveOptions options_for_probes() {
           .error_points = 0};
 }
 
+namespace {
+
+// Light of lamps by way of mirrors and glass at the points that lie on no surface: the mesh holds
+// such light for surfaces.
+BandArray mirrored_in_air(const LitScene& lit, const RadiositySolution& solution,
+                          const std::vector<GatherPoint>& points, const GatherOptions& options) {
+  std::vector<GatherPoint> in_air;
+  std::vector<Eigen::Index> row;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].facet >= 0) continue;
+    row.push_back(static_cast<Eigen::Index>(i));
+    in_air.push_back(points[i]);
+    if (!in_air.back().key) in_air.back().key = i;
+  }
+  BandArray result =
+      BandArray::Zero(static_cast<Eigen::Index>(points.size()), lit.scene.bands.count());
+  if (in_air.empty()) return result;
+  const SpecularIrradiance E = specular_irradiance(lit, solution, in_air,
+                                                   {.most_rays = 32 * options.rays,
+                                                    .replica = options.replica,
+                                                    .progress = options.run.progress});
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    result.row(row[k]) = E.irradiance.row(static_cast<Eigen::Index>(k));
+  }
+  return result;
+}
+
+}  // namespace
+
 BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            std::span<const Probe> probes, const GatherOptions& options) {
@@ -180,8 +210,9 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
     points.push_back(point);
   }
   const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance());
-  const GatheredIrradiance E = gather_irradiance({scene, caster, direct_light}, B, points, options);
-  return E.direct + E.indirect + caustic;
+  const LitScene lit{scene, caster, direct_light};
+  const GatheredIrradiance E = gather_irradiance(lit, B, points, options);
+  return E.direct + E.indirect + caustic + mirrored_in_air(lit, solution, points, options);
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -40,6 +41,19 @@ std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
   }
   for (int f = 0; f < facet_count; ++f) parent[f] = root_facet(parent, f);
   return parent;
+}
+
+// Returns the part of SpecularSegment::chain that stands for a facet. Facets of one plane have the
+// same; so have all facets of a curved surface.
+std::uint64_t chain_key(bool is_curved, int surface, const Eigen::Vector3d& normal,
+                        const Eigen::Vector3d& point, double diagonal) {
+  constexpr double steps = 1e5;  // of directions, and of distances to the scene's diagonal
+  if (is_curved) return random_key(static_cast<std::uint64_t>(surface), 1);
+  const auto rounded = [](double x) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(steps * x)));
+  };
+  return random_key(random_key(rounded(normal.x()), rounded(normal.y()), rounded(normal.z())),
+                    rounded(normal.dot(point) / diagonal), 2);
 }
 
 // Returns shadow options for a branch: half the weight, half the rays, since the noise of a light
@@ -112,7 +126,13 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
     facets_.push_back(shape);
   }
   const auto joined = smooth_surfaces(caster.mesh(), static_cast<int>(facets_.size()));
-  for (std::size_t f = 0; f < facets_.size(); ++f) facets_[f].smooth_surface = joined[f];
+  const double diagonal = scene_bounds(scene).diagonal();
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    FacetShape& shape = facets_[f];
+    shape.smooth_surface = joined[f];
+    shape.chain = chain_key(shape.is_sphere || normals_.is_given(static_cast<int>(f)), joined[f],
+                            shape.normal, shape.point, diagonal);
+  }
 }
 
 RaySample RayTree::trace(const Ray& ray, std::uint64_t key, float effort) const {
@@ -139,6 +159,25 @@ RaySample RayTree::trace_one_of_many(const Ray& ray, std::uint64_t key, int numb
   return state.result;
 }
 
+Spectrum RayTree::trace_lamps(const Ray& ray, std::uint64_t key,
+                              const std::function<void(const SpecularSegment&)>& visit) const {
+  const int bands = scene_.bands.count();
+  TreeState state{.result = {.radiance = Spectrum::Zero(bands)},
+                  .key = key,
+                  .caster = &caster_,
+                  .lamps_alone = true,
+                  .visit = visit ? &visit : nullptr,
+                  .gloss_key = key};
+  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, state);
+  return state.result.radiance;
+}
+
+void RayTree::trace_chains(const Ray& ray,
+                           const std::function<void(const SpecularSegment&)>& visit) const {
+  TreeState state{.caster = &caster_, .shades = false, .lamps_alone = true, .visit = &visit};
+  follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, state);
+}
+
 std::uint64_t RayTree::fingerprint(const Ray& ray) const {
   TreeState state{.caster = &caster_, .shades = false};
   follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, state);
@@ -149,7 +188,14 @@ void RayTree::follow(Branch branch, TreeState& state) const {
   ElementHit hit;
   state.caster->closest_hits({&branch.ray, 1}, {&hit, 1});
   RaySample& result = state.result;
-  if (branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
+  if (state.visit && branch.is_sharp && !branch.is_direct) {
+    (*state.visit)({.ray = branch.ray,
+                    .end = hit.facet < 0 ? std::numeric_limits<double>::infinity() : hit.t,
+                    .weight = branch.weight,
+                    .media = branch.media,
+                    .chain = branch.chain});
+  }
+  if (!state.lamps_alone && branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
     result.fingerprint = random_key(result.fingerprint, branch.node,
                                     static_cast<std::uint64_t>(seen), hit.from_back);
@@ -164,19 +210,25 @@ void RayTree::follow(Branch branch, TreeState& state) const {
     const Eigen::Vector3d normal = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
     result.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
   }
-  if (state.shades && hit.element >= 0) shade(branch, hit, at, state);
+  if (state.shades && hit.element >= 0) {
+    if (state.lamps_alone) {
+      shade_lamp(branch, hit, at, state);
+    } else {
+      shade(branch, hit, at, state);
+    }
+  }
   split(branch, hit, at, state);
 }
 
 // Adds radiance of the sky, and of the sun except off rough surfaces, which sample the sun in
 // add_free_source().
 void RayTree::add_background(const Branch& branch, TreeState& state) const {
-  if (!state.shades || !scene_.sky) return;
+  if (!state.shades || !scene_.sky || (state.lamps_alone && branch.is_sharp)) return;
   const Eigen::Vector3d direction = branch.ray.direction.normalized();
   Spectrum L = Spectrum::Zero(scene_.bands.count());
   for (const FreeSource& source : direct_light_.free_sources()) {
     if (source.is_dome()) {
-      L += source.light * sky_radiance(*scene_.sky, direction);
+      if (!state.lamps_alone) L += source.light * sky_radiance(*scene_.sky, direction);
     } else if (const auto* light = std::get_if<SunLight>(&source.shape)) {
       const Sun& sun = light->sun;
       if (branch.lobe_density > 0.0 || direction.dot(sun.direction) < sun.cosine_of_edge())
@@ -217,6 +269,9 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .depth = parent.depth + 1,
                 .node = node,
                 .is_sharp = parent.is_sharp,
+                .is_direct = parent.is_direct && sample.crosses &&
+                             is_clear_pane(scene_.materials[facets_[hit.facet].material]),
+                .chain = random_key(parent.chain, facets_[hit.facet].chain, sample.crosses),
                 .lobe_density = sample.density,
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
                 .width = cone_width(parent, at),
@@ -320,6 +375,13 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, state);
   state.result.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
   if (with_layers_) note_layers(branch, hit, M, rho, E, state);
+}
+
+// Adds the emission of DirectLight's emitters, which hemisphere rays do not read.
+void RayTree::shade_lamp(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+                         TreeState& state) const {
+  if (branch.is_direct || !direct_light_.owns(hit.facet, hit.from_back)) return;
+  state.result.radiance += branch.weight * one_over_pi * emission(branch, hit, at);
 }
 
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,

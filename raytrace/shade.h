@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -31,6 +32,15 @@ struct RaySample {
   std::uint64_t fingerprint = 0;  ///< identifies the surfaces seen, see RayTree
   std::int64_t depth_cut = 0;     ///< branches that ended at max_depth
   float cut_weight = 0.0f;        ///< sum over these branches of the largest weight of any band
+};
+
+/// A straight part of a path behind at least one smooth mirror or clear body.
+struct SpecularSegment {
+  const Ray& ray;           ///< from the last surface on
+  double end;               ///< m along the ray to the next surface, infinite without one
+  const Spectrum& weight;   ///< share of radiance that reaches the path's beginning
+  const Media& media;       ///< bodies that the segment runs in
+  std::uint64_t chain = 0;  ///< the same for paths by way of the same surfaces in the same order
 };
 
 /// Whitted's ray tree (1980) over a radiosity solution. Radiance at a hit is the sum over the parts
@@ -77,6 +87,18 @@ class RayTree {
   /// knows the scene's motions.
   RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
                               const ElementCaster& caster) const;
+  /// Radiance along a ray, W/(m^2 sr), of DirectLight's lights by way of mirrors, gloss and clear
+  /// bodies alone. Left out:
+  /// - light straight through clear panes, which is direct light;
+  /// - light of diffuse surfaces and of the sky's dome, which hemisphere rays find;
+  /// - lamps without surface and the sun behind smooth surfaces alone, which rays find by chance
+  ///   only; `visit` gets the parts of such paths.
+  ///
+  /// One direction leaves each rough surface; `key` decides this direction.
+  Spectrum trace_lamps(const Ray& ray, std::uint64_t key,
+                       const std::function<void(const SpecularSegment&)>& visit = {}) const;
+  /// Calls `visit` for the straight parts of all paths by way of smooth surfaces.
+  void trace_chains(const Ray& ray, const std::function<void(const SpecularSegment&)>& visit) const;
   /// Returns the fingerprint of a ray, without shadow rays.
   std::uint64_t fingerprint(const Ray& ray) const;
 
@@ -86,6 +108,7 @@ class RayTree {
     int material = 0;
     int smooth_surface = 0;  ///< the same for facets that share vertices
     bool is_sphere = false;
+    std::uint64_t chain = 0;  ///< the same for facets of one plane or of one curved surface
     Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the plane, or the sphere's centre
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
@@ -109,7 +132,9 @@ class RayTree {
     /// Number in the tree: 1 for the root, 2 p and 2 p + 1 for the children of p, a random key for
     /// branches off rough surfaces.
     std::uint64_t node = 1;
-    bool is_sharp = true;  ///< no rough surface on the way
+    bool is_sharp = true;     ///< no rough surface on the way
+    bool is_direct = true;    ///< nothing but smooth thin panes on the way, straight through
+    std::uint64_t chain = 0;  ///< see SpecularSegment
     /// Probability density of the direction, 1/sr, off a rough surface, which samples lamps as
     /// well; else 0.
     double lobe_density = 0.0;
@@ -130,7 +155,9 @@ class RayTree {
     std::uint64_t key = 0;
     float effort = 1.0f;
     const ElementCaster* caster = nullptr;
-    bool shades = true;           ///< false: fingerprint alone
+    bool shades = true;        ///< false: fingerprint alone
+    bool lamps_alone = false;  ///< see trace_lamps
+    const std::function<void(const SpecularSegment&)>* visit = nullptr;
     std::optional<int> number{};  ///< number among many samples of one key; none: a sample alone
     std::uint64_t gloss_key = 0;  ///< the same for all samples of one key
   };
@@ -167,6 +194,8 @@ class RayTree {
   Eigen::Vector3d smooth_normal(const ElementHit& hit, const ShadingPoint& at) const;
   void shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
              TreeState& state) const;
+  void shade_lamp(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+                  TreeState& state) const;
   Arriving arriving(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
                     const TreeState& state) const;
   Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;

@@ -24,7 +24,7 @@ bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d
 void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interaction,
                       const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
   if (!state.shades) return;
-  const bool is_first = branch.is_sharp && !state.number;
+  const bool is_first = branch.is_sharp && !state.number && !state.lamps_alone;
   const int count =
       is_first ? std::max(1, static_cast<int>(std::lround(state.effort * options_.glossy_rays)))
                : 1;
@@ -34,7 +34,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
   // Typical number of samples of one point in a picture.
   constexpr int usual_samples = 64;
   BrightPatches::View view;
-  if (!bright_.is_empty() && !interaction.material.dielectric) {
+  if (!state.lamps_alone && !bright_.is_empty() && !interaction.material.dielectric) {
     view = bright_.view(at.position, interaction.normal, usual_samples);
   }
   for (int i = 0; i < count; ++i) {

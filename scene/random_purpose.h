@@ -63,6 +63,8 @@ enum class RandomPurpose : std::uint64_t {
   pixel_gather_rays = 0x6a7e,
   pixel_gather_paths = 0x6a7f,
   pixel_gather_aims = 0x6a80,
+  // Light at points by way of mirrors and glass; (point, purpose, replica), (key, purpose, number).
+  specular_light = 0x5bec1,
 };
 
 /// True for every purpose. Two purposes of equal value are two equal cases, which no compiler
@@ -110,6 +112,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::pixel_gather_rays:
     case RandomPurpose::pixel_gather_paths:
     case RandomPurpose::pixel_gather_aims:
+    case RandomPurpose::specular_light:
       return true;
   }
   return false;
