@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mesh/patches/patch_textures.h"
+#include "raytrace/specular_light.h"
 
 namespace lightwell {
 namespace {
@@ -140,15 +141,19 @@ void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, doubl
   }
 }
 
-/// Illuminance of the eye by reflected light alone, lx.
+/// Illuminance of the eye by reflected light alone, lx: off diffuse surfaces, and the luminaires'
+/// by way of mirrors, gloss and clear bodies.
 double reflected_illuminance(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const RadiositySolution& solution,
                              const Camera& eye, const GatherOptions& gathering) {
   const BandArray reflected = vertex_reflectance(caster.mesh()) * solution.irradiance();
   const GatherPoint point{.position = eye.position, .normal = eye.direction};
-  const GatheredIrradiance E =
-      gather_indirect({scene, caster, direct_light}, reflected, std::span(&point, 1), gathering);
-  return luminous(scene.bands, E.indirect.row(0).transpose());
+  const LitScene lit{scene, caster, direct_light};
+  const GatheredIrradiance E = gather_indirect(lit, reflected, std::span(&point, 1), gathering);
+  const SpecularIrradiance mirrored =
+      specular_irradiance(lit, solution, std::span(&point, 1), {.replica = gathering.replica});
+  const Spectrum all = (E.indirect.row(0) + mirrored.irradiance.row(0)).transpose();
+  return luminous(scene.bands, all);
 }
 
 }  // namespace
