@@ -40,6 +40,7 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
     : paths_(scene, caster, max_specular_depth),
       radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance())),
       bright_(scene, caster.mesh(), radiosity_),
+      gaps_({scene, caster, direct_light}, radiosity_, paths_),
       aims_(BrightPatches::aimed(most_rays)) {
   if (const FreeSource* dome = direct_light.dome()) dome_ = dome->light;
   constexpr int fewest = 8;
@@ -74,6 +75,10 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
     for (std::size_t r = 0; r < n; ++r) {
       if (hits[r].facet < 0) continue;
       const std::uint64_t ray_key = random_key(key, RandomPurpose::pixel_gather_paths, begin + r);
+      if (gaps_.is_gap(at.normal, rays[r], hits[r])) {
+        gaps_.add(caster, rays[r], hits[r], ray_key, sum);
+        continue;
+      }
       const double straight = view.is_empty() ? 1.0
                                               : bright_.share(view, measure(at, rays[r].direction),
                                                               count, rays[r], hits[r]);
@@ -99,6 +104,7 @@ void PixelGather::aim(const ElementCaster& caster, const ShadingPoint& at,
     ElementHit hit;
     caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.element != aim.element || !paths_.is_diffuse(hit.facet)) continue;
+    if (gaps_.is_gap(at.normal, ray, hit)) continue;
     const double share = bright_.share(view, cosine, rays, ray, hit);
     sum += share * interpolate(caster.mesh(), radiosity_, hit).cast<double>();
   }

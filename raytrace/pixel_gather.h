@@ -7,6 +7,7 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/gather/bright_patches.h"
+#include "radiosity/gather/gap_light.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/solution.h"
 #include "scene/hemisphere_sets.h"
@@ -31,6 +32,8 @@ struct ShadingPoint {
 /// included.
 class PixelGather {
  public:
+  PixelGather(const PixelGather&) = delete;
+  PixelGather& operator=(const PixelGather&) = delete;
   /// `most_rays` is the number of rays per point, at least 1; a power of two stratifies best.
   PixelGather(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
               const RadiositySolution& solution, int most_rays, int max_specular_depth);
@@ -52,6 +55,7 @@ class PixelGather {
   Spectrum dome_{};                     // irradiance factor of the sky's dome; empty: no dome
   std::vector<HemisphereSets> sets_{};  // each with half the rays of the set before
   BrightPatches bright_;
+  GapLight gaps_;
   SobolPoints aims_;  // Sobol points of the rays towards bright_
 };
 

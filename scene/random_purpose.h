@@ -21,6 +21,7 @@ enum class RandomPurpose : std::uint64_t {
   caustic_rays = 13,
   caustic_paths = 14,
   gather_aims = 15,
+  gap_rays = 16,              // (key, purpose, number)
   error_points = 20,          // alone, a multiple of 10000 added for every further batch
   exchange_shadow_rays = 21,  // (patch, patch, purpose, set)
   shooter_points = 22,        // (patch, receiver, purpose)
@@ -80,6 +81,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::caustic_rays:
     case RandomPurpose::caustic_paths:
     case RandomPurpose::gather_aims:
+    case RandomPurpose::gap_rays:
     case RandomPurpose::error_points:
     case RandomPurpose::exchange_shadow_rays:
     case RandomPurpose::shooter_points:

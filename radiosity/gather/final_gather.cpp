@@ -10,6 +10,7 @@
 #include "mesh/patches/patch_textures.h"
 #include "mesh/patches/sphere_grid.h"
 #include "radiosity/gather/bright_patches.h"
+#include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/paths/light_path.h"
@@ -43,7 +44,8 @@ class HemisphereGather {
         paths_(lit.scene, lit.caster, options.max_specular_depth),
         options_(options),
         bands_(lit.scene.bands.count()),
-        bright_(lit.scene, mesh_, radiosity) {
+        bright_(lit.scene, mesh_, radiosity),
+        gaps_(lit, radiosity, paths_) {
     if (const FreeSource* dome = lit.direct_light.dome()) {
       dome_ = dome->light;
       if (lit.direct_light.column_count() == radiosity.cols())
@@ -89,7 +91,12 @@ class HemisphereGather {
         const double share = view.is_empty() ? 1.0
                                              : bright_.share(view, at.normal.dot(ray[r].direction),
                                                              count, ray[r], hit[r]);
-        add(ray[r], hit[r], key, index, share, sum[place < count / 2 ? 0 : 1]);
+        Eigen::ArrayXd& half = sum[place < count / 2 ? 0 : 1];
+        if (gaps_.is_gap(at.normal, ray[r], hit[r])) {
+          gaps_.add(caster_, ray[r], hit[r], random_key(key, RandomPurpose::gap_rays, index), half);
+        } else {
+          add(ray[r], hit[r], key, index, share, half);
+        }
       }
     }
     if (!view.is_empty()) aim(at, view, key, sum);
@@ -120,6 +127,7 @@ class HemisphereGather {
       caster_.closest_hits({ray.data(), n}, {hit.data(), n});
       for (std::size_t r = 0; r < n; ++r) {
         if (hit[r].element != element[r] || !paths_.is_diffuse(hit[r].facet)) continue;
+        if (gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
         const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
         add_radiosity(hit[r],
                       bright_.share(view, at.normal.dot(ray[r].direction), rays, ray[r], hit[r]),
@@ -192,6 +200,7 @@ class HemisphereGather {
   Eigen::Index dome_column_ = 0;
   std::map<int, HemisphereSets> sets_;  // by number of rays
   BrightPatches bright_;
+  GapLight gaps_;
   std::map<int, SobolPoints> aims_;  // of aimed rays, by the number of rays in sets_
 };
 

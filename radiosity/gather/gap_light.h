@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "mesh/elements/element_caster.h"
+#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/paths/light_path.h"
+#include "radiosity/solution/solution.h"
+
+namespace lightwell {
+
+/// Light that gathers find in gaps. Between two surfaces that face each other, such as a desk and
+/// the foot of a monitor, light falls off within about the width of the gap. Elements that are much
+/// larger than the gap cannot hold this light: their vertices stand in the open, and their
+/// interpolated light would shine into the gap. Rays that end in a gap are followed one bounce
+/// further instead, until they leave it:
+///
+///     B = rho (E_direct + B'),   B' at the end of one cosine-distributed ray
+class GapLight {
+ public:
+  /// `radiosity` is that of gather_irradiance. Keeps references to all arguments.
+  GapLight(const LitScene& lit, const BandArray& radiosity, const LightPaths& paths)
+      : lit_(lit), radiosity_(radiosity), paths_(paths) {}
+
+  /// True if a ray from a point of unit normal `normal` ends in a gap: on a surface that faces the
+  /// point, reflects and does not emit, and whose distance from the point along its own normal is
+  /// less than a fifth of the size of the element that was hit.
+  bool is_gap(const Eigen::Vector3d& normal, const Ray& ray, const ElementHit& hit) const;
+
+  /// Adds the radiosity B at the end of a ray in a gap to the columns of `sum`. `key` decides the
+  /// further rays. `caster` is that of the scene or its ElementCaster::at().
+  void add(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
+           Eigen::ArrayXd& sum) const;
+
+ private:
+  Eigen::Vector3d normal_towards(const Ray& ray, const ElementHit& hit) const;
+
+  LitScene lit_;
+  const BandArray& radiosity_;
+  const LightPaths& paths_;
+};
+
+}  // namespace lightwell
