@@ -92,7 +92,7 @@ class HemisphereGather {
                                              : bright_.share(view, at.normal.dot(ray[r].direction),
                                                              count, ray[r], hit[r]);
         Eigen::ArrayXd& half = sum[place < count / 2 ? 0 : 1];
-        if (gaps_.is_gap(at.normal, ray[r], hit[r])) {
+        if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) {
           gaps_.add(caster_, ray[r], hit[r], random_key(key, RandomPurpose::gap_rays, index), half);
         } else {
           add(ray[r], hit[r], key, index, share, half);
@@ -127,7 +127,7 @@ class HemisphereGather {
       caster_.closest_hits({ray.data(), n}, {hit.data(), n});
       for (std::size_t r = 0; r < n; ++r) {
         if (hit[r].element != element[r] || !paths_.is_diffuse(hit[r].facet)) continue;
-        if (gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
+        if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
         const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
         add_radiosity(hit[r],
                       bright_.share(view, at.normal.dot(ray[r].direction), rays, ray[r], hit[r]),
