@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
+#include "radiosity/emitters/sky_light.h"
 #include "radiosity/refine/error_reference.h"
+#include "raytrace/sure_gather.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 
@@ -147,6 +151,41 @@ class ProbeSurface {
 
 }  // namespace
 
+namespace {
+
+// A probe is one point, so it can afford many rays to the sky.
+GatherOptions with_sky_rays(GatherOptions options) {
+  constexpr int per_ray = 4, fewest = 64;
+  if (options.shadows.sky_rays == 0) {
+    options.shadows.sky_rays =
+        std::clamp(per_ray * std::min(options.rays, most_sky_rays), fewest, most_sky_rays);
+  }
+  return options;
+}
+
+// Light of the gather at the probes; `caustic` light decides over the bounds alone.
+BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const GatherPoints& points,
+                       const GatherOptions& options, const BandArray& caustic,
+                       ProbeBounds* bounds) {
+  const GatherOptions with_sky = with_sky_rays(options);
+  if (!bounds) {
+    const GatheredIrradiance E = gather_irradiance(lit, radiosity, points, with_sky);
+    return E.direct + E.indirect;
+  }
+  SureIrradiance sure = sure_gather(lit, radiosity, points, with_sky, bounds->accuracy);
+  for (int i = 0; i < points.size(); ++i) {
+    const double lux = luminous(lit.scene.bands, caustic.row(i).transpose());
+    if (lux > sure.lux_within[i]) {
+      sure.lux_within[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  bounds->lux_within = std::move(sure.lux_within);
+  bounds->missed = sure.missed;
+  return std::move(sure.irradiance);
+}
+
+}  // namespace
+
 SolveOptions options_for_probes() {
   // 64 rays suffice: the light of vertices is read by many rays of many probes, whose means average
   // out its noise.
@@ -157,7 +196,8 @@ SolveOptions options_for_probes() {
 
 BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
-                           std::span<const Probe> probes, const GatherOptions& options) {
+                           std::span<const Probe> probes, const GatherOptions& options,
+                           ProbeBounds* bounds) {
   const ProbeSurface surface(caster);
   const bool has_caustics = solution.caustic_irradiance.size() > 0;
   // Rays from the probe do not find light of emitters through mirrors and glass; the mesh holds
@@ -180,8 +220,8 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
     points.push_back(point);
   }
   const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance());
-  const GatheredIrradiance E = gather_irradiance({scene, caster, direct_light}, B, points, options);
-  return E.direct + E.indirect + caustic;
+  const LitScene lit{scene, caster, direct_light};
+  return probe_gather(lit, B, points, options, caustic, bounds) + caustic;
 }
 
 namespace {

@@ -19,7 +19,7 @@ struct SkyEffort {
   int first = 32;
   int most = 128;  ///< 1 to most_sky_rays
 };
-constexpr int most_sky_rays = 1024;
+constexpr int most_sky_rays = 1 << 16;
 
 /// Irradiance of a point from the dome.
 struct SkyGlow {
