@@ -410,13 +410,7 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
   if (dome) {
     const SkyGlow glow = sky_->irradiance(caster, query.at, dome->key, sky_effort(query.shadows));
     add(dome->channel, dome->light(), glow.irradiance);
-    // The dome's rays see its penumbra alone, so their noise is about that of a lamp of three times
-    // the irradiance.
-    constexpr double as_of_a_lamp = 3.0;
-    if (visibility) {
-      visibility->noisy +=
-          glow.is_mixed ? as_of_a_lamp * (dome->light() * glow.irradiance).mean() : 0.0;
-    }
+    if (visibility) visibility->sky_noise = dome->light().mean() * glow.noise;
   }
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const LightShadow& s = shadows[i];

@@ -55,6 +55,7 @@ struct EmitterVisibility {
   /// Unobstructed irradiance, sum M F, mean of the bands, W/m^2, of the lights whose shadow rays
   /// were partly blocked; their noise is a share of this sum.
   double noisy = 0.0;
+  double sky_noise = 0.0;    ///< standard error of the dome's light, mean of the bands, W/m^2
   std::uint64_t whole = 0;   ///< bit i: light i is fully visible; the first 64 lights
   std::uint64_t hidden = 0;  ///< bit i: light i is fully hidden
 };
