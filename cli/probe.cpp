@@ -8,9 +8,11 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
+#include "cli/refinement.h"
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "mesh/elements/element_caster.h"
+#include "raytrace/sure_gather.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -20,7 +22,41 @@ struct ProbeArguments {
   std::string scene, solution, points, output;
   bool interpolate = false;
   int rays = 1024;
+  double accuracy = 0.0;  // 0: not asked for
 };
+
+// Tells of probes without a bound, and of those that did not reach the accuracy.
+void say_bounds(const ProbeBounds& bounds, double accuracy, Console& console, Report& report) {
+  const auto unknown = bounds.lux_within.isNaN().count();
+  if (unknown > 0) {
+    console.say(fmt::format(
+        "note: lux_within is left empty at {} of {} points: no ray found light there, or light "
+        "comes through mirrors and glass, whose error has no estimate.",
+        unknown, bounds.lux_within.size()));
+  }
+  report.add("points_without_bound", unknown);
+  if (!(accuracy > 0.0)) return;
+  report.add("points_short_of_accuracy", bounds.missed);
+  if (bounds.missed == 0) return;
+  console.say(fmt::format(
+      "warning: {} of {} points are less accurate than {:g} %, since their rays reached the limit "
+      "of {} sets of {}; lux_within has the bound that they reached.",
+      bounds.missed, bounds.lux_within.size(), 100.0 * accuracy, sure_sets, most_sure_rays));
+}
+
+// Refuses an accuracy that is no share from 0.1 % to 100 %.
+double probe_accuracy(const std::string& text) {
+  constexpr double least = 1e-3;
+  const auto share = parse_share(text);
+  if (!share || *share < least) {
+    throw CLI::ValidationError(
+        "--accuracy",
+        fmt::format("'{}' is no accuracy of points; write a share of each point's illuminance from "
+                    "0.1% to 100%, such as 0.5%",
+                    text));
+  }
+  return *share;
+}
 
 // Solves as far as probes need: coarse gathers, no refinement, no error estimate.
 SolvedScene solve_for_probes(const Scene& scene, Console& console, Report& report) {
@@ -58,14 +94,20 @@ int probe(const ProbeArguments& arguments, Console& console) {
   const ElementCaster caster(solved.mesh);
   BandArray irradiance;
   Eigen::ArrayXd lux_within;
+  bool is_short = false;
   if (arguments.interpolate) {
     irradiance = interpolate_irradiance(caster, solved.solution, probes);
     lux_within = interpolation_bound(caster, solved.solution, probes);
   } else {
     const DirectLight direct_light(scene, solved.mesh);
-    irradiance =
-        probe_irradiance(scene, caster, direct_light, solved.solution, probes,
-                         {.rays = arguments.rays, .run = {.progress = console.progress()}});
+    ProbeBounds bounds{.accuracy = arguments.accuracy};
+    irradiance = probe_irradiance(scene, caster, direct_light, solved.solution, probes,
+                                  {.rays = arguments.rays, .run = {.progress = console.progress()}},
+                                  &bounds);
+    console.finish_phase();
+    say_bounds(bounds, arguments.accuracy, console, report);
+    lux_within = std::move(bounds.lux_within);
+    is_short = bounds.missed > 0;
   }
   console.finish_phase();
   stop_if_interrupted();
@@ -76,7 +118,7 @@ int probe(const ProbeArguments& arguments, Console& console) {
   report.add("method", arguments.interpolate ? "interpolate" : "gather");
   report.add_phase("probe", watch.seconds());
   report.print();
-  return exit_done;
+  return is_short ? exit_not_accurate : exit_done;
 }
 
 }  // namespace
@@ -106,6 +148,14 @@ Action add_probe(CLI::App& command) {
       .add_option("--rays", arguments->rays, "gather rays per point, a power of two (default 1024)")
       ->type_name("N")
       ->check(power_of_two())
+      ->excludes(interpolate);
+  command
+      .add_option_function<std::string>(
+          "--accuracy",
+          [arguments](const std::string& text) { arguments->accuracy = probe_accuracy(text); },
+          "gather with more rays until the bound of each point's noise (lux_within) is below this "
+          "share of its lux, from 0.1%")
+      ->type_name("SHARE")
       ->excludes(interpolate);
   command.footer("Example: lightwell probe office.toml --points desk.csv -o desk-lux.csv");
   return [arguments](Console& console) { return probe(*arguments, console); };

@@ -44,6 +44,12 @@ ShadowOptions Effort::shadows() const {
   return {.min_rays = std::max(16, most / 8), .max_rays = most};
 }
 
+int sky_rays(double target) {
+  constexpr double for_one_percent = 2048.0, fewest = 128.0, most = 16384.0, law = 4.0 / 3.0;
+  const double rays = for_one_percent * std::pow(0.01 / target, law);
+  return static_cast<int>(std::lround(std::clamp(rays, fewest, most)));
+}
+
 Effort first_effort(double target, bool refines) {
   constexpr int rays_for_one_percent = 1024;
   return {.refine_tolerance = refines ? share_of_interpolation * target : 0.0,

@@ -36,6 +36,10 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
 /// which suffices in a room of white walls; see rays_for_noise for other targets.
 Effort first_effort(double target, bool refines);
 
+/// Rays to the dome of the sky at each vertex for a `target`: 2048 for 1 %. Their noise falls with
+/// rays^(-3/4); see ShadowOptions.
+int sky_rays(double target);
+
 /// The noise that the final gather may leave, relative to the mean irradiance: 55 % of `target`.
 double noise_share(double target);
 

@@ -100,7 +100,9 @@ class GatherAttempts {
     effort_ = effort;
     options_.refine.tolerance = effort.refine_tolerance;
     options_.gather.rays = effort.gather_rays;
-    if (target_ > 0.0) options_.gather.shadows = effort.shadows();
+    if (!(target_ > 0.0)) return;
+    options_.gather.shadows = effort.shadows();
+    options_.gather.shadows.sky_rays = sky_rays(target_);
   }
 
   // Splits elements and gathers to their vertices with few rays.

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
+#include "radiosity/emitters/sky_light.h"
 #include "radiosity/refine/error_reference.h"
 #include "raytrace/specular_light.h"
+#include "raytrace/sure_gather.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 
@@ -148,6 +152,41 @@ class ProbeSurface {
 
 }  // namespace
 
+namespace {
+
+// A probe is one point, so it can afford many rays to the sky.
+GatherOptions with_sky_rays(GatherOptions options) {
+  constexpr int per_ray = 4, fewest = 64;
+  if (options.shadows.sky_rays == 0) {
+    options.shadows.sky_rays =
+        std::clamp(per_ray * std::min(options.rays, most_sky_rays), fewest, most_sky_rays);
+  }
+  return options;
+}
+
+// Light of the gather at the probes; `caustic` light decides over the bounds alone.
+BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const GatherPoints& points,
+                       const GatherOptions& options, const BandArray& caustic,
+                       ProbeBounds* bounds) {
+  const GatherOptions with_sky = with_sky_rays(options);
+  if (!bounds) {
+    const GatheredIrradiance E = gather_irradiance(lit, radiosity, points, with_sky);
+    return E.direct + E.indirect;
+  }
+  SureIrradiance sure = sure_gather(lit, radiosity, points, with_sky, bounds->accuracy);
+  for (int i = 0; i < points.size(); ++i) {
+    const double lux = luminous(lit.scene.bands, caustic.row(i).transpose());
+    if (lux > sure.lux_within[i]) {
+      sure.lux_within[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  bounds->lux_within = std::move(sure.lux_within);
+  bounds->missed = sure.missed;
+  return std::move(sure.irradiance);
+}
+
+}  // namespace
+
 SolveOptions options_for_probes() {
   // 64 rays suffice: the light of vertices is read by many rays of many probes, whose means average
   // out its noise.
@@ -158,10 +197,16 @@ SolveOptions options_for_probes() {
 
 namespace {
 
+struct MirroredLight {
+  BandArray irradiance{};       // points x bands, W/m^2
+  Eigen::ArrayXd lux_within{};  // lx, with odds of about 19 to 1
+};
+
 // Light of lamps by way of mirrors and glass at the points that lie on no surface: the mesh holds
-// such light for surfaces.
-BandArray mirrored_in_air(const LitScene& lit, const RadiositySolution& solution,
-                          const std::vector<GatherPoint>& points, const GatherOptions& options) {
+// such light for surfaces. `accuracy` is that of ProbeBounds.
+MirroredLight mirrored_in_air(const LitScene& lit, const RadiositySolution& solution,
+                              const std::vector<GatherPoint>& points, const GatherOptions& options,
+                              double accuracy) {
   std::vector<GatherPoint> in_air;
   std::vector<Eigen::Index> row;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -170,15 +215,25 @@ BandArray mirrored_in_air(const LitScene& lit, const RadiositySolution& solution
     in_air.push_back(points[i]);
     if (!in_air.back().key) in_air.back().key = i;
   }
-  BandArray result =
-      BandArray::Zero(static_cast<Eigen::Index>(points.size()), lit.scene.bands.count());
+  const auto count = static_cast<Eigen::Index>(points.size());
+  MirroredLight result{.irradiance = BandArray::Zero(count, lit.scene.bands.count()),
+                       .lux_within = Eigen::ArrayXd::Zero(count)};
   if (in_air.empty()) return result;
-  const SpecularIrradiance E = specular_irradiance(lit, solution, in_air,
-                                                   {.most_rays = 32 * options.rays,
-                                                    .replica = options.replica,
-                                                    .progress = options.run.progress});
+  SpecularLightOptions effort{
+      .most_rays = 32 * options.rays, .replica = options.replica, .progress = options.run.progress};
+  if (accuracy > 0.0) {
+    // A quarter of the bound, which is two standard errors.
+    effort.accuracy = std::min(effort.accuracy, accuracy / 8.0);
+    effort.most_rays = 1 << 20;
+  }
+  const SpecularIrradiance E = specular_irradiance(lit, solution, in_air, effort);
   for (std::size_t k = 0; k < row.size(); ++k) {
-    result.row(row[k]) = E.irradiance.row(static_cast<Eigen::Index>(k));
+    const auto from = static_cast<Eigen::Index>(k);
+    const Spectrum found = E.irradiance.row(from).transpose();
+    result.irradiance.row(row[k]) = found.transpose();
+    if (!(found.mean() > 0.0f)) continue;
+    const double lux_of_mean = luminous(lit.scene.bands, found) / static_cast<double>(found.mean());
+    result.lux_within[row[k]] = 2.0 * lux_of_mean * std::sqrt(double{E.variance[from]});
   }
   return result;
 }
@@ -187,7 +242,8 @@ BandArray mirrored_in_air(const LitScene& lit, const RadiositySolution& solution
 
 BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
-                           std::span<const Probe> probes, const GatherOptions& options) {
+                           std::span<const Probe> probes, const GatherOptions& options,
+                           ProbeBounds* bounds) {
   const ProbeSurface surface(caster);
   const bool has_caustics = solution.caustic_irradiance.size() > 0;
   // Rays from the probe do not find light of emitters through mirrors and glass; the mesh holds
@@ -211,8 +267,14 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   }
   const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance());
   const LitScene lit{scene, caster, direct_light};
-  const GatheredIrradiance E = gather_irradiance(lit, B, points, options);
-  return E.direct + E.indirect + caustic + mirrored_in_air(lit, solution, points, options);
+  const MirroredLight mirrored =
+      mirrored_in_air(lit, solution, points, options, bounds ? bounds->accuracy : 0.0);
+  BandArray E = probe_gather(lit, B, points, options, caustic, bounds) + caustic;
+  E += mirrored.irradiance;
+  if (bounds) {
+    bounds->lux_within = (bounds->lux_within.square() + mirrored.lux_within.square()).sqrt();
+  }
+  return E;
 }
 
 namespace {

@@ -25,11 +25,26 @@ std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_p
 /// light is not estimated.
 SolveOptions options_for_probes();
 
-/// Irradiance at each probe, probes x bands, W/m^2, by a final gather in the solved scene.
+/// How sure the irradiance of probes is.
+struct ProbeBounds {
+  /// The bound to reach, as a share of the illuminance of each probe (see sure_gather); 0: the rays
+  /// of the options, whatever noise they leave.
+  double accuracy = 0.0;
+  /// Per probe, lx, with odds of about 19 to 1: the noise of the gather. NaN where nothing is
+  /// known: no ray found light, or more than the bound comes as caustics, whose error has no
+  /// estimate.
+  Eigen::ArrayXd lux_within{};
+  int missed = 0;  ///< probes whose rays reached the limit before `accuracy`
+};
+
+/// Irradiance at each probe, probes x bands, W/m^2, by a final gather in the solved scene. If
+/// `options` leave the number of sky rays open, it is four times that of hemisphere rays. With
+/// `bounds`, the gather is a sure_gather(), which takes about twice the time.
 BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            std::span<const Probe> probes,
-                           const GatherOptions& options = {.rays = 1024});
+                           const GatherOptions& options = {.rays = 1024},
+                           ProbeBounds* bounds = nullptr);
 
 /// Irradiance at each probe, probes x bands, W/m^2, interpolated on the solution's mesh. Throws
 /// InputError that names the first probe that lies on no surface facing its way, within 1e-4 of the
@@ -43,9 +58,9 @@ BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySol
 Eigen::ArrayXd interpolation_bound(const ElementCaster& caster, const RadiositySolution& solution,
                                    std::span<const Probe> probes);
 
-/// Writes columns x,y,z,nx,ny,nz,E_<band>...,lux and, unless `lux_within` is empty, lux_within;
-/// coordinates are in file units. The file is written under a temporary name and renamed. Throws
-/// std::runtime_error that names the file.
+/// Writes columns x,y,z,nx,ny,nz,E_<band>...,lux and, unless `lux_within` is empty, lux_within, in
+/// which NaN leaves a cell empty; coordinates are in file units. The file is written under a
+/// temporary name and renamed. Throws std::runtime_error that names the file.
 void write_probes(const std::filesystem::path& csv, std::span<const Probe> probes,
                   const BandArray& irradiance, const Bands& bands, double metres_per_unit,
                   const Eigen::ArrayXd& lux_within = {});

@@ -146,7 +146,8 @@ void write_probes(const std::filesystem::path& csv, std::span<const Probe> probe
     for (float E_k : E) stream << fmt::format(",{:.9g}", E_k);
     stream << fmt::format(",{:.9g}", luminous(bands, E));
     if (lux_within.size() > 0) {
-      stream << fmt::format(",{:.3g}", lux_within[static_cast<Eigen::Index>(i)]);
+      const double within = lux_within[static_cast<Eigen::Index>(i)];
+      stream << (std::isnan(within) ? "," : fmt::format(",{:.3g}", within));
     }
     stream << '\n';
   }

@@ -174,7 +174,7 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
   const auto light = [](const LightShadow& s) { return s.F * s.light().mean(); };
   std::vector<double> most_light(channels, 0.0);
   for (const LightShadow& s : shadows) most_light[s.channel] += light(s);
-  const int most = std::clamp(options.max_rays, 1, most_shadow_rays);
+  const int most = std::clamp(options.max_rays, 1, most_probe_shadow_rays);
   const int least = std::clamp(options.min_rays, 1, most);
   constexpr int first_rays = 8;
   for (LightShadow& s : shadows) {
@@ -188,6 +188,14 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
     s.least = std::min(
         s.most, std::max(std::min(first_rays, least), static_cast<int>(std::ceil(effort * least))));
   }
+}
+
+SkyEffort sky_effort(const ShadowOptions& options) {
+  constexpr int fewest = 8, first_of = 8;
+  const int most = options.sky_rays > 0 ? options.sky_rays : options.max_rays;
+  const int first = options.sky_rays > 0 ? options.sky_rays / first_of : options.min_rays;
+  return {.first = std::clamp(first, fewest, most_sky_rays),
+          .most = std::clamp(most, fewest, most_sky_rays)};
 }
 
 // The number of occluding polygons up to which an exact share costs no more than `rays` rays; below
@@ -235,7 +243,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
     : free_sources_(lightwell::free_sources(scene, mesh.source_scale, channels.of_source)),
       bands_(scene.bands.count()),
       channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
-      samples_(most_shadow_rays),
+      samples_(most_probe_shadow_rays),
       panes_(scene) {
   if (dome()) sky_ = like ? like->sky_ : std::make_shared<const SkyLight>(scene, mesh);
   const std::vector<FacetRef> facets = scene_facets(scene);
@@ -400,17 +408,9 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
       cast_shadows(shadows, caster, samples_, query.at, panes_.empty() ? nullptr : &panes_);
   if (visibility) *visibility = {};
   if (dome) {
-    const SkyEffort effort{.first = std::clamp(query.shadows.min_rays, 8, most_sky_rays),
-                           .most = std::clamp(query.shadows.max_rays, 8, most_sky_rays)};
-    const SkyGlow glow = sky_->irradiance(caster, query.at, dome->key, effort);
+    const SkyGlow glow = sky_->irradiance(caster, query.at, dome->key, sky_effort(query.shadows));
     add(dome->channel, dome->light(), glow.irradiance);
-    // The dome's rays see its penumbra alone, so their noise is about that of a lamp of three times
-    // the irradiance.
-    constexpr double as_of_a_lamp = 3.0;
-    if (visibility) {
-      visibility->noisy +=
-          glow.is_mixed ? as_of_a_lamp * (dome->light() * glow.irradiance).mean() : 0.0;
-    }
+    if (visibility) visibility->sky_noise = dome->light().mean() * glow.noise;
   }
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const LightShadow& s = shadows[i];

@@ -35,14 +35,19 @@ struct Emitter {
   std::vector<double> area_cdf{};  ///< running share of the area, one per triangle, last is 1
 };
 
-constexpr int most_shadow_rays = 256;
+constexpr int most_shadow_rays = 256;  ///< that pictures and solves choose
+/// The limit for single points, which can afford more.
+constexpr int most_probe_shadow_rays = 1 << 14;
 
 /// Shadow rays from a point to an emitter that gives all of the point's direct light: `min_rays`
 /// stratified rays first; if some are blocked and some not, `max_rays`. Emitters that give less
 /// light get fewer. No rays are cast where ExactShadows finds the visible share in less time.
 struct ShadowOptions {
   int min_rays = 16;
-  int max_rays = 64;  ///< 1 to most_shadow_rays
+  int max_rays = 64;  ///< 1 to most_probe_shadow_rays
+  /// Rays to the dome of the sky, of which an eighth come first; 0: as to an emitter. 1 to
+  /// most_sky_rays.
+  int sky_rays = 0;
 };
 
 /// Visibility of the lights from a point.
@@ -50,6 +55,7 @@ struct EmitterVisibility {
   /// Unobstructed irradiance, sum M F, mean of the bands, W/m^2, of the lights whose shadow rays
   /// were partly blocked; their noise is a share of this sum.
   double noisy = 0.0;
+  double sky_noise = 0.0;    ///< standard error of the dome's light, mean of the bands, W/m^2
   std::uint64_t whole = 0;   ///< bit i: light i is fully visible; the first 64 lights
   std::uint64_t hidden = 0;  ///< bit i: light i is fully hidden
 };

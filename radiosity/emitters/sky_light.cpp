@@ -53,7 +53,7 @@ class SkyLight::Estimate {
       for (Share& share : shares_) share.likely = 1.0;
       set_weights();
       const Tally all = tally_of(effort.most, 2);
-      return {result(all).cast<float>(), all.clear < all.rays};
+      return {result(all).cast<float>(), std::sqrt(all.squared_noise)};
     }
     // The first rays often miss a small opening, so the point may see sky although none of them
     // gets out. If all of them get out, the point is unobstructed, unless rays of the site were
@@ -65,7 +65,8 @@ class SkyLight::Estimate {
     const double share = static_cast<double>(first) / (first + effort.most);
     const Eigen::ArrayXd E =
         share * corrected(pilot, more) + (1.0 - share) * corrected(more, pilot);
-    return {E.max(0.0).cast<float>(), pilot.clear < pilot.rays || more.clear < more.rays};
+    return {E.max(0.0).cast<float>(), std::hypot(share * std::sqrt(pilot.squared_noise),
+                                                 (1.0 - share) * std::sqrt(more.squared_noise))};
   }
 
  private:
@@ -81,6 +82,7 @@ class SkyLight::Estimate {
   struct Tally {
     Eigen::ArrayXd seen_open, all_open, seen_elsewhere;  // per band
     int rays = 0, clear = 0;
+    double squared_noise = 0.0;  // of `corrected`, mean of the bands
   };
 
   // At most a third as many rays as go to open cells go elsewhere; if no cell is known as open, all
@@ -148,9 +150,12 @@ class SkyLight::Estimate {
     }
     std::vector<std::uint8_t> blocked(ray.size());
     caster_.occluded(ray, blocked);
+    std::vector<double> passed_share;
+    passed_share.reserve(ray.size());
     for (std::size_t i = 0; i < ray.size(); ++i) {
       const Sample& sample = samples[i];
       const Eigen::ArrayXd weight = sample.weight * sky_.cells_.colour(sample.cell);
+      passed_share.push_back(blocked[i] == 0 ? 1.0 : 0.0);
       if (sample.is_open) tally.all_open += weight;
       ++tally.rays;
       if (blocked[i] == 0) {
@@ -160,9 +165,18 @@ class SkyLight::Estimate {
       }
       if (sky_.panes_.empty()) continue;
       const Spectrum passed = sky_.panes_.passed(caster_, ray[i]);
+      passed_share.back() = passed.cast<double>().mean();
       if (!(passed > 0.0f).any()) continue;
       (sample.is_open ? tally.seen_open : tally.seen_elsewhere) += weight * passed.cast<double>();
       ++tally.clear;
+    }
+    const double visible = tally.all_open.sum() > 0.0 ? seen_share(tally).mean() : 0.0;
+    const auto term = [&](std::size_t i) {
+      return samples[i].weight * (passed_share[i] - (samples[i].is_open ? visible : 0.0));
+    };
+    for (std::size_t i = 0; i + 1 < samples.size(); i += 2) {
+      const double difference = term(i) - term(i + 1);
+      tally.squared_noise += difference * difference;
     }
   }
 

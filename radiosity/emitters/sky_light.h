@@ -19,12 +19,13 @@ struct SkyEffort {
   int first = 32;
   int most = 128;  ///< 1 to most_sky_rays
 };
-constexpr int most_sky_rays = 1024;
+constexpr int most_sky_rays = 1 << 16;
 
 /// Irradiance of a point from the dome.
 struct SkyGlow {
   Spectrum irradiance{};  ///< W/m^2
-  bool is_mixed = false;  ///< a part of the dome is hidden, so that rays leave noise
+  /// Estimated standard error, mean of the bands, W/m^2: little above the true one (see SkyLight).
+  double noise = 0.0;
 };
 
 /// Irradiance from the dome of a Sky, without its sun, which is another source.
@@ -39,6 +40,10 @@ struct SkyGlow {
 /// that rays find, minus the irradiance that the same rays would find without any occluder, times
 /// the visible share, plus the known irradiance times that share. An unobstructed point has no
 /// noise.
+///
+/// Each ray lies in a step of its own along the curve of the cells. Pairs of neighbouring steps
+/// tell the noise: the mean of (a - b)^2 is the variance of a + b plus the squared difference of
+/// their means (collapsed strata, Cochran 1977).
 class SkyLight {
  public:
   /// `scene` must have a sky. Casts rays from the mesh's surfaces; the same bits for any number of

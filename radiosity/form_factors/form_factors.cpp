@@ -58,7 +58,7 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   const auto& [method, rays_per_patch, target_error, most_rays_per_patch, rays_per_emitter,
                max_specular_depth, emitter_points, shadows, hemicube_resolution, enforce_closure,
                memory, run] = options;
-  const auto& [min_shadow_rays, max_shadow_rays] = shadows;
+  const auto& [min_shadow_rays, max_shadow_rays, sky_rays] = shadows;
   print.add(method);
   print.add(rays_per_patch);
   print.add(target_error);
@@ -68,6 +68,7 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   print.add(emitter_points);
   print.add(min_shadow_rays);
   print.add(max_shadow_rays);
+  print.add(sky_rays);
   print.add(hemicube_resolution);
   print.add(enforce_closure);
 }

@@ -219,11 +219,12 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
   }
   // The run decides no bit of a result.
   const auto& [rays, max_specular_depth, shadows, replica, run] = options;
-  const auto& [min_shadow_rays, max_shadow_rays] = shadows;
+  const auto& [min_shadow_rays, max_shadow_rays, sky_rays] = shadows;
   print.add(rays);
   print.add(max_specular_depth);
   print.add(min_shadow_rays);
   print.add(max_shadow_rays);
+  print.add(sky_rays);
   print.add(replica);
 }
 

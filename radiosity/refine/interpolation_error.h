@@ -106,7 +106,8 @@ class InterpolationError {
     double noise = 0.0;         // of indirect light
   };
   struct Differences;
-  static Squares beyond_noise(const Differences& differences, double shadow_noise);
+  static Squares beyond_noise(const Differences& differences, double shadow_noise,
+                              double sky_noise);
   Squares lattice_error(int cell, int side) const;
   double reference(int cell, int side) const;
 

@@ -300,5 +300,28 @@ TEST(SkyLight, ShadowOfABrightPlaceIsFoundWithoutNoise) {
   EXPECT_LT(std::sqrt(squares / count), 0.009);
 }
 
+TEST(SkyLight, KnowsItsNoise) {
+  // A wall beside the points hides a part of the dome. 400 estimates have a standard deviation that
+  // is known to 1 / sqrt(800) = 3.5 %; three of that and 5 % for what the pairs themselves vary by
+  // leave 0.85. Pairs of rays count the differences of their means as noise, at most as much again
+  // as the variance: a factor of sqrt(2), or 1.7 with the same margins.
+  Scene scene = open_plane();
+  test::add_polygon(scene, "wall", 0, {{1, -2, 0}, {1, -2, 3}, {1, 2, 3}, {1, 2, 0}});
+  const UnderSky plane{std::move(scene)};
+  constexpr int count = 400;
+  double sum = 0.0, squares = 0.0, noise = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const SkyGlow glow = plane.light.irradiance(plane.caster, {{0.2, 0.3, 0}, Vector3d::UnitZ(), 0},
+                                                static_cast<std::uint64_t>(i));
+    const auto E = static_cast<double>(glow.irradiance[1]);
+    sum += E / count;
+    squares += E * E / count;
+    noise += glow.noise * glow.noise / count;
+  }
+  const double deviation = std::sqrt(squares - sum * sum);
+  EXPECT_GT(std::sqrt(noise), 0.85 * deviation);
+  EXPECT_LT(std::sqrt(noise), 1.7 * deviation);
+}
+
 }  // namespace
 }  // namespace lightwell::sky_light_test
