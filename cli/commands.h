@@ -14,7 +14,7 @@ enum ExitCode {
   exit_wrong_usage = 2,
   exit_bad_input = 3,
   exit_not_accurate = 4,  ///< the results are written, but the solver stopped above the tolerance
-                          ///< or the estimated error is above --accuracy
+                          ///< or the estimated error is above --accuracy or --target-error
   exit_interrupted = 130,
 };
 

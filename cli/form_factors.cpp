@@ -52,9 +52,9 @@ fs::path FormFactorArguments::row_file() const {
 /// Mesh options for one row per facet. Ray casting samples a whole facet, so a facet is one patch.
 /// A hemicube has one centre per patch, and a closed form few shadow rays per pair of patches: both
 /// are summed over smaller patches. Every method cuts facets where other facets touch them.
+constexpr int patches_of_hemicubes = 2048, patches_of_closed_forms = 512;
 MeshOptions mesh_for_facets(FormFactorMethod method, const Scene& scene) {
   MeshOptions options{.elements_per_patch_edge = 1};
-  constexpr int patches_of_hemicubes = 2048, patches_of_closed_forms = 512;
   if (method == FormFactorMethod::hemicube) {
     options.auto_patch_count = patches_of_hemicubes;
   } else if (method == FormFactorMethod::analytic) {
@@ -73,12 +73,12 @@ struct Computed {
   std::optional<double> error{};  // estimated error of the worst factor
 };
 
-Computed compute(const FormFactorArguments& arguments, const NumberedScene& numbered,
-                 const FacetCheck& check, const Feedback& feedback) {
+/// Computes the factors on the mesh that suits `method`.
+Computed compute_as(FormFactorMethod method, const FormFactorArguments& arguments,
+                    const NumberedScene& numbered, const ViewFactorScene& view,
+                    const Feedback& feedback) {
   const auto& [console, report] = feedback;
   Stopwatch watch;
-  const ViewFactorScene view = make_view_factor_scene(numbered, check, arguments.two_sided);
-  const FormFactorMethod method = form_factor_method(arguments.method);
   const bool per_patch = arguments.max_patch_size > 0.0;
   MeshOptions mesh_options = mesh_for_facets(method, view.scene);
   if (per_patch) {
@@ -108,13 +108,34 @@ Computed compute(const FormFactorArguments& arguments, const NumberedScene& numb
   console.finish_phase();
   stop_if_interrupted();
   if (!computed.report.row_error.empty()) {
-    computed.error = error_estimate(computed.report.row_error, *form_factors, computed.mesh,
-                                    computed.rows.of_patch);
+    computed.error =
+        error_estimate(computed.report, *form_factors, computed.mesh, computed.rows.of_patch);
   }
   computed.factors = sum_form_factors(*form_factors, computed.mesh, computed.rows.of_patch,
                                       computed.rows.count(), options.memory);
   report.add_storage(options.memory->report());
   report.add_phase("form_factors", watch.lap());
+  return computed;
+}
+
+bool is_short(const Computed& computed, const FormFactorArguments& arguments) {
+  return computed.error && *computed.error > arguments.target_error;
+}
+
+Computed compute(const FormFactorArguments& arguments, const NumberedScene& numbered,
+                 const FacetCheck& check, const Feedback& feedback) {
+  const ViewFactorScene view = make_view_factor_scene(numbered, check, arguments.two_sided);
+  const FormFactorMethod method = form_factor_method(arguments.method);
+  Computed computed = compute_as(method, arguments, numbered, view, feedback);
+  // Few whole facets may be too large for exact visibility of many corners, and for the rays of one
+  // row. Closed forms of their parts come nearer to the target.
+  const bool is_coarse = method == FormFactorMethod::automatic &&
+                         !(arguments.max_patch_size > 0.0) &&
+                         computed.mesh.patch_count() < patches_of_closed_forms;
+  if (is_coarse && is_short(computed, arguments)) {
+    Computed finer = compute_as(FormFactorMethod::analytic, arguments, numbered, view, feedback);
+    if (*finer.error < *computed.error) computed = std::move(finer);
+  }
   return computed;
 }
 
@@ -202,6 +223,17 @@ void write_files(const FormFactorArguments& arguments, const NumberedScene& numb
   }
 }
 
+std::string shortfall(const FormFactorArguments& arguments, double error) {
+  const std::string remedy = arguments.method == "ray-cast"
+                                 ? " --method auto finds factors between polygons without rays."
+                                 : "";
+  return fmt::format(
+      "The worst factor has an estimated error of {:.1e}, above the target error of {:g}; rows "
+      "have "
+      "{} rays at most.{}",
+      error, arguments.target_error, FormFactorOptions{}.most_rays_per_patch, remedy);
+}
+
 int form_factors(const FormFactorArguments& arguments, Console& console) {
   Report report(console.options());
   Stopwatch watch;
@@ -218,6 +250,13 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
   if (computed.factors.entry_count() == 0) {
     notes.push_back(
         "No facet sees another; the front of a facet is where its corners run counter-clockwise.");
+  }
+  const bool falls_short = is_short(computed, arguments);
+  if (falls_short) notes.push_back(shortfall(arguments, *computed.error));
+  if (!computed.error) {
+    notes.push_back(
+        fmt::format("The method {} has no estimate of its error; --target-error has no effect.",
+                    arguments.method));
   }
   for (const std::string& note : notes) console.say("note: " + note);
   const Json found = form_factor_facts(arguments, numbered, computed);
@@ -236,7 +275,7 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
   const CommonOptions& common = console.options();
   if (!common.json && !common.quiet) fmt::print("{}", form_factor_text(found));
   report.print();
-  return exit_done;
+  return falls_short ? exit_not_accurate : exit_done;
 }
 
 void add_how(CLI::App& command, FormFactorArguments& arguments) {

@@ -1,6 +1,7 @@
 #include "radiosity/closed_forms/pair_exchange.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,7 +14,8 @@ namespace {
 using Eigen::Vector3d;
 
 // Distance between centres, in units of the sum of both radii, beyond which the rule of 2 x 2 (far)
-// or 3 x 3 (middle) points has a relative error below 1e-5.
+// or 3 x 3 (middle) points has a relative error below 1e-5. The errors fall with the fourth and the
+// sixth power of the distance.
 constexpr double far_from = 8.0, middle_from = 3.0;
 
 bool is_convex_outline(const std::vector<Vector3d>& loop, const Vector3d& normal) {
@@ -57,8 +59,13 @@ PairExchange::Points<N> PairExchange::gauss_points(const std::vector<Vector3d>& 
   return points;
 }
 
-PairExchange::PairExchange(const std::vector<PatchOutline>& outlines)
-    : outlines_(outlines), offset_(outlines.size(), 0.0), patches_(outlines.size()) {
+PairExchange::PairExchange(const std::vector<PatchOutline>& outlines, double relative_error)
+    : outlines_(outlines),
+      relative_error_(std::min(relative_error, usual_error)),
+      far_from_(far_from * far_from * std::sqrt(usual_error / relative_error_)),
+      middle_from_(middle_from * middle_from * std::cbrt(usual_error / relative_error_)),
+      offset_(outlines.size(), 0.0),
+      patches_(outlines.size()) {
   parallel_for(static_cast<int>(outlines.size()), 256, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const PatchOutline& outline = outlines[i];
@@ -116,21 +123,24 @@ double PairExchange::area_integral(int i, int j, const Points<N>& from, const Po
   return sum / std::numbers::pi;
 }
 
-double PairExchange::between(int i, int j) const {
+PairExchange::Bounded PairExchange::bounded(int i, int j) const {
   const PatchOutline &a = outlines_[i], &b = outlines_[j];
-  if (!a.is_polygon() || !b.is_polygon()) return 0.0;
+  if (!a.is_polygon() || !b.is_polygon()) return {};
   const int sees_j = side(i, j), sees_i = side(j, i);
-  if (sees_j < 0 || sees_i < 0) return 0.0;
+  if (sees_j < 0 || sees_i < 0) return {};
+  const auto by_area = [&](double S) { return Bounded{S, relative_error_ * S}; };
   const double size = a.radius + b.radius;
   const double distance = (a.center - b.center).squaredNorm() / (size * size);
   const bool smooth = sees_j > 0 && sees_i > 0 && patches_[i].has_points && patches_[j].has_points;
-  if (smooth && distance > far_from * far_from) {
-    return area_integral(i, j, patches_[i].far, patches_[j].far);
+  if (smooth && distance > far_from_) {
+    return by_area(area_integral(i, j, patches_[i].far, patches_[j].far));
   }
-  if (smooth && distance > middle_from * middle_from) {
-    return area_integral(i, j, patches_[i].middle, patches_[j].middle);
+  if (smooth && distance > middle_from_) {
+    return by_area(area_integral(i, j, patches_[i].middle, patches_[j].middle));
   }
-  return polygon_exchange(a, b);
+  constexpr double error = 1e-9;  // polygon_exchange()
+  const double S = polygon_exchange(a, b);
+  return {S, error * S};
 }
 
 }  // namespace lightwell

@@ -14,13 +14,25 @@ namespace lightwell {
 ///   S_ij = int int cos(theta_i) cos(theta_j) / (pi r^2) dA_i dA_j,
 ///
 /// by Gauss's rule with 2 x 2 or 3 x 3 points on each patch. Relative errors of the area integral
-/// stay below 1e-5. Keeps a reference to the outlines.
+/// stay below a bound. Keeps a reference to the outlines.
 class PairExchange {
  public:
-  explicit PairExchange(const std::vector<PatchOutline>& outlines);
+  /// Relative error of the area integral, unless another is asked for.
+  static constexpr double usual_error = 1e-5;
+
+  /// `relative_error`: bound of the relative error of the area integral; at most usual_error.
+  explicit PairExchange(const std::vector<PatchOutline>& outlines,
+                        double relative_error = usual_error);
 
   /// S_ij in square metres; 0 for patches of spheres.
-  double between(int i, int j) const;
+  double between(int i, int j) const { return bounded(i, j).value; }
+
+  struct Bounded {
+    double value = 0.0;  ///< S_ij, m^2
+    double error = 0.0;  ///< bound of its error, m^2
+  };
+  /// S_ij with the bound of the method that computes the pair.
+  Bounded bounded(int i, int j) const;
 
   /// True if some of each patch lies before the other's plane. False for patches of spheres.
   bool face_each_other(int i, int j) const;
@@ -49,7 +61,9 @@ class PairExchange {
   int side(int plane, int other) const;
 
   const std::vector<PatchOutline>& outlines_;
-  std::vector<double> offset_;  // of the planes, m
+  double relative_error_;
+  double far_from_, middle_from_;  // squares of the distances from which an area integral will do
+  std::vector<double> offset_;     // of the planes, m
   std::vector<Patch> patches_;
 };
 

@@ -97,16 +97,33 @@ std::vector<Node> double_exponential() {
   return nodes;
 }
 
-struct Rules {
-  std::vector<Node> far = gauss_legendre(3), middle = gauss_legendre(6), near = gauss_legendre(12),
-                    touching = double_exponential();
+// Gauss's rule of n nodes and the least `room` (see room_for()) at which its error is below 1e-12:
+// rho^(-2 n) with rho the sum of the axes of the ellipse, room = (rho + 1 / rho) / 2.
+struct SizedRule {
+  explicit SizedRule(int n) : nodes(gauss_legendre(n)) {
+    constexpr double error = 1e-12;
+    const double rho = std::pow(error, -0.5 / n);
+    least_room = 0.5 * (rho + 1.0 / rho);
+  }
+  std::vector<Node> nodes;
+  double least_room;
+};
 
-  // `gap`: distance between the piece and the other edge, in lengths of the piece.
-  const std::vector<Node>& rule_for(double gap) const {
-    if (gap > 6.0) return far;
-    if (gap > 1.5) return middle;
-    if (gap > 0.4) return near;
-    return touching;
+struct Rules {
+  // For edges farther than 6 lengths: an error of 24^-6 = 5e-9 of terms that are smooth by then and
+  // cancel around the loops.
+  std::vector<Node> far = gauss_legendre(3);
+  std::vector<Node> touching = double_exponential();
+  std::array<SizedRule, 6> sized = {SizedRule(4),  SizedRule(6),  SizedRule(8),
+                                    SizedRule(12), SizedRule(16), SizedRule(20)};
+  double least_room = sized.back().least_room;
+
+  // Precondition: room >= least_room.
+  const std::vector<Node>& rule_for(double room) const {
+    for (const SizedRule& rule : sized) {
+      if (room >= rule.least_room) return rule.nodes;
+    }
+    return sized.back().nodes;
   }
 };
 
@@ -121,28 +138,138 @@ double gap_between(const EdgeOf& edge, const EdgeOf& other) {
   return std::max(0.0, distance_to_edge(middle, other) - 0.5 * edge.length);
 }
 
-// int int ln r ds dt over two edges: quadrature along the first, closed form along the second.
+// Sine of edges that count as parallel: it moves their ends by 1e-12 of their length.
+constexpr double parallel = 1e-12;
+
+// Second antiderivative of ln sqrt(x^2 + D^2).
+double log_antiderivative(double x, double D) {
+  const double squared = x * x + D * D;
+  if (!(squared > 0.0)) return 0.0;
+  return 0.25 * (x * x - D * D) * std::log(squared) - 0.75 * x * x + x * D * std::atan2(x, D);
+}
+
+// int int ln r ds dt over parallel edges, in closed form: `begin` and `end` of one edge along the
+// other, which reaches from 0 to `length`, at distance D of each other.
+double parallel_pair(double begin, double end, double length, double D) {
+  const auto above = [&](double x) {
+    return log_antiderivative(x, D) - log_antiderivative(x - length, D);
+  };
+  return above(std::max(begin, end)) - above(std::min(begin, end));
+}
+
+// Point t = at +- i height of the complex plane where the integral of ln r over the other edge, as
+// a function of the place t along an edge, is not analytic.
+struct Singularity {
+  double at, height;
+};
+
+// Quadrature of log_integral along `edge`, in pieces that shrink towards its singularities. There
+// are three: r = 0 at either end of `other`, and r = 0 on the line of `other`, which counts where
+// the nearest point of that line lies on the edge.
+class GradedQuadrature {
+ public:
+  GradedQuadrature(const Rules& rules, const EdgeOf& edge, const EdgeOf& other)
+      : rules_(rules), edge_(edge), other_(other) {
+    const Vector3d between = other.from - edge.from;
+    for (const double s : {0.0, other.length}) {
+      const Vector3d to_end = between + s * other.along;
+      const double at = to_end.dot(edge.along);
+      add({at, (to_end - at * edge.along).norm()});
+    }
+    const Vector3d across = edge.along.cross(other.along);
+    const double sine2 = across.squaredNorm();
+    if (!(sine2 > parallel * parallel)) return;
+    const double at = between.cross(other.along).dot(across) / sine2;
+    const double on_other = between.cross(edge.along).dot(across) / sine2;
+    if (on_other < 0.0 || on_other > other.length) return;
+    add({at, std::abs(between.dot(across)) / sine2});
+  }
+
+  double value() const { return over(0.0, edge_.length); }
+
+ private:
+  void add(const Singularity& s) { singularities_[static_cast<std::size_t>(count_++)] = s; }
+
+  // Half the sum of the axes of the ellipse through a singularity whose foci are the ends of the
+  // piece, in units of half the piece. Gauss's rule converges with the largest ellipse that is free
+  // of singularities.
+  static double room_for(const Singularity& s, double begin, double end) {
+    return (std::hypot(s.at - begin, s.height) + std::hypot(s.at - end, s.height)) / (end - begin);
+  }
+  static bool is_at(const Singularity& s, double place, double size) {
+    constexpr double touching = 1e-9;
+    return s.height <= touching * size && std::abs(s.at - place) <= touching * size;
+  }
+
+  double apply(const std::vector<Node>& rule, double begin, double end) const {
+    double sum = 0.0;
+    for (const Node& node : rule) {
+      const double t = begin + node.at * (end - begin);
+      sum += node.weight * log_integral(edge_.from + t * edge_.along, other_);
+    }
+    return sum * (end - begin);
+  }
+
+  double over(double begin, double end) const {
+    // A piece so short contributes less than its rounding.
+    constexpr double shortest = 1e-10;
+    const double size = end - begin;
+    double room = HUGE_VAL, room_inside = HUGE_VAL;
+    const Singularity* nearest = nullptr;
+    for (int k = 0; k < count_; ++k) {
+      const Singularity& s = singularities_[static_cast<std::size_t>(k)];
+      const double here = room_for(s, begin, end);
+      if (here < room) {
+        room = here;
+        nearest = &s;
+      }
+      if (!is_at(s, begin, size) && !is_at(s, end, size)) room_inside = std::min(room_inside, here);
+    }
+    if (room >= rules_.least_room) return apply(rules_.rule_for(room), begin, end);
+    if (room_inside >= rules_.least_room) return apply(rules_.touching, begin, end);
+    if (size < shortest * edge_.length) return apply(rules_.sized.front().nodes, begin, end);
+    // A cut opposite the singularity, else towards the end that is nearer to it.
+    constexpr double aside = 1e-3, step = 0.25;
+    double cut = nearest->at;
+    if (cut < begin + aside * size) {
+      cut = begin + step * size;
+    } else if (cut > end - aside * size) {
+      cut = end - step * size;
+    }
+    return over(begin, cut) + over(cut, end);
+  }
+
+  const Rules& rules_;
+  const EdgeOf &edge_, &other_;
+  std::array<Singularity, 3> singularities_{};
+  int count_ = 0;
+};
+
+// int int ln r ds dt over two edges: in closed form for near parallel edges, otherwise quadrature
+// along the first, closed form along the second.
 double edge_pair(const Rules& rules, const EdgeOf& edge, const EdgeOf& other) {
   const auto& [a, along, length] = edge;
-  // The integrand is least smooth opposite the ends of the other edge, so close edges are cut
-  // there.
-  std::array<double, 4> cut = {0.0, (other.from - a).dot(along),
-                               (other.from + other.length * other.along - a).dot(along), length};
-  for (double& c : cut) c = std::clamp(c, 0.0, length);
-  const bool is_close = gap_between(edge, other) < 1.5 * length;
-  if (!is_close) cut[1] = cut[2] = 0.0;
-  std::sort(cut.begin(), cut.end());
-  double sum = 0.0;
-  for (int piece = 0; piece < 3; ++piece) {
-    const double part = cut[piece + 1] - cut[piece];
-    if (!(part > 1e-12 * length)) continue;
-    const Vector3d start = a + cut[piece] * along;
-    const double gap = gap_between({start, along, part}, other);
-    for (const Node& node : rules.rule_for(gap / part)) {
-      sum += node.weight * part * log_integral(start + node.at * part * along, other);
+  constexpr double far = 6.0;
+  if (gap_between(edge, other) > far * length) {
+    double sum = 0.0;
+    for (const Node& node : rules.far) {
+      sum += node.weight * log_integral(a + node.at * length * along, other);
+    }
+    return sum * length;
+  }
+  // The closed form is a second difference of terms of size reach^2, so its rounding is
+  // (reach / length)^2 times that of a double.
+  constexpr double longest_reach = 100.0;
+  if (along.cross(other.along).squaredNorm() < parallel * parallel) {
+    const Vector3d between = other.from - a;
+    const double begin = between.dot(along);
+    const double end = begin + other.length * along.dot(other.along);
+    const double reach = std::max(std::abs(begin), std::abs(end));
+    if (reach < longest_reach * length) {
+      return parallel_pair(begin, end, length, (between - begin * along).norm());
     }
   }
-  return sum;
+  return GradedQuadrature(rules, edge, other).value();
 }
 
 EdgeOf in_units(const EdgeOf& edge, double unit) {

@@ -9,10 +9,12 @@ namespace lightwell {
 ///
 ///   S = 1/(2 pi) sum over edges p of 1, q of 2 of  (p . q) / (|p| |q|)  int int ln r ds dt
 ///
-/// (double contour integral, Sparrow 1963; Schroeder & Hanrahan 1993). The inner integral is in
-/// closed form. The outer integral is by quadrature, of an order that follows the distance of the
-/// edges: Gauss-Legendre for distant edges, double-exponential (Takahasi & Mori 1974) for touching
-/// edges. Relative error about 1e-9, and 1e-9 of the smaller area; 0 for polygons that do not face
+/// (double contour integral, Sparrow 1963; Schroeder & Hanrahan 1993). Near parallel edges have a
+/// closed form for both integrals. For others the inner integral is in closed form and the outer
+/// one by Gauss-Legendre quadrature on pieces that shrink towards the places where the inner
+/// integral is not analytic, however near these are, and double-exponential quadrature (Takahasi &
+/// Mori 1974) where edges touch. Relative error about 1e-9, and 1e-9 of the smaller area, for gaps
+/// from 1e-5 of the polygons' size and angles from 0.01 degrees; 0 for polygons that do not face
 /// each other.
 double polygon_exchange(const PatchOutline& first, const PatchOutline& second);
 

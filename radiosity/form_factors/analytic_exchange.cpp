@@ -20,6 +20,8 @@ using Eigen::Vector3d;
 constexpr int few_rays = 16, points_in_set = 1 << 14, most_rays = 1 << 18;
 constexpr double usual_target = 1e-3;
 constexpr double exact_target = 1e-6;  // error of F where visibility is exact
+// S_ij and F_ij are each rounded to floats, by 2^-24 at most.
+constexpr double rounding = 0x1p-23;
 
 struct Visibility {
   double share = 1.0;
@@ -107,8 +109,9 @@ class PairVisibility {
 
 // Exchange of patch i with patches j > i.
 struct AnalyticRow {
-  std::vector<FormFactor> entries{};  // S_ij
-  std::vector<float> error{};         // standard error of S_ij from the visibility
+  std::vector<FormFactor> entries{};  // S_ij; 0 where all rays were blocked, which is no proof
+  std::vector<float> error{};         // error of S_ij from visibility, closed form and rounding
+  std::vector<float> bound{};         // of the closed form's error
 };
 
 AnalyticRow analytic_row(const PolygonPairs& pairs, const PairExchange& closed_form,
@@ -117,28 +120,31 @@ AnalyticRow analytic_row(const PolygonPairs& pairs, const PairExchange& closed_f
   const int n = static_cast<int>(pairs.outlines.size());
   for (int j = i + 1; j < n; ++j) {
     if (!pairs.receives[j] || !pairs.outlines[j].is_polygon()) continue;
-    const double unoccluded = closed_form.between(i, j);
+    const auto [unoccluded, bound] = closed_form.bounded(i, j);
     if (!(unoccluded > 0.0)) continue;
     const Visibility seen = visibility.between(i, j, unoccluded);
-    if (!(seen.share > 0.0)) continue;
+    if (!(seen.share > 0.0) && !(seen.variance > 0.0)) continue;
     const auto S = static_cast<float>(unoccluded * seen.share);
-    if (!(S > 0.0f)) continue;
+    const double error =
+        unoccluded * std::sqrt(seen.variance) + bound * seen.share + rounding * double{S};
     row.entries.push_back({j, S});
-    row.error.push_back(static_cast<float>(unoccluded * std::sqrt(seen.variance)));
+    row.error.push_back(static_cast<float>(error));
+    row.bound.push_back(static_cast<float>(bound * seen.share));
   }
   return row;
 }
 
 }  // namespace
 
-void analytic_exchange(const PolygonPairs& pairs, const Progress& progress,
-                       std::vector<float>& row_error,
+void analytic_exchange(const PolygonPairs& pairs, const Progress& progress, AnalyticErrors errors,
                        const std::function<void(int, std::vector<FormFactor>&)>& take,
                        const JournalPhase& phase) {
   const PatchMesh& mesh = pairs.caster.mesh();
   const int n = mesh.patch_count();
   const PairVisibility visibility(pairs);
-  const PairExchange closed_form(pairs.outlines);
+  const PairExchange closed_form(pairs.outlines, pairs.target_error > 0.0
+                                                     ? 0.1 * pairs.target_error
+                                                     : PairExchange::usual_error);
   // A row has up to n entries, so the slices of many patches are short.
   const int slice = std::clamp((1 << 21) / std::max(n, 1), 4, 64);
   for (int begin = 0; begin < n; begin += slice) {
@@ -151,9 +157,9 @@ void analytic_exchange(const PolygonPairs& pairs, const Progress& progress,
       for (int k = low; k < high; ++k) {
         const int i = begin + k;
         if (!pairs.receives[i] || !pairs.outlines[i].is_polygon()) continue;
-        if (phase.recall(i, rows[k].entries, rows[k].error)) continue;
+        if (phase.recall(i, rows[k].entries, rows[k].error, rows[k].bound)) continue;
         rows[k] = analytic_row(pairs, closed_form, visibility, i);
-        phase.keep(i, rows[k].entries, rows[k].error);
+        phase.keep(i, rows[k].entries, rows[k].error, rows[k].bound);
       }
     });
     for (int k = 0; k < size; ++k) {
@@ -161,9 +167,12 @@ void analytic_exchange(const PolygonPairs& pairs, const Progress& progress,
       for (std::size_t e = 0; e < row.entries.size(); ++e) {
         for (const int end : {begin + k, row.entries[e].patch}) {
           const float error = row.error[e] / static_cast<float>(mesh.area[end]);
-          row_error[end] = std::max(row_error[end], error);
+          errors.worst[end] = std::max(errors.worst[end], error);
+          errors.sum[end] += error;
+          errors.bias[end] += row.bound[e] / static_cast<float>(mesh.area[end]);
         }
       }
+      std::erase_if(row.entries, [](const FormFactor& f) { return !(f.value > 0.0f); });
       take(begin + k, row.entries);
     }
   }

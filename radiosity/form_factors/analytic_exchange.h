@@ -16,6 +16,14 @@ struct PolygonPairs {
   double target_error = 0.0;          ///< wanted standard error of F_ij; 0: 1e-3
 };
 
+/// Errors that analytic_exchange() fills in, one entry per patch each: standard errors of sampled
+/// visibility, bounds of closed forms, and the rounding of the stored floats.
+struct AnalyticErrors {
+  std::vector<float>& worst;  ///< raised to the error of the row's worst F_ij
+  std::vector<float>& sum;    ///< raised by the errors of all F_ij of the row
+  std::vector<float>& bias;   ///< raised by the bounds of the closed forms of the row
+};
+
 /// Exchange areas S_ij = A_i F_ij of all pairs of polygons: the closed form times the visibility of
 /// the pair. Methods for the visibility:
 ///   - 1 where the shaft between the patches (Shafts) is empty;
@@ -26,12 +34,10 @@ struct PolygonPairs {
 ///     factor. 16 or 64 rays at first, up to 2^18 while the standard error of F_ij is above
 ///     `target_error` (0: 1e-3).
 ///
-/// Patches of spheres, and patches that lie on each other, are left to other methods. `row_error`,
-/// one entry per patch, is raised to the standard error of the row's worst F_ij. `take(i, row)`
-/// gets the exchange of patch i with patches j > i, row after row. Rows that `phase` holds are
-/// recalled.
-void analytic_exchange(const PolygonPairs& pairs, const Progress& progress,
-                       std::vector<float>& row_error,
+/// Patches of spheres, and patches that lie on each other, are left to other methods. `take(i,
+/// row)` gets the exchange of patch i with patches j > i, row after row. Rows that `phase` holds
+/// are recalled.
+void analytic_exchange(const PolygonPairs& pairs, const Progress& progress, AnalyticErrors errors,
                        const std::function<void(int, std::vector<FormFactor>&)>& take,
                        const JournalPhase& phase = {});
 

@@ -19,6 +19,8 @@ struct KnownExchange {
   RowStore<FormFactor> S;  ///< pairs j > i in row i, in ascending order of j
   /// Per patch: 1 if S holds all exchange of the patch, 0 if only some pairs.
   std::vector<char> is_whole;
+  /// Per patch: sum of the errors of its F_ij in S; empty: unknown.
+  std::vector<float> error{};
 };
 
 /// Phase of a journal by name.

@@ -29,7 +29,7 @@ namespace {
 struct Estimate {
   RowEstimates rows;
   KnownExchange known;
-  std::vector<float> row_error{};
+  std::vector<float> row_error{}, row_bias{};
 };
 
 // Adds all inputs on which form factors depend. Of reflectance and emission only the signs matter.
@@ -186,6 +186,8 @@ class Estimator {
       for (const FormFactor& f : row.shares) {
         if (!is_count(i, f.patch)) continue;
         worst = std::max(worst, static_cast<double>(f.value * (1.0f - f.value)));
+        // Where all rays agree, the standard error is that of Laplace's rule of succession.
+        worst = std::max(worst, row.rays / ((row.rays + 2.0) * (row.rays + 2.0)));
       }
       return row.rays > 0.0 ? std::sqrt(worst / row.rays) : 0.0;
     };
@@ -256,9 +258,12 @@ class Estimator {
     };
     Estimate estimate = nothing_yet();
     cast_counts(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)), is_count);
+    std::vector<float>& sum = estimate.known.error;
+    sum.assign(estimate.row_error.size(), 0.0f);
+    estimate.row_bias = sum;
     analytic_exchange(
         {caster_, outlines, receives_, options_.target_error}, options_.run.progress,
-        estimate.row_error,
+        {.worst = estimate.row_error, .sum = sum, .bias = estimate.row_bias},
         [&](int i, std::vector<FormFactor>& row) { estimate.known.S.append(i, row); },
         phase_of("all pairs"));
     estimate.known.S.close();
@@ -313,7 +318,13 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
                                        .progress = options.run.progress,
                                        .phase_of = phase_of},
                                       report);
-  if (report) report->row_error = std::move(estimate.row_error);
+  if (report) {
+    report->row_error = std::move(estimate.row_error);
+    report->row_bias = std::move(estimate.row_bias);
+    for (std::size_t i = 0; i < report->row_error.size(); ++i) {
+      report->row_error[i] = std::max(report->row_error[i], report->closure_shift[i]);
+    }
+  }
   return result;
 }
 

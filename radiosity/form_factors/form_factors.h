@@ -112,7 +112,14 @@ struct FormFactorReport {
   /// Largest |A_i F_ij - A_j F_ji| / min(A_i, A_j), from rounding to floats.
   double max_reciprocity_error = 0.0;
   double depth_cut = 0.0;  ///< mean share of a row lost to max_specular_depth (counted as absorbed)
-  std::vector<float> row_error{};  ///< estimated standard error of the worst F_ij of each row
+  /// Largest change of a closed form's F_ij in each row by closure.
+  std::vector<float> closure_shift{};
+  /// Estimated error of the worst F_ij of each row: standard error of sampled parts, bounds of the
+  /// others, and closure_shift where that is larger. Empty: not estimated.
+  std::vector<float> row_error{};
+  /// Bound of the errors of the closed forms of each row, summed over the row, since they may all
+  /// have the same sign. Empty: 0.
+  std::vector<float> row_bias{};
 };
 
 /// Form factors of a meshed scene.

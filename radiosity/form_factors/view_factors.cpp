@@ -149,11 +149,11 @@ double reciprocity_error(const ViewFactors& view_factors) {
   return worst.empty() ? 0.0 : *std::max_element(worst.begin(), worst.end());
 }
 
-double error_estimate(const std::vector<float>& patch_error, const FormFactors& form_factors,
+double error_estimate(const FormFactorReport& report, const FormFactors& form_factors,
                       const PatchMesh& mesh, const std::vector<int>& row_of_patch) {
   int row_count = 0;
   for (const int row : row_of_patch) row_count = std::max(row_count, row + 1);
-  std::vector<double> area(static_cast<std::size_t>(row_count), 0.0), squares = area;
+  std::vector<double> area(static_cast<std::size_t>(row_count), 0.0), squares = area, bias = area;
   std::vector<int> in_row(static_cast<std::size_t>(row_count), 0);
   for (int i = 0; i < form_factors.patch_count(); ++i) {
     const int row = row_of_patch[static_cast<std::size_t>(i)];
@@ -168,13 +168,17 @@ double error_estimate(const std::vector<float>& patch_error, const FormFactors& 
     for_each_row([&](int& count) { most = std::max(most, ++count); });
     for_each_row([](int& count) { count = 0; });
     const double error =
-        mesh.area[i] * static_cast<double>(patch_error[static_cast<std::size_t>(i)]);
+        mesh.area[i] * static_cast<double>(report.row_error[static_cast<std::size_t>(i)]);
     area[static_cast<std::size_t>(row)] += mesh.area[i];
     squares[static_cast<std::size_t>(row)] += most * error * error;
+    if (report.row_bias.empty()) continue;
+    bias[static_cast<std::size_t>(row)] +=
+        mesh.area[i] * static_cast<double>(report.row_bias[static_cast<std::size_t>(i)]);
   }
   double worst = 0.0;
   for (std::size_t row = 0; row < area.size(); ++row) {
-    if (area[row] > 0.0) worst = std::max(worst, std::sqrt(squares[row]) / area[row]);
+    if (!(area[row] > 0.0)) continue;
+    worst = std::max(worst, (std::sqrt(squares[row]) + bias[row]) / area[row]);
   }
   return worst;
 }

@@ -137,6 +137,34 @@ TEST_F(FormFactorsCommand, AnObstructionTakesItsShareAndHasNoRow) {
   }
 }
 
+// A sphere's factors are counts of 2^18 rays at most: their standard error is some 1e-4. Patches of
+// a sphere add their errors, so a target of 2e-2 for the whole leaves room for those of 8 patches.
+TEST_F(FormFactorsCommand, EndsWithItsOwnCodeAboveTheTargetError) {
+  folder.write("ball.toml", R"(
+[materials.grey]
+reflectance = 0.5
+[[surfaces]]
+name = "ball"
+material = "grey"
+sphere = { center = [0.5, 0.5, 1], radius = 0.4 }
+[[surfaces]]
+name = "floor"
+material = "grey"
+polygon = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+)");
+  const Words words = {"form-factors", "ball.toml", "-o", "F.mtx", "--json", "--target-error"};
+  const Ended close = run(words + Words{"2e-5", "--method", "ray-cast"});
+  EXPECT_EQ(close.code, 4);
+  EXPECT_TRUE(says(close.err, "above the target error of 2e-05"));
+  EXPECT_GT(nlohmann::json::parse(close.out)["error_estimate"].get<double>(), 2e-5);
+  const Ended rough = run(words + Words{"2e-2", "--method", "ray-cast"});
+  EXPECT_EQ(rough.code, 0) << rough.err;
+  const Ended unknown = run(words + Words{"2e-5", "--method", "hemicube"});
+  EXPECT_EQ(unknown.code, 0);
+  EXPECT_TRUE(says(unknown.err, "no estimate of its error"));
+  EXPECT_TRUE(nlohmann::json::parse(unknown.out)["error_estimate"].is_null());
+}
+
 TEST_F(FormFactorsCommand, MethodsAgree) {
   folder.write("plates.vs3", plates);
   for (const char* method : {"auto", "ray-cast", "hemicube", "analytic"}) {

@@ -90,9 +90,11 @@ TEST(ViewFactors, ErrorsOfClosureAndReciprocityAreSeen) {
 TEST(ViewFactors, ErrorsOfIndependentPatchesAddUpAsSquares) {
   // Row 0 holds two patches of one factor each, row 1 one patch with two factors to row 0.
   const double row_0 = 1e-3 * std::sqrt(1.0 + 9.0) / 4.0, row_1 = 1e-3 * std::sqrt(2.0);
-  EXPECT_NEAR(error_estimate({1e-3f, 1e-3f, 0.0f, 1.0f}, given(), mesh_of_areas(), {0, 0, 1, -1}),
+  EXPECT_NEAR(error_estimate({.row_error = {1e-3f, 1e-3f, 0.0f, 1.0f}}, given(), mesh_of_areas(),
+                             {0, 0, 1, -1}),
               row_0, 1e-9);
-  EXPECT_NEAR(error_estimate({0.0f, 0.0f, 1e-3f, 1.0f}, given(), mesh_of_areas(), {0, 0, 1, -1}),
+  EXPECT_NEAR(error_estimate({.row_error = {0.0f, 0.0f, 1e-3f, 1.0f}}, given(), mesh_of_areas(),
+                             {0, 0, 1, -1}),
               row_1, 1e-9);
 }
 

@@ -189,6 +189,38 @@ TEST_P(Room, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(results[0], results[2]) << name;
 }
 
+// Few rays escape between near plates, or none; what the closed forms leave must escape anyway.
+TEST(ClosedForms, KeepTheirValueHoweverFewRaysEscape) {
+  for (const double L : {50.0, 700.0, 1000.0, 3000.0, 1e5}) {
+    Scene scene;
+    const int grey = add_material(scene, diffuse(scene.bands, 0.5f));
+    add_polygon(scene, "floor", grey, {{0, 0, 0}, {L, 0, 0}, {L, L, 0}, {0, L, 0}});
+    add_polygon(scene, "ceiling", grey, {{0, 0, 1}, {0, L, 1}, {L, L, 1}, {L, 0, 1}});
+    validate(scene);
+    const double hypotenuse = std::sqrt(1.0 + L * L);
+    const double F = 2.0 / (std::numbers::pi * L * L) *
+                     (std::log(hypotenuse * hypotenuse / std::sqrt(1.0 + 2.0 * L * L)) +
+                      2.0 * L * hypotenuse * std::atan(L / hypotenuse) - 2.0 * L * std::atan(L));
+    for (const auto method : {FormFactorMethod::automatic, FormFactorMethod::analytic}) {
+      const bool is_cut = method == FormFactorMethod::analytic;
+      const Computed c =
+          compute(scene, is_cut ? L / 8.0 : 2.0 * L, {.method = method, .target_error = 1e-3});
+      expect_laws(c, "plates");
+      // Exchange, scaling and factor are rounded to floats: 3 times 2^-24. The exchange of patches
+      // that are many gaps apart is below a millionth, so its relative error does not count.
+      EXPECT_NEAR(between(c, 0, 1), F, 3 * 0x1p-24) << "L = " << L << ", cut: " << is_cut;
+      for (const float error : c.report.row_error) {
+        EXPECT_GT(error, 0.0f) << "rounding at least";
+        EXPECT_LT(error, 1e-6f) << "the closed form's error, and rounding";
+      }
+      for (const float bias : c.report.row_bias) {
+        EXPECT_GT(bias, 0.0f);
+        EXPECT_LE(bias, 1e-5f) << "the area integral's bound, for rows that sum to 1";
+      }
+    }
+  }
+}
+
 // Patches of spheres have no closed form, so rays are added until they meet the target, too.
 TEST(AnalyticFormFactors, MeetATargetWithSpheres) {
   constexpr double target = 4e-3;
