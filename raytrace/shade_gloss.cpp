@@ -86,7 +86,7 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
   const ScatteringSample sample{.direction = lamp->direction,
                                 .crosses = lamp->direction.dot(interaction.normal) < 0.0};
   const Spectrum L = lamp->emitter->exitance * std::numbers::inv_pi_v<float>;
-  Spectrum seen = branch.weight * scattering_weight(interaction, sample.crosses) * L *
+  Spectrum seen = branch.weight * scattering_weight(interaction, sample) * L *
                   (share * static_cast<float>(density / (density + lamp->density)));
   if (!((branch.weight > 0.0f).any() && density > 0.0)) return;
   const Ray ray{.origin = at.position,
@@ -143,8 +143,8 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
                 .origin_group = hit.facet};
   // A lobe with density p averages radiance, int L p dw. A source of irradiance E and solid angle 0
   // contributes E p.
-  Spectrum seen = branch.weight * scattering_weight(interaction, sample.crosses) *
-                  sources[i].light * direct_light_.passed(*state.caster, ray) *
+  Spectrum seen = branch.weight * scattering_weight(interaction, sample) * sources[i].light *
+                  direct_light_.passed(*state.caster, ray) *
                   (share * static_cast<float>(density * source_sample.irradiance / chance));
   if (!(seen > 0.0f).any()) return;
   if (absorbs_) {
@@ -179,8 +179,8 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   const ShadingPoint there = shading_point(aimed.ray, met, *state.caster);
   const double distance = (there.position - at.position).norm();
   const double both = density + bright_.density(view, met.element, aim.direction, distance);
-  aimed.weight *=
-      scattering_weight(interaction, false) * (share * static_cast<float>(density / both));
+  aimed.weight *= scattering_weight(interaction, {.direction = aim.direction}) *
+                  (share * static_cast<float>(density / both));
   if (absorbs_) {
     aimed.weight *=
         aimed.media.passed(scene_, facets_[met.facet].material, met.from_back, distance);

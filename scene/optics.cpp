@@ -27,6 +27,20 @@ double pane_reflectance(double cos_incident, double index) {
   return R.s / (1.0 + R.s) + R.p / (1.0 + R.p);
 }
 
+PaneShares pane_shares(double cos_incident, double index, double transmissivity) {
+  const double sin2_refracted = (1.0 - cos_incident * cos_incident) / (index * index);
+  if (sin2_refracted >= 1.0) return {.reflected = 1.0};
+  const double d = std::pow(transmissivity, 1.0 / std::sqrt(1.0 - sin2_refracted));
+  const PolarisedReflectance face = polarised_reflectance(cos_incident, index);
+  PaneShares mean;
+  for (const double r : {face.s, face.p}) {
+    const double T = r < 1.0 ? (1.0 - r) * (1.0 - r) * d / (1.0 - r * r * d * d) : 0.0;
+    mean.passed += 0.5 * T;
+    mean.reflected += 0.5 * r * (1.0 + d * T);
+  }
+  return mean;
+}
+
 Eigen::Vector3d reflect(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal) {
   return direction - 2.0 * direction.dot(normal) * normal;
 }

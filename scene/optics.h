@@ -22,6 +22,21 @@ PolarisedReflectance polarised_reflectance(double cos_incident, double relative_
 /// relative to the medium on both sides. The rest passes.
 double pane_reflectance(double cos_incident, double index);
 
+/// Shares of light, [0,1], that a pane sends back and lets pass; the rest is absorbed.
+struct PaneShares {
+  double reflected = 0.0, passed = 0.0;
+};
+
+/// Shares of unpolarised light at a thin pane whose body absorbs, by both faces and all reflections
+/// between them. Light that crosses the body along the normal keeps the share `transmissivity` t,
+/// [0,1], and refracted light d = t^(1 / cos of the refracted angle). With the reflectance r of one
+/// face,
+///
+///     T = (1 - r)^2 d / (1 - r^2 d^2),   R = r (1 + d T),
+///
+/// averaged over both polarisations. For t = 1 this is pane_reflectance().
+PaneShares pane_shares(double cos_incident, double index, double transmissivity);
+
 /// Mirror direction of `direction` (unit, towards the surface) about the unit normal.
 Eigen::Vector3d reflect(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal);
 

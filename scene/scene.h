@@ -27,6 +27,9 @@ struct Dielectric {
   /// A pane without thickness stands for both of its faces, and light goes straight through. `tint`
   /// then applies once to the light that crosses the pane, and there is no absorption.
   bool thin = false;
+  /// Of a thin pane: share of light, [0,1], that crosses its body once along the normal. Inclined
+  /// light crosses more of the body (see pane_shares); empty: all.
+  Spectrum transmissivity{};
 };
 
 /// Indices of refraction that validate() accepts: liquid over glass is 0.88, diamond 2.4, germanium

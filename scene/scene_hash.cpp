@@ -36,7 +36,8 @@ class Hash {
 // Adds gloss only where there is any, so that solutions of scenes without gloss keep their hash.
 // Each kind begins with a word of its own, which no reflectance has.
 void add_gloss(const Material& m, Hash& hash) {
-  constexpr std::uint64_t rough_mirror = 0x6d17707e, glass_body = 0x61a55b0d;
+  constexpr std::uint64_t rough_mirror = 0x6d17707e, glass_body = 0x61a55b0d,
+                          body_of_pane = 0x9a4eb0d1;
   if (m.specular_roughness > 0.0f && (m.specular > 0.0f).any()) {
     hash.add(rough_mirror);
     hash.add(static_cast<double>(m.specular_roughness));
@@ -48,6 +49,10 @@ void add_gloss(const Material& m, Hash& hash) {
     hash.add(static_cast<double>(glass.roughness));
     hash.add(static_cast<std::uint64_t>(glass.thin));
     hash.add(glass.absorption);
+  }
+  if (glass.transmissivity.size() > 0) {
+    hash.add(body_of_pane);
+    hash.add(glass.transmissivity);
   }
 }
 

@@ -24,6 +24,44 @@ double reflected_share(const Dielectric& glass, double cos_incident, bool from_b
   return glass.thin ? pane_reflectance(cosine, index) : fresnel_reflectance(cosine, index);
 }
 
+// Light of each band relative to that of a clear pane of the same index: what a thin pane sends
+// back and what it lets pass, without its tint.
+struct BodyShares {
+  Spectrum reflected, passed;
+};
+
+// The shares at a pane whose body absorbs.
+BodyShares body_shares(const Dielectric& pane, double cos_incident) {
+  const double cosine = std::min(1.0, cos_incident);
+  const double index = double{pane.index_of_refraction};
+  const double R = pane_reflectance(cosine, index);
+  const Spectrum& t = pane.transmissivity;
+  BodyShares shares{Spectrum::Ones(t.size()), Spectrum::Ones(t.size())};
+  for (Eigen::Index k = 0; k < t.size(); ++k) {
+    if (k > 0 && t[k] == t[k - 1]) {
+      shares.reflected[k] = shares.reflected[k - 1];
+      shares.passed[k] = shares.passed[k - 1];
+      continue;
+    }
+    const PaneShares band = pane_shares(cosine, index, double{t[k]});
+    if (R > 0.0) shares.reflected[k] = static_cast<float>(std::min(1.0, band.reflected / R));
+    if (R < 1.0) shares.passed[k] = static_cast<float>(std::min(1.0, band.passed / (1.0 - R)));
+  }
+  return shares;
+}
+
+bool has_absorbing_body(const Dielectric& glass) {
+  return glass.thin && glass.transmissivity.size() > 0;
+}
+
+// Cosine between the incident light and the normal of the thin pane's microfacet, or of the whole
+// pane, that sends the light along `sample`.
+double cosine_at_facet(const SurfaceInteraction& interaction, const ScatteringSample& sample) {
+  const Eigen::Vector3d reflected =
+      sample.crosses ? reflect(sample.direction, interaction.normal) : sample.direction;
+  return std::sqrt(std::max(0.0, 0.5 - 0.5 * interaction.direction.dot(reflected)));
+}
+
 // Direction of the light transmitted through a microfacet, or the whole surface, of normal m. Empty
 // under total internal reflection.
 std::optional<Eigen::Vector3d> transmitted_direction(const SurfaceInteraction& interaction,
@@ -81,7 +119,7 @@ std::optional<ScatteringSample> sample_microfacet(const SurfaceInteraction& inte
       sample.crosses ? transmitted_direction(interaction, m) : reflect(interaction.direction, m);
   if (!outgoing) return std::nullopt;
   sample.direction = outgoing->normalized();
-  sample.weight = scattering_weight(interaction, sample.crosses);
+  sample.weight = scattering_weight(interaction, sample);
   const double passes = unmasked(interaction, interaction.material.gloss_roughness(),
                                  sample.direction, sample.crosses);
   if (!(random_uniform(random_key(random.key, RandomPurpose::microfacet_masking)) < passes))
@@ -96,16 +134,26 @@ ScatteringSample sample_smooth(const SurfaceInteraction& interaction, double whi
                                                 -interaction.direction.dot(interaction.normal),
                                                 interaction.from_back);
   ScatteringSample sample = lobes.sample[crosses ? 1 : 0];
-  sample.weight = scattering_weight(interaction, crosses);
+  sample.weight = scattering_weight(interaction, sample);
   return sample;
 }
 
 }  // namespace
 
-Spectrum scattering_weight(const SurfaceInteraction& interaction, bool crosses) {
+Spectrum scattering_weight(const SurfaceInteraction& interaction, const ScatteringSample& sample) {
   const auto& glass = interaction.material.dielectric;
   if (!glass) return interaction.material.specular;
-  return crosses ? glass->tint : Spectrum(Spectrum::Ones(interaction.material.specular.size()));
+  if (has_absorbing_body(*glass)) {
+    const BodyShares shares = body_shares(*glass, cosine_at_facet(interaction, sample));
+    return sample.crosses ? Spectrum(glass->tint * shares.passed) : shares.reflected;
+  }
+  return sample.crosses ? glass->tint
+                        : Spectrum(Spectrum::Ones(interaction.material.specular.size()));
+}
+
+Spectrum crossing_share(const Dielectric& glass) {
+  return has_absorbing_body(glass) ? Spectrum(glass.tint * body_shares(glass, 1.0).passed)
+                                   : glass.tint;
 }
 
 bool is_clear_pane(const Material& material) {
@@ -128,6 +176,11 @@ SmoothScattering smooth_scattering(const SurfaceInteraction& interaction) {
     lobes.sample[1] = {
         .direction = *outgoing, .weight = (1.0f - R) * material.dielectric->tint, .crosses = true};
     lobes.count = 2;
+  }
+  if (has_absorbing_body(*material.dielectric)) {
+    const BodyShares shares = body_shares(*material.dielectric, cos_i);
+    lobes.sample[0].weight *= shares.reflected;
+    lobes.sample[1].weight *= shares.passed;
   }
   return lobes;
 }

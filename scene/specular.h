@@ -32,9 +32,15 @@ struct SmoothScattering {
 };
 SmoothScattering smooth_scattering(const SurfaceInteraction& interaction);
 
-/// Share of light, per band, that continues once crossing the surface or not has been chosen: the
-/// reflectance of a mirror; for a dielectric, 1 if reflected and the tint if crossing.
-Spectrum scattering_weight(const SurfaceInteraction& interaction, bool crosses);
+/// Share of light, per band, that continues once a sample's direction and side have been chosen:
+/// the reflectance of a mirror; for a dielectric, 1 if reflected and the tint if crossing. The body
+/// of a thin pane that absorbs leaves less of both, by the angle to the microfacet. The weight that
+/// the sample carries does not count.
+Spectrum scattering_weight(const SurfaceInteraction& interaction, const ScatteringSample& sample);
+
+/// Share, per band, of the light not reflected that crosses a clear surface along its normal: the
+/// tint, times what the body of a thin pane leaves.
+Spectrum crossing_share(const Dielectric& glass);
 
 /// True if light that crosses continues straight on: a thin pane without roughness.
 bool is_clear_pane(const Material& material);

@@ -48,6 +48,15 @@ void check_dielectric(const Scene& scene, const Material& m, const Dielectric& g
                      "that before it and must lie between {} and {} (glass: 1.5)",
                      m.name, index, lowest_index, highest_index));
   }
+  if (glass.transmissivity.size() > 0) {
+    check_share(scene, m, "transmissivity", glass.transmissivity);
+    if (!glass.thin) {
+      fail(scene,
+           fmt::format("material '{}' has a transmissivity, which only a thin pane has; make "
+                       "it thin, or give it an absorption instead",
+                       m.name));
+    }
+  }
   if (glass.absorption.size() == 0) return;
   if (glass.absorption.size() != scene.bands.count()) {
     fail(scene, fmt::format("material '{}': absorption has {} bands, the scene has {}", m.name,
@@ -63,7 +72,8 @@ void check_dielectric(const Scene& scene, const Material& m, const Dielectric& g
   }
   if (glass.thin && (glass.absorption > 0.0f).any()) {
     fail(scene, fmt::format("material '{}' is a thin pane, in which light goes no distance to be "
-                            "absorbed along; give it a tint instead of an absorption",
+                            "absorbed along; give it a transmissivity or a tint instead of an "
+                            "absorption",
                             m.name));
   }
 }

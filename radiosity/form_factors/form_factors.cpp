@@ -47,12 +47,14 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
     print.add(material.specular_roughness);
     print.add(material.dielectric.has_value());
     if (!material.dielectric) continue;
-    const auto& [index_of_refraction, tint, absorption, roughness, thin] = *material.dielectric;
+    const auto& [index_of_refraction, tint, absorption, roughness, thin, transmissivity] =
+        *material.dielectric;
     print.add(index_of_refraction);
     print.add(tint);
     print.add(absorption);
     print.add(roughness);
     print.add(thin);
+    print.add(transmissivity);
   }
   // Memory and the run decide no bit of a result.
   const auto& [method, rays_per_patch, target_error, most_rays_per_patch, rays_per_emitter,

@@ -72,11 +72,12 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
       if (!is_specular) continue;
       const auto branch =
           random_key(key, RandomPurpose::free_source_paths, static_cast<std::uint64_t>(first + r));
-      const PathLosses losses =
-          paths.follow(rays[r], hit, branch, [&](const ElementHit& at, const Spectrum& throughput) {
-            piece.by_specular.push_back(
-                {mesh.patch[at.element], throughput * static_cast<float>(w)});
-          });
+      const PathLosses losses = paths.follow(rays[r], hit, branch, [&](const LightArrival& at) {
+        // Collector::receive() counts the light of the sun straight through panes.
+        if (source.is_distant() && at.through_panes_only) return;
+        piece.by_specular.push_back(
+            {mesh.patch[at.hit.element], at.throughput * static_cast<float>(w)});
+      });
       piece.absorbed += w * (losses.absorbed + losses.cut).cast<double>();
       piece.escaped += w * losses.escaped.cast<double>();
     }
@@ -142,8 +143,8 @@ class Collector {
     if (sums.sent > 0.0) add(source, sums);
   }
 
-  // Light of sky and sun at points all over each patch. The emitted power includes all of it but
-  // mirrored light, which counts where it arrives.
+  // Light of sky and sun at points all over each patch, straight or through clear panes. The
+  // emitted power includes all of it but mirrored light, which counts where it arrives.
   void receive(const Scene& scene, const DirectLight& direct_light, const Progress& progress) {
     const PatchMesh& mesh = caster_.mesh();
     const FreeSource* dome = direct_light.dome();

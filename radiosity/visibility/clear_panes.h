@@ -17,8 +17,8 @@ class ClearPanes {
   bool empty() const { return panes_.empty(); }
 
   /// Transmittance per band from the ray's origin to its t_max or its target group: the product of
-  /// (1 - R) tint over all panes crossed (see smooth_scattering). 0 in all bands where anything but
-  /// a pane blocks the ray, and behind 64 panes.
+  /// what each pane crossed passes at its angle (see smooth_scattering). 0 in all bands where
+  /// anything but a pane blocks the ray, and behind 64 panes.
   Spectrum passed(const ElementCaster& caster, const Ray& ray) const;
 
  private:

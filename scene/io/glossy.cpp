@@ -62,11 +62,6 @@ Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k) {
   return mean;
 }
 
-double pane_transmittance(double index) {
-  const double F = fresnel_reflectance(1.0, index);
-  return (1.0 - F) / (1.0 + F);
-}
-
 Dielectric thin_pane(double index, const Spectrum& tint, double alpha) {
   return {.index_of_refraction = static_cast<float>(index),
           .tint = tint,

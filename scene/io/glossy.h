@@ -46,10 +46,6 @@ class Coat {
 /// incidence.
 Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k);
 
-/// Transmittance of a thin pane of this index at normal incidence, reflections between its two
-/// faces included: (1 - F) / (1 + F).
-double pane_transmittance(double index);
-
 /// Pane without thickness; `tint` is the transmittance of the light that is not reflected.
 Dielectric thin_pane(double index, const Spectrum& tint, double alpha = 0.0);
 

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "mesh/build_patches.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
@@ -198,6 +200,67 @@ TEST(Daylight, SameBitsOnAnyNumberOfThreads) {
     return solve_scene(scene, quick()).solution.irradiance();
   };
   EXPECT_TRUE((found(1) == found(3)).all());
+}
+
+// Light that a tinted pane without reflection lets in is the tint's share of what the bare opening
+// lets in, by whatever method the light is then followed.
+class SunBehindAPane : public testing::Test {
+ protected:
+  static Scene behind(bool pane) {
+    Scene scene = room(0.5f);
+    if (pane) {
+      Material material = test::clear_glass(scene.bands);
+      material.dielectric->index_of_refraction = 1.0f;
+      material.dielectric->tint << 0.8f, 0.5f, 0.25f;
+      material.dielectric->thin = true;
+      test::add_polygon(scene, "pane", test::add_material(scene, material),
+                        {{4.1, 1, 0.7}, {4.1, 3, 0.7}, {4.1, 3, 2.5}, {4.1, 1, 2.5}});
+    }
+    scene.sky = grey_sky(scene.bands, 0.0f, 0.0f);
+    scene.sky->sun = Sun{.direction = Vector3d(1, 0.1, 0.7).normalized(),
+                         .irradiance = constant_spectrum(scene.bands, 2000.0f)};
+    return scene;
+  }
+
+  static void expect_tinted(const SolveOptions& options, std::string_view method) {
+    const SolvedScene bare = solve_scene(behind(false), options);
+    const SolvedScene tinted = solve_scene(behind(true), options);
+    const int count = bare.mesh.patch_count();
+    const std::array<double, 3> tint = {0.8, 0.5, 0.25};
+    for (int k = 0; k < 3; ++k) {
+      double with = 0.0, without = 0.0;
+      for (int i = 0; i < count; ++i) {
+        with += bare.mesh.area[i] * static_cast<double>(tinted.solution.patch_radiosity(i, k));
+        without += bare.mesh.area[i] * static_cast<double>(bare.solution.patch_radiosity(i, k));
+      }
+      // The direct light has the same rays. Reflected light is as much again (reflectance 0.5). A
+      // patch sends 256 rays, of which a hundredth end in the opening or miss it: 0.01 / sqrt(256)
+      // of its light, with either sign for each of 100 patches and more.
+      EXPECT_NEAR(with / without, tint[k], 1e-3 * tint[k]) << method;
+    }
+  }
+};
+
+TEST_F(SunBehindAPane, IsTintedByEveryFormFactorMethod) {
+  for (const NamedFormFactorMethod& method : form_factor_methods) {
+    SolveOptions options = quick();
+    options.mesh.max_patch_size = 1.0;
+    options.form_factors.method = method.method;
+    expect_tinted(options, method.name);
+  }
+}
+
+TEST_F(SunBehindAPane, IsTintedByEverySolver) {
+  for (const NamedSolverMethod& method : solver_methods) {
+    SolveOptions options = quick();
+    options.mesh.max_patch_size = 1.0;
+    options.solver_method = method.method;
+    expect_tinted(options, method.name);
+  }
+  SolveOptions options = quick();
+  options.mesh.max_patch_size = 1.0;
+  options.progressive = ProgressiveOptions{.tolerance = 1e-4};
+  expect_tinted(options, "progressive");
 }
 
 TEST(Daylight, SceneWithoutLightIsStillRefused) {

@@ -104,6 +104,8 @@ TEST(SceneHash, ChangesWithEverythingThatDecidesTheLight) {
       {"absorption",
        [](Scene& s) { s.materials[2].dielectric->absorption = Spectrum::Constant(3, 0.1f); }},
       {"thin", [](Scene& s) { s.materials[2].dielectric->thin = true; }},
+      {"transmissivity",
+       [](Scene& s) { s.materials[2].dielectric->transmissivity = Spectrum::Ones(3); }},
       {"no glass", [](Scene& s) { s.materials[2].dielectric.reset(); }},
       {"one side", [](Scene& s) { s.materials[0].one_sided = true; }},
       {"both emit", [](Scene& s) { s.materials[1].emits_both_sides = true; }},
@@ -188,6 +190,15 @@ TEST(Validate, NamesWhatIsWrongAndWhere) {
          s.materials[2].dielectric->thin = true;
        },
        {"'glass'", "thin pane", "tint"}},
+      {"transmissivity of a body",
+       [](Scene& s) { s.materials[2].dielectric->transmissivity = Spectrum::Ones(3); },
+       {"'glass'", "transmissivity", "thin pane", "absorption"}},
+      {"transmissivity beyond 1",
+       [](Scene& s) {
+         s.materials[2].dielectric->transmissivity = Spectrum::Constant(3, 1.5f);
+         s.materials[2].dielectric->thin = true;
+       },
+       {"'glass'", "transmissivity is 1.5", "band r"}},
       {"tint",
        [](Scene& s) { s.materials[2].dielectric->tint[0] = 2.0f; },
        {"'glass'", "tint is 2"}},

@@ -183,6 +183,65 @@ TEST(ThinPane, PassesStraightThroughWhateverItsIndex) {
   }
 }
 
+TEST(ThinPane, LeavesWhatItsBodyPassesAtEveryAngle) {
+  Material pane = glass(0.0f, true);
+  pane.dielectric->transmissivity = Eigen::Array3f(0.25f, 0.7f, 1.0f);
+  pane.dielectric->tint = Eigen::Array3f(0.9f, 1.0f, 0.5f);
+  for (const double degrees : {0.0, 50.0, 80.0}) {
+    for (const bool from_back : {false, true}) {
+      const SurfaceInteraction interaction{
+          .material = pane, .direction = downwards(degrees), .normal = up, .from_back = from_back};
+      const SmoothScattering lobes = smooth_scattering(interaction);
+      ASSERT_EQ(lobes.count, 2);
+      const double R = pane_reflectance(std::cos(degrees * degree), 1.5);
+      const Spectrum back = sample_scattering(interaction, {.component = 0.0}).weight;
+      const Spectrum through = sample_scattering(interaction, {.component = 0.999}).weight;
+      for (int k = 0; k < 3; ++k) {
+        const PaneShares expected = pane_shares(std::cos(degrees * degree), 1.5,
+                                                double{pane.dielectric->transmissivity[k]});
+        const double passed = expected.passed * double{pane.dielectric->tint[k]};
+        // A few products of floats of at most 1.
+        EXPECT_NEAR(lobes.sample[0].weight[k], expected.reflected, 3e-7);
+        EXPECT_NEAR(lobes.sample[1].weight[k], passed, 3e-7);
+        // Samples are drawn with the probabilities R and 1 - R of a clear pane.
+        EXPECT_NEAR(R * double{back[k]}, expected.reflected, 3e-7);
+        EXPECT_NEAR((1.0 - R) * double{through[k]}, passed, 3e-7);
+      }
+    }
+  }
+}
+
+// A roughness of 0.001 spreads light by a thousandth, and with it the shares, whose slope at 60
+// degrees is below 1 per radian.
+TEST(ThinPane, LeavesAsMuchIfItIsSlightlyRough) {
+  Material smooth = glass(0.0f, true), rough = glass(0.001f, true);
+  smooth.dielectric->transmissivity = rough.dielectric->transmissivity =
+      Spectrum::Constant(3, 0.5f);
+  const Eigen::Vector3d in = downwards(60.0);
+  const SmoothScattering lobes =
+      smooth_scattering({.material = smooth, .direction = in, .normal = up});
+  double reflected = 0.0, passed = 0.0;
+  constexpr int count = 1 << 14;
+  for (int i = 0; i < count; ++i) {
+    const ScatteringSample sample = draw(rough, in, false, i);
+    (sample.crosses ? passed : reflected) += double{sample.weight[0]} / count;
+  }
+  // Microfacets lean by 0.001 to either side, and the side is chosen 2^14 times evenly: the spread
+  // allows 0.005, and the choice less than 1 / sqrt(2^14) = 0.008.
+  EXPECT_NEAR(reflected, double{lobes.sample[0].weight[0]}, 0.005);
+  EXPECT_NEAR(passed, double{lobes.sample[1].weight[0]}, 0.008);
+}
+
+TEST(ThinPane, CrossingShareIsThatOfLightNotReflectedAlongTheNormal) {
+  Material pane = glass(0.0f, true);
+  pane.dielectric->tint.setConstant(0.8f);
+  EXPECT_EQ(crossing_share(*pane.dielectric)[0], 0.8f);
+  pane.dielectric->transmissivity = Spectrum::Constant(3, 0.5f);
+  const double F = 0.04;
+  const double passed = (1 - F) * (1 - F) * 0.5 / (1 - F * F * 0.25);
+  EXPECT_NEAR(crossing_share(*pane.dielectric)[0], 0.8 * passed * (1 + F) / (1 - F), 3e-7);
+}
+
 TEST(Media, AbsorbByBeerAndLambertWhereLightIsWithin) {
   Scene scene;
   scene.materials = {glass(0.0f), glass(0.0f), mirror(0.0f)};

@@ -8,6 +8,7 @@
 #include "raytrace/camera_ray.h"
 #include "raytrace/display.h"
 #include "scene/parallel.h"
+#include "scene/specular.h"
 
 namespace lightwell {
 namespace {
@@ -64,7 +65,8 @@ BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>&
   for (int e = 0; e < mesh.element_count(); ++e) {
     const Material* material = find_material(mesh, materials, e);
     if (!material || !material->is_specular()) continue;
-    const Spectrum& share = material->dielectric ? material->dielectric->tint : material->specular;
+    const Spectrum share =
+        material->dielectric ? crossing_share(*material->dielectric) : material->specular;
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       const int v = mesh.corners[e][c];
       if (!done[v]) B.row(v) += share.transpose() * E.row(v);
@@ -79,7 +81,8 @@ Spectrum shown_reflectance(const PatchMesh& mesh, const std::vector<Material>& m
   Spectrum share = mesh.reflectance.row(patch).transpose();
   const Material* material = find_material(mesh, materials, mesh.first_element[patch]);
   if (!material || !material->is_specular()) return share;
-  return share + (material->dielectric ? material->dielectric->tint : material->specular);
+  return share +
+         (material->dielectric ? crossing_share(*material->dielectric) : material->specular);
 }
 
 int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance) {

@@ -164,16 +164,15 @@ double refractive_index(const Given& given, std::size_t i) {
   return index;
 }
 
-// A pane of transmissivity t, the share of light that crosses the glass once inside. At normal
-// incidence (1-F)^2 t / (1 - F^2 t^2) passes through the pane with its two faces.
+// A pane of transmissivity t, the share of light that crosses the glass once inside, along the
+// normal.
 Maybe glass(const Given& given) {
   if (given.p.reals.size() != 4) given.p.require_reals(3);
   const double index = given.p.reals.size() == 4 ? refractive_index(given, 3) : window_glass;
-  const auto F = static_cast<float>(fresnel_reflectance(1.0, index));
   const Spectrum t = given.color(0);
-  const Spectrum passed = (1.0f - F) * (1.0f - F) * t / (1.0f - F * F * t.square());
   Material material = opaque(zero());
-  material.dielectric = thin_pane(index, passed / static_cast<float>(pane_transmittance(index)));
+  material.dielectric = thin_pane(index, Spectrum::Ones(3));
+  if ((t < 1.0f).any()) material.dielectric->transmissivity = t;
   return material;
 }
 

@@ -124,7 +124,8 @@ float read_roughness(const TomlTable& table) {
 void read_glass(const TomlTable& table, const TomlBands& bands, Material& material) {
   const auto glass = table.find("glass");
   if (!glass) return;
-  const TomlTable t = glass->table({"ior", "tint", "roughness", "absorption", "thin"});
+  const TomlTable t =
+      glass->table({"ior", "tint", "roughness", "absorption", "thin", "transmissivity"});
   const TomlValue ior = t.require("ior");
   const auto index = static_cast<float>(ior.positive());
   if (!(index >= lowest_index && index <= highest_index)) {
@@ -144,8 +145,17 @@ void read_glass(const TomlTable& table, const TomlBands& bands, Material& materi
     }
     if (dielectric.thin) {
       absorption->fail(
-          "does not go with thin = true: light goes no distance in a thin pane; give it a 'tint'");
+          "does not go with thin = true: light goes no distance in a thin pane; give it a "
+          "'transmissivity' or a 'tint'");
     }
+  }
+  if (const auto transmissivity = t.find("transmissivity")) {
+    if (!dielectric.thin) {
+      transmissivity->fail(
+          "goes with thin = true alone: it is the share of light that crosses a pane's body; "
+          "without thin give an 'absorption'");
+    }
+    dielectric.transmissivity = spectral(*transmissivity, bands, Quantity::share);
   }
   material.dielectric = dielectric;
   for (const char* other :

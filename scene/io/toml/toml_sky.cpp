@@ -106,8 +106,8 @@ Eigen::Vector3d read_sun_direction(const TomlTable& table, const Sky& sky) {
 
 struct SunTable {
   Sun sun{};
-  double direct_normal = 0.0;  // W/m^2 of the whole spectrum, where given
-  int day = 172;               // of the year
+  std::optional<double> direct_normal{};  // W/m^2 of the whole spectrum; empty: not known
+  int day = 172;                          // of the year
 };
 
 SunTable read_sun(const TomlValue& value, const Sky& sky, const TomlBands& bands) {
@@ -128,11 +128,16 @@ SunTable read_sun(const TomlValue& value, const Sky& sky, const TomlBands& bands
   const TomlValue amount = table.require(how);
   if (how == "irradiance") {
     result.sun.irradiance = read_toml_emission(amount, bands);
+    const bool is_rgb = bands.bands.wavelengths_nm.empty();
+    if (is_rgb) {
+      result.direct_normal = luminous(bands.bands, result.sun.irradiance) / daylight_efficacy;
+    }
   } else {
     const double given = amount.number_at_least(0.0);
-    if (how == "direct_normal") result.direct_normal = given;
-    result.sun.irradiance = photometric(how == "illuminance" ? given : daylight_efficacy * given,
-                                        colour_of(table, bands), amount, bands);
+    const bool is_lux = how == "illuminance";
+    const double lux = is_lux ? given : daylight_efficacy * given;
+    result.direct_normal = is_lux ? lux / daylight_efficacy : given;
+    result.sun.irradiance = photometric(lux, colour_of(table, bands), amount, bands);
   }
   if (const auto angle = table.find("angle")) {
     result.sun.angle_degrees = angle->positive();
@@ -167,8 +172,14 @@ void read_gradation(const TomlTable& table, const std::string& kind,
     const double diffuse = table.require("diffuse_horizontal").positive();
     const double altitude =
         std::asin(std::min(1.0, sky.bright.dot(sky.up))) * 180.0 / std::numbers::pi;
-    sky.gradation = perez_sky(sun->direct_normal, diffuse, altitude, sun->day);
-    sky.name = fmt::format("Perez, {:g} W/m2 direct and {:g} diffuse", sun->direct_normal, diffuse);
+    if (!sun->direct_normal) {
+      table.require("sun").fail(
+          "gives the irradiance of some wavelengths, and a sky of the kind 'perez' needs that of "
+          "all; give 'direct_normal' in W/m2 or 'illuminance' in lux instead");
+    }
+    sky.gradation = perez_sky(*sun->direct_normal, diffuse, altitude, sun->day);
+    sky.name =
+        fmt::format("Perez, {:g} W/m2 direct and {:g} diffuse", *sun->direct_normal, diffuse);
   } else {
     sky.name = "uniform";
   }

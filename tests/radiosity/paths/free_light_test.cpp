@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +12,7 @@
 #include "radiosity/paths/caustic_photons.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solve.h"
+#include "scene/optics.h"
 #include "scene/parallel.h"
 #include "tests/radiosity/test_scenes.h"
 
@@ -299,6 +302,104 @@ TEST(FreeSources, PanesPassLightStraightOn) {
   const double R1 = 0.04, R = R1 + (1 - R1) * (1 - R1) * R1 / (1 - R1 * R1);  // both faces
   EXPECT_NEAR(through / open, (1.0 - R) * 0.9, 1e-6);
 }
+
+// A box with an opening of 2 x 1.5 m in its wall y0, above ground outside. A sun that stands at 45
+// degrees shines on the ground and through the opening onto the floor.
+Scene sunlit_room() {
+  Scene scene;
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  test::add_box(scene, {0, 0, 0}, {4, 5, 3}, {grey, grey, grey, grey, grey, grey}, true);
+  auto& wall = std::get<PolygonMesh>(scene.surfaces[2].shape);
+  for (const Eigen::Vector3d& corner : {Eigen::Vector3d(1, 0, 1), Eigen::Vector3d(3, 0, 1),
+                                        Eigen::Vector3d(3, 0, 2.5), Eigen::Vector3d(1, 0, 2.5)}) {
+    wall.facets[0].holes.resize(1);
+    wall.facets[0].holes[0].push_back(static_cast<int>(wall.vertices.size()));
+    wall.vertices.push_back(corner);
+  }
+  test::add_polygon(scene, "ground", grey,
+                    {{-4, -9, -0.5}, {8, -9, -0.5}, {8, -1, -0.5}, {-4, -1, -0.5}});
+  scene.sky = Sky{.up = Eigen::Vector3d::UnitZ(),
+                  .north = Eigen::Vector3d::UnitY(),
+                  .scale = constant_spectrum(scene.bands, 0.0f),
+                  .ground = constant_spectrum(scene.bands, 0.0f)};
+  scene.sky->sun = Sun{.direction = Eigen::Vector3d(0, -1, 1).normalized(),
+                       .irradiance = constant_spectrum(scene.bands, 1000.0f)};
+  return scene;
+}
+
+// A pane before the opening of sunlit_room(), larger than the opening; `lean` moves its upper edge
+// outwards.
+void add_pane(Scene& scene, float index, double before, double lean) {
+  Material pane = test::clear_glass(scene.bands);
+  pane.dielectric->index_of_refraction = index;
+  pane.dielectric->thin = true;
+  pane.dielectric->tint << 0.8f, 0.5f, 0.25f;
+  test::add_polygon(scene, "pane", test::add_material(scene, pane),
+                    {{0.5, -before, 0.5},
+                     {3.5, -before, 0.5},
+                     {3.5, -before - lean, 4.5},
+                     {0.5, -before - lean, 4.5}});
+}
+
+BandArray arriving_light(const Scene& scene, const PatchMesh& mesh) {
+  const ElementCaster caster(mesh);
+  const DirectLight light(scene, mesh);
+  return cast_free_light(scene, caster, LightPaths(scene, caster, 8), light).irradiance;
+}
+
+struct PanesBeforeARoom {
+  int count = 1;
+  float index = 1.0f;
+  double lean = 0.0;
+};
+
+class SunBehindPanes : public testing::TestWithParam<PanesBeforeARoom> {};
+
+TEST_P(SunBehindPanes, ReachesPatchesOnce) {
+  const auto& [count, index, lean] = GetParam();
+  const Scene open = sunlit_room();
+  const PatchMesh open_mesh = build_patches(open, {.max_patch_size = 0.5});
+  const BandArray without = arriving_light(open, open_mesh);
+  Scene scene = open;
+  for (int i = 0; i < count; ++i) add_pane(scene, index, 0.1 + 0.2 * i, lean);
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
+  const BandArray with = arriving_light(scene, mesh);
+  ASSERT_GE(mesh.patch_count(), open_mesh.patch_count());
+  const Eigen::Vector3d normal = Eigen::Vector3d(0, 4.0, lean).normalized();
+  const double angle = std::acos(std::abs(normal.dot(scene.sky->sun->direction)));
+  const auto passed_at = [&](double at) {
+    return std::pow(1.0 - pane_reflectance(std::cos(at), static_cast<double>(index)), count);
+  };
+  const double passed = passed_at(angle);
+  // A patch at an edge of the shadow sees one side of the sun's disc alone. The sums of 64 rays in
+  // single precision are off by 64 * 6e-8 at most.
+  const double half_disc = 0.5 * scene.sky->sun->angle_degrees * pi / 180.0;
+  const double tolerance =
+      std::max(passed_at(angle - half_disc) - passed, passed - passed_at(angle + half_disc)) /
+          passed +
+      64 * 6e-8;
+  const std::array<double, 3> tint = {0.8, 0.5, 0.25};
+  int lit = 0;
+  for (int i = 0; i < open_mesh.patch_count(); ++i) {
+    // The ground also gets what panes reflect.
+    if (open_mesh.surface[i] > 5 || !(without(i, 0) > 0.0f)) continue;
+    ++lit;
+    for (int k = 0; k < 3; ++k) {
+      const double expected =
+          static_cast<double>(without(i, k)) * passed * std::pow(tint[k], count);
+      EXPECT_NEAR(static_cast<double>(with(i, k)), expected, tolerance * expected) << i << ' ' << k;
+    }
+  }
+  EXPECT_GT(lit, 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(FreeLight, SunBehindPanes,
+                         testing::Values(PanesBeforeARoom{},  // upright, without reflection
+                                         PanesBeforeARoom{.lean = 1.0},
+                                         PanesBeforeARoom{.count = 2},
+                                         PanesBeforeARoom{.count = 2, .lean = 1.0},
+                                         PanesBeforeARoom{.index = 1.5f},
+                                         PanesBeforeARoom{.index = 1.5f, .lean = 1.0}));
 
 TEST(FreeLight, RoomOfLampsAloneThatReflectsNothingIsSolved) {
   Scene scene = box(0.0f);

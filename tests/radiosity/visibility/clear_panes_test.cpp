@@ -87,6 +87,27 @@ TEST_P(BehindPanes, LightOfALampIsWhatTheyPass) {
 
 INSTANTIATE_TEST_SUITE_P(Panes, BehindPanes, testing::Values(1, 2, 5));
 
+TEST(ClearPanes, WithABodyDimInclinedLightMore) {
+  const Lit bare{lamp_over_floor()};
+  Scene scene = lamp_over_floor();
+  Material window = pane(scene.bands);
+  window.dielectric->tint.setOnes();
+  window.dielectric->transmissivity = Eigen::Array3f(0.25f, 0.7f, 1.0f);
+  add_square(scene, window, 0.5, 4.0);
+  const Lit lit{scene};
+  for (const double x : {0.0, 1.0, 3.0}) {
+    const Spectrum without = bare.at(x), with = lit.at(x);
+    for (int k = 0; k < 3; ++k) {
+      const double t = double{window.dielectric->transmissivity[k]};
+      const double expected =
+          double{without[k]} *
+          pane_shares(2.0 / std::hypot(2.0, x), double{index_of_glass}, t).passed;
+      // The lamp is a millimetre wide, over which the angle differs by 5e-4; single precision.
+      EXPECT_NEAR(double{with[k]}, expected, 1e-3 * expected);
+    }
+  }
+}
+
 TEST(ClearPanes, WhatIsBehindOrBeforeThemStillHidesALamp) {
   for (const double z : {0.2, 1.5}) {
     Scene scene = lamp_over_floor();

@@ -52,13 +52,6 @@ TEST(Glossy, MetalsReflectTheMeanOverTheHemisphere) {
   EXPECT_LT((mean - expected).abs().maxCoeff(), 3e-5f);
 }
 
-// The transmittance is the sum (1-F)^2 F^2k over the reflections between the faces.
-TEST(Glossy, APanePassesWhatItsTwoFacesLeave) {
-  double sum = 0.0;
-  for (int k = 0; k < 20; ++k) sum += 0.96 * 0.96 * std::pow(0.04, 2 * k);
-  EXPECT_NEAR(pane_transmittance(1.5), sum, 1e-12);
-}
-
 TEST(Glossy, SmoothMetalsAreMirrorsAndRoughOnesDiffuse) {
   Material material;
   set_metallic(material, grey(0.8f), 0.25, 0.0);

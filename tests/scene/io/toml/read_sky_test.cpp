@@ -122,6 +122,49 @@ direct_normal = 800
               2e-6 * 110.0 * 800.0);
 }
 
+TEST_F(NativeSky, PerezTakesItsSunFromAnyStatementOfBrightness) {
+  const auto sky = [&](const std::string& brightness) {
+    return read(
+               "[sky]\nkind = 'perez'\ndiffuse_horizontal = 100\n[sky.sun]\nazimuth = 180\n"
+               "altitude = 45\n" +
+               brightness + '\n')
+        .sky->gradation;
+  };
+  const SkyGradation expected = perez_sky(800.0, 100.0, 45.0, 172);
+  // The default bands are r, g and b with 683 lm/W of grey light: 110 * 800 / 683 W/m2 per band.
+  for (const char* brightness :
+       {"direct_normal = 800", "illuminance = 88000", "illuminance = 88000\ncolor = [2, 1, 0.5]",
+        "irradiance = 128.84333821376281"}) {
+    const SkyGradation found = sky(brightness);
+    // The irradiance is kept in floats, good to 6e-8 each, and enters the gradation in proportion.
+    EXPECT_NEAR(found.a, expected.a, 1e-6) << brightness;
+    EXPECT_NEAR(found.b, expected.b, 1e-6) << brightness;
+    EXPECT_NEAR(found.c, expected.c, 1e-6 * expected.c) << brightness;
+    EXPECT_NEAR(found.d, expected.d, 1e-6 * -expected.d) << brightness;
+    EXPECT_NEAR(found.e, expected.e, 1e-6) << brightness;
+  }
+  const SkyGradation dark = perez_sky(0.0, 100.0, 45.0, 172);
+  EXPECT_EQ(sky("illuminance = 0").c, dark.c);
+}
+
+// Watts of some wavelengths do not tell the watts of all.
+TEST_F(NativeSky, PerezRefusesASunGivenInSpectralBands) {
+  const std::string message = refusal(R"(
+[bands]
+kind = "spectral"
+count = 3
+[sky]
+kind = "perez"
+diffuse_horizontal = 100
+[sky.sun]
+azimuth = 180
+altitude = 45
+irradiance = 800
+)");
+  EXPECT_NE(message.find("direct_normal"), std::string::npos) << message;
+  EXPECT_NE(message.find("illuminance"), std::string::npos) << message;
+}
+
 TEST_F(NativeSky, FaultsAreSentences) {
   EXPECT_NE(refusal("[sky]\nkind = 'cie-overcast'\n").find("how bright"), std::string::npos);
   EXPECT_NE(refusal("[sky]\nkind = 'cie-clear'\nilluminance = 1\n").find("[sky.sun]"),

@@ -115,6 +115,8 @@ roughness = 0.25
 glass = { ior = 1.4, roughness = 0.1, absorption = [1, 2, 3] }
 [materials.pane]
 glass = { ior = 1.5, thin = true }
+[materials.window]
+glass = { ior = 1.52, thin = true, transmissivity = [0.8, 0.9, 0.7] }
 [[surfaces]]
 name = "floor"
 material = "metal"
@@ -138,6 +140,8 @@ focus_distance = 50
   EXPECT_FLOAT_EQ(frosted.absorption[2], 3.0f);  // per metre, whatever the unit
   EXPECT_FALSE(frosted.thin);
   EXPECT_TRUE(scene.materials.at(2).dielectric.value().thin);
+  EXPECT_EQ(scene.materials.at(2).dielectric->transmissivity.size(), 0);
+  expect_spectrum(scene.materials.at(3).dielectric.value().transmissivity, {0.8f, 0.9f, 0.7f});
   // A field of 90 degrees over 36 mm: focal length 18 mm, aperture diameter 9 mm.
   EXPECT_NEAR(scene.cameras.at(0).lens_radius, 0.0045, 1e-12);
   EXPECT_DOUBLE_EQ(scene.cameras.at(0).focus_distance, 1.5);
