@@ -15,8 +15,12 @@ constexpr double widest = 0.2;
 constexpr double facing = -0.5;
 // A path that is still in the gap after so many bounces reads the mesh.
 constexpr int most_bounces = 16;
-// Many rays end in a gap, so each needs few shadow rays.
-constexpr ShadowOptions shadows{.min_rays = 2, .max_rays = 8};
+// Narrower gaps are contacts: which of two surfaces in one plane a ray meets is a matter of
+// rounding.
+constexpr double narrowest = 1e-4;
+// Many rays end in a gap, so each needs one shadow ray to a light, whatever share of the light of
+// its channel that is.
+constexpr ShadowOptions shadows{.min_rays = 1, .max_rays = 1};
 
 }  // namespace
 
@@ -38,7 +42,8 @@ bool GapLight::is_gap(const Eigen::Vector3d& normal, const Ray& ray, const Eleme
     return false;
   }
   const Eigen::Vector3d other = normal_towards(ray, hit);
-  return other.dot(normal) < facing && hit.t * std::abs(ray.direction.dot(other)) < widest * size;
+  const double width = hit.t * std::abs(ray.direction.dot(other));
+  return other.dot(normal) < facing && width < widest * size && width > narrowest * size;
 }
 
 void GapLight::add(const ElementCaster& caster, const Ray& first_ray, const ElementHit& first_hit,

@@ -25,7 +25,7 @@ class GapLight {
 
   /// True if a ray from a point of unit normal `normal` ends in a gap: on a surface that faces the
   /// point, reflects and does not emit, and whose distance from the point along its own normal is
-  /// less than a fifth of the size of the element that was hit.
+  /// less than a fifth of the size of the element that was hit, and more than 1e-4 of that size.
   bool is_gap(const Eigen::Vector3d& normal, const Ray& ray, const ElementHit& hit) const;
 
   /// Adds the radiosity B at the end of a ray in a gap to the columns of `sum`. `key` decides the

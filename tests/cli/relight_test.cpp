@@ -60,7 +60,8 @@ class RelightCommand : public CommandTest {
       std::stringstream fields(line);
       int column = 0;
       for (std::string field; std::getline(fields, field, ',');) {
-        if (++column > 6) values.push_back(std::stod(field));
+        ++column;
+        if (column > 6 && column <= 10) values.push_back(std::stod(field));
       }
     }
     EXPECT_EQ(values.size(), 8u);
