@@ -14,6 +14,7 @@
 #include "radiosity/illuminate_elements.h"
 #include "radiosity/journal/journal.h"
 #include "radiosity/journal/journal_phase.h"
+#include "radiosity/parts/find_parts.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/refine_solution.h"
 #include "radiosity/rows/memory_budget.h"
@@ -217,6 +218,10 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   const auto by_channel = light_by_channel(scene, solved.mesh, direct_light, options.channels);
   const DirectLight& kept_apart = by_channel ? *by_channel : direct_light;
   seconds.push_back({"mesh", watch.lap()});
+  SceneParts parts = find_parts(scene, *caster,
+                                LightPaths(scene, *caster, options.form_factors.max_specular_depth),
+                                options.run.progress);
+  seconds.push_back({"parts", watch.lap()});
 
   // The memory of the gathers is reserved before rows of form factors take it.
   if (options.form_factors.memory) options.form_factors.memory->plan(bytes_to_gather(solved.mesh));
@@ -231,6 +236,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   describe(scene, solution);
 
   solution.seconds = std::move(seconds);
+  solution.parts = std::move(parts);
 
   caster.reset();
   illuminate_elements(scene, {direct_light, kept_apart}, options, solved, report);

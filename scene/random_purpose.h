@@ -64,6 +64,9 @@ enum class RandomPurpose : std::uint64_t {
   pixel_gather_rays = 0x6a7e,
   pixel_gather_paths = 0x6a7f,
   pixel_gather_aims = 0x6a80,
+  // Parts of a scene; (patch, purpose), (key, purpose, ray) or (node, purpose, round).
+  part_rays = 0x9a47,
+  part_vectors = 0x9a48,
   // Light at points by way of mirrors and glass; (point, purpose, replica), (key, purpose, number).
   specular_light = 0x5bec1,
 };
@@ -114,6 +117,8 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::pixel_gather_rays:
     case RandomPurpose::pixel_gather_paths:
     case RandomPurpose::pixel_gather_aims:
+    case RandomPurpose::part_rays:
+    case RandomPurpose::part_vectors:
     case RandomPurpose::specular_light:
       return true;
   }

@@ -173,6 +173,22 @@ void read_light(const SolutionArrays& in, const PatchMesh& mesh, RadiositySoluti
   of_elements("gather_noise", s.gather_noise);
 }
 
+// Absent in files of earlier versions.
+void read_parts(const SolutionArrays& in, RadiositySolution& s) {
+  const std::vector<std::string> names = in.strings("part_names");
+  if (names.empty()) return;
+  const auto count = static_cast<int>(names.size());
+  const auto figures = in.required<double>(in.field(), "part_area_error_estimate", count, 2);
+  for (int p = 0; p < count; ++p) {
+    const double* row = figures.data + std::ptrdiff_t{2} * p;
+    in.require(std::isfinite(row[0]) && std::isfinite(row[1]),
+               fmt::format("part {} has an area or an error that is no number", p));
+    s.parts.parts.push_back({.name = names[p], .area = row[0], .error_estimate = row[1]});
+  }
+  const auto patches = static_cast<int>(s.patch_radiosity.rows());
+  s.parts.of_patch = in.integers(in.field(), "patch_part", patches, -1, count);
+}
+
 void read_record(const SolutionArrays& in, RadiositySolution& s) {
   s.metres_per_unit = in.number("metres_per_unit");
   s.unit_name = in.text("unit_name");
@@ -202,6 +218,7 @@ void read_record(const SolutionArrays& in, RadiositySolution& s) {
     s.energy.missed = of_lamps.data[1];
   }
 
+  read_parts(in, s);
   s.provenance = {in.text("version"), in.text("scene_file"), 0, in.text("options")};
   const auto refinement = in.strings("refinement");
   if (!refinement.empty()) s.provenance.refinement = refinement.front();

@@ -6,6 +6,7 @@
 
 #include "mesh/patches/patch_mesh.h"
 #include "radiosity/solution/light_channel.h"
+#include "radiosity/solution/scene_parts.h"
 #include "scene/bands.h"
 
 namespace lightwell {
@@ -65,8 +66,9 @@ struct RadiositySolution {
   BandArray caustic_irradiance{};
 
   /// Per element: estimated RMS error of interpolated irradiance over the element, relative to the
-  /// mean irradiance or a quarter of the element's own, whichever is more. The square includes half
-  /// of the squared error that noise of the estimate may hide. Empty without an estimate.
+  /// mean irradiance of its part or a quarter of the element's own, whichever is more. The square
+  /// includes half of the squared error that noise of the estimate may hide. Empty without an
+  /// estimate.
   Eigen::ArrayXf interpolation_error{};
   /// Per element: estimated RMS error from the rays of the final gather, relative to the same
   /// reference. Empty in files of earlier versions.
@@ -84,9 +86,13 @@ struct RadiositySolution {
   Outcome outcome = Outcome::converged;
   double residual = 0.0;
   EnergyBalance energy{};
+  /// Parts of the scene that exchange little light, each with its own error estimate; empty in
+  /// files of earlier versions. Errors are relative to the mean irradiance of the part they are in
+  /// (see error_reference).
+  SceneParts parts{};
   /// Relative RMS error of interpolated irradiance: independent gathers at random points against
-  /// the interpolation, relative to the mean irradiance or a quarter of the point's own, whichever
-  /// is more.
+  /// the interpolation, relative to the mean irradiance of the part or a quarter of the point's
+  /// own, whichever is more. With several parts or views, the largest of their estimates.
   double error_estimate = 0.0;
   std::vector<PhaseSeconds> seconds{};
   Provenance provenance{};

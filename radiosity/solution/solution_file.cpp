@@ -142,6 +142,8 @@ void add_patches(vtkFieldData* data, const PatchMesh& mesh, const RadiositySolut
   add_bands(data, "patch_emission", mesh.emission, s.bands);
   add_bands(data, "patch_radiosity", s.patch_radiosity, s.bands);
 
+  if (s.parts.count() > 0) add_values(data, "patch_part", s.parts.of_patch.data(), n);
+
   std::vector<int> shape, element;
   std::vector<double> sphere;
   for (const SphereGrid& grid : mesh.sphere_grids) {
@@ -192,6 +194,18 @@ void add_record(vtkFieldData* data, const RadiositySolution& s) {
   add_strings(data, "scene_hash", {fmt::format("{:016x}", s.provenance.scene_hash)});
   add_strings(data, "options", {s.provenance.options});
   if (!s.provenance.refinement.empty()) add_strings(data, "refinement", {s.provenance.refinement});
+}
+
+void add_parts(vtkFieldData* data, const SceneParts& parts) {
+  if (parts.count() == 0) return;
+  std::vector<std::string> names;
+  std::vector<double> figures;
+  for (const ScenePart& part : parts.parts) {
+    names.push_back(part.name);
+    figures.insert(figures.end(), {part.area, part.error_estimate});
+  }
+  add_strings(data, "part_names", names);
+  add_values(data, "part_area_error_estimate", figures.data(), parts.count(), 2);
 }
 
 // "channels: desk 0.3, sun 0.9 0.5 0.2"
@@ -264,6 +278,7 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
   add_elements(poly->GetCellData(), solved.mesh, solved.solution);
   add_patches(poly->GetFieldData(), solved.mesh, solved.solution);
   add_record(poly->GetFieldData(), solved.solution);
+  add_parts(poly->GetFieldData(), solved.solution.parts);
   add_channels(poly, solved.solution);
 
   AtomicFile file(path);

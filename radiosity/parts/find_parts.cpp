@@ -1,0 +1,275 @@
+#include "radiosity/parts/find_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "mesh/patches/patch_sampler.h"
+#include "radiosity/parts/cut_graph.h"
+#include "radiosity/parts/exchange_graph.h"
+#include "scene/parallel.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+// The arrivals of one patch's rays at another patch.
+struct Arrivals {
+  int patch = 0;
+  float share = 0.0f;   // of the rays, with what mirrors and glass let pass
+  float length = 0.0f;  // sum of the straight rays' lengths times their shares, m
+};
+
+struct PatchArrivals {
+  std::vector<Arrivals> at{};  // in the order of patches
+  double lost = 1.0;           // share of the rays that left the scene or were absorbed
+  bool takes_part = false;     // false for mirrors and clear glass
+};
+
+class PartRays {
+ public:
+  PartRays(const ElementCaster& caster, const LightPaths& paths)
+      : caster_(caster),
+        paths_(paths),
+        rays_(rays_per_patch_for_parts(caster.mesh().patch_count())),
+        sobol_(rays_) {}
+
+  PatchArrivals cast(int patch) const {
+    const PatchMesh& mesh = caster_.mesh();
+    PatchArrivals result;
+    if (!paths_.is_diffuse(mesh.facet[mesh.first_element[patch]])) return result;
+    result.takes_part = true;
+    const std::uint64_t key =
+        random_key(static_cast<std::uint64_t>(patch), RandomPurpose::part_rays);
+    const PatchSampler sampler(mesh, patch);
+    std::vector<Ray> rays;
+    for (int r = 0; r < rays_; ++r) {
+      const Eigen::Array4f u = sobol_.point(r, key);
+      rays.push_back(cosine_ray(mesh, sampler.point(u[0], u[1]), u[2], u[3]));
+    }
+    std::vector<ElementHit> hits(rays.size());
+    caster_.closest_elements(rays, hits);
+    const float one = 1.0f / static_cast<float>(rays_);
+    std::map<int, Arrivals> by_patch;
+    const auto arrive = [&](int element, float share, double length) {
+      const int p = mesh.patch[element];
+      Arrivals& at = by_patch[p];
+      at.patch = p;
+      at.share += share;
+      at.length += share * static_cast<float>(length);
+      result.lost -= double{share};
+    };
+    for (std::size_t r = 0; r < rays.size(); ++r) {
+      const ElementHit& hit = hits[r];
+      if (hit.facet < 0) continue;
+      const bool is_specular = paths_.has_specular() && paths_.is_specular(hit.facet);
+      if (hit.element >= 0 && (!is_specular || paths_.is_diffuse(hit.facet))) {
+        arrive(hit.element, one, hit.t);
+      } else if (is_specular) {
+        const auto end = [&](const ElementHit& at, const Spectrum& throughput) {
+          if (at.element >= 0) arrive(at.element, one * throughput.mean(), hit.t);
+        };
+        paths_.follow(rays[r], hit, random_key(key, RandomPurpose::part_rays, r), end);
+      }
+    }
+    for (const auto& [p, at] : by_patch) result.at.push_back(at);
+    return result;
+  }
+
+ private:
+  const ElementCaster& caster_;
+  const LightPaths& paths_;
+  int rays_;
+  SobolPoints sobol_;
+};
+
+std::vector<PatchArrivals> cast_part_rays(const ElementCaster& caster, const LightPaths& paths,
+                                          const Progress& progress) {
+  const PartRays rays(caster, paths);
+  const int patches = caster.mesh().patch_count();
+  std::vector<PatchArrivals> arrivals(static_cast<std::size_t>(patches));
+  constexpr int slice = 4096, grain = 16;  // patches between two reports of progress
+  for (int begin = 0; begin < patches; begin += slice) {
+    report(progress, "parts", static_cast<double>(begin) / patches);
+    parallel_for(std::min(slice, patches - begin), grain, [&](int low, int high) {
+      for (int i = begin + low; i < begin + high; ++i) arrivals[i] = rays.cast(i);
+    });
+  }
+  return arrivals;
+}
+
+// The node of each patch, -1 for those that take no part. Patches that see little but the outside
+// share one.
+std::vector<int> nodes_of(const std::vector<PatchArrivals>& arrivals, int& count) {
+  constexpr double outside = 0.95;
+  std::vector<int> node(arrivals.size(), -1);
+  int of_outside = -1;
+  count = 0;
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    if (!arrivals[i].takes_part) continue;
+    const bool is_outside = arrivals[i].lost > outside;
+    if (is_outside && of_outside >= 0) {
+      node[i] = of_outside;
+    } else {
+      node[i] = count++;
+      if (is_outside) of_outside = node[i];
+    }
+  }
+  return node;
+}
+
+// The exchange of both directions, weighted by the inverse of the variance of each: rays of a patch
+// of area A out of N find A_i F_ij to a variance proportional to A / N.
+std::vector<ExchangeLink> links_of(const PatchMesh& mesh, const std::vector<int>& node,
+                                   const std::vector<PatchArrivals>& arrivals) {
+  std::vector<ExchangeLink> links;
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    for (const Arrivals& at : arrivals[i].at) {
+      if (node[at.patch] < 0 || at.patch == i) continue;
+      const double both = mesh.area[i] * mesh.area[at.patch] / (mesh.area[i] + mesh.area[at.patch]);
+      links.push_back({node[i], node[at.patch], static_cast<float>(both * double{at.share})});
+    }
+  }
+  return links;
+}
+
+// The clusters of the patches that are too small, or too flat, to be parts of their own.
+class TinyClusters {
+ public:
+  TinyClusters(const PatchMesh& mesh, const std::vector<PatchArrivals>& arrivals)
+      : mesh_(mesh), arrivals_(arrivals) {}
+
+  // 1 for each cluster that is to join another; `cluster` of each patch, -1: none.
+  std::vector<char> find(const std::vector<int>& cluster) const {
+    const auto count = static_cast<std::size_t>(*std::ranges::max_element(cluster) + 1);
+    struct Sums {
+      double area = 0.0, within = 0.0, length = 0.0;
+      int patches = 0;
+    };
+    std::vector<Sums> sums(count);
+    for (int i = 0; i < mesh_.patch_count(); ++i) {
+      if (cluster[i] < 0) continue;
+      Sums& of = sums[cluster[i]];
+      of.area += mesh_.area[i];
+      ++of.patches;
+      for (const Arrivals& at : arrivals_[i].at) {
+        if (cluster[at.patch] != cluster[i]) continue;
+        of.within += mesh_.area[i] * double{at.share};
+        of.length += mesh_.area[i] * double{at.length};
+      }
+    }
+    constexpr int fewest = 4;  // a room has as many walls
+    constexpr double crack = 1.0 / 32.0;
+    std::vector<char> is_tiny(count, 0);
+    for (std::size_t c = 0; c < count; ++c) {
+      const Sums& of = sums[c];
+      const bool is_crack = of.within > 0.0 && of.length / of.within < crack * std::sqrt(of.area);
+      is_tiny[c] = of.patches < fewest || is_crack;
+    }
+    return is_tiny;
+  }
+
+ private:
+  const PatchMesh& mesh_;
+  const std::vector<PatchArrivals>& arrivals_;
+};
+
+// Renumbers clusters in falling order of area. Tiny clusters that exchange nothing with any other
+// join the largest.
+std::vector<double> sort_by_area(const PatchMesh& mesh, const std::vector<char>& is_tiny,
+                                 std::vector<int>& cluster) {
+  std::vector<double> area(is_tiny.size(), 0.0);
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    if (cluster[i] >= 0) area[cluster[i]] += mesh.area[i];
+  }
+  std::vector<int> order(area.size()), number(area.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, [&](int a, int b) { return area[a] > area[b]; });
+  std::vector<double> sorted;
+  for (const int c : order) {
+    const bool joins_first = !sorted.empty() && is_tiny[c] != 0;
+    number[c] = joins_first ? 0 : static_cast<int>(sorted.size());
+    if (joins_first) {
+      sorted.front() += area[c];
+    } else {
+      sorted.push_back(area[c]);
+    }
+  }
+  for (int& c : cluster) c = c < 0 ? -1 : number[c];
+  return sorted;
+}
+
+// Names parts by the one or two surfaces that have most of their area, those of which most lies in
+// the part first. Equal names are numbered.
+void name_parts(const Scene& scene, const PatchMesh& mesh, SceneParts& parts) {
+  std::vector<std::map<int, double>> area(parts.parts.size());
+  std::vector<double> whole(scene.surfaces.size(), 0.0);
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    if (parts.of_patch[i] < 0) continue;
+    area[parts.of_patch[i]][mesh.surface[i]] += mesh.area[i];
+    whole[mesh.surface[i]] += mesh.area[i];
+  }
+  std::map<std::string, int> uses;
+  for (std::size_t p = 0; p < area.size(); ++p) {
+    std::vector<std::tuple<bool, double, int>> by_area;
+    for (const auto& [surface, size] : area[p]) {
+      by_area.emplace_back(size <= 0.5 * whole[surface], -size, surface);
+    }
+    std::ranges::sort(by_area);
+    std::string& name = parts.parts[p].name;
+    for (std::size_t i = 0; i < std::min<std::size_t>(by_area.size(), 2); ++i) {
+      const std::string& surface = scene.surfaces[std::get<2>(by_area[i])].name;
+      if (surface.empty() || surface == name) continue;
+      name += (name.empty() ? "" : ", ") + surface;
+    }
+    if (name.empty()) name = "part";
+    if (const int use = ++uses[name]; use > 1) name += fmt::format(" ({})", use);
+  }
+}
+
+std::vector<int> to_patches(const std::vector<int>& node, const std::vector<int>& cluster) {
+  std::vector<int> of(node.size(), -1);
+  for (std::size_t i = 0; i < node.size(); ++i) of[i] = node[i] < 0 ? -1 : cluster[node[i]];
+  return of;
+}
+
+}  // namespace
+
+int rays_per_patch_for_parts(int patches) {
+  constexpr int all = 1 << 17, fewest = 64, most = 1024;
+  const int wanted = std::clamp(all / std::max(patches, 1), fewest, most);
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(wanted)));
+}
+
+SceneParts find_parts(const Scene& scene, const ElementCaster& caster, const LightPaths& paths,
+                      const Progress& progress) {
+  const PatchMesh& mesh = caster.mesh();
+  const std::vector<PatchArrivals> arrivals = cast_part_rays(caster, paths, progress);
+  int nodes = 0;
+  const std::vector<int> node = nodes_of(arrivals, nodes);
+  SceneParts parts{.of_patch = std::vector<int>(node.size(), -1)};
+  if (nodes == 0) return parts;
+  std::vector<double> area(static_cast<std::size_t>(nodes), 0.0);
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    if (node[i] >= 0) area[node[i]] += mesh.area[i];
+  }
+  const ExchangeGraph graph(std::move(area), links_of(mesh, node, arrivals));
+  std::vector<int> cluster = cut_graph(graph);
+  const TinyClusters tiny(mesh, arrivals);
+  join_clusters(graph, tiny.find(to_patches(node, cluster)), cluster);
+  parts.of_patch = to_patches(node, cluster);
+  for (const double of : sort_by_area(mesh, tiny.find(parts.of_patch), parts.of_patch)) {
+    parts.parts.push_back({.area = of});
+  }
+  name_parts(scene, mesh, parts);
+  return parts;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "mesh/elements/element_caster.h"
+#include "radiosity/paths/light_path.h"
+#include "radiosity/solution/scene_parts.h"
+#include "scene/progress.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Rays from each patch that find_parts() casts: 131 072 over the number of patches, as a power of
+/// two, at least 64 and at most 1024.
+int rays_per_patch_for_parts(int patches);
+
+/// Finds the parts of a scene that exchange little light: rooms behind doors, the ground outside
+/// windows, the insides of cabinets.
+///
+/// 1. Cosine-distributed rays from each patch estimate the exchange A_i F_ij; mirrors and glass
+///    pass the rays on. Patches of which 95 % of the rays leave the scene count as one, the
+///    outside.
+/// 2. cut_graph() parts the patches where the exchange is less than 5 % of the smaller side's area
+///    and where the passage is a bottleneck.
+/// 3. A part of fewer than four patches, or a crack (mean length of the rays within below 1/32 of
+///    the root of the area), joins the part that it exchanges most with; without such, the largest.
+///
+/// The sides of a two-sided surface are patches of their own, so the outside of a house is a part.
+/// Parts are in falling order of area. The largest part is the first. The result depends on neither
+/// units nor threads. Throws Interrupted when progress says stop.
+SceneParts find_parts(const Scene& scene, const ElementCaster& caster, const LightPaths& paths,
+                      const Progress& progress = {});
+
+}  // namespace lightwell

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace lightwell {
+
+/// A part of a scene that exchanges little light with the rest, such as a room behind a door.
+struct ScenePart {
+  std::string name{};  ///< of the surfaces that have most of its area, such as "floor, wall"
+  double area = 0.0;   ///< of its patches, m^2
+  /// Relative RMS error of interpolated irradiance, estimated as RadiositySolution::error_estimate,
+  /// relative to the mean irradiance of this part. Below 0: not estimated, since the part has no
+  /// light or no surface that reflects.
+  double error_estimate = -1.0;
+};
+
+/// The parts of a scene (see find_parts). Patches of mirrors and clear glass alone belong to none.
+struct SceneParts {
+  std::vector<int> of_patch{};  ///< index into `parts`, or -1 for none; empty: not known
+  std::vector<ScenePart> parts{};
+
+  int count() const { return static_cast<int>(parts.size()); }
+  /// Number of parts that are judged each by its own light: 1 where the parts are not known.
+  int judged_count() const { return count() > 1 ? count() : 1; }
+  /// The part, below judged_count(), that a patch is judged with; patches of no part are judged
+  /// with the first.
+  int judged_with(int patch) const {
+    return count() > 1 ? std::max(of_patch[static_cast<std::size_t>(patch)], 0) : 0;
+  }
+};
+
+}  // namespace lightwell
