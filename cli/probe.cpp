@@ -69,6 +69,7 @@ SolvedScene solve_for_probes(const Scene& scene, Console& console, Report& repor
   solved.solution.provenance.version = LIGHTWELL_VERSION;
   solved.solution.provenance.options = "coarse solve for probes";
   report.add_solution(solved, true);
+  report.remove("parts");
   report.remove("error_estimate");  // the solve made no estimate
   return solved;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include "cli/channels.h"
 #include "scene/atomic_file.h"
@@ -14,6 +15,24 @@
 
 namespace lightwell {
 namespace {
+
+// Mean illuminance of each part over the area that reflects, lx; without a known unit the mean
+// irradiance of the bands, relative.
+std::vector<double> mean_irradiances(const PatchMesh& mesh, const RadiositySolution& solution) {
+  const BandArray E = element_mean(mesh, solution.irradiance());
+  std::vector<double> sum(solution.parts.parts.size(), 0.0), area(sum);
+  for (int e = 0; e < mesh.element_count() && !sum.empty(); ++e) {
+    const int patch = mesh.patch[e], part = solution.parts.of_patch[patch];
+    if (part < 0 || !(mesh.reflectance.row(patch) > 0.0f).any()) continue;
+    const Spectrum here = E.row(e).transpose();
+    const double value =
+        solution.relative_units ? double{here.mean()} : double{luminous(solution.bands, here)};
+    sum[part] += mesh.element_area[e] * value;
+    area[part] += mesh.element_area[e];
+  }
+  for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = area[p] > 0.0 ? sum[p] / area[p] : 0.0;
+  return sum;
+}
 
 double peak_memory_mb() {
   return static_cast<double>(resident_memory().most) / (1 << 20);
@@ -84,6 +103,43 @@ std::string energy_text(const Json& facts) {
   return text;
 }
 
+// The error estimate, with the name of the part of the scene that it is of.
+std::string error_text(const Json& facts) {
+  const double error = facts["error_estimate"];
+  const char* const mean =
+      facts["parts"].size() > 1 ? "the mean irradiance of the worst part" : "the mean irradiance";
+  return fmt::format("{:.2f} % of {}, estimated (relative RMS)", 100.0 * error, mean);
+}
+
+// The number of parts, and those with the largest errors.
+std::string parts_text(const Json& parts) {
+  std::vector<std::pair<double, std::string>> by_error;
+  std::size_t dark = 0;
+  for (const Json& part : parts) {
+    if (part["error_estimate"].is_null()) {
+      ++dark;
+      continue;
+    }
+    const double error = part["error_estimate"];
+    const bool has_lux = part.contains("lux");
+    by_error.emplace_back(
+        -error,
+        fmt::format("'{}' {:.2f} % of {:.3g}{}", part["name"].get<std::string>(), 100.0 * error,
+                    part[has_lux ? "lux" : "irradiance"].get<double>(), has_lux ? " lx" : ""));
+  }
+  std::ranges::sort(by_error);
+  constexpr std::size_t most = 3;
+  std::vector<std::string> worst;
+  for (std::size_t i = 0; i < std::min(most, by_error.size()); ++i) {
+    worst.push_back(by_error[i].second);
+  }
+  std::string text = fmt::format("{} that exchange little light: ", parts.size());
+  text += fmt::format("{}", fmt::join(worst, ", "));
+  if (by_error.size() > most) text += fmt::format(", {} better", by_error.size() - most);
+  if (dark > 0) text += fmt::format("{}{} without light", worst.empty() ? "" : ", ", dark);
+  return text;
+}
+
 // Sizes, energy balance, unlit surfaces, channels, residual and error estimate.
 std::string solution_text(const Json& facts) {
   std::string text = line("patches", fmt::format("{} ({} elements)", facts["patches"].get<int>(),
@@ -106,10 +162,27 @@ std::string solution_text(const Json& facts) {
                fmt::format("{:.2g} after {} sweeps{} ({})", facts["residual"].get<double>(),
                            facts["sweeps"].get<int>(), by, facts["outcome"].get<std::string>()));
   if (facts.contains("error_estimate")) {
-    text += line("error", fmt::format("{:.2f} % of the mean irradiance, estimated (relative RMS)",
-                                      100.0 * facts["error_estimate"].get<double>()));
+    text += line("error", error_text(facts));
+    if (facts["parts"].size() > 1) text += line("parts", parts_text(facts["parts"]));
   }
   return text;
+}
+
+// The parts of the scene in JSON, see add_solution().
+Json parts_json(const SolvedScene& solved) {
+  const RadiositySolution& solution = solved.solution;
+  const std::vector<double> means = mean_irradiances(solved.mesh, solution);
+  Json parts = Json::array();
+  for (std::size_t p = 0; p < solution.parts.parts.size(); ++p) {
+    const ScenePart& part = solution.parts.parts[p];
+    Json figures = {{"name", part.name},
+                    {"area", part.area},
+                    {solution.relative_units ? "irradiance" : "lux", means[p]},
+                    {"error_estimate", nullptr}};
+    if (part.error_estimate >= 0.0) figures["error_estimate"] = part.error_estimate;
+    parts.push_back(std::move(figures));
+  }
+  return parts;
 }
 
 std::string to_text(const Json& json) {
@@ -138,6 +211,7 @@ void Report::add_solution(const SolvedScene& solved, bool solved_now) {
   facts_["residual"] = solution.residual;
   facts_["sweeps"] = solution.history.size();
   facts_["error_estimate"] = solution.error_estimate;
+  facts_["parts"] = parts_json(solved);
   facts_["outcome"] = outcome_name(solution.outcome);
   if (!solved_now) return;
   for (const PhaseSeconds& phase : solution.seconds) phases_.push_back(phase);

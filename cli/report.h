@@ -19,8 +19,8 @@ class Report {
  public:
   explicit Report(const CommonOptions& options);
 
-  /// Adds sizes, energy balance, residual, error estimate; with `solved_now` also the solver and
-  /// the seconds of its phases.
+  /// Adds sizes, energy balance, residual, error estimates of the whole and of its parts; with
+  /// `solved_now` also the solver and the seconds of its phases.
   void add_solution(const SolvedScene& solved, bool solved_now);
   /// Adds the memory budget and the rows of form factors in memory and on disk.
   void add_storage(const StorageReport& storage);

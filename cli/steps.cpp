@@ -34,6 +34,13 @@ std::string way_to_smaller_elements(RefineOutcome outcome) {
   return "Make elements smaller with --max-patch-size";
 }
 
+// " in 'floor, wall'", the part with the largest error; "" with a single part.
+std::string place_of_worst(const SceneParts& parts) {
+  if (parts.count() < 2) return "";
+  const auto worst = std::ranges::max_element(parts.parts, {}, &ScenePart::error_estimate);
+  return fmt::format(" in '{}'", worst->name);
+}
+
 // Area (m^2) and share of reflecting elements without light on either side, such as those of a room
 // without a lamp or of enclosed cavities, and the surface with most of that area.
 Json unlit_json(const Scene& scene, const SolvedScene& solved) {
@@ -71,11 +78,12 @@ void warn_of_outcome(const RadiositySolution& solution, const SolveReport& solve
     console.say("note: refinement " + sentence(solve_report.refinement));
   }
   if (solution.outcome == Outcome::accuracy_missed) {
-    console.say(fmt::format(
-        "warning: the estimated error of {:.3g} % is above the {:.3g} % that --accuracy asks for; "
-        "the solution is written. {}",
-        100.0 * solution.error_estimate, 100.0 * solve_report.accuracy,
-        way_to_smaller_elements(refined)));
+    console.say(
+        fmt::format("warning: the estimated error of {:.3g} %{} is above the {:.3g} % that "
+                    "--accuracy asks for; "
+                    "the solution is written. {}",
+                    100.0 * solution.error_estimate, place_of_worst(solution.parts),
+                    100.0 * solve_report.accuracy, way_to_smaller_elements(refined)));
   }
   if (solution.outcome == Outcome::max_sweeps_reached) {
     console.say(

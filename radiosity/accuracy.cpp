@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "radiosity/refine/effort.h"
 
@@ -22,9 +23,9 @@ double noise_share(double target) {
   return share_of_gather_noise * target;
 }
 
-double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
-                        const BandArray& patch_radiosity) {
-  double sum = 0.0, area = 0.0;
+std::vector<double> mean_illuminances(const Bands& bands, const PatchMesh& mesh,
+                                      const BandArray& patch_radiosity, const SceneParts& parts) {
+  std::vector<double> sum(static_cast<std::size_t>(parts.judged_count()), 0.0), area(sum);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const Eigen::ArrayXf rho = mesh.reflectance.row(p).transpose();
     const double known = (rho > 0.0f).cast<double>().sum();
@@ -33,10 +34,17 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
     Spectrum E = (rho > 0.0f).select(reflected / rho.max(1e-30f), 0.0f);
     const auto mean = static_cast<float>(E.cast<double>().sum() / known);
     E = (rho > 0.0f).select(E, mean);
-    sum += mesh.area[p] * luminous(bands, E);
-    area += mesh.area[p];
+    const int part = parts.judged_with(p);
+    sum[part] += mesh.area[p] * luminous(bands, E);
+    area[part] += mesh.area[p];
   }
-  return area > 0.0 ? sum / area : 0.0;
+  for (std::size_t q = 0; q < sum.size(); ++q) sum[q] = area[q] > 0.0 ? sum[q] / area[q] : 0.0;
+  return sum;
+}
+
+double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
+                        const BandArray& patch_radiosity) {
+  return mean_illuminances(bands, mesh, patch_radiosity, {}).front();
 }
 
 ShadowOptions Effort::shadows() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/refine/refine_options.h"
@@ -30,6 +31,9 @@ struct Effort {
 /// irradiance of the patch's other bands.
 double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
                         const BandArray& patch_radiosity);
+/// The same of each part of the scene (see SceneParts::judged_with); 0: nothing reflects in it.
+std::vector<double> mean_illuminances(const Bands& bands, const PatchMesh& mesh,
+                                      const BandArray& patch_radiosity, const SceneParts& parts);
 
 /// The effort of the first attempt at `target`, an error relative to the mean irradiance: 95 % of
 /// the target for the tolerance of refinement (0 if `refines` is false), and 1024 rays for 1 %,

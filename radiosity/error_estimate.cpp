@@ -24,8 +24,9 @@ constexpr double of_whole_set = 0.5;
 
 // Per element, a number proportional to the error that interpolation may leave: the range of the
 // corners' irradiance over the reference, plus (in the square) 5 % for shadows that no corner sees.
-Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance) {
-  const Eigen::ArrayXd reference = error_references(mesh, irradiance);
+Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance,
+                          const SceneParts& parts) {
+  const Eigen::ArrayXd reference = error_references(mesh, irradiance, parts);
   Eigen::ArrayXf indicator = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any() || !(reference[e] > 0.0)) continue;
@@ -48,14 +49,16 @@ struct ErrorSample {
   double weight = 0.0;  // inverse of the density of sample points, relative to a uniform one
 };
 
-// Draws points on the area that reflects and is not covered: half of them uniformly, half in
-// proportion to the squared indicator of the elements. Errors may sit in few small elements along
-// the edges of shadows, which uniform points would hardly meet.
+// Draws points on the area of a part that reflects and is not covered: half of them uniformly, half
+// in proportion to the squared indicator of the elements. Errors may sit in few small elements
+// along the edges of shadows, which uniform points would hardly meet.
 class ErrorSampler {
  public:
-  ErrorSampler(const ElementCaster& caster, const Eigen::ArrayXf& indicator)
+  ErrorSampler(const ElementCaster& caster, const Eigen::ArrayXf& indicator,
+               const SceneParts& parts, int part)
       : mesh_(caster.mesh()), indicator_(indicator), counts_(mesh_.patch_count(), 0) {
     for (int p = 0; p < mesh_.patch_count(); ++p) {
+      if (parts.judged_with(p) != part) continue;
       const bool is_seen = caster.hidden_elements(p) == 0;
       if (!is_seen || !(mesh_.reflectance.row(p) > 0.0f).any()) continue;
       counts_[p] = 1;
@@ -64,16 +67,19 @@ class ErrorSampler {
         total_error_ += error(e);
       }
     }
-    up_to_.reserve(mesh_.element_count());
     double sum = 0.0;
-    for (int e = 0; e < mesh_.element_count(); ++e) up_to_.push_back(sum += density(e));
+    for (int e = 0; e < mesh_.element_count(); ++e) {
+      if (counts_[mesh_.patch[e]] == 0) continue;
+      elements_.push_back(e);
+      up_to_.push_back(sum += density(e));
+    }
   }
 
-  bool is_empty() const { return !(total_area_ > 0.0); }
+  double area() const { return total_area_; }
 
   ErrorSample draw(const Eigen::Array4f& u) const {
     const auto at = std::upper_bound(up_to_.begin(), up_to_.end() - 1, u[0] * up_to_.back());
-    const auto e = static_cast<int>(at - up_to_.begin());
+    const int e = elements_[static_cast<std::size_t>(at - up_to_.begin())];
     return {PatchSampler(mesh_, mesh_.patch[e], e).point(u[1], u[2]),
             area(e) / total_area_ / density(e)};
   }
@@ -93,7 +99,8 @@ class ErrorSampler {
   const Eigen::ArrayXf& indicator_;
   std::vector<char> counts_;  // per patch
   double total_area_ = 0.0, total_error_ = 0.0;
-  std::vector<double> up_to_{};  // running sum of densities, the element's included
+  std::vector<int> elements_{};  // that count
+  std::vector<double> up_to_{};  // running sum of their densities, the element's included
 };
 
 // The samples that lie in no crack: no other surface is nearer than `width`, metres, above them.
@@ -117,9 +124,7 @@ std::vector<ErrorSample> unenclosed_samples(const ElementCaster& caster, double 
 }
 
 std::vector<ErrorSample> draw_samples(const Scene& scene, const ElementCaster& caster,
-                                      const Eigen::ArrayXf& indicator, int wanted, int batch) {
-  const ErrorSampler sampler(caster, indicator);
-  if (sampler.is_empty() || wanted < 1) return {};
+                                      const ErrorSampler& sampler, int wanted, int batch) {
   const SobolPoints sobol(wanted);
   std::vector<ErrorSample> drawn;
   const std::uint64_t key = static_cast<std::uint64_t>(RandomPurpose::error_points) +
@@ -127,6 +132,48 @@ std::vector<ErrorSample> draw_samples(const Scene& scene, const ElementCaster& c
   for (int i = 0; i < wanted; ++i) drawn.push_back(sampler.draw(sobol.point(i, key)));
   constexpr double crack = 1e-4;  // share of the scene's diagonal
   return unenclosed_samples(caster, crack * scene_bounds(scene).diagonal(), drawn);
+}
+
+// The sample points of each part: `all` shared by area, with a least number for each part.
+std::vector<int> share_points(std::span<const ErrorSampler> samplers, int all) {
+  if (samplers.size() == 1) return {all};
+  constexpr int least = 16, enough = 128;
+  const auto parts = static_cast<int>(samplers.size());
+  const int fewest = std::min(all, std::clamp(2 * all / parts, least, enough));
+  double area = 0.0;
+  for (const ErrorSampler& sampler : samplers) area += sampler.area();
+  std::vector<int> points;
+  for (const ErrorSampler& sampler : samplers) {
+    const double share = area > 0.0 ? sampler.area() / area : 0.0;
+    points.push_back(std::max(fewest, static_cast<int>(std::lround(all * share))));
+  }
+  return points;
+}
+
+// Sample points of all parts; those of part p are drawn[begin[p]] to drawn[begin[p + 1] - 1].
+struct PartSamples {
+  std::vector<ErrorSample> drawn{};
+  std::vector<int> begin{0};
+};
+
+PartSamples draw_samples(const LitScene& lit, const Eigen::ArrayXf& indicator,
+                         const SceneParts& parts, int points, int batch,
+                         std::span<const char> wanted) {
+  std::vector<ErrorSampler> samplers;
+  for (int p = 0; p < parts.judged_count(); ++p) {
+    samplers.emplace_back(lit.caster, indicator, parts, p);
+  }
+  const std::vector<int> shares = share_points(samplers, points);
+  PartSamples samples;
+  for (std::size_t p = 0; p < samplers.size(); ++p) {
+    const bool is_wanted = wanted.empty() || wanted[p] != 0;
+    if (is_wanted && shares[p] > 0 && samplers[p].area() > 0.0) {
+      const auto drawn = draw_samples(lit.scene, lit.caster, samplers[p], shares[p], batch);
+      samples.drawn.insert(samples.drawn.end(), drawn.begin(), drawn.end());
+    }
+    samples.begin.push_back(static_cast<int>(samples.drawn.size()));
+  }
+  return samples;
 }
 
 // Relative excess of reflected light in the solution, per band. With the solution E, the truth E*,
@@ -153,18 +200,17 @@ struct SampledSolution {
   std::vector<GatherPoint> points{};
   std::vector<int> element{};
   BandArray interpolated{}, caustic{};
-  Eigen::ArrayXd weight{};  // mean 1
+  Eigen::ArrayXd weight{};  // mean 1 over the points of each part
 };
 
 SampledSolution sample_solution(const PatchMesh& mesh, const RadiositySolution& solution,
-                                const BandArray& irradiance,
-                                const std::vector<ErrorSample>& drawn) {
-  const auto count = static_cast<Eigen::Index>(drawn.size());
+                                const BandArray& irradiance, const PartSamples& samples) {
+  const auto count = static_cast<Eigen::Index>(samples.drawn.size());
   SampledSolution sampled{.interpolated = BandArray(count, irradiance.cols()),
                           .caustic = BandArray::Zero(count, irradiance.cols()),
                           .weight = Eigen::ArrayXd(count)};
   for (Eigen::Index i = 0; i < count; ++i) {
-    const auto& [point, share] = drawn[static_cast<std::size_t>(i)];
+    const auto& [point, share] = samples.drawn[static_cast<std::size_t>(i)];
     sampled.points.push_back({point.position, point.normal, mesh.facet[point.element]});
     const ElementHit hit = point_on_element(mesh, point);
     sampled.element.push_back(hit.element);
@@ -174,19 +220,27 @@ SampledSolution sample_solution(const PatchMesh& mesh, const RadiositySolution& 
     }
     sampled.weight[i] = share;
   }
-  sampled.weight /= sampled.weight.mean();
+  for (std::size_t p = 0; p + 1 < samples.begin.size(); ++p) {
+    const int first = samples.begin[p], n = samples.begin[p + 1] - first;
+    if (n > 0) sampled.weight.segment(first, n) /= sampled.weight.segment(first, n).mean();
+  }
   return sampled;
 }
 
-// Options of a gather with more rays than the solution's and other random numbers; `wanted` is the
-// result of estimate_points().
-GatherOptions independent_gather(const SolveOptions& options, const PatchMesh& mesh, int wanted,
-                                 int batch) {
+// The rows `first` to `first` + `n` - 1.
+SampledSolution rows(const SampledSolution& all, int first, int n) {
+  return {.element = {all.element.begin() + first, all.element.begin() + first + n},
+          .interpolated = all.interpolated.middleRows(first, n),
+          .caustic = all.caustic.middleRows(first, n),
+          .weight = all.weight.segment(first, n)};
+}
+
+// Options of a gather with more rays than the solution's and other random numbers.
+GatherOptions independent_gather(const SolveOptions& options, int batch) {
   GatherOptions gather = options.gather;
   ShadowOptions& shadows = gather.shadows;
   shadows.min_rays = std::max(shadows.min_rays, fewest_shadow_rays.min_rays);
   shadows.max_rays = std::max(shadows.max_rays, fewest_shadow_rays.max_rays);
-  gather.rays = estimate_rays(options.gather.rays, mesh.vertex_count(), wanted);
   gather.replica = options.gather.replica + 1 + batch_keys * static_cast<std::uint64_t>(batch);
   gather.run = options.run;
   return gather;
@@ -213,11 +267,10 @@ RelativeErrors relative_errors(const SampledSolution& sampled, const RadiositySo
   return errors;
 }
 
-// The indicator times the factor by which its mean square is that of the errors beyond noise. Empty
-// if the indicator is 0 at all sample points.
-std::optional<Eigen::ArrayXf> scaled_indicator(const Eigen::ArrayXf& indicator,
-                                               const SampledSolution& sampled,
-                                               const RelativeErrors& errors) {
+// The factor by which the mean square of the errors beyond noise exceeds that of the indicator.
+// Empty if the indicator is 0 at all sample points.
+std::optional<float> indicator_scale(const Eigen::ArrayXf& indicator,
+                                     const SampledSolution& sampled, const RelativeErrors& errors) {
   double square = 0.0;
   for (Eigen::Index i = 0; i < sampled.weight.size(); ++i) {
     const int element = sampled.element[static_cast<std::size_t>(i)];
@@ -225,7 +278,7 @@ std::optional<Eigen::ArrayXf> scaled_indicator(const Eigen::ArrayXf& indicator,
   }
   if (!(square > 0.0)) return std::nullopt;
   const double excess = (sampled.weight * (errors.squares - errors.noise)).sum();
-  return static_cast<float>(std::sqrt(std::max(excess, 0.0) / square)) * indicator;
+  return static_cast<float>(std::sqrt(std::max(excess, 0.0) / square));
 }
 
 ErrorEstimate mean_estimate(const Eigen::ArrayXd& weight, const RelativeErrors& errors) {
@@ -235,45 +288,128 @@ ErrorEstimate mean_estimate(const Eigen::ArrayXd& weight, const RelativeErrors& 
                 static_cast<double>(std::max<Eigen::Index>(weight.size() - 1, 1)));
   return {.square = squared.mean(),
           .deviation = standard_error,
-          .noise = std::sqrt(of_whole_set * (weight * errors.noise).mean())};
+          .noise = std::sqrt(of_whole_set * (weight * errors.noise).mean()),
+          .batches = 1};
+}
+
+// Share of the light at the points of a part that comes from outside the part or from its lamps, by
+// band; the rest was reflected within, at the points' reflectances. At least the share of light
+// straight from lamps.
+Eigen::ArrayXd share_from_outside(const PatchMesh& mesh, const SampledSolution& sampled,
+                                  const BandArray& own) {
+  Eigen::ArrayXd reflected = Eigen::ArrayXd::Zero(own.cols()), all = reflected;
+  for (Eigen::Index i = 0; i < own.rows(); ++i) {
+    const int patch = mesh.patch[sampled.element[static_cast<std::size_t>(i)]];
+    const Eigen::ArrayXd E = sampled.weight[i] * own.row(i).cast<double>().transpose();
+    reflected += mesh.reflectance.row(patch).cast<double>().transpose() * E;
+    all += E;
+  }
+  return (all > 0.0).select(1.0 - reflected / all.max(1e-300), 1.0);
+}
+
+// The independent gather at the points of a part, freed of the error that it shares with the
+// solution. `not_reflected` is its part straight from lamps.
+BandArray corrected_truth(const PatchMesh& mesh, const SceneParts& parts,
+                          const SampledSolution& sampled, const GatheredIrradiance& independent) {
+  if (sampled.element.empty()) return independent.direct;
+  BandArray not_reflected = independent.direct + sampled.caustic;
+  BandArray truth = not_reflected + independent.indirect;
+  if (parts.judged_count() > 1) {
+    // Light from other parts counts as light from lamps.
+    const Eigen::ArrayXd from_outside = share_from_outside(mesh, sampled, truth);
+    not_reflected = not_reflected.max(truth.rowwise() * from_outside.cast<float>().transpose());
+  }
+  truth -=
+      independent.indirect.rowwise() *
+      excess_of_reflected(sampled.weight, sampled.interpolated, not_reflected, truth).transpose();
+  return truth;
+}
+
+GatheredIrradiance rows(const GatheredIrradiance& all, int first, int n) {
+  return {.direct = all.direct.middleRows(first, n),
+          .indirect = all.indirect.middleRows(first, n),
+          .variance = all.variance.segment(first, n)};
+}
+
+// Rays at each sample point, by the rays of the solution in the point's part.
+void choose_rays(const SolveOptions& options, const PatchMesh& mesh, const PartSamples& samples,
+                 int points, SampledSolution& sampled) {
+  const auto& efforts = options.refine.efforts;
+  for (std::size_t p = 0; p + 1 < samples.begin.size(); ++p) {
+    const int rays = efforts.empty() ? options.gather.rays : efforts[p].rays;
+    for (int i = samples.begin[p]; i < samples.begin[p + 1]; ++i) {
+      sampled.points[i].rays = estimate_rays(rays, mesh.vertex_count(), points);
+    }
+  }
+}
+
+// Irradiance by which errors are judged in each part, from the light at the sample points, but at
+// least `least`; 0: the part is dark.
+std::vector<double> sampled_means(const PartSamples& samples, const SampledSolution& sampled,
+                                  const std::vector<BandArray>& truth, double least) {
+  std::vector<double> means;
+  for (std::size_t p = 0; p < truth.size(); ++p) {
+    const int first = samples.begin[p], n = samples.begin[p + 1] - first;
+    const Eigen::ArrayXd own = truth[p].cast<double>().rowwise().mean();
+    means.push_back(n > 0 ? (sampled.weight.segment(first, n) * own).mean() : 0.0);
+  }
+  for (double& mean : means) mean = mean > 0.0 ? std::max(mean, least) : 0.0;
+  return means;
 }
 
 }  // namespace
 
-ErrorEstimate estimate_error(const LitScene& lit, const SolveOptions& options,
-                             const RadiositySolution& solution, Eigen::ArrayXf* of_elements,
-                             int batch) {
+std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptions& options,
+                                           const RadiositySolution& solution,
+                                           Eigen::ArrayXf* of_elements, int batch,
+                                           std::span<const char> wanted) {
   const PatchMesh& mesh = lit.mesh();
+  const SceneParts& parts = solution.parts;
+  std::vector<ErrorEstimate> estimates(static_cast<std::size_t>(parts.judged_count()));
   BandArray irradiance = solution.irradiance();
   const bool has_indicator = solution.interpolation_error.size() > 0;
-  const Eigen::ArrayXf guessed = has_indicator ? Eigen::ArrayXf() : indicators(mesh, irradiance);
+  const Eigen::ArrayXf guessed =
+      has_indicator ? Eigen::ArrayXf() : indicators(mesh, irradiance, parts);
   const Eigen::ArrayXf& indicator = has_indicator ? solution.interpolation_error : guessed;
-  const int wanted = estimate_points(options.error_points, mesh.vertex_count());
-  const std::vector<ErrorSample> drawn =
-      draw_samples(lit.scene, lit.caster, indicator, wanted, batch);
-  if (drawn.empty()) return {};
+  const int points = estimate_points(options.error_points, mesh.vertex_count());
+  const PartSamples samples = draw_samples(lit, indicator, parts, points, batch, wanted);
+  if (samples.drawn.empty()) return estimates;
 
-  const SampledSolution sampled = sample_solution(mesh, solution, irradiance, drawn);
+  SampledSolution sampled = sample_solution(mesh, solution, irradiance, samples);
+  choose_rays(options, mesh, samples, points, sampled);
   const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
+  const double least = part_means(mesh, irradiance, parts).least();
   irradiance.resize(0, 0);
-  const GatheredIrradiance independent = gather_irradiance(
-      lit, radiosity, sampled.points, independent_gather(options, mesh, wanted, batch));
-  const Eigen::ArrayXd& weight = sampled.weight;
-  const BandArray not_reflected = independent.direct + sampled.caustic;
-  BandArray truth = not_reflected + independent.indirect;
-  truth -= independent.indirect.rowwise() *
-           excess_of_reflected(weight, sampled.interpolated, not_reflected, truth).transpose();
-  const Eigen::ArrayXd own = truth.cast<double>().rowwise().mean();
-  const double mean = (weight * own).mean();
-  if (!(mean > 0.0)) return {};
-  const Eigen::ArrayXd reference =
-      own.unaryExpr([mean](double here) { return error_reference(mean, here); });
-  const RelativeErrors errors =
-      relative_errors(sampled, solution, truth, independent.variance, reference);
-  if (of_elements) {
-    if (auto scaled = scaled_indicator(indicator, sampled, errors)) *of_elements = *scaled;
+  const GatheredIrradiance gathered =
+      gather_irradiance(lit, radiosity, sampled.points, independent_gather(options, batch));
+  std::vector<BandArray> truth;
+  for (std::size_t p = 0; p < estimates.size(); ++p) {
+    const int first = samples.begin[p], n = samples.begin[p + 1] - first;
+    truth.push_back(
+        corrected_truth(mesh, parts, rows(sampled, first, n), rows(gathered, first, n)));
   }
-  return mean_estimate(weight, errors);
+  const std::vector<double> means = sampled_means(samples, sampled, truth, least);
+  Eigen::ArrayXf scaled;
+  for (std::size_t p = 0; p < estimates.size(); ++p) {
+    const int first = samples.begin[p], n = samples.begin[p + 1] - first;
+    if (n == 0 || !(means[p] > 0.0)) continue;
+    const SampledSolution here = rows(sampled, first, n);
+    const Eigen::ArrayXd own = truth[p].cast<double>().rowwise().mean();
+    const Eigen::ArrayXd reference =
+        own.unaryExpr([mean = means[p]](double E) { return error_reference(mean, E); });
+    const RelativeErrors errors =
+        relative_errors(here, solution, truth[p], gathered.variance.segment(first, n), reference);
+    estimates[p] = mean_estimate(here.weight, errors);
+    const auto scale = of_elements ? indicator_scale(indicator, here, errors) : std::nullopt;
+    if (!scale) continue;
+    if (scaled.size() == 0) scaled = indicator;
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      if (parts.judged_with(mesh.patch[e]) == static_cast<int>(p))
+        scaled[e] = *scale * indicator[e];
+    }
+  }
+  if (scaled.size() > 0) *of_elements = scaled;
+  return estimates;
 }
 
 double ErrorEstimate::error() const {
@@ -286,6 +422,7 @@ double ErrorEstimate::least() const {
 
 ErrorEstimate joined(const ErrorEstimate& a, const ErrorEstimate& b) {
   const int batches = a.batches + b.batches;
+  if (batches == 0) return a;
   const double share = static_cast<double>(b.batches) / batches;
   const auto mean = [share](double of_a, double of_b) {
     return (1.0 - share) * of_a + share * of_b;

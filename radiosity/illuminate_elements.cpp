@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
@@ -19,12 +21,32 @@
 namespace lightwell {
 namespace {
 
+double share_of(double lux, double mean) {
+  return mean > 0.0 ? std::min(lux / mean, 1.0) : 1.0;
+}
+
 // The allowed error, relative to the mean irradiance; 0: no accuracy is requested.
 double target_of(const Scene& scene, const SolveOptions& options, const SolvedScene& patches) {
   if (!options.accuracy) return 0.0;
   if (options.accuracy->share > 0.0) return options.accuracy->share;
-  const double mean = mean_illuminance(scene.bands, patches.mesh, patches.solution.patch_radiosity);
-  return mean > 0.0 ? std::min(options.accuracy->lux / mean, 1.0) : 1.0;
+  return share_of(options.accuracy->lux,
+                  mean_illuminance(scene.bands, patches.mesh, patches.solution.patch_radiosity));
+}
+
+// The allowed error of each part, relative to the part's mean irradiance.
+std::vector<double> targets_of(const Scene& scene, const SolveOptions& options,
+                               const SolvedScene& patches) {
+  const RadiositySolution& s = patches.solution;
+  const auto parts = static_cast<std::size_t>(s.parts.judged_count());
+  if (parts == 1 || !options.accuracy || options.accuracy->share > 0.0) {
+    return std::vector<double>(parts, target_of(scene, options, patches));
+  }
+  std::vector<double> targets;
+  for (const double mean :
+       mean_illuminances(scene.bands, patches.mesh, s.patch_radiosity, s.parts)) {
+    targets.push_back(share_of(options.accuracy->lux, mean));
+  }
+  return targets;
 }
 
 void require_finite(const Scene& scene, const RadiositySolution& solution) {
@@ -67,12 +89,18 @@ class GatherAttempts {
         direct_light_(direct_light),
         solved_(solved),
         target_(target_of(scene, options, solved)),
+        targets_(targets_of(scene, options, solved)),
         options_(
             effective_options(options, target_, solved, direct_light.by_channel.column_count())),
         pilot_gathers_(std::in_place, scene, std::move(solved.mesh), direct_light.by_channel,
-                       solved.solution, noise_share(target_)) {
-    take(target_ > 0.0 ? first_effort(target_, options.refine.tolerance > 0.0)
-                       : Effort{options.refine.tolerance, options.gather.rays});
+                       solved.solution) {
+    options_.refine.parts = solved.solution.parts;
+    std::vector<Effort> efforts;
+    for (const double target : targets_) {
+      efforts.push_back(target > 0.0 ? first_effort(target, options.refine.tolerance > 0.0)
+                                     : Effort{options.refine.tolerance, options.gather.rays});
+    }
+    take(std::move(efforts));
   }
 
   void run() {
@@ -91,18 +119,30 @@ class GatherAttempts {
   bool has_refined() const { return pilot_->tree != nullptr; }
   const RefineReport& refinement() const { return pilot_->refinement; }
   double target() const { return target_; }
-  int gather_rays() const { return effort_.gather_rays; }
+  int gather_rays() const { return options_.gather.rays; }
 
  private:
   bool may_repeat() const { return target_ > 0.0; }
 
-  void take(const Effort& effort) {
-    effort_ = effort;
-    options_.refine.tolerance = effort.refine_tolerance;
-    options_.gather.rays = effort.gather_rays;
+  // Takes the efforts of the parts, and shadow rays for the largest of them.
+  void take(std::vector<Effort> efforts) {
+    efforts_ = std::move(efforts);
+    Effort most = efforts_.front();
+    options_.refine.efforts.clear();
+    for (std::size_t p = 0; p < efforts_.size(); ++p) {
+      most.refine_tolerance = std::min(most.refine_tolerance, efforts_[p].refine_tolerance);
+      most.gather_rays = std::max(most.gather_rays, efforts_[p].gather_rays);
+      if (target_ > 0.0 || efforts_.size() > 1) {
+        options_.refine.efforts.push_back({.tolerance = efforts_[p].refine_tolerance,
+                                           .noise = noise_share(targets_[p]),
+                                           .rays = efforts_[p].gather_rays});
+      }
+    }
+    options_.refine.tolerance = most.refine_tolerance;
+    options_.gather.rays = most.gather_rays;
     if (!(target_ > 0.0)) return;
-    options_.gather.shadows = effort.shadows();
-    options_.gather.shadows.sky_rays = sky_rays(target_);
+    options_.gather.shadows = most.shadows();
+    options_.gather.shadows.sky_rays = sky_rays(*std::ranges::min_element(targets_));
   }
 
   // Splits elements and gathers to their vertices with few rays.
@@ -110,8 +150,11 @@ class GatherAttempts {
     caster_.reset();
     pilot_ = pilot_gathers_->gather(options_);
     if (attempt_ == 0 && target_ > 0.0) {
-      effort_.gather_rays = pilot_->gather_rays;
-      take(effort_);
+      std::vector<Effort> efforts = efforts_;
+      for (std::size_t p = 0; p < efforts.size(); ++p) {
+        efforts[p].gather_rays = pilot_->gather_rays[p];
+      }
+      take(std::move(efforts));
     }
     if (pilot_->refined) {
       solved_.mesh = std::move(*pilot_->refined);
@@ -132,39 +175,90 @@ class GatherAttempts {
     spent_["gather"] += watch_.lap();
   }
 
-  ErrorEstimate estimate_batch(int batch, Eigen::ArrayXf* of_elements) const {
-    return estimate_error({scene_, *caster_, direct_light_.all}, options_, solved_.solution,
-                          of_elements, batch);
+  std::vector<ErrorEstimate> estimate_batch(int batch, Eigen::ArrayXf* of_elements,
+                                            std::span<const char> wanted) const {
+    return estimate_errors({scene_, *caster_, direct_light_.all}, options_, solved_.solution,
+                           of_elements, batch, wanted);
+  }
+
+  // True if the target of a part lies between the ends of its estimate.
+  bool is_undecided(std::size_t part) const {
+    const ErrorEstimate& estimate = estimates_[part];
+    return estimate.batches > 0 && estimate.least() < targets_[part] &&
+           targets_[part] < estimate.error();
   }
 
   void estimate() {
     Eigen::ArrayXf& of_elements = solved_.solution.interpolation_error;
-    estimate_ = estimate_batch(0, of_elements.size() == 0 ? &of_elements : nullptr);
+    estimates_ = estimate_batch(0, of_elements.size() == 0 ? &of_elements : nullptr, {});
     // If the target lies between the ends of the estimate, more sample points cost less than
     // another attempt: a single point may hold a fifth of the squared error. Four batches halve the
     // standard error of one.
     constexpr int most_batches = 4;
-    for (int batch = 1;
-         batch < most_batches && estimate_.least() < target_ && target_ < estimate_.error();
-         ++batch) {
-      estimate_ = joined(estimate_, estimate_batch(batch, nullptr));
+    for (int batch = 1; batch < most_batches; ++batch) {
+      std::vector<char> wanted(estimates_.size(), 0);
+      for (std::size_t p = 0; p < wanted.size(); ++p) wanted[p] = is_undecided(p) ? 1 : 0;
+      if (std::ranges::count(wanted, 1) == 0) break;
+      const std::vector<ErrorEstimate> more = estimate_batch(batch, nullptr, wanted);
+      for (std::size_t p = 0; p < wanted.size(); ++p) {
+        estimates_[p] = joined(estimates_[p], more[p]);
+      }
     }
-    solved_.solution.error_estimate = estimate_.error();
+    keep_estimates();
     spent_["error_estimate"] += watch_.lap();
   }
 
-  // Returns false if the target is met, or if more effort would not help.
-  bool raise_effort() {
+  // Writes the estimates into the solution. The largest error counts for the whole: largest against
+  // the part's target, which for an accuracy in lux is another share of each part's mean.
+  void keep_estimates() {
     RadiositySolution& solution = solved_.solution;
-    if (!may_repeat() || solution.error_estimate <= target_) return false;
-    const auto next = next_effort(effort_, target_, estimate_.error(), estimate_.noise,
-                                  pilot_->refinement, attempt_);
-    if (!next) {
+    solution.error_estimate = 0.0;
+    for (std::size_t p = 0; p < estimates_.size(); ++p) {
+      const bool is_known = estimates_[p].batches > 0;
+      if (p < solution.parts.parts.size()) {
+        solution.parts.parts[p].error_estimate = is_known ? estimates_[p].error() : -1.0;
+      }
+      if (!is_known) continue;
+      const double of_target = targets_[p] > 0.0 ? target_ / targets_[p] : 1.0;
+      solution.error_estimate =
+          std::max(solution.error_estimate, of_target * estimates_[p].error());
+    }
+  }
+
+  // The next effort of a part; empty if more would not help.
+  std::optional<Effort> next_effort_of(std::size_t part) const {
+    RefineReport refined = pilot_->refinement;
+    if (part < refined.parts.size()) {
+      refined.estimate = refined.parts[part].estimate;
+      if (refined.parts[part].is_reached) refined.outcome = RefineOutcome::tolerance_reached;
+    }
+    const ErrorEstimate& estimate = estimates_[part];
+    return next_effort(efforts_[part], targets_[part], estimate.error(), estimate.noise, refined,
+                       attempt_);
+  }
+
+  // Returns false if all targets are met, or if more effort would not help where they are not.
+  bool raise_effort() {
+    if (!may_repeat()) return false;
+    std::vector<Effort> efforts = efforts_;
+    bool is_met = true, is_more = false, is_finer = false;
+    for (std::size_t p = 0; p < efforts.size(); ++p) {
+      if (estimates_[p].batches == 0 || estimates_[p].error() <= targets_[p]) continue;
+      is_met = false;
+      const std::optional<Effort> next = next_effort_of(p);
+      if (!next) continue;
+      is_more = true;
+      is_finer = is_finer || next->refine_tolerance < efforts_[p].refine_tolerance;
+      efforts[p] = *next;
+    }
+    if (is_met) return false;
+    if (!is_more) {
+      RadiositySolution& solution = solved_.solution;
       if (solution.outcome == Outcome::converged) solution.outcome = Outcome::accuracy_missed;
       return false;
     }
-    if (next->refine_tolerance < effort_.refine_tolerance) pilot_.reset();
-    take(*next);
+    if (is_finer) pilot_.reset();
+    take(std::move(efforts));
     ++attempt_;
     return true;
   }
@@ -172,15 +266,16 @@ class GatherAttempts {
   const Scene& scene_;
   DirectLightSums direct_light_;
   SolvedScene& solved_;
-  double target_;
+  double target_;                // relative to the mean irradiance of the scene
+  std::vector<double> targets_;  // relative to the mean irradiance of each part
   SolveOptions options_;
-  Effort effort_{};
+  std::vector<Effort> efforts_{};  // of each part
   int attempt_ = 0;
   std::optional<PilotGathers> pilot_gathers_;
   std::optional<PilotGather> pilot_{};
   std::optional<ElementCaster> caster_{};
   KeptGathers kept_{};
-  ErrorEstimate estimate_{};
+  std::vector<ErrorEstimate> estimates_{};  // of each part
   Stopwatch watch_{};
   std::map<std::string, double> spent_{};
 };

@@ -162,6 +162,16 @@ GatherOptions gather_options(const SolveOptions& options) {
   return gather;
 }
 
+// Rays of the final gather in each part.
+std::vector<int> rays_by_part(const SolveOptions& options) {
+  std::vector<int> rays(static_cast<std::size_t>(options.refine.parts.judged_count()),
+                        options.gather.rays);
+  for (std::size_t p = 0; p < options.refine.efforts.size(); ++p) {
+    rays[p] = options.refine.efforts[p].rays;
+  }
+  return rays;
+}
+
 // Replaces row v by the old row[v], or by nothing gathered if that is -1.
 void take_rows(const std::vector<int>& row, KeptGather& kept) {
   if (kept.rays.empty()) return;
@@ -197,7 +207,9 @@ struct VertexGatherTask {
   const LitScene& lit;
   const PilotGather& pilot;
   GatherOptions options{};
-  int one_in = 1;  // the gather casts one in so many of the rays of `options`
+  const SceneParts& parts;
+  std::vector<int> rays{};  // in each part
+  int one_in = 1;           // the gather casts one in so many of the rays
 };
 
 // The vertices at which rays are missing, and how many.
@@ -210,7 +222,8 @@ struct MissingRays {
 MissingRays missing_rays(const VertexGatherTask& task, const KeptGather& kept) {
   const PatchMesh& mesh = task.lit.mesh();
   MissingRays missing;
-  const std::vector<int> share_of = share_rays(mesh, task.pilot.interpolated, task.options.rays);
+  const std::vector<int> share_of =
+      share_rays(mesh, task.pilot.interpolated, task.parts, task.rays);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / task.one_in) : 0;
     const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
@@ -322,8 +335,8 @@ VertexGather gather_once(const VertexGatherTask& task, const BandArray& radiosit
 }  // namespace
 
 struct PilotGathers::Impl {
-  Impl(const Scene& of, PatchMesh mesh, const DirectLight& direct, double noise_goal)
-      : scene(of), base(std::move(mesh)), caster(base), direct_light(direct), noise(noise_goal) {}
+  Impl(const Scene& of, PatchMesh mesh, const DirectLight& direct)
+      : scene(of), base(std::move(mesh)), caster(base), direct_light(direct) {}
 
   PilotGather unrefined(const SolveOptions& options);
   void prepare(const SolveOptions& options);
@@ -333,7 +346,6 @@ struct PilotGathers::Impl {
   PatchMesh base;
   ElementCaster caster;
   const DirectLight& direct_light;
-  double noise;
   BandArray radiosity{};     // at the base's vertices, with columns of every channel
   BandArray of_all_light{};  // the sum of all channels; empty if light is not kept apart
   BandArray caustic{};       // at the base's vertices
@@ -344,8 +356,8 @@ struct PilotGathers::Impl {
 };
 
 PilotGathers::PilotGathers(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
-                           const RadiositySolution& solution, double noise)
-    : impl_(new Impl(scene, std::move(base), direct_light, noise)) {
+                           const RadiositySolution& solution)
+    : impl_(new Impl(scene, std::move(base), direct_light)) {
   const PatchMesh& mesh = impl_->base;
   impl_->radiosity = patch_to_vertex(mesh, direct_light, unscaled_radiosity(solution));
   if (direct_light.channel_count() == 1) return;
@@ -373,7 +385,7 @@ PilotGather PilotGathers::Impl::unrefined(const SolveOptions& options) {
   GatherOptions gather = gather_options(options);
   PilotGather pilot{.direct = gather_direct({scene, caster, direct_light}, points, gather),
                     .shadows = gather.shadows,
-                    .gather_rays = gather.rays};
+                    .gather_rays = rays_by_part(options)};
   gather.rays = std::max(1, gather.rays / 4);
   gather.replica += pilot_replica;
   pilot.indirect =
@@ -391,11 +403,11 @@ void PilotGathers::Impl::prepare(const SolveOptions& options) {
   const GatherOptions gather = gather_options(options);
   if (all_light) {
     refinement.emplace(LitScene{scene, caster, *all_light}, of_all_light,
-                       channel_sum(caustic, scene.bands.count()), *elements, gather, options.refine,
-                       noise);
+                       channel_sum(caustic, scene.bands.count()), *elements, gather,
+                       options.refine);
   } else {
     refinement.emplace(LitScene{scene, caster, direct_light}, radiosity, caustic, *elements, gather,
-                       options.refine, noise);
+                       options.refine);
   }
 }
 
@@ -466,6 +478,7 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
     before->resize(0, before->cols());
   }
   const GatherOptions gather = gather_options(options);
+  const std::vector<int> rays = rays_by_part(options);
   KeptGathers none;
   KeptGathers& so_far = kept ? *kept : none;
   carry_over(pilot.number, so_far);
@@ -477,18 +490,19 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
     // of 100 boxes (see docs/figures.md) is 0.67 to 0.65 %; if the final gather reads the first
     // pilot gather, 0.85 %.
     constexpr int few = 8;
-    VertexGatherTask second{lit, pilot, gather, few};
+    VertexGatherTask second{lit, pilot, gather, solution.parts, rays, few};
     second.options.replica += first_replicas;
     const VertexGather found = gather_in(second, std::move(irradiance), solution, so_far.of_pilot);
     irradiance = with_indirect(pilot, found.found.indirect);
   }
-  VertexGather last = gather_in({lit, pilot, gather}, std::move(irradiance), solution, so_far.last);
+  VertexGather last = gather_in({lit, pilot, gather, solution.parts, rays}, std::move(irradiance),
+                                solution, so_far.last);
   irradiance = with_indirect(pilot, last.found.indirect);
   solution.indirect_irradiance = std::move(last.found.indirect);
   solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
   solution.gather_noise =
       gather_noise(lit.mesh(), channel_sum(std::move(irradiance), lit.scene.bands.count()),
-                   last.found.variance, last.rays);
+                   last.found.variance, last.rays, solution.parts);
   if (pilot.caustic.size() > 0) solution.indirect_irradiance += pilot.caustic;
   solution.caustic_irradiance = pilot.caustic;
   solution.interpolation_error = pilot.interpolation_error;

@@ -28,24 +28,23 @@ struct PilotGather {
   /// Per vertex, its number in RefinedElements, which later pilot gathers share; empty without
   /// refinement.
   std::vector<int> number{};
-  int gather_rays = 0;  ///< rays of the final gather
+  std::vector<int> gather_rays{};  ///< rays of the final gather in each part
 };
 
 /// Pilot gathers at the vertices of elements, which each call may refine further.
 class PilotGathers {
  public:
   /// For the patches of `base`, whose radiosities `solution` has. Gathered light has columns for
-  /// each channel of `direct_light`; all channels together decide which elements are split. With
-  /// `noise` above 0, pilot gathers of refined elements choose the rays with which the final
-  /// gather's noise is at most that share of the mean irradiance. Keeps references to `scene` and
-  /// `direct_light`.
+  /// each channel of `direct_light`; all channels together decide which elements are split. Keeps
+  /// references to `scene` and `direct_light`.
   PilotGathers(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
-               const RadiositySolution& solution, double noise = 0.0);
+               const RadiositySolution& solution);
   ~PilotGathers();
 
-  /// Refines the elements if `options.refine` has a tolerance, and gathers at their vertices. A
-  /// further call with a smaller tolerance refines the same elements further. Throws InputError if
-  /// the base has more elements than allowed, Interrupted when progress says stop.
+  /// Refines the elements if `options.refine` has a tolerance, and gathers at their vertices. If
+  /// its efforts limit the noise, the rays of the final gather are chosen for that. A further call
+  /// with a smaller tolerance refines the same elements further. Throws InputError if the base has
+  /// more elements than allowed, Interrupted when progress says stop.
   PilotGather gather(const SolveOptions& options);
 
   /// The mesh before refinement; may be moved from after the last pilot gather.

@@ -169,6 +169,11 @@ SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const So
                                SolveReport* report) {
   SolvedScene solved = std::move(patches);
   describe(scene, solved.solution);
+  if (solved.solution.parts.count() == 0) {
+    const ElementCaster caster(solved.mesh);
+    const LightPaths paths(scene, caster, options.form_factors.max_specular_depth);
+    solved.solution.parts = find_parts(scene, caster, paths, options.run.progress);
+  }
   const DirectLight direct_light(scene, solved.mesh);
   const auto by_channel = light_by_channel(scene, solved.mesh, direct_light, options.channels);
   illuminate_elements(scene, {direct_light, by_channel ? *by_channel : direct_light}, options,

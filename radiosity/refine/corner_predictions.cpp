@@ -7,9 +7,13 @@
 
 namespace lightwell {
 
-void CornerPredictions::set_tolerance(double tolerance) {
+void CornerPredictions::set_tolerance(const RefineOptions& options) {
   constexpr double share = 0.3;  // at worst a tenth of the squared error that is allowed
-  even_ = std::pow(share * tolerance, 2);
+  parts_ = options.parts;
+  even_.clear();
+  for (int p = 0; p < parts_.judged_count(); ++p) {
+    even_.push_back(std::pow(share * options.tolerance_of(p), 2));
+  }
 }
 
 // Null for a cell that was made after the last make_room().
@@ -19,9 +23,11 @@ const CornerPredictions::CellSide* CornerPredictions::known_of(int cell, int sid
 }
 
 bool CornerPredictions::is_even(int cell, int side) const {
+  const double even =
+      even_[parts_.judged_with(elements_.base().patch[elements_.element(cell, side)])];
   for (int c = cell; c >= 0; c = elements_.parent(c)) {
     const CellSide* known = known_of(c, side);
-    if (known && known->indirect <= even_) return true;
+    if (known && known->indirect <= even) return true;
   }
   return false;
 }

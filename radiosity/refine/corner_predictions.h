@@ -7,6 +7,7 @@
 
 #include "mesh/elements/refine_elements.h"
 #include "radiosity/refine/interpolated_vertices.h"
+#include "radiosity/refine/refine_options.h"
 #include "radiosity/refine/vertex_gathers.h"
 
 namespace lightwell {
@@ -31,8 +32,8 @@ class CornerPredictions {
   CornerPredictions(RefinedElements& elements, const VertexGathers& gathers)
       : elements_(elements), gathers_(gathers) {}
 
-  /// `tolerance` as in RefineOptions. Keeps what was measured.
-  void set_tolerance(double tolerance);
+  /// Takes the tolerances and the parts of `options`. Keeps what was measured.
+  void set_tolerance(const RefineOptions& options);
   /// True if the indirect light on the cell's side is interpolated: if it is even in the parent.
   bool is_interpolated(int cell, int side) const;
   /// True if the cell was measured with interpolated light that a new measurement would gather.
@@ -72,7 +73,8 @@ class CornerPredictions {
 
   RefinedElements& elements_;
   const VertexGathers& gathers_;
-  double even_ = 0.0;            // largest squared error of even light, relative
+  SceneParts parts_{};
+  std::vector<double> even_;     // largest squared error of even light in each part, relative
   std::vector<CellSide> sides_;  // by RefinedElements::side_number()
 };
 

@@ -9,22 +9,62 @@ double error_reference(double mean_irradiance, double own_irradiance) {
   return std::max(mean_irradiance, own_irradiance / bright);
 }
 
-Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradiance) {
-  Eigen::ArrayXd own(mesh.element_count());
-  double sum = 0.0, area = 0.0;
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int n = mesh.corner_count(e);
-    own[e] = 0.0;
-    for (int c = 0; c < n; ++c) {
-      own[e] += irradiance.row(mesh.corners[e][c]).cast<double>().mean() / n;
-    }
-    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
-    sum += mesh.element_area[e] * own[e];
-    area += mesh.element_area[e];
+PartMeans::PartMeans(const SceneParts& parts)
+    : parts_(parts),
+      sum_(static_cast<std::size_t>(parts.judged_count()), 0.0),
+      area_(sum_),
+      judged_by_(sum_) {}
+
+void PartMeans::add(int patch, double area, double irradiance) {
+  const int part = parts_.judged_with(patch);
+  sum_[part] += area * irradiance;
+  area_[part] += area;
+}
+
+void PartMeans::finish() {
+  constexpr double least = 1e-6;
+  double most = 0.0;
+  for (std::size_t p = 0; p < sum_.size(); ++p) {
+    judged_by_[p] = area_[p] > 0.0 ? sum_[p] / area_[p] : 0.0;
+    most = std::max(most, judged_by_[p]);
   }
-  const double mean = area > 0.0 ? sum / area : 0.0;
-  own = own.unaryExpr([mean](double E) { return error_reference(mean, E); });
+  least_ = least * most;
+  for (double& mean : judged_by_) mean = std::max(mean, least_);
+}
+
+namespace {
+
+// Mean of the bands over the corners of an element.
+double own_irradiance(const PatchMesh& mesh, const BandArray& irradiance, int element) {
+  const int n = mesh.corner_count(element);
+  double own = 0.0;
+  for (int c = 0; c < n; ++c) {
+    own += irradiance.row(mesh.corners[element][c]).cast<double>().mean() / n;
+  }
   return own;
+}
+
+}  // namespace
+
+PartMeans part_means(const PatchMesh& mesh, const BandArray& irradiance, const SceneParts& parts) {
+  PartMeans means(parts);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
+    means.add(mesh.patch[e], mesh.element_area[e], own_irradiance(mesh, irradiance, e));
+  }
+  means.finish();
+  return means;
+}
+
+Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradiance,
+                                const SceneParts& parts) {
+  const PartMeans means = part_means(mesh, irradiance, parts);
+  Eigen::ArrayXd references(mesh.element_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    references[e] =
+        error_reference(means.of_patch(mesh.patch[e]), own_irradiance(mesh, irradiance, e));
+  }
+  return references;
 }
 
 }  // namespace lightwell

@@ -1,16 +1,52 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "mesh/patches/patch_mesh.h"
+#include "radiosity/solution/scene_parts.h"
 
 namespace lightwell {
 
-/// Irradiance that errors at a point are relative to, W/m^2: the scene's mean irradiance or a
-/// quarter of the point's own, whichever is more. (With the mean alone, the inside of a lamp shade,
-/// a thousand times as bright as the room, would decide over the whole room.)
+/// Irradiance that errors at a point are relative to, W/m^2: the mean irradiance of the part of the
+/// scene or a quarter of the point's own, whichever is more. (With the mean alone, the inside of a
+/// lamp shade, a thousand times as bright as the room, would decide over the whole room.)
 double error_reference(double mean_irradiance, double own_irradiance);
 
+/// The mean irradiance of each part of a scene, by which errors in the part are judged. A part with
+/// less than a millionth of the brightest part's mean is judged by that millionth: 0.1 lx beside
+/// sunlit ground of 100 000 lx. Keeps a reference to the parts.
+class PartMeans {
+ public:
+  explicit PartMeans(const SceneParts& parts);
+
+  /// Counts irradiance, W/m^2, of an area, m^2, of a patch.
+  void add(int patch, double area, double irradiance);
+  /// To be called after the last add().
+  void finish();
+
+  /// The irradiance by which errors on a patch or in a part are judged, W/m^2.
+  double of_patch(int patch) const { return of_part(parts_.judged_with(patch)); }
+  double of_part(int part) const { return judged_by_[static_cast<std::size_t>(part)]; }
+  /// Area counted in a part, m^2.
+  double area(int part) const { return area_[static_cast<std::size_t>(part)]; }
+  /// A millionth of the brightest part's mean, W/m^2.
+  double least() const { return least_; }
+
+ private:
+  const SceneParts& parts_;
+  std::vector<double> sum_, area_, judged_by_;
+  double least_ = 0.0;
+};
+
+/// The means of the parts, for `irradiance` at vertices (vertices x bands), over all area that
+/// reflects.
+PartMeans part_means(const PatchMesh& mesh, const BandArray& irradiance, const SceneParts& parts);
+
 /// error_reference() of every element, W/m^2, for `irradiance` at vertices (vertices x bands). The
-/// scene's mean is taken over all area that reflects, an element's own irradiance over its corners.
-Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradiance);
+/// mean of a part is taken over all of its area that reflects, an element's own irradiance over its
+/// corners.
+Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradiance,
+                                const SceneParts& parts = {});
 
 }  // namespace lightwell

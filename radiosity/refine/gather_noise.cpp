@@ -8,9 +8,10 @@
 namespace lightwell {
 
 Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
-                            const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays) {
+                            const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays,
+                            const SceneParts& parts) {
   const Eigen::ArrayXd of_patch = patch_integral(mesh, ray_variance).col(0);
-  const Eigen::ArrayXd reference = error_references(mesh, irradiance);
+  const Eigen::ArrayXd reference = error_references(mesh, irradiance, parts);
   Eigen::ArrayXf noise = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int n = mesh.corner_count(e), p = mesh.patch[e];
@@ -26,14 +27,23 @@ Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
   return noise;
 }
 
-double rms_noise(const PatchMesh& mesh, const Eigen::ArrayXf& noise) {
-  double sum = 0.0, area = 0.0;
+std::vector<double> rms_noises(const PatchMesh& mesh, const Eigen::ArrayXf& noise,
+                               const SceneParts& parts) {
+  std::vector<double> sum(static_cast<std::size_t>(parts.judged_count()), 0.0), area(sum);
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
-    sum += mesh.element_area[e] * std::pow(double{noise[e]}, 2);
-    area += mesh.element_area[e];
+    const int part = parts.judged_with(mesh.patch[e]);
+    sum[part] += mesh.element_area[e] * std::pow(double{noise[e]}, 2);
+    area[part] += mesh.element_area[e];
   }
-  return area > 0.0 ? std::sqrt(sum / area) : 0.0;
+  for (std::size_t p = 0; p < sum.size(); ++p) {
+    sum[p] = area[p] > 0.0 ? std::sqrt(sum[p] / area[p]) : 0.0;
+  }
+  return sum;
+}
+
+double rms_noise(const PatchMesh& mesh, const Eigen::ArrayXf& noise) {
+  return rms_noises(mesh, noise, {}).front();
 }
 
 }  // namespace lightwell

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "mesh/patches/patch_mesh.h"
+#include "radiosity/solution/scene_parts.h"
 
 namespace lightwell {
 
@@ -10,9 +13,13 @@ namespace lightwell {
 /// each vertex, (W/m^2)^2. One vertex's value is little more than a guess, so the mean over each
 /// patch is used. `rays` is the number of rays of each vertex.
 Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
-                            const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays);
+                            const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays,
+                            const SceneParts& parts = {});
 
-/// The RMS over all area that reflects of the noise of gather_noise().
+/// The RMS over all area of each part that reflects of the noise of gather_noise().
+std::vector<double> rms_noises(const PatchMesh& mesh, const Eigen::ArrayXf& noise,
+                               const SceneParts& parts);
+/// The RMS over all area of the scene that reflects.
 double rms_noise(const PatchMesh& mesh, const Eigen::ArrayXf& noise);
 
 }  // namespace lightwell

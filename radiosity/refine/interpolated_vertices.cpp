@@ -5,6 +5,8 @@
 #include <functional>
 #include <numeric>
 
+#include "radiosity/gather/patch_power.h"
+
 namespace lightwell {
 
 namespace {
@@ -137,13 +139,22 @@ std::vector<int> share_rays(std::span<const double> area, int rays) {
 }
 
 std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedVertex> interpolated,
-                            int rays) {
+                            const SceneParts& parts, std::span<const int> rays) {
   std::vector<double> area = vertex_areas(mesh);
   for (auto t = interpolated.rbegin(); t != interpolated.rend(); ++t) {
     for (int i = 0; i < t->end_count(); ++i) area[t->ends[i]] += area[t->vertex] / t->end_count();
     area[t->vertex] = 0.0;
   }
-  std::vector<int> shares = share_rays(area, rays);
+  const std::vector<int> patch = vertex_patches(mesh);
+  std::vector<std::vector<int>> vertices(static_cast<std::size_t>(parts.judged_count()));
+  for (int v = 0; v < mesh.vertex_count(); ++v) vertices[parts.judged_with(patch[v])].push_back(v);
+  std::vector<int> shares(area.size(), 0);
+  for (std::size_t p = 0; p < vertices.size(); ++p) {
+    std::vector<double> of_part;
+    for (const int v : vertices[p]) of_part.push_back(area[v]);
+    const std::vector<int> shared = share_rays(of_part, rays[p]);
+    for (std::size_t i = 0; i < shared.size(); ++i) shares[vertices[p][i]] = shared[i];
+  }
   for (const InterpolatedVertex& t : interpolated) shares[t.vertex] = 0;
   return shares;
 }

@@ -7,6 +7,7 @@
 
 #include "mesh/patches/patch_mesh.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/solution/scene_parts.h"
 
 namespace lightwell {
 
@@ -64,9 +65,9 @@ std::vector<double> vertex_areas(const PatchMesh& mesh);
 /// two from 1/8 to 2.
 std::vector<int> share_rays(std::span<const double> area, int rays);
 
-/// Rays of each vertex of a mesh. Interpolated vertices take 0 rays, and their area counts for
-/// their ends.
+/// Rays of each vertex of a mesh, shared by area within each of the `parts`, whose `rays` are
+/// given. Interpolated vertices take 0 rays, and their area counts for their ends.
 std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedVertex> interpolated,
-                            int rays);
+                            const SceneParts& parts, std::span<const int> rays);
 
 }  // namespace lightwell

@@ -47,33 +47,32 @@ struct InterpolationError::Differences {
 
 InterpolationError::InterpolationError(const LitScene& lit, const BandArray& radiosity,
                                        const BandArray& caustic, RefinedElements& elements,
-                                       const GatherOptions& options, const RefineOptions& refine,
-                                       double noise)
+                                       const GatherOptions& options, const RefineOptions& refine)
     : caster_(lit.caster),
       elements_(elements),
-      gathers_(lit, radiosity, caustic, elements, options, refine.max_level, noise),
+      gathers_(lit, radiosity, caustic, elements, options, refine),
       predictions_(elements, gathers_),
-      shadows_(elements, gathers_) {
-  set_tolerance(refine.tolerance);
+      shadows_(elements, gathers_),
+      parts_(refine.parts),
+      means_(parts_) {
+  set_tolerance(refine);
   find_what_matters();
 }
 
 void InterpolationError::find_what_matters() {
   const PatchMesh& mesh = elements_.base();
   matters_.assign(mesh.element_count(), 0);
-  double sum = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
     const bool is_back = mesh.is_back[p] != 0;
     const int front = is_back && mesh.twin[e] >= 0 ? mesh.twin[e] : e;
     if (!(mesh.reflectance.row(p) > 0.0f).any() || caster_.is_hidden(front, is_back)) continue;
     matters_[e] = 1;
-    area_ += mesh.element_area[e];
     double E = 0.0;
     for (int i = 0; i < mesh.corner_count(e); ++i) E += gathers_.total(mesh.corners[e][i]).mean();
-    sum += mesh.element_area[e] * E / mesh.corner_count(e);
+    means_.add(p, mesh.element_area[e], E / mesh.corner_count(e));
   }
-  mean_ = area_ > 0.0 ? sum / area_ : 0.0;
+  means_.finish();
 }
 
 void InterpolationError::make_room() {
@@ -112,7 +111,7 @@ void InterpolationError::gather(const std::vector<int>& vertices,
 }
 
 double InterpolationError::expected(int cell, int side) const {
-  if (!matters(elements_.element(cell, side)) || !(mean_ > 0.0)) return 0.0;
+  if (!matters(elements_.element(cell, side)) || !(reference(cell, side) > 0.0)) return 0.0;
   Spectrum low = gathers_.total(elements_.corner_vertex(cell, side, 0)), high = low;
   for (int i = 1; i < elements_.corner_count(cell); ++i) {
     const Spectrum E = gathers_.total(elements_.corner_vertex(cell, side, i));
@@ -129,7 +128,8 @@ double InterpolationError::reference(int cell, int side) const {
   for (int i = 0; i < elements_.corner_count(cell); ++i) {
     sum += gathers_.total(elements_.corner_vertex(cell, side, i)).mean();
   }
-  return error_reference(mean_, sum / elements_.corner_count(cell));
+  const int patch = elements_.base().patch[elements_.element(cell, side)];
+  return error_reference(means_.of_patch(patch), sum / elements_.corner_count(cell));
 }
 
 // Differences count if they are beyond doubt; `hidden` gets what noise may hide otherwise. The

@@ -8,6 +8,7 @@
 #include "radiosity/emitters/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/refine/corner_predictions.h"
+#include "radiosity/refine/error_reference.h"
 #include "radiosity/refine/interpolated_vertices.h"
 #include "radiosity/refine/shadow_search.h"
 #include "radiosity/refine/vertex_gathers.h"
@@ -15,7 +16,6 @@
 namespace lightwell {
 
 struct ChannelLight;
-struct RefineOptions;
 
 /// The error of irradiance that is interpolated over cells: the squared difference from irradiance
 /// gathered inside a cell, its mean over the cell and over the bands, relative to error_reference()
@@ -35,25 +35,24 @@ class InterpolationError {
   /// `radiosity` as gatherable_radiosity makes it, and `caustic` irradiance (or an empty array),
   /// are at the base's vertices; the caster of `lit` is of the base. A first gather at these
   /// vertices replaces the radiosity, of which patches hold one value each, before the gathers that
-  /// are compared. With `noise` above 0 that gather also chooses the rays of the final gather, so
-  /// that its noise is at most that share of the mean irradiance. Keeps references to the parts of
+  /// are compared. If the efforts of `refine` limit the noise, that gather also chooses the rays of
+  /// the final gather. Keeps references to the parts of
   /// `lit` and to `elements`. Throws Interrupted when progress says stop.
   InterpolationError(const LitScene& lit, const BandArray& radiosity, const BandArray& caustic,
                      RefinedElements& elements, const GatherOptions& options,
-                     const RefineOptions& refine, double noise);
+                     const RefineOptions& refine);
 
-  /// Changes the tolerance; what was gathered is kept.
-  void set_tolerance(double tolerance) { predictions_.set_tolerance(tolerance); }
+  /// Changes the tolerances; what was gathered is kept.
+  void set_tolerance(const RefineOptions& options) { predictions_.set_tolerance(options); }
   /// True if measure() would find more now than before set_tolerance().
   bool is_stale(int cell) const { return predictions_.is_stale(cell); }
-  /// Rays of the final gather.
-  int rays() const { return gathers_.options().rays; }
+  /// Rays of the final gather in each part.
+  const std::vector<int>& rays() const { return gathers_.rays(); }
 
   /// True if a side of an element of the base counts: the side reflects and is not hidden.
   bool matters(int element) const { return matters_[element] != 0; }
-  /// Area of the sides that count, m^2, and their mean irradiance, W/m^2.
-  double area() const { return area_; }
-  double mean_irradiance() const { return mean_; }
+  /// Area of the sides that count in a part, m^2.
+  double area(int part) const { return means_.area(part); }
 
   /// A bound of the squared error from the corners' values, for cells not measured yet: their range
   /// squared, plus (5 %)^2.
@@ -117,7 +116,8 @@ class InterpolationError {
   CornerPredictions predictions_;
   ShadowSearch shadows_;
   std::vector<char> matters_;  // per element of the base
-  double area_ = 0.0, mean_ = 0.0;
+  SceneParts parts_;
+  PartMeans means_;
   // Squared error between the vertices, relative, by RefinedElements::side_number(); below 0: not
   // searched yet.
   std::vector<float> between_;

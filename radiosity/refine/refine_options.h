@@ -2,8 +2,18 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include "radiosity/solution/scene_parts.h"
 
 namespace lightwell {
+
+/// What is asked of each part of a scene (see SceneParts::judged_with).
+struct PartEffort {
+  double tolerance = 0.0;  ///< RefineOptions::tolerance within the part
+  double noise = 0.0;      ///< most noise of the final gather, relative to the part's mean; 0: any
+  int rays = 0;            ///< of the final gather in the part
+};
 
 /// Options of refinement.
 struct RefineOptions {
@@ -18,6 +28,14 @@ struct RefineOptions {
   std::int64_t room = -1;
   /// Most levels of splits: edges of 2^-max_level of the start's.
   int max_level = 4;
+  /// The parts of the scene. If there are several, the tolerance is to be reached in each.
+  SceneParts parts{};
+  /// One entry for each part; empty: `tolerance`, and the rays of the gather, for all.
+  std::vector<PartEffort> efforts{};
+
+  double tolerance_of(int part) const {
+    return efforts.empty() ? tolerance : efforts[static_cast<std::size_t>(part)].tolerance;
+  }
 };
 
 /// The reason why refinement ended.
@@ -29,11 +47,20 @@ enum class RefineOutcome {
   smallest_size_reached
 };
 
+/// The error that refinement leaves in a part, see RefineReport::estimate.
+struct PartRefinement {
+  double estimate = 0.0;
+  bool is_reached = false;  ///< the part's tolerance
+};
+
 /// The course of refinement, in numbers.
 struct RefineReport {
   RefineOutcome outcome = RefineOutcome::off;
   double tolerance = 0.0;
-  double estimate = 0.0;  ///< RMS error that is left, by the elements' own estimates; relative
+  /// RMS error that is left, by the elements' own estimates; relative; of several parts the
+  /// largest.
+  double estimate = 0.0;
+  std::vector<PartRefinement> parts{};  ///< of each part; empty: nothing was refined
   int rounds = 0;
   std::int64_t elements_at_first = 0, elements = 0;
   std::int64_t gathers = 0;  ///< points at which direct light was gathered

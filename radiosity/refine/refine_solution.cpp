@@ -58,7 +58,10 @@ class Refinement {
         may_go_on_(may_go_on),
         of_children_(may_go_on ? of_a_split : 1.0),
         in_the_end_(may_go_on ? 1.0 : of_a_split_in_the_end),
-        report_{.elements_at_first = elements.element_count()} {
+        report_{.elements_at_first = elements.element_count()},
+        part_count_(options.parts.judged_count()),
+        allowed_(static_cast<std::size_t>(part_count_), 0.0),
+        sum_(allowed_) {
     if (is_memory_short_) max_elements_ = std::max(options.room, report_.elements_at_first);
     resize();
     for (const int cell : elements.leaves()) {
@@ -70,16 +73,19 @@ class Refinement {
     }
   }
 
-  // Splits until the tolerance or a limit is reached; a further call continues.
-  RefineReport run(double tolerance) {
-    options_.tolerance = report_.tolerance = tolerance;
-    allowed_ = std::pow(tolerance, 2) * error_.area();
+  // Splits until the tolerances or a limit are reached; a further call continues.
+  RefineReport run(const RefineOptions& options) {
+    options_.tolerance = report_.tolerance = options.tolerance;
+    for (int p = 0; p < part_count_; ++p) {
+      allowed_[p] = std::pow(options.tolerance_of(p), 2) * error_.area(p);
+    }
     for (const int cell : elements_.leaves()) {
       if (error_.is_stale(cell)) measured_[cell] = 0;
     }
     report_.outcome = RefineOutcome::off;
     while (report_.outcome == RefineOutcome::off) {
-      std::vector<int> marks = cells_to_split();
+      PartMarks by_part = cells_to_split();
+      std::vector<int> marks = joined(by_part);
       // Measures no more cells than can be split, since each split adds at least three elements. (A
       // measured error is below its bound, and other cells come to the front.)
       const std::int64_t room =
@@ -87,23 +93,19 @@ class Refinement {
       constexpr std::size_t at_once = 4096;
       const std::size_t most = std::max(static_cast<std::size_t>(room / 3 + 1), at_once);
       if (marks.size() > most) marks.resize(most);
-      if (sum_ <= allowed_) {
+      if (are_reached()) {
         report_.outcome = RefineOutcome::tolerance_reached;
       } else if (marks.empty()) {
         report_.outcome = RefineOutcome::smallest_size_reached;
       } else if (!measure(marks)) {
-        if (!split(may_wait(marks) ? worst_of(marks) : marks)) {
+        if (!split(may_wait(marks) ? worst_of(std::move(by_part), most) : marks)) {
           report_.outcome = is_memory_short_ ? RefineOutcome::memory_limit_reached
                                              : RefineOutcome::max_elements_reached;
         }
         ++report_.rounds;
       }
     }
-    double left = 0.0;
-    for (const int cell : elements_.leaves()) {
-      left += share_left(cell) * counted(cell);
-    }
-    report_.estimate = error_.area() > 0.0 ? std::sqrt(left / error_.area()) : 0.0;
+    report_errors();
     report_.elements = elements_.element_count();
     return report_;
   }
@@ -129,30 +131,85 @@ class Refinement {
     is_known_[cell] = 1;
   }
 
-  // The leaves with the largest squared errors, in falling order, so many that the others hold at
-  // most half of what the tolerance allows. Also sums over all leaves.
-  std::vector<int> cells_to_split() {
-    std::vector<std::pair<double, int>> by_error;
-    sum_ = 0.0;
-    double rest = 0.0;
-    for (const int cell : elements_.leaves()) {
-      const double square = counted(cell);
-      sum_ += square;
-      if (elements_.level(cell) < options_.max_level && square > 0.0) {
-        by_error.emplace_back(-square, cell);
-        rest += square;
-      }
+  bool are_reached() const {
+    for (int p = 0; p < part_count_; ++p) {
+      if (sum_[p] > allowed_[p]) return false;
     }
-    std::sort(by_error.begin(), by_error.end());
+    return true;
+  }
+
+  int part_of(int cell, int side) const {
+    return options_.parts.judged_with(elements_.base().patch[elements_.element(cell, side)]);
+  }
+
+  // Calls visit(part) for the parts that the sides of a cell are in, once each.
+  template <class Visit>
+  void for_each_part(int cell, Visit&& visit) const {
+    const int first = part_of(cell, 0);
+    visit(first);
+    if (elements_.side_count(cell) < 2) return;
+    if (const int second = part_of(cell, 1); second != first) visit(second);
+  }
+
+  // Leaves to split for each part, in falling order of squared error.
+  using PartMarks = std::vector<std::vector<int>>;
+
+  // The leaves of all parts by the share that they hold of the error that is allowed, once each.
+  std::vector<int> joined(const PartMarks& by_part) const {
+    if (part_count_ == 1) return by_part.front();
+    std::vector<std::pair<double, int>> by_share;
+    for (int p = 0; p < part_count_; ++p) {
+      for (const int cell : by_part[p])
+        by_share.emplace_back(-counted(cell, p) / allowed_[p], cell);
+    }
+    std::ranges::sort(by_share);
     std::vector<int> marks;
-    double last = 0.0;
-    const double all = rest, fixed = sum_ - all;
+    std::vector<char> is_marked(static_cast<std::size_t>(elements_.cell_count()), 0);
+    for (const auto& [share, cell] : by_share) {
+      if (is_marked[cell] == 0) marks.push_back(cell);
+      is_marked[cell] = 1;
+    }
+    return marks;
+  }
+
+  // The leaves with the largest squared errors of each part, so many that the others hold at most
+  // half of what the part's tolerance allows. Also sums over all leaves.
+  PartMarks cells_to_split() {
+    std::vector<std::vector<std::pair<double, int>>> by_error(allowed_.size());
+    std::ranges::fill(sum_, 0.0);
+    std::vector<double> rest(allowed_.size(), 0.0);
+    for (const int cell : elements_.leaves()) {
+      for_each_part(cell, [&](int p) {
+        const double square = counted(cell, p);
+        sum_[p] += square;
+        if (elements_.level(cell) < options_.max_level && square > 0.0) {
+          by_error[p].emplace_back(-square, cell);
+          rest[p] += square;
+        }
+      });
+    }
+    PartMarks marks(allowed_.size());
+    for (int p = 0; p < part_count_; ++p) {
+      if (part_count_ > 1 && sum_[p] <= allowed_[p]) continue;
+      marks[p] = worst_half(by_error[p], rest[p], p);
+    }
+    return marks;
+  }
+
+  // The first of the cells (minus the squared error, and the cell), whose squared errors sum to
+  // `all`, that are to be split for a part.
+  std::vector<int> worst_half(std::vector<std::pair<double, int>>& by_error, double all,
+                              int part) const {
+    std::sort(by_error.begin(), by_error.end());
+    const double allowed = allowed_[part], fixed = sum_[part] - all;
+    double rest = all, last = 0.0;
+    std::vector<int> marks;
     for (const auto& [minus_square, cell] : by_error) {
       // The last round splits no more than the tolerance takes by expectation. A shortfall takes
       // one more round, which costs less than additional splits in every case.
       constexpr double nearly = 0.95;
-      const bool will_do = fixed + rest + of_children_ * (all - rest) <= nearly * allowed_;
-      const bool is_enough = rest <= 0.5 * allowed_ || will_do;
+      const bool will_do = fixed + rest + of_children_ * (all - rest) <= nearly * allowed;
+      const bool is_enough = rest <= 0.5 * allowed || will_do;
       if (is_enough && (marks.empty() || -minus_square < about_equal * last)) break;
       rest += minus_square;
       if (!is_enough) last = -minus_square;
@@ -163,18 +220,19 @@ class Refinement {
 
   // Squared error times area. The error that noise may hide in a cell is nothing for the most part,
   // and counts only if it could be a notable share of all that is allowed. Such a cell is split,
-  // and its parts are measured.
-  double counted(int cell) const {
+  // and its parts are measured. Sides in other parts of the scene do not count.
+  double counted(int cell, int part) const {
     constexpr double notable = 0.01;
     double known = 0.0, hidden = 0.0;
     for (int side = 0; side < elements_.side_count(cell); ++side) {
+      if (part_of(cell, side) != part) continue;
       const Square& square = squares_[elements_.side_number(cell, side)];
       known += double{square.known};
       hidden += double{square.hidden};
     }
     known *= elements_.area(cell);
     hidden *= elements_.area(cell);
-    return hidden > notable * allowed_ ? known + hidden : known;
+    return hidden > notable * allowed_[part] ? known + hidden : known;
   }
 
   // True if cells with smaller errors wait until the worst are split and measured: if refinement
@@ -185,15 +243,36 @@ class Refinement {
     return may_go_on_ || 2 * (elements_.element_count() + made) > max_elements_;
   }
 
-  // The first of the leaves, which are in falling order of squared error: those above the expected
-  // error of the first one's children. The others wait, so that elements go to the largest errors,
-  // however few there may be.
-  std::vector<int> worst_of(std::vector<int> marks) const {
+  // The first of each part's leaves: those above the expected error of the first one's children,
+  // and at most `most` in all. The others wait, so that elements go to the largest errors, however
+  // few there may be.
+  std::vector<int> worst_of(PartMarks by_part, std::size_t most) const {
     constexpr double of_a_child = of_a_split / 4.0;
-    const double least = about_equal * of_a_child * counted(marks.front());
-    const auto end = std::ranges::find_if(marks, [&](int cell) { return counted(cell) < least; });
-    marks.erase(end, marks.end());
+    for (int p = 0; p < part_count_; ++p) {
+      if (by_part[p].empty()) continue;
+      const double least = about_equal * of_a_child * counted(by_part[p].front(), p);
+      const auto end =
+          std::ranges::find_if(by_part[p], [&](int cell) { return counted(cell, p) < least; });
+      by_part[p].erase(end, by_part[p].end());
+    }
+    std::vector<int> marks = joined(by_part);
+    if (marks.size() > most) marks.resize(most);
     return marks;
+  }
+
+  void report_errors() {
+    std::vector<double> left(allowed_.size(), 0.0);
+    for (const int cell : elements_.leaves()) {
+      for_each_part(cell, [&](int p) { left[p] += share_left(cell) * counted(cell, p); });
+    }
+    report_.estimate = 0.0;
+    report_.parts.clear();
+    for (int p = 0; p < part_count_; ++p) {
+      const double area = error_.area(p);
+      report_.parts.push_back({.estimate = area > 0.0 ? std::sqrt(left[p] / area) : 0.0,
+                               .is_reached = sum_[p] <= allowed_[p]});
+      report_.estimate = std::max(report_.estimate, report_.parts.back().estimate);
+    }
   }
 
   double share_left(int cell) const {
@@ -257,8 +336,8 @@ class Refinement {
   bool may_go_on_;
   double of_children_, in_the_end_;
   RefineReport report_;
-  double allowed_ = 0.0;
-  double sum_ = 0.0;  // squared error times area, over all leaves
+  int part_count_;
+  std::vector<double> allowed_, sum_;  // of each part: squared error times area, over all leaves
   struct Square {
     float known = 0.0f, hidden = 0.0f;
   };
@@ -306,11 +385,11 @@ std::string sentence(const RefineReport& report) {
 
 struct SolutionRefinement::Impl {
   Impl(const LitScene& lit, const BandArray& radiosity, const BandArray& caustic,
-       RefinedElements& all, const GatherOptions& gather, const RefineOptions& options,
-       double noise)
+       RefinedElements& all, const GatherOptions& gather, const RefineOptions& options)
       : elements(all),
-        error(lit, radiosity, caustic, all, gather, options, noise),
-        refinement(all, error, options, noise > 0.0) {}
+        error(lit, radiosity, caustic, all, gather, options),
+        refinement(all, error, options,
+                   !options.efforts.empty() && options.efforts.front().noise > 0.0) {}
 
   RefinedElements& elements;
   InterpolationError error;
@@ -319,10 +398,9 @@ struct SolutionRefinement::Impl {
 
 SolutionRefinement::SolutionRefinement(const LitScene& lit, const BandArray& radiosity,
                                        const BandArray& caustic, RefinedElements& elements,
-                                       const GatherOptions& gather, const RefineOptions& options,
-                                       double noise) {
+                                       const GatherOptions& gather, const RefineOptions& options) {
   require_room(elements.base(), options);
-  impl_ = std::make_unique<Impl>(lit, radiosity, caustic, elements, gather, options, noise);
+  impl_ = std::make_unique<Impl>(lit, radiosity, caustic, elements, gather, options);
 }
 
 SolutionRefinement::~SolutionRefinement() = default;
@@ -330,9 +408,9 @@ SolutionRefinement::~SolutionRefinement() = default;
 RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
                                            const ChannelLight* by_channel) {
   auto& [elements, error, refinement] = *impl_;
-  error.set_tolerance(options.tolerance);
+  error.set_tolerance(options);
   RefinedSolution result;
-  result.report = refinement.run(options.tolerance);
+  result.report = refinement.run(options);
   result.refined = elements.mesh();
   elements.shrink_to_fit();
   result.interpolated = error.interpolated(result.refined.vertex);

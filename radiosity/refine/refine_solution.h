@@ -32,11 +32,12 @@ struct RefinedSolution {
   /// (in the square) half of the error that noise may hide.
   Eigen::ArrayXf error{};
   RefineReport report{};
-  int gather_rays = 0;  ///< rays of the final gather
+  std::vector<int> gather_rays{};  ///< rays of the final gather in each part
 };
 
 /// Adaptive subdivision of elements (Cohen, Greenberg, Immel & Brock 1986, "An efficient radiosity
-/// approach for realistic image synthesis"). Patches and their form factors stay the same.
+/// approach for realistic image synthesis"). Patches and their form factors stay the same. Each
+/// part of the scene is refined until it has reached its own tolerance.
 ///
 /// Elements are split if irradiance interpolated between their vertices differs from irradiance
 /// gathered inside them (see InterpolationError). Each round splits the cells with the largest
@@ -47,13 +48,13 @@ struct RefinedSolution {
 class SolutionRefinement {
  public:
   /// `radiosity` (as gatherable_radiosity makes it) and `caustic` irradiance (or an empty array)
-  /// are at the base's vertices; the caster of `lit` is of the base. With `noise` above 0 a first
-  /// gather chooses the rays with which the final gather's noise is at most that share of the mean
-  /// irradiance; otherwise they are those of `gather`. Keeps references to the parts of `lit` and
-  /// to `elements`. Throws InputError as require_room does, Interrupted when progress says stop.
+  /// are at the base's vertices; the caster of `lit` is of the base. If the efforts of `options`
+  /// limit the noise, a first gather chooses the rays of the final gather; otherwise they are those
+  /// of `gather`. Keeps references to the parts of `lit` and to `elements`. Throws InputError as
+  /// require_room does, Interrupted when progress says stop.
   SolutionRefinement(const LitScene& lit, const BandArray& radiosity, const BandArray& caustic,
                      RefinedElements& elements, const GatherOptions& gather,
-                     const RefineOptions& options, double noise = 0.0);
+                     const RefineOptions& options);
   ~SolutionRefinement();
 
   /// Splits elements until the tolerance, or a limit, is reached. A further call with another

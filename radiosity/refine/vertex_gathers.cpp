@@ -37,15 +37,17 @@ std::vector<int> vertices_of(const PatchMesh& mesh) {
 
 VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
                              const BandArray& caustic, RefinedElements& elements,
-                             const GatherOptions& options, int deepest_level, double noise)
+                             const GatherOptions& options, const RefineOptions& refine)
     : scene_(lit.scene),
       caster_(lit.caster),
       direct_light_(lit.direct_light),
       radiosity_(radiosity),
       elements_(elements),
       options_(options),
-      has_noise_goal_(noise > 0.0),
-      inset_(std::ldexp(finest_inset, -deepest_level)),
+      parts_(refine.parts),
+      rays_of_part_(static_cast<std::size_t>(parts_.judged_count()), options.rays),
+      has_noise_goal_(!refine.efforts.empty() && refine.efforts.front().noise > 0.0),
+      inset_(std::ldexp(finest_inset, -refine.max_level)),
       visibility_(lit.direct_light.light_count()) {
   if (options.run.progress) {
     options_.run.progress = [progress = options.run.progress](std::string_view, double share) {
@@ -53,16 +55,21 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
     };
   }
   share_pilot_rays();
-  sharpen_radiosity(caustic, noise);
+  sharpen_radiosity(caustic, refine.efforts);
   gather_indirect_at(vertices_of(elements.base()));
 }
 
 // Vertices of small elements cast fewer rays, but a quarter at least: with fewer, noise would hide
 // the differences that the gathers are made for.
 void VertexGathers::share_pilot_rays() {
-  const int rays = pilot_rays(options_.rays, has_noise_goal_);
-  rays_ = share_rays(elements_.base(), {}, rays);
-  for (int& share : rays_) share = std::min(2 * share, rays);
+  const PatchMesh& mesh = elements_.base();
+  std::vector<int> rays;
+  for (const int of_part : rays_of_part_) rays.push_back(pilot_rays(of_part, has_noise_goal_));
+  rays_ = share_rays(mesh, {}, parts_, rays);
+  const std::vector<int> patch = vertex_patches(mesh);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    rays_[v] = std::min(2 * rays_[v], rays[parts_.judged_with(patch[v])]);
+  }
 }
 
 GatherPoint VertexGathers::gather_point(int vertex) const {
@@ -151,8 +158,9 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
 }
 
 // Replaces the radiosity of patches, one value each, by what a gather finds at the base's vertices.
-// With `noise` above 0, the noise of that gather also decides over the rays of the final gather.
-void VertexGathers::sharpen_radiosity(const BandArray& caustic, double noise) {
+// Where the noise is limited, that of this gather decides over the rays of the final gather.
+void VertexGathers::sharpen_radiosity(const BandArray& caustic,
+                                      const std::vector<PartEffort>& efforts) {
   const PatchMesh& mesh = elements_.base();
   const std::vector<int> all = vertices_of(mesh);
   make_room();
@@ -161,12 +169,16 @@ void VertexGathers::sharpen_radiosity(const BandArray& caustic, double noise) {
   BandArray irradiance = direct_.topRows(mesh.vertex_count()) + gathered.indirect;
   if (caustic.size() > 0) irradiance += caustic;
   radiosity_ = with_pools(mesh, radiosity_, gatherable_radiosity(mesh, direct_light_, irradiance));
-  if (!(noise > 0.0)) return;
+  if (!has_noise_goal_) return;
   const Eigen::ArrayXf rays =
       Eigen::Map<const Eigen::ArrayXi>(rays_.data(), mesh.vertex_count()).cast<float>();
-  const double found =
-      rms_noise(mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays));
-  options_.rays = rays_for_noise(pilot_rays(options_.rays, has_noise_goal_), found, noise);
+  const std::vector<double> found = rms_noises(
+      mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays, parts_), parts_);
+  for (std::size_t p = 0; p < rays_of_part_.size(); ++p) {
+    rays_of_part_[p] =
+        rays_for_noise(pilot_rays(rays_of_part_[p], true), found[p], efforts[p].noise);
+  }
+  options_.rays = *std::ranges::max_element(rays_of_part_);
   share_pilot_rays();
 }
 

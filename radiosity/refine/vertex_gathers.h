@@ -9,6 +9,7 @@
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/refine/emitter_visibility_list.h"
 #include "radiosity/refine/interpolated_vertices.h"
+#include "radiosity/refine/refine_options.h"
 
 namespace lightwell {
 
@@ -30,17 +31,20 @@ class VertexGathers {
  public:
   /// Gathers at the base's vertices. `radiosity` as gatherable_radiosity makes it, and `caustic`
   /// irradiance (or an empty array), are at the base's vertices; the caster of `lit` is of the
-  /// base. Vertices lie inside the elements by 2 % of the size of a cell of level `deepest_level`.
-  /// With `noise` above 0 the first gather also chooses the rays of the final gather, so that its
-  /// RMS noise is that share of the mean irradiance. Keeps references to the parts of `lit` and to
-  /// `elements`. Throws Interrupted when progress says stop.
+  /// base. Vertices lie inside the elements by 2 % of the size of a cell of the deepest level. If
+  /// the efforts of `refine` limit the noise, the first gather also chooses the rays of the final
+  /// gather, so that its RMS noise in each part is that share of the part's mean irradiance. Keeps
+  /// references to the parts of `lit` and to `elements`. Throws Interrupted when progress says
+  /// stop.
   VertexGathers(const LitScene& lit, const BandArray& radiosity, const BandArray& caustic,
-                RefinedElements& elements, const GatherOptions& options, int deepest_level,
-                double noise);
+                RefinedElements& elements, const GatherOptions& options,
+                const RefineOptions& refine);
 
   LitScene lit() const { return {scene_, caster_, direct_light_}; }
-  /// Options of the final gather, with the rays chosen for `noise`; progress is that of "refine".
+  /// Options of the final gather, with the most rays of any part; progress is that of "refine".
   const GatherOptions& options() const { return options_; }
+  /// Rays of the final gather in each part.
+  const std::vector<int>& rays() const { return rays_of_part_; }
 
   /// Makes room for all vertices that exist; needed before a gather at new ones.
   void make_room();
@@ -76,7 +80,7 @@ class VertexGathers {
 
  private:
   void share_pilot_rays();
-  void sharpen_radiosity(const BandArray& caustic, double noise);
+  void sharpen_radiosity(const BandArray& caustic, const std::vector<PartEffort>& efforts);
   GatherPoint gather_point(int vertex) const;
   GatherPoint keyed_point(int vertex) const;
   GatheredIrradiance indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
@@ -89,6 +93,8 @@ class VertexGathers {
   BandArray radiosity_;  // at the base's vertices
   RefinedElements& elements_;
   GatherOptions options_;
+  SceneParts parts_;
+  std::vector<int> rays_of_part_;
   bool has_noise_goal_;
   double inset_;
   // Per vertex.

@@ -233,7 +233,7 @@ TEST(ErrorEstimate, BatchesJoin) {
   double deviation = 0.0, of_mean = 0.0;
   for (int batch = 0; batch < batches; ++batch) {
     const ErrorEstimate one =
-        estimate_error({scene, caster, direct_light}, {}, solved.solution, nullptr, batch);
+        estimate_errors({scene, caster, direct_light}, {}, solved.solution, nullptr, batch).front();
     all = batch == 0 ? one : joined(all, one);
     squares.push_back(one.square);
     deviation += one.deviation / batches;
@@ -266,7 +266,7 @@ TEST(ErrorEstimate, SeesWhatReflectionsHide) {
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
   const auto estimate = [&] {
-    return estimate_error({scene, caster, direct_light}, options, solved.solution).error();
+    return estimate_errors({scene, caster, direct_light}, options, solved.solution).front().error();
   };
   const double before = estimate();
   const PatchMesh& mesh = solved.mesh;

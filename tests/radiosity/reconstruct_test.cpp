@@ -107,7 +107,7 @@ TEST(InterpolatedVertices, GiveTheirAreaToTheirEnds) {
   EXPECT_NEAR(sum, 6.0, 1e-12);  // a few roundings of each of 24 elements
   std::vector<InterpolatedVertex> interpolated;
   for (int v = 1; v < mesh.vertex_count(); ++v) interpolated.push_back({v, {0, 0, -1, -1}});
-  const std::vector<int> rays = share_rays(mesh, interpolated, 64);
+  const std::vector<int> rays = share_rays(mesh, interpolated, {}, std::vector<int>{64});
   EXPECT_EQ(rays[0], 64);  // all of the area is as large as the typical one
   for (std::size_t v = 1; v < rays.size(); ++v) EXPECT_EQ(rays[v], 0);
 }
