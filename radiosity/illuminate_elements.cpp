@@ -10,6 +10,7 @@
 
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solution/relight.h"
@@ -58,6 +59,16 @@ SolveOptions effective_options(const SolveOptions& options, double target,
   return effective;
 }
 
+// The options with the openings that gathers aim rays at.
+SolveOptions with_portals(const Scene& scene, const DirectLight& direct_light,
+                          const SolvedScene& patches, SolveOptions options) {
+  const ElementCaster caster(patches.mesh);
+  options.gather.portals = find_portals(
+      scene, caster,
+      brightness_of_patches(patches.mesh, direct_light, patches.solution.patch_radiosity));
+  return options;
+}
+
 // Gathers with rising effort until the error estimate meets the target.
 class GatherAttempts {
  public:
@@ -67,8 +78,9 @@ class GatherAttempts {
         direct_light_(direct_light),
         solved_(solved),
         target_(target_of(scene, options, solved)),
-        options_(
-            effective_options(options, target_, solved, direct_light.by_channel.column_count())),
+        options_(with_portals(
+            scene, direct_light.all, solved,
+            effective_options(options, target_, solved, direct_light.by_channel.column_count()))),
         pilot_gathers_(std::in_place, scene, std::move(solved.mesh), direct_light.by_channel,
                        solved.solution, noise_share(target_)) {
     take(target_ > 0.0 ? first_effort(target_, options.refine.tolerance > 0.0)
