@@ -12,6 +12,7 @@
 
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solution/relight.h"
@@ -80,6 +81,16 @@ SolveOptions effective_options(const SolveOptions& options, double target,
   return effective;
 }
 
+// The options with the openings that gathers aim rays at.
+SolveOptions with_portals(const Scene& scene, const DirectLight& direct_light,
+                          const SolvedScene& patches, SolveOptions options) {
+  const ElementCaster caster(patches.mesh);
+  options.gather.portals = find_portals(
+      scene, caster,
+      brightness_of_patches(patches.mesh, direct_light, patches.solution.patch_radiosity));
+  return options;
+}
+
 // Gathers with rising effort until the error estimate meets the target.
 class GatherAttempts {
  public:
@@ -90,8 +101,9 @@ class GatherAttempts {
         solved_(solved),
         target_(target_of(scene, options, solved)),
         targets_(targets_of(scene, options, solved)),
-        options_(
-            effective_options(options, target_, solved, direct_light.by_channel.column_count())),
+        options_(with_portals(
+            scene, direct_light.all, solved,
+            effective_options(options, target_, solved, direct_light.by_channel.column_count()))),
         pilot_gathers_(std::in_place, scene, std::move(solved.mesh), direct_light.by_channel,
                        solved.solution) {
     options_.refine.parts = solved.solution.parts;

@@ -14,6 +14,7 @@
 #include "radiosity/illuminate_elements.h"
 #include "radiosity/journal/journal.h"
 #include "radiosity/journal/journal_phase.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/parts/find_parts.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/refine_solution.h"
@@ -69,6 +70,38 @@ RadiositySolution shoot(const LitScene& lit, const SolveOptions& options) {
   return solution;
 }
 
+// Narrow openings between bright and dim parts, by a solve with few rays; null: none.
+std::shared_ptr<const Portals> portals_of_rows(const LitScene& lit,
+                                               const FormFactorOptions& options,
+                                               const FreeLight& free_light,
+                                               const SolverOptions& solver) {
+  if (options.method != FormFactorMethod::automatic &&
+      options.method != FormFactorMethod::ray_cast) {
+    return nullptr;
+  }
+  const std::vector<Opening> openings = narrow_openings(lit.caster, find_openings(lit.scene));
+  if (openings.empty()) return nullptr;
+  constexpr int few_rays = 32, few_of_emitters = 1024;
+  constexpr double tolerance = 1e-3;
+  FormFactorOptions few = options;
+  few.method = FormFactorMethod::ray_cast;
+  few.rays_per_patch = std::min(few_rays, options.rays_per_patch);
+  few.rays_per_emitter = few_of_emitters;
+  few.run.journal = nullptr;
+  SolverOptions rough = solver;
+  rough.tolerance = std::max(tolerance, solver.tolerance);
+  rough.start = {};
+  rough.arriving = free_light.irradiance;
+  rough.run.journal = nullptr;
+  rough.observer = {};
+  const auto form_factors = compute_form_factors(lit, few);
+  const BandArray radiosity =
+      solve_radiosity(SolverMethod::automatic, lit.mesh(), *form_factors, rough).patch_radiosity;
+  auto portals = std::make_shared<const Portals>(
+      lit.caster, brightness_of_patches(lit.mesh(), lit.direct_light, radiosity), openings);
+  return portals->is_empty() ? nullptr : portals;
+}
+
 RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_apart,
                                   const SolveOptions& options, SolveReport* report) {
   const Scene& scene = lit.scene;
@@ -78,14 +111,17 @@ RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_a
   form_factor_options.run.progress = options.run.progress;
   form_factor_options.rays_per_patch = rays_per_patch(options);
   if (options.run.journal) form_factor_options.run.journal = options.run.journal;
-  const auto form_factors =
-      compute_form_factors(lit, form_factor_options, report ? &report->form_factors : nullptr);
-  const double form_factor_seconds = watch.lap();
   const int bands = scene.bands.count();
   const FreeLight by_channel = cast_free_light(
       scene, lit.caster, LightPaths(scene, lit.caster, options.form_factors.max_specular_depth),
       kept_apart, options.free_rays, options.run.progress);
   const FreeLight free_light = all_channels(by_channel, bands);
+  SolverOptions pilot = options.solver;
+  pilot.run = options.run;
+  form_factor_options.portals = portals_of_rows(lit, form_factor_options, free_light, pilot);
+  const auto form_factors =
+      compute_form_factors(lit, form_factor_options, report ? &report->form_factors : nullptr);
+  const double form_factor_seconds = watch.lap();
 
   SolverOptions solver_options = options.solver;
   solver_options.run = options.run;

@@ -41,7 +41,8 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
       radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance())),
       bright_(scene, caster.mesh(), radiosity_),
       gaps_({scene, caster, direct_light}, radiosity_, paths_),
-      aims_(BrightPatches::aimed(most_rays)) {
+      aims_(std::max(BrightPatches::aimed(most_rays), Portals::aimed(most_rays))),
+      portals_(find_portals(scene, caster, brightness_of_vertices(caster.mesh(), radiosity_))) {
   if (const FreeSource* dome = direct_light.dome()) dome_ = dome->light;
   constexpr int fewest = 8;
   for (int rays = most_rays; rays >= std::min(fewest, most_rays) && rays > 0; rays /= 2) {
@@ -58,8 +59,9 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
   const Eigen::Matrix3d frame = draw.frame(at.smooth_normal);
   const auto points = draw.all();
   const auto count = static_cast<int>(points.size());
-  BrightPatches::View view;
-  if (!bright_.is_empty()) view = bright_.view(at.position, at.smooth_normal, count);
+  Place place{.caster = caster, .at = at, .key = key, .rays = count};
+  if (!bright_.is_empty()) place.bright = bright_.view(at.position, at.smooth_normal, count);
+  if (portals_) place.portals = portals_->view(at.position, at.smooth_normal, count);
   std::array<Ray, batch> rays;
   std::array<ElementHit, batch> hits;
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(radiosity_.cols());
@@ -73,58 +75,102 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
     }
     caster.closest_hits({rays.data(), n}, {hits.data(), n});
     for (std::size_t r = 0; r < n; ++r) {
-      if (hits[r].facet < 0) continue;
-      const std::uint64_t ray_key = random_key(key, RandomPurpose::pixel_gather_paths, begin + r);
-      if (gaps_.is_gap(at.normal, rays[r], hits[r])) {
-        gaps_.add(caster, rays[r], hits[r], ray_key, sum);
-        continue;
-      }
-      const double straight = view.is_empty() ? 1.0
-                                              : bright_.share(view, measure(at, rays[r].direction),
-                                                              count, rays[r], hits[r]);
-      sum += arriving(caster, rays[r], hits[r], ray_key, straight).cast<double>();
+      add(place, rays[r], hits[r], begin + r, aimed_density(place, rays[r], hits[r]), sum);
     }
   }
-  if (!view.is_empty()) aim(caster, at, view, count, key, sum);
+  if (!place.bright.is_empty()) aim_at_bright(place, sum);
+  if (!place.portals.is_empty()) aim_at_portals(place, sum);
   return (sum / static_cast<double>(points.size())).cast<float>();
+}
+
+// Number times density, 1/sr, of rays aimed at the portals that the ray passes.
+double PixelGather::aimed_density(const Place& place, const Ray& ray, const ElementHit& hit) const {
+  if (place.portals.is_empty()) return 0.0;
+  return Portals::aimed(place.rays) *
+         portals_->density(place.portals, ray.origin, ray.direction, hit.t);
 }
 
 // Adds light of bright patches by aimed rays. A ray counts only if the element it was aimed at is
 // its first hit.
-void PixelGather::aim(const ElementCaster& caster, const ShadingPoint& at,
-                      const BrightPatches::View& view, int rays, std::uint64_t key,
-                      Eigen::ArrayXd& sum) const {
-  const std::uint64_t aim_key = random_key(key, RandomPurpose::pixel_gather_aims);
-  for (int i = 0; i < BrightPatches::aimed(rays); ++i) {
+void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
+  const ShadingPoint& at = place.at;
+  const std::uint64_t aim_key = random_key(place.key, RandomPurpose::pixel_gather_aims);
+  for (int i = 0; i < BrightPatches::aimed(place.rays); ++i) {
     const Eigen::Array4d u = aims_.point(i, aim_key).cast<double>();
-    const BrightPatches::Aim aim = bright_.draw(view, u[0], u[1], u[2]);
+    const BrightPatches::Aim aim = bright_.draw(place.bright, u[0], u[1], u[2]);
     const double cosine = measure(at, aim.direction);
     if (!(cosine > 0.0)) continue;
     const Ray ray{.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
     ElementHit hit;
-    caster.closest_hits({&ray, 1}, {&hit, 1});
+    place.caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.element != aim.element || !paths_.is_diffuse(hit.facet)) continue;
     if (gaps_.is_gap(at.normal, ray, hit)) continue;
-    const double share = bright_.share(view, cosine, rays, ray, hit);
-    sum += share * interpolate(caster.mesh(), radiosity_, hit).cast<double>();
+    const double share =
+        bright_.share(place.bright, cosine, place.rays, ray, hit, aimed_density(place, ray, hit));
+    sum += share * interpolate(place.caster.mesh(), radiosity_, hit).cast<double>();
   }
 }
 
-// Radiosity B at the end of a ray. Light of the first hit itself is weighted by `share`; light
-// through mirrors and glass has weight 1.
+// Adds light by rays aimed at portals, of those that pass a portal.
+void PixelGather::aim_at_portals(const Place& place, Eigen::ArrayXd& sum) const {
+  const ShadingPoint& at = place.at;
+  const std::uint64_t aim_key = random_key(place.key, RandomPurpose::pixel_gather_portals);
+  for (int i = 0; i < Portals::aimed(place.rays); ++i) {
+    const Eigen::Array4d u = aims_.point(i, aim_key).cast<double>();
+    const Ray ray{.origin = at.position,
+                  .direction = portals_->draw(place.portals, at.position, u[0], u[1], u[2]),
+                  .origin_group = at.facet};
+    if (!(measure(at, ray.direction) > 0.0)) continue;
+    ElementHit hit;
+    place.caster.closest_hits({&ray, 1}, {&hit, 1});
+    const double aimed = aimed_density(place, ray, hit);
+    if (!(aimed > 0.0)) continue;
+    add(place, ray, hit, static_cast<std::uint64_t>(place.rays + i), aimed, sum);
+  }
+}
+
+// Adds what a ray finds, by the balance heuristic. `aimed` is aimed_density(); `index` numbers the
+// rays of the place.
+void PixelGather::add(const Place& place, const Ray& ray, const ElementHit& hit,
+                      std::uint64_t index, double aimed, Eigen::ArrayXd& sum) const {
+  if (hit.facet < 0) return;
+  const std::uint64_t key = random_key(place.key, RandomPurpose::pixel_gather_paths, index);
+  const double cosine = measure(place.at, ray.direction);
+  const double by_cosine = place.rays * cosine * std::numbers::inv_pi;
+  Shares shares;
+  if (aimed > 0.0) shares.straight = shares.by_way = by_cosine / (by_cosine + aimed);
+  if (gaps_.is_gap(place.at.normal, ray, hit) ||
+      (aimed > 0.0 && gaps_.is_narrow(place.caster, ray, hit))) {
+    if (shares.by_way == 1.0) {
+      gaps_.add(place.caster, ray, hit, key, sum);
+      return;
+    }
+    Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+    gaps_.add(place.caster, ray, hit, key, found);
+    sum += shares.by_way * found;
+    return;
+  }
+  if (!place.bright.is_empty()) {
+    shares.straight = bright_.share(place.bright, cosine, place.rays, ray, hit, aimed);
+  }
+  sum += arriving(place.caster, ray, hit, key, shares).cast<double>();
+}
+
+// Radiosity B at the end of a ray, weighted by `shares`.
 Spectrum PixelGather::arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                               std::uint64_t key, double share) const {
+                               std::uint64_t key, const Shares& shares) const {
   const PatchMesh& mesh = caster.mesh();
   Spectrum B = Spectrum::Zero(radiosity_.cols());
   if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
-    B = static_cast<float>(share) * interpolate(mesh, radiosity_, hit);
+    B = static_cast<float>(shares.straight) * interpolate(mesh, radiosity_, hit);
   }
   if (!paths_.is_specular(hit.facet)) return B;
+  const auto by_way = static_cast<float>(shares.by_way);
   const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
-    B += end.throughput * interpolate(mesh, radiosity_, end.hit);
+    B += by_way * end.throughput * interpolate(mesh, radiosity_, end.hit);
   });
   if (losses.sky.size() > 0 && dome_.size() > 0) {
-    B += std::numbers::pi_v<float> * dome_ * losses.sky;
+    B += std::numbers::pi_v<float> * by_way * dome_ * losses.sky;
   }
   return B;
 }

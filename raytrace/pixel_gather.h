@@ -2,12 +2,14 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/gather/gap_light.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/solution.h"
 #include "scene/hemisphere_sets.h"
@@ -25,7 +27,8 @@ struct ShadingPoint {
 /// Final gather (Reichert 1992) at points of a picture: indirect irradiance E = (1/N) sum B over N
 /// cosine-distributed rays of a scrambled Sobol sequence. B is the solution's radiosity at the end
 /// of a ray, which is followed through mirrors and clear glass. If there are bright patches, a
-/// quarter as many rays are aimed at them (see BrightPatches).
+/// quarter as many rays are aimed at them (see BrightPatches), and as many at openings between
+/// bright and dim parts (see Portals).
 ///
 /// Light of emitters of DirectLight through mirrors and glass is not included: see
 /// RadiositySolution::caustic_irradiance. Light of the sky's dome through mirrors and glass is
@@ -45,10 +48,26 @@ class PixelGather {
                                std::uint64_t key, float share) const;
 
  private:
-  void aim(const ElementCaster& caster, const ShadingPoint& at, const BrightPatches::View& view,
-           int rays, std::uint64_t key, Eigen::ArrayXd& sum) const;
+  // Balance-heuristic weights of light straight from a hit, and of light through mirrors and glass.
+  struct Shares {
+    double straight = 1.0, by_way = 1.0;
+  };
+  // A point, and the bright patches and portals that are seen from there.
+  struct Place {
+    const ElementCaster& caster;
+    const ShadingPoint& at;
+    std::uint64_t key = 0;
+    int rays = 0;  // cosine-distributed
+    BrightPatches::View bright{};
+    Portals::View portals{};
+  };
+  double aimed_density(const Place& place, const Ray& ray, const ElementHit& hit) const;
+  void aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const;
+  void aim_at_portals(const Place& place, Eigen::ArrayXd& sum) const;
+  void add(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
+           double aimed, Eigen::ArrayXd& sum) const;
   Spectrum arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                    std::uint64_t key, double share) const;
+                    std::uint64_t key, const Shares& shares) const;
 
   LightPaths paths_;
   BandArray radiosity_{};               // vertices x bands, W/m^2
@@ -56,7 +75,8 @@ class PixelGather {
   std::vector<HemisphereSets> sets_{};  // each with half the rays of the set before
   BrightPatches bright_;
   GapLight gaps_;
-  SobolPoints aims_;  // Sobol points of the rays towards bright_
+  SobolPoints aims_;                        // Sobol points of the rays towards bright_ and portals_
+  std::shared_ptr<const Portals> portals_;  // null: none
 };
 
 }  // namespace lightwell

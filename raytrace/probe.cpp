@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "radiosity/emitters/sky_light.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/refine/error_reference.h"
 #include "raytrace/specular_light.h"
 #include "raytrace/sure_gather.h"
@@ -154,12 +155,18 @@ class ProbeSurface {
 
 namespace {
 
-// A probe is one point, so it can afford many rays to the sky.
-GatherOptions with_sky_rays(GatherOptions options) {
+// A probe is one point, so it can afford many rays to the sky. Openings between bright and dim
+// parts are looked for if the options have none.
+GatherOptions probe_options(const LitScene& lit, const BandArray& radiosity,
+                            GatherOptions options) {
   constexpr int per_ray = 4, fewest = 64;
   if (options.shadows.sky_rays == 0) {
     options.shadows.sky_rays =
         std::clamp(per_ray * std::min(options.rays, most_sky_rays), fewest, most_sky_rays);
+  }
+  if (!options.portals) {
+    options.portals =
+        find_portals(lit.scene, lit.caster, brightness_of_vertices(lit.mesh(), radiosity));
   }
   return options;
 }
@@ -168,12 +175,12 @@ GatherOptions with_sky_rays(GatherOptions options) {
 BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const GatherPoints& points,
                        const GatherOptions& options, const BandArray& caustic,
                        ProbeBounds* bounds) {
-  const GatherOptions with_sky = with_sky_rays(options);
+  const GatherOptions at_probes = probe_options(lit, radiosity, options);
   if (!bounds) {
-    const GatheredIrradiance E = gather_irradiance(lit, radiosity, points, with_sky);
+    const GatheredIrradiance E = gather_irradiance(lit, radiosity, points, at_probes);
     return E.direct + E.indirect;
   }
-  SureIrradiance sure = sure_gather(lit, radiosity, points, with_sky, bounds->accuracy);
+  SureIrradiance sure = sure_gather(lit, radiosity, points, at_probes, bounds->accuracy);
   for (int i = 0; i < points.size(); ++i) {
     const double lux = luminous(lit.scene.bands, caustic.row(i).transpose());
     if (lux > sure.lux_within[i]) {

@@ -14,6 +14,7 @@ enum class RandomPurpose : std::uint64_t {
   form_factor_rays = 1,
   form_factor_paths = 2,
   emitter_exchange_points = 3,
+  form_factor_aims = 4,
   // Gathers at points; (key of a point, purpose), (patch, purpose) or (source, purpose).
   gather_rays = 10,
   gather_paths = 11,
@@ -21,7 +22,8 @@ enum class RandomPurpose : std::uint64_t {
   caustic_rays = 13,
   caustic_paths = 14,
   gather_aims = 15,
-  gap_rays = 16,              // (key, purpose, number)
+  gap_rays = 16,  // (key, purpose, number)
+  gather_portals = 17,
   error_points = 20,          // alone, a multiple of 10000 added for every further batch
   exchange_shadow_rays = 21,  // (patch, patch, purpose, set)
   shooter_points = 22,        // (patch, receiver, purpose)
@@ -67,8 +69,11 @@ enum class RandomPurpose : std::uint64_t {
   // Parts of a scene; (patch, purpose), (key, purpose, ray) or (node, purpose, round).
   part_rays = 0x9a47,
   part_vectors = 0x9a48,
+  pixel_gather_portals = 0x6a81,
   // Light at points by way of mirrors and glass; (point, purpose, replica), (key, purpose, number).
   specular_light = 0x5bec1,
+  // Paths from openings; (opening, purpose, number).
+  portal_paths = 0x9047a1,
 };
 
 /// True for every purpose. Two purposes of equal value are two equal cases, which no compiler
@@ -78,6 +83,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::form_factor_rays:
     case RandomPurpose::form_factor_paths:
     case RandomPurpose::emitter_exchange_points:
+    case RandomPurpose::form_factor_aims:
     case RandomPurpose::gather_rays:
     case RandomPurpose::gather_paths:
     case RandomPurpose::gather_shadows:
@@ -85,6 +91,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::caustic_paths:
     case RandomPurpose::gather_aims:
     case RandomPurpose::gap_rays:
+    case RandomPurpose::gather_portals:
     case RandomPurpose::error_points:
     case RandomPurpose::exchange_shadow_rays:
     case RandomPurpose::shooter_points:
@@ -119,7 +126,9 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::pixel_gather_aims:
     case RandomPurpose::part_rays:
     case RandomPurpose::part_vectors:
+    case RandomPurpose::pixel_gather_portals:
     case RandomPurpose::specular_light:
+    case RandomPurpose::portal_paths:
       return true;
   }
   return false;

@@ -8,7 +8,8 @@
 namespace lightwell {
 
 /// Estimate of the form factors of patch i by one method, before it is joined with the estimates of
-/// the patches at the other ends. Shares of what leaves the patch; their sum is 1.
+/// the patches at the other ends. Shares of what leaves the patch; their sum is 1, or 1 in the mean
+/// where rays are aimed at openings.
 struct EstimatedRow {
   /// Weight of S_ij = A_i F_ij of this row against S_ji from the other end: the inverse of its
   /// variance, up to a factor common to all rows of a method. 0: the row is empty.

@@ -18,6 +18,7 @@
 #include "radiosity/form_factors/row_estimates.h"
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/journal/journal_phase.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/visibility/pair_shafts.h"
 #include "scene/parallel.h"
@@ -58,8 +59,8 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   }
   // Memory and the run decide no bit of a result.
   const auto& [method, rays_per_patch, target_error, most_rays_per_patch, rays_per_emitter,
-               max_specular_depth, emitter_points, shadows, hemicube_resolution, enforce_closure,
-               memory, run] = options;
+               max_specular_depth, emitter_points, shadows, portals, hemicube_resolution,
+               enforce_closure, memory, run] = options;
   const auto& [min_shadow_rays, max_shadow_rays, sky_rays] = shadows;
   print.add(method);
   print.add(rays_per_patch);
@@ -71,6 +72,8 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   print.add(min_shadow_rays);
   print.add(max_shadow_rays);
   print.add(sky_rays);
+  // Portals follow from the scene and its light.
+  print.add(portals ? portals->size() : 0);
   print.add(hemicube_resolution);
   print.add(enforce_closure);
 }
@@ -158,7 +161,7 @@ class Estimator {
             ErrorOf error_of, Done done) const {
     estimate.row_error.assign(static_cast<std::size_t>(mesh_.patch_count()), 0.0f);
     const int longest = *std::max_element(rays_of.begin(), rays_of.end());
-    const RowCaster caster(caster_, paths_, most_rays(longest));
+    const RowCaster caster(caster_, paths_, most_rays(longest), options_.portals.get());
     const JournalPhase phase = phase_of("rays", &rays_of);
     for_each_row(mesh_, longest, options_.run.progress, [&](int i, RowCaster::Scratch& scratch) {
       std::vector<NearExchange::Pair> pairs;
@@ -216,7 +219,7 @@ class Estimator {
 
   Estimate rays_and_closed_forms() const {
     EmitterExchange emitters(caster_, direct_light_);
-    const NearExchange near(caster_, options_.target_error);
+    const NearExchange near(caster_, options_.target_error, options_.portals.get());
     Estimate estimate = nothing_yet();
     const int n = mesh_.patch_count();
     RecordStore pairs(budget_, n, sizeof(NearExchange::Pair), RecordStore::Count::below_diagonal);

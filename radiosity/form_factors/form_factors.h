@@ -16,6 +16,8 @@
 
 namespace lightwell {
 
+class Portals;
+
 /// F_ij: share of what leaves patch i that arrives at patch j directly.
 struct FormFactor {
   int patch = 0;
@@ -93,6 +95,9 @@ struct FormFactorOptions {
   int max_specular_depth = 8;  ///< mirror and glass events along one ray
   int emitter_points = 16;     ///< points of a patch at which an emitter's closed form is evaluated
   ShadowOptions shadows{.min_rays = 4, .max_rays = 16};
+  /// Narrow openings that rays of rows are aimed at as well (`automatic` and `ray_cast`); null:
+  /// none.
+  std::shared_ptr<const Portals> portals{};
   int hemicube_resolution = 256;  ///< cells along an edge of the hemicube's top
   /// Scales rows to close and stay reciprocal; FormFactorReport gives the size of the correction.
   bool enforce_closure = true;

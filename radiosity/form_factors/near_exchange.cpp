@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "radiosity/openings/portals.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -29,9 +30,10 @@ static_assert(NearExchange::worst_count_error * NearExchange::worst_count_error 
 
 }  // namespace
 
-NearExchange::NearExchange(const ElementCaster& caster, double target_error)
+NearExchange::NearExchange(const ElementCaster& caster, double target_error, const Portals* portals)
     : area_(caster.mesh().area),
       target_error_(target_error),
+      portals_(portals),
       outlines_(patch_outlines(caster.mesh())) {
   if (target_error > 0.0) shafts_.emplace(caster, outlines_);
 }
@@ -51,7 +53,9 @@ double NearExchange::find_pairs(int patch, const EstimatedRow& row,
   for (std::size_t k = 0; k < row.shares.size(); ++k) {
     const int j = row.shares[k].patch;
     const int first = static_cast<int>(std::lround(row.shares[k].value * row.rays));
-    const bool polygons = outlines_[patch].is_polygon() && outlines_[j].is_polygon();
+    const bool polygons =
+        outlines_[patch].is_polygon() && outlines_[j].is_polygon() &&
+        !(portals_ && portals_->part(outlines_[patch].center, outlines_[j].center));
     // Pairs are chosen by geometry. A choice by counts would correct counts that are high by chance
     // but not those that are low, and bias all rows downwards.
     const bool is_worth_it =

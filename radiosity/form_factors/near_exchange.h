@@ -13,6 +13,8 @@
 
 namespace lightwell {
 
+class Portals;
+
 /// Closed forms times fractional visibility for pairs that many rays of a row meet: near or large
 /// patches.
 ///
@@ -27,8 +29,10 @@ namespace lightwell {
 /// is clipped instead (visible_exchange).
 class NearExchange {
  public:
-  /// `target_error`: wanted standard error of F_ij; 0: as the rays give.
-  NearExchange(const ElementCaster& caster, double target_error);
+  /// `target_error`: wanted standard error of F_ij; 0: as the rays give. Pairs on both sides of
+  /// `portals` (null: none) are left to the rays that are aimed there: their visible share is too
+  /// small to be counted. Keeps the pointer.
+  NearExchange(const ElementCaster& caster, double target_error, const Portals* portals = nullptr);
 
   /// Initial rays of a row times the target error. A count of fewer than `fewest_near_rays` = 12
   /// rays, too few for a closed form, has a standard error of at most sqrt(11) / rays. Larger
@@ -60,6 +64,7 @@ class NearExchange {
 
   Eigen::ArrayXd area_;
   double target_error_;
+  const Portals* portals_;
   std::vector<PatchOutline> outlines_;
   std::optional<PairShafts> shafts_;
 };

@@ -5,6 +5,7 @@
 #include <bit>
 #include <memory>
 #include <mutex>
+#include <numbers>
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
@@ -70,15 +71,36 @@ RowCaster::Scratch::Scratch(const PatchMesh& mesh)
 // Moves the counts, as shares of `rays`, into the row, and clears the counters.
 void RowCaster::Scratch::take(int rays, bool with_hidden, EstimatedRow& row) {
   row.shares.reserve(first_.size());
-  first_.take([&](int patch, int count) {
-    row.shares.push_back({patch, static_cast<float>(count) / static_cast<float>(rays)});
+  auto next = by_portal_.begin();
+  const auto add = [&](int patch, float share) {
+    row.shares.push_back({patch, share});
     if (with_hidden) row.hidden.push_back(hidden_.count(patch));
+  };
+  const auto share_by_portal = [&] { return static_cast<float>((next++)->second / rays); };
+  first_.take([&](int patch, int count) {
+    while (next != by_portal_.end() && next->first < patch) {
+      const int other = next->first;
+      add(other, share_by_portal());
+    }
+    float share = static_cast<float>(count) / static_cast<float>(rays);
+    if (next != by_portal_.end() && next->first == patch) share += share_by_portal();
+    add(patch, share);
   });
+  while (next != by_portal_.end()) {
+    const int other = next->first;
+    add(other, share_by_portal());
+  }
+  by_portal_.clear();
   if (with_hidden) hidden_.take([](int, int) {});
 }
 
-RowCaster::RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays)
-    : caster_(caster), paths_(paths), sets_(set_size(most_rays), true) {}
+RowCaster::RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays,
+                     const Portals* portals)
+    : caster_(caster),
+      paths_(paths),
+      sets_(set_size(most_rays), true),
+      portals_(portals),
+      aims_(portals ? Portals::aimed(most_rays) : 1) {}
 
 EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind) const {
   const PatchMesh& mesh = caster_.mesh();
@@ -93,6 +115,11 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   const std::uint64_t key =
       random_key(static_cast<std::uint64_t>(patch), RandomPurpose::form_factor_rays);
   PatchRays from(mesh, patch);
+  Portals::View view;
+  if (portals_) {
+    const PatchPoint middle = PatchSampler(mesh, patch).point(0.5, 0.5);
+    view = portals_->view_both_ways(middle.position, middle.normal, rays);
+  }
   std::array<Ray, row_batch> ray;
   std::array<ElementHit, row_batch> hit;
   for (int begin = 0; begin < rays; begin += HemisphereSets::block) {
@@ -106,7 +133,12 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
       caster_.closest_elements({ray.data(), n}, {hit.data(), n});
       for (std::size_t r = 0; r < n; ++r) {
         const ElementHit& h = hit[r];
-        if (paths_.has_specular() && h.facet >= 0 && paths_.is_specular(h.facet)) {
+        const double aimed = view.is_empty() ? 0.0 : density(view, ray[r], h);
+        if (aimed > 0.0) {
+          const double by_cosine =
+              rays * static_cast<double>(points[first + r].z) * std::numbers::inv_pi;
+          add_weight(h, by_cosine / (by_cosine + Portals::aimed(rays) * aimed), scratch, row);
+        } else if (paths_.has_specular() && h.facet >= 0 && paths_.is_specular(h.facet)) {
           const std::uint64_t index = static_cast<std::uint64_t>(begin) + first + r;
           pass_on(ray[r], h, random_key(key, RandomPurpose::form_factor_paths, index), scratch, row,
                   by_way_of_specular);
@@ -119,6 +151,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
       if (behind) count_hidden({ray.data(), n}, {hit.data(), n}, scratch);
     }
   }
+  if (!view.is_empty()) aim_at_portals(patch, rays, view, scratch, row);
   scratch.take(rays, behind, row);
   row.specular_share.resize(static_cast<Eigen::Index>(by_way_of_specular.size()), bands);
   const auto all = static_cast<float>(rays);
@@ -133,6 +166,46 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   row.escaped /= rays;
   row.specular /= rays;
   return row;
+}
+
+// Density of aimed rays, 1/sr, of a ray that passes a portal and does not meet a mirror or glass.
+double RowCaster::density(const Portals::View& view, const Ray& ray, const ElementHit& hit) const {
+  if (hit.facet >= 0 && paths_.is_specular(hit.facet)) return 0.0;
+  return portals_->density(view, ray.origin, ray.direction, hit.t);
+}
+
+void RowCaster::add_weight(const ElementHit& hit, double weight, Scratch& scratch,
+                           EstimatedRow& row) const {
+  if (hit.element >= 0) {
+    scratch.by_portal_[caster_.mesh().patch[hit.element]] += weight;
+  } else {
+    row.escaped += weight;
+  }
+}
+
+void RowCaster::aim_at_portals(int patch, int rays, const Portals::View& view, Scratch& scratch,
+                               EstimatedRow& row) const {
+  const PatchMesh& mesh = caster_.mesh();
+  const PatchSampler sampler(mesh, patch);
+  const std::uint64_t key =
+      random_key(static_cast<std::uint64_t>(patch), RandomPurpose::form_factor_aims);
+  const int count = std::min(Portals::aimed(rays), aims_.count());
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Array4d u = aims_.point(i, key).cast<double>();
+    const PatchPoint from = sampler.point(u[0], u[1]);
+    const Ray ray{
+        .origin = from.position,
+        .direction = portals_->draw(view, from.position, SobolPoints::fifth(i, key), u[2], u[3]),
+        .origin_group = mesh.facet[from.element]};
+    const double cosine = ray.direction.dot(from.normal);
+    if (!(cosine > 0.0)) continue;
+    ElementHit hit;
+    caster_.closest_elements({&ray, 1}, {&hit, 1});
+    const double aimed = density(view, ray, hit);
+    if (!(aimed > 0.0)) continue;
+    const double by_cosine = rays * cosine * std::numbers::inv_pi;
+    add_weight(hit, by_cosine / (by_cosine + count * aimed), scratch, row);
+  }
 }
 
 // Follows a ray that met a mirror or glass. The surface may also scatter a share diffusely.

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "radiosity/form_factors/estimated_row.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "scene/hemisphere_sets.h"
+#include "scene/sampling.h"
 
 namespace lightwell {
 
@@ -68,8 +70,10 @@ class PatchCounts {
 /// Casts the rays of rows.
 class RowCaster {
  public:
-  /// `most_rays`: most rays of any row.
-  RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays);
+  /// `most_rays`: most rays of any row. `portals`, null for none: openings that rays are aimed at
+  /// as well. Keeps references to all of them.
+  RowCaster(const ElementCaster& caster, const LightPaths& paths, int most_rays,
+            const Portals* portals = nullptr);
 
   /// Memory that one thread reuses from row to row.
   class Scratch {
@@ -81,22 +85,33 @@ class RowCaster {
     void take(int rays, bool with_hidden, EstimatedRow& row);
 
     PatchCounts first_, hidden_;
+    std::map<int, double> by_portal_;  // per patch, weights of rays that passed portals
     std::vector<HemispherePoint> points_;
   };
 
   /// Casts `rays` cosine-distributed rays from all over the patch (Malley's method). The row is
   /// empty for patches that take no part in diffuse exchange. `count_hidden`: rays continue through
   /// all surfaces, to fill EstimatedRow::hidden.
+  ///
+  /// Where portals are seen, a quarter as many rays more are aimed at them. Of both kinds those
+  /// that pass a portal and meet a diffuse surface, or nothing, have the weights of the balance
+  /// heuristic.
   EstimatedRow cast(int patch, int rays, Scratch& scratch, bool count_hidden = false) const;
 
  private:
   void pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch, Scratch& scratch,
                EstimatedRow& row, std::map<int, Spectrum>& by_way_of_specular) const;
+  double density(const Portals::View& view, const Ray& ray, const ElementHit& hit) const;
+  void add_weight(const ElementHit& hit, double weight, Scratch& scratch, EstimatedRow& row) const;
+  void aim_at_portals(int patch, int rays, const Portals::View& view, Scratch& scratch,
+                      EstimatedRow& row) const;
   void count_hidden(std::span<Ray> rays, std::span<ElementHit> hits, Scratch& scratch) const;
 
   const ElementCaster& caster_;
   const LightPaths& paths_;
   HemisphereSets sets_;
+  const Portals* portals_;
+  SobolPoints aims_;  // of rays aimed at portals
 };
 
 /// Calls `work(i, scratch)` for each patch i, in parallel, with progress between slices.

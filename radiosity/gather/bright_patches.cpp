@@ -214,10 +214,13 @@ double BrightPatches::density(const View& view, int element, const Eigen::Vector
 }
 
 double BrightPatches::share(const View& view, double cosine, int rays, const Ray& ray,
-                            const ElementHit& hit) const {
-  if (hit.element < 0 || of_element_[static_cast<std::size_t>(hit.element)] < 0) return 1.0;
+                            const ElementHit& hit, double others) const {
+  const bool is_bright = !view.is_empty() && hit.element >= 0 &&
+                         of_element_[static_cast<std::size_t>(hit.element)] >= 0;
+  if (!is_bright && !(others > 0.0)) return 1.0;
   const double by_cosine = rays * std::max(cosine, 0.0) * std::numbers::inv_pi;
-  const double all = by_cosine + aimed(rays) * density(view, hit.element, ray.direction, hit.t);
+  double all = by_cosine + others;
+  if (is_bright) all += aimed(rays) * density(view, hit.element, ray.direction, hit.t);
   return all > 0.0 ? by_cosine / all : 0.0;
 }
 

@@ -61,10 +61,11 @@ class BrightPatches {
   static int aimed(int rays) { return std::max(1, rays / 4); }
   /// Balance-heuristic weight of a ray of either kind: N p / (N p + aimed(N) q) with N = `rays`,
   /// the densities p = `cosine` / pi and q = density(). Irradiance is then E = (1/N) sum weight B
-  /// over the N cosine-distributed and the aimed(N) other rays. The direction of `ray` is a unit
-  /// vector.
-  double share(const View& view, double cosine, int rays, const Ray& ray,
-               const ElementHit& hit) const;
+  /// over the N cosine-distributed and the aimed(N) other rays. `others` is added to the
+  /// denominator: the number times the density, 1/sr, of rays aimed at other things. The direction
+  /// of `ray` is a unit vector.
+  double share(const View& view, double cosine, int rays, const Ray& ray, const ElementHit& hit,
+               double others = 0.0) const;
 
  private:
   struct Patch {

@@ -13,6 +13,7 @@
 #include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/journal/journal_phase.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "scene/hemisphere_sets.h"
 #include "scene/parallel.h"
@@ -57,12 +58,15 @@ class HemisphereGather {
       if (!bright_.is_empty() && !aims_.contains(rays)) {
         aims_.emplace(rays, SobolPoints(bright_.aimed(rays)));
       }
+      if (options.portals && !portal_aims_.contains(rays)) {
+        portal_aims_.emplace(rays, SobolPoints(Portals::aimed(rays)));
+      }
     }
   }
 
-  // E = (1/N) sum B over N cosine-distributed rays and, if there are bright patches, aimed rays
-  // besides; B of both kinds is weighted by the balance heuristic. Writes the columns of
-  // `irradiance`. The first and the second half of the rays are each stratified.
+  // E = (1/N) sum B over N cosine-distributed rays and, if there are bright patches or portals,
+  // rays aimed at them besides; B of all kinds is weighted by the balance heuristic. Writes the
+  // columns of `irradiance`. The first and the second half of the rays are each stratified.
   void gather(const GatherPoint& at, std::uint64_t key, float* irradiance, float& variance) const {
     const Eigen::Index columns = radiosity_.cols();
     std::array<Eigen::ArrayXd, 2> sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
@@ -70,8 +74,9 @@ class HemisphereGather {
     const HemisphereSets::Draw draw = set.draw(random_key(key, RandomPurpose::gather_rays));
     const Eigen::Matrix3d frame = draw.frame(at.normal);
     const int count = set.count();
-    BrightPatches::View view;
-    if (!bright_.is_empty()) view = bright_.view(at.position, at.normal, count);
+    Place place{.at = at, .key = key, .rays = count};
+    if (!bright_.is_empty()) place.bright = bright_.view(at.position, at.normal, count);
+    if (options_.portals) place.portals = options_.portals->view(at.position, at.normal, count);
     std::array<Ray, gather_batch> ray;
     std::array<ElementHit, gather_batch> hit;
     for (int begin = 0; begin < set.count(); begin += gather_batch) {
@@ -87,40 +92,49 @@ class HemisphereGather {
       caster_.closest_hits({ray.data(), n}, {hit.data(), n});
       for (std::size_t r = 0; r < n; ++r) {
         const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;
-        const int place = begin / HemisphereSets::block * HemisphereSets::block + points[r].rank;
-        const double share = view.is_empty() ? 1.0
-                                             : bright_.share(view, at.normal.dot(ray[r].direction),
-                                                             count, ray[r], hit[r]);
-        Eigen::ArrayXd& half = sum[place < count / 2 ? 0 : 1];
-        if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) {
-          gaps_.add(caster_, ray[r], hit[r], random_key(key, RandomPurpose::gap_rays, index), half);
-        } else {
-          add(ray[r], hit[r], key, index, share, half);
-        }
+        const int rank = begin / HemisphereSets::block * HemisphereSets::block + points[r].rank;
+        add(place, ray[r], hit[r], index, aimed_density(place, ray[r], hit[r]),
+            sum[rank < count / 2 ? 0 : 1]);
       }
     }
-    if (!view.is_empty()) aim(at, view, key, sum);
+    if (!place.bright.is_empty()) aim_at_bright(place, sum);
+    if (!place.portals.is_empty()) aim_at_portals(place, sum);
     Eigen::Map<Eigen::ArrayXf>(irradiance, columns) =
         ((sum[0] + sum[1]) / set.count()).cast<float>();
     variance = half_difference(sum, set.count());
   }
 
  private:
+  // A gather point, and the bright patches and portals that are seen from there.
+  struct Place {
+    const GatherPoint& at;
+    std::uint64_t key = 0;
+    int rays = 0;  // cosine-distributed
+    BrightPatches::View bright{};
+    Portals::View portals{};
+  };
+
+  // Number times density, 1/sr, of rays aimed at the portals that the ray passes.
+  double aimed_density(const Place& place, const Ray& ray, const ElementHit& hit) const {
+    if (place.portals.is_empty()) return 0.0;
+    return Portals::aimed(place.rays) *
+           options_.portals->density(place.portals, ray.origin, ray.direction, hit.t);
+  }
+
   // Adds rays towards bright patches; each counts only the light straight from its own element.
-  void aim(const GatherPoint& at, const BrightPatches::View& view, std::uint64_t key,
-           std::array<Eigen::ArrayXd, 2>& sum) const {
-    const int rays = ray_count(at, options_);
-    const SobolPoints& aims = aims_.at(rays);
+  void aim_at_bright(const Place& place, std::array<Eigen::ArrayXd, 2>& sum) const {
+    const GatherPoint& at = place.at;
+    const SobolPoints& aims = aims_.at(place.rays);
     std::array<Ray, gather_batch> ray;
     std::array<ElementHit, gather_batch> hit;
     std::array<int, gather_batch> element;
     for (int begin = 0; begin < aims.count(); begin += gather_batch) {
       const auto n = static_cast<std::size_t>(std::min(gather_batch, aims.count() - begin));
       for (std::size_t r = 0; r < n; ++r) {
-        const Eigen::Array4d u =
-            aims.point(begin + static_cast<int>(r), random_key(key, RandomPurpose::gather_aims))
-                .cast<double>();
-        const BrightPatches::Aim aim = bright_.draw(view, u[0], u[1], u[2]);
+        const Eigen::Array4d u = aims.point(begin + static_cast<int>(r),
+                                            random_key(place.key, RandomPurpose::gather_aims))
+                                     .cast<double>();
+        const BrightPatches::Aim aim = bright_.draw(place.bright, u[0], u[1], u[2]);
         element[r] = aim.element;
         ray[r] = {.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
       }
@@ -130,27 +144,89 @@ class HemisphereGather {
         if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
         const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
         add_radiosity(hit[r],
-                      bright_.share(view, at.normal.dot(ray[r].direction), rays, ray[r], hit[r]),
+                      bright_.share(place.bright, at.normal.dot(ray[r].direction), place.rays,
+                                    ray[r], hit[r], aimed_density(place, ray[r], hit[r])),
                       sum[is_first ? 0 : 1]);
       }
     }
   }
 
-  // `share` is the weight of the light straight from the hit; light through mirrors and glass has
-  // weight 1.
-  void add(const Ray& ray, const ElementHit& hit, std::uint64_t key, std::uint64_t index,
-           double share, Eigen::ArrayXd& sum) const {
+  // Adds rays towards portals. Each counts whatever it finds, if it passes a portal.
+  void aim_at_portals(const Place& place, std::array<Eigen::ArrayXd, 2>& sum) const {
+    const GatherPoint& at = place.at;
+    const SobolPoints& aims = portal_aims_.at(place.rays);
+    const std::uint64_t key = random_key(place.key, RandomPurpose::gather_portals);
+    std::array<Ray, gather_batch> ray;
+    std::array<ElementHit, gather_batch> hit;
+    for (int begin = 0; begin < aims.count(); begin += gather_batch) {
+      const auto n = static_cast<std::size_t>(std::min(gather_batch, aims.count() - begin));
+      for (std::size_t r = 0; r < n; ++r) {
+        const Eigen::Array4d u = aims.point(begin + static_cast<int>(r), key).cast<double>();
+        ray[r] = {.origin = at.position,
+                  .direction = options_.portals->draw(place.portals, at.position, u[0], u[1], u[2]),
+                  .origin_group = at.facet};
+      }
+      caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+      for (std::size_t r = 0; r < n; ++r) {
+        const double density = aimed_density(place, ray[r], hit[r]);
+        if (!(density > 0.0) || !(at.normal.dot(ray[r].direction) > 0.0)) continue;
+        const std::size_t index = static_cast<std::size_t>(begin) + r;
+        const bool is_first = index < static_cast<std::size_t>(aims.count() / 2);
+        add(place, ray[r], hit[r], static_cast<std::uint64_t>(place.rays) + index, density,
+            sum[is_first ? 0 : 1]);
+      }
+    }
+  }
+
+  // Adds what a ray finds, by the balance heuristic. `aimed` is aimed_density(); `index` numbers
+  // the rays of the place. Bright patches are not aimed at through mirrors and glass.
+  void add(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
+           double aimed, Eigen::ArrayXd& sum) const {
     if (hit.facet < 0) return;
-    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) add_radiosity(hit, share, sum);
-    if (!paths_.is_specular(hit.facet)) return;
+    const GatherPoint& at = place.at;
+    const double by_cosine =
+        place.rays * std::max(at.normal.dot(ray.direction), 0.0) * std::numbers::inv_pi;
+    const double share = aimed > 0.0 ? by_cosine / (by_cosine + aimed) : 1.0;
+    const bool in_gap = (at.facet >= 0 && gaps_.is_gap(at.normal, ray, hit)) ||
+                        (aimed > 0.0 && gaps_.is_narrow(caster_, ray, hit));
+    if (in_gap) {
+      add_of_gap(ray, hit, random_key(place.key, RandomPurpose::gap_rays, index), share, sum);
+      return;
+    }
+    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
+      const double straight = place.bright.is_empty()
+                                  ? share
+                                  : bright_.share(place.bright, at.normal.dot(ray.direction),
+                                                  place.rays, ray, hit, aimed);
+      add_radiosity(hit, straight, sum);
+    }
+    if (paths_.is_specular(hit.facet)) {
+      add_path(ray, hit, random_key(place.key, RandomPurpose::gather_paths, index), share, sum);
+    }
+  }
+
+  void add_of_gap(const Ray& ray, const ElementHit& hit, std::uint64_t key, double share,
+                  Eigen::ArrayXd& sum) const {
+    if (share == 1.0) {
+      gaps_.add(caster_, ray, hit, key, sum);
+      return;
+    }
+    Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+    gaps_.add(caster_, ray, hit, key, found);
+    sum += share * found;
+  }
+
+  // Adds light that arrives through mirrors and glass.
+  void add_path(const Ray& ray, const ElementHit& hit, std::uint64_t key, double share,
+                Eigen::ArrayXd& sum) const {
+    const auto weight = static_cast<float>(share);
     const PathLosses losses =
-        paths_.follow(ray, hit, random_key(key, RandomPurpose::gather_paths, index),
-                      [&](const ElementHit& end, const Spectrum& throughput) {
-                        add_throughput(end, throughput, sum);
-                      });
+        paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+          add_throughput(end, weight * throughput, sum);
+        });
     if (losses.sky.size() == 0 || dome_.size() == 0) return;
     sum.segment(dome_column_, bands_) +=
-        (std::numbers::pi_v<float> * dome_ * losses.sky).cast<double>();
+        (std::numbers::pi_v<float> * weight * dome_ * losses.sky).cast<double>();
   }
 
   // `throughput` has bands, and the columns are those of one channel after the other.
@@ -201,7 +277,8 @@ class HemisphereGather {
   std::map<int, HemisphereSets> sets_;  // by number of rays
   BrightPatches bright_;
   GapLight gaps_;
-  std::map<int, SobolPoints> aims_;  // of aimed rays, by the number of rays in sets_
+  // Of rays aimed at bright patches and at portals, by the number of rays in sets_.
+  std::map<int, SobolPoints> aims_, portal_aims_;
 };
 
 // Adds all inputs of a gather, apart from the scene, to the journal's fingerprint.
@@ -218,7 +295,7 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
     print.add(rays);
   }
   // The run decides no bit of a result.
-  const auto& [rays, max_specular_depth, shadows, replica, run] = options;
+  const auto& [rays, max_specular_depth, shadows, replica, portals, run] = options;
   const auto& [min_shadow_rays, max_shadow_rays, sky_rays] = shadows;
   print.add(rays);
   print.add(max_specular_depth);
@@ -226,6 +303,7 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
   print.add(max_shadow_rays);
   print.add(sky_rays);
   print.add(replica);
+  print.add(portals ? portals->size() : 0);  // portals follow from the scene and its light
 }
 
 // The values of rows begin to begin + size - 1.

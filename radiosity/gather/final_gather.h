@@ -3,6 +3,7 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -15,6 +16,8 @@
 #include "radiosity/solution/solution.h"
 
 namespace lightwell {
+
+class Portals;
 
 /// A point at which irradiance is gathered.
 struct GatherPoint {
@@ -54,8 +57,9 @@ struct GatherOptions {
   int rays = 512;  ///< hemisphere rays per point; a power of two stratifies best
   int max_specular_depth = 8;
   ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
-  std::uint64_t replica = 0;  ///< another number gives an independent estimate
-  RunControl run{};           ///< the journal keeps the gathered light
+  std::uint64_t replica = 0;                 ///< another number gives an independent estimate
+  std::shared_ptr<const Portals> portals{};  ///< openings that rays are aimed at; null: none
+  RunControl run{};                          ///< the journal keeps the gathered light
 };
 
 /// Gathered irradiance, points x columns, W/m^2. The columns are the bands; if light is kept apart
@@ -74,6 +78,7 @@ struct GatheredIrradiance {
 /// - Direct light: closed form times visibility.
 /// - Indirect light: E = (1/N) sum B over N cosine-distributed rays, which continue through mirrors
 ///   and clear glass, and read the radiosity B where they end.
+/// - A quarter as many rays more are aimed at `options.portals`, from their dim sides.
 /// - Light of DirectLight's emitters through mirrors and glass is left out, since rays from the
 ///   receiver find it by chance only (see caustic_irradiance). Such light of the sky's dome is
 ///   included, since the rays find it well.

@@ -36,14 +36,31 @@ bool GapLight::is_gap(const Eigen::Vector3d& normal, const Ray& ray, const Eleme
   // Surfaces that face each other are at most twice as far apart along one normal as along the
   // other. Most rays end here, before the other normal is needed.
   const double height = hit.t * std::abs(ray.direction.dot(normal));
-  if (!(height < 2.0 * widest * size) || paths_.is_specular(hit.facet)) return false;
-  const int patch = mesh.patch[hit.element];
-  if ((mesh.emission.row(patch) > 0.0f).any() || !(mesh.reflectance.row(patch) > 0.0f).any()) {
-    return false;
-  }
+  if (!(height < 2.0 * widest * size) || !may_be_followed(hit)) return false;
   const Eigen::Vector3d other = normal_towards(ray, hit);
   const double width = hit.t * std::abs(ray.direction.dot(other));
   return other.dot(normal) < facing && width < widest * size && width > narrowest * size;
+}
+
+// True if the surface reflects diffusely, and neither mirrors nor emits.
+bool GapLight::may_be_followed(const ElementHit& hit) const {
+  const PatchMesh& mesh = lit_.mesh();
+  const int patch = mesh.patch[hit.element];
+  return !paths_.is_specular(hit.facet) && !(mesh.emission.row(patch) > 0.0f).any() &&
+         (mesh.reflectance.row(patch) > 0.0f).any();
+}
+
+bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const {
+  if (hit.element < 0 || !may_be_followed(hit)) return false;
+  const double size = std::sqrt(lit_.mesh().element_area[hit.element]);
+  const Ray across{.origin = ray.origin + hit.t * ray.direction,
+                   .direction = normal_towards(ray, hit),
+                   .t_max = widest * size,
+                   .origin_group = hit.facet};
+  ElementHit opposite;
+  caster.closest_hits({&across, 1}, {&opposite, 1});
+  return opposite.element >= 0 && opposite.t > narrowest * size &&
+         normal_towards(across, opposite).dot(across.direction) < facing;
 }
 
 void GapLight::add(const ElementCaster& caster, const Ray& first_ray, const ElementHit& first_hit,

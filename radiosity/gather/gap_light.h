@@ -28,12 +28,17 @@ class GapLight {
   /// less than a fifth of the size of the element that was hit, and more than 1e-4 of that size.
   bool is_gap(const Eigen::Vector3d& normal, const Ray& ray, const ElementHit& hit) const;
 
+  /// True if a ray ends in a gap that it entered from outside, such as the passage between a door
+  /// and its frame: as is_gap(), but for the surface that faces the one that was hit.
+  bool is_narrow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const;
+
   /// Adds the radiosity B at the end of a ray in a gap to the columns of `sum`. `key` decides the
   /// further rays. `caster` is that of the scene or its ElementCaster::at().
   void add(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
            Eigen::ArrayXd& sum) const;
 
  private:
+  bool may_be_followed(const ElementHit& hit) const;
   Eigen::Vector3d normal_towards(const Ray& ray, const ElementHit& hit) const;
 
   LitScene lit_;

@@ -7,6 +7,7 @@
 
 #include "mesh/patches/sphere_grid.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/openings/portals.h"
 #include "scene/parallel.h"
 #include "viewer/export/baked_channels.h"
 #include "viewer/export/chart_texels.h"
@@ -112,7 +113,7 @@ BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& mode
   }
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
-  const GatherOptions gathering{
+  GatherOptions gathering{
       .rays = options.gather_rays, .shadows = options.shadows, .run = options.run};
   BandArray found;
   if (options.pass == Pass::direct) {
@@ -121,6 +122,7 @@ BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& mode
   } else {
     if (s.caustic_irradiance.size() > 0) interpolated(s.caustic_irradiance);
     const BandArray B = gatherable_radiosity(solved.mesh, direct_light, s.irradiance());
+    gathering.portals = find_portals(scene, caster, brightness_of_vertices(solved.mesh, B));
     const GatheredIrradiance all =
         gather_irradiance({scene, caster, direct_light}, B, points, gathering);
     found = all.direct + all.indirect;

@@ -1,0 +1,288 @@
+#include "radiosity/openings/portals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/parallel.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+
+// What is seen through one side of an opening.
+struct Sight {
+  double brightness = 0.0;  // sum over paths
+  int paths = 0;            // that ended on this side
+  double distance = 0.0;    // metres, sum over paths that ended on a surface
+  Eigen::AlignedBox3d region{};
+
+  double mean() const { return paths > 0 ? brightness / paths : 0.0; }
+};
+
+class Sights {
+ public:
+  Sights(const ElementCaster& caster, const std::vector<float>& brightness)
+      : caster_(caster), brightness_(brightness) {}
+
+  // Adds paths begin to end - 1 from points of the opening towards its front (`side` 0) or back.
+  void look(const Opening& opening, std::uint64_t key, int side, int begin, int end,
+            Sight& sight) const {
+    for (int i = begin; i < end; ++i) {
+      const std::uint64_t path =
+          random_key(key, RandomPurpose::portal_paths, static_cast<std::uint64_t>(2 * i + side));
+      follow(opening, path, side == 0 ? opening.normal : Vector3d(-opening.normal), sight);
+    }
+  }
+
+ private:
+  // A path leaves the passage behind an opening when a ray is longer than so many widths.
+  static constexpr double long_ray = 5.0;
+  static constexpr int most_rays = 24;
+
+  static double number(std::uint64_t path, int i) {
+    return random_uniform(random_key(path, static_cast<std::uint64_t>(i)));
+  }
+  static Vector3d scattered(const Vector3d& normal, std::uint64_t path, int i) {
+    Vector3d x, y;
+    tangent_frame(normal, x, y);
+    const Vector3d d = cosine_direction(static_cast<float>(number(path, i)),
+                                        static_cast<float>(number(path, i + 1)));
+    return d.x() * x + d.y() * y + d.z() * normal;
+  }
+
+  void follow(const Opening& opening, std::uint64_t path, const Vector3d& outwards,
+              Sight& sight) const {
+    const double far = long_ray * 2.0 * opening.across.norm();
+    Ray ray{.origin = opening.center + (2.0 * number(path, 0) - 1.0) * opening.along +
+                      (2.0 * number(path, 1) - 1.0) * opening.across,
+            .direction = scattered(outwards, path, 2)};
+    for (int i = 0; i < most_rays; ++i) {
+      ElementHit hit;
+      caster_.closest_hits({&ray, 1}, {&hit, 1});
+      if (hit.facet < 0) {
+        ++sight.paths;
+        return;
+      }
+      const Vector3d at = ray.origin + hit.t * ray.direction;
+      // A path that came back out of the passage says nothing about this side.
+      if ((at - opening.center).dot(outwards) < 0.0) return;
+      if (hit.t > far || hit.element < 0) {
+        ++sight.paths;
+        sight.region.extend(at);
+        sight.distance += (at - opening.center).norm();
+        if (hit.element >= 0) {
+          sight.brightness += brightness_[static_cast<std::size_t>(hit.element)];
+        }
+        return;
+      }
+      Vector3d normal = element_center(caster_.mesh(), hit.element).normal;
+      if (normal.dot(ray.direction) > 0.0) normal = -normal;
+      ray = {
+          .origin = at, .direction = scattered(normal, path, 2 * i + 4), .origin_group = hit.facet};
+    }
+  }
+
+  const ElementCaster& caster_;
+  const std::vector<float>& brightness_;
+};
+
+bool has_contrast(const std::array<Sight, 2>& sight, double least) {
+  const double front = sight[0].mean(), back = sight[1].mean();
+  return std::max(front, back) > least * std::min(front, back);
+}
+
+}  // namespace
+
+Portals::Portals(const ElementCaster& caster, const std::vector<float>& brightness,
+                 const std::vector<Opening>& openings) {
+  constexpr int few = 8, many = 128;
+  const Sights sights(caster, brightness);
+  std::vector<std::array<Sight, 2>> seen(openings.size());
+  parallel_for(static_cast<int>(openings.size()), 4, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      auto& sight = seen[static_cast<std::size_t>(i)];
+      const auto key = static_cast<std::uint64_t>(i);
+      const Opening& opening = openings[static_cast<std::size_t>(i)];
+      for (const int side : {0, 1}) sights.look(opening, key, side, 0, few, sight[side]);
+      if (!has_contrast(sight, 0.25 * least_contrast)) continue;
+      for (const int side : {0, 1}) sights.look(opening, key, side, few, many, sight[side]);
+    }
+  });
+  for (std::size_t i = 0; i < openings.size(); ++i) {
+    if (seen[i][0].paths == 0 || seen[i][1].paths == 0) continue;
+    if (!has_contrast(seen[i], least_contrast)) continue;
+    const Opening& shape = openings[i];
+    Portal& portal = portals_.emplace_back();
+    portal.shape = shape;
+    portal.along = shape.along / shape.along.squaredNorm();
+    portal.across = shape.across / shape.across.squaredNorm();
+    portal.area = shape.area();
+    for (const int side : {0, 1}) {
+      portal.brightness[side] = seen[i][side].mean();
+      portal.is_dim[side] = seen[i][side].mean() < seen[i][1 - side].mean();
+      Eigen::AlignedBox3d& region = portal.region[side] = seen[i][side].region;
+      for (const double s : {-1.0, 1.0}) {
+        region.extend(shape.center + s * shape.along);
+        region.extend(shape.center + s * shape.across);
+      }
+      constexpr double margin = 0.1;  // what a few paths leave out
+      const Vector3d more = Vector3d::Constant(margin * region.sizes().maxCoeff());
+      region = Eigen::AlignedBox3d(region.min() - more, region.max() + more);
+    }
+  }
+  if (portals_.size() <= static_cast<std::size_t>(most)) return;
+  const auto power = [](const Portal& portal) {
+    return portal.area * std::max(portal.brightness[0], portal.brightness[1]);
+  };
+  std::stable_sort(portals_.begin(), portals_.end(),
+                   [&](const Portal& a, const Portal& b) { return power(a) > power(b); });
+  portals_.resize(static_cast<std::size_t>(most));
+}
+
+template <class Weight>
+Portals::View Portals::view_of(const Vector3d& from, const Vector3d& normal, int rays,
+                               Weight weight) const {
+  // Cosine-distributed rays that pass a portal, from which number on they leave less noise than
+  // aimed ones would.
+  constexpr double few = 4.0;
+  View view;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < portals_.size(); ++i) {
+    const Portal& portal = portals_[i];
+    const Vector3d to = portal.shape.center - from;
+    const double height = -to.dot(portal.shape.normal);  // before the front
+    const int side = height > 0.0 ? 0 : 1;
+    const double of_light = weight(portal, side);
+    if (!(of_light > 0.0) || !portal.region[side].contains(from)) continue;
+    const double radius = portal.shape.along.norm() + portal.shape.across.norm();
+    const double rise = to.dot(normal) + radius;  // bound for the portal's highest point
+    if (!(rise > 0.0)) continue;
+    const double distance2 = to.squaredNorm(), distance = std::sqrt(distance2);
+    // Approximate form factor from the point to the portal. Its plane is never seen quite edge-on:
+    // the point is one of many of a patch, and rectangles follow real openings roughly.
+    const double slant = std::max(std::abs(height), 0.02 * distance) / (distance + radius);
+    const double form_factor = std::min(rise / (distance + radius), 1.0) * slant * portal.area /
+                               (std::numbers::pi * distance2 + portal.area);
+    sum += of_light * form_factor / (1.0 + rays * form_factor / few);
+    view.entries_.push_back({static_cast<int>(i), sum});
+  }
+  for (View::Entry& entry : view.entries_) entry.up_to /= sum;
+  if (!view.entries_.empty()) view.entries_.back().up_to = 1.0;
+  return view;
+}
+
+Portals::View Portals::view(const Vector3d& from, const Vector3d& normal, int rays) const {
+  return view_of(from, normal, rays, [](const Portal& portal, int side) {
+    return portal.is_dim[side] ? portal.brightness[1 - side] : 0.0;
+  });
+}
+
+Portals::View Portals::view_both_ways(const Vector3d& from, const Vector3d& normal,
+                                      int rays) const {
+  return view_of(from, normal, rays, [](const Portal&, int) { return 1.0; });
+}
+
+Vector3d Portals::draw(const View& view, const Vector3d& from, double which, double u,
+                       double v) const {
+  const auto& entries = view.entries_;
+  const auto found = std::upper_bound(entries.begin(), entries.end() - 1, which,
+                                      [](double x, const View::Entry& e) { return x < e.up_to; });
+  const Opening& shape = portals_[static_cast<std::size_t>(found->portal)].shape;
+  const Vector3d at = shape.center + (2.0 * u - 1.0) * shape.along + (2.0 * v - 1.0) * shape.across;
+  return (at - from).normalized();
+}
+
+double Portals::density(const View& view, const Vector3d& from, const Vector3d& direction,
+                        double distance) const {
+  // Bounds the density where a portal is seen edge-on and has no solid angle.
+  constexpr double grazing = 1e-9;
+  double sum = 0.0, before = 0.0;
+  for (const auto& [number, up_to] : view.entries_) {
+    const double chance = up_to - before;
+    before = up_to;
+    const Portal& portal = portals_[static_cast<std::size_t>(number)];
+    const Vector3d to = portal.shape.center - from;
+    const double cosine = direction.dot(portal.shape.normal), height = to.dot(portal.shape.normal);
+    if (!(cosine * height > 0.0)) continue;
+    const double t = height / cosine;
+    if (t > distance) continue;
+    const Vector3d at = t * direction - to;
+    if (std::abs(at.dot(portal.along)) > 1.0 || std::abs(at.dot(portal.across)) > 1.0) continue;
+    sum += chance * t * t / (portal.area * std::max(std::abs(cosine), grazing));
+  }
+  return sum;
+}
+
+bool Portals::part(const Vector3d& a, const Vector3d& b) const {
+  return std::any_of(portals_.begin(), portals_.end(), [&](const Portal& portal) {
+    const bool a_is_behind = (a - portal.shape.center).dot(portal.shape.normal) < 0.0;
+    const bool b_is_behind = (b - portal.shape.center).dot(portal.shape.normal) < 0.0;
+    return a_is_behind != b_is_behind && portal.region[a_is_behind ? 1 : 0].contains(a) &&
+           portal.region[b_is_behind ? 1 : 0].contains(b);
+  });
+}
+
+std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings) {
+  constexpr int paths = 16;
+  constexpr double narrow = 0.1;
+  const std::vector<float> dark(static_cast<std::size_t>(caster.mesh().element_count()), 0.0f);
+  const Sights sights(caster, dark);
+  std::vector<char> is_narrow(openings.size(), 0);
+  parallel_for(static_cast<int>(openings.size()), 4, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const Opening& opening = openings[static_cast<std::size_t>(i)];
+      std::array<Sight, 2> sight;
+      bool narrow_on_both = true;
+      for (const int side : {0, 1}) {
+        sights.look(opening, static_cast<std::uint64_t>(i), side, 0, paths, sight[side]);
+        narrow_on_both = narrow_on_both && 2.0 * opening.across.norm() * sight[side].paths <
+                                               narrow * sight[side].distance;
+      }
+      is_narrow[static_cast<std::size_t>(i)] = narrow_on_both ? 1 : 0;
+    }
+  });
+  std::vector<Opening> result;
+  for (std::size_t i = 0; i < openings.size(); ++i) {
+    if (is_narrow[i]) result.push_back(openings[i]);
+  }
+  return result;
+}
+
+std::shared_ptr<const Portals> find_portals(const Scene& scene, const ElementCaster& caster,
+                                            const std::vector<float>& brightness) {
+  const std::vector<Opening> openings = find_openings(scene);
+  if (openings.empty()) return nullptr;
+  auto portals = std::make_shared<const Portals>(caster, brightness, openings);
+  return portals->is_empty() ? nullptr : portals;
+}
+
+std::vector<float> brightness_of_vertices(const PatchMesh& mesh, const BandArray& radiosity) {
+  std::vector<float> of_element(static_cast<std::size_t>(mesh.element_count()), 0.0f);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int corners = mesh.corner_count(e);
+    for (int c = 0; c < corners; ++c) {
+      of_element[static_cast<std::size_t>(e)] +=
+          radiosity.row(mesh.corners[e][c]).sum() / static_cast<float>(corners);
+    }
+  }
+  return of_element;
+}
+
+std::vector<float> brightness_of_patches(const PatchMesh& mesh, const DirectLight& direct_light,
+                                         const BandArray& radiosity) {
+  std::vector<float> of_element(static_cast<std::size_t>(mesh.element_count()), 0.0f);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    float& brightness = of_element[static_cast<std::size_t>(e)] = radiosity.row(p).sum();
+    if (direct_light.owns(mesh.facet[e], mesh.is_back[p] != 0)) {
+      brightness -= mesh.emission.row(p).sum();
+    }
+  }
+  return of_element;
+}
+
+}  // namespace lightwell
