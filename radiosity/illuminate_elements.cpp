@@ -245,8 +245,17 @@ class GatherAttempts {
       if (refined.parts[part].is_reached) refined.outcome = RefineOutcome::tolerance_reached;
     }
     const ErrorEstimate& estimate = estimates_[part];
-    return next_effort(efforts_[part], targets_[part], estimate.error(), estimate.noise, refined,
-                       attempt_);
+    const Effort& spent = efforts_[part];
+    auto next =
+        next_effort(spent, targets_[part], estimate.error(), estimate.noise, refined, attempt_);
+    // Few of the rays in a dim room find the opening that its light comes from. The noise then has
+    // a long tail, is larger than its estimate, and no splitting reduces it.
+    constexpr double large = 0.5;
+    const bool is_noisy = efforts_.size() > 1 && estimate.noise > large * estimate.error();
+    if (next && is_noisy && next->gather_rays > spent.gather_rays) {
+      next->refine_tolerance = spent.refine_tolerance;
+    }
+    return next;
   }
 
   // Returns false if all targets are met, or if more effort would not help where they are not.

@@ -305,8 +305,34 @@ void join_clusters(const ExchangeGraph& graph, std::span<const char> joins_any,
   }
 }
 
+namespace {
+
+// Moves nodes that exchange more than half of their light with another cluster than their own: a
+// sweep by noisy values may leave a few on the wrong side.
+void move_strays(const ExchangeGraph& graph, std::vector<int>& cluster) {
+  constexpr int most_passes = 3;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    std::vector<int> moved = cluster;
+    for (int i = 0; i < graph.count(); ++i) {
+      std::map<int, double> with;
+      for (const auto& [node, exchange] : graph.neighbors(i)) {
+        with[cluster[node]] += double{exchange};
+      }
+      for (const auto& [c, exchange] : with) {
+        if (exchange > 0.5 * graph.area(i)) moved[i] = c;
+      }
+    }
+    if (moved == cluster) break;
+    cluster = std::move(moved);
+  }
+}
+
+}  // namespace
+
 std::vector<int> cut_graph(const ExchangeGraph& graph) {
   std::vector<int> cluster = GraphCutter(graph).run();
+  join_clusters(graph, {}, cluster);
+  move_strays(graph, cluster);
   join_clusters(graph, {}, cluster);
   return cluster;
 }

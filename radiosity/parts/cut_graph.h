@@ -25,7 +25,8 @@ constexpr double most_shared_exchange = 0.05;
 ///   area and at most half of the exchange across other cuts nearby. Thus no long hall is cut,
 ///   which has no bottleneck.
 /// - In the end parts with more than that share between them are joined, such as two halves of a
-///   corridor that were cut apart with the rooms at each.
+///   corridor that were cut apart with the rooms at each; and nodes that exchange more than half of
+///   their light with another part than their own move there.
 ///
 /// The work is proportional to the links, times about 50, times the number of successive cuts.
 /// Vectors begin with random numbers keyed by node.

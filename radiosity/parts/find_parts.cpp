@@ -108,7 +108,7 @@ std::vector<PatchArrivals> cast_part_rays(const ElementCaster& caster, const Lig
 // The node of each patch, -1 for those that take no part. Patches that see little but the outside
 // share one.
 std::vector<int> nodes_of(const std::vector<PatchArrivals>& arrivals, int& count) {
-  constexpr double outside = 0.95;
+  constexpr double outside = 0.7;
   std::vector<int> node(arrivals.size(), -1);
   int of_outside = -1;
   count = 0;
@@ -243,7 +243,7 @@ std::vector<int> to_patches(const std::vector<int>& node, const std::vector<int>
 }  // namespace
 
 int rays_per_patch_for_parts(int patches) {
-  constexpr int all = 1 << 17, fewest = 64, most = 1024;
+  constexpr int all = 1 << 15, fewest = 32, most = 1024;
   const int wanted = std::clamp(all / std::max(patches, 1), fewest, most);
   return static_cast<int>(std::bit_ceil(static_cast<unsigned>(wanted)));
 }

@@ -8,15 +8,15 @@
 
 namespace lightwell {
 
-/// Rays from each patch that find_parts() casts: 131 072 over the number of patches, as a power of
-/// two, at least 64 and at most 1024.
+/// Rays from each patch that find_parts() casts: 32 768 over the number of patches, as a power of
+/// two, at least 32 and at most 1024.
 int rays_per_patch_for_parts(int patches);
 
 /// Finds the parts of a scene that exchange little light: rooms behind doors, the ground outside
 /// windows, the insides of cabinets.
 ///
 /// 1. Cosine-distributed rays from each patch estimate the exchange A_i F_ij; mirrors and glass
-///    pass the rays on. Patches of which 95 % of the rays leave the scene count as one, the
+///    pass the rays on. Patches of which 70 % of the rays leave the scene count as one, the
 ///    outside.
 /// 2. cut_graph() parts the patches where the exchange is less than 5 % of the smaller side's area
 ///    and where the passage is a bottleneck.
