@@ -18,7 +18,7 @@ struct ErrorEstimate {
   double least() const;  ///< lower end: sqrt(square - deviation), at least 0
 };
 
-/// Relative RMS error of interpolated irradiance over the area that reflects, compared with
+/// Relative RMS error of interpolated irradiance over the area of judged_patches(), compared with
 /// independent gathers at random sample points.
 ///
 /// - Sample points: `options.error_points` or more (see estimate_points). Half are uniform over the

@@ -27,9 +27,10 @@ Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
 }
 
 double rms_noise(const PatchMesh& mesh, const Eigen::ArrayXf& noise) {
+  const std::vector<char> judged = judged_patches(mesh);
   double sum = 0.0, area = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
+    if (judged[static_cast<std::size_t>(mesh.patch[e])] == 0) continue;
     sum += mesh.element_area[e] * std::pow(double{noise[e]}, 2);
     area += mesh.element_area[e];
   }

@@ -12,7 +12,7 @@ namespace lightwell {
 Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
                             const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays);
 
-/// The RMS over all area that reflects of the noise of gather_noise().
+/// The RMS over all judged_patches() of the noise of gather_noise().
 double rms_noise(const PatchMesh& mesh, const Eigen::ArrayXf& noise);
 
 }  // namespace lightwell
