@@ -150,8 +150,8 @@ std::string solution_text(const Json& facts) {
   if (facts.contains("unlit") && facts["unlit"]["share"].get<double>() >= worth_a_line) {
     const Json& unlit = facts["unlit"];
     text += line("dark",
-                 fmt::format("{:.3g} m2 of surfaces ({:.0f} %) get no light on either side, most "
-                             "of this area on '{}'; check that light can reach them",
+                 fmt::format("{:.3g} m2 of surfaces ({:.0f} %) face a room and get no light, most "
+                             "of this area on '{}'; check that light can reach the room",
                              unlit["area"].get<double>(), 100.0 * unlit["share"].get<double>(),
                              unlit["surface"].get<std::string>()));
   }

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <numeric>
-
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/refinement.h"
 #include "mesh/patches/patch_textures.h"
+#include "radiosity/dark_rooms.h"
 #include "radiosity/solution/solution_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
@@ -41,32 +39,14 @@ std::string place_of_worst(const SceneParts& parts) {
   return fmt::format(" in '{}'", worst->name);
 }
 
-// Area (m^2) and share of reflecting elements without light on either side, such as those of a room
-// without a lamp or of enclosed cavities, and the surface with most of that area.
+// Surfaces of rooms without light.
 Json unlit_json(const Scene& scene, const SolvedScene& solved) {
-  const PatchMesh& mesh = solved.mesh;
-  const BandArray E = solved.solution.irradiance();
-  const auto is_dark = [&](int e) {
-    if (e < 0) return true;
-    for (int c = 0; c < mesh.corner_count(e); ++c) {
-      if ((E.row(mesh.corners[e][c]) > 0.0f).any()) return false;
-    }
-    return true;
-  };
-  std::vector<double> dark(scene.surfaces.size(), 0.0);
-  double all = 0.0;
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int p = mesh.patch[e];
-    if (mesh.is_back[p] || !(mesh.reflectance.row(p) > 0.0f).any()) continue;
-    all += mesh.element_area[e];
-    if (is_dark(e) && is_dark(mesh.twin[e])) dark[mesh.surface[p]] += mesh.element_area[e];
+  const DarkRooms dark = find_dark_rooms(scene, solved.mesh, solved.solution);
+  Json json = {{"area", dark.area}, {"share", dark.share}};
+  if (dark.surface >= 0) {
+    json["surface"] = scene.surfaces[static_cast<std::size_t>(dark.surface)].name;
   }
-  const auto most = std::ranges::max_element(dark);
-  const double area = std::accumulate(dark.begin(), dark.end(), 0.0);
-  if (!(area > 0.0)) return {{"area", 0.0}, {"share", 0.0}};
-  return {{"area", area},
-          {"share", area / all},
-          {"surface", scene.surfaces[static_cast<std::size_t>(most - dark.begin())].name}};
+  return json;
 }
 
 // Prints notes and warnings on a solve that ended above its tolerances.

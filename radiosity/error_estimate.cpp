@@ -27,9 +27,10 @@ constexpr double of_whole_set = 0.5;
 Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance,
                           const SceneParts& parts) {
   const Eigen::ArrayXd reference = error_references(mesh, irradiance, parts);
+  const std::vector<char> judged = judged_patches(mesh);
   Eigen::ArrayXf indicator = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any() || !(reference[e] > 0.0)) continue;
+    if (judged[static_cast<std::size_t>(mesh.patch[e])] == 0 || !(reference[e] > 0.0)) continue;
     Spectrum low = irradiance.row(mesh.corners[e][0]).transpose(), high = low;
     for (int c = 1; c < mesh.corner_count(e); ++c) {
       const Spectrum E = irradiance.row(mesh.corners[e][c]).transpose();
@@ -49,18 +50,19 @@ struct ErrorSample {
   double weight = 0.0;  // inverse of the density of sample points, relative to a uniform one
 };
 
-// Draws points on the area of a part that reflects and is not covered: half of them uniformly, half
-// in proportion to the squared indicator of the elements. Errors may sit in few small elements
-// along the edges of shadows, which uniform points would hardly meet.
+// Draws points on the area of a part that counts (see judged_patches) and is not covered: half of
+// them uniformly, half in proportion to the squared indicator of the elements. Errors may sit in
+// few small elements along the edges of shadows, which uniform points would hardly meet.
 class ErrorSampler {
  public:
   ErrorSampler(const ElementCaster& caster, const Eigen::ArrayXf& indicator,
                const SceneParts& parts, int part)
       : mesh_(caster.mesh()), indicator_(indicator), counts_(mesh_.patch_count(), 0) {
+    const std::vector<char> judged = judged_patches(mesh_);
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       if (parts.judged_with(p) != part) continue;
       const bool is_seen = caster.hidden_elements(p) == 0;
-      if (!is_seen || !(mesh_.reflectance.row(p) > 0.0f).any()) continue;
+      if (!is_seen || judged[static_cast<std::size_t>(p)] == 0) continue;
       counts_[p] = 1;
       for (int e = mesh_.first_element[p]; e < mesh_.first_element[p + 1]; ++e) {
         total_area_ += area(e);

@@ -21,7 +21,7 @@ struct ErrorEstimate {
   double least() const;  ///< lower end: sqrt(square - deviation), at least 0
 };
 
-/// Relative RMS error of interpolated irradiance over the area of each part that reflects, compared
+/// Relative RMS error of interpolated irradiance over the judged_patches() of each part, compared
 /// with independent gathers at random sample points.
 ///
 /// - Parts: those of the solution, in their order, each relative to its own mean (see PartMeans).

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -102,8 +103,45 @@ std::shared_ptr<const Portals> portals_of_rows(const LitScene& lit,
   return portals->is_empty() ? nullptr : portals;
 }
 
+// Adds notes on light that the rows of form factors lose, and on an energy balance that does not
+// add up.
+void note_energy(const LitScene& lit, const FormFactorReport& rows,
+                 const RadiositySolution& solution, std::vector<std::string>& notes) {
+  constexpr double notable = 1e-4;  // of the emitted power
+  const PatchMesh& mesh = lit.mesh();
+  const EnergyBalance& energy = solution.energy;
+  if (!(energy.emitted > 0.0)) return;
+  double lost = 0.0, most = 0.0;
+  int worst = 0;
+  for (int i = 0; i < static_cast<int>(rows.lost_share.size()); ++i) {
+    const double power =
+        mesh.area[i] * static_cast<double>(rows.lost_share[static_cast<std::size_t>(i)] *
+                                           solution.patch_radiosity.row(i).sum());
+    lost += power;
+    if (power > most) {
+      most = power;
+      worst = i;
+    }
+  }
+  if (lost > notable * energy.emitted) {
+    notes.push_back(fmt::format(
+        "{:.2g} % of the emitted power is lost where surfaces lie in the same place or cut each "
+        "other, most of it at '{}', and counts as escaped; remove the surfaces that are doubled",
+        100.0 * lost / energy.emitted, lit.scene.surfaces[mesh.surface[worst]].name));
+  }
+  const double surplus = (energy.absorbed + energy.escaped + energy.unshot) / energy.emitted - 1.0;
+  if (std::abs(surplus) > notable) {
+    notes.push_back(
+        fmt::format("the energy balance is off by {:+.2g} %, since the two ends of light paths by "
+                    "way of mirrors, "
+                    "gloss or glass do not agree; more --rays bring them together",
+                    100.0 * surplus));
+  }
+}
+
 RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_apart,
-                                  const SolveOptions& options, SolveReport* report) {
+                                  const SolveOptions& options, SolveReport* report,
+                                  std::vector<std::string>& notes) {
   const Scene& scene = lit.scene;
   const PatchMesh& mesh = lit.mesh();
   Stopwatch watch;
@@ -119,8 +157,8 @@ RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_a
   SolverOptions pilot = options.solver;
   pilot.run = options.run;
   form_factor_options.portals = portals_of_rows(lit, form_factor_options, free_light, pilot);
-  const auto form_factors =
-      compute_form_factors(lit, form_factor_options, report ? &report->form_factors : nullptr);
+  FormFactorReport found;
+  const auto form_factors = compute_form_factors(lit, form_factor_options, &found);
   const double form_factor_seconds = watch.lap();
 
   SolverOptions solver_options = options.solver;
@@ -139,6 +177,8 @@ RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_a
   }
   solution.energy =
       energy_balance(scene, mesh, *form_factors, solution.patch_radiosity, free_light);
+  note_energy(lit, found, solution, notes);
+  if (report) report->form_factors = std::move(found);
   solution.seconds = {{"form_factors", form_factor_seconds}, {"solve", watch.lap()}};
   return solution;
 }
@@ -268,9 +308,11 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   if (options.form_factors.memory) options.form_factors.memory->plan(bytes_to_gather(solved.mesh));
   SolveOptions exchange = options;
   exchange.progressive = without_rows(direct_light, options, solved.mesh);
+  std::vector<std::string> notes;
   solved.solution = exchange.progressive ? shoot({scene, *caster, kept_apart}, exchange)
                                          : solve_equations({scene, *caster, direct_light},
-                                                           kept_apart, exchange, report);
+                                                           kept_apart, exchange, report, notes);
+  solved.mesh.notes.insert(solved.mesh.notes.end(), notes.begin(), notes.end());
   RadiositySolution& solution = solved.solution;
   for (const PhaseSeconds& phase : solution.seconds) seconds.push_back(phase);
   watch.lap();

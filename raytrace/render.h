@@ -39,8 +39,10 @@ struct SampleOptions {
 
 struct RenderOptions {
   Pass pass = Pass::direct;
-  int max_depth = 10;              ///< most mirror and glass events along one path of the ray tree
-  float min_contribution = 1e-3f;  ///< branches of less weight are not followed
+  /// Most mirror and glass events along one path of the ray tree (see deepest_path).
+  int max_depth = 10;
+  /// Branches of less weight do not fork, and end by chance below a tenth of it.
+  float min_contribution = 1e-3f;
   ShadowOptions shadows{};
   /// Rays over the hemisphere of a hit, for Pass::gather; 1 to most_gather_rays.
   int gather_rays = 256;

@@ -172,9 +172,10 @@ Spectrum RayTree::trace_lamps(const Ray& ray, std::uint64_t key,
   return state.result.radiance;
 }
 
-void RayTree::trace_chains(const Ray& ray,
-                           const std::function<void(const SpecularSegment&)>& visit) const {
-  TreeState state{.caster = &caster_, .shades = false, .lamps_alone = true, .visit = &visit};
+void RayTree::trace_chain(const Ray& ray, const ChainTurns& turns,
+                          const std::function<void(const SpecularSegment&)>& visit) const {
+  TreeState state{
+      .caster = &caster_, .shades = false, .lamps_alone = true, .visit = &visit, .turns = &turns};
   follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, state);
 }
 
@@ -193,7 +194,8 @@ void RayTree::follow(Branch branch, TreeState& state) const {
                     .end = hit.facet < 0 ? std::numeric_limits<double>::infinity() : hit.t,
                     .weight = branch.weight,
                     .media = branch.media,
-                    .chain = branch.chain});
+                    .chain = branch.chain,
+                    .turns = branch.turns});
   }
   if (!state.lamps_alone && branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
@@ -251,45 +253,94 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
   SurfaceInteraction interaction{.material = material,
                                  .direction = branch.ray.direction,
                                  .normal = at.normal,
-                                 .from_back = hit.from_back};
+                                 .from_back = hit.from_back,
+                                 .polarisation = branch.polarisation};
   if (normals_.is_given(hit.facet)) {
     const Eigen::Vector3d smooth = at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
     interaction.normal = visible_normal(branch.ray.direction, at.normal, smooth);
   }
   if (material.gloss_roughness() > 0.0f) return scatter(branch, interaction, hit, at, state);
-  const SmoothScattering lobes = smooth_scattering(interaction);
+  if (state.turns && branch.depth >= state.turns->count) return;
+  SmoothScattering lobes = smooth_scattering(interaction);
+  if (state.shades && branch.weight.maxCoeff() < options_.min_contribution) {
+    choose_one(branch, lobes, state);
+  }
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
+    if (state.turns && !state.turns->follows(branch.depth, lobes.sample[i].crosses)) continue;
     grow(branch, 2 * branch.node + i, lobes.sample[i], hit, at, state);
   }
 }
 
 void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
                    const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
+  const int material = facets_[hit.facet].material;
+  const Material& what = scene_.materials[material];
   Branch branch{.weight = parent.weight * sample.weight,
                 .depth = parent.depth + 1,
                 .node = node,
                 .is_sharp = parent.is_sharp,
-                .is_direct = parent.is_direct && sample.crosses &&
-                             is_clear_pane(scene_.materials[facets_[hit.facet].material]),
+                .met_glass = parent.met_glass || what.dielectric,
+                .is_direct = parent.is_direct && sample.crosses && is_clear_pane(what),
                 .chain = random_key(parent.chain, facets_[hit.facet].chain, sample.crosses),
+                .turns = parent.turns,
                 .lobe_density = sample.density,
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
                 .width = cone_width(parent, at),
-                .media = parent.media};
-  if (!(branch.weight.maxCoeff() >= options_.min_contribution)) return;
-  if (branch.depth > deepest_path(options_.max_depth, !branch.is_sharp)) {
+                .media = parent.media,
+                .polarisation = sample.polarisation};
+  if (!survives(branch, state)) return;
+  if (branch.depth > deepest_path(options_.max_depth, branch.met_glass || !branch.is_sharp)) {
     ++state.result.depth_cut;
     state.result.cut_weight += branch.weight.maxCoeff();
     return;
   }
-  const int material = facets_[hit.facet].material;
-  branch.media.cross(material, scene_.materials[material], sample, hit.from_back);
+  if (parent.depth < ChainTurns::most) {
+    branch.turns.crosses |= std::uint64_t{sample.crosses} << parent.depth;
+    branch.turns.count = branch.depth;
+  } else {
+    branch.turns = {};
+  }
+  branch.media.cross(material, what, sample, hit.from_back);
   branch.ray = {
       .origin = at.position, .direction = sample.direction.normalized(), .origin_group = hit.facet};
   if (normals_.is_given(hit.facet)) {
     branch.ray.direction = on_its_side(branch.ray.direction, at.normal, sample.crosses);
   }
   follow(branch, state);
+}
+
+// A number in [0,1) of a branch, `purpose` 0 or 1.
+double RayTree::roulette(const Branch& branch, int purpose, const TreeState& state) {
+  return random_uniform(random_key(state.key, branch.node, RandomPurpose::ray_tree_roulette,
+                                   static_cast<std::uint64_t>(2 * branch.depth + purpose)));
+}
+
+// Leaves one of two lobes, by their weights, with the weight of both: a branch of little weight
+// does not fork.
+void RayTree::choose_one(const Branch& branch, SmoothScattering& lobes,
+                         const TreeState& state) const {
+  const float first = lobes.sample[0].weight.maxCoeff(), second = lobes.sample[1].weight.maxCoeff();
+  if (lobes.count < 2 || !(first + second > 0.0f)) return;
+  const float chance = first / (first + second);
+  const bool is_first = roulette(branch, 1, state) < static_cast<double>(chance);
+  lobes.sample[is_first ? 0 : 1].weight /= is_first ? chance : 1.0f - chance;
+  lobes.sample[is_first ? 1 : 0].weight.setZero();
+}
+
+// Ends branches far below the least weight by Russian roulette (Arvo & Kirk 1990): a survivor
+// stands for those that end. A tree without light needs no branch of little weight, and a single
+// path has no other branch.
+bool RayTree::survives(Branch& branch, const TreeState& state) const {
+  const float weight = branch.weight.maxCoeff();
+  if (weight >= options_.min_contribution || state.turns) return weight > 0.0f;
+  if (!state.shades) return false;
+  constexpr float far_below = 0.1f;
+  const float least = far_below * options_.min_contribution;
+  if (weight >= least) return true;
+  const double chance = double{weight} / double{least};
+  if (!(roulette(branch, 0, state) < chance)) return false;
+  branch.weight *= static_cast<float>(1.0 / chance);
+  return true;
 }
 
 RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& hit,

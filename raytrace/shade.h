@@ -34,6 +34,15 @@ struct RaySample {
   float cut_weight = 0.0f;        ///< sum over these branches of the largest weight of any band
 };
 
+/// What light does at each smooth surface of a path: it is reflected or it crosses.
+struct ChainTurns {
+  static constexpr int most = 64;
+  std::uint64_t crosses = 0;  ///< bit i: the light crosses surface i
+  int count = 0;              ///< surfaces, at most `most`; a longer path has no turns
+
+  bool follows(int i, bool crossing) const { return ((crosses >> i) & 1U) == (crossing ? 1U : 0U); }
+};
+
 /// A straight part of a path behind at least one smooth mirror or clear body.
 struct SpecularSegment {
   const Ray& ray;           ///< from the last surface on
@@ -41,6 +50,7 @@ struct SpecularSegment {
   const Spectrum& weight;   ///< share of radiance that reaches the path's beginning
   const Media& media;       ///< bodies that the segment runs in
   std::uint64_t chain = 0;  ///< the same for paths by way of the same surfaces in the same order
+  ChainTurns turns{};       ///< what happened at these surfaces
 };
 
 /// Whitted's ray tree (1980) over a radiosity solution. Radiance at a hit is the sum over the parts
@@ -49,6 +59,11 @@ struct SpecularSegment {
 /// - mirror: specular * L(reflected);
 /// - clear dielectric: R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R;
 /// - rough mirror or dielectric: the mean over some directions of its lobe, see sample_scattering.
+///
+/// Smooth surfaces polarise the light, which decides over its share at the surfaces behind them
+/// (see Polarisation). A branch below RenderOptions::min_contribution no longer forks: it is
+/// reflected or crosses by chance, with the weight of both, and ends by Russian roulette below a
+/// tenth of that. So many weak branches together lose nothing in the mean.
 ///
 /// Within an absorbing body L falls by the law of Beer and Lambert, see Media. L inside a
 /// dielectric is the basic radiance L/n^2, which refraction leaves unchanged; a path that ends
@@ -97,8 +112,10 @@ class RayTree {
   /// One direction leaves each rough surface; `key` decides this direction.
   Spectrum trace_lamps(const Ray& ray, std::uint64_t key,
                        const std::function<void(const SpecularSegment&)>& visit = {}) const;
-  /// Calls `visit` for the straight parts of all paths by way of smooth surfaces.
-  void trace_chains(const Ray& ray, const std::function<void(const SpecularSegment&)>& visit) const;
+  /// Calls `visit` for the straight parts of the path that takes `turns` at the smooth surfaces it
+  /// meets.
+  void trace_chain(const Ray& ray, const ChainTurns& turns,
+                   const std::function<void(const SpecularSegment&)>& visit) const;
   /// Returns the fingerprint of a ray, without shadow rays.
   std::uint64_t fingerprint(const Ray& ray) const;
 
@@ -133,8 +150,10 @@ class RayTree {
     /// branches off rough surfaces.
     std::uint64_t node = 1;
     bool is_sharp = true;     ///< no rough surface on the way
+    bool met_glass = false;   ///< a clear surface on the way
     bool is_direct = true;    ///< nothing but smooth thin panes on the way, straight through
     std::uint64_t chain = 0;  ///< see SpecularSegment
+    ChainTurns turns{};       ///< see SpecularSegment
     /// Probability density of the direction, 1/sr, off a rough surface, which samples lamps as
     /// well; else 0.
     double lobe_density = 0.0;
@@ -144,6 +163,7 @@ class RayTree {
     bool is_aimed = false;  ///< aimed at a bright patch
     double width = 0.0;     ///< m, width of the cone at the ray's origin
     Media media{};
+    Polarisation polarisation{};
   };
   /// Irradiance at a point, W/m^2, direct and indirect.
   struct Arriving {
@@ -158,6 +178,7 @@ class RayTree {
     bool shades = true;        ///< false: fingerprint alone
     bool lamps_alone = false;  ///< see trace_lamps
     const std::function<void(const SpecularSegment&)>* visit = nullptr;
+    const ChainTurns* turns = nullptr;  ///< the one path to follow; null: all
     std::optional<int> number{};  ///< number among many samples of one key; none: a sample alone
     std::uint64_t gloss_key = 0;  ///< the same for all samples of one key
   };
@@ -183,6 +204,9 @@ class RayTree {
   const RoughLobe& lobe(int material, bool from_back) const;
   void grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
             const ElementHit& hit, const ShadingPoint& at, TreeState& state) const;
+  static double roulette(const Branch& branch, int purpose, const TreeState& state);
+  void choose_one(const Branch& branch, SmoothScattering& lobes, const TreeState& state) const;
+  bool survives(Branch& branch, const TreeState& state) const;
   ShadingPoint shading_point(const Ray& ray, const ElementHit& hit,
                              const ElementCaster& caster) const;
   /// Origin of shadow rays, and the facet that the rays leave; -1: none.

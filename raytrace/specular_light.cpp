@@ -37,7 +37,11 @@ struct Seed {
   Eigen::Vector3d direction;     // at the point
   Eigen::Vector3d origin, exit;  // last straight part
 };
-using Chains = std::map<std::uint64_t, std::vector<Seed>>;
+struct Chain {
+  ChainTurns turns{};
+  std::vector<Seed> seeds{};
+};
+using Chains = std::map<std::uint64_t, Chain>;
 
 // A point that a path is to end at, or a direction that the path is to end in.
 struct Goal {
@@ -113,7 +117,10 @@ class PointLight {
       if (chains) {
         visit = [&](const SpecularSegment& part) {
           has_specular_ = true;
-          (*chains)[part.chain].push_back(
+          if (part.turns.count == 0) return;
+          Chain& chain = (*chains)[part.chain];
+          chain.turns = part.turns;
+          chain.seeds.push_back(
               {.direction = d, .origin = part.ray.origin, .exit = part.ray.direction});
         };
       }
@@ -223,10 +230,11 @@ class PointLight {
     Spectrum weight{};
     Media media{};
   };
-  std::optional<Traced> trace(const Eigen::Vector3d& direction, std::uint64_t chain) const {
+  std::optional<Traced> trace(const Eigen::Vector3d& direction, std::uint64_t chain,
+                              const ChainTurns& turns) const {
     std::optional<Traced> found;
     if (!(direction.dot(at_.normal) > 0.0)) return found;
-    tree_.trace_chains(ray(direction), [&](const SpecularSegment& part) {
+    tree_.trace_chain(ray(direction), turns, [&](const SpecularSegment& part) {
       if (part.chain != chain) return;
       found = Traced{.origin = part.ray.origin,
                      .exit = part.ray.direction.normalized(),
@@ -239,8 +247,8 @@ class PointLight {
 
   // Newton's method from the nearest of the first rays; empty where the chain does not lead to the
   // goal, or where another surface hides the goal (`clearance`, m, before it).
-  std::optional<Solution> solve(const Goal& goal, std::uint64_t chain,
-                                const std::vector<Seed>& seeds, double clearance) const {
+  std::optional<Solution> solve(const Goal& goal, std::uint64_t key, const Chain& chain,
+                                double clearance) const {
     const auto miss = [&](const Seed& seed) {
       const Eigen::Vector3d to = goal.is_direction
                                      ? goal.position
@@ -248,9 +256,9 @@ class PointLight {
       return -to.dot(seed.exit.normalized());
     };
     const auto& nearest = *std::ranges::min_element(
-        seeds, [&](const Seed& a, const Seed& b) { return miss(a) < miss(b); });
+        chain.seeds, [&](const Seed& a, const Seed& b) { return miss(a) < miss(b); });
     Eigen::Vector3d w = nearest.direction.normalized();
-    auto path = trace(w, chain);
+    auto path = trace(w, key, chain.turns);
     constexpr int most_steps = 20;
     // Hits are known to about 1e-7 of their distance, and a difference over 1e-3 rad is exact to
     // 1e-6 where the chain is flat.
@@ -267,7 +275,7 @@ class PointLight {
       tangent_frame(w, p, q);
       const auto derivative = [&](const Eigen::Vector3d& side) -> std::optional<Eigen::Vector2d> {
         const auto value = [&](double angle) -> std::optional<Eigen::Vector2d> {
-          const auto beside = trace((w + angle * side).normalized(), chain);
+          const auto beside = trace((w + angle * side).normalized(), key, chain.turns);
           if (!beside) return std::nullopt;
           return offset(goal, beside->origin, beside->exit, axes);
         };
@@ -308,7 +316,7 @@ class PointLight {
       Eigen::Vector3d moved = w;
       for (int halving = 0; halving < 8 && !next; ++halving, move *= 0.5) {
         moved = (w + move.x() * p + move.y() * q).normalized();
-        next = trace(moved, chain);
+        next = trace(moved, key, chain.turns);
       }
       path = next;
       w = moved;
@@ -340,8 +348,8 @@ class PointLight {
       clearance = lamp->clearance;
       goal = {.position = at_.position + (seen.distance + clearance) * seen.direction};
     }
-    for (const auto& [chain, seeds] : chains_) {
-      const auto path = solve(goal, chain, seeds, clearance);
+    for (const auto& [key, chain] : chains_) {
+      const auto path = solve(goal, key, chain, clearance);
       if (!path) continue;
       double intensity = 1.0;
       if (lamp) {
@@ -369,8 +377,8 @@ class PointLight {
         middle /= static_cast<double>(emitter.loops.front().size());
       }
       const double radius = emitter.is_sphere ? emitter.sphere.radius : std::sqrt(emitter.area);
-      for (const auto& [chain, seeds] : chains_) {
-        const auto path = solve({.position = middle}, chain, seeds, 2.0 * radius);
+      for (const auto& [key, chain] : chains_) {
+        const auto path = solve({.position = middle}, key, chain, 2.0 * radius);
         if (!path) continue;
         const double facing = emitter.is_sphere ? 1.0 : std::abs(path->exit.dot(emitter.normal));
         const double cosine = path->direction.dot(at_.normal);

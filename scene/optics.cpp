@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace lightwell {
 
@@ -27,18 +28,46 @@ double pane_reflectance(double cos_incident, double index) {
   return R.s / (1.0 + R.s) + R.p / (1.0 + R.p);
 }
 
-PaneShares pane_shares(double cos_incident, double index, double transmissivity) {
+InterfaceShares face_shares(double cos_incident, double relative_index) {
+  const double n2 = relative_index * relative_index;
+  const double cos2_transmitted = 1.0 - (1.0 - cos_incident * cos_incident) / n2;
+  // Amplitudes r; beyond the critical angle the wave decays with the imaginary cosine.
+  const std::complex<double> cos_transmitted = std::sqrt(std::complex<double>(cos2_transmitted));
+  const std::complex<double> s = (cos_incident - relative_index * cos_transmitted) /
+                                 (cos_incident + relative_index * cos_transmitted);
+  const std::complex<double> p = (relative_index * cos_incident - cos_transmitted) /
+                                 (relative_index * cos_incident + cos_transmitted);
+  InterfaceShares shares{
+      .reflected = {.s = 1.0, .p = 1.0, .u = std::clamp((s * std::conj(p)).real(), -1.0, 1.0)}};
+  if (!(cos2_transmitted > 0.0)) return shares;
+  shares.reflected.s = std::norm(s);
+  shares.reflected.p = std::norm(p);
+  shares.passed = {.s = 1.0 - shares.reflected.s, .p = 1.0 - shares.reflected.p};
+  shares.passed.u = std::sqrt(shares.passed.s * shares.passed.p);
+  return shares;
+}
+
+InterfaceShares pane_interface(double cos_incident, double index, double transmissivity) {
   const double sin2_refracted = (1.0 - cos_incident * cos_incident) / (index * index);
-  if (sin2_refracted >= 1.0) return {.reflected = 1.0};
+  const PolarisedShares face = face_shares(cos_incident, index).reflected;
+  if (sin2_refracted >= 1.0) return {.reflected = face};
   const double d = std::pow(transmissivity, 1.0 / std::sqrt(1.0 - sin2_refracted));
-  const PolarisedReflectance face = polarised_reflectance(cos_incident, index);
-  PaneShares mean;
-  for (const double r : {face.s, face.p}) {
-    const double T = r < 1.0 ? (1.0 - r) * (1.0 - r) * d / (1.0 - r * r * d * d) : 0.0;
-    mean.passed += 0.5 * T;
-    mean.reflected += 0.5 * r * (1.0 + d * T);
-  }
-  return mean;
+  // Sums over an even number of inner reflections; a and b are reflectances of one face for the two
+  // amplitudes whose product is summed.
+  const auto passed = [&](double a, double b) {
+    return a < 1.0 && b < 1.0 ? (1.0 - a) * (1.0 - b) * d / (1.0 - a * b * d * d) : 0.0;
+  };
+  InterfaceShares pane;
+  pane.passed = {passed(face.s, face.s), passed(face.p, face.p), passed(face.s, face.p)};
+  pane.reflected = {.s = face.s * (1.0 + d * pane.passed.s),
+                    .p = face.p * (1.0 + d * pane.passed.p),
+                    .u = face.u * (1.0 + d * pane.passed.u)};
+  return pane;
+}
+
+PaneShares pane_shares(double cos_incident, double index, double transmissivity) {
+  const auto [reflected, passed] = pane_interface(cos_incident, index, transmissivity);
+  return {.reflected = 0.5 * (reflected.s + reflected.p), .passed = 0.5 * (passed.s + passed.p)};
 }
 
 Eigen::Vector3d reflect(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal) {

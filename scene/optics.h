@@ -22,19 +22,39 @@ PolarisedReflectance polarised_reflectance(double cos_incident, double relative_
 /// relative to the medium on both sides. The rest passes.
 double pane_reflectance(double cos_incident, double index);
 
+/// Factors of light at an interface, by its linear polarisation: shares, [0,1], of light polarised
+/// across (s) and in (p) the plane of incidence, and the factor, [-1,1], of Stokes' parameter U
+/// about these two axes.
+struct PolarisedShares {
+  double s = 0.0, p = 0.0, u = 0.0;
+};
+
+/// Light that an interface sends back and lets pass.
+struct InterfaceShares {
+  PolarisedShares reflected, passed;
+};
+
+/// Both kinds of light at the face of a dielectric, by Fresnel's equations; arguments as for
+/// fresnel_reflectance(). Under total internal reflection the phases of s and p differ, which turns
+/// linear into elliptic polarisation; the circular part is left out.
+InterfaceShares face_shares(double cos_incident, double relative_index);
+
+/// Both kinds of light at a thin pane with all reflections between its faces. Light that crosses
+/// the body along the normal keeps the share `transmissivity` t, [0,1], and refracted light d =
+/// t^(1 / cos of the refracted angle). With the reflectance r of one face for s or p,
+///
+///     T = (1 - r)^2 d / (1 - r^2 d^2),   R = r (1 + d T);
+///
+/// `u` is the same sum of products of the amplitudes of s and p.
+InterfaceShares pane_interface(double cos_incident, double index, double transmissivity);
+
 /// Shares of light, [0,1], that a pane sends back and lets pass; the rest is absorbed.
 struct PaneShares {
   double reflected = 0.0, passed = 0.0;
 };
 
-/// Shares of unpolarised light at a thin pane whose body absorbs, by both faces and all reflections
-/// between them. Light that crosses the body along the normal keeps the share `transmissivity` t,
-/// [0,1], and refracted light d = t^(1 / cos of the refracted angle). With the reflectance r of one
-/// face,
-///
-///     T = (1 - r)^2 d / (1 - r^2 d^2),   R = r (1 + d T),
-///
-/// averaged over both polarisations. For t = 1 this is pane_reflectance().
+/// Shares of unpolarised light at a thin pane whose body absorbs: the mean of pane_interface() over
+/// both polarisations. For t = 1 this is pane_reflectance().
 PaneShares pane_shares(double cos_incident, double index, double transmissivity);
 
 /// Mirror direction of `direction` (unit, towards the surface) about the unit normal.

@@ -59,6 +59,7 @@ enum class RandomPurpose : std::uint64_t {
   // A ray tree; (key, node, purpose).
   ray_tree_shadows = 0x5ec07d,
   ray_tree_gathers = 0x6a7e4,
+  ray_tree_roulette = 0x12017,
   gloss = 0x61055,
   gloss_lamps = 0x1a4b,
   gloss_patches = 0x1a4c,
@@ -118,6 +119,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::pixel_shading:
     case RandomPurpose::ray_tree_shadows:
     case RandomPurpose::ray_tree_gathers:
+    case RandomPurpose::ray_tree_roulette:
     case RandomPurpose::gloss:
     case RandomPurpose::gloss_lamps:
     case RandomPurpose::gloss_patches:

@@ -127,14 +127,97 @@ std::optional<ScatteringSample> sample_microfacet(const SurfaceInteraction& inte
   return sample;
 }
 
+// Light at a smooth dielectric before its tint, per band, and its polarisation afterwards.
+struct DielectricLight {
+  Spectrum reflected, passed;
+  Polarisation after_reflection{}, after_crossing{};
+  float reflected_if_clear = 0.0f;  // `reflected` if the body absorbed nothing
+};
+
+DielectricLight dielectric_light(const SurfaceInteraction& interaction) {
+  const Dielectric& glass = *interaction.material.dielectric;
+  const double cosine = std::clamp(-interaction.direction.dot(interaction.normal), 0.0, 1.0);
+  const double index = relative_index(glass, interaction.from_back);
+  const Polarisation before =
+      about_plane_of_incidence(interaction.polarisation, interaction.direction, interaction.normal);
+  const Eigen::Index bands = interaction.material.specular.size();
+  if (!has_absorbing_body(glass)) {
+    const InterfaceShares shares =
+        glass.thin ? pane_interface(cosine, index, 1.0) : face_shares(cosine, index);
+    const PolarisedLight back = after_interface(before, shares.reflected);
+    const auto R = static_cast<float>(back.share);
+    return {.reflected = Spectrum::Constant(bands, R),
+            .passed = Spectrum::Constant(bands, 1.0f - R),
+            .after_reflection = back.polarisation,
+            .after_crossing = after_interface(before, shares.passed).polarisation,
+            .reflected_if_clear = R};
+  }
+  DielectricLight light{.reflected = Spectrum(bands), .passed = Spectrum(bands)};
+  InterfaceShares mean;
+  const auto add = [bands](const PolarisedShares& of, PolarisedShares& sum) {
+    const auto count = static_cast<double>(bands);
+    sum = {sum.s + of.s / count, sum.p + of.p / count, sum.u + of.u / count};
+  };
+  InterfaceShares shares;
+  for (Eigen::Index k = 0; k < bands; ++k) {
+    const float t = glass.transmissivity[k];
+    if (k == 0 || t != glass.transmissivity[k - 1]) {
+      shares = pane_interface(cosine, index, double{t});
+    }
+    light.reflected[k] = static_cast<float>(after_interface(before, shares.reflected).share);
+    light.passed[k] = static_cast<float>(after_interface(before, shares.passed).share);
+    add(shares.reflected, mean.reflected);
+    add(shares.passed, mean.passed);
+  }
+  light.after_reflection = after_interface(before, mean.reflected).polarisation;
+  light.after_crossing = after_interface(before, mean.passed).polarisation;
+  light.reflected_if_clear = static_cast<float>(
+      after_interface(before, pane_interface(cosine, index, 1.0).reflected).share);
+  return light;
+}
+
+// Polarisation after an ideal mirror, which turns the phase of s against p by half a wave.
+Polarisation mirrored_polarisation(const SurfaceInteraction& interaction) {
+  const Polarisation& light = interaction.polarisation;
+  if (light.q == 0.0 && light.u == 0.0) return {};
+  return after_interface(about_plane_of_incidence(light, interaction.direction, interaction.normal),
+                         {.s = 1.0, .p = 1.0, .u = -1.0})
+      .polarisation;
+}
+
+SmoothScattering lobes_of(const SurfaceInteraction& interaction, const DielectricLight& light) {
+  SmoothScattering lobes;
+  lobes.count = 1;
+  lobes.sample[0] = {.direction = reflect(interaction.direction, interaction.normal),
+                     .weight = light.reflected,
+                     .polarisation = light.after_reflection};
+  if (const auto outgoing = transmitted_direction(interaction, interaction.normal)) {
+    lobes.sample[1] = {.direction = *outgoing,
+                       .weight = light.passed * interaction.material.dielectric->tint,
+                       .crosses = true,
+                       .polarisation = light.after_crossing};
+    lobes.count = 2;
+  }
+  return lobes;
+}
+
+ScatteringSample mirror_sample(const SurfaceInteraction& interaction) {
+  return {.direction = reflect(interaction.direction, interaction.normal),
+          .weight = interaction.material.specular,
+          .polarisation = mirrored_polarisation(interaction)};
+}
+
 ScatteringSample sample_smooth(const SurfaceInteraction& interaction, double which) {
-  SmoothScattering lobes = smooth_scattering(interaction);
+  if (!interaction.material.dielectric) return mirror_sample(interaction);
+  const DielectricLight light = dielectric_light(interaction);
+  const SmoothScattering lobes = lobes_of(interaction, light);
   if (lobes.count == 1) return lobes.sample[0];
-  const bool crosses = which >= reflected_share(*interaction.material.dielectric,
-                                                -interaction.direction.dot(interaction.normal),
-                                                interaction.from_back);
+  // No weight is above 1, as it would be with the shares of a band that absorbs less than others.
+  const float back = light.reflected_if_clear;
+  const bool crosses = which >= static_cast<double>(back);
   ScatteringSample sample = lobes.sample[crosses ? 1 : 0];
-  sample.weight = scattering_weight(interaction, sample);
+  const float chance = crosses ? 1.0f - back : back;
+  if (chance > 0.0f) sample.weight /= chance;
   return sample;
 }
 
@@ -162,26 +245,10 @@ bool is_clear_pane(const Material& material) {
 }
 
 SmoothScattering smooth_scattering(const SurfaceInteraction& interaction) {
-  const Material& material = interaction.material;
-  const Eigen::Vector3d mirrored = reflect(interaction.direction, interaction.normal);
+  if (interaction.material.dielectric) return lobes_of(interaction, dielectric_light(interaction));
   SmoothScattering lobes;
   lobes.count = 1;
-  lobes.sample[0] = {.direction = mirrored, .weight = material.specular};
-  if (!material.dielectric) return lobes;
-  const double cos_i = -interaction.direction.dot(interaction.normal);
-  const auto R =
-      static_cast<float>(reflected_share(*material.dielectric, cos_i, interaction.from_back));
-  lobes.sample[0].weight = Spectrum::Constant(material.specular.size(), R);
-  if (const auto outgoing = transmitted_direction(interaction, interaction.normal)) {
-    lobes.sample[1] = {
-        .direction = *outgoing, .weight = (1.0f - R) * material.dielectric->tint, .crosses = true};
-    lobes.count = 2;
-  }
-  if (has_absorbing_body(*material.dielectric)) {
-    const BodyShares shares = body_shares(*material.dielectric, cos_i);
-    lobes.sample[0].weight *= shares.reflected;
-    lobes.sample[1].weight *= shares.passed;
-  }
+  lobes.sample[0] = mirror_sample(interaction);
   return lobes;
 }
 
@@ -205,9 +272,9 @@ ScatteringSample sample_scattering(const SurfaceInteraction& interaction,
   return sample_smooth(interaction, first.component);
 }
 
-int deepest_path(int most, bool met_rough) {
-  constexpr int by_chance = 64;
-  return met_rough && most > 0 ? std::max(most, by_chance) : most;
+int deepest_path(int most, bool met_glass_or_rough) {
+  constexpr int by_chance = 128;
+  return met_glass_or_rough && most > 0 ? std::max(most, by_chance) : most;
 }
 
 RoughLobe::RoughLobe(const Material& material, bool from_back) {

@@ -4,28 +4,33 @@
 #include <array>
 #include <cstdint>
 
+#include "scene/polarisation.h"
 #include "scene/scene.h"
 
 namespace lightwell {
 
 /// Light that meets a mirror or a clear surface.
 struct SurfaceInteraction {
-  const Material& material;   ///< with is_specular()
-  Eigen::Vector3d direction;  ///< of the light, unit, towards the surface
-  Eigen::Vector3d normal;     ///< unit, on the side the light comes from
-  bool from_back = false;     ///< the light comes from behind the surface
+  const Material& material;     ///< with is_specular()
+  Eigen::Vector3d direction;    ///< of the light, unit, towards the surface
+  Eigen::Vector3d normal;       ///< unit, on the side the light comes from
+  bool from_back = false;       ///< the light comes from behind the surface
+  Polarisation polarisation{};  ///< of the light; rough surfaces take it as unpolarised
 };
 
 /// A direction in which light continues from a surface interaction.
 struct ScatteringSample {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit
-  Spectrum weight{};     ///< share of the light that continues, per band
-  bool crosses = false;  ///< the light passes to the other side of the surface
-  double density = 0.0;  ///< of the direction, 1/sr; 0: not known
+  Spectrum weight{};            ///< share of the light that continues, per band
+  bool crosses = false;         ///< the light passes to the other side of the surface
+  double density = 0.0;         ///< of the direction, 1/sr; 0: not known
+  Polarisation polarisation{};  ///< of the light that continues, for the mean of all bands
 };
 
 /// Scattering at a smooth surface: one sample for a mirror; the reflected and, except under total
-/// internal reflection, the refracted light for a dielectric.
+/// internal reflection, the refracted light for a dielectric. A dielectric polarises the light, so
+/// the shares of several parallel faces are those of each polarisation, summed. A mirror keeps the
+/// polarisation.
 struct SmoothScattering {
   std::array<ScatteringSample, 2> sample{};
   int count = 0;
@@ -64,10 +69,11 @@ struct ScatteringRandom {
 ScatteringSample sample_scattering(const SurfaceInteraction& interaction,
                                    const ScatteringRandom& random);
 
-/// Most mirrors and clear surfaces along a path: `most`, or once the path has met a rough surface
-/// at least 64 (0 if `most` is 0). Light in a rough ball is trapped beyond the critical angle and
-/// escapes by chance: after eight surfaces some percent of the light is still inside.
-int deepest_path(int most, bool met_rough);
+/// Most mirrors and clear surfaces along a path: `most`, or once the path has met glass or a rough
+/// surface at least 128 (0 if `most` is 0). Light in a rough ball is trapped beyond the critical
+/// angle and escapes by chance: after eight surfaces some percent of the light is still inside.
+/// Light through a stack of four slabs meets eight faces without any reflection.
+int deepest_path(int most, bool met_glass_or_rough);
 
 /// Density of sample_scattering's directions from one side of a rough surface, 1/sr: the density of
 /// single scattering over the share that single scattering keeps, which is tabulated.

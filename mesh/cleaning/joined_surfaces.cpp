@@ -277,6 +277,32 @@ Scene JoinedSurfaces::apart(Scene joined) const {
   return joined;
 }
 
+std::int64_t drop_shared_duplicates(Scene& scene) {
+  const double tolerance = weld_share * scene_bounds(scene).diagonal();
+  std::int64_t dropped = 0;
+  for (const std::vector<int>& numbers : surfaces_alike(scene)) {
+    const Polygons all = polygons_of(scene, numbers, tolerance);
+    const std::vector<char> is_duplicate = find_duplicates(all.facets, all.points.all(), false);
+    std::map<int, std::vector<char>> drop;  // by surface, per facet
+    for (std::size_t i = 0; i < is_duplicate.size(); ++i) {
+      if (is_duplicate[i] == 0) continue;
+      const auto& [surface, facet] = all.from[i];
+      auto& mesh = std::get<PolygonMesh>(scene.surfaces[surface].shape);
+      drop.try_emplace(surface, mesh.facets.size(), 0).first->second[facet] = 1;
+      ++dropped;
+    }
+    for (const auto& [surface, is_dropped] : drop) {
+      auto& mesh = std::get<PolygonMesh>(scene.surfaces[surface].shape);
+      NewShape shape(mesh);
+      for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        if (is_dropped[f] == 0) shape.keep(mesh.facets[f]);
+      }
+      mesh = shape.take();
+    }
+  }
+  return dropped;
+}
+
 std::shared_ptr<const JoinedSurfaces> join_surfaces(Scene& scene) {
   const std::vector<std::vector<int>> groups = surfaces_alike(scene);
   if (groups.empty()) return nullptr;

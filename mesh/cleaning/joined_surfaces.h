@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -34,6 +35,12 @@ class JoinedSurfaces {
   double reach_ = 0.0;             // m, tolerance of surface_at()
   std::shared_ptr<const Planes> planes_;
 };
+
+/// Drops polygons that lie on an equal one of another surface and face the same way, where the
+/// materials of both differ in name at most, and both move alike; the first stays. No polygon of an
+/// emitter or of a clear or textured material is dropped. Surfaces may be left without any polygon.
+/// Returns the number of polygons dropped.
+std::int64_t drop_shared_duplicates(Scene& scene);
 
 /// Joins polygons of different surfaces, so that files that give every polygon a name of its own
 /// need no more patches than others. Polygons are joined if they

@@ -237,6 +237,7 @@ Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {
       total.merged += r.merged;
       total.hanging += r.hanging;
     }
+    total.duplicates += drop_shared_duplicates(result);
     const auto apart = static_cast<std::int64_t>(scene_facets(result).size());
     total.names = join_surfaces(result);
     total.facets_after = static_cast<std::int64_t>(scene_facets(result).size());

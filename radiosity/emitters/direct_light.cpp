@@ -16,7 +16,8 @@
 namespace lightwell {
 namespace {
 
-constexpr double largest_direct_area = 0.25;  // share of the scene's area that counts as "small"
+constexpr double largest_direct_area = 0.25;    // share of the scene's area that counts as "small"
+constexpr std::size_t most_large_emitters = 1;  // facets that are emitters whatever their area
 
 struct EmittingFacet {
   int facet = 0;
@@ -272,15 +273,24 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
                    [](const auto& a, const auto& b) { return a.exitance > b.exitance; });
 
   const std::vector<int> front = front_patches(mesh, facets.size());
+  // Rays over the hemisphere find a large emitter in mirrors with less noise than rays of its own
+  // that meet the mirrors.
+  const bool has_mirrors = std::ranges::any_of(
+      scene.materials, [](const Material& material) { return material.is_specular(); });
   double taken = 0.0;
+  std::size_t large = 0;
   for (std::size_t i = 0; i < emitting.size();) {
     std::size_t end = i;
     double area = 0.0;
     while (end < emitting.size() && emitting[end].exitance >= emitting[i].exitance * (1 - 1e-6f)) {
       area += emitting[end++].area;
     }
-    if (taken + area > largest_direct_area * scene_area) break;
-    taken += area;
+    if (taken + area > largest_direct_area * scene_area) {
+      large += end - i;
+      if (has_mirrors || large > most_large_emitters) break;
+    } else {
+      taken += area;
+    }
     for (; i < end; ++i) {
       const FacetRef& ref = facets[emitting[i].facet];
       const Surface& surface = scene.surfaces[ref.surface];

@@ -71,11 +71,15 @@ struct LightQuery {
   Lights lights = Lights::all;
 };
 
-/// Direct light: closed form times visibility, for small bright emitters and for free sources.
+/// Direct light: closed form times visibility, for small bright emitters, a single large one and
+/// free sources.
 ///
 /// Emitting facets are taken in order of falling exitance (all of one exitance together) while
 /// their areas add up to at most a quarter of the scene's area: a hemisphere of rays would meet
-/// these facets only by chance. Larger emitters are left to hemispheres of rays. The exitance of
+/// these facets only by chance. A single larger facet, such as a luminous ceiling, is taken, too,
+/// since its closed form costs less than the rays that would find its light; not in a scene with
+/// mirrors or glass, in which such rays find its image with less noise. Other large emitters are
+/// left to hemispheres of rays. The exitance of
 /// the scene decides this order; the light itself is PatchMesh::emission, which relight() may have
 /// scaled.
 ///

@@ -17,11 +17,20 @@ EmitterExchange::EmitterExchange(const ElementCaster& caster, const DirectLight&
     if (facet >= emitter_of_facet.size()) emitter_of_facet.resize(facet + 1, -1);
     emitter_of_facet[facet] = static_cast<int>(e);
   }
+  // Every patch of an emitter is taken to have the mean of the whole emitter's form factor, which
+  // is not so for the patches of a luminous ceiling.
+  constexpr double largest_share = 0.25;
+  double area = 0.0;
+  for (int i = 0; i < mesh_.patch_count(); ++i) area += mesh_.is_back[i] ? 0.0 : mesh_.area[i];
+  for (const Emitter& emitter : emitters) {
+    is_left_to_rays_.push_back(emitter.area > largest_share * area ? 1 : 0);
+  }
   emitter_of_.assign(static_cast<std::size_t>(mesh_.patch_count()), -1);
   for (int i = 0; i < mesh_.patch_count(); ++i) {
     const auto facet = static_cast<std::size_t>(mesh_.facet[mesh_.first_element[i]]);
     if (facet >= emitter_of_facet.size() || emitter_of_facet[facet] < 0) continue;
     const int e = emitter_of_facet[facet];
+    if (is_left_to_rays_[e]) continue;
     const bool is_back = mesh_.is_back[i] != 0;
     if (is_back && !emitters[e].emits_both_sides) continue;
     if (!direct_light.owns(static_cast<int>(facet), is_back)) continue;
@@ -54,6 +63,7 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
         const Eigen::Array4f u = sobol.point(s, key);
         const PatchPoint at = sampler.point(u[0], u[1]);
         for (int e = 0; e < emitter_count; ++e) {
+          if (is_left_to_rays_[e]) continue;
           const Emitter& emitter = direct_light_.emitters()[e];
           const bool behind =
               !emitter.is_sphere && (at.position - emitter.loops[0][0]).dot(emitter.normal) < 0.0;

@@ -7,7 +7,7 @@ namespace lightwell {
 
 /// Exchange areas of patches with the emitters that `direct_light` owns: closed form times
 /// visibility, averaged over points of the receiving patch. Rays hit small bright emitters only by
-/// chance.
+/// chance. Emitters above a quarter of all area are left to rays.
 class EmitterExchange {
  public:
   EmitterExchange(const ElementCaster& caster, const DirectLight& direct_light);
@@ -30,6 +30,7 @@ class EmitterExchange {
   const PatchMesh& mesh_;
   const ElementCaster& caster_;
   const DirectLight& direct_light_;
+  std::vector<char> is_left_to_rays_;  // per emitter
   std::vector<int> emitter_of_;
   std::vector<int> lit_;      // patches of emitters, ascending
   Eigen::ArrayXXd exchange_;  // (2 e + side, i): from patch i to the front or back of emitter e

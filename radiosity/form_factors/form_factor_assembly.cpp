@@ -42,6 +42,7 @@ class Assembly {
       close_whole_rows();
       close_sampled_rows();
       close_all_rows();
+      settle_rows(found);
     }
     store(*result, found);
     if (rows_.has_specular()) assemble_specular(mesh_, rows_, options_, *result);
@@ -184,6 +185,31 @@ class Assembly {
         target_, options_.phase_of("balance"));
     weight_.colwise() *= d;
     open_ *= d;
+  }
+
+  // Brings rows that no scaling closes to their sums, so that energy is kept. Rows that are too
+  // long get shorter; since each pair is scaled by the factors of both rows, which are at most 1,
+  // no row gets longer. What rows then lack escapes, and is reported.
+  void settle_rows(FormFactorReport& found) {
+    constexpr double closed = 1e-6;
+    const ArrayXd sum = open_ + sums(ArrayXd::Ones(n_)).rowwise().sum();
+    ArrayXd shorter = ArrayXd::Ones(n_);
+    bool is_closed = true;
+    for (int i = 0; i < n_; ++i) {
+      if (!rows_.is_measured(i)) continue;
+      is_closed = is_closed && std::abs(sum[i] - target_[i]) <= closed * mesh_.area[i];
+      if (sum[i] > target_[i]) shorter[i] = std::max(target_[i], 0.0) / sum[i];
+    }
+    if (is_closed) return;
+    weight_.colwise() *= shorter;
+    open_ *= shorter;
+    const ArrayXd left = target_ - open_ - sums(ArrayXd::Ones(n_)).rowwise().sum();
+    found.lost_share.assign(static_cast<std::size_t>(n_), 0.0f);
+    for (int i = 0; i < n_; ++i) {
+      if (!rows_.is_measured(i) || !(left[i] > 0.0)) continue;
+      open_[i] += left[i];
+      found.lost_share[static_cast<std::size_t>(i)] = static_cast<float>(left[i] / mesh_.area[i]);
+    }
   }
 
   void store(StoredFormFactors& result, FormFactorReport& found) {

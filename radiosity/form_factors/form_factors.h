@@ -117,6 +117,10 @@ struct FormFactorReport {
   /// Largest |A_i F_ij - A_j F_ji| / min(A_i, A_j), from rounding to floats.
   double max_reciprocity_error = 0.0;
   double depth_cut = 0.0;  ///< mean share of a row lost to max_specular_depth (counted as absorbed)
+  /// Per patch, share of its light that no row takes up, counted as escaped; empty: none. Rows
+  /// contradict each other where surfaces lie in the same place: what a hidden surface sends has no
+  /// counterpart, since no ray meets it.
+  std::vector<float> lost_share{};
   /// Largest change of a closed form's F_ij in each row by closure.
   std::vector<float> closure_shift{};
   /// Estimated error of the worst F_ij of each row: standard error of sampled parts, bounds of the

@@ -30,12 +30,11 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
 }
 
 bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit,
-                             std::uint64_t key, Media& media, Spectrum& throughput,
-                             bool& through_panes_only, PathLosses& losses) const {
+                             std::uint64_t key, PathLight& light, PathLosses& losses) const {
   const Material& material = scene_.materials[material_[hit.facet]];
   // The back of a one-sided mirror is black; glass is clear from both sides.
   if (!material.dielectric && hit.element < 0) {
-    losses.escaped += throughput;
+    losses.escaped += light.throughput;
     return false;
   }
   const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
@@ -63,29 +62,33 @@ bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const Elemen
     random.u = random_uniform(random_key(key, RandomPurpose::path_microfacets, 1));
     random.v = random_uniform(random_key(key, RandomPurpose::path_microfacets, 2));
   }
-  const ScatteringSample sample = sample_scattering(
-      {.material = material, .direction = direction, .normal = bent, .from_back = hit.from_back},
-      random);
-  media.cross(material_[hit.facet], material, sample, hit.from_back);
-  through_panes_only = through_panes_only && sample.crosses && is_clear_pane(material);
+  const ScatteringSample sample = sample_scattering({.material = material,
+                                                     .direction = direction,
+                                                     .normal = bent,
+                                                     .from_back = hit.from_back,
+                                                     .polarisation = light.polarisation},
+                                                    random);
+  light.media.cross(material_[hit.facet], material, sample, hit.from_back);
+  light.polarisation = sample.polarisation;
+  light.through_panes_only = light.through_panes_only && sample.crosses && is_clear_pane(material);
   // Light that a partly diffuse surface does not mirror arrives at its diffuse side, which the
   // caller counts.
-  if (!diffuse_[hit.facet]) losses.absorbed += throughput * (1.0f - sample.weight);
-  throughput *= sample.weight;
+  if (!diffuse_[hit.facet]) losses.absorbed += light.throughput * (1.0f - sample.weight);
+  light.throughput *= sample.weight;
   ray = {.origin = point,
          .direction =
              is_smooth ? on_its_side(sample.direction, normal, sample.crosses) : sample.direction,
          .origin_group = hit.facet};
-  return (throughput > 0.0f).any();
+  return (light.throughput > 0.0f).any();
 }
 
-void LightPaths::absorb(const Ray& ray, const ElementHit& hit, const Media& media,
-                        Spectrum& throughput, PathLosses& losses) const {
+void LightPaths::absorb(const Ray& ray, const ElementHit& hit, PathLight& light,
+                        PathLosses& losses) const {
   if (!absorbs_ || hit.facet < 0) return;
   const Spectrum passed =
-      media.passed(scene_, material_[hit.facet], hit.from_back, hit.t * ray.direction.norm());
-  losses.absorbed += throughput * (1.0f - passed);
-  throughput *= passed;
+      light.media.passed(scene_, material_[hit.facet], hit.from_back, hit.t * ray.direction.norm());
+  losses.absorbed += light.throughput * (1.0f - passed);
+  light.throughput *= passed;
 }
 
 PathLosses LightPaths::follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
@@ -98,28 +101,29 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
                               const std::function<void(const LightArrival&)>& arrive) const {
   const int bands = scene_.bands.count();
   PathLosses losses{Spectrum::Zero(bands), Spectrum::Zero(bands), Spectrum::Zero(bands), {}};
-  Spectrum throughput = Spectrum::Ones(bands);
+  PathLight light{.throughput = Spectrum::Ones(bands)};
+  const Spectrum& throughput = light.throughput;
   Ray ray = first_ray;
   ElementHit hit = first_hit;
-  Media media;
-  absorb(ray, hit, media, throughput, losses);
-  bool met_rough = false, through_panes_only = true;
+  absorb(ray, hit, light, losses);
+  bool goes_deep = false;
   for (int depth = 0;; ++depth) {
-    met_rough = met_rough || scene_.materials[material_[hit.facet]].gloss_roughness() > 0.0f;
-    if (depth >= deepest_path(max_depth_, met_rough)) {
+    const Material& met = scene_.materials[material_[hit.facet]];
+    goes_deep = goes_deep || met.dielectric || met.gloss_roughness() > 0.0f;
+    if (depth >= deepest_path(max_depth_, goes_deep)) {
       losses.cut += throughput;
       return losses;
     }
-    if (!continue_at(caster, ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), media,
-                     throughput, through_panes_only, losses)) {
+    if (!continue_at(caster, ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), light,
+                     losses)) {
       return losses;
     }
     caster.closest_hits({&ray, 1}, {&hit, 1});
-    absorb(ray, hit, media, throughput, losses);
+    absorb(ray, hit, light, losses);
     const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));
     if (leaves) {
       losses.escaped += throughput;
-      if (hit.facet < 0 && scene_.sky && !through_panes_only) {
+      if (hit.facet < 0 && scene_.sky && !light.through_panes_only) {
         losses.sky = throughput * sky_radiance(*scene_.sky, ray.direction.normalized());
       }
       return losses;
@@ -128,7 +132,7 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
       arrive({.hit = hit,
               .throughput = throughput,
               .position = ray.origin + hit.t * ray.direction,
-              .through_panes_only = through_panes_only});
+              .through_panes_only = light.through_panes_only});
     }
     if (!is_specular(hit.facet)) return losses;
   }

@@ -39,7 +39,8 @@ enum class PathNormals {
 /// Follows rays through mirrors and clear glass to diffuse surfaces (extended form factors, Sillion
 /// & Puech 1989). One scattering sample continues each ray: a branch of glass with Fresnel's
 /// probability, a direction of a rough surface's lobe (see sample_scattering). The mean is exact.
-/// Absorbing bodies attenuate along the path (see Media).
+/// Absorbing bodies attenuate along the path (see Media). Smooth surfaces polarise the light, which
+/// decides over its share at the surfaces behind them (see Polarisation).
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
@@ -64,11 +65,16 @@ class LightPaths {
                     const std::function<void(const LightArrival&)>& arrive) const;
 
  private:
+  // Light along a path.
+  struct PathLight {
+    Media media{};
+    Spectrum throughput{};
+    Polarisation polarisation{};
+    bool through_panes_only = true;
+  };
   bool continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit, std::uint64_t key,
-                   Media& media, Spectrum& throughput, bool& through_panes_only,
-                   PathLosses& losses) const;
-  void absorb(const Ray& ray, const ElementHit& hit, const Media& media, Spectrum& throughput,
-              PathLosses& losses) const;
+                   PathLight& light, PathLosses& losses) const;
+  void absorb(const Ray& ray, const ElementHit& hit, PathLight& light, PathLosses& losses) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;

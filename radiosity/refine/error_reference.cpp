@@ -9,6 +9,16 @@ double error_reference(double mean_irradiance, double own_irradiance) {
   return std::max(mean_irradiance, own_irradiance / bright);
 }
 
+std::vector<char> judged_patches(const PatchMesh& mesh) {
+  const bool any = (mesh.reflectance > 0.0f).any();
+  const BandArray& light = any ? mesh.reflectance : mesh.emission;
+  std::vector<char> judged(static_cast<std::size_t>(mesh.patch_count()), 0);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    judged[static_cast<std::size_t>(p)] = (light.row(p) > 0.0f).any() == any ? 1 : 0;
+  }
+  return judged;
+}
+
 PartMeans::PartMeans(const SceneParts& parts)
     : parts_(parts),
       sum_(static_cast<std::size_t>(parts.judged_count()), 0.0),
@@ -48,8 +58,9 @@ double own_irradiance(const PatchMesh& mesh, const BandArray& irradiance, int el
 
 PartMeans part_means(const PatchMesh& mesh, const BandArray& irradiance, const SceneParts& parts) {
   PartMeans means(parts);
+  const std::vector<char> judged = judged_patches(mesh);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
+    if (judged[static_cast<std::size_t>(mesh.patch[e])] == 0) continue;
     means.add(mesh.patch[e], mesh.element_area[e], own_irradiance(mesh, irradiance, e));
   }
   means.finish();

@@ -13,6 +13,10 @@ namespace lightwell {
 /// lamp shade, a thousand times as bright as the room, would decide over the whole room.)
 double error_reference(double mean_irradiance, double own_irradiance);
 
+/// Per patch, 1 if errors of its irradiance count: if it reflects, since others see its light;
+/// where nothing reflects, if it does not emit, since such surfaces are there to be measured.
+std::vector<char> judged_patches(const PatchMesh& mesh);
+
 /// The mean irradiance of each part of a scene, by which errors in the part are judged. A part with
 /// less than a millionth of the brightest part's mean is judged by that millionth: 0.1 lx beside
 /// sunlit ground of 100 000 lx. Keeps a reference to the parts.
@@ -39,13 +43,12 @@ class PartMeans {
   double least_ = 0.0;
 };
 
-/// The means of the parts, for `irradiance` at vertices (vertices x bands), over all area that
-/// reflects.
+/// The means of the parts, for `irradiance` at vertices (vertices x bands), over all
+/// judged_patches().
 PartMeans part_means(const PatchMesh& mesh, const BandArray& irradiance, const SceneParts& parts);
 
 /// error_reference() of every element, W/m^2, for `irradiance` at vertices (vertices x bands). The
-/// mean of a part is taken over all of its area that reflects, an element's own irradiance over its
-/// corners.
+/// mean of a part is taken over its judged_patches(), an element's own irradiance over its corners.
 Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradiance,
                                 const SceneParts& parts = {});
 

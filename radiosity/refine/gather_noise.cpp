@@ -30,8 +30,9 @@ Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
 std::vector<double> rms_noises(const PatchMesh& mesh, const Eigen::ArrayXf& noise,
                                const SceneParts& parts) {
   std::vector<double> sum(static_cast<std::size_t>(parts.judged_count()), 0.0), area(sum);
+  const std::vector<char> judged = judged_patches(mesh);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!(mesh.reflectance.row(mesh.patch[e]) > 0.0f).any()) continue;
+    if (judged[static_cast<std::size_t>(mesh.patch[e])] == 0) continue;
     const int part = parts.judged_with(mesh.patch[e]);
     sum[part] += mesh.element_area[e] * std::pow(double{noise[e]}, 2);
     area[part] += mesh.element_area[e];

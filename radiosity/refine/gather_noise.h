@@ -16,10 +16,10 @@ Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
                             const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays,
                             const SceneParts& parts = {});
 
-/// The RMS over all area of each part that reflects of the noise of gather_noise().
+/// The RMS over the judged_patches() of each part of the noise of gather_noise().
 std::vector<double> rms_noises(const PatchMesh& mesh, const Eigen::ArrayXf& noise,
                                const SceneParts& parts);
-/// The RMS over all area of the scene that reflects.
+/// The RMS over the judged_patches() of the scene.
 double rms_noise(const PatchMesh& mesh, const Eigen::ArrayXf& noise);
 
 }  // namespace lightwell

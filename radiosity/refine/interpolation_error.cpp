@@ -61,12 +61,13 @@ InterpolationError::InterpolationError(const LitScene& lit, const BandArray& rad
 
 void InterpolationError::find_what_matters() {
   const PatchMesh& mesh = elements_.base();
+  const std::vector<char> judged = judged_patches(mesh);
   matters_.assign(mesh.element_count(), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
     const bool is_back = mesh.is_back[p] != 0;
     const int front = is_back && mesh.twin[e] >= 0 ? mesh.twin[e] : e;
-    if (!(mesh.reflectance.row(p) > 0.0f).any() || caster_.is_hidden(front, is_back)) continue;
+    if (judged[p] == 0 || caster_.is_hidden(front, is_back)) continue;
     matters_[e] = 1;
     double E = 0.0;
     for (int i = 0; i < mesh.corner_count(e); ++i) E += gathers_.total(mesh.corners[e][i]).mean();

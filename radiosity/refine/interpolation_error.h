@@ -29,7 +29,7 @@ struct ChannelLight;
 /// - Between the points: ShadowSearch.
 /// - Cells whose indirect light the corners predict: CornerPredictions.
 ///
-/// Caustics are left out, and so is the light on surfaces that reflect none.
+/// Caustics are left out, and so is the light on patches that do not count (see judged_patches).
 class InterpolationError {
  public:
   /// `radiosity` as gatherable_radiosity makes it, and `caustic` irradiance (or an empty array),
@@ -49,7 +49,7 @@ class InterpolationError {
   /// Rays of the final gather in each part.
   const std::vector<int>& rays() const { return gathers_.rays(); }
 
-  /// True if a side of an element of the base counts: the side reflects and is not hidden.
+  /// True if a side of an element of the base counts: judged_patches(), and the side is not hidden.
   bool matters(int element) const { return matters_[element] != 0; }
   /// Area of the sides that count in a part, m^2.
   double area(int part) const { return means_.area(part); }

@@ -27,6 +27,7 @@ ClearPanes::ClearPanes(const Scene& scene) : bands_(scene.bands.count()) {
 Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const {
   Spectrum share = Spectrum::Ones(bands_);
   const Eigen::Vector3d direction = first.direction.normalized();
+  Polarisation polarisation;
   Ray ray = first;
   constexpr int most_panes = 64;  // the transmittance of so many is negligible
   for (int i = 0; i < most_panes; ++i) {
@@ -48,9 +49,11 @@ Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const
     const SmoothScattering lobes = smooth_scattering({.material = pane.material,
                                                       .direction = direction,
                                                       .normal = normal,
-                                                      .from_back = hit.from_back});
+                                                      .from_back = hit.from_back,
+                                                      .polarisation = polarisation});
     if (lobes.count < 2) break;
     share *= lobes.sample[1].weight;
+    polarisation = lobes.sample[1].polarisation;
     ray.origin = point;
     ray.t_max -= hit.t;
     ray.origin_group = hit.facet;

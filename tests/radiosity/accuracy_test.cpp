@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include "mesh/build_patches.h"
 #include "mesh/patches/patch_sampler.h"
+#include "radiosity/emitters/direct_light.h"
 #include "radiosity/error_estimate.h"
 #include "radiosity/refine/error_reference.h"
 #include "radiosity/solve.h"
@@ -219,6 +221,77 @@ TEST(Accuracy, RaysAreNotCastWhereElementsAreTooLarge) {
   const auto noisy = next_effort(first, 0.03, 0.045, 0.042, RefineReport{}, 0);
   ASSERT_TRUE(noisy);
   EXPECT_GT(noisy->gather_rays, first.gather_rays);
+}
+
+// Mean squared error of interpolated irradiance that consists of direct light, relative to
+// error_reference(), over all that does not emit; `unbounded` gets the share of the points with a
+// notable error that have no bound.
+double true_error_of_direct_light(const Scene& scene, const SolvedScene& solved,
+                                  double& unbounded) {
+  const PatchMesh& mesh = solved.mesh;
+  const ElementCaster caster(mesh);
+  const DirectLight light(scene, mesh);
+  const BandArray E = solved.solution.irradiance();
+  const Eigen::ArrayXf bound = error_bound(solved.solution);
+  constexpr int each = 8;
+  const SobolPoints sobol(each);
+  std::vector<std::array<double, 3>> samples;  // irradiance, its error, area
+  double sum = 0.0, area = 0.0, wrong = 0.0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if ((mesh.emission.row(p) > 0.0f).any() || caster.hidden_elements(p) > 0) continue;
+    const auto key = static_cast<std::uint64_t>(p);
+    for (int k = 0; k < each; ++k) {
+      const Eigen::Array4f u = sobol.point(k, key);
+      const PatchPoint at = PatchSampler(mesh, p).point(u[0], u[1]);
+      const LightQuery query{.at = {at.position, at.normal, mesh.facet[at.element]},
+                             .key = random_key(key, static_cast<std::uint64_t>(k)),
+                             .shadows = {.min_rays = 64, .max_rays = 256}};
+      const auto own = static_cast<double>(light.irradiance(caster, query).mean());
+      const ElementHit hit = point_on_element(mesh, at);
+      const double off = static_cast<double>(interpolate(mesh, E, hit).mean()) - own;
+      samples.push_back({own, off, mesh.area[p]});
+      sum += mesh.area[p] * own;
+      area += mesh.area[p];
+      if (std::abs(off) < 0.01 * own) continue;
+      wrong += mesh.area[p];
+      unbounded += bound[hit.element] > 0.0f ? 0.0 : mesh.area[p];
+    }
+  }
+  unbounded /= wrong;
+  double square = 0.0;
+  for (const auto& [own, off, weight] : samples) {
+    square += weight / area * std::pow(off / error_reference(sum / area, own), 2);
+  }
+  return std::sqrt(square);
+}
+
+// Where nothing reflects, all that does not emit is there to be measured. Elements of half a metre
+// under a lamp of 20 cm are far from its light.
+TEST(ErrorEstimate, KnowsTheErrorWhereNothingReflects) {
+  Scene scene;
+  const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+  const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 1000.0f));
+  test::add_box(scene, {0, 0, 0}, {4, 3, 2}, {black, black, black, black, black, black}, true);
+  test::add_polygon(scene, "lamp", lamp,
+                    {{1.9, 1.4, 1.9}, {1.9, 1.6, 1.9}, {2.1, 1.6, 1.9}, {2.1, 1.4, 1.9}});
+  test::add_box(scene, {2.4, 1.2, 0.0}, {2.8, 1.8, 0.6}, {black, black, black, black, black, black},
+                false);
+  SolveOptions options;
+  options.mesh.max_patch_size = 0.5;
+  options.gather.rays = 16;
+  for (const double tolerance : {unrefined, 0.02}) {
+    options.refine.tolerance = tolerance;
+    const SolvedScene solved = solve_scene(scene, options);
+    double unbounded = 0.0;
+    const double error = true_error_of_direct_light(scene, solved, unbounded);
+    std::printf("black room, tolerance %.2f: estimated %.4f, off by %.4f, unbounded %.4f\n",
+                tolerance, solved.solution.error_estimate, error, unbounded);
+    // The estimate holds the error, within the noise of its 512 points, and is not three times as
+    // large.
+    EXPECT_GT(solved.solution.error_estimate, 0.7 * error);
+    EXPECT_LT(solved.solution.error_estimate, 3.0 * error);
+    EXPECT_LT(unbounded, 0.05);
+  }
 }
 
 // Each batch has sample points of its own, and several batches together are more certain.

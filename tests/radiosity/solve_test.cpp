@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -77,6 +78,31 @@ TEST(SolveScene, EmittedIsAbsorbedPlusEscaped) {
     } else {
       EXPECT_EQ(e.escaped, 0.0);
     }
+  }
+}
+
+// A second room and a second block in the same place as the first ones: no ray meets them, but rays
+// of their own meet others. Rows that no scaling closes lose what they lack, and say so.
+TEST(SolveScene, SurfacesInTheSamePlaceMakeNoLight) {
+  Scene scene = lit_room();
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  const std::size_t count = scene.surfaces.size();
+  for (std::size_t s = 0; s < count; ++s) {
+    if (scene.surfaces[s].name == "lamp") continue;
+    Surface copy = scene.surfaces[s];
+    copy.material = grey;
+    scene.surfaces.push_back(copy);
+  }
+  const SolvedScene solved = solve_scene(scene, quick());
+  const EnergyBalance& e = solved.solution.energy;
+  std::printf("doubled room: absorbed %.5f %%, escaped %.5f %%\n", 100 * e.absorbed / e.emitted,
+              100 * e.escaped / e.emitted);
+  EXPECT_NEAR((e.absorbed + e.escaped + e.unshot) / e.emitted, 1.0, 1e-4);
+  if (e.escaped > 1e-4 * e.emitted) {
+    const auto says_it = [](const std::string& note) {
+      return note.find("of the emitted power is lost") != std::string::npos;
+    };
+    EXPECT_TRUE(std::ranges::any_of(solved.mesh.notes, says_it));
   }
 }
 

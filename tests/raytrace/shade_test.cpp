@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "scene/optics.h"
 #include "scene/sampling.h"
 #include "tests/raytrace/lit_scene.h"
 
@@ -82,6 +83,53 @@ TEST(RayTree, SlabPassesWhatItsManyReflectionsLeave) {
     const Ray ray{.origin = {0.1, 0.2, 3}, .direction = -up};
     const double T = closed_forms("slab_transmittance")["T"].get<double>() * tint * tint;
     EXPECT_NEAR(radiance(lit, ray, {.max_depth = 20, .min_contribution = 1e-9f}), T, 1e-6);
+  }
+}
+
+// N slabs without absorption, each of reflectance R1 = 2 r / (1 + r) for one polarisation, pass
+// (1 - R1) / (1 + (N - 1) R1) of it, by all reflections within and between them (Stokes 1862).
+double stack_transmittance(double degrees, int count) {
+  const PolarisedReflectance face = polarised_reflectance(std::cos(degrees * pi / 180.0), 1.5);
+  double T = 0.0;
+  for (const double r : {face.s, face.p}) {
+    const double R1 = 2.0 * r / (1.0 + r);
+    T += 0.5 * (1.0 - R1) / (1.0 + (count - 1) * R1);
+  }
+  return T;
+}
+
+TEST(RayTree, StackOfSlabsPassesTheSumOfAllItsReflections) {
+  // The values of two slabs by the transfer matrices of each polarisation.
+  EXPECT_NEAR(stack_transmittance(0.0, 2), 0.8571428571428573, 1e-12);
+  EXPECT_NEAR(stack_transmittance(60.0, 2), 0.7655600160281887, 1e-12);
+  for (const bool thin : {false, true}) {
+    for (int count = 1; count <= 4; ++count) {
+      SceneBuilder builder;
+      for (int i = 0; i < count; ++i) {
+        const double z = 0.2 * i;
+        if (thin) {
+          builder.square({.index_of_refraction = 1.5f, .thin = true}, {0, 0, z}, up, 200);
+        } else {
+          builder.box({.index_of_refraction = 1.5f}, {-200, -200, z}, {200, 200, z + 0.1}, false);
+        }
+      }
+      const TracedScene lit(builder.square({.exitance = pi_f}, {0, 0, -0.5}, up, 400).build());
+      const RayTree tree(lit.scene, lit.caster, lit.direct_light, lit.solution, {});
+      for (const double degrees : {0.0, 30.0, 60.0, 75.0}) {
+        constexpr int keys = 100;
+        double sum = 0.0;
+        for (int key = 0; key < keys; ++key) {
+          sum += static_cast<double>(
+              tree.trace({.origin = {0.1, 0.2, 3}, .direction = downwards(degrees)}, key)
+                  .radiance[0]);
+        }
+        const double T = stack_transmittance(degrees, count);
+        // Branches below w = 1e-3, of a share D of the light, are reflected or cross by chance.
+        // That leaves a variance of less than D w / 4 in a tree, and four standard errors of the
+        // mean over 100 keys are 2 sqrt(D w / 100) = 3e-3 sqrt(D); D is below 0.1.
+        EXPECT_NEAR(sum / keys, T, 1e-3 * T) << thin << ' ' << count << ' ' << degrees;
+      }
+    }
   }
 }
 

@@ -100,6 +100,42 @@ TEST(SpecularLight, ThroughAPlateAddsUpItsInnerReflections) {
   EXPECT_NEAR(irradiance(lit, Vector3d::Zero(), up), expected, (of_newton + 1e-5) * expected);
 }
 
+// Slabs of a millimetre, a millimetre apart. Of each polarisation they pass
+// (1 - R1) / (1 + (N - 1) R1), R1 = 2 r / (1 + r), by all reflections within and between them
+// (Stokes 1862). A lamp of intensity I in height h gives E = I T sin a / (x dx/da) at the distance
+// x that light of the angle a goes sideways.
+TEST(SpecularLight, ThroughAStackOfSlabsIsAllItsReflections) {
+  constexpr double n = 1.5, d = 1e-3, h = 2.0;
+  for (const int count : {1, 2, 4}) {
+    SceneBuilder builder;
+    for (int i = 0; i < count; ++i) {
+      const double z = 1.0 + 2.0 * d * i;
+      builder.box({.index_of_refraction = 1.5f}, {-8, -8, z}, {8, 8, z + d}, false);
+    }
+    Scene scene = builder.build();
+    scene.lamps.push_back(point_lamp(scene, {0.0, 0.0, h}, 5.0f));
+    const TracedScene lit(scene);
+    for (const double degrees : {30.0, 60.0}) {
+      const double a = degrees * std::numbers::pi / 180.0, inside = std::asin(std::sin(a) / n);
+      const double air = h - count * d, glass = count * d;
+      const double x = air * std::tan(a) + glass * std::tan(inside);
+      const double slope = air / std::pow(std::cos(a), 2) +
+                           glass * std::cos(a) / (n * std::pow(std::cos(inside), 3));
+      const PolarisedReflectance face = polarised_reflectance(std::cos(a), n);
+      double T = 0.0;
+      for (const double r : {face.s, face.p}) {
+        const double R1 = 2.0 * r / (1.0 + r);
+        T += 0.5 * (1.0 - R1) / (1.0 + (count - 1) * R1);
+      }
+      const double expected = 5.0 * T * std::sin(a) / (x * slope);
+      // Light that goes to and fro comes from a few millimetres farther away, 2e-3 of the distance
+      // at most, and is less than a fifth of all.
+      EXPECT_NEAR(irradiance(lit, {x, 0.0, 0.0}, up), expected, 1e-3 * expected)
+          << count << ' ' << degrees;
+    }
+  }
+}
+
 TEST(SpecularLight, OfTheSunOffAMirrorIsItsIrradiance) {
   Scene scene = over_a_mirror(0.9f).build();
   const Vector3d sun = Vector3d(1.0, 2.0, 3.0).normalized();

@@ -43,6 +43,26 @@ Scene squares(int n, int material = 0) {
   return scene;
 }
 
+// A square, the same square under another name that begins at another corner, the square turned
+// over, and one of another material.
+TEST(JoinedSurfaces, PolygonsThatLieOnEqualOnesGo) {
+  Scene scene = empty_scene();
+  const Loop loop = rectangle(0, 0, 1, 1);
+  add_polygon(scene, "first", loop);
+  add_polygon(scene, "again", {loop[2], loop[3], loop[0], loop[1]});
+  add_polygon(scene, "turned over", {loop[3], loop[2], loop[1], loop[0]});
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials.back().reflectance *= 0.5f;
+  const int darker = static_cast<int>(scene.materials.size()) - 1;
+  add_polygon(scene, "darker", loop, {}, darker);
+  EXPECT_EQ(drop_shared_duplicates(scene), 1);
+  EXPECT_EQ(mesh_of(scene, 0).facets.size(), 1u);
+  EXPECT_EQ(mesh_of(scene, 1).facets.size(), 0u);
+  EXPECT_EQ(mesh_of(scene, 2).facets.size(), 1u);
+  EXPECT_EQ(mesh_of(scene, 3).facets.size(), 1u);
+  EXPECT_EQ(drop_shared_duplicates(scene), 0);
+}
+
 TEST(JoinedSurfaces, SquaresOfOnePlaneBecomeOnePolygonAndKeepTheirNames) {
   constexpr int n = 5;
   const Scene apart = squares(n);

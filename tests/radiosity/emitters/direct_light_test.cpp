@@ -117,7 +117,32 @@ TEST(DirectLight, UnoccludedIrradianceIsTheClosedForm) {
             0.0f);
 }
 
-TEST(DirectLight, LargeEmittersAreLeftToTheHemisphereOfRays) {
+// A luminous ceiling is half of all area here. Nothing hides it, so the closed form is exact.
+TEST(DirectLight, OfASingleLargeEmitterIsTheClosedForm) {
+  Scene scene;
+  const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+  const int glow = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 3.0f));
+  const Loop ceiling = {{0, 0, 2}, {0, 3, 2}, {4, 3, 2}, {4, 0, 2}};
+  test::add_polygon(scene, "floor", black, {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}});
+  test::add_polygon(scene, "ceiling", glow, ceiling);
+  // A small dim lamp behind the bright ceiling keeps its closed form, too.
+  test::add_polygon(scene, "lamp",
+                    test::add_material(scene, test::diffuse(scene.bands, 0.0f, 1.0f)),
+                    {{1, 1, 1}, {1, 1.1, 1}, {1.1, 1.1, 1}, {1.1, 1, 1}});
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 1.0});
+  const ElementCaster caster(mesh);
+  const DirectLight light(scene, mesh);
+  ASSERT_EQ(light.emitters().size(), 2u);
+  EXPECT_TRUE(light.owns(1, false));
+  const Eigen::Vector3d p(3.7, 2.6, 0.0), n(0, 0, 1);
+  const Loop lamp = {{1, 1, 1}, {1, 1.1, 1}, {1.1, 1.1, 1}, {1.1, 1, 1}};
+  const double exact = 3.0 * std::abs(point_to_polygon(p, n, {&ceiling, 1})) +
+                       std::abs(point_to_polygon(p, n, {&lamp, 1}));
+  // The lamp hides less than 1e-3 of the ceiling, whose light it replaces by a third.
+  EXPECT_NEAR(light.irradiance(caster, {.at = {p, n, 0}, .key = 1})[0], exact, 2e-3 * exact);
+}
+
+TEST(DirectLight, ManyLargeEmittersAreLeftToTheHemisphereOfRays) {
   const Scene scene = test::furnace(0.5f, 1.0f, false);
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
   EXPECT_TRUE(DirectLight(scene, mesh).emitters().empty());

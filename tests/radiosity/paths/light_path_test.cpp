@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
 
 #include "mesh/build_patches.h"
+#include "scene/optics.h"
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 
@@ -86,6 +89,48 @@ TEST(LightPaths, BlockOfGlassThatStandsOnTheFloorLightsIt) {
   EXPECT_EQ(hovering.escaped, 0.0);
   EXPECT_NEAR(standing.under_block, hovering.under_block, 0.03);
   EXPECT_GT(standing.under_block, 0.5);
+}
+
+// By all reflections within and between N slabs, each of reflectance R1 = 2 r / (1 + r) for one
+// polarisation, (1 - R1) / (1 + (N - 1) R1) of it passes (Stokes 1862). The depth of 8 surfaces is
+// that of a straight path alone.
+TEST(LightPaths, StackOfSlabsPassesTheSumOfAllItsReflections) {
+  constexpr int slabs = 4, rays = 1 << 16;
+  Scene scene;
+  const int wall = add_material(scene, diffuse(scene.bands, 0.5f));
+  const int clear = add_material(scene, glass(scene.bands));
+  test::add_polygon(scene, "floor", wall,
+                    {{-900, -900, 0}, {900, -900, 0}, {900, 900, 0}, {-900, 900, 0}});
+  for (int i = 0; i < slabs; ++i) {
+    add_box(scene, {-200, -200, 1.0 + 0.2 * i}, {200, 200, 1.1 + 0.2 * i},
+            {clear, clear, clear, clear, clear, clear}, false);
+  }
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 2000.0});
+  const ElementCaster caster(mesh);
+  const LightPaths paths(scene, caster, 8);
+  for (const double degrees : {0.0, 60.0, 75.0}) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    const Ray ray{.origin = {0.1, 0.2, 3.0}, .direction = {std::sin(angle), 0, -std::cos(angle)}};
+    ElementHit hit;
+    caster.closest_hits({&ray, 1}, {&hit, 1});
+    double passed = 0.0, cut = 0.0;
+    for (std::uint64_t i = 0; i < rays; ++i) {
+      const PathLosses losses = paths.follow(ray, hit, random_key(i, 9),
+                                             [&](const ElementHit&, const Spectrum& throughput) {
+                                               passed += static_cast<double>(throughput[0]) / rays;
+                                             });
+      cut += static_cast<double>(losses.cut[0]) / rays;
+    }
+    const PolarisedReflectance face = polarised_reflectance(std::cos(angle), 1.5);
+    double T = 0.0;
+    for (const double r : {face.s, face.p}) {
+      const double R1 = 2.0 * r / (1.0 + r);
+      T += 0.5 * (1.0 - R1) / (1.0 + (slabs - 1) * R1);
+    }
+    // Four standard errors of a share of 2^16 rays.
+    EXPECT_NEAR(passed, T, 4.0 * std::sqrt(T * (1.0 - T) / rays)) << degrees;
+    EXPECT_LT(cut, 1e-3) << degrees;
+  }
 }
 
 }  // namespace
