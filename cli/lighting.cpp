@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <set>
@@ -149,6 +150,14 @@ std::vector<CalculationSurface> grids(const LightingArguments& arguments, const 
   return surfaces;
 }
 
+// Bound of the first point that has the given illuminance; null where nothing is known.
+Json within_of(const LuxField& field, double lux) {
+  Eigen::Index at = 0;
+  (field.lux - lux).abs().minCoeff(&at);
+  const double within = field.lux_within[at];
+  return std::isfinite(within) ? Json(within) : Json();
+}
+
 Json figures_json(const LightingReport& report) {
   Json surfaces = Json::array(), observers = Json::array(), lamps = Json::array();
   for (const CalculationSurface& surface : report.surfaces) {
@@ -157,6 +166,8 @@ Json figures_json(const LightingReport& report) {
                         {"E_m", field.mean},
                         {"E_min", field.least},
                         {"E_max", field.greatest},
+                        {"E_min_within", within_of(field, field.least)},
+                        {"E_max_within", within_of(field, field.greatest)},
                         {"U_0", field.uniformity},
                         {"mean_within", field.mean_within * field.mean},
                         {"point_within_relative", field.point_within},
@@ -206,8 +217,9 @@ std::string points_csv(const LightingReport& report) {
     for (std::size_t i = 0; i < grid.points.size(); ++i) {
       const Eigen::Vector3d p = grid.points[i].position / report.metres_per_unit;
       const double lux = field.lux[static_cast<Eigen::Index>(i)];
-      csv += fmt::format("\"{}\",{:.6g},{:.6g},{:.6g},{:.6g},{:.3g}\n", name, p.x(), p.y(), p.z(),
-                         lux, std::max(lux, 0.1 * field.mean) * field.point_within);
+      const double within = field.lux_within[static_cast<Eigen::Index>(i)];
+      csv += fmt::format("\"{}\",{:.6g},{:.6g},{:.6g},{:.6g},", name, p.x(), p.y(), p.z(), lux);
+      csv += std::isnan(within) ? "\n" : fmt::format("{:.3g}\n", within);
     }
   }
   return csv;

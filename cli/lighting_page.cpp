@@ -43,6 +43,20 @@ std::string percent(double share) {
   return fmt::format("{:.1f}\u202f%", 100.0 * share);
 }
 
+// " ± 4.2" for a point whose bound is known.
+std::string within_text(const LuxField& field, Eigen::Index point) {
+  const double within = field.lux_within[point];
+  return std::isfinite(within) ? " ± " + lux_text(within) : "";
+}
+
+// The bound of the point with the given illuminance, for a table.
+std::string small_within(const LuxField& field, double lux) {
+  Eigen::Index at = 0;
+  (field.lux - lux).abs().minCoeff(&at);
+  const std::string text = within_text(field, at);
+  return text.empty() ? text : " <small>" + text + "</small>";
+}
+
 double place_of(double lux, const LuxRange& range) {
   if (range.is_even()) return lux / range.high;
   return lux > 0.0 ? std::log(lux / range.low) / std::log(range.high / range.low) : 0.0;
@@ -92,8 +106,9 @@ std::string plan(const CalculationSurface& surface, const std::optional<LuxRange
     const double x = w * column, y = h * (grid.rows - 1 - row);
     fmt::format_to(out,
                    "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
-                   "fill=\"{}\"><title>{} lx</title></rect>\n",
-                   x, y, w + 0.3, h + 0.3, hex_colour(place), lux_text(lux));
+                   "fill=\"{}\"><title>{} lx{}</title></rect>\n",
+                   x, y, w + 0.3, h + 0.3, hex_colour(place), lux_text(lux),
+                   within_text(surface.field, static_cast<Eigen::Index>(i)));
     if (w < room_for_text || h < 0.5 * room_for_text) continue;
     fmt::format_to(out,
                    "<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"11\" text-anchor=\"middle\" "
@@ -159,11 +174,11 @@ void add_surfaces(const LightingReport& report, const std::optional<LuxRange>& r
   for (const auto& [grid, field] : report.surfaces) {
     fmt::format_to(
         out,
-        "<tr><td>{}</td><td>{} <small>± {}</small></td><td>{} <small>± "
-        "{}</small></td><td>{} <small>± {}</small></td><td>{:.2f}</td><td>{}</td></tr>\n",
-        escaped(grid.name), lux_text(field.mean), percent(field.mean_within), lux_text(field.least),
-        percent(field.point_within), lux_text(field.greatest), percent(field.point_within),
-        field.uniformity, grid.points.size());
+        "<tr><td>{}</td><td>{} <small>± {}</small></td><td>{}{}</td><td>{}{}</td><td>{:.2f}</td>"
+        "<td>{}</td></tr>\n",
+        escaped(grid.name), lux_text(field.mean), lux_text(field.mean_within * field.mean),
+        lux_text(field.least), small_within(field, field.least), lux_text(field.greatest),
+        small_within(field, field.greatest), field.uniformity, grid.points.size());
   }
   page += "</table>\n";
   for (const CalculationSurface& surface : report.surfaces) {
@@ -253,11 +268,13 @@ std::string lighting_page(const LightingReport& report, const std::optional<LuxR
   add_observers(report, page);
   page += "<h2>Uncertainty</h2>\n";
   if (!report.surfaces.empty()) {
-    fmt::format_to(out,
-                   "<p>The light of each point was gathered by {} rays over the hemisphere, and by "
-                   "shadow rays to each lamp. The ± beside a value is the 95 % confidence interval "
-                   "of this sampling, estimated from two independent halves of the rays.</p>\n",
-                   report.rays);
+    fmt::format_to(
+        out,
+        "<p>The light of each point was gathered by {} rays over the hemisphere, and by "
+        "shadow rays to each lamp. The ± beside a value is a bound in lx with odds of "
+        "about 19 to 1: the noise of this sampling, found from eight independent sets of "
+        "rays, and the error of the reflected light that the rays read.</p>\n",
+        report.rays);
   }
   if (report.error_estimate > 0.0) {
     fmt::format_to(out,

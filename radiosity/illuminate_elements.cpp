@@ -12,6 +12,7 @@
 
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
+#include "radiosity/gap_errors.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/rows/memory_budget.h"
@@ -121,6 +122,10 @@ class GatherAttempts {
       gather();
       estimate();
     } while (raise_effort());
+    GatherOptions gather = options_.gather;
+    gather.run = options_.run;
+    add_gap_errors({scene_, *caster_, direct_light_.all}, gather, solved_.solution);
+    spent_["error_estimate"] += watch_.lap();
   }
 
   void add_seconds(std::vector<PhaseSeconds>& seconds) {

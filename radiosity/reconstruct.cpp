@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <utility>
 
+#include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/refine/gather_noise.h"
@@ -12,6 +14,15 @@
 
 namespace lightwell {
 namespace {
+
+// The gather points of all vertices.
+GatherPoints vertex_points(const ElementCaster& caster) {
+  const auto all = std::make_shared<VertexGatherPoints>(caster.mesh());
+  return {caster.mesh().vertex_count(), [all, &caster](int v) {
+            constexpr double inset = 0.02;  // of vertex_gather_points
+            return moved_into_gap(caster, caster.mesh().position(v), inset, (*all)[v]);
+          }};
+}
 
 constexpr std::uint64_t pilot_replica = 1000, later_replicas = 2000, first_replicas = 3000;
 
@@ -253,7 +264,7 @@ void add_gather(const MissingRays& cast, const GatheredIrradiance& found, KeptGa
 void gather_more(const VertexGatherTask& task, const BandArray& radiosity, KeptGather& kept) {
   const PatchMesh& mesh = task.lit.mesh();
   const MissingRays missing = missing_rays(task, kept);
-  const VertexGatherPoints all(mesh);
+  const GatherPoints all = vertex_points(task.lit.caster);
   const GatherPoints fresh(static_cast<int>(missing.vertex.size()), [&](int i) {
     GatherPoint at = all[missing.vertex[i]];
     at.key = static_cast<std::uint64_t>(missing.vertex[i]);
@@ -380,8 +391,7 @@ ElementCaster PilotGathers::caster(const PatchMesh& mesh, const PilotGather& pil
 }
 
 PilotGather PilotGathers::Impl::unrefined(const SolveOptions& options) {
-  const VertexGatherPoints all(base);
-  const GatherPoints points(base.vertex_count(), [&](int v) { return all[v]; });
+  const GatherPoints points = vertex_points(caster);
   GatherOptions gather = gather_options(options);
   PilotGather pilot{.direct = gather_direct({scene, caster, direct_light}, points, gather),
                     .shadows = gather.shadows,
@@ -457,9 +467,7 @@ BandArray final_direct(const LitScene& lit, const GatherOptions& options,
                      pilot.shadows.max_rays >= options.shadows.max_rays)) {
     return pilot.direct;
   }
-  const VertexGatherPoints all(lit.mesh());
-  const GatherPoints points(lit.mesh().vertex_count(), [&](int v) { return all[v]; });
-  return gather_direct(lit, points, options);
+  return gather_direct(lit, vertex_points(lit.caster), options);
 }
 
 void split_by_channel(RadiositySolution& solution) {

@@ -220,29 +220,25 @@ LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const RadiositySolution& solution,
                       const LuxGrid& grid, double factor, const GatherOptions& options) {
   const auto count = static_cast<Eigen::Index>(grid.points.size());
-  std::array<Eigen::ArrayXd, 2> halves;
-  for (std::size_t replica = 0; replica < halves.size(); ++replica) {
-    GatherOptions half = options;
-    half.rays = std::max(1, options.rays / 2);
-    half.replica = options.replica + replica;
-    const BandArray E = probe_irradiance(scene, caster, direct_light, solution, grid.points, half);
-    halves[replica].resize(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      halves[replica][i] = factor * luminous(scene.bands, E.row(i).transpose());
-    }
+  ProbeBounds bounds;
+  const BandArray E =
+      probe_irradiance(scene, caster, direct_light, solution, grid.points, options, &bounds);
+  LuxField field{.lux = Eigen::ArrayXd(count), .lux_within = factor * bounds.lux_within};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    field.lux[i] = factor * luminous(scene.bands, E.row(i).transpose());
   }
-  LuxField field{.lux = 0.5 * (halves[0] + halves[1])};
   field.mean = field.lux.mean();
   field.least = field.lux.minCoeff();
   field.greatest = field.lux.maxCoeff();
   if (!(field.mean > 0.0)) return field;
   field.uniformity = field.least / field.mean;
-  // The standard error of a mean of two values is half of their difference: a rough guess for one
-  // point, a good one for all points together. In near darkness the relative error would reach 100
-  // %, so 0.1 of the mean is the least divisor.
-  const Eigen::ArrayXd error = 0.5 * (halves[0] - halves[1]) / field.lux.max(0.1 * field.mean);
-  field.point_within = 2.0 * std::sqrt(error.square().mean());
-  field.mean_within = field.point_within / std::sqrt(static_cast<double>(count));
+  // In near darkness the relative error would reach 100 %, so 0.1 of the mean is the least divisor.
+  const Eigen::ArrayXd within = field.lux_within.isNaN().select(0.0, field.lux_within);
+  const Eigen::ArrayXd shared = factor * bounds.read_within;
+  field.point_within = std::sqrt((within / field.lux.max(0.1 * field.mean)).square().mean());
+  const double noise = (within.square() - shared.square()).max(0.0).sum();
+  field.mean_within =
+      std::hypot(std::sqrt(noise) / static_cast<double>(count), shared.mean()) / field.mean;
   return field;
 }
 

@@ -54,16 +54,17 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid);
 /// Illuminance over a grid, lx.
 struct LuxField {
   Eigen::ArrayXd lux{};  ///< at each point
+  Eigen::ArrayXd
+      lux_within{};  ///< bound of its error (see ProbeBounds), NaN where nothing is known
   double mean = 0.0, least = 0.0, greatest = 0.0;
   double uniformity = 0.0;  ///< U_0 = least / mean; 0 without light
-  /// Twice the standard error (odds of 19 to 1) from the rays of the gathers, relative: of one
-  /// point, and of the mean.
+  /// Bounds with odds of about 19 to 1, relative: of one point, in the root mean square, and of the
+  /// mean. The noise of the points is independent; the error of the solution's light is not.
   double point_within = 0.0, mean_within = 0.0;
 };
 
 /// Illuminance at the points of a grid, times `factor` (for example a maintenance factor). The
-/// result is the mean of two independent gathers with half of the rays each; their differences give
-/// the standard error.
+/// gathers are those of probe_irradiance() with bounds.
 LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const RadiositySolution& solution,
                       const LuxGrid& grid, double factor, const GatherOptions& options);

@@ -11,7 +11,8 @@
 
 #include "radiosity/emitters/sky_light.h"
 #include "radiosity/openings/portals.h"
-#include "radiosity/refine/error_reference.h"
+#include "radiosity/refine/illuminance_bound.h"
+#include "raytrace/read_error.h"
 #include "raytrace/specular_light.h"
 #include "raytrace/sure_gather.h"
 #include "scene/errors.h"
@@ -171,16 +172,21 @@ GatherOptions probe_options(const LitScene& lit, const BandArray& radiosity,
   return options;
 }
 
+// Bound of the error that a gather takes over from the solution, as a multiple of read_errors().
+constexpr double of_read_error = 1.0;
+
 // Light of the gather at the probes; `caustic` light decides over the bounds alone.
 BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const GatherPoints& points,
                        const GatherOptions& options, const BandArray& caustic,
-                       ProbeBounds* bounds) {
+                       const RadiositySolution& solution, ProbeBounds* bounds) {
   const GatherOptions at_probes = probe_options(lit, radiosity, options);
   if (!bounds) {
     const GatheredIrradiance E = gather_irradiance(lit, radiosity, points, at_probes);
     return E.direct + E.indirect;
   }
-  SureIrradiance sure = sure_gather(lit, radiosity, points, at_probes, bounds->accuracy);
+  const SureGoal goal{.accuracy = bounds->accuracy,
+                      .besides = of_read_error * read_errors(lit, solution, radiosity, points)};
+  SureIrradiance sure = sure_gather(lit, radiosity, points, at_probes, goal);
   for (int i = 0; i < points.size(); ++i) {
     const double lux = luminous(lit.scene.bands, caustic.row(i).transpose());
     if (lux > sure.lux_within[i]) {
@@ -188,6 +194,7 @@ BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const Ga
     }
   }
   bounds->lux_within = std::move(sure.lux_within);
+  bounds->read_within = goal.besides;
   bounds->missed = sure.missed;
   return std::move(sure.irradiance);
 }
@@ -276,7 +283,7 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   const LitScene lit{scene, caster, direct_light};
   const MirroredLight mirrored =
       mirrored_in_air(lit, solution, points, options, bounds ? bounds->accuracy : 0.0);
-  BandArray E = probe_gather(lit, B, points, options, caustic, bounds) + caustic;
+  BandArray E = probe_gather(lit, B, points, options, caustic, solution, bounds) + caustic;
   E += mirrored.irradiance;
   if (bounds) {
     bounds->lux_within = (bounds->lux_within.square() + mirrored.lux_within.square()).sqrt();
@@ -321,17 +328,12 @@ BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySol
 
 Eigen::ArrayXd interpolation_bound(const ElementCaster& caster, const RadiositySolution& solution,
                                    std::span<const Probe> probes) {
-  const Eigen::ArrayXf relative = error_bound(solution);
-  if (relative.size() == 0) return {};
-  const Eigen::ArrayXd reference = error_references(caster.mesh(), solution.irradiance(), solution.parts);
+  const Eigen::ArrayXf of_elements = illuminance_bounds(caster.mesh(), solution);
+  if (of_elements.size() == 0) return {};
   const std::vector<ElementHit> hits = on_elements(caster, solution, probes);
-  const int bands = solution.bands.count();
   Eigen::ArrayXd result(static_cast<Eigen::Index>(probes.size()));
   for (std::size_t i = 0; i < probes.size(); ++i) {
-    const int e = hits[i].element;
-    const auto grey = static_cast<float>(reference[e] * relative[e]);
-    result[static_cast<Eigen::Index>(i)] =
-        luminous(solution.bands, Spectrum::Constant(bands, grey));
+    result[static_cast<Eigen::Index>(i)] = double{of_elements[hits[i].element]};
   }
   return result;
 }

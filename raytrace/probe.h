@@ -30,11 +30,14 @@ struct ProbeBounds {
   /// The bound to reach, as a share of the illuminance of each probe (see sure_gather); 0: the rays
   /// of the options, whatever noise they leave.
   double accuracy = 0.0;
-  /// Per probe, lx, with odds of about 19 to 1: the noise of the gather. NaN where nothing is
-  /// known: no ray found light, or more than the bound comes as caustics, whose error has no
-  /// estimate.
+  /// Per probe, lx, with odds of about 19 to 1: the noise of the gather, and the error of the
+  /// solution's light that its rays read (see read_errors), as far as the solution knows its own
+  /// error. NaN where nothing is known: there is no light at all, or more than the bound comes as
+  /// caustics, whose error has no estimate.
   Eigen::ArrayXd lux_within{};
-  int missed = 0;  ///< probes whose rays reached the limit before `accuracy`
+  /// The part of `lux_within` that comes from the solution, and that probes near each other share.
+  Eigen::ArrayXd read_within{};
+  int missed = 0;  ///< probes whose bound exceeds `accuracy`
 };
 
 /// Irradiance at each probe, probes x bands, W/m^2, by a final gather in the solved scene. If

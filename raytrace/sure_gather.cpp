@@ -24,6 +24,7 @@ struct PartOfLight {
   BandArray mean{};          // points x bands
   Eigen::ArrayXd lux{};      // of the mean
   Eigen::ArrayXd squared{};  // squared standard error of lux
+  Eigen::ArrayXd rare{};     // lx that the rays may have missed altogether
   std::vector<int> rays{};   // of each set; of direct light, to the sky
 };
 
@@ -34,20 +35,26 @@ int power_of_two_from(double count) {
 class SureGather {
  public:
   SureGather(const LitScene& lit, const BandArray& radiosity, const GatherPoints& points,
-             const GatherOptions& options)
-      : lit_(lit), radiosity_(radiosity), points_(points), options_(options) {
+             const GatherOptions& options, const SureGoal& goal)
+      : lit_(lit), radiosity_(radiosity), points_(points), options_(options), goal_(goal) {
     const auto count = static_cast<Eigen::Index>(points.size());
     for (PartOfLight* part : {&direct_, &indirect_}) {
       part->mean = BandArray::Zero(count, lit.scene.bands.count());
-      part->lux = part->squared = Eigen::ArrayXd::Zero(count);
+      part->lux = part->squared = part->rare = Eigen::ArrayXd::Zero(count);
     }
     const int sky =
         options.shadows.sky_rays > 0 ? options.shadows.sky_rays : options.shadows.max_rays;
     direct_.rays.assign(static_cast<std::size_t>(count), std::max(1, sky / of_a_set));
     indirect_.rays.assign(static_cast<std::size_t>(count), std::max(1, options.rays / of_a_set));
+    if (radiosity.rows() > 0) {
+      const Eigen::Array<double, 1, Eigen::Dynamic> mean =
+          radiosity.cast<double>().colwise().mean();
+      mean_lux_ = luminous(lit.scene.bands, mean.cast<float>().transpose());
+    }
   }
 
-  SureIrradiance run(double accuracy) {
+  SureIrradiance run() {
+    const double accuracy = goal_.accuracy;
     std::vector<int> all(static_cast<std::size_t>(points_.size()));
     std::iota(all.begin(), all.end(), 0);
     gather(Part::direct, all);
@@ -57,8 +64,8 @@ class SureGather {
       more_direct.clear();
       more_indirect.clear();
       for (const int i : all) {
-        const double goal = accuracy * lux(i);
-        if (!(bound(i) > goal)) continue;
+        const double goal = noise_goal(i);
+        if (!(noise_bound(i) > goal)) continue;
         if (raise(Part::direct, i, goal)) more_direct.push_back(i);
         if (raise(Part::indirect, i, goal)) more_indirect.push_back(i);
       }
@@ -69,7 +76,8 @@ class SureGather {
     SureIrradiance result{.irradiance = direct_.mean + indirect_.mean,
                           .lux_within = Eigen::ArrayXd::Zero(points_.size())};
     for (const int i : all) {
-      result.lux_within[i] = lux(i) > 0.0 ? bound(i) : std::numeric_limits<double>::quiet_NaN();
+      const bool is_known = lux(i) > 0.0 || bound(i) > 0.0;
+      result.lux_within[i] = is_known ? bound(i) : std::numeric_limits<double>::quiet_NaN();
       if (accuracy > 0.0 && bound(i) > accuracy * lux(i)) ++result.missed;
     }
     return result;
@@ -79,8 +87,15 @@ class SureGather {
   static constexpr int of_a_set = 4;
 
   double lux(int i) const { return direct_.lux[i] + indirect_.lux[i]; }
-  double bound(int i) const {
-    return student_t * std::sqrt(direct_.squared[i] + indirect_.squared[i]);
+  double noise_bound(int i) const {
+    return std::hypot(student_t * std::sqrt(direct_.squared[i] + indirect_.squared[i]),
+                      indirect_.rare[i]);
+  }
+  double besides(int i) const { return goal_.besides.size() > 0 ? goal_.besides[i] : 0.0; }
+  double bound(int i) const { return std::hypot(noise_bound(i), besides(i)); }
+  double noise_goal(int i) const {
+    const double goal = goal_.accuracy * lux(i);
+    return std::sqrt(std::max(goal * goal - besides(i) * besides(i), 0.25 * goal * goal));
   }
 
   // Raises the rays of a part at a point if the part has more than its half of the allowed squared
@@ -140,19 +155,24 @@ class SureGather {
     }
   }
 
-  void set(PartOfLight& light, int i, const BandArray& E) const {
+  void set(PartOfLight& light, int i, const BandArray& E) {
     const Bands& bands = lit_.scene.bands;
     light.mean.row(i) = E.colwise().mean();
     Eigen::ArrayXd lux(sure_sets);
     for (Eigen::Index k = 0; k < sure_sets; ++k) lux[k] = luminous(bands, E.row(k).transpose());
     light.lux[i] = lux.mean();
     light.squared[i] = (lux - lux.mean()).square().sum() / (sure_sets * (sure_sets - 1));
+    if (&light != &indirect_ || (lux > 0.0).all()) return;
+    constexpr double of_three = 3.0;
+    light.rare[i] = of_three / (sure_sets * light.rays[static_cast<std::size_t>(i)]) * mean_lux_;
   }
 
   LitScene lit_;
   const BandArray& radiosity_;
   const GatherPoints& points_;
   const GatherOptions& options_;
+  const SureGoal& goal_;
+  double mean_lux_ = 0.0;  // radiosity of the scene
   PartOfLight direct_{}, indirect_{};
 };
 
@@ -160,8 +180,8 @@ class SureGather {
 
 SureIrradiance sure_gather(const LitScene& lit, const BandArray& radiosity,
                            const GatherPoints& points, const GatherOptions& options,
-                           double accuracy) {
-  return SureGather(lit, radiosity, points, options).run(accuracy);
+                           const SureGoal& goal) {
+  return SureGather(lit, radiosity, points, options, goal).run();
 }
 
 }  // namespace lightwell

@@ -32,6 +32,7 @@ ContactGraph::ContactGraph(const Scene& scene, const std::vector<FacetPlane>& pl
       crease_segments_(planes.size()) {
   add_boundaries();
   add_contacts(scene, progress);
+  add_gap_lines();
   cuts_.resize(segments_.size());
   cut_at_crossings(scene);
   cut_at_points();

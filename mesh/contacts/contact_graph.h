@@ -21,9 +21,9 @@ struct FacetOutline {
   bool has_lines() const { return !contacts.empty() || !creases.empty(); }
 };
 
-/// All boundary edges and contact lines of a scene, cut wherever one meets another and divided into
-/// pieces of element size. A line that several facets share is cut once for all of them, so the
-/// mesh conforms across facets.
+/// All boundary edges, contact lines and gap_lines() of a scene, cut wherever one meets another and
+/// divided into pieces of element size. A line that several facets share is cut once for all of
+/// them, so the mesh conforms across facets.
 class ContactGraph {
  public:
   /// Keeps a reference to `planes`. `points` must hold the planes' corners. The mesh is cut along
@@ -54,6 +54,8 @@ class ContactGraph {
   int segment(int a, int b);
   void add_boundaries();
   void add_contacts(const Scene& scene, const Progress& progress);
+  void add_gap_lines();
+  void sort_contacts();
   void add_creases(const Scene& scene, const std::vector<CriticalLine>& critical,
                    double most_elements);
   std::vector<FixedPiece> fixed_pieces(int index) const;
@@ -76,8 +78,9 @@ class ContactGraph {
   std::unordered_map<std::uint64_t, int> segment_of_ends_;
   std::vector<int> first_edge_;    ///< per plane, index of its first edge in edge_segment_
   std::vector<int> edge_segment_;  ///< segment of every boundary edge of every plane
-  std::vector<std::vector<int>> contact_segments_;  ///< per plane, ascending, unique
-  std::vector<std::vector<int>> crease_segments_;   ///< per plane, ascending, unique
+  /// Per plane, ascending, unique; contact lines, and lines where narrow gaps begin.
+  std::vector<std::vector<int>> contact_segments_;
+  std::vector<std::vector<int>> crease_segments_;  ///< per plane, ascending, unique
   CreaseCounts crease_counts_{};
   std::vector<std::vector<std::pair<double, int>>> cuts_;  ///< per segment: (parameter, point)
   std::vector<Atom> atoms_;

@@ -9,8 +9,9 @@
 namespace lightwell {
 namespace {
 
-// Greatest width of a gap as a share of the size of an element.
-constexpr double widest = 0.2;
+// Greatest width of a gap as a share of the size of a patch. (Elements that were refined in a gap
+// are small, and still larger than the width over which light falls off.)
+constexpr double widest = 0.15;
 // Greatest cosine between the normals of surfaces that face each other.
 constexpr double facing = -0.5;
 // A path that is still in the gap after so many bounces reads the mesh.
@@ -24,6 +25,27 @@ constexpr ShadowOptions shadows{.min_rays = 1, .max_rays = 1};
 
 }  // namespace
 
+GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex, double inset,
+                           const GatherPoint& point) {
+  if (point.facet < 0) return point;
+  const Eigen::Vector3d way = point.position - vertex;
+  const double to_center = way.norm() / inset;
+  constexpr double narrow = 0.3, nearest = 1e-4;  // shares of the way to the element's centre
+  if (!(to_center > 0.0)) return point;
+  const Ray ray{.origin = point.position,
+                .direction = point.normal,
+                .t_max = narrow * to_center,
+                .origin_group = point.facet};
+  ElementHit hit;
+  caster.closest_elements({&ray, 1}, {&hit, 1});
+  if (hit.element < 0 || !(hit.t > nearest * to_center)) return point;
+  const Eigen::Vector3d normal = element_center(caster.mesh(), hit.element).normal;
+  if (std::abs(normal.dot(point.normal)) < -facing) return point;
+  GatherPoint moved = point;
+  moved.position = vertex + std::max(1.0, hit.t / way.norm()) * way;
+  return moved;
+}
+
 Eigen::Vector3d GapLight::normal_towards(const Ray& ray, const ElementHit& hit) const {
   const Eigen::Vector3d normal = element_center(lit_.mesh(), hit.element).normal;
   return normal.dot(ray.direction) > 0.0 ? Eigen::Vector3d(-normal) : normal;
@@ -32,7 +54,8 @@ Eigen::Vector3d GapLight::normal_towards(const Ray& ray, const ElementHit& hit) 
 bool GapLight::is_gap(const Eigen::Vector3d& normal, const Ray& ray, const ElementHit& hit) const {
   if (hit.element < 0) return false;
   const PatchMesh& mesh = lit_.mesh();
-  const double size = std::sqrt(mesh.element_area[hit.element]);
+  const int patch = mesh.patch[hit.element];
+  const double size = std::sqrt(mesh.area[patch]);
   // Surfaces that face each other are at most twice as far apart along one normal as along the
   // other. Most rays end here, before the other normal is needed.
   const double height = hit.t * std::abs(ray.direction.dot(normal));

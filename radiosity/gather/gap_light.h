@@ -5,10 +5,18 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/lit_scene.h"
+#include "radiosity/gather/final_gather.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/solution.h"
 
 namespace lightwell {
+
+/// The gather point of a vertex, `inset` of the way from `vertex` to the centre of an element.
+/// Where another surface is above the point, and nearer than 0.3 of that way, the point is moved
+/// further inside, to as far from the vertex as the gap is wide: light falls off steeply where a
+/// gap begins, and light at its brink would be interpolated far inside.
+GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex, double inset,
+                           const GatherPoint& point);
 
 /// Light that gathers find in gaps. Between two surfaces that face each other, such as a desk and
 /// the foot of a monitor, light falls off within about the width of the gap. Elements that are much
@@ -25,7 +33,7 @@ class GapLight {
 
   /// True if a ray from a point of unit normal `normal` ends in a gap: on a surface that faces the
   /// point, reflects and does not emit, and whose distance from the point along its own normal is
-  /// less than a fifth of the size of the element that was hit, and more than 1e-4 of that size.
+  /// less than 0.15 of the size of the patch that was hit, and more than 1e-4 of that size.
   bool is_gap(const Eigen::Vector3d& normal, const Ray& ray, const ElementHit& hit) const;
 
   /// True if a ray ends in a gap that it entered from outside, such as the passage between a door

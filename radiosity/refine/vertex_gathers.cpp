@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/gather_noise.h"
@@ -74,7 +75,8 @@ void VertexGathers::share_pilot_rays() {
 
 GatherPoint VertexGathers::gather_point(int vertex) const {
   const PatchPoint at = elements_.inside(vertex, inset_);
-  return {at.position, at.normal, elements_.base().facet[at.element]};
+  const GatherPoint point{at.position, at.normal, elements_.base().facet[at.element]};
+  return moved_into_gap(caster_, elements_.position(vertex), inset_, point);
 }
 
 // A gather point with random numbers of the vertex's own.

@@ -11,6 +11,7 @@
 #include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/patches/mesh_bounds.h"
 #include "mesh/patches/sphere_grid.h"
+#include "radiosity/refine/illuminance_bound.h"
 #include "scene/errors.h"
 #include "scene/rotation_between.h"
 #include "viewer/export/appearance.h"
@@ -199,6 +200,12 @@ void add_vertices(const SolvedScene& solved, const BandArray& radiance, BakedMod
   }
 }
 
+void add_bounds(const SolvedScene& solved, BakedModel& model) {
+  const Eigen::ArrayXf bounds = illuminance_bounds(solved.mesh, solved.solution);
+  if (bounds.size() == 0) return;
+  for (const int e : model.element) model.lux_within.push_back(finite_or_black(bounds[e]));
+}
+
 void add_baked_pictures(const PatchMesh& mesh, const DrawnPictures& drawn, BakedModel& model) {
   model.pictures = drawn.all();
   if (model.pictures.empty()) return;
@@ -255,6 +262,7 @@ BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double expo
   const DrawnPictures drawn(scene, longest_picture);
   model.mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, drawn, names, model);
   add_vertices(solved, radiance, model);
+  add_bounds(solved, model);
   add_baked_pictures(solved.mesh, drawn, model);
   model.channels = bake_channels(solved, scene.materials, model.mesh_vertex);
   model.sky = bake_sky(solved, scene);

@@ -101,7 +101,10 @@ struct BakedModel {
   /// Vertices, counter-clockwise seen from the face's side; [3] is -1 for a triangle. Two triangles
   /// of a quad share the diagonal from [0] to [2] (see first_corner).
   std::vector<std::array<int, 4>> faces{};
-  std::vector<int> element{};                ///< element of the mesh
+  std::vector<int> element{};  ///< element of the mesh
+  /// Bound of the error of illuminance in each face, lx, odds of about 19 to 1 (see
+  /// illuminance_bounds); empty if the solution has no error estimate.
+  std::vector<float> lux_within{};
   std::vector<std::uint8_t> black_behind{};  ///< 1: the face's other side was left out as unlit
 
   std::optional<BakedSky> sky{};

@@ -2,6 +2,7 @@
 #include <map>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "raytrace/encode_png.h"
 #include "viewer/export/export.h"
@@ -9,6 +10,19 @@
 
 namespace lightwell {
 namespace {
+
+/// The greatest bound of illuminance of the faces at each vertex, lx; empty if no bounds are known.
+std::vector<float> vertex_bounds(const BakedModel& model) {
+  if (model.lux_within.empty()) return {};
+  std::vector<float> bounds(static_cast<std::size_t>(model.vertex_count()), 0.0f);
+  for (int f = 0; f < model.face_count(); ++f) {
+    for (int c = 0; c < model.corner_count(f); ++c) {
+      float& bound = bounds[static_cast<std::size_t>(model.faces[static_cast<std::size_t>(f)][c])];
+      bound = std::max(bound, model.lux_within[static_cast<std::size_t>(f)]);
+    }
+  }
+  return bounds;
+}
 
 /// Buffer with one view for each vertex attribute. A part's vertices are consecutive in every view.
 class VertexColorBuffer {
@@ -30,6 +44,8 @@ class VertexColorBuffer {
     if (!model.place.empty()) places_ = buffer_.end_view("places", gltf_vertex_data, 8);
     for (const float lux : model.illuminance) append_bytes(bytes, lux);
     illuminance_ = buffer_.end_view("illuminance", gltf_vertex_data, 4);
+    for (const float within : vertex_bounds(model)) append_bytes(bytes, within);
+    if (!model.lux_within.empty()) within_ = buffer_.end_view("within", gltf_vertex_data, 4);
     for (const BakedPart& part : model.parts) {
       first_index_.push_back(buffer_.pending() / 4);
       for (const auto& triangle : triangles_of(model, part.first_face, part.face_count)) {
@@ -54,6 +70,10 @@ class VertexColorBuffer {
     attributes["COLOR_0"] = buffer_.add_accessor(colors_, gltf_float, "VEC3", 12, first, count);
     attributes["_ILLUMINANCE"] =
         buffer_.add_accessor(illuminance_, gltf_float, "SCALAR", 4, first, count);
+    if (!model_.lux_within.empty()) {
+      attributes["_ILLUMINANCE_WITHIN"] =
+          buffer_.add_accessor(within_, gltf_float, "SCALAR", 4, first, count);
+    }
     int material = part.material;
     if (part.picture >= 0) {
       attributes["TEXCOORD_0"] = buffer_.add_accessor(places_, gltf_float, "VEC2", 8, first, count);
@@ -71,7 +91,7 @@ class VertexColorBuffer {
  private:
   const BakedModel& model_;
   GltfBuffer buffer_;
-  int positions_ = 0, colors_ = 0, places_ = 0, illuminance_ = 0, indices_ = 0;
+  int positions_ = 0, colors_ = 0, places_ = 0, illuminance_ = 0, within_ = 0, indices_ = 0;
   std::vector<std::size_t> first_index_;
 };
 

@@ -27,7 +27,7 @@ std::filesystem::path exr_name(const std::filesystem::path& glb, int atlas) {
   return name.replace_filename(fmt::format("{}-lightmap-{}.exr", glb.stem().string(), atlas + 1));
 }
 
-/// Layers of a data file: radiosity, and illuminance in lx.
+/// Layers of a data file: radiosity, illuminance in lx and, where known, the bound of its error.
 LayerColumns layers_of(const LightmapAtlas& atlas, const Bands& bands) {
   LayerColumns layers{.names = {"radiosity.R", "radiosity.G", "radiosity.B", "illuminance.Y"},
                       .values = BandArray(atlas.radiosity.rows(), 4)};
@@ -35,6 +35,10 @@ LayerColumns layers_of(const LightmapAtlas& atlas, const Bands& bands) {
   for (Eigen::Index i = 0; i < layers.values.rows(); ++i) {
     layers.values(i, 3) = static_cast<float>(luminous(bands, atlas.irradiance.row(i).transpose()));
   }
+  if (atlas.lux_within.size() == 0) return layers;
+  layers.names.emplace_back("illuminance.within");
+  layers.values.conservativeResize(Eigen::NoChange, 5);
+  layers.values.col(4) = atlas.lux_within.col(0);
   return layers;
 }
 
@@ -46,6 +50,7 @@ void write_light(const std::filesystem::path& path, LightmapAtlas& atlas, const 
   constexpr float largest_half = 65504.0f;
   const bool is_half = atlas.irradiance.maxCoeff() <= largest_half &&
                        atlas.radiosity.abs().maxCoeff() <= largest_half;
+  if (!channel.empty()) atlas.lux_within.resize(0, 0);  // the bound is that of all light
   Image image{.width = atlas.size, .height = atlas.size, .radiance = {}, .layers = {}};
   image.layers = layers_of(atlas, model.bands);
   image.radiance = std::move(atlas.irradiance);
@@ -55,7 +60,8 @@ void write_light(const std::filesystem::path& path, LightmapAtlas& atlas, const 
              {"scene", made.scene_file},
              {"sceneHash", fmt::format("{:016x}", made.scene_hash)},
              {"solveOptions", made.options},
-             {"content", "R, G, B (and bands): irradiance; radiosity; illuminance"},
+             {"content",
+              "R, G, B (and bands): irradiance; radiosity; illuminance and bound of its error"},
              {"unit", model.relative_units ? "relative" : "W/m^2; illuminance in lx"},
              {"channel", channel.empty() ? "all in force" : channel},
              {"lightmapPass", pass_name(options.pass)},

@@ -59,9 +59,12 @@ LightmapLayout lay_out_lightmap(const BakedModel& model, const PatchMesh& mesh,
 /// no filter reads black.
 struct LightmapAtlas {
   int size = 0;
-  BandArray irradiance{};    ///< E, W/m^2, texels x bands
-  BandArray radiosity{};     ///< B = M + rho E, W/m^2, texels x linear Rec. 709 RGB
-  BandArray radiance{};      ///< W/(m^2 sr), texels x RGB, as BakedModel::radiance
+  BandArray irradiance{};  ///< E, W/m^2, texels x bands
+  BandArray radiosity{};   ///< B = M + rho E, W/m^2, texels x linear Rec. 709 RGB
+  BandArray radiance{};    ///< W/(m^2 sr), texels x RGB, as BakedModel::radiance
+  /// Bound of the error of illuminance, lx, texels x 1 (see BakedModel::lux_within); empty if none
+  /// is known, which holds for Pass::gather as well.
+  BandArray lux_within{};
   std::vector<int> face{};   ///< face of the model that contains the texel's centre; -1: none
   std::int64_t covered = 0;  ///< texels with a face
 };

@@ -231,6 +231,9 @@ PageData page_data(const BakedModel& model, const LuxRange& range) {
   append_positions(model, box, page);
   append_faces(model, page);
   page.about["bases"] = append_bases(model, page.bytes);
+  if (!model.lux_within.empty()) {
+    page.about["lux_within"] = append_halves(model.lux_within, page.bytes);
+  }
   append_pictures(model, page);
   append_sky(model, page);
   page.about["parts"] = parts(model, box.low);

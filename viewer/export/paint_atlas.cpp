@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "mesh/patches/sphere_grid.h"
 #include "radiosity/gather/final_gather.h"
@@ -152,6 +153,8 @@ LightmapAtlas paint_atlas(const LightmapLayout& layout, int atlas, const BakedMo
   painted.irradiance = BandArray::Zero(size * size, bands.count());
   painted.radiosity = BandArray::Zero(size * size, 3);
   painted.radiance = BandArray::Zero(size * size, 3);
+  const bool has_bounds = !model.lux_within.empty() && options.pass != Pass::gather;
+  if (has_bounds) painted.lux_within = BandArray::Zero(size * size, 1);
   painted.face.assign(static_cast<std::size_t>(size * size), -1);
   std::vector<char> is_known(painted.face.size(), 0);
   for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -166,13 +169,15 @@ LightmapAtlas paint_atlas(const LightmapLayout& layout, int atlas, const BakedMo
     painted.radiosity.row(at).head<3>() = finite_rgb(bands, M + rho * e).transpose();
     painted.radiance.row(at).head<3>() =
         finite_rgb(bands, (M + shown * e) / std::numbers::pi_v<float>).transpose();
+    if (has_bounds) painted.lux_within(at, 0) = model.lux_within[texel.face];
     is_known[static_cast<std::size_t>(at)] = 1;
     int& face = painted.face[static_cast<std::size_t>(at)];
     if (!texel.is_inside || face >= 0) continue;
     face = texel.face;
     ++painted.covered;
   }
-  BandArray* const pictures[] = {&painted.irradiance, &painted.radiosity, &painted.radiance};
+  std::vector<BandArray*> pictures = {&painted.irradiance, &painted.radiosity, &painted.radiance};
+  if (has_bounds) pictures.push_back(&painted.lux_within);
   fill_texels(layout.size, std::move(is_known), layout.padding, pictures);
   return painted;
 }

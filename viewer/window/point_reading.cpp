@@ -70,6 +70,14 @@ PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArr
   return reading;
 }
 
+namespace {
+
+std::string within_text(const PointReading& reading) {
+  return reading.lux_within < 0.0 ? "" : fmt::format(" within {:.2g}", reading.lux_within);
+}
+
+}  // namespace
+
 std::string full_text(const PointReading& reading, const Bands& bands, const ShownUnits& units) {
   // A coordinate that is 0 up to the rounding of rays is shown as 0.
   const double distance = reading.position.norm();
@@ -79,7 +87,7 @@ std::string full_text(const PointReading& reading, const Bands& bands, const Sho
   const bool relative = units.relative;
   return fmt::format(
       "{}, {}\n"
-      "illuminance  {:.5g} {}\n"
+      "illuminance  {:.5g} {}{}\n"
       "luminance    {:.5g} {}\n"
       "irradiance   {}{}\n"
       "reflectance  {}\n"
@@ -87,14 +95,16 @@ std::string full_text(const PointReading& reading, const Bands& bands, const Sho
       "at {:.6g}, {:.6g}, {:.6g} {}\n"
       "facing {:.4f}, {:.4f}, {:.4f}",
       reading.surface, reading.material, reading.lux, relative ? "(relative)" : "lx",
-      reading.luminance, relative ? "(relative)" : "cd/m2", per_band(reading.irradiance, bands),
-      relative ? "" : " W/m2", per_band(reading.reflectance, bands), reading.patch, reading.element,
-      p.x(), p.y(), p.z(), units.unit_name, n.x() + 0.0, n.y() + 0.0, n.z() + 0.0);
+      within_text(reading), reading.luminance, relative ? "(relative)" : "cd/m2",
+      per_band(reading.irradiance, bands), relative ? "" : " W/m2",
+      per_band(reading.reflectance, bands), reading.patch, reading.element, p.x(), p.y(), p.z(),
+      units.unit_name, n.x() + 0.0, n.y() + 0.0, n.z() + 0.0);
 }
 
 std::string short_text(const PointReading& reading, const ShownUnits& units) {
-  return fmt::format("{:.4g} {}  {:.4g} {}\n{}", reading.lux, units.relative ? "rel." : "lx",
-                     reading.luminance, units.relative ? "rel." : "cd/m2", reading.surface);
+  return fmt::format("{:.4g} {}{}  {:.4g} {}\n{}", reading.lux, units.relative ? "rel." : "lx",
+                     within_text(reading), reading.luminance, units.relative ? "rel." : "cd/m2",
+                     reading.surface);
 }
 
 }  // namespace lightwell

@@ -17,7 +17,8 @@ struct PointReading {
   Spectrum irradiance{};                               ///< W/m^2 per band, interpolated on the mesh
   Spectrum reflectance{};  ///< rho per band; with a texture that of the texel
   double lux = 0.0;
-  double luminance = 0.0;  ///< cd/m^2 of the diffuse light, emission included
+  double lux_within = -1.0;  ///< bound of the error of `lux`, odds of 19 to 1; < 0: not known
+  double luminance = 0.0;    ///< cd/m^2 of the diffuse light, emission included
   std::string surface{}, material{};
   int patch = 0, element = 0;
 };

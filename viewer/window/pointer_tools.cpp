@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "radiosity/refine/illuminance_bound.h"
+
 namespace lightwell {
 namespace {
 
@@ -18,9 +20,13 @@ VisibleHit look_at(const SolutionView& view, double x, double y) {
 
 }  // namespace
 
-PointReading PointerTools::read(const SolutionView& view, const VisibleHit& seen) const {
+PointReading PointerTools::read(const SolutionView& view, const VisibleHit& seen) {
   const SolvedScene& solved = view.solved();
-  return read_point(solved.mesh, solved.solution.bands, view.irradiance(), scene_, seen, names_);
+  PointReading reading =
+      read_point(solved.mesh, solved.solution.bands, view.irradiance(), scene_, seen, names_);
+  if (!bounds_) bounds_ = illuminance_bounds(solved.mesh, solved.solution);
+  if (reading.element < bounds_->size()) reading.lux_within = (*bounds_)[reading.element];
+  return reading;
 }
 
 void PointerTools::click(const SolutionView& view, double x, double y) {
@@ -55,6 +61,7 @@ void PointerTools::clear() {
 
 void PointerTools::light_changed(const SolutionView& view, bool same_mesh) {
   under_pointer_.reset();
+  bounds_.reset();
   if (!same_mesh) {
     reading_.reset();
     clicked_ = {};

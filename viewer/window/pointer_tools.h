@@ -44,10 +44,11 @@ class PointerTools {
   std::vector<Eigen::Vector3d> marks() const;
 
  private:
-  PointReading read(const SolutionView& view, const VisibleHit& seen) const;
+  PointReading read(const SolutionView& view, const VisibleHit& seen);
 
   const Scene* scene_;
   const JoinedSurfaces* names_;
+  std::optional<Eigen::ArrayXf> bounds_{};  ///< lx, per element; empty: not computed yet
   bool probing_ = false, measuring_ = false;
   VisibleHit clicked_{};
   std::optional<PointReading> reading_{}, under_pointer_{};

@@ -51,12 +51,20 @@ class Model {
       this.places = new Float32Array(bytes.buffer, about.places.offset, 2 * n);
       this.picture_gain = this.unpack_halves(about.picture_gain, 3 * n, halves);
     }
+    // Bound of the error of illuminance per face, lx, for the light as it was solved.
+    this.within = about.lux_within && this.unpack_halves(about.lux_within, about.face_count, halves);
     about.element_count = about.face_count;
     split_spheres(this);
     this.radiance = new Float32Array(3 * about.vertex_count);
     this.illuminance = new Float32Array(about.vertex_count);
     this.mix();
     this.split_faces();
+  }
+
+  /** Whether all bases have the weights of the solution, for which bounds of errors hold. */
+  is_as_solved() {
+    return this.bases.every((basis, i) => (this.about.bases[i].weight ?? [1, 1, 1]).every((w, k) =>
+      Math.abs(w - basis.weight[k]) <= 1e-6 * Math.abs(w)));
   }
 
   unpack_positions() {

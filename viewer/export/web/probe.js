@@ -28,7 +28,10 @@ function weights_at(model, face, point) {
   return [(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t];
 }
 
-/** Light on a face at a point: illuminance (lx), luminance (cd/m^2), radiosity (linear RGB; W/m^2 of RGB bands). */
+/**
+ * Light on a face at a point: illuminance (lx) and the bound of its error (null: not known), luminance (cd/m^2), radiosity (linear
+ * RGB; W/m^2 of RGB bands).
+ */
 function light_at(model, face, point) {
   const weights = weights_at(model, face, point), radiance = [0, 0, 0], place = [0, 0], gain = [0, 0, 0];
   let illuminance = 0;
@@ -44,7 +47,8 @@ function light_at(model, face, point) {
   // A patch has the mean of its picture; here it is what is seen.
   if (texel_at) texel_at(...place).forEach((rho, k) => { radiance[k] *= gain[k] * rho; });
   const Y = 0.2126729 * radiance[0] + 0.7151522 * radiance[1] + 0.0721750 * radiance[2];
-  return {illuminance, luminance: model.about.lumens_per_watt * Y, radiosity: radiance.map((L) => Math.PI * L)};
+  const within = model.within && model.is_as_solved() ? model.within[face] : null;
+  return {illuminance, within, luminance: model.about.lumens_per_watt * Y, radiosity: radiance.map((L) => Math.PI * L)};
 }
 
 /** What a ray meets first of what is drawn; glass is looked through. Null: nothing. */
@@ -89,7 +93,9 @@ function show_reading(model, hit, element) {
   Object.assign(element.dataset, {illuminance: light.illuminance, luminance: light.luminance,
     radiosity: light.radiosity.join(' ')});
   const lux = document.createElement('b');
-  lux.textContent = `${digits(light.illuminance)} ${relative ? '(relative)' : 'lx'}`;
+  const within = light.within === null ? '' : ` within ${Number(light.within.toPrecision(2))}`;
+  if (light.within !== null) element.dataset.within = light.within;
+  lux.textContent = `${digits(light.illuminance)} ${relative ? '(relative)' : 'lx'}${within}`;
   const kind = about.materials[part.material].kind;
   // Of many bands the page has only their colour, which is no power.
   const radiosity = about.is_spectral ? ''

@@ -67,7 +67,7 @@ function split_spheres(model) {
   model.arcs = [];
   model.is_split = null;
   if (pieces.size === 0) return;
-  const positions = [], sources = [], corners = [], black_behind = [], is_split = [];
+  const positions = [], sources = [], corners = [], black_behind = [], is_split = [], within = [];
   const none = 0xffffffff, first_new = about.vertex_count;
   for (const part of about.parts) {
     const {first_face, face_count} = part, n = pieces.get(part) ?? 1;
@@ -77,6 +77,7 @@ function split_spheres(model) {
       if (n === 1) {
         corners.push(...own);
         black_behind.push(model.black_behind[f]);
+        within.push(model.within?.[f]);
         is_split.push(0);
         continue;
       }
@@ -92,6 +93,7 @@ function split_spheres(model) {
       for (const face of faces) {
         corners.push(...face.map((p) => first + p), ...(face.length === 3 ? [none] : []));
         black_behind.push(model.black_behind[f]);
+        within.push(model.within?.[f]);
         is_split.push(1);
       }
       for (const [from, to] of arcs) model.arcs.push(first + from, first + to);
@@ -103,6 +105,7 @@ function split_spheres(model) {
   model.corners = Uint32Array.from(corners);
   model.black_behind = Uint8Array.from(black_behind);
   model.is_split = Uint8Array.from(is_split);
+  if (model.within) model.within = Float32Array.from(within);
   const longer = (values, more) => {
     const all = new Float32Array(values.length + more.length);
     all.set(values);

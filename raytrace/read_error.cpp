@@ -1,0 +1,111 @@
+#include "raytrace/read_error.h"
+
+#include "radiosity/gather/gap_light.h"
+#include "radiosity/paths/light_path.h"
+#include "radiosity/refine/illuminance_bound.h"
+#include "scene/parallel.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int ray_count = 64;
+constexpr int most_bounces = 16;
+// Keeps these random numbers apart from those of gathers.
+constexpr std::uint64_t own = 0x4ead;
+
+class ReadErrors {
+ public:
+  ReadErrors(const LitScene& lit, const BandArray& radiosity, const Eigen::ArrayXf& error)
+      : mesh_(lit.mesh()),
+        caster_(lit.caster),
+        paths_(lit.scene, lit.caster, most_bounces),
+        gaps_(lit, radiosity, paths_),
+        error_(error),
+        directions_(ray_count) {}
+
+  double at(const GatherPoint& point, std::uint64_t key) const {
+    double sum = 0.0;
+    for (int i = 0; i < ray_count; ++i) {
+      const Eigen::Array4f u =
+          directions_.point(i, random_key(key, RandomPurpose::gather_rays, own));
+      const auto number = static_cast<std::uint64_t>(i);
+      sum += along(point, u, random_key(key, RandomPurpose::gather_paths, number, own));
+    }
+    return sum / ray_count;
+  }
+
+ private:
+  // rho e at the end of the path that begins with a direction from `u`.
+  double along(const GatherPoint& point, const Eigen::Array4f& u, std::uint64_t key) const {
+    Eigen::Vector3d normal = point.normal;
+    Ray ray = cosine_ray(point.position, normal, point.facet, u[0], u[1]);
+    double share = 1.0;
+    for (std::uint64_t bounce = 0; bounce < most_bounces; ++bounce) {
+      ElementHit hit;
+      caster_.closest_hits({&ray, 1}, {&hit, 1});
+      if (hit.facet < 0) return 0.0;
+      if (point.facet < 0 || !gaps_.is_gap(normal, ray, hit)) return end(ray, hit, share, key);
+      share *= reflectance(hit.element);
+      normal = element_center(mesh_, hit.element).normal;
+      if (normal.dot(ray.direction) > 0.0) normal = -normal;
+      const auto random = [&](std::uint64_t i) {
+        return static_cast<float>(random_uniform(random_key(key, bounce, i)));
+      };
+      ray = cosine_ray(ray.origin + hit.t * ray.direction, normal, hit.facet, random(1), random(2));
+    }
+    return 0.0;
+  }
+
+  double end(const Ray& ray, const ElementHit& hit, double share, std::uint64_t key) const {
+    double sum = 0.0;
+    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) sum += share * reflected(hit.element);
+    if (!paths_.is_specular(hit.facet)) return sum;
+    paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+      if (end.element < 0) return;
+      sum += share * static_cast<double>(throughput.mean()) * reflected(end.element);
+    });
+    return sum;
+  }
+
+  double reflectance(int element) const {
+    return double{mesh_.reflectance.row(mesh_.patch[element]).mean()};
+  }
+  double reflected(int element) const { return reflectance(element) * double{error_[element]}; }
+
+  static Ray cosine_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& normal, int facet,
+                        float u, float v) {
+    Eigen::Vector3d a, b;
+    tangent_frame(normal, a, b);
+    const Eigen::Vector3d d = cosine_direction(u, v);
+    return {
+        .origin = from, .direction = d.x() * a + d.y() * b + d.z() * normal, .origin_group = facet};
+  }
+
+  const PatchMesh& mesh_;
+  const ElementCaster& caster_;
+  LightPaths paths_;
+  GapLight gaps_;
+  const Eigen::ArrayXf& error_;
+  SobolPoints directions_;
+};
+
+}  // namespace
+
+Eigen::ArrayXd read_errors(const LitScene& lit, const RadiositySolution& solution,
+                           const BandArray& radiosity, const GatherPoints& points) {
+  Eigen::ArrayXd errors = Eigen::ArrayXd::Zero(points.size());
+  const Eigen::ArrayXf of_elements = illuminance_errors(lit.mesh(), solution);
+  if (of_elements.size() != lit.mesh().element_count()) return errors;
+  const ReadErrors read(lit, radiosity, of_elements);
+  parallel_for(points.size(), 8, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const GatherPoint point = points[i];
+      errors[i] = read.at(point, point.key.value_or(static_cast<std::uint64_t>(i)));
+    }
+  });
+  return errors;
+}
+
+}  // namespace lightwell
