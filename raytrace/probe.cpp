@@ -316,7 +316,8 @@ Eigen::ArrayXd interpolation_bound(const ElementCaster& caster, const RadiosityS
                                    std::span<const Probe> probes) {
   const Eigen::ArrayXf relative = error_bound(solution);
   if (relative.size() == 0) return {};
-  const Eigen::ArrayXd reference = error_references(caster.mesh(), solution.irradiance(), solution.parts);
+  const Eigen::ArrayXd reference =
+      error_references(caster.mesh(), solution.irradiance(), solution.parts);
   const std::vector<ElementHit> hits = on_elements(caster, solution, probes);
   const int bands = solution.bands.count();
   Eigen::ArrayXd result(static_cast<Eigen::Index>(probes.size()));
