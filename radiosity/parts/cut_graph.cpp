@@ -100,7 +100,7 @@ class GraphCutter {
       for (const int cluster : open) {
         const std::vector<int> pieces = cut(cluster);
         failures.resize(members_.size(), 0);
-        constexpr int most_failures = 3;
+        constexpr int most_failures = 2;
         if (pieces.size() == 1 && ++failures[cluster] >= most_failures) continue;
         still_open.insert(still_open.end(), pieces.begin(), pieces.end());
       }

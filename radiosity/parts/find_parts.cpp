@@ -29,7 +29,7 @@ struct Arrivals {
 
 struct PatchArrivals {
   std::vector<Arrivals> at{};  // in the order of patches
-  double lost = 1.0;           // share of the rays that left the scene or were absorbed
+  double escaped = 0.0;        // share of the rays that left the scene
   bool takes_part = false;     // false for mirrors and clear glass
 };
 
@@ -64,10 +64,10 @@ class PartRays {
       at.patch = p;
       at.share += share;
       at.length += share * static_cast<float>(length);
-      result.lost -= double{share};
     };
     for (std::size_t r = 0; r < rays.size(); ++r) {
       const ElementHit& hit = hits[r];
+      if (hit.facet < 0) result.escaped += double{one};
       if (hit.facet < 0) continue;
       const bool is_specular = paths_.has_specular() && paths_.is_specular(hit.facet);
       if (hit.element >= 0 && (!is_specular || paths_.is_diffuse(hit.facet))) {
@@ -76,7 +76,9 @@ class PartRays {
         const auto end = [&](const ElementHit& at, const Spectrum& throughput) {
           if (at.element >= 0) arrive(at.element, one * throughput.mean(), hit.t);
         };
-        paths_.follow(rays[r], hit, random_key(key, RandomPurpose::part_rays, r), end);
+        const PathLosses losses =
+            paths_.follow(rays[r], hit, random_key(key, RandomPurpose::part_rays, r), end);
+        result.escaped += double{one * losses.escaped.mean()};
       }
     }
     for (const auto& [p, at] : by_patch) result.at.push_back(at);
@@ -114,7 +116,7 @@ std::vector<int> nodes_of(const std::vector<PatchArrivals>& arrivals, int& count
   count = 0;
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
     if (!arrivals[i].takes_part) continue;
-    const bool is_outside = arrivals[i].lost > outside;
+    const bool is_outside = arrivals[i].escaped > outside;
     if (is_outside && of_outside >= 0) {
       node[i] = of_outside;
     } else {

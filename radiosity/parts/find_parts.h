@@ -22,6 +22,7 @@ int rays_per_patch_for_parts(int patches);
 ///    and where the passage is a bottleneck.
 /// 3. A part of fewer than four patches, or a crack (mean length of the rays within below 1/32 of
 ///    the root of the area), joins the part that it exchanges most with; without such, the largest.
+///    Patches that see nothing, such as those under a block that stands on them, join the largest.
 ///
 /// The sides of a two-sided surface are patches of their own, so the outside of a house is a part.
 /// Parts are in falling order of area. The largest part is the first. The result depends on neither

@@ -80,6 +80,16 @@ TEST(FindParts, OneRoomIsOnePart) {
   }
 }
 
+TEST(FindParts, WhatABlockWithoutBottomCoversIsNoPart) {
+  Scene scene;
+  const int m = add_material(scene, diffuse(scene.bands, 0.5f));
+  add_box(scene, {0, 0, 0}, {4, 5, 3}, {m, m, m, m, m, m}, true);
+  add_box(scene, {1, 1, 0}, {3, 3, 2}, {m, m, m, m, m, m}, false);
+  std::erase_if(scene.surfaces,
+                [&, n = 0](const Surface&) mutable { return ++n == 11; });  // bottom
+  EXPECT_EQ(found_in(scene).parts.count(), 1);
+}
+
 TEST(FindParts, AnLShapedRoomIsOnePart) {
   Scene scene =
       rooms_with_doors({{"leg", {0, 0, 0}, {4, 9, 3}}, {"foot", {4.001, 0, 0}, {9, 4, 3}}},

@@ -83,6 +83,13 @@ void expect_same_solution(const RadiositySolution& a, const RadiositySolution& b
   EXPECT_EQ(a.energy.escaped, b.energy.escaped);
   EXPECT_EQ(a.energy.unshot, b.energy.unshot);
   EXPECT_EQ(a.error_estimate, b.error_estimate);
+  EXPECT_EQ(a.parts.of_patch, b.parts.of_patch);
+  ASSERT_EQ(a.parts.count(), b.parts.count());
+  for (int p = 0; p < a.parts.count(); ++p) {
+    EXPECT_EQ(a.parts.parts[p].name, b.parts.parts[p].name);
+    EXPECT_EQ(a.parts.parts[p].area, b.parts.parts[p].area);
+    EXPECT_EQ(a.parts.parts[p].error_estimate, b.parts.parts[p].error_estimate);
+  }
   ASSERT_EQ(a.seconds.size(), b.seconds.size());
   for (std::size_t i = 0; i < a.seconds.size(); ++i) {
     EXPECT_EQ(a.seconds[i].phase, b.seconds[i].phase);
@@ -114,6 +121,18 @@ TEST_F(SolutionFile, RestoresWhatRefinementFound) {
   solved.solution.provenance.refinement = "the tolerance is reached";
   write_solution(folder_ / "s.vtp", solved);
   expect_same_solution(solved.solution, read_solution(folder_ / "s.vtp").solution);
+}
+
+TEST_F(SolutionFile, RestoresTheParts) {
+  SolvedScene solved = small_solution(3);
+  solved.solution.parts = {.of_patch = {1, -1},
+                           .parts = {{.name = "floor, wall", .area = 3.25},
+                                     {.name = "küche (2)", .area = 0.1, .error_estimate = 0.03}}};
+  write_solution(folder_ / "s.vtp", solved);
+  expect_same_solution(solved.solution, read_solution(folder_ / "s.vtp").solution);
+  solved.solution.parts.of_patch = {1, 2};
+  write_solution(folder_ / "s.vtp", solved);
+  EXPECT_THROW(read_solution(folder_ / "s.vtp"), InputError) << "there is no third part";
 }
 
 TEST_F(SolutionFile, RestoresASolutionWithoutHistoryOrSpheres) {
