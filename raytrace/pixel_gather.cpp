@@ -105,6 +105,7 @@ void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
     place.caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.element != aim.element || !paths_.is_diffuse(hit.facet)) continue;
     if (gaps_.is_gap(at.normal, ray, hit)) continue;
+    if (!place.portals.is_empty() && gaps_.is_near_portal(*portals_, ray, hit)) continue;
     const double share =
         bright_.share(place.bright, cosine, place.rays, ray, hit, aimed_density(place, ray, hit));
     sum += share * interpolate(place.caster.mesh(), radiosity_, hit).cast<double>();
@@ -147,6 +148,12 @@ void PixelGather::add(const Place& place, const Ray& ray, const ElementHit& hit,
     }
     Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
     gaps_.add(place.caster, ray, hit, key, found);
+    sum += shares.by_way * found;
+    return;
+  }
+  if (!place.portals.is_empty() && gaps_.is_near_portal(*portals_, ray, hit)) {
+    Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+    gaps_.add_near_portal(place.caster, *portals_, ray, hit, key, found);
     sum += shares.by_way * found;
     return;
   }

@@ -142,6 +142,7 @@ class HemisphereGather {
       for (std::size_t r = 0; r < n; ++r) {
         if (hit[r].element != element[r] || !paths_.is_diffuse(hit[r].facet)) continue;
         if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
+        if (is_near_portal(place, ray[r], hit[r])) continue;
         const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
         add_radiosity(hit[r],
                       bright_.share(place.bright, at.normal.dot(ray[r].direction), place.rays,
@@ -193,6 +194,13 @@ class HemisphereGather {
       add_of_gap(ray, hit, random_key(place.key, RandomPurpose::gap_rays, index), share, sum);
       return;
     }
+    if (is_near_portal(place, ray, hit)) {
+      Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+      gaps_.add_near_portal(caster_, *options_.portals, ray, hit,
+                            random_key(place.key, RandomPurpose::gap_rays, index), found);
+      sum += share * found;
+      return;
+    }
     if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
       const double straight = place.bright.is_empty()
                                   ? share
@@ -214,6 +222,10 @@ class HemisphereGather {
     Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
     gaps_.add(caster_, ray, hit, key, found);
     sum += share * found;
+  }
+
+  bool is_near_portal(const Place& place, const Ray& ray, const ElementHit& hit) const {
+    return !place.portals.is_empty() && gaps_.is_near_portal(*options_.portals, ray, hit);
   }
 
   // Adds light that arrives through mirrors and glass.

@@ -1,6 +1,7 @@
 #include "radiosity/gather/gap_light.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/random_purpose.h"
@@ -22,6 +23,18 @@ constexpr double narrowest = 1e-4;
 // Many rays end in a gap, so each needs one shadow ray to a light, whatever share of the light of
 // its channel that is.
 constexpr ShadowOptions shadows{.min_rays = 1, .max_rays = 1};
+
+// A cosine-distributed ray from a surface.
+Ray scattered(const SurfacePoint& at, std::uint64_t key) {
+  Eigen::Vector3d a, b;
+  tangent_frame(at.normal, a, b);
+  const Eigen::Vector3d d =
+      cosine_direction(static_cast<float>(random_uniform(random_key(key, 1))),
+                       static_cast<float>(random_uniform(random_key(key, 2))));
+  return {.origin = at.position,
+          .direction = d.x() * a + d.y() * b + d.z() * at.normal,
+          .origin_group = at.facet};
+}
 
 }  // namespace
 
@@ -86,20 +99,48 @@ bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const Elem
          normal_towards(across, opposite).dot(across.direction) < facing;
 }
 
+void GapLight::add_direct(const ElementCaster& caster, const LightQuery& query,
+                          const Spectrum& share, Eigen::ArrayXd& sum) const {
+  const Eigen::Index bands = share.size();
+  Eigen::ArrayXf E = Eigen::ArrayXf::Zero(sum.size());
+  if (lit_.direct_light.column_count() == sum.size()) {
+    lit_.direct_light.add_irradiance(caster, query, E.data());
+  } else {
+    E = lit_.direct_light.irradiance(caster, query);
+  }
+  for (Eigen::Index k = 0; k < sum.size(); k += bands) {
+    sum.segment(k, bands) += (share * E.segment(k, bands)).cast<double>();
+  }
+}
+
+// Adds the radiosity where a ray ends, also through mirrors and glass.
+void GapLight::add_end(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                       std::uint64_t key, const Spectrum& share, Eigen::ArrayXd& sum) const {
+  if (hit.facet < 0) return;
+  const PatchMesh& mesh = lit_.mesh();
+  const Eigen::Index bands = share.size();
+  const auto read = [&](const ElementHit& end, const Spectrum& throughput) {
+    for (int c = 0; c < mesh.corner_count(end.element); ++c) {
+      const auto row = radiosity_.row(mesh.corners[end.element][c]);
+      for (Eigen::Index k = 0; k < sum.size(); k += bands) {
+        const Spectrum value = end.weights[c] * row.segment(k, bands).transpose();
+        sum.segment(k, bands) += (throughput * value).cast<double>();
+      }
+    }
+  };
+  if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) read(hit, share);
+  if (!paths_.is_specular(hit.facet)) return;
+  paths_.follow(caster, ray, hit, key, [&](const LightArrival& arrival) {
+    if (arrival.hit.element >= 0) read(arrival.hit, share * arrival.throughput);
+  });
+}
+
 void GapLight::add(const ElementCaster& caster, const Ray& first_ray, const ElementHit& first_hit,
                    std::uint64_t key, Eigen::ArrayXd& sum) const {
   const PatchMesh& mesh = lit_.mesh();
-  const Eigen::Index bands = lit_.scene.bands.count(), columns = sum.size();
-  const bool by_channel = lit_.direct_light.column_count() == columns;
-  Spectrum share = Spectrum::Ones(bands);
+  Spectrum share = Spectrum::Ones(lit_.scene.bands.count());
   Ray ray = first_ray;
   ElementHit hit = first_hit;
-  Eigen::ArrayXf E(columns);
-  const auto add_columns = [&](const auto& value) {
-    for (Eigen::Index k = 0; k < columns; k += bands) {
-      sum.segment(k, bands) += (share * value(k)).template cast<double>();
-    }
-  };
   for (int bounce = 0; bounce < most_bounces; ++bounce) {
     const auto bounce_key =
         random_key(key, RandomPurpose::gap_rays, static_cast<std::uint64_t>(bounce));
@@ -111,43 +152,57 @@ void GapLight::add(const ElementCaster& caster, const Ray& first_ray, const Elem
     const float survival = rho.maxCoeff();
     if (random_uniform(random_key(bounce_key, 3)) >= static_cast<double>(survival)) return;
     share *= rho.transpose() / survival;
-    const LightQuery query{.at = at, .key = bounce_key, .shadows = shadows};
-    if (by_channel) {
-      E.setZero();
-      lit_.direct_light.add_irradiance(caster, query, E.data());
-    } else {
-      E = lit_.direct_light.irradiance(caster, query);
-    }
-    add_columns([&](Eigen::Index k) { return E.segment(k, bands); });
-    Eigen::Vector3d a, b;
-    tangent_frame(normal, a, b);
-    const Eigen::Vector3d d =
-        cosine_direction(static_cast<float>(random_uniform(random_key(bounce_key, 1))),
-                         static_cast<float>(random_uniform(random_key(bounce_key, 2))));
-    ray = {.origin = at.position,
-           .direction = d.x() * a + d.y() * b + d.z() * normal,
-           .origin_group = at.facet};
+    add_direct(caster, {.at = at, .key = bounce_key, .shadows = shadows}, share, sum);
+    ray = scattered(at, bounce_key);
     caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.facet < 0) return;
     if (bounce + 1 < most_bounces && is_gap(normal, ray, hit)) continue;
-    const auto read = [&](const ElementHit& end) {
-      for (int c = 0; c < mesh.corner_count(end.element); ++c) {
-        const auto row = radiosity_.row(mesh.corners[end.element][c]);
-        add_columns([&](Eigen::Index k) {
-          return Spectrum(end.weights[c] * row.segment(k, bands).transpose());
-        });
-      }
-    };
-    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) read(hit);
-    if (!paths_.is_specular(hit.facet)) return;
-    paths_.follow(caster, ray, hit, bounce_key, [&](const LightArrival& arrival) {
-      if (arrival.hit.element < 0) return;
-      const Spectrum before = share;
-      share *= arrival.throughput;
-      read(arrival.hit);
-      share = before;
-    });
+    add_end(caster, ray, hit, bounce_key, share, sum);
     return;
+  }
+}
+
+bool GapLight::is_near_portal(const Portals& portals, const Ray& ray, const ElementHit& hit) const {
+  return hit.element >= 0 && may_be_followed(hit) &&
+         portals.is_near(ray.origin + hit.t * ray.direction,
+                         std::sqrt(lit_.mesh().element_area[hit.element]));
+}
+
+void GapLight::add_near_portal(const ElementCaster& caster, const Portals& portals,
+                               const Ray& first_ray, const ElementHit& first_hit, std::uint64_t key,
+                               Eigen::ArrayXd& sum) const {
+  const PatchMesh& mesh = lit_.mesh();
+  const SurfacePoint at{.position = first_ray.origin + first_hit.t * first_ray.direction,
+                        .normal = normal_towards(first_ray, first_hit),
+                        .facet = first_hit.facet};
+  const std::uint64_t portal_key = random_key(key, RandomPurpose::gap_rays, most_bounces);
+  const Spectrum rho = mesh.reflectance.row(mesh.patch[first_hit.element]).transpose();
+  add_direct(caster, {.at = at, .key = portal_key, .shadows = shadows}, rho, sum);
+  // One ray of two kinds, each with the same chance; weights as of the balance heuristic.
+  const Portals::View view = portals.view(at.position, at.normal, 1);
+  const auto number = [&](std::uint64_t i) { return random_uniform(random_key(portal_key, i)); };
+  const bool is_aimed = !view.is_empty() && number(4) < 0.5;
+  Ray ray = scattered(at, portal_key);
+  if (is_aimed) {
+    ray.direction = portals.draw(view, at.position, number(5), number(6), number(7));
+  }
+  const double by_cosine = ray.direction.dot(at.normal) * std::numbers::inv_pi;
+  if (!(by_cosine > 0.0)) return;
+  ElementHit hit;
+  caster.closest_hits({&ray, 1}, {&hit, 1});
+  const double aimed =
+      view.is_empty() ? 0.0 : portals.density(view, at.position, ray.direction, hit.t);
+  if (hit.facet < 0 || (is_aimed && !(aimed > 0.0))) return;
+  const double weight = view.is_empty() ? 1.0 : by_cosine / (0.5 * (by_cosine + aimed));
+  const Spectrum share = static_cast<float>(weight) * rho;
+  if (is_gap(at.normal, ray, hit) || (aimed > 0.0 && is_narrow(caster, ray, hit))) {
+    Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+    add(caster, ray, hit, portal_key, found);
+    for (Eigen::Index k = 0; k < sum.size(); k += rho.size()) {
+      sum.segment(k, rho.size()) += share.cast<double>() * found.segment(k, rho.size());
+    }
+  } else {
+    add_end(caster, ray, hit, portal_key, share, sum);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/solution.h"
 
@@ -45,7 +46,20 @@ class GapLight {
   void add(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
            Eigen::ArrayXd& sum) const;
 
+  /// True if a ray ends on a surface that reflects, so near a portal that its element does not show
+  /// how light varies there (see Portals::is_near).
+  bool is_near_portal(const Portals& portals, const Ray& ray, const ElementHit& hit) const;
+
+  /// Adds the radiosity B = rho (E_direct + B') where a ray ends near a portal: E_direct is
+  /// computed there, and one further ray, cosine-distributed or aimed at a portal, finds B'.
+  void add_near_portal(const ElementCaster& caster, const Portals& portals, const Ray& ray,
+                       const ElementHit& hit, std::uint64_t key, Eigen::ArrayXd& sum) const;
+
  private:
+  void add_direct(const ElementCaster& caster, const LightQuery& query, const Spectrum& share,
+                  Eigen::ArrayXd& sum) const;
+  void add_end(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+               std::uint64_t key, const Spectrum& share, Eigen::ArrayXd& sum) const;
   bool may_be_followed(const ElementHit& hit) const;
   Eigen::Vector3d normal_towards(const Ray& ray, const ElementHit& hit) const;
 

@@ -20,6 +20,10 @@ struct Sight {
   double distance = 0.0;    // metres, sum over paths that ended on a surface
   Eigen::AlignedBox3d region{};
 
+  // Largest distance of an end of a path from the middle of the opening, measured across the
+  // opening in half of its width.
+  double spread = 0.0;
+
   double mean() const { return paths > 0 ? brightness / paths : 0.0; }
 };
 
@@ -74,6 +78,8 @@ class Sights {
         ++sight.paths;
         sight.region.extend(at);
         sight.distance += (at - opening.center).norm();
+        const double across = (at - opening.center).dot(opening.across);
+        sight.spread = std::max(sight.spread, std::abs(across) / opening.across.squaredNorm());
         if (hit.element >= 0) {
           sight.brightness += brightness_[static_cast<std::size_t>(hit.element)];
         }
@@ -89,6 +95,13 @@ class Sights {
   const ElementCaster& caster_;
   const std::vector<float>& brightness_;
 };
+
+// True if both sides are wider than the opening. Behind the mouth of a crevice, such as that
+// between a lamp and the ceiling, they are not.
+bool joins_parts(const std::array<Sight, 2>& sight) {
+  constexpr double wider = 2.0;
+  return sight[0].spread > wider && sight[1].spread > wider;
+}
 
 bool has_contrast(const std::array<Sight, 2>& sight, double least) {
   const double front = sight[0].mean(), back = sight[1].mean();
@@ -113,8 +126,7 @@ Portals::Portals(const ElementCaster& caster, const std::vector<float>& brightne
     }
   });
   for (std::size_t i = 0; i < openings.size(); ++i) {
-    if (seen[i][0].paths == 0 || seen[i][1].paths == 0) continue;
-    if (!has_contrast(seen[i], least_contrast)) continue;
+    if (!joins_parts(seen[i]) || !has_contrast(seen[i], least_contrast)) continue;
     const Opening& shape = openings[i];
     Portal& portal = portals_.emplace_back();
     portal.shape = shape;
@@ -226,6 +238,20 @@ bool Portals::part(const Vector3d& a, const Vector3d& b) const {
   });
 }
 
+bool Portals::is_near(const Vector3d& at, double size) const {
+  constexpr double sizes = 2.0, least_height = 1e-3;
+  const double reach = sizes * size;
+  return std::any_of(portals_.begin(), portals_.end(), [&](const Portal& portal) {
+    const Vector3d to = at - portal.shape.center;
+    const double height = to.dot(portal.shape.normal);
+    if (!portal.is_dim[height > 0.0 ? 0 : 1] || std::abs(height) > reach) return false;
+    const double u = std::clamp(to.dot(portal.along), -1.0, 1.0),
+                 v = std::clamp(to.dot(portal.across), -1.0, 1.0);
+    const Vector3d from_portal = to - u * portal.shape.along - v * portal.shape.across;
+    return from_portal.squaredNorm() < reach * reach && std::abs(height) > least_height * size;
+  });
+}
+
 std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings) {
   constexpr int paths = 16;
   constexpr double narrow = 0.1;
@@ -242,7 +268,7 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
         narrow_on_both = narrow_on_both && 2.0 * opening.across.norm() * sight[side].paths <
                                                narrow * sight[side].distance;
       }
-      is_narrow[static_cast<std::size_t>(i)] = narrow_on_both ? 1 : 0;
+      is_narrow[static_cast<std::size_t>(i)] = narrow_on_both && joins_parts(sight) ? 1 : 0;
     }
   });
   std::vector<Opening> result;

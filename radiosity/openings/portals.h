@@ -68,6 +68,10 @@ class Portals {
   /// True if the two points, such as centres of patches, lie in the two parts that a portal joins.
   bool part(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
+  /// True if a point on the dim side of a portal is nearer to the portal than twice `size`, metres,
+  /// and not in the portal's plane. There light varies too fast for elements of that size.
+  bool is_near(const Eigen::Vector3d& at, double size) const;
+
   /// Number of aimed rays beside `rays` cosine-distributed ones.
   static int aimed(int rays) { return std::max(1, rays / 4); }
 

@@ -1,0 +1,232 @@
+// Light through a slit is that of the closed form, without a lottery.
+#include "radiosity/openings/portals.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "mesh/patches/patch_outline.h"
+#include "radiosity/closed_forms/polygon_exchange.h"
+#include "radiosity/closed_forms/polygon_form_factor.h"
+#include "radiosity/form_factors/form_factors.h"
+#include "radiosity/gather/final_gather.h"
+#include "radiosity/solve.h"
+#include "tests/radiosity/openings/test_rooms.h"
+
+namespace lightwell::portals_test {
+namespace {
+
+using Eigen::Quaterniond, Eigen::Vector3d;
+
+const Quaterniond askew(Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()));
+
+constexpr int dim_floor = 4, dim_ceiling = 5;  // facets
+
+struct Lit {
+  explicit Lit(double width, const Quaterniond& turn = Quaterniond::Identity(), float rho = 0.5f)
+      : rooms(width, turn, rho),
+        mesh(build_patches(rooms.scene, {.max_patch_size = 1.0})),
+        caster(mesh),
+        light(rooms.scene, mesh),
+        radiosity(rooms.bright_room(mesh)) {}
+
+  std::shared_ptr<const Portals> portals() const {
+    return find_portals(rooms.scene, caster, brightness_of_vertices(mesh, radiosity));
+  }
+
+  test::RoomsWithSlit rooms;
+  PatchMesh mesh;
+  ElementCaster caster;
+  DirectLight light;
+  BandArray radiosity;
+};
+
+struct Statistics {
+  double mean = 0.0, deviation = 0.0;
+};
+
+Statistics gathered(const Lit& lit, const std::shared_ptr<const Portals>& portals,
+                    const GatherPoint& point, int rays, int replicas) {
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < replicas; ++i) {
+    const double E =
+        gather_indirect(
+            {lit.rooms.scene, lit.caster, lit.light}, lit.radiosity, std::array{point},
+            {.rays = rays, .replica = static_cast<std::uint64_t>(i), .portals = portals})
+            .indirect(0, 0);
+    sum += E / replicas;
+    squares += E * E / replicas;
+  }
+  return {sum, std::sqrt(std::max(0.0, squares - sum * sum))};
+}
+
+// In a black room behind a slit, E = B F with the form factor F from the point to the slit.
+TEST(Portals, GiveWhatTheFormFactorOfTheSlitSays) {
+  for (const double width : {1e-3, 0.01, 0.1}) {
+    for (const Quaterniond& turn : {Quaterniond::Identity(), askew}) {
+      const Lit lit(width, turn, 0.0f);
+      const auto portals = lit.portals();
+      ASSERT_NE(portals, nullptr);
+      for (const Vector3d& place :
+           {Vector3d(4.6, 2.5, 0), Vector3d(6, 4, 0), Vector3d(7.5, 0.5, 0)}) {
+        const GatherPoint point{
+            .position = turn * place, .normal = turn * Vector3d::UnitZ(), .facet = dim_floor};
+        const double F = point_to_polygon(point.position, point.normal, lit.rooms.slit());
+        constexpr int replicas = 64;
+        const Statistics E = gathered(lit, portals, point, 256, replicas);
+        // Four standard errors of the mean, and the rounding of float sums.
+        EXPECT_NEAR(E.mean, F, 4.0 * E.deviation / std::sqrt(replicas) + 1e-5 * F) << width;
+        // 64 aimed rays leave the variation of the form factor's kernel over the slit, a fraction
+        // of the light, and that of rays that pass beside it: a tenth. Without aimed rays, one of
+        // 256 / F rays passes.
+        EXPECT_LT(E.deviation, 0.1 * F) << width << ", " << place.transpose();
+      }
+    }
+  }
+}
+
+TEST(Portals, AreNoneWhereBothRoomsAreLitAlike) {
+  Lit lit(0.01);
+  for (int v = 0; v < lit.mesh.vertex_count(); ++v) {
+    lit.radiosity.row(v) = lit.radiosity(v, 0) > 0.0f ? 12.0f : 1.0f;
+  }
+  EXPECT_EQ(lit.portals(), nullptr);
+}
+
+// Points in the bright room do not aim at the slit.
+TEST(Portals, AreSeenFromTheirDimSide) {
+  const Lit lit(0.01);
+  const auto portals = lit.portals();
+  ASSERT_NE(portals, nullptr);
+  EXPECT_TRUE(portals->view({2, 2, 0}, {0, 0, 1}, 64).is_empty());
+  EXPECT_FALSE(portals->view({6, 2, 0}, {0, 0, 1}, 64).is_empty());
+  EXPECT_FALSE(portals->view_both_ways({2, 2, 0}, {0, 0, 1}, 64).is_empty());
+  EXPECT_TRUE(portals->part({2, 2, 1}, {6, 2, 1}));
+  EXPECT_FALSE(portals->part({2, 2, 1}, {3, 1, 1}));
+}
+
+// The mean of f / q over drawn directions is the integral of f over the slit's solid angle: f = cos
+// / pi gives the form factor. Here all portals are passed.
+TEST(Portals, HaveDirectionsOfTheStatedDensity) {
+  const Lit lit(0.05);
+  const auto portals = lit.portals();
+  ASSERT_NE(portals, nullptr);
+  const Vector3d from(5.5, 1.2, 0.7), normal = Vector3d(-1, 1, 0).normalized();
+  const Portals::View view = portals->view(from, normal, 64);
+  ASSERT_FALSE(view.is_empty());
+  const SobolPoints aims(4096);
+  double sum = 0.0;
+  const Loop slit = lit.rooms.slit();
+  for (int i = 0; i < aims.count(); ++i) {
+    const Eigen::Array4d u = aims.point(i, 7).cast<double>();
+    const Vector3d direction = portals->draw(view, from, u[0], u[1], u[2]);
+    const double q = portals->density(view, from, direction, 100.0);
+    ASSERT_GT(q, 0.0);
+    const Vector3d at = from + (4.0 - from.x()) / direction.x() * direction;
+    const bool in_slit = at.y() > 2.85 && at.y() < 2.9 && at.z() > 0.0 && at.z() < 2.0;
+    if (in_slit) sum += direction.dot(normal) / (M_PI * q);
+  }
+  const double F = point_to_polygon(from, normal, slit);
+  // A tenth of the directions pass beside the slit, which makes a variation of 0.3 at random; 4
+  // standard errors.
+  EXPECT_NEAR(sum / aims.count(), F, 4.0 * 0.3 / std::sqrt(4096.0) * F);
+}
+
+// Exchange of the dim room's patches with the bright room is that with the slit.
+TEST(Portals, MakeRowsOfFormFactorsRight) {
+  const Lit lit(3e-3);
+  const auto portals = lit.portals();
+  ASSERT_NE(portals, nullptr);
+  const auto exchange = [&](const std::shared_ptr<const Portals>& aimed_at) {
+    double squares = 0.0, all = 0.0;
+    const auto form_factors = compute_form_factors({lit.rooms.scene, lit.caster, lit.light},
+                                                   {.rays_per_patch = 512, .portals = aimed_at});
+    const PatchOutline slit = polygon_outline({lit.rooms.slit()});
+    for (int i = 0; i < lit.mesh.patch_count(); ++i) {
+      const PatchOutline outline = patch_outline(lit.mesh, i);
+      if (!(outline.center.x() > 4.0 + 1e-6)) continue;  // bright, or in the slit's plane
+      double found = 0.0;
+      for (const FormFactor& f : form_factors->row(i)) {
+        const int e = lit.mesh.first_element[f.patch];
+        if (lit.rooms.is_bright(lit.mesh, e)) found += lit.mesh.area[i] * f.value;
+      }
+      const double truth = polygon_exchange(outline, slit);
+      squares += std::pow(found - truth, 2);
+      all += truth * truth;
+    }
+    return std::sqrt(squares / all);
+  };
+  const double with = exchange(portals), without = exchange(nullptr);
+  std::printf("error of exchange through the slit: %.3f, without portals %.3f\n", with, without);
+  // The kernel of the form factor varies over slit and patch by about its mean. So 128 aimed rays
+  // of a row leave 1 / sqrt(128) = 0.09; half as much again for chance.
+  EXPECT_LT(with, 0.13);
+  EXPECT_GT(without, 5.0 * with);
+}
+
+// The vertex in the mouth of the slit is as bright as the bright room, but only the few millimetres
+// around it are: large elements there must not be read.
+TEST(Portals, DoNotLetAVertexInTheSlitShine) {
+  Lit lit(1e-3);
+  const auto portals = lit.portals();
+  ASSERT_NE(portals, nullptr);
+  int mouth = -1;
+  double least = 1.0;
+  for (int e = 0; e < lit.mesh.element_count(); ++e) {
+    if (lit.mesh.facet[e] != dim_floor) continue;
+    for (int c = 0; c < lit.mesh.corner_count(e); ++c) {
+      const int v = lit.mesh.corners[e][c];
+      const double distance = (lit.mesh.position(v) - Vector3d(4, 2.9, 0)).norm();
+      if (distance < least) {
+        least = distance;
+        mouth = v;
+      }
+    }
+  }
+  ASSERT_GE(mouth, 0);
+  lit.radiosity.row(mouth) = 1.0f;
+  const GatherPoint point{.position = {5.0, 2.7, 2.7}, .normal = {0, 0, -1}, .facet = dim_ceiling};
+  const double F = point_to_polygon(point.position, point.normal, lit.rooms.slit());
+  const Statistics E = gathered(lit, portals, point, 1024, 8);
+  // The floor reflects half of the light of the slit, of which it gets less than half, and of that
+  // less than half reaches the point: less than an eighth more.
+  EXPECT_NEAR(E.mean, F, 0.125 * F + 4.0 * E.deviation / std::sqrt(8.0));
+  EXPECT_LT(E.deviation, 0.5 * F);
+}
+
+// Mean irradiance at places of the dim room that the lamp in the bright one does not see.
+double mean_behind(double width) {
+  test::RoomsWithSlit rooms(width);
+  const int lamp = test::add_material(rooms.scene, test::diffuse(rooms.scene.bands, 0.0f, 100.0f));
+  test::add_polygon(rooms.scene, "lamp", lamp,
+                    {{1.5, 2, 2.6}, {1.5, 3, 2.6}, {2.5, 3, 2.6}, {2.5, 2, 2.6}});
+  const SolvedScene solved = solve_scene(rooms.scene, {.mesh = {.max_patch_size = 0.6},
+                                                       .gather = {.rays = 64},
+                                                       .refine = {.tolerance = 0.0},
+                                                       .error_points = 0});
+  const ElementCaster caster(solved.mesh);
+  const DirectLight light(rooms.scene, solved.mesh);
+  const BandArray B = gatherable_radiosity(solved.mesh, light, solved.solution.irradiance());
+  std::vector<GatherPoint> points;
+  for (const double x : {4.5, 5.5, 6.5, 7.5}) {
+    points.push_back({.position = {x, 0.7, 0}, .facet = dim_floor});
+    points.push_back({.position = {x, 1.5, 2.7}, .normal = {0, 0, -1}, .facet = dim_ceiling});
+  }
+  const GatherOptions options{
+      .rays = 1024,
+      .portals = find_portals(rooms.scene, caster, brightness_of_vertices(solved.mesh, B))};
+  return gather_irradiance({rooms.scene, caster, light}, B, points, options).indirect.col(0).mean();
+}
+
+// The light behind a slit is proportional to its width: the solid angle of the bright room, seen
+// from the slit, does not depend on it. 0.05 for the width of the beam on the floor, which reflects
+// most of the light, and as much for the noise of rows.
+TEST(Portals, LightARoomInProportionToTheirWidth) {
+  const double narrow = mean_behind(1e-3), wide = mean_behind(1e-2);
+  std::printf("mean behind a slit of 1 mm %.6f, of 10 mm %.6f\n", narrow, wide);
+  EXPECT_NEAR(10.0 * narrow, wide, 0.1 * wide);
+}
+
+}  // namespace
+}  // namespace lightwell::portals_test
