@@ -7,12 +7,13 @@
 
 #include "mesh/patches/sphere_grid.h"
 #include "radiosity/refine/error_reference.h"
+#include "scene/parallel.h"
 
 namespace lightwell {
 namespace {
 
 constexpr int point_count = 4;
-constexpr double widest = 0.15;  // width of a gap as a share of a patch, as for GapLight
+constexpr double widest_covered = 0.15;  // width of a gap as a share of a patch, as for GapLight
 constexpr int gap_rays = 64;
 constexpr std::uint64_t gap_replica = 4000;
 
@@ -47,40 +48,48 @@ Eigen::Vector3d position(const PatchMesh& mesh, const InnerPoint& point) {
   return at;
 }
 
-// True for elements whose light is interpolated, and whose corners are not all dark.
-bool can_err(const PatchMesh& mesh, const BandArray& irradiance, int element) {
-  const int p = mesh.patch[element];
-  if (!(mesh.reflectance.row(p) > 0.0f).any()) return false;
+// Number of corners without light.
+int dark_corners(const PatchMesh& mesh, const BandArray& irradiance, int element) {
+  int count = 0;
   for (int c = 0; c < mesh.corner_count(element); ++c) {
-    if ((irradiance.row(mesh.corners[element][c]) > 0.0f).any()) {
-      return sphere_grid_of(mesh, mesh.facet[element]) == nullptr;
-    }
+    count += (irradiance.row(mesh.corners[element][c]) > 0.0f).any() ? 0 : 1;
   }
-  return false;
+  return count;
 }
 
-// The inner points of all elements that have a point in a gap.
-std::vector<InnerPoint> points_in_gaps(const ElementCaster& caster, const BandArray& irradiance) {
+// True if another surface is near above a point of the element.
+bool lies_in_gap(const ElementCaster& caster, int element) {
   const PatchMesh& mesh = caster.mesh();
   constexpr double narrowest = 1e-4;  // nearer surfaces lie on each other
-  std::vector<InnerPoint> found;
+  const double size = std::sqrt(mesh.area[mesh.patch[element]]);
+  const Eigen::Vector3d normal = element_center(mesh, element).normal;
   std::array<Ray, point_count> rays;
   std::array<ElementHit, point_count> hits;
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!can_err(mesh, irradiance, e)) continue;
-    const double size = std::sqrt(mesh.area[mesh.patch[e]]);
-    const Eigen::Vector3d normal = element_center(mesh, e).normal;
-    for (int k = 0; k < point_count; ++k) {
-      rays[static_cast<std::size_t>(k)] = {.origin = position(mesh, inner_point(mesh, e, k)),
-                                           .direction = normal,
-                                           .t_max = widest * size,
-                                           .origin_group = mesh.facet[e]};
+  for (int k = 0; k < point_count; ++k) {
+    rays[static_cast<std::size_t>(k)] = {.origin = position(mesh, inner_point(mesh, element, k)),
+                                         .direction = normal,
+                                         .t_max = widest_covered * size,
+                                         .origin_group = mesh.facet[element]};
+  }
+  caster.closest_elements(rays, hits);
+  return std::ranges::any_of(
+      hits, [&](const ElementHit& hit) { return hit.facet >= 0 && hit.t > narrowest * size; });
+}
+
+// The reflecting elements that lie in gaps; spheres are left out.
+std::vector<int> elements_in_gaps(const ElementCaster& caster) {
+  const PatchMesh& mesh = caster.mesh();
+  std::vector<char> is_in_gap(static_cast<std::size_t>(mesh.element_count()), 0);
+  parallel_for(mesh.element_count(), 1024, [&](int begin, int end) {
+    for (int e = begin; e < end; ++e) {
+      const bool reflects = (mesh.reflectance.row(mesh.patch[e]) > 0.0f).any();
+      if (!reflects || sphere_grid_of(mesh, mesh.facet[e])) continue;
+      is_in_gap[static_cast<std::size_t>(e)] = lies_in_gap(caster, e) ? 1 : 0;
     }
-    caster.closest_elements(rays, hits);
-    const bool is_in_gap = std::ranges::any_of(
-        hits, [&](const ElementHit& hit) { return hit.facet >= 0 && hit.t > narrowest * size; });
-    if (!is_in_gap) continue;
-    for (int k = 0; k < point_count; ++k) found.push_back(inner_point(mesh, e, k));
+  });
+  std::vector<int> found;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (is_in_gap[static_cast<std::size_t>(e)]) found.push_back(e);
   }
   return found;
 }
@@ -96,6 +105,10 @@ double squared_error(const PatchMesh& mesh, const BandArray& irradiance, const I
   return (E - gathered).cast<double>().square().mean();
 }
 
+void raise_to(float& value, double to) {
+  value = std::max(value, static_cast<float>(to));
+}
+
 }  // namespace
 
 void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiositySolution& solution) {
@@ -105,7 +118,16 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
   BandArray irradiance = solution.irradiance();
   const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
   const Eigen::ArrayXd reference = error_references(mesh, irradiance, solution.parts);
-  const std::vector<InnerPoint> inner = points_in_gaps(lit.caster, irradiance);
+  std::vector<InnerPoint> inner;
+  for (const int e : elements_in_gaps(lit.caster)) {
+    const int corners = mesh.corner_count(e), dark = dark_corners(mesh, irradiance, e);
+    // Where none of N rays found light, light from less than 3 / N of the directions may be missed
+    // (rule of three, odds of 19 to 1), and the error is half of the bound.
+    const double rays = static_cast<double>(corners) * gather.rays;
+    if (dark > 0) raise_to(solution.interpolation_error[e], 0.5 * 3.0 / rays);
+    if (dark == corners) continue;
+    for (int k = 0; k < point_count; ++k) inner.push_back(inner_point(mesh, e, k));
+  }
   if (inner.empty()) return;
   if (solution.caustic_irradiance.size() > 0) irradiance -= solution.caustic_irradiance;
   GatherOptions options = gather;
@@ -129,8 +151,7 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
     }
     const int e = inner[i].element;
     if (!(reference[e] > 0.0)) continue;
-    float& error = solution.interpolation_error[e];
-    error = std::max(error, static_cast<float>(std::sqrt(square) / reference[e]));
+    raise_to(solution.interpolation_error[e], std::sqrt(square) / reference[e]);
   }
 }
 

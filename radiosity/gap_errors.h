@@ -10,9 +10,10 @@ namespace lightwell {
 /// in part: under another surface at less than 0.15 of the size of their patch. Light in a gap
 /// falls off within about the gap's width, which the vertices of larger elements do not sample.
 /// Inside these elements irradiance is gathered at four points, and the RMS difference from the
-/// interpolated one becomes the element's error where it is greater. Elements without light at any
-/// corner stay as they are. Does nothing without an error estimate. The caster of `lit` is of the
-/// solution's mesh; `gather` decides the shadow rays. Throws Interrupted when progress says stop.
+/// interpolated one becomes the element's error where it is greater. An element with a dark corner
+/// has the error of light that the corners' rays may have missed. Does nothing without an error
+/// estimate. The caster of `lit` is of the solution's mesh; `gather` decides the shadow rays.
+/// Throws Interrupted when progress says stop.
 void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiositySolution& solution);
 
 }  // namespace lightwell

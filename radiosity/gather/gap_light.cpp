@@ -12,14 +12,14 @@ namespace {
 
 // Greatest width of a gap as a share of the size of a patch. (Elements that were refined in a gap
 // are small, and still larger than the width over which light falls off.)
-constexpr double widest = 0.15;
+constexpr double widest_gap = 0.15;
 // Greatest cosine between the normals of surfaces that face each other.
 constexpr double facing = -0.5;
 // A path that is still in the gap after so many bounces reads the mesh.
 constexpr int most_bounces = 16;
 // Narrower gaps are contacts: which of two surfaces in one plane a ray meets is a matter of
 // rounding.
-constexpr double narrowest = 1e-4;
+constexpr double narrowest_gap = 1e-4;
 // Many rays end in a gap, so each needs one shadow ray to a light, whatever share of the light of
 // its channel that is.
 constexpr ShadowOptions shadows{.min_rays = 1, .max_rays = 1};
@@ -72,10 +72,10 @@ bool GapLight::is_gap(const Eigen::Vector3d& normal, const Ray& ray, const Eleme
   // Surfaces that face each other are at most twice as far apart along one normal as along the
   // other. Most rays end here, before the other normal is needed.
   const double height = hit.t * std::abs(ray.direction.dot(normal));
-  if (!(height < 2.0 * widest * size) || !may_be_followed(hit)) return false;
+  if (!(height < 2.0 * widest_gap * size) || !may_be_followed(hit)) return false;
   const Eigen::Vector3d other = normal_towards(ray, hit);
   const double width = hit.t * std::abs(ray.direction.dot(other));
-  return other.dot(normal) < facing && width < widest * size && width > narrowest * size;
+  return other.dot(normal) < facing && width < widest_gap * size && width > narrowest_gap * size;
 }
 
 // True if the surface reflects diffusely, and neither mirrors nor emits.
@@ -91,11 +91,11 @@ bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const Elem
   const double size = std::sqrt(lit_.mesh().element_area[hit.element]);
   const Ray across{.origin = ray.origin + hit.t * ray.direction,
                    .direction = normal_towards(ray, hit),
-                   .t_max = widest * size,
+                   .t_max = widest_gap * size,
                    .origin_group = hit.facet};
   ElementHit opposite;
   caster.closest_hits({&across, 1}, {&opposite, 1});
-  return opposite.element >= 0 && opposite.t > narrowest * size &&
+  return opposite.element >= 0 && opposite.t > narrowest_gap * size &&
          normal_towards(across, opposite).dot(across.direction) < facing;
 }
 

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Shares of the scene's diagonal.
-constexpr double widest = 0.1, narrowest = 1e-6, shortest_edge = 0.002;
+constexpr double widest_opening = 0.1, narrowest_opening = 1e-6, shortest_edge = 0.002;
 constexpr std::size_t most_edges = 4096, most_openings = 4096;
 constexpr int directions = 16;  // of balls about an edge
 // Least cosine between the direction of a ball and that of the chord between the two points that
@@ -142,7 +142,7 @@ class OpeningSearch {
   // from `direction` (unit); empty if the chord is not nearly a diameter, or out of range.
   std::optional<Vector3d> chord_of_ball(const Vector3d& at, const Vector3d& direction) const {
     constexpr double touching = 1.0 - 1e-6, growth = 4.0;
-    const double most = 0.5 * widest * diagonal_;
+    const double most = 0.5 * widest_opening * diagonal_;
     const auto inside = [&](double radius) {
       return surfaces_.find(at + radius * direction, touching * radius);
     };
@@ -155,7 +155,7 @@ class OpeningSearch {
     for (int step = 0; step < most_steps; ++step) {
       const Vector3d chord = *touched - at;
       const double height = chord.dot(direction);
-      if (chord.norm() < narrowest * diagonal_ || !(height > 0.0)) return std::nullopt;
+      if (chord.norm() < narrowest_opening * diagonal_ || !(height > 0.0)) return std::nullopt;
       radius = chord.squaredNorm() / (2.0 * height);
       const auto nearer = inside(radius);
       if (nearer) {

@@ -151,14 +151,14 @@ class TinyClusters {
   // 1 for each cluster that is to join another; `cluster` of each patch, -1: none.
   std::vector<char> find(const std::vector<int>& cluster) const {
     const auto count = static_cast<std::size_t>(*std::ranges::max_element(cluster) + 1);
-    struct Sums {
+    struct ClusterSums {
       double area = 0.0, within = 0.0, length = 0.0;
       int patches = 0;
     };
-    std::vector<Sums> sums(count);
+    std::vector<ClusterSums> sums(count);
     for (int i = 0; i < mesh_.patch_count(); ++i) {
       if (cluster[i] < 0) continue;
-      Sums& of = sums[cluster[i]];
+      ClusterSums& of = sums[cluster[i]];
       of.area += mesh_.area[i];
       ++of.patches;
       for (const Arrivals& at : arrivals_[i].at) {
@@ -171,7 +171,7 @@ class TinyClusters {
     constexpr double crack = 1.0 / 32.0;
     std::vector<char> is_tiny(count, 0);
     for (std::size_t c = 0; c < count; ++c) {
-      const Sums& of = sums[c];
+      const ClusterSums& of = sums[c];
       const bool is_crack = of.within > 0.0 && of.length / of.within < crack * std::sqrt(of.area);
       is_tiny[c] = of.patches < fewest || is_crack;
     }
