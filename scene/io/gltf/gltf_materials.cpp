@@ -161,7 +161,7 @@ Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
 
 std::string GltfMaterials::texture_coordinates(const GltfObject& primitive) const {
   const auto index = primitive.index("material");
-  if (!index) return {};
+  if (!index || *index >= file_.count("materials")) return {};
   const auto info = BaseColor(file_.at("materials", *index, primitive)).info();
   if (!info) return {};
   const auto transform = info->extension("KHR_texture_transform");
