@@ -15,6 +15,7 @@ struct CommonOptions {
   bool quiet = false;    ///< no progress, notes or report; errors and requested values only
   bool json = false;     ///< standard output is one JSON object
   bool verbose = false;  ///< print the effective options
+  bool strict = false;   ///< what a reader leaves out, approximates or misses is an error
   int threads = 0;       ///< 0: one per core
   std::vector<std::string> command_line{};  ///< argv
 };

@@ -12,6 +12,7 @@
 #include "cli/memory_size.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
+#include "cli/steps.h"
 #include "cli/view_factor_rows.h"
 #include "radiosity/form_factors/form_factor_file.h"
 #include "radiosity/form_factors/view_factor_scene.h"
@@ -238,6 +239,7 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
   Report report(console.options());
   Stopwatch watch;
   const NumberedScene numbered = read_numbered_scene(arguments.scene);
+  refuse_losses(numbered.scene, console.options());
   if (arguments.show_row > 0) require_writable(arguments.row_file());
   if (!arguments.view3d.empty()) require_writable(arguments.view3d);
   require_writable(arguments.output);

@@ -11,6 +11,7 @@
 #include "cli/channels.h"
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "cli/steps.h"
 #include "mesh/cleaning/mesh_quality.h"
 #include "mesh/cleaning/planar_regions.h"
 #include "radiosity/solution/solution_file.h"
@@ -302,12 +303,14 @@ Json picture_json(const Image& image) {
           {"largest", image.radiance.maxCoeff()}};
 }
 
-Json describe(const std::string& file) {
+Json describe(const std::string& file, const CommonOptions& options) {
   const std::string extension = lower_extension(file);
   if (extension == ".vtp") return solution_json(read_solution(file));
   if (extension == ".exr") return picture_json(read_exr(file));
   if (is_luminaire_file(file)) return luminaire_json(read_luminaire(file));
-  return scene_json(read_scene(file));
+  const Scene scene = read_scene(file);
+  refuse_losses(scene, options);
+  return scene_json(scene);
 }
 
 // Prints each value on a line; in a list of objects and in the notes each item has a line.
@@ -365,7 +368,7 @@ Action add_info(CLI::App& command) {
           "{}: '--ugr' is for luminaires (.ies, .ldt); 'lightwell report' has the UGR of a room",
           file));
     }
-    Json facts = describe(file);
+    Json facts = describe(file, console.options());
     if (!arguments->ugr) {
       console.options().json ? print_json(facts) : print_for_people(facts);
       return int{exit_done};

@@ -51,17 +51,18 @@ constexpr const char* recipes =
 struct NamedCommand {
   const char* name;
   Action (*add)(CLI::App&);
+  bool reads_scene = true;
 };
 constexpr std::array<NamedCommand, 12> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
-                                                    {"relight", add_relight},
+                                                    {"relight", add_relight, false},
                                                     {"render", add_render},
                                                     {"probe", add_probe},
                                                     {"view", add_view},
                                                     {"export", add_export},
                                                     {"report", add_report},
-                                                    {"compare", add_compare},
+                                                    {"compare", add_compare, false},
                                                     {"form-factors", add_form_factors},
                                                     {"info", add_info}}};
 
@@ -103,6 +104,13 @@ void add_common(CLI::App& app, CommonOptions& options) {
   app.set_version_flag("--version", versions, "versions of the program and of its libraries")
       ->group(group);
   app.set_help_flag("-h,--help", "this text")->group(group);
+}
+
+void add_strict(CLI::App& command, CommonOptions& options) {
+  command
+      .add_flag("--strict", options.strict,
+                "refuse a scene of which something is left out, approximated or missing")
+      ->group("Everywhere");
 }
 
 int wrong_usage(const std::string& sentence, const std::string& command = {}) {
@@ -193,6 +201,7 @@ int run_program(int argc, char** argv) {
     CLI::App* const command = app.add_subcommand(named.name);
     actions[command] = named.add(*command);
     add_common(*command, options);
+    if (named.reads_scene) add_strict(*command, options);
     names.push_back(named.name);
   }
   if (const auto word = unknown_command(argc, argv, names)) {

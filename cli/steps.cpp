@@ -8,6 +8,7 @@
 #include "mesh/patches/patch_textures.h"
 #include "radiosity/dark_rooms.h"
 #include "radiosity/solution/solution_file.h"
+#include "scene/errors.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
 
@@ -94,10 +95,20 @@ void note_depth_cut(const Camera& camera, const RenderReport& rendered, int max_
 
 }  // namespace
 
+void refuse_losses(const Scene& scene, const CommonOptions& options) {
+  if (!options.strict || scene.losses.empty()) return;
+  std::string list;
+  for (const std::string& loss : scene.losses) list += "\n  " + loss;
+  throw InputError(
+      fmt::format("{}: not all of the scene can be used, and --strict makes that an error:{}",
+                  scene.file.string(), list));
+}
+
 Scene read_scene_step(const fs::path& file, Console& console, Report& report,
                       CleanUpReport* clean_up) {
   const Stopwatch watch;
   const Scene scene = read_scene(file);
+  refuse_losses(scene, console.options());
   console.say_notes(scene);
   report.add("light", light_name(scene.relative_units));
   report.add_phase("read_scene", watch.seconds());

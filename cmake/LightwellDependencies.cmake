@@ -16,6 +16,7 @@ find_package(JPEG REQUIRED)
 find_package(muparser REQUIRED CONFIG)
 find_package(OpenEXR REQUIRED CONFIG)
 find_package(PNG REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "mesh/contacts/contact_graph.h"
 #include "mesh/discontinuity/critical_lines.h"
@@ -136,7 +137,8 @@ std::vector<std::string> discontinuity_notes(const CriticalLines& critical,
 struct FacetMeshes {
   std::vector<FacetPlane> planes{};
   std::vector<FacetMesh> meshes{};  ///< one per plane
-  int flawed = 0;
+  int empty = 0;                    ///< facets without a mesh
+  int flawed = 0;                   ///< facets whose mesh lacks lines
   std::vector<std::string> notes{};
 };
 
@@ -164,6 +166,7 @@ FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut
   }
   int without_creases = 0;
   for (const FacetMesh& mesh : result.meshes) {
+    result.empty += mesh.corners.empty() ? 1 : 0;
     result.flawed += mesh.is_flawed ? 1 : 0;
     without_creases += mesh.lacks_creases ? 1 : 0;
   }
@@ -187,7 +190,8 @@ double area_to_mesh(const Scene& scene) {
   return std::max(diffuse, all / most_of_all);
 }
 
-// Meshes with the smallest tolerance that keeps all contact lines, or else the one that keeps most.
+// Meshes with the smallest tolerance that keeps all contact lines, or else with the one that leaves
+// fewest facets without a mesh and, of those, keeps most lines.
 FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOptions& options,
                         const Progress& progress) {
   const double diagonal = scene_bounds(scene).diagonal();
@@ -195,9 +199,10 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOption
   for (const double share : weld_shares) {
     FacetMeshes next = mesh_facets(scene, share * diagonal, cut, options, progress);
     const bool is_first = share == weld_shares.front();
-    if (!is_first && next.flawed >= best.flawed) break;
+    if (!is_first && std::pair(next.empty, next.flawed) >= std::pair(best.empty, best.flawed))
+      break;
     best = std::move(next);
-    if (best.flawed == 0) break;
+    if (best.flawed == 0 && best.empty == 0) break;
   }
   return best;
 }

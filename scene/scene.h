@@ -154,6 +154,9 @@ struct Scene {
   std::vector<RigidMotion> motions{};
   /// Assumptions, repairs and omissions of the reader, one sentence each.
   std::vector<std::string> notes{};
+  /// What the reader left out, approximated or did not find, one sentence for each kind with all
+  /// names; `notes` has each of them with a few names. Empty: nothing of the file is lost.
+  std::vector<std::string> losses{};
   int dropped_polygons = 0;  ///< polygons left out: without area, or crossing themselves
   /// True if the unit of emission is unknown: values of light are then meaningful only relative to
   /// each other.

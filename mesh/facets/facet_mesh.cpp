@@ -157,25 +157,38 @@ bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
   return true;
 }
 
-// True if the elements add up to the polygon and none is folded up by points that lie off the plane
-// by the welding tolerance.
-bool is_sound(const FacetPlane& plane, const FacetMesh& mesh) {
+// True if the elements add up to the polygon. Points within the tolerance of the boundary were made
+// part of the boundary, which changes the area.
+bool covers(const FacetPlane& plane, const FacetMesh& mesh) {
+  if (mesh.corners.empty()) return false;  // a needle has less area than the tolerance allows
   double area = 0.0;
   for (const auto& c : mesh.corners) {
     const Vector3d& a = mesh.position[c[0]];
     for (int i = 1; i < (c[3] < 0 ? 2 : 3); ++i) {
       const Vector3d part = (mesh.position[c[i]] - a).cross(mesh.position[c[i + 1]] - a);
-      const double upright = part.dot(plane.normal);
-      constexpr double least_cosine = 0.5;
-      if (!(upright > least_cosine * part.norm())) return false;
-      area += 0.5 * upright;
+      area += 0.5 * part.dot(plane.normal);
     }
   }
-  // Points within the tolerance of the boundary were made part of the boundary, which changes the
-  // area.
   constexpr double rounding = 1e-9;
   const double moved = plane.weld_tolerance * plane.boundary_length();
   return std::abs(area - plane.area()) <= moved + rounding * plane.area();
+}
+
+// True if no element is folded up by points that lie off the plane by the welding tolerance.
+bool is_upright(const FacetPlane& plane, const FacetMesh& mesh) {
+  for (const auto& c : mesh.corners) {
+    const Vector3d& a = mesh.position[c[0]];
+    for (int i = 1; i < (c[3] < 0 ? 2 : 3); ++i) {
+      const Vector3d part = (mesh.position[c[i]] - a).cross(mesh.position[c[i + 1]] - a);
+      constexpr double least_cosine = 0.5;
+      if (!(part.dot(plane.normal) > least_cosine * part.norm())) return false;
+    }
+  }
+  return true;
+}
+
+bool is_sound(const FacetPlane& plane, const FacetMesh& mesh) {
+  return covers(plane, mesh) && is_upright(plane, mesh);
 }
 
 // The smallest sine of all angles of the elements.
@@ -250,8 +263,10 @@ FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
     mesh.is_flawed = true;
     if (is_sound(plane, mesh)) return mesh;
   }
-  // A triangle so thin that no mesh is sound stays one element.
-  mesh = {};
+  // Elements thinner than the tolerance may lean: their share of the area is smaller than what
+  // welding changes. A triangle so thin that no mesh covers it stays one element.
+  if (covers(plane, mesh) && !mesh.has_cut_lines) return mesh;
+  mesh = {.is_flawed = outline.has_lines() || outline.loops != bare.loops};
   if (plane.is_triangle()) make_element(bare.loops.front(), points, mesh);
   return mesh;
 }

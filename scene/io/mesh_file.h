@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "scene/errors.h"
 #include "scene/io/polygon.h"
 #include "scene/scene.h"
 
@@ -26,6 +27,11 @@ struct FilePolygons {
   std::vector<int> of_facet{};  ///< by scene-wide facet number
   Repairs repairs{};
   bool has_normals = false;  ///< set only with MeshFronts::from_normals
+};
+
+/// Thrown for a mesh file without polygons that have an area.
+class NoAreaError : public InputError {
+  using InputError::InputError;
 };
 
 /// read_obj() and read_geometry() with a choice of materials and fronts. `polygons`, if not null,

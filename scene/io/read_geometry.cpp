@@ -14,6 +14,7 @@
 #include "scene/io/mesh_file.h"
 #include "scene/io/polygon.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -123,9 +124,10 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
         {.name = file->mNumMeshes == 1 ? stem : fmt::format("{} {}", stem, m + 1),
          .shape = std::move(mesh)});
   }
-  if (scene.surfaces.empty()) fail_geometry(path, "the file has no polygons with an area");
-  for (const std::string& note : found.repairs.notes()) scene.notes.push_back(note + ".");
-  scene.dropped_polygons = found.repairs.dropped();
+  if (scene.surfaces.empty()) {
+    throw NoAreaError(fmt::format("{}: the file has no polygons with an area", path.string()));
+  }
+  note_repairs(found.repairs, scene);
   if (polygons) *polygons = std::move(found);
   validate(scene);
   return scene;

@@ -7,32 +7,79 @@
 namespace lightwell {
 namespace {
 
-constexpr std::size_t listed = 5;
+constexpr std::size_t few = 5;  // names in a note
 
 }  // namespace
 
-void Remarks::add(std::string_view what, std::string_view name) {
+Remarks::Remark& Remarks::record(std::string_view what, std::string_view name) {
   auto found = std::find_if(remarks_.begin(), remarks_.end(),
                             [&](const Remark& remark) { return remark.what == what; });
   if (found == remarks_.end()) {
     found = remarks_.insert(remarks_.end(), Remark{.what = std::string(what)});
   }
-  const bool is_new = found->names.emplace(name).second;
-  if (is_new && found->first.size() < listed) found->first.emplace_back(name);
+  if (!found->known.contains(name)) {
+    found->known.emplace(name);
+    found->names.emplace_back(name);
+  }
+  return *found;
+}
+
+void Remarks::add(std::string_view what, std::string_view name) {
+  record(what, name);
+}
+
+void Remarks::add_unusable(std::string_view what, std::string_view name, std::string_view why) {
+  Remark& remark = record(what, name);
+  if (remark.why.empty()) remark.why = why;
+}
+
+void Remarks::mention(std::string_view what, std::string_view name) {
+  record(what, name).is_loss = false;
+}
+
+std::string Remarks::sentence(const Remark& remark, std::size_t listed) {
+  std::string sentence = remark.what + ": ";
+  const std::size_t count = std::min(listed, remark.names.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    sentence += fmt::format("{}'{}'", i ? ", " : "", remark.names[i]);
+  }
+  const std::size_t more = remark.names.size() - count;
+  if (more > 0) sentence += fmt::format(" and {} more", more);
+  if (remark.why.empty()) return sentence + ".";
+  return fmt::format("{}{}: {}.", sentence, remark.names.size() > 1 ? "; the first" : "",
+                     remark.why);
 }
 
 std::vector<std::string> Remarks::sentences() const {
   std::vector<std::string> result;
-  for (const Remark& remark : remarks_) {
-    std::string sentence = remark.what + ": ";
-    for (std::size_t i = 0; i < remark.first.size(); ++i) {
-      sentence += fmt::format("{}'{}'", i ? ", " : "", remark.first[i]);
-    }
-    const std::size_t more = remark.names.size() - remark.first.size();
-    if (more > 0) sentence += fmt::format(" and {} more", more);
-    result.push_back(sentence + ".");
-  }
+  for (const Remark& remark : remarks_) result.push_back(sentence(remark, few));
   return result;
+}
+
+void Remarks::report_to(Scene& scene) const {
+  for (const Remark& remark : remarks_) {
+    scene.notes.push_back(sentence(remark, few));
+    if (remark.is_loss) scene.losses.push_back(sentence(remark, remark.names.size()));
+  }
+}
+
+void add_loss(Scene& scene, const std::string& sentence) {
+  scene.notes.push_back(sentence);
+  scene.losses.push_back(sentence);
+}
+
+void note_repairs(const Repairs& repairs, Scene& scene) {
+  for (const std::string& note : repairs.notes()) scene.notes.push_back(note + ".");
+  const Repairs dropped{.thin = repairs.thin, .crossing = repairs.crossing};
+  for (const std::string& note : dropped.notes()) scene.losses.push_back(note + ".");
+  scene.dropped_polygons = dropped.dropped();
+}
+
+void fail_without_surfaces(const std::filesystem::path& file, std::string_view problem,
+                           const Remarks& remarks) {
+  std::string message = fmt::format("{}: {}", file.string(), problem);
+  for (const std::string& sentence : remarks.sentences()) message += "; " + sentence;
+  throw InputError(message);
 }
 
 void remark_pictures_without_uv(const Scene& scene, Remarks& remarks) {

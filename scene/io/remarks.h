@@ -1,10 +1,14 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scene/errors.h"
+#include "scene/io/polygon.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -13,19 +17,56 @@ namespace lightwell {
 /// names of the objects concerned.
 class Remarks {
  public:
-  /// Records that `what` ("textures were left out in") concerns the object `name`.
+  /// Records that `what` ("Textures were left out in") concerns the object `name`: a loss, which is
+  /// something of the file that is left out, approximated or missing.
   void add(std::string_view what, std::string_view name);
+  /// add() for an object that cannot be used; the sentence ends with the reason `why` of the first.
+  void add_unusable(std::string_view what, std::string_view name, std::string_view why);
+  /// Calls `use`. Where that throws an InputError other than a LimitError, the object counts as
+  /// unusable (see add_unusable()), and the result is false.
+  template <class Use>
+  bool attempt(std::string_view what, std::string_view name, Use&& use) {
+    try {
+      use();
+      return true;
+    } catch (const LimitError&) {
+      throw;
+    } catch (const InputError& error) {
+      add_unusable(what, name, error.what());
+      return false;
+    }
+  }
+  /// Records an assumption or a peculiarity by which nothing of the file is lost.
+  void mention(std::string_view what, std::string_view name);
   /// One sentence for every `what`, in the order of first mention, with at most five names.
   std::vector<std::string> sentences() const;
+  /// Appends the sentences to Scene::notes, and those on losses, with all names, to Scene::losses.
+  void report_to(Scene& scene) const;
 
  private:
   struct Remark {
     std::string what{};
-    std::vector<std::string> first{};  ///< the names to list
-    std::set<std::string> names{};
+    bool is_loss = true;
+    std::vector<std::string> names{};
+    std::set<std::string, std::less<>> known{};
+    std::string why{};
   };
+  Remark& record(std::string_view what, std::string_view name);
+  static std::string sentence(const Remark& remark, std::size_t listed);
+
   std::vector<Remark> remarks_;
 };
+
+/// Appends a sentence on something left out, approximated or missing to Scene::notes and losses.
+void add_loss(Scene& scene, const std::string& sentence);
+
+/// Appends the notes on repaired polygons and counts the dropped ones, which are losses.
+void note_repairs(const Repairs& repairs, Scene& scene);
+
+/// The error of a scene of which nothing can be used: `problem`, then what the remarks say.
+/// Throws InputError.
+[[noreturn]] void fail_without_surfaces(const std::filesystem::path& file, std::string_view problem,
+                                        const Remarks& remarks);
 
 /// Adds a remark on surfaces whose material has a picture or a mask and whose facets lack texture
 /// coordinates: there the mean of the picture is used, and no mask.

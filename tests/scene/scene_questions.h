@@ -30,6 +30,19 @@ inline bool has_note(const Scene& scene, const std::string& text) {
       scene.notes, [&](const std::string& note) { return note.find(text) != std::string::npos; });
 }
 
+/// True if one of the scene's losses contains `text`.
+inline bool has_loss(const Scene& scene, const std::string& text) {
+  return std::ranges::any_of(
+      scene.losses, [&](const std::string& loss) { return loss.find(text) != std::string::npos; });
+}
+
+/// All notes of a scene, one a line.
+inline std::string notes_of(const Scene& scene) {
+  std::string all;
+  for (const std::string& note : scene.notes) all += note + "\n";
+  return all;
+}
+
 inline const Material& material_called(const Scene& scene, const std::string& name) {
   for (const Material& m : scene.materials) {
     if (m.name == name) return m;

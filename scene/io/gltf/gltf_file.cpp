@@ -92,8 +92,9 @@ struct GltfFile::Content {
   TextFile file;
   nlohmann::json json{};
   std::map<std::string, std::vector<GltfObject>, std::less<>> lists{};
-  std::vector<std::string> loaded{};        // decoded or loaded buffers
-  std::vector<std::string_view> buffers{};  // views into `loaded` or the file
+  std::vector<std::string> loaded{};         // decoded or loaded buffers
+  std::vector<std::string_view> buffers{};   // views into `loaded` or the file
+  std::vector<std::string> buffer_faults{};  // by buffer; empty for one that can be used
 };
 
 // Memory layout of an accessor; element i begins at data + i * stride.
@@ -146,16 +147,23 @@ void GltfFile::read_json(std::string_view json) {
 void GltfFile::read_buffers(std::string_view binary) {
   const auto& buffers = content_->lists.at("buffers");
   content_->loaded.resize(buffers.size());
+  content_->buffers.resize(buffers.size());
+  content_->buffer_faults.resize(buffers.size());
   for (std::size_t i = 0; i < buffers.size(); ++i) {
-    const std::string uri = buffers[i].string_or("uri", "");
-    const bool is_within = uri.empty() && i == 0;
-    if (!uri.empty()) content_->loaded[i] = resource(buffers[i], uri);
-    const std::string_view bytes = is_within ? binary : content_->loaded[i];
-    const std::size_t length = buffers[i].index_or("byteLength", 0);
-    if (length > bytes.size()) {
-      buffers[i].fail(fmt::format("needs {} bytes, but there are {}", length, bytes.size()));
+    try {
+      const std::string uri = buffers[i].string_or("uri", "");
+      const bool is_within = uri.empty() && i == 0;
+      if (!uri.empty()) content_->loaded[i] = resource(buffers[i], uri);
+      const std::string_view bytes = is_within ? binary : content_->loaded[i];
+      const std::size_t length = buffers[i].index_or("byteLength", 0);
+      // A buffer that was cut off holds what its first bytes hold.
+      content_->buffers[i] = bytes.substr(0, length);
+      if (length > bytes.size()) {
+        buffers[i].fail(fmt::format("needs {} bytes, but there are {}", length, bytes.size()));
+      }
+    } catch (const InputError& error) {
+      content_->buffer_faults[i] = error.what();
     }
-    content_->buffers.push_back(bytes.substr(0, length));
   }
 }
 
@@ -192,7 +200,12 @@ std::string_view GltfFile::view(std::size_t buffer_view, const GltfObject& askin
   const std::string_view bytes = content_->buffers[number];
   const std::size_t offset = view.index_or("byteOffset", 0);
   const std::size_t length = view.index_or("byteLength", 0);
+  if (view.extension("EXT_meshopt_compression")) {
+    view.fail("is compressed with EXT_meshopt_compression; export it without");
+  }
   if (offset > bytes.size() || length > bytes.size() - offset) {
+    const std::string& fault = content_->buffer_faults[number];
+    if (!fault.empty()) throw InputError(fault);
     view.fail(
         fmt::format("ends at byte {} of a buffer of {} bytes", offset + length, bytes.size()));
   }

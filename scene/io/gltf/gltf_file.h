@@ -14,7 +14,8 @@
 
 namespace lightwell {
 
-/// A glTF 2.0 file, text or binary, and its buffers. References by index are checked on access.
+/// A glTF 2.0 file, text or binary, and its buffers. References by index are checked on access, and
+/// so are buffers that are missing or were cut off.
 class GltfFile {
  public:
   /// Throws InputError naming the file and, for torn JSON, the line.

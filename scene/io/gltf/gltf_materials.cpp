@@ -12,6 +12,9 @@
 namespace lightwell {
 namespace {
 
+const char* const unusable_pictures = "Pictures that are missing or damaged became a grey of 0.5";
+const char* const unread_pictures = "Textures of a format that is not read became a grey of 0.5";
+
 // Colour factors; white if missing.
 Spectrum color(const std::optional<GltfObject>& owner, const char* key, std::size_t count) {
   Spectrum result = Spectrum::Ones(3);
@@ -117,9 +120,12 @@ int GltfMaterials::of_primitive(const GltfObject& primitive, bool is_closed) {
   if (!is_new) return entry->second;
   Material material = default_material(scene_.bands);
   if (index) {
-    material = read(file_.at("materials", *index, primitive), is_closed);
+    remarks_.attempt("Materials that cannot be read got a diffuse reflectance of 0.5",
+                     fmt::format("materials[{}]", *index),
+                     [&] { material = read(file_.at("materials", *index, primitive), is_closed); });
   } else {
-    remarks_.add("Surfaces without a material got a diffuse reflectance of 0.5", primitive.place());
+    remarks_.mention("Surfaces without a material got a diffuse reflectance of 0.5",
+                     primitive.place());
   }
   // Closed and open bodies often get the same material, which is then stored once.
   const auto other = index_of_.find({index, !is_closed});
@@ -155,7 +161,7 @@ Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
 
 std::string GltfMaterials::texture_coordinates(const GltfObject& primitive) const {
   const auto index = primitive.index("material");
-  if (!index) return {};
+  if (!index || *index >= file_.count("materials")) return {};
   const auto info = BaseColor(file_.at("materials", *index, primitive)).info();
   if (!info) return {};
   const auto transform = info->extension("KHR_texture_transform");
@@ -170,7 +176,11 @@ std::optional<Picture> GltfMaterials::base_picture(const GltfObject& from) {
   if (!texture) info->fail("lacks the index of a texture");
   auto known = base_pictures_.find(*texture);
   if (known == base_pictures_.end()) {
-    auto picture = file_.texture_picture(*texture, PictureCode::srgb, *info);
+    std::optional<Picture> picture;
+    const bool is_sound = remarks_.attempt(unusable_pictures, from.name(), [&] {
+      picture = file_.texture_picture(*texture, PictureCode::srgb, *info);
+    });
+    if (is_sound && !picture) remarks_.add(unread_pictures, from.name());
     known = base_pictures_.emplace(*texture, std::move(picture)).first;
   }
   return known->second;
@@ -227,14 +237,16 @@ PictureMean GltfMaterials::texture_mean(const std::optional<GltfObject>& owner, 
   if (!texture) info->fail("lacks the index of a texture");
   auto known = textures_.find({*texture, code});
   if (known == textures_.end()) {
-    const auto mean = file_.texture_mean(*texture, code, *info);
+    std::optional<PictureMean> mean;
+    const bool is_sound = remarks_.attempt(
+        unusable_pictures, from.name(), [&] { mean = file_.texture_mean(*texture, code, *info); });
+    if (is_sound && !mean) remarks_.add(unread_pictures, from.name());
     known = textures_.emplace(std::pair(*texture, code), mean).first;
   }
   if (known->second) {
     remarks_.add("Textures were read as their mean colour", from.name());
     return *known->second;
   }
-  remarks_.add("Textures of a format that is not read became a grey of 0.5", from.name());
   white.color.setConstant(0.5);
   white.covered_color.setConstant(0.5);
   return white;
@@ -247,7 +259,6 @@ Spectrum GltfMaterials::base_color(const GltfObject& from) {
     result *=
         (is_cut_by_alpha(from) ? picture->mean.covered_color : picture->mean.color).cast<float>();
   } else if (color_from.info()) {
-    remarks_.add("Textures of a format that is not read became a grey of 0.5", from.name());
     result *= 0.5f;
   }
   if (!((result >= 0.0f).all() && (result <= 1.0f).all())) {

@@ -91,8 +91,8 @@ class GltfReader {
     for (const std::size_t root : roots()) visit(root);
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       if (placed_lights_.contains(i)) continue;
-      remarks_.add("Lights that no node places (KHR_lights_punctual) are not used",
-                   lights_[i].name());
+      remarks_.mention("Lights that no node places (KHR_lights_punctual) are not used",
+                       lights_[i].name());
     }
     for (const GltfObject& animation : file_.root().objects("animations")) {
       remarks_.add("Animations were left out; all stands where the file's nodes put it",
@@ -100,9 +100,11 @@ class GltfReader {
     }
     drop_unused_uv(scene_);
     remark_pictures_without_uv(scene_, remarks_);
-    for (const std::string& note : remarks_.sentences()) scene_.notes.push_back(note);
-    for (const std::string& note : repairs_.notes()) scene_.notes.push_back(note + ".");
-    scene_.dropped_polygons = repairs_.dropped();
+    if (scene_.surfaces.empty()) {
+      fail_without_surfaces(scene_.file, "the scene has no triangles with an area", remarks_);
+    }
+    remarks_.report_to(scene_);
+    note_repairs(repairs_, scene_);
   }
 
  private:
@@ -113,10 +115,7 @@ class GltfReader {
 
   void check_extensions() {
     for (const std::string& name : file_.root().strings("extensionsUsed")) {
-      if (std::ranges::find(hidden_geometry, name) != hidden_geometry.end()) {
-        file_.root().fail(
-            fmt::format("the geometry is compressed with {}; export it without", name));
-      }
+      if (std::ranges::find(hidden_geometry, name) != hidden_geometry.end()) continue;
       if (std::ranges::find(known_extensions, name) == known_extensions.end()) {
         remarks_.add("Extensions that have no effect", name);
       }
@@ -149,22 +148,31 @@ class GltfReader {
     while (!open.empty()) {
       const Placed placed = open.back();
       open.pop_back();
-      const GltfObject& node = file_.at("nodes", placed.node, file_.root());
-      if (!seen_.insert(placed.node).second) {
-        node.fail("has two parents or is its own descendant; nodes must form a tree");
-      }
-      const Eigen::Affine3d to_world = placed.parent * local_transform(node);
-      if (!to_world.matrix().allFinite()) node.fail("lies beyond all measure");
-      add_mesh(node, to_world);
+      remarks_.attempt("Nodes that cannot be used were left out, with their children",
+                       fmt::format("nodes[{}]", placed.node), [&] { visit(placed, open); });
+    }
+  }
+
+  void visit(const Placed& placed, std::vector<Placed>& open) {
+    const GltfObject& node = file_.at("nodes", placed.node, file_.root());
+    if (!seen_.insert(placed.node).second) {
+      node.fail("has two parents or is its own descendant; nodes must form a tree");
+    }
+    const Eigen::Affine3d to_world = placed.parent * local_transform(node);
+    if (!to_world.matrix().allFinite()) node.fail("lies beyond all measure");
+    remarks_.attempt("Meshes that cannot be read were left out", node.name(),
+                     [&] { add_mesh(node, to_world); });
+    remarks_.attempt("Cameras that cannot be used were left out", node.name(), [&] {
       if (const auto camera = node.index("camera")) {
         add_gltf_camera(file_.at("cameras", *camera, node), node, to_world, scene_, remarks_);
       }
-      add_light(node, to_world);
-      // Pushed backwards, since the stack returns the last one first.
-      const auto children = node.indices("children");
-      for (auto child = children.rbegin(); child != children.rend(); ++child) {
-        open.push_back({.node = *child, .parent = to_world});
-      }
+    });
+    remarks_.attempt("Lights that cannot be used were left out", node.name(),
+                     [&] { add_light(node, to_world); });
+    // Pushed backwards, since the stack returns the last one first.
+    const auto children = node.indices("children");
+    for (auto child = children.rbegin(); child != children.rend(); ++child) {
+      open.push_back({.node = *child, .parent = to_world});
     }
   }
 
@@ -188,7 +196,8 @@ class GltfReader {
     const auto primitives = mesh.objects("primitives");
     for (const GltfObject& primitive : primitives) {
       if (primitive.has("targets")) remarks_.add("Morph targets were left out", name);
-      add_primitive(primitive, to_world, name, primitives.size() > 1);
+      remarks_.attempt("Meshes that cannot be read were left out", primitive.place(),
+                       [&] { add_primitive(primitive, to_world, name, primitives.size() > 1); });
     }
   }
 
@@ -216,6 +225,10 @@ class GltfReader {
 
   PolygonMesh read_triangles(const GltfObject& primitive, const GltfObject& attributes,
                              const Eigen::Affine3d& to_world) {
+    for (const char* const compression : hidden_geometry) {
+      if (!primitive.extension(compression)) continue;
+      primitive.fail(fmt::format("is compressed with {}; export it without", compression));
+    }
     const auto position = attributes.index("POSITION");
     if (!position) attributes.fail("lacks 'POSITION'");
     auto vertices = file_.vectors(*position, attributes);
@@ -234,7 +247,8 @@ class GltfReader {
     const std::size_t count = mode == triangle_list ? corners / 3 : corners < 3 ? 0 : corners - 2;
     triangles_ += static_cast<std::int64_t>(count);
     if (triangles_ > most_facets) {
-      primitive.fail(fmt::format("brings the scene to more than {} triangles", most_facets));
+      throw LimitError(fmt::format("{}: {} brings the scene to more than {} triangles",
+                                   scene_.file.string(), primitive.place(), most_facets));
     }
     const bool is_mirrored = to_world.linear().determinant() < 0.0;
     MeshBuilder mesh;
@@ -308,7 +322,6 @@ Scene read_gltf(const std::filesystem::path& path) {
   scene.notes.emplace_back(
       "Emission was read as relative: glTF files seldom mean a unit of light.");
   GltfReader(file, scene).read();
-  if (scene.surfaces.empty()) file.root().fail("the scene has no triangles with an area");
   note_if_dark(scene);
   validate(scene);
   return scene;

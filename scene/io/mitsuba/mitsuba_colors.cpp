@@ -168,8 +168,7 @@ std::optional<MitsubaTexture> MitsubaColors::texture(const MitsubaNode& owner,
 std::optional<Mask> MitsubaColors::mask(const MitsubaNode& owner, std::string_view property) {
   const MitsubaNode* node = texture_node(owner, property);
   if (!node || node->type != "bitmap") return std::nullopt;
-  const auto path = tree_.file_named(*node, node->string_or("filename", ""));
-  const auto picture = pictures_.picture(path, PictureCode::linear);
+  const auto picture = picture_of(*node, PictureCode::linear);
   if (!picture) return std::nullopt;
   return Mask{.image = laid_on(*node, picture->alpha ? picture->alpha : picture->color)};
 }
@@ -204,8 +203,7 @@ SurfaceTexture MitsubaColors::laid_on(const MitsubaNode& node,
 }
 
 std::optional<MitsubaTexture> MitsubaColors::bitmap(const MitsubaNode& node, Pixels pixels) {
-  const auto path = tree_.file_named(node, node.string_or("filename", ""));
-  const auto picture = pictures_.picture(path, code_of(node));
+  const auto picture = picture_of(node, code_of(node));
   if (!picture) return std::nullopt;
   const auto& mean =
       pixels == Pixels::by_opacity ? picture->mean.covered_color : picture->mean.color;
@@ -357,15 +355,29 @@ Spectrum MitsubaColors::read_texture(const MitsubaNode& node, Pixels pixels, int
 }
 
 Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node, Pixels pixels) {
+  const auto picture = picture_of(node, code_of(node));
+  if (!picture) return grey(0.5);
+  remarks_.add("Pictures on surfaces were read as their mean colour",
+               node.string_or("filename", ""));
+  return spectrum_of(pixels == Pixels::by_opacity ? picture->mean.covered_color
+                                                  : picture->mean.color);
+}
+
+// The picture of a bitmap; empty, with a remark, if it is missing, damaged or of another format.
+std::optional<Picture> MitsubaColors::picture_of(const MitsubaNode& node, PictureCode code) {
   const std::string name = node.string_or("filename", "");
-  const auto path = tree_.file_named(node, name);
-  const auto mean = pictures_.mean(path, code_of(node));
-  if (!mean) {
-    remarks_.add("Pictures of a format that is not read became a grey of 0.5", name);
-    return grey(0.5);
+  if (!name.empty() && !tree_.has_file(node, name)) {
+    remarks_.add("Pictures that are missing became a grey of 0.5, or no mask", name);
+    return std::nullopt;
   }
-  remarks_.add("Pictures on surfaces were read as their mean colour", name);
-  return spectrum_of(pixels == Pixels::by_opacity ? mean->covered_color : mean->color);
+  std::optional<Picture> picture;
+  const bool is_sound =
+      remarks_.attempt("Pictures that cannot be read became a grey of 0.5, or no mask", name,
+                       [&] { picture = pictures_.picture(tree_.file_named(node, name), code); });
+  if (is_sound && !picture) {
+    remarks_.add("Pictures of a format that is not read became a grey of 0.5, or no mask", name);
+  }
+  return picture;
 }
 
 }  // namespace lightwell

@@ -63,6 +63,7 @@ class MitsubaColors {
   Spectrum read_blackbody(const MitsubaNode& node) const;
   Spectrum read_texture(const MitsubaNode& node, Pixels pixels, int depth);
   Spectrum read_bitmap(const MitsubaNode& node, Pixels pixels);
+  std::optional<Picture> picture_of(const MitsubaNode& node, PictureCode code);
   Spectrum part_or(const MitsubaNode& texture, std::string_view property, float otherwise,
                    Pixels pixels, int depth);
 

@@ -57,7 +57,8 @@ MitsubaNode MitsubaLoader::load_file(const std::filesystem::path& path,
   const auto canonical = std::filesystem::weakly_canonical(path);
   if (including) {
     if (std::ranges::find(open_, canonical) != open_.end()) {
-      including->fail(fmt::format("includes '{}', which includes this file", path.string()));
+      throw LimitError(
+          including->called(fmt::format("includes '{}', which includes this file", path.string())));
     }
     if (open_.size() >= most_nested_scenes || files_ >= most_files) {
       including->fail(
@@ -133,7 +134,11 @@ void MitsubaLoader::include(const MitsubaNode& node, MitsubaNode& parent) {
     path = (tree_.files_.front()->parent_path() / *name).lexically_normal();
   }
   if (!std::filesystem::is_regular_file(path, error)) {
-    node.fail(fmt::format("names the file '{}', but there is no such file", *name));
+    tree_.gaps_.push_back(
+        {.what = "Included files are missing, with all that they hold",
+         .name = *name,
+         .why = node.called(fmt::format("names the file '{}', but there is no such file", *name))});
+    return;
   }
   MitsubaNode included = load_file(path, &node);
   for (MitsubaNode& child : included.children) parent.children.push_back(std::move(child));

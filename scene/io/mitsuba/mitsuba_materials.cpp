@@ -60,18 +60,31 @@ int MitsubaMaterials::of_shape(const MitsubaNode& shape, const std::string& shap
   if (!is_new) return entry->second;
   Material material = default_material(scene_.bands);
   if (bsdf) {
-    material = read(*bsdf, Pixels::all);
+    material = read_or_default(*bsdf);
     material.name = bsdf->id.empty() ? fmt::format("material of {}", shape_name) : bsdf->id;
   } else {
-    remarks_.add("Shapes without a BSDF got a diffuse reflectance of 0.5", shape_name);
+    remarks_.mention("Shapes without a BSDF got a diffuse reflectance of 0.5", shape_name);
     material.name = emitter ? fmt::format("material of {}", shape_name) : "default";
   }
   if (emitter) {
     if (bsdf && !bsdf->id.empty()) material.name = fmt::format("{} ({})", bsdf->id, shape_name);
-    add_emission(*emitter, shape_name, material);
+    const Spectrum dark = material.emission;
+    if (!remarks_.attempt("Emitters that cannot be used were left out", shape_name,
+                          [&] { add_emission(*emitter, shape_name, material); })) {
+      material.emission = dark;
+    }
   }
   scene_.materials.push_back(std::move(material));
   return entry->second;
+}
+
+Material MitsubaMaterials::read_or_default(const MitsubaNode& bsdf) {
+  Material material = default_material(scene_.bands);
+  if (!remarks_.attempt("BSDFs that cannot be read got a diffuse reflectance of 0.5", bsdf.label(),
+                        [&] { material = read(bsdf, Pixels::all); })) {
+    open_.clear();
+  }
+  return material;
 }
 
 void MitsubaMaterials::add_emission(const MitsubaNode& emitter, const std::string& name,

@@ -25,6 +25,7 @@ class MitsubaMaterials {
   int of_shape(const MitsubaNode& shape, const std::string& shape_name);
 
  private:
+  Material read_or_default(const MitsubaNode& bsdf);
   Material read(const MitsubaNode& bsdf, Pixels pixels);
   Material read_new(const MitsubaNode& bsdf, Pixels pixels);
   Material diffuse(const MitsubaNode& bsdf, std::string_view property, Pixels pixels);

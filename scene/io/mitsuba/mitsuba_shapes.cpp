@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/errors.h"
+#include "scene/io/mitsuba/mitsuba_serialized.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/text_file.h"
@@ -13,6 +14,12 @@
 
 namespace lightwell {
 namespace {
+
+const char* const without_area = "Shapes without area were left out";
+
+bool is_mesh(const MitsubaNode& shape) {
+  return shape.type == "obj" || shape.type == "ply" || shape.type == "serialized";
+}
 
 double positive(const MitsubaNode& shape, const char* property, double otherwise) {
   const double value = shape.number_or(property, otherwise);
@@ -68,12 +75,17 @@ void MitsubaShapes::add_instance(const MitsubaNode& instance) {
       remarks_.add("Instances within a group of shapes were left out", shape->label());
       continue;
     }
-    add_placed(*shape, to_world * read_to_world(*shape), prefix);
+    remarks_.attempt("<shape> elements that cannot be used were left out", shape->label(),
+                     [&] { add_placed(*shape, to_world * read_to_world(*shape), prefix); });
   }
 }
 
 void MitsubaShapes::add_placed(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
                                const std::string& prefix) {
+  if (facets_ > most_facets) {
+    throw LimitError(shape.called(fmt::format(
+        "brings the scene to more than {} polygons; use fewer instances", most_facets)));
+  }
   const std::string name = unique_name(shape, prefix);
   const bool flip = shape.boolean_or("flip_normals", false);
   const auto loops = [&](const std::vector<Loop>& local) {
@@ -93,9 +105,7 @@ void MitsubaShapes::add_placed(const MitsubaNode& shape, const Eigen::Affine3d& 
     remarks_.add("Cylinders were read as 32 rectangles of the same area", name);
     return add_surface(shape, name, cylinder(shape, to_world));
   }
-  if (shape.type == "obj" || shape.type == "ply") {
-    return add_surface(shape, name, mesh(shape, to_world, name));
-  }
+  if (is_mesh(shape)) return add_mesh(shape, to_world, name);
   remarks_.add(fmt::format("Shapes of the plugin '{}' were left out", shape.type), name);
 }
 
@@ -109,13 +119,10 @@ void MitsubaShapes::add_surface(const MitsubaNode& shape, const std::string& nam
   }
   if (const auto* polygons = std::get_if<PolygonMesh>(&placed)) {
     if (polygons->facets.empty()) {
-      remarks_.add("Shapes without area were left out", name);
+      remarks_.add(without_area, name);
       return;
     }
     facets_ += static_cast<std::int64_t>(polygons->facets.size());
-    if (facets_ > most_facets) {
-      shape.fail(fmt::format("makes more than {} polygons; use fewer instances", most_facets));
-    }
   }
   const int material = materials_.of_shape(shape, name);
   scene_.surfaces.push_back({.name = name, .material = material, .shape = std::move(placed)});
@@ -153,6 +160,19 @@ PolygonMesh MitsubaShapes::cylinder(const MitsubaNode& shape, const Eigen::Affin
                       repairs_, {}, normals);
 }
 
+void MitsubaShapes::add_mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
+                             const std::string& name) {
+  const std::string file = shape.string_or("filename", "");
+  if (!file.empty() && !tree_.has_file(*shape.property("filename"), file)) {
+    return remarks_.add("Mesh files are missing, and their shapes were left out", file);
+  }
+  try {
+    add_surface(shape, name, mesh(shape, to_world, name));
+  } catch (const NoAreaError&) {
+    remarks_.add(without_area, name);
+  }
+}
+
 PolygonMesh MitsubaShapes::mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
                                 const std::string& name) {
   // Mitsuba defines the front by the shading normals, except with face_normals. Where both sides of
@@ -183,32 +203,39 @@ const MitsubaShapes::MeshFile& MitsubaShapes::mesh_file(const MitsubaNode& shape
   const MitsubaNode* given = shape.property("filename");
   if (!given) shape.fail("lacks the property 'filename'");
   const auto path = tree_.file_named(*given, shape.string_or("filename", ""));
-  const auto known = files_.find({path, with_uv, fronts});
+  const auto number = static_cast<int>(shape.number_or("shape_index", 0.0));
+  const auto known = files_.find({path, number, with_uv, fronts});
   if (known != files_.end()) return known->second;
-  const bool is_obj = shape.type == "obj";
-  if (lower_extension(path) != (is_obj ? ".obj" : ".ply")) {
-    given->fail(fmt::format("is '{}'; a shape of type '{}' is read from .{} files", path.string(),
-                            shape.type, shape.type));
+  const std::string extension = "." + shape.type;
+  if (lower_extension(path) != extension) {
+    given->fail(fmt::format("is '{}'; a shape of type '{}' is read from {} files", path.string(),
+                            shape.type, extension));
   }
   FilePolygons polygons;
   Scene scene;
   try {
     const auto wanted = with_uv ? MeshMaterials::with_uv : MeshMaterials::ignored;
-    scene = is_obj ? read_obj_file(path, 1.0, wanted, &polygons, fronts)
-                   : read_geometry_file(path, 1.0, wanted, &polygons, fronts);
+    if (shape.type == "serialized") {
+      scene = read_serialized_file(path, number, wanted, polygons, fronts);
+    } else if (shape.type == "obj") {
+      scene = read_obj_file(path, 1.0, wanted, &polygons, fronts);
+    } else {
+      scene = read_geometry_file(path, 1.0, wanted, &polygons, fronts);
+    }
+  } catch (const NoAreaError&) {
+    throw;
   } catch (const InputError& error) {
     given->fail(fmt::format("cannot be used: {}", error.what()));
   }
   MeshFile file{.mesh = joined(std::move(scene)),
                 .repairs = polygons.repairs,
                 .has_normals = polygons.has_normals};
-  return files_.emplace(std::tuple(path, with_uv, fronts), std::move(file)).first->second;
+  return files_.emplace(std::tuple(path, number, with_uv, fronts), std::move(file)).first->second;
 }
 
 // Unique name of a surface: the shape's id if given, else its file or plugin.
 std::string MitsubaShapes::unique_name(const MitsubaNode& shape, const std::string& prefix) {
-  const bool is_mesh = shape.type == "obj" || shape.type == "ply";
-  const std::string file = is_mesh ? shape.string_or("filename", "") : "";
+  const std::string file = is_mesh(shape) ? shape.string_or("filename", "") : "";
   const std::string stem = std::filesystem::path(file).stem().string();
   return names_.unique(prefix + (!shape.id.empty() ? shape.id : !stem.empty() ? stem : shape.type));
 }

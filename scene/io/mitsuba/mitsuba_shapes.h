@@ -23,8 +23,9 @@ class MitsubaShapes {
   MitsubaShapes(const MitsubaTree& tree, Scene& scene, Remarks& remarks)
       : tree_(tree), scene_(scene), remarks_(remarks), materials_(tree, scene, remarks) {}
 
-  /// Adds the surface of a <shape>, or the surfaces of the shape group of an instance. Throws
-  /// InputError naming file, line and fault.
+  /// Adds the surface of a <shape>, or the surfaces of the shape group of an instance. Shapes whose
+  /// mesh file is missing or has no area are left out. Throws InputError naming file, line and
+  /// fault, and LimitError for too many polygons.
   void add(const MitsubaNode& shape);
   /// Counts of repaired polygons so far.
   const Repairs& repairs() const { return repairs_; }
@@ -45,6 +46,7 @@ class MitsubaShapes {
                                            const Eigen::Affine3d& to_world,
                                            const std::string& name);
   PolygonMesh cylinder(const MitsubaNode& shape, const Eigen::Affine3d& to_world);
+  void add_mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world, const std::string& name);
   PolygonMesh mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
                    const std::string& name);
   const MeshFile& mesh_file(const MitsubaNode& shape, bool with_uv, MeshFronts fronts);
@@ -55,7 +57,7 @@ class MitsubaShapes {
   Remarks& remarks_;
   MitsubaMaterials materials_;
   Repairs repairs_;
-  std::map<std::tuple<std::filesystem::path, bool, MeshFronts>, MeshFile> files_;
+  std::map<std::tuple<std::filesystem::path, int, bool, MeshFronts>, MeshFile> files_;
   NumberedNames names_;
   std::int64_t facets_ = 0;
 };

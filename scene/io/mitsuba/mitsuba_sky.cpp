@@ -61,6 +61,24 @@ void add_directional(const MitsubaNode& emitter, MitsubaColors& colors, Scene& s
                           .irradiance = colors.positive_or(emitter, "irradiance", 1.0f)};
 }
 
+// Adds the emitter, of which the caller knows that it is a dome, or else a sun.
+void add_dome_or_sun(const MitsubaNode& emitter, const MitsubaTree& tree, Scene& scene,
+                     Remarks& remarks) {
+  MitsubaColors colors(tree, remarks);
+  if (emitter.type == "directional") {
+    add_directional(emitter, colors, scene);
+    remarks.add("Directional emitters became a sun, a disc 0.53 degrees across", emitter.label());
+    return;
+  }
+  Sky& sky = sky_of(scene);
+  if (emitter.type == "envmap") {
+    add_map(emitter, tree, sky);
+  } else {
+    sky.name = "uniform all around";
+    sky.scale = sky.ground = colors.positive_or(emitter, "radiance", 1.0f);
+  }
+}
+
 }  // namespace
 
 bool add_mitsuba_sky(const MitsubaNode& emitter, const MitsubaTree& tree, Scene& scene,
@@ -73,18 +91,12 @@ bool add_mitsuba_sky(const MitsubaNode& emitter, const MitsubaTree& tree, Scene&
         emitter.label());
     return true;
   }
-  MitsubaColors colors(tree, remarks);
-  if (emitter.type == "directional") {
-    add_directional(emitter, colors, scene);
-    remarks.add("Directional emitters became a sun, a disc 0.53 degrees across", emitter.label());
-    return true;
-  }
-  Sky& sky = sky_of(scene);
-  if (emitter.type == "envmap") {
-    add_map(emitter, tree, sky);
-  } else {
-    sky.name = "uniform all around";
-    sky.scale = sky.ground = colors.positive_or(emitter, "radiance", 1.0f);
+  const std::optional<Sky> before = scene.sky;
+  try {
+    add_dome_or_sun(emitter, tree, scene, remarks);
+  } catch (const InputError&) {
+    scene.sky = before;
+    throw;
   }
   return true;
 }

@@ -27,6 +27,14 @@ void index_ids(const MitsubaNode& node,
   for (const MitsubaNode& child : node.children) index_ids(child, by_id, aliases);
 }
 
+// The ids and aliases that references may name.
+void collect_ids(const MitsubaNode& node, std::set<std::string, std::less<>>& ids) {
+  if (!node.id.empty() && node.tag != "ref" && node.tag != "alias") ids.insert(node.id);
+  const std::string* as = node.tag == "alias" ? node.attribute("as") : nullptr;
+  if (as) ids.insert(*as);
+  for (const MitsubaNode& child : node.children) collect_ids(child, ids);
+}
+
 }  // namespace
 
 const std::string* MitsubaNode::attribute(std::string_view key) const {
@@ -39,9 +47,13 @@ std::string MitsubaNode::label() const {
   return fmt::format("{} on line {}", type.empty() ? tag : type, line);
 }
 
+std::string MitsubaNode::called(std::string_view problem) const {
+  const std::string property = name.empty() ? "" : fmt::format(" '{}'", name);
+  return fmt::format("{}:{}: <{}>{} {}", file->string(), line, tag, property, problem);
+}
+
 void MitsubaNode::fail(std::string_view problem) const {
-  const std::string called = name.empty() ? "" : fmt::format(" '{}'", name);
-  throw InputError(fmt::format("{}:{}: <{}>{} {}", file->string(), line, tag, called, problem));
+  throw InputError(called(problem));
 }
 
 const MitsubaNode* MitsubaNode::property(std::string_view property_name) const {
@@ -104,6 +116,9 @@ std::vector<double> parse_numbers(const MitsubaNode& node, std::string_view text
 
 MitsubaTree::MitsubaTree(const std::filesystem::path& path) {
   MitsubaLoader(*this).load(path);
+  std::set<std::string, std::less<>> ids;
+  collect_ids(root_, ids);
+  drop_dangling(root_, ids);
   std::vector<const MitsubaNode*> aliases;
   index_ids(root_, by_id_, aliases);
   for (const MitsubaNode* alias : aliases) {
@@ -114,14 +129,23 @@ MitsubaTree::MitsubaTree(const std::filesystem::path& path) {
   }
 }
 
+// Removes references to no element. Done before elements are indexed by address.
+void MitsubaTree::drop_dangling(MitsubaNode& node, const std::set<std::string, std::less<>>& ids) {
+  std::erase_if(node.children, [&](const MitsubaNode& child) {
+    if (child.tag != "ref" || ids.contains(child.id)) return false;
+    gaps_.push_back(
+        {.what = "References that name no element were left out",
+         .name = child.id,
+         .why = child.called(fmt::format("names '{}', which is the id of no element.{}", child.id,
+                                         did_you_mean(child.id, {ids.begin(), ids.end()})))});
+    return true;
+  });
+  for (MitsubaNode& child : node.children) drop_dangling(child, ids);
+}
+
 const MitsubaNode& MitsubaTree::resolved(const MitsubaNode& node) const {
   if (node.tag != "ref") return node;
-  const auto found = by_id_.find(node.id);
-  if (found != by_id_.end()) return *found->second;
-  std::vector<std::string> known;
-  for (const auto& [id, target] : by_id_) known.push_back(id);
-  node.fail(fmt::format("names '{}', which is the id of no element.{}", node.id,
-                        did_you_mean(node.id, known)));
+  return *by_id_.find(node.id)->second;
 }
 
 std::vector<const MitsubaNode*> MitsubaTree::children(const MitsubaNode& node,
@@ -134,19 +158,28 @@ std::vector<const MitsubaNode*> MitsubaTree::children(const MitsubaNode& node,
   return result;
 }
 
+std::optional<std::filesystem::path> MitsubaTree::found_file(const MitsubaNode& node,
+                                                             const std::string& name) const {
+  std::string portable = name;
+  std::replace(portable.begin(), portable.end(), '\\', '/');
+  std::error_code error;
+  for (const auto* file : {node.file, root_.file}) {
+    const auto path = (file->parent_path() / portable).lexically_normal();
+    if (!name.empty() && std::filesystem::is_regular_file(path, error)) return path;
+  }
+  return std::nullopt;
+}
+
+bool MitsubaTree::has_file(const MitsubaNode& node, const std::string& name) const {
+  return found_file(node, name).has_value();
+}
+
 std::filesystem::path MitsubaTree::file_named(const MitsubaNode& node,
                                               const std::string& name) const {
   if (name.empty()) node.fail("names no file");
-  std::string portable = name;
-  std::replace(portable.begin(), portable.end(), '\\', '/');
-  const auto beside = (node.file->parent_path() / portable).lexically_normal();
-  const auto beside_main = (root_.file->parent_path() / portable).lexically_normal();
-  std::error_code error;
-  for (const auto& path : {beside, beside_main}) {
-    if (std::filesystem::is_regular_file(path, error)) return path;
-  }
-  node.fail(fmt::format("names the file '{}', but there is no such file; it was looked for as {}",
-                        name, beside.string()));
+  if (const auto path = found_file(node, name)) return *path;
+  node.fail(fmt::format("names the file '{}', but there is no such file; it was looked for in {}",
+                        name, node.file->parent_path().string()));
 }
 
 }  // namespace lightwell

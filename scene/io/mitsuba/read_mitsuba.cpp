@@ -4,7 +4,6 @@
 #include <array>
 #include <string_view>
 
-#include "scene/errors.h"
 #include "scene/io/mitsuba/mitsuba_camera.h"
 #include "scene/io/mitsuba/mitsuba_lamp.h"
 #include "scene/io/mitsuba/mitsuba_shapes.h"
@@ -31,7 +30,7 @@ void read_element(const MitsubaNode& node, const MitsubaTree& tree, MitsubaShape
     remarks.add(fmt::format("Emitters of the plugin '{}' give no light here", node.type),
                 node.label());
   } else if (tag == "integrator") {
-    remarks.add("Integrators have no meaning here and were passed over", node.type);
+    remarks.mention("Integrators have no meaning here and were passed over", node.type);
   } else if (std::ranges::find(used_where_they_are_named, tag) == used_where_they_are_named.end()) {
     remarks.add("Elements that have no effect", fmt::format("<{} type=\"{}\">", tag, node.type));
   }
@@ -46,18 +45,22 @@ Scene read_mitsuba(const std::filesystem::path& path) {
       "Mitsuba files name no units: lengths were read as metres, radiance as relative.");
   Remarks remarks;
   MitsubaShapes shapes(tree, scene, remarks);
+  for (const MitsubaGap& gap : tree.gaps()) remarks.add_unusable(gap.what, gap.name, gap.why);
   for (const MitsubaNode& node : tree.root().children) {
-    read_element(node, tree, shapes, scene, remarks);
+    remarks.attempt(fmt::format("<{}> elements that cannot be used were left out", node.tag),
+                    node.label(), [&] { read_element(node, tree, shapes, scene, remarks); });
   }
   if (scene.surfaces.empty()) {
-    throw InputError(fmt::format("{}: the scene has no shapes that can be read{}", path.string(),
-                                 tree.root().children.empty() ? "; it is empty" : ""));
+    fail_without_surfaces(path,
+                          tree.root().children.empty()
+                              ? "the scene has no shapes that can be read; it is empty"
+                              : "the scene has no shapes that can be read",
+                          remarks);
   }
   drop_unused_uv(scene);
   remark_pictures_without_uv(scene, remarks);
-  for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);
-  for (const std::string& note : shapes.repairs().notes()) scene.notes.push_back(note + ".");
-  scene.dropped_polygons = shapes.repairs().dropped();
+  remarks.report_to(scene);
+  note_repairs(shapes.repairs(), scene);
   note_if_dark(scene);
   validate(scene);
   return scene;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "scene/errors.h"
 #include "scene/io/pictures/picture_mean.h"
 #include "scene/io/text_file.h"
 
@@ -27,12 +28,25 @@ struct MtlBlock {
   bool has_other_map = false;
 };
 
-// Names of materials by the note that they share.
-struct MtlRemarks {
-  std::vector<std::string> highlights{}, textures{}, scaled{}, dissolved{}, dark_glass{}, unread{},
-      glowing_holes{};
-  std::vector<std::string> missing{};  ///< sentences
+// The remarks on one MTL file, each with the file's name in front.
+class MtlRemarks {
+ public:
+  MtlRemarks(const TextFile& file, Remarks& remarks)
+      : file_(file.path().filename().string()), remarks_(remarks) {}
+
+  void add(std::string_view what, std::string_view name) {
+    remarks_.add(fmt::format("{}: {}", file_, what), name);
+  }
+  void add_unusable(std::string_view what, std::string_view name, std::string_view why) {
+    remarks_.add_unusable(fmt::format("{}: {}", file_, what), name, why);
+  }
+
+ private:
+  std::string file_;
+  Remarks& remarks_;
 };
+
+const char* const textures_left_out = "textures were left out in";
 
 Spectrum black_spectrum() {
   return Spectrum::Zero(3);
@@ -127,8 +141,12 @@ void make_clear(const MtlBlock& b, Material& material, MtlRemarks& remarks) {
   material.dielectric =
       Dielectric{.index_of_refraction = index > 0.0f && index != 1.0f ? index : 1.5f,
                  .tint = has_filter ? *b.filter : Spectrum(Spectrum::Ones(3))};
-  if (b.illumination < 4 && !has_filter) remarks.dissolved.push_back(b.name);
-  if (b.radiance && (*b.radiance > 0.0f).any()) remarks.dark_glass.push_back(b.name);
+  if (b.illumination < 4 && !has_filter) {
+    remarks.add("d < 1 or Tr > 0 was read as clear glass in", b.name);
+  }
+  if (b.radiance && (*b.radiance > 0.0f).any()) {
+    remarks.add("Ke was left out in clear materials", b.name);
+  }
 }
 
 void make_opaque(const TextFile& file, const MtlBlock& b, Material& material, MtlRemarks& remarks) {
@@ -138,7 +156,9 @@ void make_opaque(const TextFile& file, const MtlBlock& b, Material& material, Mt
   const bool is_mirror = b.illumination == 3 || b.illumination == 5 || b.illumination == 8 ||
                          (b.illumination < 0 && black);
   if (!is_mirror) {
-    if ((mirror > 0.0f).any()) remarks.highlights.push_back(b.name);
+    if ((mirror > 0.0f).any()) {
+      remarks.add("Ks describes a highlight, no mirror (illum 3), and was left out in", b.name);
+    }
     mirror.setZero();
   }
   if ((mirror > 1.0f).any()) {
@@ -148,7 +168,9 @@ void make_opaque(const TextFile& file, const MtlBlock& b, Material& material, Mt
   const Spectrum sum = diffuse + mirror;
   constexpr float rounding = 1e-5f;
   if ((sum > 1.0f).any()) {
-    if ((sum > 1.0f + rounding).any()) remarks.scaled.push_back(b.name);
+    if ((sum > 1.0f + rounding).any()) {
+      remarks.add("Kd + Ks exceeded 1 and was scaled down in", b.name);
+    }
     diffuse /= sum.max(1.0f);
     mirror /= sum.max(1.0f);
   }
@@ -165,7 +187,7 @@ Material make_material(const TextFile& file, const MtlBlock& b, MtlRemarks& rema
   } else {
     make_opaque(file, b, material, remarks);
   }
-  if (b.has_other_map) remarks.textures.push_back(b.name);
+  if (b.has_other_map) remarks.add(textures_left_out, b.name);
   return material;
 }
 
@@ -217,21 +239,11 @@ class MapReader {
   MapReader(const TextFile& file, MtlRemarks& remarks) : file_(file), remarks_(remarks) {}
 
   void add_maps(const MtlBlock& b, Material& material) {
-    if (!b.diffuse_map.empty()) {
-      MapStatement map = read_map_statement(b.diffuse_map);
-      if (material.dielectric) {
-        remarks_.textures.push_back(b.name);
-      } else if (const auto picture = open(map.file, b)) {
-        if (!b.diffuse) material.reflectance = Spectrum::Ones(3) - material.specular;
-        map.image.picture = picture->color;
-        material.texture = {.image = map.image, .factor = material.reflectance};
-        material.reflectance *= picture->mean.color.cast<float>();
-      }
-    }
+    if (!b.diffuse_map.empty()) lay_on_diffuse_map(b, material);
     if (b.dissolve_map.empty()) return;
     MapStatement map = read_map_statement(b.dissolve_map);
     if (material.is_emitter()) {
-      remarks_.glowing_holes.push_back(b.name);
+      remarks_.add("lamps have no holes, so map_d was left out in", b.name);
     } else if (const auto picture = open(map.file, b, PictureCode::linear)) {
       map.image.picture = picture->alpha ? picture->alpha : picture->color;
       material.mask = Mask{.image = map.image};
@@ -239,19 +251,36 @@ class MapReader {
   }
 
  private:
+  void lay_on_diffuse_map(const MtlBlock& b, Material& material) {
+    MapStatement map = read_map_statement(b.diffuse_map);
+    if (material.dielectric) return remarks_.add(textures_left_out, b.name);
+    const auto picture = open(map.file, b);
+    // Without Kd the picture is the whole colour; without the picture nothing is known of it.
+    const Spectrum most = Spectrum::Ones(3) - material.specular;
+    if (!b.diffuse) material.reflectance = picture ? most : Spectrum(0.5f * most);
+    if (!picture) return;
+    map.image.picture = picture->color;
+    material.texture = {.image = map.image, .factor = material.reflectance};
+    material.reflectance *= picture->mean.color.cast<float>();
+  }
+
   std::optional<Picture> open(const std::string& name, const MtlBlock& b,
                               PictureCode code = PictureCode::srgb) {
     const auto path = file_.path().parent_path() / name;
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) {
-      remarks_.missing.push_back(
-          fmt::format("Picture '{}' of material '{}' is missing; the material goes without it.",
-                      path.string(), b.name));
+      remarks_.add("pictures that are missing were left out", path.string());
       return std::nullopt;
     }
-    auto picture = pictures_.picture(path, code);
-    if (!picture) remarks_.unread.push_back(b.name);
-    return picture;
+    try {
+      auto picture = pictures_.picture(path, code);
+      if (!picture) remarks_.add("pictures that are neither PNG nor JPEG were left out in", b.name);
+      return picture;
+    } catch (const InputError& fault) {
+      remarks_.add_unusable("pictures that cannot be read were left out", path.string(),
+                            fault.what());
+      return std::nullopt;
+    }
   }
 
   const TextFile& file_;
@@ -259,39 +288,17 @@ class MapReader {
   PictureFiles pictures_;
 };
 
-void add_note(const TextFile& file, const std::vector<std::string>& materials, const char* what,
-              std::vector<std::string>& notes) {
-  if (materials.empty()) return;
-  constexpr std::size_t listed = 5;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(listed, materials.size()); ++i) {
-    names += fmt::format("{}'{}'", i ? ", " : "", materials[i]);
-  }
-  if (materials.size() > listed) names += fmt::format(" and {} more", materials.size() - listed);
-  notes.push_back(fmt::format("{}: {}: {}.", file.path().filename().string(), what, names));
-}
-
 }  // namespace
 
-std::vector<Material> read_obj_materials(const std::filesystem::path& path,
-                                         std::vector<std::string>& notes) {
+std::vector<Material> read_obj_materials(const std::filesystem::path& path, Remarks& remarks) {
   const TextFile file(path);
-  MtlRemarks remarks;
+  MtlRemarks of_file(file, remarks);
   std::vector<Material> materials;
-  MapReader maps(file, remarks);
+  MapReader maps(file, of_file);
   for (const MtlBlock& block : MtlParser(file).parse()) {
-    materials.push_back(make_material(file, block, remarks));
+    materials.push_back(make_material(file, block, of_file));
     maps.add_maps(block, materials.back());
   }
-  add_note(file, remarks.highlights,
-           "Ks describes a highlight, no mirror (illum 3), and was left out in", notes);
-  add_note(file, remarks.textures, "textures were left out in", notes);
-  add_note(file, remarks.unread, "pictures that are neither PNG nor JPEG were left out in", notes);
-  add_note(file, remarks.glowing_holes, "lamps have no holes, so map_d was left out in", notes);
-  notes.insert(notes.end(), remarks.missing.begin(), remarks.missing.end());
-  add_note(file, remarks.scaled, "Kd + Ks exceeded 1 and was scaled down in", notes);
-  add_note(file, remarks.dissolved, "d < 1 or Tr > 0 was read as clear glass in", notes);
-  add_note(file, remarks.dark_glass, "Ke was left out in clear materials", notes);
   return materials;
 }
 

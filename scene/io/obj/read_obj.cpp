@@ -33,19 +33,18 @@ std::vector<std::filesystem::path> files_named(const std::filesystem::path& fold
 }
 
 std::vector<Material> read_material_files(const std::filesystem::path& path,
-                                          const ObjContent& content,
-                                          std::vector<std::string>& notes) {
+                                          const ObjContent& content, Remarks& remarks) {
   std::vector<Material> materials;
   for (const std::string& names : content.material_files) {
     for (const auto& file : files_named(path.parent_path(), names)) {
       std::error_code error;
       if (!std::filesystem::is_regular_file(file, error)) {
-        notes.push_back(fmt::format(
-            "Material file '{}' is missing; its materials get a diffuse reflectance of 0.5.",
-            file.string()));
+        remarks.add(
+            "Material files are missing, and their materials got a diffuse reflectance of 0.5",
+            file.string());
         continue;
       }
-      auto read = read_obj_materials(file, notes);
+      auto read = read_obj_materials(file, remarks);
       materials.insert(materials.end(), std::make_move_iterator(read.begin()),
                        std::make_move_iterator(read.end()));
     }
@@ -56,7 +55,7 @@ std::vector<Material> read_material_files(const std::filesystem::path& path,
 // Adds the file's materials to the scene in the order of first use. The key -1 (faces without a
 // material) maps to the default material.
 std::map<int, int> take_materials(const ObjContent& content, std::vector<Material> available,
-                                  Scene& scene) {
+                                  Scene& scene, Remarks& remarks) {
   std::map<int, int> taken;
   std::size_t faces_without = 0;
   for (const ObjFace& face : content.faces) {
@@ -73,8 +72,7 @@ std::map<int, int> take_materials(const ObjContent& content, std::vector<Materia
         material = *found;
       } else {
         material.name = name;
-        scene.notes.push_back(fmt::format(
-            "Material '{}' is not defined; it gets a diffuse reflectance of 0.5.", name));
+        remarks.add("Materials are not defined and got a diffuse reflectance of 0.5", name);
       }
     }
     scene.materials.push_back(std::move(material));
@@ -171,7 +169,6 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
                               .shape = meshes[i].mesh()});
     polygons.of_facet.insert(polygons.of_facet.end(), polygons_of[i].begin(), polygons_of[i].end());
   }
-  for (const std::string& note : polygons.repairs.notes()) scene.notes.push_back(note + ".");
 }
 
 }  // namespace
@@ -182,25 +179,26 @@ Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, M
   ObjContent content = read_obj_content(file, metres_per_unit);
   Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
   if (content.free_form > 0) {
-    scene.notes.push_back(fmt::format(
-        "{} free-form curves and surfaces were left out; export polygons.", content.free_form));
+    add_loss(scene, fmt::format("{} free-form curves and surfaces were left out; export polygons.",
+                                content.free_form));
   }
+  Remarks remarks;
   std::map<int, int> materials = {{-1, 0}};
   if (wanted == MeshMaterials::from_file) {
-    materials = take_materials(content, read_material_files(path, content, scene.notes), scene);
+    materials =
+        take_materials(content, read_material_files(path, content, remarks), scene, remarks);
   } else {
     for (ObjFace& face : content.faces) face.material = -1;
     scene.materials.push_back(default_material(scene.bands));
   }
   FilePolygons found;
   build_surfaces(content, materials, wanted, fronts, scene, found);
-  Remarks remarks;
   remark_pictures_without_uv(scene, remarks);
-  for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);
-  scene.dropped_polygons = found.repairs.dropped();
+  remarks.report_to(scene);
+  note_repairs(found.repairs, scene);
   if (polygons) *polygons = std::move(found);
   if (scene.surfaces.empty()) {
-    throw InputError(fmt::format("{}: the file has no polygons with an area", path.string()));
+    throw NoAreaError(fmt::format("{}: the file has no polygons with an area", path.string()));
   }
   validate(scene);
   return scene;

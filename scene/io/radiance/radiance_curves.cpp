@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/io/radiance/radiance_definitions.h"
 #include "scene/io/radiance/radiance_expression.h"
 #include "scene/io/radiance/radiance_generators.h"
 
@@ -14,35 +15,53 @@ namespace {
 
 constexpr int most_curve_polygons = 1'000'000;
 
-void refuse_options(const RadianceCall& call, std::size_t first) {
-  for (std::size_t i = first; i < call.words.size(); ++i) {
-    if (call.words[i] == "-s") continue;  // smoothed normals
-    call.fail(fmt::format(
-        "the option '{}' is not read; write what it defines into the formulas themselves",
-        call.words[i]));
+// The formulas of a call, with the definitions that its options from word `first` on make: -e holds
+// definitions, -f names a file of them, and -s asks for smooth normals.
+class Formulas {
+ public:
+  Formulas(const RadianceCall& call, std::size_t first) : call_(call) {
+    for (std::size_t i = first; i < call.words.size(); ++i) {
+      const std::string& option = call.words[i];
+      if (option == "-s") continue;
+      if (option != "-e" && option != "-f") {
+        call.fail(fmt::format("the option '{}' is not read; known are -e, -f and -s", option));
+      }
+      if (i + 1 == call.words.size()) {
+        call.fail(fmt::format("the option '{}' lacks what it defines", option));
+      }
+      const std::string& given = call.words[++i];
+      definitions_.add(option == "-e" ? given : call.open(given).text(), call.location);
+    }
   }
-}
 
-int segments(const RadianceCall& call, std::size_t word) {
-  const RadianceExpression formula(call.words[word], {}, call.location);
-  const double value = std::round(formula({}));
-  if (!(value >= 1.0 && value <= most_curve_polygons)) {
-    call.fail(
-        fmt::format("the number of segments is {}; give from 1 to {}", value, most_curve_polygons));
+  RadianceExpression formula(std::size_t word, const std::vector<std::string>& variables) const {
+    return {definitions_.expanded(call_.words[word], call_.location), variables, call_.location};
   }
-  return static_cast<int>(value);
-}
 
-// Samples a formula of t at 0, 1 / count, ..., 1.
-std::vector<double> samples(const RadianceCall& call, std::size_t word, int count) {
-  const RadianceExpression formula(call.words[word], {"t"}, call.location);
-  std::vector<double> result;
-  for (int i = 0; i <= count; ++i) {
-    const double t = static_cast<double>(i) / count;
-    result.push_back(formula({&t, 1}));
+  int segments(std::size_t word) const {
+    const double value = std::round(formula(word, {})({}));
+    if (!(value >= 1.0 && value <= most_curve_polygons)) {
+      call_.fail(fmt::format("the number of segments is {}; give from 1 to {}", value,
+                             most_curve_polygons));
+    }
+    return static_cast<int>(value);
   }
-  return result;
-}
+
+  // Samples a formula of t at 0, 1 / count, ..., 1.
+  std::vector<double> samples(std::size_t word, int count) const {
+    const RadianceExpression of_t = formula(word, {"t"});
+    std::vector<double> result;
+    for (int i = 0; i <= count; ++i) {
+      const double t = static_cast<double>(i) / count;
+      result.push_back(of_t({&t, 1}));
+    }
+    return result;
+  }
+
+ private:
+  const RadianceCall& call_;
+  RadianceDefinitions definitions_;
+};
 
 }  // namespace
 
@@ -50,12 +69,12 @@ std::vector<double> samples(const RadianceCall& call, std::size_t word, int coun
 // direction in the (r, z) plane, z upwards and r to the right.
 void run_genrev(const RadianceCall& call, const RadianceSink& sink) {
   call.require_words(6, "genrev material name 'z(t)' 'r(t)' segments");
-  refuse_options(call, 6);
+  const Formulas formulas(call, 6);
   constexpr int sides = 32;
-  const int count = segments(call, 5);
+  const int count = formulas.segments(5);
   if (count > most_curve_polygons / sides) call.fail("makes too many polygons; use fewer segments");
   call.account(static_cast<std::int64_t>(count) * sides);
-  const std::vector<double> z = samples(call, 3, count), r = samples(call, 4, count);
+  const std::vector<double> z = formulas.samples(3, count), r = formulas.samples(4, count);
   if (!(*std::ranges::min_element(r) >= 0.0)) {
     call.fail(fmt::format("the radius '{}' is negative somewhere", call.words[4]));
   }
@@ -80,21 +99,19 @@ void run_genrev(const RadianceCall& call, const RadianceSink& sink) {
 
 void run_gensurf(const RadianceCall& call, const RadianceSink& sink) {
   call.require_words(8, "gensurf material name 'x(s,t)' 'y(s,t)' 'z(s,t)' m n");
-  refuse_options(call, 8);
-  const int m = segments(call, 6), n = segments(call, 7);
+  const Formulas formulas(call, 8);
+  const int m = formulas.segments(6), n = formulas.segments(7);
   if (m > most_curve_polygons / n) {
     call.fail(fmt::format("makes more than {} polygons; use fewer segments", most_curve_polygons));
   }
   call.account(static_cast<std::int64_t>(m) * n);
-  std::vector<RadianceExpression> formulas;
-  for (std::size_t word = 3; word < 6; ++word) {
-    formulas.emplace_back(call.words[word], std::vector<std::string>{"s", "t"}, call.location);
-  }
+  std::vector<RadianceExpression> xyz;
+  for (std::size_t word = 3; word < 6; ++word) xyz.push_back(formulas.formula(word, {"s", "t"}));
   const auto row_at = [&](int i) {
     Loop row;
     for (int j = 0; j <= n; ++j) {
       const std::array<double, 2> st = {static_cast<double>(i) / m, static_cast<double>(j) / n};
-      row.emplace_back(formulas[0](st), formulas[1](st), formulas[2](st));
+      row.emplace_back(xyz[0](st), xyz[1](st), xyz[2](st));
     }
     return row;
   };
@@ -122,12 +139,12 @@ void run_gensurf(const RadianceCall& call, const RadianceSink& sink) {
 // genworm: spheres along a curve and, between each two, the cone tangent to both.
 void run_genworm(const RadianceCall& call, const RadianceSink& sink) {
   call.require_words(8, "genworm material name 'x(t)' 'y(t)' 'z(t)' 'r(t)' segments");
-  refuse_options(call, 8);
-  const int count = segments(call, 7);
+  const Formulas formulas(call, 8);
+  const int count = formulas.segments(7);
   call.account(count);
-  const std::array<std::vector<double>, 3> xyz = {samples(call, 3, count), samples(call, 4, count),
-                                                  samples(call, 5, count)};
-  const std::vector<double> radius = samples(call, 6, count);
+  const std::array<std::vector<double>, 3> xyz = {
+      formulas.samples(3, count), formulas.samples(4, count), formulas.samples(5, count)};
+  const std::vector<double> radius = formulas.samples(6, count);
   if (!(*std::ranges::min_element(radius) >= 0.0)) {
     call.fail(fmt::format("the radius '{}' is negative somewhere", call.words[6]));
   }

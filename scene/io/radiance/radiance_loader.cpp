@@ -8,6 +8,7 @@
 
 #include "scene/io/nearest_name.h"
 #include "scene/io/radiance/radiance_command.h"
+#include "scene/io/radiance/radiance_compiled.h"
 #include "scene/io/radiance/radiance_generators.h"
 #include "scene/io/radiance/radiance_text.h"
 #include "scene/io/radiance/radiance_xform.h"
@@ -33,13 +34,19 @@ bool makes_a_sky(std::string_view program) {
 
 }  // namespace
 
-std::filesystem::path RadianceLoader::find(const std::string& name,
-                                           const RadianceLocation& location) const {
+std::optional<std::filesystem::path> RadianceLoader::find_if_any(
+    const std::string& name, const RadianceLocation& location) const {
   std::error_code error;
   for (const auto& folder : {location.file->parent_path(), folder_, folder_ / "lib"}) {
     auto path = (folder / name).lexically_normal();
     if (std::filesystem::exists(path, error)) return path;
   }
+  return std::nullopt;
+}
+
+std::filesystem::path RadianceLoader::find(const std::string& name,
+                                           const RadianceLocation& location) const {
+  if (auto path = find_if_any(name, location)) return *path;
   location.fail(fmt::format(
       "names the file '{}', but there is no such file beside it, in the scene's folder or in its "
       "folder 'lib'",
@@ -51,48 +58,96 @@ void RadianceLoader::read(const std::filesystem::path& path, const RadianceSink&
   const std::filesystem::path& kept = keep(path);
   RadianceText text(file.text(), kept);
   open_.push_back(std::filesystem::weakly_canonical(path));
+  const struct Closing {
+    std::vector<std::filesystem::path>& open;
+    ~Closing() { open.pop_back(); }
+  } closing{open_};
   while (true) {
     const RadianceText::Item item = text.next();
     if (const auto* primitive = std::get_if<RadiancePrimitive>(&item)) {
-      sink(*primitive);
+      const bool is_compiled = primitive->type == "instance" || primitive->type == "mesh";
+      is_compiled ? read_source_of(*primitive, sink) : sink(*primitive);
     } else if (const auto* command = std::get_if<RadianceCommand>(&item)) {
-      run(command->text, command->location, sink);
+      constexpr std::size_t longest_name = 60;
+      remarks_.attempt("Commands that cannot be evaluated were left out",
+                       trimmed(command->text).substr(0, longest_name),
+                       [&] { run(command->text, command->location, sink); });
     } else {
       break;
     }
   }
-  open_.pop_back();
 }
 
 void RadianceLoader::read_named(const std::string& name, const RadianceLocation& location,
                                 const RadianceSink& sink) {
   if (name.starts_with('!')) return run(name.substr(1), location, sink);
-  const std::filesystem::path path = find(name, location);
-  const auto canonical = std::filesystem::weakly_canonical(path);
-  if (std::ranges::find(open_, canonical) != open_.end()) {
-    location.fail(fmt::format("includes '{}', which includes this file; break the circle", name));
+  std::filesystem::path path;
+  if (!remarks_.attempt("Files are missing, with all that they hold", name,
+                        [&] { path = find(name, location); })) {
+    return;
+  }
+  if (is_open(path)) {
+    location.fail_limit(
+        fmt::format("includes '{}', which includes this file; break the circle", name));
   }
   if (open_.size() >= most_nested_includes) {
-    location.fail(
+    location.fail_limit(
         fmt::format("includes '{}' within {} files; nest less deeply", name, most_nested_includes));
   }
   std::error_code error;
   const auto bytes = std::filesystem::file_size(path, error);
   account(error ? 0 : bytes, location);
-  read(path, sink);
+  remarks_.attempt("Files cannot be read to their end, and the rest was left out", name,
+                   [&] { read(path, sink); });
+}
+
+bool RadianceLoader::is_open(const std::filesystem::path& path) const {
+  return std::ranges::find(open_, std::filesystem::weakly_canonical(path)) != open_.end();
+}
+
+// An instance is an octree compiled from scene files, a mesh is compiled from an OBJ file. What was
+// compiled cannot be read, but its source may stand beside it.
+void RadianceLoader::read_source_of(const RadiancePrimitive& compiled, const RadianceSink& sink) {
+  const bool is_octree = compiled.type == "instance";
+  const std::string name = compiled.strings.empty() ? compiled.name : compiled.strings.front();
+  const std::string source =
+      std::filesystem::path(name).replace_extension(is_octree ? ".rad" : ".obj").string();
+  const auto path = find_if_any(source, compiled.location);
+  if (!path || is_open(*path)) {
+    return remarks_.add(
+        is_octree ? "Compiled octrees cannot be read and were left out (put '!xform FILE' for the "
+                    "file that each was made from in its place)"
+                  : "Compiled meshes cannot be read and were left out (the OBJ file that each was "
+                    "made from is read if it stands beside it)",
+        name);
+  }
+  remarks_.add(is_octree ? "Compiled octrees were read from the scene files beside them"
+                         : "Compiled meshes were read from the OBJ files beside them",
+               name);
+  std::span<const std::string> options(compiled.strings);
+  if (!options.empty()) options = options.subspan(1);
+  RadianceXform xform = parse_radiance_xform(options, compiled.location);
+  if (is_octree && compiled.modifier != radiance_void) xform.modifier = compiled.modifier;
+  const RadianceSink placing = [&](const RadiancePrimitive& primitive) {
+    apply_xform(xform, primitive, sink);
+  };
+  if (is_octree) return read_named(source, compiled.location, placing);
+  account(std::filesystem::file_size(*path), compiled.location);
+  remarks_.attempt("Meshes that cannot be read were left out", source,
+                   [&] { pass_mesh_source(compiled, *path, placing); });
 }
 
 // Limits the reading time of files without primitives that are included over and over.
 void RadianceLoader::account(std::uintmax_t bytes, const RadianceLocation& location) {
   if (++commands_ > most_commands) {
-    location.fail(
+    location.fail_limit(
         fmt::format("is command {} of the scene; files seem to include each other without "
                     "end",
                     commands_));
   }
   bytes_ += bytes;
   if (bytes_ > most_bytes) {
-    location.fail(
+    location.fail_limit(
         fmt::format("the scene's files, as often as they are included, hold more than {} "
                     "bytes; include less",
                     most_bytes));
@@ -102,8 +157,8 @@ void RadianceLoader::account(std::uintmax_t bytes, const RadianceLocation& locat
 void RadianceLoader::account_facets(std::int64_t facets, const RadianceLocation& location) {
   facets_ += facets;
   if (facets_ > most_generated) {
-    location.fail(fmt::format("generators make more than {} facets; use fewer segments or copies",
-                              most_generated));
+    location.fail_limit(fmt::format(
+        "generators make more than {} facets; use fewer segments or copies", most_generated));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -13,8 +14,10 @@
 namespace lightwell {
 
 /// Reads the files of a RADIANCE scene and evaluates the commands in them (xform, cat and the
-/// generators). No text of a file is ever passed to a shell. Throws InputError for files that
-/// include each other in a circle and for scenes beyond the limits on commands, bytes and facets.
+/// generators). No text of a file is ever passed to a shell. Commands that cannot be evaluated,
+/// files that are missing or torn, and compiled octrees and meshes without their source are left
+/// out with a remark. Throws LimitError for files that include each other in a circle and for
+/// scenes beyond the limits on commands, bytes and facets.
 class RadianceLoader {
  public:
   /// `folder` is the folder of the scene. A file is looked up beside the file that names it, then
@@ -23,7 +26,7 @@ class RadianceLoader {
       : folder_(std::move(folder)), remarks_(remarks) {}
 
   /// Passes all primitives of a file to `sink`, with the output of a command in the command's
-  /// place.
+  /// place. Throws InputError for a file that is missing, or torn.
   void read(const std::filesystem::path& path, const RadianceSink& sink);
   /// Passes the primitives of a file, or of a command if `name` begins with an exclamation mark.
   void read_named(const std::string& name, const RadianceLocation& location,
@@ -37,6 +40,10 @@ class RadianceLoader {
 
  private:
   using Program = std::vector<std::string>;
+  std::optional<std::filesystem::path> find_if_any(const std::string& name,
+                                                   const RadianceLocation& location) const;
+  bool is_open(const std::filesystem::path& path) const;
+  void read_source_of(const RadiancePrimitive& compiled, const RadianceSink& sink);
   void run(const std::string& command, const RadianceLocation& location, const RadianceSink& sink);
   void run_last(std::span<const Program> pipe, const RadianceLocation& location,
                 const RadianceSink& sink);

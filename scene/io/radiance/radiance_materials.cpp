@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scene/errors.h"
+#include "scene/io/default_material.h"
 #include "scene/io/radiance/radiance_expression.h"
 
 namespace lightwell {
@@ -31,17 +32,25 @@ bool is_same(const RadiancePrimitive& a, const RadiancePrimitive& b) {
 
 }  // namespace
 
-int RadianceMaterials::index_of(const std::string& name, const RadiancePrimitive& user) const {
+int RadianceMaterials::index_of(const std::string& name, const RadiancePrimitive& user) {
   if (name == radiance_void) return none;
   const auto found = latest_.find(name);
   if (found != latest_.end()) return found->second;
-  user.fail(fmt::format(
-      "has the modifier '{}', which nothing before it defines; if it stands in a file of its own, "
-      "list both files in a .rif: materials = ..., scene = ...",
-      name));
+  remarks_.add_unusable(
+      "Modifiers are not defined and were read as a grey of 0.5", name,
+      fmt::format("{}:{}: {} '{}' has the modifier '{}', which nothing before it defines; if it "
+                  "stands in a file of its own, list both files in a .rif: materials = ..., scene "
+                  "= ...",
+                  user.location.file->string(), user.location.line, user.type, user.name, name));
+  definitions_.push_back({.primitive = {.modifier = std::string(radiance_void),
+                                        .type = "plastic",
+                                        .name = name,
+                                        .reals = {0.5, 0.5, 0.5, 0.0, 0.0},
+                                        .location = user.location}});
+  return latest_.emplace(name, static_cast<int>(definitions_.size()) - 1).first->second;
 }
 
-RadianceMaterials::Definition RadianceMaterials::aliased(const RadiancePrimitive& alias) const {
+RadianceMaterials::Definition RadianceMaterials::aliased(const RadiancePrimitive& alias) {
   const int original = index_of(alias.strings.at(0), alias);
   if (original == none) alias.fail("stands for 'void'; name a material");
   Definition result = definitions_[static_cast<std::size_t>(original)];
@@ -86,7 +95,9 @@ std::optional<int> RadianceMaterials::of_surface(const RadiancePrimitive& surfac
   }
   Definition& definition = definitions_[static_cast<std::size_t>(modifier)];
   if (!definition.index) {
-    auto material = read(modifier, 0);
+    std::optional<Material> material = default_material(scene_.bands);
+    remarks_.attempt("Materials that cannot be read got a diffuse reflectance of 0.5",
+                     definition.primitive.name, [&] { material = read(modifier, 0); });
     definition.index = none;
     if (material) {
       material->name = names_.unique(definition.primitive.name);

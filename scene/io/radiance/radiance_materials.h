@@ -24,7 +24,8 @@ struct RadiancePattern {
 std::optional<Material> read_radiance_material(const RadiancePrimitive& material,
                                                const RadiancePattern& pattern, Remarks& remarks);
 
-/// The modifiers of a RADIANCE scene. A name refers to its latest definition.
+/// The modifiers of a RADIANCE scene. A name refers to its latest definition; a name without one is
+/// a grey material of reflectance 0.5, with a remark.
 class RadianceMaterials {
  public:
   RadianceMaterials(Scene& scene, Remarks& remarks) : scene_(scene), remarks_(remarks) {}
@@ -42,8 +43,8 @@ class RadianceMaterials {
     std::vector<int> parts{};    // the materials of a mixture; an illum's alternate material
     std::optional<int> index{};  // into the scene's materials; none: invisible
   };
-  int index_of(const std::string& name, const RadiancePrimitive& user) const;
-  Definition aliased(const RadiancePrimitive& alias) const;
+  int index_of(const std::string& name, const RadiancePrimitive& user);
+  Definition aliased(const RadiancePrimitive& alias);
   std::optional<Material> read(int definition, int depth);
   std::optional<Material> read_new(int definition, int depth);
   std::optional<Material> mixed(const Definition& mixture, int depth);

@@ -41,6 +41,10 @@ void RadianceLocation::fail(std::string_view problem) const {
   throw InputError(fmt::format("{}:{}: {}", file->string(), line, problem));
 }
 
+void RadianceLocation::fail_limit(std::string_view problem) const {
+  throw LimitError(fmt::format("{}:{}: {}", file->string(), line, problem));
+}
+
 RadianceKind radiance_kind(std::string_view type) {
   const auto found = kinds().find(type);
   return found == kinds().end() ? Kind::unknown : found->second;

@@ -15,6 +15,8 @@ struct RadianceLocation {
 
   /// Throws InputError "file:line: problem".
   [[noreturn]] void fail(std::string_view problem) const;
+  /// Throws LimitError "file:line: problem".
+  [[noreturn]] void fail_limit(std::string_view problem) const;
 };
 
 /// Class of a primitive by its type.

@@ -54,21 +54,14 @@ Loop placed(Loop loop, const Eigen::Affine3d& transform) {
 
 void RadianceShapes::add(const RadiancePrimitive& p) {
   if (++primitives_ > most_primitives) {
-    p.fail(fmt::format("is primitive {} of the scene; at most {} are read, use fewer copies",
-                       primitives_, most_primitives));
+    p.location.fail_limit(
+        fmt::format("{} '{}' is primitive {} of the scene; at most {} are read, use fewer copies",
+                    p.type, p.name, primitives_, most_primitives));
   }
   if (p.kind() != RadianceKind::surface) return materials_.define(p);
   if (p.type == "source") {
     remarks_.add("Distant sources (sun, sky) give no light here and were left out", p.name);
     return;
-  }
-  if (p.type == "instance" || p.type == "mesh") {
-    const bool is_octree = p.type == "instance";
-    p.fail(fmt::format("is a compiled {} ('{}'), which cannot be read; {}",
-                       is_octree ? "octree" : "mesh", p.strings.empty() ? "" : p.strings[0],
-                       is_octree
-                           ? "put '!xform FILE' for the file it was made from in its place"
-                           : "read the OBJ file it was made from, or convert that with obj2rad"));
   }
   require_moderate(p);
   const auto material = materials_.of_surface(p);
@@ -93,8 +86,9 @@ void RadianceShapes::finish() {
 void RadianceShapes::account(const RadiancePrimitive& primitive, std::size_t polygons) {
   polygons_ += static_cast<std::int64_t>(polygons);
   if (polygons_ > most_shape_polygons) {
-    primitive.fail(fmt::format("makes more than {} polygons of the scene; use fewer copies",
-                               most_shape_polygons));
+    primitive.location.fail_limit(
+        fmt::format("{} '{}' makes more than {} polygons of the scene; use fewer copies",
+                    primitive.type, primitive.name, most_shape_polygons));
   }
 }
 

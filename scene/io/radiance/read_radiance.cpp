@@ -20,6 +20,8 @@ namespace {
 
 constexpr double radiance_lumens_per_watt = 179.0;  // lm/W of white light; Ward & Shakespeare 1998
 
+const char* const unusable_views = "Views that cannot be used were left out";
+
 class RadianceReader {
  public:
   explicit RadianceReader(const std::filesystem::path& path)
@@ -40,9 +42,8 @@ class RadianceReader {
       finish_shapes();
       read_views_beside();
     }
-    for (const std::string& note : remarks_.sentences()) scene_.notes.push_back(note);
-    for (const std::string& note : shapes_.repairs().notes()) scene_.notes.push_back(note + ".");
-    scene_.dropped_polygons = shapes_.repairs().dropped();
+    remarks_.report_to(scene_);
+    note_repairs(shapes_.repairs(), scene_);
     note_if_dark(scene_);
     validate(scene_);
     return std::move(scene_);
@@ -52,9 +53,7 @@ class RadianceReader {
   void finish_shapes() {
     shapes_.finish();
     if (scene_.surfaces.empty()) {
-      throw InputError(
-          fmt::format("{}: the scene has no surfaces that can be read{}", path_.string(),
-                      remarks_.sentences().empty() ? "" : "; " + remarks_.sentences().front()));
+      fail_without_surfaces(path_, "the scene has no surfaces that can be read", remarks_);
     }
   }
 
@@ -70,8 +69,9 @@ class RadianceReader {
                           : "; an octree alone cannot be read, name what it was made from"));
     }
     for (const char* variable : {"materials", "scene", "illum"}) {
-      for (const auto& [name, location] : project.words(variable)) {
-        loader_.read_named(name, location, sink_);
+      for (const auto& [name, at] : project.words(variable)) {
+        remarks_.attempt("Files and commands that cannot be read were left out", name,
+                         [&] { loader_.read_named(name, at, sink_); });
       }
     }
     finish_shapes();
@@ -80,7 +80,7 @@ class RadianceReader {
                                  "view",      "UP",    "ZONE",  "RESOLUTION"};
     for (const std::string& variable : project.given()) {
       if (std::ranges::find(used, variable) != used.end()) continue;
-      remarks_.add("Variables of the .rif that have no effect here", variable);
+      remarks_.mention("Variables of the .rif that have no effect here", variable);
     }
   }
 
@@ -91,16 +91,19 @@ class RadianceReader {
       auto beside = path_;
       beside.replace_extension(extension);
       if (!std::filesystem::is_regular_file(beside, error)) continue;
-      const auto views = read_radiance_views(TextFile(beside), {});
-      for (std::size_t i = 0; i < views.size(); ++i) {
-        const std::string stem = beside.stem().string();
-        const std::string name = i == 0 ? stem : fmt::format("{} {}", stem, i + 1);
-        add_radiance_camera(views[i], name, {&loader_.keep(beside), views[i].line}, scene_,
-                            remarks_);
-      }
-      if (views.empty()) continue;
-      remarks_.add("Views come from the file beside the scene", beside.filename().string());
+      remarks_.attempt(unusable_views, beside.filename().string(), [&] { read_views_of(beside); });
     }
+  }
+
+  void read_views_of(const std::filesystem::path& file) {
+    const auto views = read_radiance_views(TextFile(file), {});
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const std::string stem = file.stem().string();
+      const std::string name = i == 0 ? stem : fmt::format("{} {}", stem, i + 1);
+      add_radiance_camera(views[i], name, {&loader_.keep(file), views[i].line}, scene_, remarks_);
+    }
+    if (views.empty()) return;
+    remarks_.mention("Views come from the file beside the scene", file.filename().string());
   }
 
   void read_views(const RadianceProject& project) {
@@ -114,8 +117,10 @@ class RadianceReader {
     auto views = project.values("view");
     // rad's default view.
     if (views.empty()) views.push_back({"X", {&loader_.keep(path_), 1}});
-    for (const auto& [text, location] : views)
-      add_view(project, defaults, words_of(text), location);
+    for (const auto& [text, at] : views) {
+      remarks_.attempt(unusable_views, text,
+                       [&, words = words_of(text)] { add_view(project, defaults, words, at); });
+    }
   }
 
   static Eigen::Vector3d up_axis(const std::string& text, const RadianceLocation& location) {
@@ -207,7 +212,10 @@ class RadianceReader {
   Remarks remarks_;
   RadianceLoader loader_;
   RadianceShapes shapes_;
-  RadianceSink sink_ = [this](const RadiancePrimitive& primitive) { shapes_.add(primitive); };
+  RadianceSink sink_ = [this](const RadiancePrimitive& primitive) {
+    remarks_.attempt("Primitives that cannot be used were left out", primitive.name,
+                     [&] { shapes_.add(primitive); });
+  };
 };
 
 }  // namespace

@@ -176,7 +176,7 @@ Scene read_toml(const std::filesystem::path& path) {
   drop_unused_uv(scene);
   Remarks remarks;
   remark_pictures_without_uv(scene, remarks);
-  for (const std::string& note : remarks.sentences()) scene.notes.push_back(note);
+  remarks.report_to(scene);
 
   if (const auto lamps = document.find("lamps")) {
     if (!lamps->is_array()) lamps->fail("must be an array of tables; write [[lamps]]");

@@ -296,6 +296,9 @@ class SurfaceReader {
     for (const std::string& note : mesh.notes) {
       scene_.notes.push_back(fmt::format("{}: {}", name_, note));
     }
+    for (const std::string& loss : mesh.losses) {
+      scene_.losses.push_back(fmt::format("{}: {}", name_, loss));
+    }
     scene_.dropped_polygons += mesh.dropped_polygons;
     for (Surface& surface : mesh.surfaces) {
       auto& polygons = std::get<PolygonMesh>(surface.shape);

@@ -5,6 +5,7 @@
 #include "scene/io/convex_cut.h"
 #include "scene/io/numbered_scene.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/remarks.h"
 #include "scene/io/vs3/vs3_records.h"
 
 namespace lightwell {
@@ -154,8 +155,8 @@ class Vs3Builder {
     MeshBuilder mesh;
     for (const Loop& loop : pieces_[i]) add_repaired(mesh, loop, repairs_);
     if (mesh.empty()) {
-      numbered_.scene.notes.emplace_back(
-          fmt::format("Surface {} '{}' has nothing left of its area.", i + 1, record.name));
+      add_loss(numbered_.scene,
+               fmt::format("Surface {} '{}' has nothing left of its area.", i + 1, record.name));
       return;
     }
     const std::size_t facets = mesh.mesh().facets.size();
@@ -166,7 +167,7 @@ class Vs3Builder {
 
   void add_notes() {
     auto& notes = numbered_.scene.notes;
-    for (const std::string& note : repairs_.notes()) notes.push_back(note + ".");
+    note_repairs(repairs_, numbered_.scene);
     if (content_.emit) {
       notes.emplace_back(
           "The control word emit=1 is passed over: factors are geometric, without emittances.");

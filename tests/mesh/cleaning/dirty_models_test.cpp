@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -252,6 +253,57 @@ TEST(DirtyModels, PolygonsThatCrossThemselvesAreRefusedByName) {
               {{{2, 2, 0}, {2, 2.5, 0}, {2.5, 2.5, 0}, {2.5, 2, 0}}});
   EXPECT_NE(refusal([&] { build_patches(merge_planar_regions(hole)); }).find("'wall'"),
             std::string::npos);
+}
+
+// A mat with a fringe: a bent strip of needles, 1e-4 m wide and 0.24 m long, at the rim of a grid
+// of bent squares, with corners of the fringe inside edges of the grid. `jitter` moves every vertex
+// of every triangle by up to that many metres along each axis.
+PolygonMesh fringed_mat(Numbers& random, double jitter) {
+  PolygonMesh mat;
+  const auto at = [&](double x, double y) {
+    const Vector3d p(x, y, 0.02 * std::sin(9.0 * x) + 0.03 * std::cos(5.0 * y));
+    return Vector3d(p + Vector3d(random.between(-jitter, jitter), random.between(-jitter, jitter),
+                                 random.between(-jitter, jitter)));
+  };
+  constexpr int cells = 8, needles = 100;
+  constexpr double side = 2.5, width = 1e-4, length = 0.24;
+  const auto quad = [&](double x0, double y0, double x1, double y1) {
+    add_triangle(mat, at(x0, y0), at(x1, y0), at(x1, y1));
+    add_triangle(mat, at(x0, y0), at(x1, y1), at(x0, y1));
+  };
+  for (int i = 0; i < cells; ++i) {
+    for (int j = 0; j < cells; ++j) quad(side * i, side * j, side * (i + 1), side * (j + 1));
+  }
+  for (int i = 0; i < needles; ++i) quad(1.0 + i * width, -length, 1.0 + (i + 1) * width, 0.0);
+  return mat;
+}
+
+// Turned, scaled and jittered copies at sizes from much larger to much smaller than the triangles:
+// every one is meshed, and its area is that of the triangles to what welding moves.
+TEST(DirtyModels, FringedMatsAreMeshedAtAnySize) {
+  for (std::uint32_t seed = 0; seed < 24; ++seed) {
+    Numbers random(seed);
+    PolygonMesh mat = fringed_mat(random, std::array{0.0, 1e-9, 1e-6, 1e-5}[seed % 4]);
+    const Eigen::AngleAxisd turn(random.between(0.0, 6.0), Vector3d(1, 2, 3).normalized());
+    const double scale = std::array{1.0, 1e-3, 1e3}[seed % 3];
+    for (Vector3d& v : mat.vertices) v = scale * (turn * v);
+    const Scene scene = merge_planar_regions(scene_of(std::move(mat), 0));
+    const double patch = scale * std::array{0.2, 0.5, 2.0, 30.0}[seed / 6];
+    PatchMesh mesh;
+    EXPECT_NO_THROW(mesh = build_patches(scene, {.max_patch_size = patch})) << seed;
+    double edges = 0.0;
+    const PolygonMesh& facets = mesh_of(scene);
+    for (const Facet& facet : facets.facets) {
+      for (std::size_t i = 0; i < facet.boundary.size(); ++i) {
+        edges += (facets.vertices[facet.boundary[i]] -
+                  facets.vertices[facet.boundary[(i + 1) % facet.boundary.size()]])
+                     .norm();
+      }
+    }
+    // 1e-5 of the diagonal is the largest tolerance of welding; elements are on both sides.
+    const double moved = 1e-5 * scene_bounds(scene).diagonal() * edges;
+    EXPECT_NEAR(0.5 * mesh.area.sum(), scene_area(scene), moved) << seed;
+  }
 }
 
 TEST(DirtyModels, DustAndContinentsInOneSceneAreMeshed) {

@@ -13,9 +13,11 @@ namespace lightwell::read_mitsuba_test {
 namespace {
 
 using test::area_of;
+using test::has_loss;
 using test::has_note;
 using test::mesh_of;
 using test::normal_of;
+using test::notes_of;
 
 constexpr double pi = std::numbers::pi;
 const std::string square = R"(<shape type="rectangle"><bsdf type="diffuse"/></shape>)";
@@ -404,13 +406,6 @@ TEST_F(Mitsuba, MistakesAreToldWithTheirLine) {
     }
   };
   expect("<shape type='rectangle'>", {"scene.xml:2:", "XML"});
-  expect("\n<shape type='rectangle'><ref id='wal'/></shape><bsdf type='diffuse' id='wall'/>",
-         {"scene.xml:3:", "'wal'", "Did you mean 'wall'?"});
-  expect(
-      "<bsdf type='bumpmap' id='a'><ref id='b'/></bsdf>\n<bsdf type='mask' id='b'><ref "
-      "id='a'/></bsdf>"
-      "<shape type='cube'><ref id='a'/></shape>",
-      {"refers to itself"});
   expect("<shape type='cube' id='a'/><shape type='cube' id='a'/>", {"the id 'a'"});
   expect(
       "<shape type='cube'><transform name='to_world'>\n<matrix value='nan 0 0 0 0 1 0 0 0 0 1 0 0 "
@@ -423,23 +418,12 @@ TEST_F(Mitsuba, MistakesAreToldWithTheirLine) {
   expect("<shape type='cube'><transform name='to_world'><scale value='0'/></transform></shape>",
          {"shrinks"});
   expect("<shape type='obj'><string name='filename' value='gone.obj'/></shape>",
-         {"gone.obj", "no such file"});
+         {"gone.obj", "Mesh files are missing"});
   expect("<shape type='sphere'><float name='radius' value='-1'/></shape>", {"radius -1"});
   expect("<shape type='sphere'>\n<string name='radius' value='2'/></shape>",
          {"scene.xml:3:", "<string> 'radius'", "is no number"});
   expect("<sensor type='perspective'><spectrum name='fov' value='40'/></sensor>",
          {"<spectrum> 'fov'", "is no number"});
-  expect(
-      "<shape type='cube'><bsdf type='roughconductor'><string name='alpha' value='0.3'/></bsdf>"
-      "</shape>",
-      {"<string> 'alpha'", "is no number"});
-  expect(
-      "<shape type='cube'><bsdf type='diffuse'>"
-      "<blackbody name='reflectance' temperature='0.5K'/></bsdf></shape>",
-      {"0.5 K", "1 to 1e6"});
-  expect(
-      "<shape type='cube'><bsdf type='diffuse'><rgb name='reflectance' value='-1'/></bsdf></shape>",
-      {"reflectance", "-1"});
   expect(
       "<shape type='cube'><bsdf type='diffuse'><rgb name='reflectance' "
       "value='$shade'/></bsdf></shape>",
@@ -458,6 +442,77 @@ TEST_F(Mitsuba, MistakesAreToldWithTheirLine) {
   for (int i = 0; i < 10000; ++i) deep += "</bsdf>";
   expect(deep, {"nested more than"});
   expect("", {"no shapes"});
+}
+
+TEST_F(Mitsuba, MaterialsThatCannotBeReadBecomeGreyWithTheirPlace) {
+  const auto noted = [&](const std::string& content, std::initializer_list<const char*> parts) {
+    const Scene scene = read(content);
+    EXPECT_FLOAT_EQ(first_material(scene).reflectance[1], 0.5f);
+    for (const char* part : parts) {
+      EXPECT_TRUE(says(notes_of(scene), part));
+      EXPECT_TRUE(has_loss(scene, part));
+    }
+  };
+  noted("\n<shape type='rectangle'><ref id='wal'/></shape><bsdf type='diffuse' id='wall'/>",
+        {"scene.xml:3:", "'wal'", "Did you mean 'wall'?"});
+  noted(
+      "<bsdf type='bumpmap' id='a'><ref id='b'/></bsdf>\n<bsdf type='mask' id='b'><ref "
+      "id='a'/></bsdf>"
+      "<shape type='cube'><ref id='a'/></shape>",
+      {"refers to itself"});
+  noted(
+      "<shape type='cube'><bsdf type='roughconductor'><string name='alpha' value='0.3'/></bsdf>"
+      "</shape>",
+      {"<string> 'alpha'", "is no number"});
+  noted(
+      "<shape type='cube'><bsdf type='diffuse'>"
+      "<blackbody name='reflectance' temperature='0.5K'/></bsdf></shape>",
+      {"0.5 K", "1 to 1e6"});
+  noted(
+      "<shape type='cube'><bsdf type='diffuse'><rgb name='reflectance' value='-1'/></bsdf></shape>",
+      {"reflectance", "-1"});
+}
+
+// The case of a downloaded room: of hundreds of meshes some are missing, some have no area and some
+// are torn, and so have pictures. The rest is a room.
+TEST_F(Mitsuba, MissingAndDamagedFilesAreLeftOutOnceWithCounts) {
+  folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  folder.write("torn.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n");
+  folder.write("torn.png", "\x89PNG\r\n");
+  std::string content = square;
+  const auto add = [&](const std::string& file) {
+    content += "<shape type='obj'><string name='filename' value='" + file + "'/></shape>\n";
+  };
+  for (int i = 0; i < 20; ++i) add("gone" + std::to_string(i) + ".obj");
+  for (int i = 0; i < 3; ++i) add("flat.obj");
+  add("torn.obj");
+  for (const std::string picture : {"gone.png", "torn.png"}) {
+    content +=
+        "<shape type='rectangle'><bsdf type='diffuse'><texture type='bitmap' "
+        "name='reflectance'><string name='filename' value='" +
+        picture + "'/></texture></bsdf></shape>";
+  }
+  content +=
+      "<shape type='cube'><bsdf type='mask'><bsdf type='diffuse'/><texture type='bitmap' "
+      "name='opacity'><string name='filename' value='leaf.png'/></texture></bsdf></shape>"
+      "<emitter type='envmap'><string name='filename' value='sky.exr'/></emitter>"
+      "<include filename='more.xml'/>";
+  const Scene scene = read(content);
+  EXPECT_EQ(scene.surfaces.size(), 4u);
+  EXPECT_FALSE(scene.sky);
+  EXPECT_FLOAT_EQ(
+      scene.materials.at(static_cast<std::size_t>(scene.surfaces[1].material)).reflectance[0],
+      0.5f);
+  EXPECT_TRUE(has_note(scene,
+                       "'gone0.obj', 'gone1.obj', 'gone2.obj', 'gone3.obj', 'gone4.obj' and "
+                       "15 more"));
+  EXPECT_TRUE(has_loss(scene, "'gone18.obj', 'gone19.obj'."));
+  EXPECT_TRUE(has_note(scene, "Shapes without area were left out: 'flat', 'flat 2', 'flat 3'"));
+  for (const char* name :
+       {"torn.obj:3", "'gone.png'", "'torn.png'", "'leaf.png'", "sky.exr", "'more.xml'"}) {
+    EXPECT_TRUE(has_note(scene, name)) << name;
+    EXPECT_TRUE(has_loss(scene, name)) << name;
+  }
 }
 
 }  // namespace

@@ -140,7 +140,17 @@ TEST(ReadObj, KeIsRadiance) {
 }
 
 TEST(ReadObj, APictureThatIsMissingIsNoted) {
-  EXPECT_TRUE(is_noted(room(), "lamp.png' of material 'lamp' is missing"));
+  EXPECT_TRUE(is_noted(room(), "room.mtl: pictures that are missing were left out: '"));
+  EXPECT_TRUE(is_noted(room(), "lamp.png'"));
+}
+
+TEST(ReadObj, MissingPicturesLeaveThePlainColourOrGrey) {
+  const Scene plain = read_text(triangle, "newmtl m\nKd 0.1 0.2 0.3\nmap_Kd gone.png\n");
+  expect_rgb(plain.materials[0].reflectance, 0.1f, 0.2f, 0.3f);
+  const Scene bare = read_text(triangle, "newmtl m\nmap_Kd gone.png\n");
+  expect_rgb(bare.materials[0].reflectance, 0.5f, 0.5f, 0.5f);
+  ASSERT_EQ(bare.losses.size(), 1u);
+  EXPECT_NE(bare.losses[0].find("gone.png"), std::string::npos);
 }
 
 TEST(ReadObj, OneNumberStandsForThree) {
@@ -151,8 +161,10 @@ TEST(ReadObj, OneNumberStandsForThree) {
 TEST(ReadObj, WithoutMaterialsGreyIsAssumedAndSaid) {
   const Scene missing = read_text(triangle);
   expect_rgb(missing.materials[0].reflectance, 0.5f, 0.5f, 0.5f);
-  EXPECT_TRUE(is_noted(missing, "text.mtl' is missing"));
-  EXPECT_TRUE(is_noted(missing, "Material 'm' is not defined"));
+  EXPECT_TRUE(is_noted(missing, "Material files are missing"));
+  EXPECT_TRUE(is_noted(missing, "text.mtl'"));
+  EXPECT_TRUE(is_noted(missing, "Materials are not defined"));
+  EXPECT_TRUE(is_noted(missing, "'m'"));
   const Scene none = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "newmtl unused\n");
   EXPECT_EQ(none.materials[0].name, "default");
   EXPECT_TRUE(is_noted(none, "1 polygon names no material"));

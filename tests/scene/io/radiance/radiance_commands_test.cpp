@@ -287,7 +287,38 @@ TEST_F(RadianceCommands, WrongFormulasAreRefused) {
   EXPECT_TRUE(says(formula("1,2"), "gives several values"));
   EXPECT_TRUE(says(formula("1/t"), "no finite value everywhere"));
   EXPECT_TRUE(says(error("!genrev grey g t 't-.5' 4"), "negative"));
-  EXPECT_TRUE(says(error("!genrev grey g t 1 4 -f x.cal"), "option '-f'"));
+  EXPECT_TRUE(says(error("!genrev grey g t 1 4 -f x.cal"), "names the file 'x.cal'"));
+}
+
+TEST_F(RadianceCommands, FormulasUseTheDefinitionsOfTheirOptions) {
+  folder.write("leg.cal", "{ a tapered leg }\nthick : .5;\ntaper(a, b, x) = a + (b - a) * x;\n");
+  // A cone from radius 0.5 to 0.25 of height 2.
+  const Scene scene = read(
+      "!genrev grey leg 'h(t)' 'taper(thick, thick / 2, t)' n -f leg.cal "
+      "-e 'h(u) = 2 * u; n = 4'");
+  const double slant = std::hypot(2.0, 0.25);
+  const double facets = 32 / pi * std::sin(pi / 32);  // chords are as long as the circle
+  EXPECT_NEAR(area_of(mesh_of(scene)), pi * 0.75 * slant, 1e-3 * pi * slant) << facets;
+  const auto [low, high] = scene_bounds(scene);
+  EXPECT_NEAR(high.z() - low.z(), 2.0, 1e-12);
+}
+
+TEST_F(RadianceCommands, DefinitionsThatNeverEndAreLeftOutSoon) {
+  std::string chain = "a0 = 1";
+  for (int i = 1; i < 40; ++i) {  // 2^39 uses
+    const std::string last = "a" + std::to_string(i - 1);
+    chain += "; a" + std::to_string(i) + " = " + last + " + " + last;
+  }
+  for (const char* const end : {"-e 'a39 = a39'", "-e 'f(x) = f(x + 1); a39 = f(1)'",
+                                "-e 'f(x) = 1; a39 = f(1, 2)'", "-e 'a39'", "-e"}) {
+    const std::clock_t start = std::clock();
+    const Scene scene = read("!cat square.rad\n!genrev grey g t a39 4 " + std::string(end));
+    EXPECT_EQ(scene.surfaces.size(), 1u);
+    EXPECT_TRUE(has_note(scene, "Commands that cannot be evaluated were left out: 'genrev"));
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5.0 * test::slowdown);
+  }
+  const Scene scene = read("!cat square.rad\n!genrev grey g t a39 4 -e '" + chain + "'");
+  EXPECT_TRUE(has_note(scene, "too many others"));
 }
 
 TEST_F(RadianceCommands, NothingReachesAShell) {

@@ -13,6 +13,7 @@ namespace lightwell::radiance_views_test {
 namespace {
 
 using test::has_note;
+using test::notes_of;
 
 class RadianceProjects : public testing::Test {
  protected:
@@ -102,21 +103,30 @@ TEST_F(RadianceProjects, WrongProjectsAreNamedWithFileAndLine) {
     EXPECT_TRUE(says(error(variables), says_this)) << variables;
   };
   wrong("vew = X\n", "room.rif:3: there is no variable 'vew'. Did you mean 'view'?");
-  wrong("scene= nothing.rad\n", "room.rif:3: names the file 'nothing.rad'");
   wrong("scene= *.rad\n", "uses '*'");
   wrong("UP= W\n", "write X, Y or Z");
-  wrong("ZONE= I 0 1\nview= X\n", "write 'I x0 x1 y0 y1 z0 z1'");
   wrong("RES= none\n", "one or two numbers of pixels");
-  wrong("view= v -vp 1 2\n", "the view's option '-vp' lacks a number");
-  wrong("view= v -vh 200\n", "spans 200 degrees");
-  wrong("view= v -vd 0 0 1\n", "looks along its upright");
-  wrong("view= v -vf none.vf\n", "no such file");
-  wrong("view= v -vf room.rad\n", "holds no view");
   const auto only = [&](const std::string& text) {
     return message_of<InputError>([&] { read_scene(folder.write("only.rif", text)); });
   };
   EXPECT_TRUE(says(only("OCTREE= room.oct\n"), "an octree alone cannot be read"));
   EXPECT_TRUE(says(only(""), "'scene' names no files"));
+}
+
+TEST_F(RadianceProjects, PartsThatCannotBeUsedAreLeftOutWithTheirPlace) {
+  const auto noted = [&](const std::string& variables, const std::string& says_this) {
+    const Scene scene = read(variables);
+    EXPECT_EQ(scene.surfaces.size(), 1u);
+    EXPECT_TRUE(says(notes_of(scene), says_this)) << variables;
+    EXPECT_FALSE(scene.losses.empty());
+  };
+  noted("scene= nothing.rad\n", "room.rif:3: names the file 'nothing.rad'");
+  noted("ZONE= I 0 1\nview= X\n", "write 'I x0 x1 y0 y1 z0 z1'");
+  noted("view= v -vp 1 2\n", "the view's option '-vp' lacks a number");
+  noted("view= v -vh 200\n", "spans 200 degrees");
+  noted("view= v -vd 0 0 1\n", "looks along its upright");
+  noted("view= v -vf none.vf\n", "no such file");
+  noted("view= v -vf room.rad\n", "holds no view");
 }
 
 }  // namespace

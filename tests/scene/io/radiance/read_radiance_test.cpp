@@ -16,10 +16,12 @@ namespace lightwell::read_radiance_test {
 namespace {
 
 using test::area_of;
+using test::has_loss;
 using test::has_note;
 using test::material_called;
 using test::mesh_of;
 using test::normal_of;
+using test::notes_of;
 
 constexpr double pi = std::numbers::pi;
 const std::string grey = "void plastic grey 0 0 5 .5 .5 .5 0 0\n";
@@ -350,8 +352,6 @@ TEST_F(Radiance, WrongPrimitivesAreNamedWithFileAndLine) {
   wrong("grey polygon p -1 0 6\n", "has '-1' (line 2) where the number of its string arguments");
   wrong("grey polygon p 0 2 1 1 0\n", "has integer arguments");
   wrong("grey polygon 'p 0 0 9\n", "a quoted word does not end");
-  wrong("brown " + square, "modifier 'brown', which nothing before it defines");
-  wrong("inherit " + square, "modifier 'inherit'");
   wrong("void alias a b\n", "modifier 'b'");
   wrong("grey sphere s 0 0 3 1 2 3\n", "sphere 's' has 3 real arguments; it needs 4");
   wrong("grey sphere s 0 0 4 1 2 3 1e300\n", "nothing may lie beyond");
@@ -359,13 +359,59 @@ TEST_F(Radiance, WrongPrimitivesAreNamedWithFileAndLine) {
   wrong("grey cone c 0 0 8 0 0 0 0 0 1 1 -1\n", "radii of different signs");
   wrong("grey ring r 0 0 8 0 0 0 0 0 0 0 1\n", "has no normal");
   wrong("void instance i 1 room.oct 0 0\n", "put '!xform FILE'");
-  wrong("void mesh i 1 room.rtm 0 0\n", "obj2rad");
-  wrong("void plastic m 0 0 5 -.5 0 0 0 0\nm " + square, "colour component -0.5");
-  wrong("void plastic m 0 0 5 .5 0 0 2 0\nm " + square, "specularity 2; it must lie in 0 to 1");
-  wrong("void plastic m 0 0 3 .5 0 0\nm " + square, "has 3 real arguments; it needs 5");
-  wrong("void dielectric m 0 0 5 1 1 1 0 0\nm " + square, "index of refraction 0");
+  wrong("void mesh i 1 room.rtm 0 0\n", "the OBJ file that each was made from");
   EXPECT_TRUE(says(error(""), "has no surfaces that can be read"));
   EXPECT_TRUE(says(error("", "room.oct"), "compiled from RADIANCE's scene files"));
+}
+
+TEST_F(Radiance, MaterialsThatCannotBeReadBecomeGrey) {
+  const auto noted = [&](const std::string& text, const std::string& says_this) {
+    const Scene scene = read(grey + text);
+    EXPECT_TRUE(says(notes_of(scene), says_this));
+    EXPECT_TRUE(has_loss(scene, says_this));
+    EXPECT_FLOAT_EQ(first_material(scene).reflectance[1], 0.5f);
+  };
+  noted("brown " + square, "modifier 'brown', which nothing before it defines");
+  noted("inherit " + square, "modifier 'inherit'");
+  noted("void plastic m 0 0 5 -.5 0 0 0 0\nm " + square, "colour component -0.5");
+  noted("void plastic m 0 0 5 .5 0 0 2 0\nm " + square, "specularity 2; it must lie in 0 to 1");
+  noted("void plastic m 0 0 3 .5 0 0\nm " + square, "has 3 real arguments; it needs 5");
+  noted("void dielectric m 0 0 5 1 1 1 0 0\nm " + square, "index of refraction 0");
+}
+
+TEST_F(Radiance, PartsThatCannotBeUsedAreLeftOutOnceWithCounts) {
+  folder.write("torn.rad", "grey " + square + "grey polygon p 0 0 12 1 2 three\n");
+  std::string text = grey + "grey " + square + "!cat gone.rad\n!gencat grey c 1\n!cat torn.rad\n";
+  for (int i = 0; i < 7; ++i) text += "grey sphere s" + std::to_string(i) + " 0 0 3 1 2 3\n";
+  const Scene scene = read(text);
+  EXPECT_EQ(scene.surfaces.size(), 2u);
+  EXPECT_TRUE(has_note(scene, "Files are missing, with all that they hold: 'gone.rad'"));
+  EXPECT_TRUE(
+      has_note(scene, "Commands that cannot be evaluated were left out: 'gencat grey c 1'"));
+  EXPECT_TRUE(has_note(scene, "the rest was left out: 'torn.rad'"));
+  EXPECT_TRUE(has_note(scene, "left out: 's0', 's1', 's2', 's3', 's4' and 2 more; the first: "));
+  EXPECT_TRUE(has_loss(scene, "'s0', 's1', 's2', 's3', 's4', 's5', 's6'; the first: "));
+}
+
+// A unit square, 1 m up and turned by 90 degrees about z: from (0, 0, 1) to (-1, 1, 1).
+TEST_F(Radiance, CompiledPartsAreReadFromTheSourcesBesideThem) {
+  folder.write("desk.rad", "void plastic red 0 0 5 .8 .1 .1 0 0\nred " + square);
+  folder.write("cup.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const Scene scene = read(grey +
+                           "void instance a 6 desk.oct -rz 90 -t 0 0 1 0 0\n"
+                           "grey instance b 1 desk.oct 0 0\n"
+                           "grey mesh c 4 cup.rtm -t 0 0 2 0 0\n"
+                           "void instance d 1 gone.oct 0 0\n");
+  ASSERT_EQ(scene.surfaces.size(), 3u);
+  EXPECT_LT((mesh_of(scene, 0).vertices.at(2) - Eigen::Vector3d(-1, 1, 1)).norm(), 1e-12);
+  const auto red = [&](std::size_t s) {
+    return scene.materials.at(static_cast<std::size_t>(scene.surfaces[s].material)).reflectance[0];
+  };
+  EXPECT_FLOAT_EQ(red(0), 0.8f);
+  EXPECT_FLOAT_EQ(red(1), 0.5f);  // the modifier of the instance
+  EXPECT_EQ(mesh_of(scene, 2).vertices.at(0).z(), 2.0);
+  EXPECT_TRUE(has_loss(scene, "read from the scene files beside them: 'desk.oct'"));
+  EXPECT_TRUE(has_loss(scene, "'gone.oct'"));
 }
 
 TEST_F(Radiance, APolygonOfEndlessCornersIsRefusedSoon) {
