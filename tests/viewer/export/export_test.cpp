@@ -13,6 +13,7 @@
 #include <set>
 #include <sstream>
 
+#include "radiosity/refine/illuminance_bound.h"
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 #include "tests/viewer/glb_file.h"
@@ -104,6 +105,30 @@ TEST_F(Export, GltfColorsStandForRadiosity) {
   for (const float c :
        floats(bright, bright.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"], 3)) {
     EXPECT_EQ(c, 1.0f);
+  }
+}
+
+/// Bounds of elements: twice the error of interpolation, relative to the mean irradiance or more.
+TEST_F(Export, BoundsOfIlluminanceAreInModelAndGltf) {
+  SolvedScene box = solved_box();
+  EXPECT_TRUE(bake_model(box, box_scene()).lux_within.empty());
+  constexpr float error = 0.1f;
+  box.solution.interpolation_error = Eigen::ArrayXf::Constant(box.mesh.element_count(), error);
+  box.solution.gather_noise = Eigen::ArrayXf::Zero(box.mesh.element_count());
+  const BakedModel model = bake_model(box, box_scene());
+  const Eigen::ArrayXf bounds = illuminance_bounds(box.mesh, box.solution);
+  ASSERT_EQ(model.lux_within.size(), model.faces.size());
+  for (std::size_t f = 0; f < model.faces.size(); ++f) {
+    EXPECT_EQ(model.lux_within[f], bounds[model.element[f]]);
+    EXPECT_GT(model.lux_within[f], 0.0f);
+  }
+  write_gltf(folder / "bounds.glb", model);
+  const Glb glb = parse_glb(content_of(folder / "bounds.glb"));
+  for (std::size_t m = 0; m < 5; ++m) {
+    const Json& primitive = glb.json["meshes"][m]["primitives"][0];
+    for (const float within : floats(glb, primitive["attributes"]["_ILLUMINANCE_WITHIN"], 1)) {
+      EXPECT_EQ(within, model.lux_within[static_cast<std::size_t>(model.parts[m].first_face)]);
+    }
   }
 }
 

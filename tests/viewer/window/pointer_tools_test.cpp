@@ -101,6 +101,14 @@ TEST(PointReading, LuminanceIsRadiosityOverPi) {
   EXPECT_EQ(full_text(reading, box.solution.bands, relative).find(" lx"), std::string::npos);
 }
 
+TEST(PointReading, NamesTheBoundOfIlluminanceIfItIsKnown) {
+  PointReading reading;
+  reading.lux = 523.4;
+  EXPECT_EQ(short_text(reading, {}).find("within"), std::string::npos);
+  reading.lux_within = 12.1;
+  EXPECT_EQ(short_text(reading, {}).rfind("523.4 lx within 12 ", 0), 0u) << short_text(reading, {});
+}
+
 /// The back of the red wall, which faces the camera on the left, is neither drawn nor read.
 TEST(PointReading, LooksThroughBacks) {
   const SolvedScene box = solved_box();
