@@ -57,8 +57,8 @@ struct PartRefinement {
 struct RefineReport {
   RefineOutcome outcome = RefineOutcome::off;
   double tolerance = 0.0;
-  /// RMS error that is left, by the elements' own estimates; relative; of several parts the
-  /// largest.
+  /// RMS error that is left, by the elements' own estimates; relative. With several parts, this and
+  /// the tolerance are of the part whose error is the largest share of its tolerance.
   double estimate = 0.0;
   std::vector<PartRefinement> parts{};  ///< of each part; empty: nothing was refined
   int rounds = 0;

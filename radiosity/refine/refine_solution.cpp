@@ -75,7 +75,8 @@ class Refinement {
 
   // Splits until the tolerances or a limit are reached; a further call continues.
   RefineReport run(const RefineOptions& options) {
-    options_.tolerance = report_.tolerance = options.tolerance;
+    options_.tolerance = options.tolerance;
+    options_.efforts = options.efforts;
     for (int p = 0; p < part_count_; ++p) {
       allowed_[p] = std::pow(options.tolerance_of(p), 2) * error_.area(p);
     }
@@ -265,13 +266,17 @@ class Refinement {
     for (const int cell : elements_.leaves()) {
       for_each_part(cell, [&](int p) { left[p] += share_left(cell) * counted(cell, p); });
     }
-    report_.estimate = 0.0;
     report_.parts.clear();
+    double worst = -1.0;
     for (int p = 0; p < part_count_; ++p) {
       const double area = error_.area(p);
       report_.parts.push_back({.estimate = area > 0.0 ? std::sqrt(left[p] / area) : 0.0,
                                .is_reached = sum_[p] <= allowed_[p]});
-      report_.estimate = std::max(report_.estimate, report_.parts.back().estimate);
+      const double tolerance = options_.tolerance_of(p), estimate = report_.parts.back().estimate;
+      if (!(estimate > worst * tolerance)) continue;
+      worst = estimate / tolerance;
+      report_.tolerance = tolerance;
+      report_.estimate = estimate;
     }
   }
 

@@ -92,7 +92,7 @@ struct RadiositySolution {
   SceneParts parts{};
   /// Relative RMS error of interpolated irradiance: independent gathers at random points against
   /// the interpolation, relative to the mean irradiance of the part or a quarter of the point's
-  /// own, whichever is more. With several parts or views, the largest of their estimates.
+  /// own, whichever is more. With several parts, the largest of their estimates.
   double error_estimate = 0.0;
   std::vector<PhaseSeconds> seconds{};
   Provenance provenance{};
