@@ -280,7 +280,7 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
 
 std::shared_ptr<const Portals> find_portals(const Scene& scene, const ElementCaster& caster,
                                             const std::vector<float>& brightness) {
-  const std::vector<Opening> openings = find_openings(scene);
+  const std::vector<Opening> openings = narrow_openings(caster, find_openings(scene));
   if (openings.empty()) return nullptr;
   auto portals = std::make_shared<const Portals>(caster, brightness, openings);
   return portals->is_empty() ? nullptr : portals;

@@ -12,6 +12,7 @@
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/solve.h"
+#include "scene/io/read_scene.h"
 #include "tests/radiosity/openings/test_rooms.h"
 
 namespace lightwell::portals_test {
@@ -92,6 +93,20 @@ TEST(Portals, AreNoneWhereBothRoomsAreLitAlike) {
     lit.radiosity.row(v) = lit.radiosity(v, 0) > 0.0f ? 12.0f : 1.0f;
   }
   EXPECT_EQ(lit.portals(), nullptr);
+}
+
+// Such as that between the lamp and the ceiling, whose crevice is dark.
+TEST(Portals, AreNoneInTheCornellBox) {
+  const Scene scene = read_scene(LIGHTWELL_CORNELL "/cornell.toml");
+  const SolvedScene solved =
+      solve_scene(scene, {.gather = {.rays = 16}, .refine = {.tolerance = 0.0}, .error_points = 0});
+  const ElementCaster caster(solved.mesh);
+  const DirectLight light(scene, solved.mesh);
+  EXPECT_EQ(
+      find_portals(scene, caster,
+                   brightness_of_patches(solved.mesh, light, solved.solution.patch_radiosity)),
+      nullptr);
+  EXPECT_TRUE(narrow_openings(caster, find_openings(scene)).empty());
 }
 
 // Points in the bright room do not aim at the slit.
