@@ -55,7 +55,7 @@ std::string without_comments(std::string_view text) {
   int depth = 0;
   for (const char c : text) {
     if (c == '{') ++depth;
-    if (depth == 0) result += c;
+    if (depth == 0) result += c == '\n' ? ' ' : c;
     if (c == '}' && depth > 0) --depth;
   }
   return result;
