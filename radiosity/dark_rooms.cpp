@@ -48,11 +48,15 @@ bool faces_a_room(const ElementCaster& caster, int element, double clearance,
               .origin_group = facet};
   }
   caster.closest_elements(ray, hit);
+  const auto farther_than = [&](double distance) {
+    const auto count = std::ranges::count_if(
+        hit, [&](const ElementHit& h) { return h.element >= 0 && h.t > distance; });
+    return static_cast<double>(count) / rays_of_a_side;
+  };
   constexpr double touching = 1e-3;  // nearer surfaces lie on the element
-  const auto shown = std::ranges::count_if(
-      hit, [&](const ElementHit& h) { return h.element >= 0 && h.t > touching * clearance; });
-  constexpr double most_open = 0.25;
-  return static_cast<double>(shown) >= (1.0 - most_open) * rays_of_a_side;
+  constexpr double least_shown = 0.75, least_far = 1.0 / 3.0;
+  return farther_than(touching * clearance) >= least_shown &&
+         farther_than(0.5 * clearance) >= least_far;
 }
 
 }  // namespace

@@ -34,12 +34,26 @@ struct Stratum {
 
 // A path by way of smooth surfaces from one of the first rays.
 struct Seed {
-  Eigen::Vector3d direction;     // at the point
-  Eigen::Vector3d origin, exit;  // last straight part
+  Eigen::Vector3d direction;     // at the point, unit
+  Eigen::Vector3d origin, exit;  // last straight part; exit is unit
+  double end = 0.0;              // m, of the last straight part
+  double weight = 0.0;           // mean of the bands
 };
 struct Chain {
   ChainTurns turns{};
   std::vector<Seed> seeds{};
+  double weight = 0.0;      // sum over seeds
+  double heaviest = 0.0;    // weight of a seed
+  bool is_straight = true;  // light leaves it in the direction in which it came, as from a slab
+  bool is_sought = false;   // Newton's method seeks its paths
+
+  void add(const Seed& seed) {
+    constexpr double unbent = 1e-6;
+    seeds.push_back(seed);
+    weight += seed.weight;
+    heaviest = std::max(heaviest, seed.weight);
+    is_straight = is_straight && (seed.exit - seed.direction).norm() < unbent;
+  }
 };
 using Chains = std::map<std::uint64_t, Chain>;
 
@@ -79,6 +93,7 @@ class PointLight {
   double gather(Spectrum& E) {
     first_strata();
     if (!has_specular_) return 0.0;
+    choose_chains();
     const Spectrum lamps = lamps_without_surface();
     split_around_emitters();
     const double variance = refine((lamps / std::numbers::pi_v<float>).mean());
@@ -120,8 +135,12 @@ class PointLight {
           if (part.turns.count == 0) return;
           Chain& chain = (*chains)[part.chain];
           chain.turns = part.turns;
-          chain.seeds.push_back(
-              {.direction = d, .origin = part.ray.origin, .exit = part.ray.direction});
+          const double length = part.ray.direction.norm();
+          chain.add({.direction = d.normalized(),
+                     .origin = part.ray.origin,
+                     .exit = part.ray.direction / length,
+                     .end = part.end * length,
+                     .weight = static_cast<double>(part.weight.mean())});
         };
       }
       const Spectrum L = tree_.trace_lamps(ray(d), key, visit);
@@ -141,6 +160,21 @@ class PointLight {
         strata_.push_back({.column = column, .row = row});
         sample(strata_.back(), &chains_);
       }
+    }
+  }
+
+  // Chooses the chains that are sought, the heaviest of both kinds. Chains through parallel faces
+  // are many, since light goes to and fro between any two of them; see all_straight() for the
+  // others.
+  void choose_chains() {
+    constexpr std::size_t most = 256;
+    std::array<std::vector<Chain*>, 2> kinds;
+    for (auto& [key, chain] : chains_) kinds[chain.is_straight ? 1 : 0].push_back(&chain);
+    for (std::vector<Chain*>& kind : kinds) {
+      std::ranges::stable_sort(
+          kind, [](const Chain* a, const Chain* b) { return a->weight > b->weight; });
+      if (kind.size() > most) kind.resize(most);
+      for (Chain* chain : kind) chain->is_sought = true;
     }
   }
 
@@ -348,7 +382,11 @@ class PointLight {
       clearance = lamp->clearance;
       goal = {.position = at_.position + (seen.distance + clearance) * seen.direction};
     }
+    Spectrum straight = Spectrum::Zero(bands_);
+    std::vector<std::uint64_t> found;  // straight chains, ascending
+    Eigen::Vector3d towards = Eigen::Vector3d::Zero();
     for (const auto& [key, chain] : chains_) {
+      if (!chain.is_sought) continue;
       const auto path = solve(goal, key, chain, clearance);
       if (!path) continue;
       double intensity = 1.0;
@@ -359,9 +397,38 @@ class PointLight {
         intensity = near.irradiance * r * r;
       }
       const double kernel = intensity * path->direction.dot(at_.normal) / path->spread;
-      E += path->weight * source.light * static_cast<float>(kernel);
+      (chain.is_straight ? straight : E) +=
+          path->weight * source.light * static_cast<float>(kernel);
+      if (!chain.is_straight) continue;
+      found.push_back(key);
+      towards = path->direction;
     }
-    return E;
+    if (found.empty()) return E;
+    return E + static_cast<float>(all_straight(goal, towards, found, clearance)) * straight;
+  }
+
+  // Light of all straight chains over that of the chains in `found`, by the first rays within ten
+  // degrees of `towards` whose last part passes the goal: chains through parallel faces lead to the
+  // goal from nearly the same direction.
+  double all_straight(const Goal& goal, const Eigen::Vector3d& towards,
+                      const std::vector<std::uint64_t>& found, double clearance) const {
+    const double near = std::cos(std::numbers::pi / 18.0);
+    double all = 0.0, of_found = 0.0;
+    for (const auto& [key, chain] : chains_) {
+      if (!chain.is_straight) continue;
+      const bool is_found = std::ranges::binary_search(found, key);
+      for (const Seed& seed : chain.seeds) {
+        if (seed.direction.dot(towards) < near) continue;
+        const double distance = (goal.position - seed.origin).dot(seed.exit);
+        const bool passes = goal.is_direction ? !std::isfinite(seed.end)
+                                              : distance > 0.0 && seed.end >= distance - clearance;
+        if (!passes) continue;
+        all += seed.weight;
+        if (is_found) of_found += seed.weight;
+      }
+    }
+    constexpr double most = 2.0;
+    return of_found > 0.0 ? std::min(most, all / of_found) : 1.0;
   }
 
   // Splits the strata in which emitters are seen by way of smooth surfaces until a stratum is not
@@ -378,6 +445,7 @@ class PointLight {
       }
       const double radius = emitter.is_sphere ? emitter.sphere.radius : std::sqrt(emitter.area);
       for (const auto& [key, chain] : chains_) {
+        if (!chain.is_sought || chain.heaviest < least_sought) continue;
         const auto path = solve({.position = middle}, key, chain, 2.0 * radius);
         if (!path) continue;
         const double facing = emitter.is_sphere ? 1.0 : std::abs(path->exit.dot(emitter.normal));
@@ -418,6 +486,7 @@ class PointLight {
     return {0.5 * (a + 1.0), 0.5 * (b + 1.0)};
   }
 
+  static constexpr double least_sought = 1e-2;  // of chains in which emitters are sought
   static constexpr int first_rays = first_side * first_side * rays_per_stratum;
   static constexpr int opening_side = 3;           // points of a lamp's opening along each side
   static constexpr std::size_t most_sought = 256;  // emitters that are looked for one by one
@@ -450,8 +519,8 @@ SpecularIrradiance specular_irradiance(const LitScene& lit, const RadiositySolut
   if (std::ranges::none_of(materials, is_specular) || lit.direct_light.light_count() == 0) {
     return result;
   }
-  // The mean over many directions leaves room for weaker branches than a pixel's.
-  const RenderOptions tree_options{.max_depth = options.max_depth, .min_contribution = 1e-4f};
+  // The mean over many directions needs few branches of each.
+  const RenderOptions tree_options{.max_depth = options.max_depth, .min_contribution = 1e-2f};
   const RayTree tree(lit.scene, lit.caster, lit.direct_light, solution, tree_options);
   std::atomic<int> done = 0;
   parallel_for(static_cast<int>(count), 1, [&](int begin, int end) {

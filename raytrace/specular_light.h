@@ -35,6 +35,8 @@ struct SpecularIrradiance {
 ///   E = I T cos / |det A|. A is the derivative of the path's offset at the lamp by its direction
 ///   at the point; on a straight path det A = r^2. The search begins with the nearest of the first
 ///   rays. One solution is found per lamp and chain; a curved surface may have more.
+///   Through parallel faces, as of stacked slabs, chains are many: the 256 heaviest are followed,
+///   and the share of the others is that of the first rays.
 /// - Emitters that the first rays may miss have strata split where Newton's method finds them.
 ///
 /// The result does not depend on the number of threads. Throws Interrupted when progress says stop.

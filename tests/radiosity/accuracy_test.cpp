@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -235,8 +234,12 @@ double true_error_of_direct_light(const Scene& scene, const SolvedScene& solved,
   const Eigen::ArrayXf bound = error_bound(solved.solution);
   constexpr int each = 8;
   const SobolPoints sobol(each);
-  std::vector<std::array<double, 3>> samples;  // irradiance, its error, area
-  double sum = 0.0, area = 0.0, wrong = 0.0;
+  struct Sample {
+    double own, off, area;
+    bool is_bounded;
+  };
+  std::vector<Sample> samples;
+  double sum = 0.0, area = 0.0;
   for (int p = 0; p < mesh.patch_count(); ++p) {
     if ((mesh.emission.row(p) > 0.0f).any() || caster.hidden_elements(p) > 0) continue;
     const auto key = static_cast<std::uint64_t>(p);
@@ -249,19 +252,20 @@ double true_error_of_direct_light(const Scene& scene, const SolvedScene& solved,
       const auto own = static_cast<double>(light.irradiance(caster, query).mean());
       const ElementHit hit = point_on_element(mesh, at);
       const double off = static_cast<double>(interpolate(mesh, E, hit).mean()) - own;
-      samples.push_back({own, off, mesh.area[p]});
+      samples.push_back({own, off, mesh.area[p], bound[hit.element] > 0.0f});
       sum += mesh.area[p] * own;
       area += mesh.area[p];
-      if (std::abs(off) < 0.01 * own) continue;
-      wrong += mesh.area[p];
-      unbounded += bound[hit.element] > 0.0f ? 0.0 : mesh.area[p];
     }
   }
-  unbounded /= wrong;
-  double square = 0.0;
-  for (const auto& [own, off, weight] : samples) {
-    square += weight / area * std::pow(off / error_reference(sum / area, own), 2);
+  double square = 0.0, wrong = 0.0;
+  for (const auto& [own, off, weight, is_bounded] : samples) {
+    const double relative = off / error_reference(sum / area, own);
+    square += weight / area * relative * relative;
+    if (std::abs(relative) < 0.01) continue;
+    wrong += weight;
+    unbounded += is_bounded ? 0.0 : weight;
   }
+  unbounded /= wrong;
   return std::sqrt(square);
 }
 
