@@ -32,7 +32,7 @@ void PartMeans::add(int patch, double area, double irradiance) {
 }
 
 void PartMeans::finish() {
-  constexpr double least = 1e-6;
+  constexpr double least = 1e-5;
   double most = 0.0;
   for (std::size_t p = 0; p < sum_.size(); ++p) {
     judged_by_[p] = area_[p] > 0.0 ? sum_[p] / area_[p] : 0.0;
