@@ -51,7 +51,9 @@ TEST(GapErrors, AreTheDifferenceFromDarknessInTheGapAlone) {
     const double depth =
         0.5 - std::max(std::abs(at.x() - 1.0), std::abs(at.y() - 1.0));  // under the plate, m
     const float error = solution.interpolation_error[e];
-    if (depth < -0.0625 - 1e-9) EXPECT_EQ(error, 0.0f) << "open at " << at.transpose();
+    if (depth < -0.0625 - 1e-9) {
+      EXPECT_EQ(error, 0.0f) << "open at " << at.transpose();
+    }
     if (depth < 0.1) continue;
     ++in_gap;
     // The four points of an element lie at least 0.07 m under the plate, 3.4 times its height h. A
