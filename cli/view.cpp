@@ -363,9 +363,9 @@ void add_live(CLI::App& command, ViewArguments& arguments) {
 Action add_view(CLI::App& command) {
   const auto arguments = std::make_shared<ViewArguments>();
   command.description(
-      "Shows a solved scene in a window: W A S D or arrows to walk, the mouse to look around,\n"
-      "1 to 9 for the scene's cameras, H for all keys, Escape to leave. Without a solution the\n"
-      "scene is solved by progressive refinement while you walk.");
+      "Shows a solved scene in a window: W A S D or arrows to walk, the mouse to look around, H "
+      "for\n"
+      "all keys, Escape to leave. Without a solution the scene is solved while you walk.");
   command.add_option("scene", arguments->scene, "the scene file")->required()->type_name("SCENE");
   command
       .add_option("solution", arguments->solution,

@@ -54,7 +54,7 @@ bool faces_a_room(const ElementCaster& caster, int element, double clearance,
     return static_cast<double>(count) / rays_of_a_side;
   };
   constexpr double touching = 1e-3;  // nearer surfaces lie on the element
-  constexpr double least_shown = 0.75, least_far = 1.0 / 3.0;
+  constexpr double least_shown = 0.75, least_far = 0.5;
   return farther_than(touching * clearance) >= least_shown &&
          farther_than(0.5 * clearance) >= least_far;
 }

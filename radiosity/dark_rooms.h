@@ -18,10 +18,8 @@ struct DarkRooms {
 /// - nothing is in front of it for `clearance`, so that undersides of furniture, the floor below it
 ///   and the inside of walls do not count;
 /// - at least three quarters of its hemisphere show surfaces and not the void or black backs, so
-/// that
-///   the outside of a house does not count;
-/// - a third of its hemisphere is farther than half of `clearance`, so that a shaft between two
-/// walls
+///   that the outside of a house does not count;
+/// - half of its hemisphere is farther than half of `clearance`, so that a shaft between two walls
 ///   does not count, though it is long.
 ///
 /// `clearance` is 1.2 m, or an eighth of the diagonal of a scene that is smaller than a room. Areas

@@ -245,6 +245,13 @@ void RayTree::add_background(const Branch& branch, TreeState& state) const {
   state.result.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, seen);
 }
 
+// The number of the branch of a lobe: twice the parent's and the lobe, 1 at the eye. Far from the
+// eye, where twice the number is more than 64 bits hold, a number that is not met nearer.
+static std::uint64_t child_node(std::uint64_t node, std::uint64_t lobe) {
+  constexpr std::uint64_t deep = std::uint64_t{1} << 62;
+  return node < deep ? 2 * node + lobe : deep | random_key(node, lobe);
+}
+
 void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                     TreeState& state) const {
   const Material& material = scene_.materials[facets_[hit.facet].material];
@@ -267,7 +274,7 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
   }
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
     if (state.turns && !state.turns->follows(branch.depth, lobes.sample[i].crosses)) continue;
-    grow(branch, 2 * branch.node + i, lobes.sample[i], hit, at, state);
+    grow(branch, child_node(branch.node, i), lobes.sample[i], hit, at, state);
   }
 }
 

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <random>
 #include <thread>
 
@@ -31,9 +33,21 @@ class CheckpointTest : public CommandTest {
 
   bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
   // Stops a solve while it computes form factors, when the checkpoint exists.
+  // True once a checkpoint in the folder holds more than its head, which takes less than 10 kB.
+  bool keeps_work() const {
+    const std::filesystem::directory_iterator files(folder / "");
+    return std::any_of(begin(files), end(files), [](const auto& file) {
+      std::error_code gone;
+      const bool is_checkpoint =
+          file.path().filename() == "C" || file.path().extension() == ".ckpt";
+      return is_checkpoint && std::filesystem::file_size(file.path(), gone) > 10000 && !gone;
+    });
+  }
   Ended stopped(const Words& words, int signal) {
     Running running(folder / "", words);
     for (int i = 0; i < 600 && running.err().empty(); ++i) std::this_thread::sleep_for(50ms);
+    // Work is worth keeping from the first phase on that is kept.
+    for (int i = 0; i < 600 && !keeps_work(); ++i) std::this_thread::sleep_for(10ms);
     running.signal(signal);
     return running.wait();
   }

@@ -63,8 +63,8 @@ TEST(DarkRooms, AreRoomsWithoutALamp) {
   add_lamp(scene, 2.5);
   const DarkRooms dark = found_in(scene);
   const double room = 2 * (5 * 3 + 5 * 2.7 + 3 * 2.7);
-  // Of the elements in the eight corners, with edges of half a metre, two thirds of the hemisphere
-  // may be near: at most 24 of them do not count.
+  // Of the elements in the eight corners, with edges of half a metre, half of the hemisphere may be
+  // near: at most 24 of them do not count.
   EXPECT_LE(dark.area, (1.0 + 1e-6) * room);
   EXPECT_GE(dark.area, room - 24 * 0.25);
   EXPECT_NEAR(dark.share, dark.area / (room - 3 * 2.7 + 2 * (4 * 3 + 4 * 2.7 + 3 * 2.7)), 1e-6);
