@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -18,6 +20,23 @@ constexpr int rays_of_a_side = 32;
 bool is_dark(const PatchMesh& mesh, const BandArray& irradiance, int element) {
   for (int c = 0; c < mesh.corner_count(element); ++c) {
     if ((irradiance.row(mesh.corners[element][c]) > 0.0f).any()) return false;
+  }
+  return true;
+}
+
+// Returns whether a place is at least `width` wide in every direction of the plane of a and b.
+bool is_wide(const ElementCaster& caster, const Eigen::Vector3d& place, const Eigen::Vector3d& a,
+             const Eigen::Vector3d& b, double width) {
+  constexpr int axes = 4;
+  for (int i = 0; i < axes; ++i) {
+    const double angle = i * std::numbers::pi / axes;
+    const Eigen::Vector3d along = std::cos(angle) * a + std::sin(angle) * b;
+    const std::array<Ray, 2> rays = {Ray{.origin = place, .direction = along},
+                                     Ray{.origin = place, .direction = -along}};
+    std::array<ElementHit, 2> hits;
+    caster.closest_elements(rays, hits);
+    const bool ends = hits[0].facet >= 0 && hits[1].facet >= 0;
+    if (ends && hits[0].t + hits[1].t < width) return false;
   }
   return true;
 }
@@ -48,15 +67,11 @@ bool faces_a_room(const ElementCaster& caster, int element, double clearance,
               .origin_group = facet};
   }
   caster.closest_elements(ray, hit);
-  const auto farther_than = [&](double distance) {
-    const auto count = std::ranges::count_if(
-        hit, [&](const ElementHit& h) { return h.element >= 0 && h.t > distance; });
-    return static_cast<double>(count) / rays_of_a_side;
-  };
-  constexpr double touching = 1e-3;  // nearer surfaces lie on the element
-  constexpr double least_shown = 0.75, least_far = 0.5;
-  return farther_than(touching * clearance) >= least_shown &&
-         farther_than(0.5 * clearance) >= least_far;
+  constexpr double touching = 1e-3, least_shown = 0.75;  // nearer surfaces lie on the element
+  const auto shown = std::ranges::count_if(
+      hit, [&](const ElementHit& h) { return h.element >= 0 && h.t > touching * clearance; });
+  return static_cast<double>(shown) >= least_shown * rays_of_a_side &&
+         is_wide(caster, at.position + 0.5 * clearance * at.normal, a, b, 0.5 * clearance);
 }
 
 }  // namespace
@@ -75,7 +90,7 @@ DarkRooms find_dark_rooms(const Scene& scene, const PatchMesh& mesh,
   if (dark.empty()) return {};
   const ElementCaster caster(mesh);
   constexpr double headroom = 1.2;  // m
-  const double clearance = std::min(headroom, 0.125 * scene_bounds(scene).diagonal());
+  const double clearance = std::min(headroom, 0.25 * scene_bounds(scene).diagonal());
   std::array<Eigen::Vector3d, rays_of_a_side> view;
   const SobolPoints sobol(rays_of_a_side);
   for (int i = 0; i < rays_of_a_side; ++i) {

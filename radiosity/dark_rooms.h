@@ -18,11 +18,13 @@ struct DarkRooms {
 /// - nothing is in front of it for `clearance`, so that undersides of furniture, the floor below it
 ///   and the inside of walls do not count;
 /// - at least three quarters of its hemisphere show surfaces and not the void or black backs, so
-///   that the outside of a house does not count;
-/// - half of its hemisphere is farther than half of `clearance`, so that a shaft between two walls
-///   does not count, though it is long.
+/// that
+///   the outside of a house does not count;
+/// - the place half of `clearance` in front of it is as wide in all directions along the side, so
+/// that
+///   a shaft between two walls does not count, though it is long.
 ///
-/// `clearance` is 1.2 m, or an eighth of the diagonal of a scene that is smaller than a room. Areas
+/// `clearance` is 1.2 m, or a quarter of the diagonal of a scene that is smaller than a room. Areas
 /// are estimated from at most 4096 of the dark elements.
 DarkRooms find_dark_rooms(const Scene& scene, const PatchMesh& mesh,
                           const RadiositySolution& solution);

@@ -181,11 +181,19 @@ class PointLight {
   void split(int i) {
     const Stratum parent = strata_[static_cast<std::size_t>(i)];
     strata_[static_cast<std::size_t>(i)].children = static_cast<int>(strata_.size());
+    Spectrum change = -parent.mean;
     for (int k = 0; k < 4; ++k) {
       strata_.push_back({.level = parent.level + 1,
                          .column = 2 * parent.column + k % 2,
                          .row = 2 * parent.row + k / 2});
       sample(strata_.back(), nullptr);
+      change += 0.25f * strata_.back().mean;
+    }
+    // Neighbours that are not split compare themselves with these squares: half of an emitter may
+    // lie in one whose own rays missed it.
+    for (int up = 0; up <= parent.level; ++up, change *= 0.25f) {
+      const int around = stratum_at(parent.level - up, parent.column >> up, parent.row >> up);
+      strata_[static_cast<std::size_t>(around)].mean += change;
     }
   }
 

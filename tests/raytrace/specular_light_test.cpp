@@ -136,6 +136,22 @@ TEST(SpecularLight, ThroughAStackOfSlabsIsAllItsReflections) {
   }
 }
 
+// The plane of symmetry of a small lamp is a border of strata. Newton's method finds the lamp in
+// the stratum on one side; the other side must be looked into as well.
+TEST(SpecularLight, OfALampThatLiesInTwoStrataIsWhole) {
+  constexpr float M = 10.0f, rho = 0.8f;
+  const TracedScene lit(over_a_mirror(rho)
+                            .square({.exitance = M, .one_sided = true}, {0.0, 0.0, 2.0}, -up, 0.01)
+                            .build());
+  for (const double x : {0.5, 1.0, 2.0, 3.0, 4.0}) {
+    const Vector3d at(x, 0.0, 1.0);
+    const Loop image = {
+        {-0.01, -0.01, -2.0}, {0.01, -0.01, -2.0}, {0.01, 0.01, -2.0}, {-0.01, 0.01, -2.0}};
+    const double expected = rho * M * std::abs(point_to_polygon(at, -up, image));
+    EXPECT_NEAR(irradiance(lit, at, -up), expected, of_rays * expected) << x;
+  }
+}
+
 TEST(SpecularLight, OfTheSunOffAMirrorIsItsIrradiance) {
   Scene scene = over_a_mirror(0.9f).build();
   const Vector3d sun = Vector3d(1.0, 2.0, 3.0).normalized();
