@@ -53,6 +53,15 @@ TEST(DarkRooms, AreNotUnderFurnitureNorOutsideAHouse) {
   EXPECT_EQ(dark.surface, -1);
 }
 
+// In a scene that is no larger than a room, too, a metre inside of a block is no room.
+TEST(DarkRooms, AreNotInsideABlock) {
+  Scene scene = with_materials();
+  add_box(scene, {0, 0, 0}, {4, 3, 2.7}, white, true);
+  add_box(scene, {1, 1, 0}, {2, 2, 0.9}, white, false);
+  add_lamp(scene, 2.5);
+  EXPECT_EQ(found_in(scene).area, 0.0);
+}
+
 // The wall between both rooms is lit from one side.
 TEST(DarkRooms, AreRoomsWithoutALamp) {
   Scene scene = with_materials();
@@ -63,8 +72,8 @@ TEST(DarkRooms, AreRoomsWithoutALamp) {
   add_lamp(scene, 2.5);
   const DarkRooms dark = found_in(scene);
   const double room = 2 * (5 * 3 + 5 * 2.7 + 3 * 2.7);
-  // Of the elements in the eight corners, with edges of half a metre, half of the hemisphere may be
-  // near: at most 24 of them do not count.
+  // Across a corner of the room, its three elements of at most a quarter of a square metre may be
+  // narrower than 0.6 m and not count.
   EXPECT_LE(dark.area, (1.0 + 1e-6) * room);
   EXPECT_GE(dark.area, room - 24 * 0.25);
   EXPECT_NEAR(dark.share, dark.area / (room - 3 * 2.7 + 2 * (4 * 3 + 4 * 2.7 + 3 * 2.7)), 1e-6);
