@@ -206,16 +206,34 @@ CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
   for (Group& group : groups_) group.overlaps.sort();
   const bool has_any = std::any_of(groups_.begin(), groups_.end(),
                                    [](const Group& g) { return !g.overlaps.empty(); });
-  if (has_any) find_bodies(geometry, tolerance);
+  if (!has_any) return;
+  find_bodies(geometry, tolerance);
+  sort_by_side(pairs);
+}
+
+void CoplanarGroups::sort_by_side(const std::vector<Pair>& pairs) {
+  for (const auto& [pair, box] : pairs) {
+    for (const int i : {0, 1}) {
+      const int side = order(pair[1 - i], pair[i]);
+      if (side > 0) groups_[pair[i]].above.add(box);
+      if (side < 0) groups_[pair[i]].below.add(box);
+    }
+  }
+  for (Group& group : groups_) {
+    group.above.sort();
+    group.below.sort();
+  }
 }
 
 // Rounding may still have given two normals of one plane opposite signs.
 void CoplanarGroups::align_normals(const std::vector<Pair>& pairs) {
-  const bool are_aligned = std::ranges::all_of(
-      pairs, [&](const Pair& pair) { return normal(pair[0]).dot(normal(pair[1])) > 0.0; });
+  const bool are_aligned = std::ranges::all_of(pairs, [&](const Pair& pair) {
+    return normal(pair.group[0]).dot(normal(pair.group[1])) > 0.0;
+  });
   if (are_aligned) return;
   std::map<int, std::vector<int>> others;
-  for (const auto& [a, b] : pairs) {
+  for (const Pair& pair : pairs) {
+    const auto [a, b] = pair.group;
     others[a].push_back(b);
     others[b].push_back(a);
   }
@@ -303,7 +321,10 @@ void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
       Plane& b = planes[j];
       if (b.box.min().x() > a.box.max().x()) break;
       if (pairs_left-- == 0) {
-        for (const Plane& plane : planes) groups_[plane.group].overlaps = Boxes(plane.box);
+        for (const Plane& plane : planes) {
+          Group& group = groups_[plane.group];
+          group.overlaps = group.above = group.below = Boxes(plane.box);
+        }
         return;
       }
       if (!lie_parallel(a.normal, b.normal) || !a.box.intersects(b.box)) continue;
@@ -319,8 +340,8 @@ void CoplanarGroups::add_overlaps(const CastGeometry& geometry,
           !share_area(geometry, a, b, along, tolerance)) {
         continue;
       }
-      pairs.push_back({a.group, b.group});
-      for (const int g : pairs.back()) groups_[g].overlaps.add(shared);
+      pairs.push_back({.group = {a.group, b.group}, .box = shared});
+      for (const int g : pairs.back().group) groups_[g].overlaps.add(shared);
     }
   }
 }
@@ -380,6 +401,13 @@ void CoplanarGroups::flatten(const CastGeometry& geometry, int along, Plane& pla
 
 bool CoplanarGroups::may_be_covered(int group, const Eigen::Vector3d& point) const {
   return is_known(group) && groups_[group].overlaps.contain(point);
+}
+
+bool CoplanarGroups::may_be_covered(int group, const Eigen::Vector3d& point,
+                                    const Eigen::Vector3d& direction) const {
+  if (!is_known(group)) return false;
+  const Group& of = groups_[group];
+  return (of.normal.dot(direction) > 0.0 ? of.above : of.below).contain(point);
 }
 
 void CoplanarGroups::Boxes::sort() {

@@ -50,6 +50,10 @@ class CoplanarGroups {
   /// for the groups.
   bool may_be_covered(int group, const Eigen::Vector3d& point) const;
 
+  /// The same for the groups that order() places on the side that `direction` points to.
+  bool may_be_covered(int group, const Eigen::Vector3d& point,
+                      const Eigen::Vector3d& direction) const;
+
  private:
   // Boxes sorted along an axis: a hundred blocks may stand on a floor, and every ray from the floor
   // searches for the blocks about its origin.
@@ -71,11 +75,15 @@ class CoplanarGroups {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // a point of the plane
     Boxes overlaps{};                                  // with other groups of the plane
-    int facing = 0;  // front: 1 along the normal, -1 against the normal
-    int body = 0;    // side of the body: 1 along the normal, -1 against the normal, 0 not known
+    Boxes above{}, below{};  // those of the overlaps whose order is known, along the normal
+    int facing = 0;          // front: 1 along the normal, -1 against the normal
+    int body = 0;  // side of the body: 1 along the normal, -1 against the normal, 0 not known
   };
   struct Plane;
-  using Pair = std::array<int, 2>;  // groups that lie on each other
+  struct Pair {  // groups that lie on each other, and the box that holds all they share
+    std::array<int, 2> group{};
+    Eigen::AlignedBox3d box{};
+  };
   static bool lie_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
   static std::vector<Plane> planes_of(const CastGeometry& geometry);
   void add_overlaps(const CastGeometry& geometry, std::span<Plane> planes, double tolerance,
@@ -86,6 +94,7 @@ class CoplanarGroups {
                          double tolerance);
   static void flatten(const CastGeometry& geometry, int along, Plane& plane);
   void align_normals(const std::vector<Pair>& pairs);
+  void sort_by_side(const std::vector<Pair>& pairs);
   void find_bodies(const CastGeometry& geometry, double tolerance);
   bool is_known(int group) const { return group >= 0 && group < static_cast<int>(groups_.size()); }
 

@@ -16,8 +16,9 @@ struct RayCaster::Impl : EmbreeScene {
 
   // A ray that starts on a group begins past the plane of the group by the bound of rounding, so
   // that the ray rarely meets that plane and needs a second query. If another surface may lie on
-  // the plane, the ray begins as far before the plane: the other surface, such as the table under a
-  // block of glass, is then still ahead.
+  // the plane ahead, the ray begins as far before the plane: the other surface, such as the table
+  // under a block of glass, is then still ahead. Elsewhere such a start would be a leak: a ray from
+  // the floor of a box, close to a wall, would pass under the wall.
   void set_ray(RTCRay& r, const Ray& ray, unsigned id) const {
     Eigen::Vector3d origin = ray.origin - center;
     r.tnear = 0.0f;
@@ -42,7 +43,7 @@ struct RayCaster::Impl : EmbreeScene {
 
   bool starts_covered(const Ray& ray) const {
     return planes->has_overlaps(ray.origin_group) &&
-           planes->may_be_covered(ray.origin_group, ray.origin);
+           planes->may_be_covered(ray.origin_group, ray.origin, ray.direction);
   }
 
   bool ends_covered(const Ray& ray) const {

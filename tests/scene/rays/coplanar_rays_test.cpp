@@ -281,6 +281,26 @@ INSTANTIATE_TEST_SUITE_P(
 
 // A strip as long as the floor, and small sheets beside and beyond it, in shuffled order. Points on
 // a sheet are distinguished from points between sheets.
+// A ray that began below the plane of the bottom, by the bound of rounding, would pass under the
+// edge between the wall and the floor.
+TEST(CoplanarRays, NoRayFromTheBottomOfABoxPassesUnderTheWallsOfTheBox) {
+  CastGeometry geometry;
+  constexpr int room = 0, box = 6;
+  add_box(geometry, {-8, -6, 0}, {8, 6, 3}, true, room);
+  add_box(geometry, {0, 0, 0}, {0.1, 2, 3}, false, box);
+  const RayCaster caster(geometry);
+  for (const double from_wall : {1e-5, 3e-5, 1e-4}) {
+    for (const double slope : {0.003, 0.01, 0.03, 0.1}) {
+      const Ray ray{.origin = {0.1 - from_wall, 1.234, 0.0},
+                    .direction = {1.0, 0.1, slope},
+                    .origin_group = box + low_z};
+      Hit hit;
+      caster.closest_hits({&ray, 1}, {&hit, 1});
+      EXPECT_EQ(hit.group, box + high_x) << from_wall << " m from the wall, slope " << slope;
+    }
+  }
+}
+
 TEST(CoplanarRays, ManySheetsOnAFloorEachHideWhatIsBelow) {
   CastGeometry geometry;
   add_square(geometry, 10.0, 0.0, true, 0);
