@@ -8,6 +8,7 @@
 
 #include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
+#include "radiosity/part_balance.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/refine/gather_noise.h"
 #include "radiosity/refine/refine_solution.h"
@@ -221,6 +222,10 @@ struct VertexGatherTask {
   const SceneParts& parts;
   std::vector<int> rays{};  // in each part
   int one_in = 1;           // the gather casts one in so many of the rays
+  // At least so many of them. Through a door only a few vertices of the next room are seen, and
+  // their noise is not averaged over all directions.
+  int fewest() const { return parts.judged_count() > 1 ? 128 : 1; }
+  int cast_of(int all) const { return std::max(std::min(all, fewest()), all / one_in); }
 };
 
 // The vertices at which rays are missing, and how many.
@@ -236,7 +241,7 @@ MissingRays missing_rays(const VertexGatherTask& task, const KeptGather& kept) {
   const std::vector<int> share_of =
       share_rays(mesh, task.pilot.interpolated, task.parts, task.rays);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const int wanted = share_of[v] > 0 ? std::max(1, share_of[v] / task.one_in) : 0;
+    const int wanted = task.cast_of(share_of[v]);
     const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
     if (more <= 0) continue;
     missing.vertex.push_back(v);
@@ -457,6 +462,9 @@ VertexGather gather_in(const VertexGatherTask& task, BandArray irradiance,
   if (task.pilot.tree) {
     keep_power(mesh, task.lit.direct_light, unscaled_radiosity(solution), radiosity);
   }
+  PartBalance balance{.parts = task.parts, .gather = task.options};
+  for (const int rays : task.rays) balance.rays.push_back(task.cast_of(rays));
+  balance_parts(task.lit, balance, radiosity);
   return gather_once(task, radiosity, kept);
 }
 

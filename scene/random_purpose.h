@@ -73,6 +73,8 @@ enum class RandomPurpose : std::uint64_t {
   pixel_gather_portals = 0x6a81,
   // Light at points by way of mirrors and glass; (point, purpose, replica), (key, purpose, number).
   specular_light = 0x5bec1,
+  // Sample points of the balance between parts; (part, purpose, replica).
+  balance_points = 0xba1a,
   // Paths from openings; (opening, purpose, number).
   portal_paths = 0x9047a1,
 };
@@ -93,6 +95,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::gather_aims:
     case RandomPurpose::gap_rays:
     case RandomPurpose::gather_portals:
+    case RandomPurpose::balance_points:
     case RandomPurpose::error_points:
     case RandomPurpose::exchange_shadow_rays:
     case RandomPurpose::shooter_points:

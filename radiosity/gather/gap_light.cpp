@@ -108,7 +108,7 @@ void GapLight::add_direct(const ElementCaster& caster, const LightQuery& query,
   } else {
     E = lit_.direct_light.irradiance(caster, query);
   }
-  for (Eigen::Index k = 0; k < sum.size(); k += bands) {
+  for (Eigen::Index k = 0; k < E.size(); k += bands) {
     sum.segment(k, bands) += (share * E.segment(k, bands)).cast<double>();
   }
 }

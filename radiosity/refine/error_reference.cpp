@@ -1,6 +1,7 @@
 #include "radiosity/refine/error_reference.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace lightwell {
 
@@ -32,11 +33,13 @@ void PartMeans::add(int patch, double area, double irradiance) {
 }
 
 void PartMeans::finish() {
-  constexpr double least = 1e-5;
+  constexpr double least = 1e-4;
+  constexpr double small = 0.02;  // share of all area
+  const double all = std::accumulate(area_.begin(), area_.end(), 0.0);
   double most = 0.0;
   for (std::size_t p = 0; p < sum_.size(); ++p) {
     judged_by_[p] = area_[p] > 0.0 ? sum_[p] / area_[p] : 0.0;
-    most = std::max(most, judged_by_[p]);
+    if (area_[p] >= small * all) most = std::max(most, judged_by_[p]);
   }
   least_ = least * most;
   for (double& mean : judged_by_) mean = std::max(mean, least_);

@@ -18,8 +18,9 @@ double error_reference(double mean_irradiance, double own_irradiance);
 std::vector<char> judged_patches(const PatchMesh& mesh);
 
 /// The mean irradiance of each part of a scene, by which errors in the part are judged. A part with
-/// less than 1e-5 of the brightest part's mean is judged by that share of the mean: 1 lx beside
-/// sunlit ground of 100 000 lx. Keeps a reference to the parts.
+/// less than 1e-4 of the brightest part's mean is judged by that share of the mean: 10 lx beside
+/// sunlit ground of 100 000 lx. Parts with less than 2 % of all area, such as the inside of a
+/// lamp's housing, are not the brightest. Keeps a reference to the parts.
 class PartMeans {
  public:
   explicit PartMeans(const SceneParts& parts);
@@ -34,7 +35,7 @@ class PartMeans {
   double of_part(int part) const { return judged_by_[static_cast<std::size_t>(part)]; }
   /// Area counted in a part, m^2.
   double area(int part) const { return area_[static_cast<std::size_t>(part)]; }
-  /// 1e-5 of the brightest part's mean, W/m^2.
+  /// 1e-4 of the brightest part's mean, W/m^2.
   double least() const { return least_; }
 
  private:

@@ -101,7 +101,7 @@ TEST(PartAccuracy, OneRoomIsJudgedAsAWhole) {
           .all());
 }
 
-TEST(PartMeans, APartIsJudgedByAHundredThousandthOfTheBrightestAtLeast) {
+TEST(PartMeans, APartIsJudgedByATenThousandthOfTheBrightestAtLeast) {
   SceneParts parts{.of_patch = {0, 1, 2, -1}, .parts = std::vector<ScenePart>(3)};
   PartMeans means(parts);
   means.add(0, 2.0, 1000.0);
@@ -110,8 +110,19 @@ TEST(PartMeans, APartIsJudgedByAHundredThousandthOfTheBrightestAtLeast) {
   means.finish();
   EXPECT_EQ(means.of_patch(0), 1000.0);
   EXPECT_EQ(means.of_patch(1), 1.0);
-  EXPECT_DOUBLE_EQ(means.of_patch(2), 1e-2);
+  EXPECT_DOUBLE_EQ(means.of_patch(2), 0.1);
   EXPECT_EQ(means.of_patch(3), 1000.0) << "patches of no part are judged with the first";
+}
+
+TEST(PartMeans, TheInsideOfALampIsNotTheBrightestPart) {
+  SceneParts parts{.of_patch = {0, 1, 2}, .parts = std::vector<ScenePart>(3)};
+  PartMeans means(parts);
+  means.add(0, 100.0, 1000.0);
+  means.add(1, 1.0, 1e6);
+  means.add(2, 100.0, 1e-6);
+  means.finish();
+  EXPECT_EQ(means.of_patch(1), 1e6);
+  EXPECT_DOUBLE_EQ(means.of_patch(2), 0.1);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/gather/final_gather.h"
+#include "radiosity/solution/scene_parts.h"
+
+namespace lightwell {
+
+/// What balance_parts() balances.
+struct PartBalance {
+  const SceneParts& parts;
+  std::vector<int> rays{};  ///< hemisphere rays at a sample point, by part
+  int points = 512;         ///< sample points in each part
+  GatherOptions gather{};   ///< all else of the gathers at the sample points
+};
+
+/// Scales the reflected radiosity of each part of a scene, so that each part reflects the light
+/// that arrives from all parts together:
+///
+///     s_p P_p = P_p0 + sum_q s_q P_pq
+///
+/// P_p is the power that part p reflects by `radiosity`, P_p0 what it would reflect of the light
+/// straight from lamps and of what other surfaces emit, and P_pq of the light that part q reflects,
+/// all by gathers at sample points. One band has one set of equations, for all channels together.
+///
+/// A gather corrects the light of a part by one reflection. Behind two or three doors most of the
+/// light has been reflected often, and the error of coarse patches beside a door would decay too
+/// slowly. (Chatelin & Miranker 1982, "Acceleration by aggregation of successive approximation
+/// methods".)
+///
+/// `radiosity` (W/m^2, vertices x columns) is as gatherable_radiosity() makes it. At most 32 parts
+/// are scaled, those with the most light. Nothing changes if fewer than two parts have light.
+/// Throws Interrupted when progress says stop.
+void balance_parts(const LitScene& lit, const PartBalance& balance, BandArray& radiosity);
+
+}  // namespace lightwell
