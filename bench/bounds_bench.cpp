@@ -71,7 +71,7 @@ std::vector<Found> truth_of(const RandomRoom& room) {
   parallel_for(static_cast<int>(room.places.size()), 1, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const RoomPlace& place = room.places[static_cast<std::size_t>(i)];
-      const int rays = place.gap > 0.0 ? 8192 : 128;
+      const int rays = place.gap > 0.0 ? 8192 : 2048;
       const auto E = tracer.irradiance(place.position, place.normal, facet_at(caster, place), 1024,
                                        rays, static_cast<std::uint64_t>(i));
       found[static_cast<std::size_t>(i)] = {

@@ -291,6 +291,7 @@ void SolveArguments::add_to(CLI::App& command) {
       ->group(group);
   add_accuracy(command, solve.accuracy, group);
   channels.add_to(command, group);
+  look_from.add_to(command, group);
 }
 
 SolveOptions SolveArguments::options(const Scene& scene) const {
@@ -304,6 +305,7 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
     options.solver_method = solver_method(solver);
   }
   options.channels = channels.channels(scene);
+  options.view_rays = look_from.rays(scene);
   return options;
 }
 
@@ -322,10 +324,11 @@ std::string SolveArguments::text(const Scene& scene) const {
     effort = refinement_text(solve.refine) + fmt::format(" --gather-rays {}", solve.gather.rays);
   }
   return fmt::format(
-      "{}{} --form-factors {}{} --solver {} --rays {} --tolerance {:g} --max-sweeps {}{}",
+      "{}{} --form-factors {}{} --solver {} --rays {} --tolerance {:g} --max-sweeps {}{}{}",
       patches.text(scene), effort, form_factors,
       hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
-      rays_per_patch(asked), solve.solver.tolerance, solve.solver.max_sweeps, channels.text());
+      rays_per_patch(asked), solve.solver.tolerance, solve.solver.max_sweeps, channels.text(),
+      look_from.text());
 }
 
 void RenderArguments::add_to(CLI::App& command) {

@@ -9,6 +9,7 @@
 
 #include "cli/channels.h"
 #include "cli/film.h"
+#include "cli/look_from.h"
 #include "mesh/build_patches.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"
@@ -34,6 +35,7 @@ struct SolveArguments {
   std::string form_factors = "auto";
   std::string solver = "auto";
   ChannelArguments channels{};
+  LookFromArguments look_from{};
   std::string start_from{};  ///< file of the solution the solver starts from; empty: none
   std::int64_t memory = 0;   ///< bytes; 0: no limit given
   SolveOptions solve{};

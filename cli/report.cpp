@@ -108,11 +108,18 @@ std::string error_text(const Json& facts) {
   const double error = facts["error_estimate"];
   const char* const mean =
       facts["parts"].size() > 1 ? "the mean irradiance of the worst part" : "the mean irradiance";
-  return fmt::format("{:.2f} % of {}, estimated (relative RMS)", 100.0 * error, mean);
+  std::string where;
+  if (facts.contains("looked_from")) {
+    std::vector<std::string> names = facts["looked_from"];
+    for (std::string& name : names) name = "'" + name + "'";
+    where = fmt::format(" in what is seen from {}", fmt::join(names, ", "));
+  }
+  return fmt::format("{:.2f} % of {}, estimated (relative RMS){}", 100.0 * error, mean, where);
 }
 
 // The number of parts, and those with the largest errors.
-std::string parts_text(const Json& parts) {
+std::string parts_text(const Json& facts) {
+  const Json& parts = facts["parts"];
   std::vector<std::pair<double, std::string>> by_error;
   std::size_t dark = 0;
   for (const Json& part : parts) {
@@ -136,7 +143,9 @@ std::string parts_text(const Json& parts) {
   std::string text = fmt::format("{} that exchange little light: ", parts.size());
   text += fmt::format("{}", fmt::join(worst, ", "));
   if (by_error.size() > most) text += fmt::format(", {} better", by_error.size() - most);
-  if (dark > 0) text += fmt::format("{}{} without light", worst.empty() ? "" : ", ", dark);
+  const char* const unjudged =
+      facts.contains("looked_from") ? "not seen or without light" : "without light";
+  if (dark > 0) text += fmt::format("{}{} {}", worst.empty() ? "" : ", ", dark, unjudged);
   return text;
 }
 
@@ -163,7 +172,7 @@ std::string solution_text(const Json& facts) {
                            facts["sweeps"].get<int>(), by, facts["outcome"].get<std::string>()));
   if (facts.contains("error_estimate")) {
     text += line("error", error_text(facts));
-    if (facts["parts"].size() > 1) text += line("parts", parts_text(facts["parts"]));
+    if (facts["parts"].size() > 1) text += line("parts", parts_text(facts));
   }
   return text;
 }

@@ -86,9 +86,18 @@ void render_pictures(const Job& job, const SolvedScene& solved) {
   checkpoint.finish(feedback.report, "picture_checkpoint");
 }
 
-int run(const RunArguments& arguments, Console& console) {
+// With an accuracy, errors matter where the cameras look, unless --look-from says otherwise.
+RunArguments looking_from_cameras(RunArguments arguments, const Scene& scene) {
+  std::vector<std::string>& names = arguments.solve.look_from.names;
+  if (!arguments.solve.solve.accuracy || !names.empty()) return arguments;
+  for (const Camera& camera : scene.cameras) names.push_back(camera.name);
+  return arguments;
+}
+
+int run(const RunArguments& given, Console& console) {
   Report report(console.options());
-  const Scene scene = read_scene_step(arguments.scene, console, report);
+  const Scene scene = read_scene_step(given.scene, console, report);
+  const RunArguments arguments = looking_from_cameras(given, scene);
   choose_camera(scene, "");  // throws before the work if the scene has no camera
   const OutputFolder folder(arguments.output.empty() ? default_folder(arguments.scene)
                                                      : fs::path(arguments.output));

@@ -50,9 +50,10 @@ struct ErrorSample {
   double weight = 0.0;  // inverse of the density of sample points, relative to a uniform one
 };
 
-// Draws points on the area of a part that counts (see judged_patches) and is not covered: half of
-// them uniformly, half in proportion to the squared indicator of the elements. Errors may sit in
-// few small elements along the edges of shadows, which uniform points would hardly meet.
+// Draws points on the area of a part that counts (see judged_patches), is not covered, and is
+// looked at: half of them uniformly, half in proportion to the squared indicator of the elements.
+// Errors may sit in few small elements along the edges of shadows, which uniform points would
+// hardly meet.
 class ErrorSampler {
  public:
   ErrorSampler(const ElementCaster& caster, const Eigen::ArrayXf& indicator,
@@ -61,7 +62,7 @@ class ErrorSampler {
     const std::vector<char> judged = judged_patches(mesh_);
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       if (parts.judged_with(p) != part) continue;
-      const bool is_seen = caster.hidden_elements(p) == 0;
+      const bool is_seen = caster.hidden_elements(p) == 0 && parts.is_looked_at(p);
       if (!is_seen || judged[static_cast<std::size_t>(p)] == 0) continue;
       counts_[p] = 1;
       for (int e = mesh_.first_element[p]; e < mesh_.first_element[p + 1]; ++e) {

@@ -13,6 +13,7 @@
 #include "radiosity/emitters/lit_scene.h"
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/illuminate_elements.h"
+#include "radiosity/importance/importance.h"
 #include "radiosity/journal/journal.h"
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/openings/portals.h"
@@ -229,6 +230,16 @@ std::optional<DirectLight> light_by_channel(const Scene& scene, const PatchMesh&
   return std::make_optional<DirectLight>(scene, mesh, channels, &all_light);
 }
 
+void add_importance(const LitScene& lit, const SolveOptions& options, SolvedScene& solved) {
+  if (options.view_rays.empty()) return;
+  const LightPaths paths(lit.scene, lit.caster, options.form_factors.max_specular_depth);
+  const BandArray reflected = solved.solution.patch_radiosity - solved.mesh.emission;
+  const Eigen::ArrayXf brightness = reflected.max(0.0f).rowwise().sum();
+  solved.solution.parts.importance =
+      find_importance(lit.caster, paths, solved.solution.parts, options.view_rays,
+                      {brightness.data(), static_cast<std::size_t>(brightness.size())});
+}
+
 // Fills in the parts of a solution that do not depend on the light.
 void describe(const Scene& scene, RadiositySolution& solution) {
   solution.bands = scene.bands;
@@ -251,6 +262,9 @@ SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const So
     solved.solution.parts = find_parts(scene, caster, paths, options.run.progress);
   }
   const DirectLight direct_light(scene, solved.mesh);
+  if (!options.view_rays.empty()) {
+    add_importance({scene, ElementCaster(solved.mesh), direct_light}, options, solved);
+  }
   const auto by_channel = light_by_channel(scene, solved.mesh, direct_light, options.channels);
   illuminate_elements(scene, {direct_light, by_channel ? *by_channel : direct_light}, options,
                       solved, report);
@@ -320,6 +334,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
 
   solution.seconds = std::move(seconds);
   solution.parts = std::move(parts);
+  add_importance({scene, *caster, direct_light}, options, solved);
 
   caster.reset();
   illuminate_elements(scene, {direct_light, kept_apart}, options, solved, report);

@@ -41,6 +41,10 @@ struct SolveOptions {
   /// A solution with the same patches, whose radiosities the solver begins with; reflectances and
   /// emission may differ. Must outlive the solve. Not with `progressive`.
   const SolvedScene* start = nullptr;
+  /// Rays from where somebody looks, such as those of a camera. Errors matter where they end, and
+  /// less the less light comes from elsewhere to there (see find_importance); the error estimate is
+  /// of what they see. Empty: errors matter everywhere.
+  std::vector<Ray> view_rays{};
   int error_points = 512;  ///< sample points of the error estimate, see estimate_points
   /// The journal must belong to this scene. (`form_factors` has a journal of its own: that of
   /// another solve, whose form factors serve where only reflectances or emission have changed.)

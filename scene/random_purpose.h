@@ -75,6 +75,8 @@ enum class RandomPurpose : std::uint64_t {
   specular_light = 0x5bec1,
   // Sample points of the balance between parts; (part, purpose, replica).
   balance_points = 0xba1a,
+  // Walks of importance; (view ray, purpose, step).
+  importance_walks = 0x1390,
   // Paths from openings; (opening, purpose, number).
   portal_paths = 0x9047a1,
 };
@@ -96,6 +98,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::gap_rays:
     case RandomPurpose::gather_portals:
     case RandomPurpose::balance_points:
+    case RandomPurpose::importance_walks:
     case RandomPurpose::error_points:
     case RandomPurpose::exchange_shadow_rays:
     case RandomPurpose::shooter_points:

@@ -32,7 +32,8 @@ std::vector<double> rms_noises(const PatchMesh& mesh, const Eigen::ArrayXf& nois
   std::vector<double> sum(static_cast<std::size_t>(parts.judged_count()), 0.0), area(sum);
   const std::vector<char> judged = judged_patches(mesh);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (judged[static_cast<std::size_t>(mesh.patch[e])] == 0) continue;
+    const int patch = mesh.patch[e];
+    if (judged[static_cast<std::size_t>(patch)] == 0 || !parts.is_looked_at(patch)) continue;
     const int part = parts.judged_with(mesh.patch[e]);
     sum[part] += mesh.element_area[e] * std::pow(double{noise[e]}, 2);
     area[part] += mesh.element_area[e];

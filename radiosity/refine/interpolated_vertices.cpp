@@ -138,6 +138,20 @@ std::vector<int> share_rays(std::span<const double> area, int rays) {
   return shares;
 }
 
+namespace {
+
+// Half the rays for a quarter of the importance.
+int rays_by_importance(int rays, float importance) {
+  int shift = 0;
+  while (importance < 0.5f) {
+    importance *= 4.0f;
+    ++shift;
+  }
+  return std::max(1, rays >> shift);
+}
+
+}  // namespace
+
 std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedVertex> interpolated,
                             const SceneParts& parts, std::span<const int> rays) {
   std::vector<double> area = vertex_areas(mesh);
@@ -153,7 +167,10 @@ std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedV
     std::vector<double> of_part;
     for (const int v : vertices[p]) of_part.push_back(area[v]);
     const std::vector<int> shared = share_rays(of_part, rays[p]);
-    for (std::size_t i = 0; i < shared.size(); ++i) shares[vertices[p][i]] = shared[i];
+    for (std::size_t i = 0; i < shared.size(); ++i) {
+      const int v = vertices[p][i];
+      shares[v] = rays_by_importance(shared[i], parts.importance_of(patch[v]));
+    }
   }
   for (const InterpolatedVertex& t : interpolated) shares[t.vertex] = 0;
   return shares;

@@ -63,6 +63,7 @@ void InterpolationError::find_what_matters() {
   const PatchMesh& mesh = elements_.base();
   const std::vector<char> judged = judged_patches(mesh);
   matters_.assign(mesh.element_count(), 0);
+  area_.assign(static_cast<std::size_t>(parts_.group_count()), 0.0);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
     const bool is_back = mesh.is_back[p] != 0;
@@ -72,6 +73,7 @@ void InterpolationError::find_what_matters() {
     double E = 0.0;
     for (int i = 0; i < mesh.corner_count(e); ++i) E += gathers_.total(mesh.corners[e][i]).mean();
     means_.add(p, mesh.element_area[e], E / mesh.corner_count(e));
+    area_[static_cast<std::size_t>(parts_.group_of(p))] += mesh.element_area[e];
   }
   means_.finish();
 }

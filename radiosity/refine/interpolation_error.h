@@ -51,8 +51,8 @@ class InterpolationError {
 
   /// True if a side of an element of the base counts: judged_patches(), and the side is not hidden.
   bool matters(int element) const { return matters_[element] != 0; }
-  /// Area of the sides that count in a part, m^2.
-  double area(int part) const { return means_.area(part); }
+  /// Area of the sides that count in a SceneParts::group_of(), m^2.
+  double area(int group) const { return area_[static_cast<std::size_t>(group)]; }
 
   /// A bound of the squared error from the corners' values, for cells not measured yet: their range
   /// squared, plus (5 %)^2.
@@ -118,6 +118,7 @@ class InterpolationError {
   std::vector<char> matters_;  // per element of the base
   SceneParts parts_;
   PartMeans means_;
+  std::vector<double> area_{};  // of each group, m^2
   // Squared error between the vertices, relative, by RefinedElements::side_number(); below 0: not
   // searched yet.
   std::vector<float> between_;

@@ -59,7 +59,7 @@ class Refinement {
         of_children_(may_go_on ? of_a_split : 1.0),
         in_the_end_(may_go_on ? 1.0 : of_a_split_in_the_end),
         report_{.elements_at_first = elements.element_count()},
-        part_count_(options.parts.judged_count()),
+        part_count_(options.parts.group_count()),
         allowed_(static_cast<std::size_t>(part_count_), 0.0),
         sum_(allowed_) {
     if (is_memory_short_) max_elements_ = std::max(options.room, report_.elements_at_first);
@@ -78,7 +78,7 @@ class Refinement {
     options_.tolerance = options.tolerance;
     options_.efforts = options.efforts;
     for (int p = 0; p < part_count_; ++p) {
-      allowed_[p] = std::pow(options.tolerance_of(p), 2) * error_.area(p);
+      allowed_[p] = std::pow(options.tolerance_of(judged(p)), 2) * error_.area(p);
     }
     for (const int cell : elements_.leaves()) {
       if (error_.is_stale(cell)) measured_[cell] = 0;
@@ -140,7 +140,14 @@ class Refinement {
   }
 
   int part_of(int cell, int side) const {
-    return options_.parts.judged_with(elements_.base().patch[elements_.element(cell, side)]);
+    return options_.parts.group_of(elements_.base().patch[elements_.element(cell, side)]);
+  }
+  // The part that a group is of.
+  int judged(int group) const { return group % options_.parts.judged_count(); }
+
+  double importance_of(int cell, int side) const {
+    const int patch = elements_.base().patch[elements_.element(cell, side)];
+    return double{options_.parts.importance_of(patch)};
   }
 
   // Calls visit(part) for the parts that the sides of a cell are in, once each.
@@ -221,15 +228,17 @@ class Refinement {
 
   // Squared error times area. The error that noise may hide in a cell is nothing for the most part,
   // and counts only if it could be a notable share of all that is allowed. Such a cell is split,
-  // and its parts are measured. Sides in other parts of the scene do not count.
+  // and its parts are measured. Sides in other parts of the scene do not count, and those that
+  // matter less for what somebody looks at count by their importance.
   double counted(int cell, int part) const {
     constexpr double notable = 0.01;
     double known = 0.0, hidden = 0.0;
     for (int side = 0; side < elements_.side_count(cell); ++side) {
       if (part_of(cell, side) != part) continue;
       const Square& square = squares_[elements_.side_number(cell, side)];
-      known += double{square.known};
-      hidden += double{square.hidden};
+      const double importance = importance_of(cell, side);
+      known += importance * double{square.known};
+      hidden += importance * double{square.hidden};
     }
     known *= elements_.area(cell);
     hidden *= elements_.area(cell);
@@ -268,7 +277,7 @@ class Refinement {
     }
     report_.parts.clear();
     double worst = -1.0;
-    for (int p = 0; p < part_count_; ++p) {
+    for (int p = 0; p < options_.parts.judged_count(); ++p) {
       const double area = error_.area(p);
       report_.parts.push_back({.estimate = area > 0.0 ? std::sqrt(left[p] / area) : 0.0,
                                .is_reached = sum_[p] <= allowed_[p]});
@@ -341,7 +350,7 @@ class Refinement {
   bool may_go_on_;
   double of_children_, in_the_end_;
   RefineReport report_;
-  int part_count_;
+  int part_count_;  // of SceneParts::group_of(): each is refined as a part of its own
   std::vector<double> allowed_, sum_;  // of each part: squared error times area, over all leaves
   struct Square {
     float known = 0.0f, hidden = 0.0f;

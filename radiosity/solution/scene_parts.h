@@ -21,7 +21,20 @@ struct ScenePart {
 struct SceneParts {
   std::vector<int> of_patch{};  ///< index into `parts`, or -1 for none; empty: not known
   std::vector<ScenePart> parts{};
+  /// How much errors on each patch matter, 0 to 1 (see find_importance); empty: all alike.
+  std::vector<float> importance{};
 
+  float importance_of(int patch) const {
+    return importance.empty() ? 1.0f : importance[static_cast<std::size_t>(patch)];
+  }
+  /// Groups of patches in refinement: the patches of each part that are looked at, then the others
+  /// of each part.
+  int group_count() const { return importance.empty() ? judged_count() : 2 * judged_count(); }
+  int group_of(int patch) const {
+    return judged_with(patch) + (is_looked_at(patch) ? 0 : judged_count());
+  }
+  /// True if errors are judged on the patch: if somebody looks at it.
+  bool is_looked_at(int patch) const { return importance_of(patch) == 1.0f; }
   int count() const { return static_cast<int>(parts.size()); }
   /// Number of parts that are judged each by its own light: 1 where the parts are not known.
   int judged_count() const { return count() > 1 ? count() : 1; }
