@@ -83,6 +83,24 @@ TEST_F(Output, RunLeavesSolutionPicturesAndReport) {
   EXPECT_TRUE(says(ended.out, "30 W emitted"));
 }
 
+TEST_F(Output, SolveSaysFromWhereItLooked) {
+  folder.write("desk.csv", "x,y,z,nx,ny,nz\n2,1.5,0.75,0,0,1\n");
+  const Words solve{"solve", "room.toml", "-o", "S.vtp", "--accuracy", "20%"};
+  for (const char* name : {"door", "desk.csv"}) {
+    const auto json = run_json(solve + Words{"--look-from", name});
+    EXPECT_EQ(json["looked_from"], nlohmann::json::array({name}));
+    EXPECT_TRUE(says(json["options"].get<std::string>(), std::string(" --look-from ") + name));
+    EXPECT_LE(json["error_estimate"].get<double>(), 0.2);
+  }
+  EXPECT_FALSE(run_json(solve).contains("looked_from"));
+  EXPECT_FALSE(run_json(solve + Words{"--look-from", "everywhere"}).contains("looked_from"));
+}
+
+TEST_F(Output, RunWithAnAccuracyLooksFromItsCameras) {
+  const auto json = run_json({"run", "room.toml", "--accuracy", "20%", "--size", "16x12"});
+  EXPECT_EQ(json["looked_from"], nlohmann::json::array({"door"}));
+}
+
 TEST_F(Output, RunWithoutAFolderTakesTheScenesName) {
   ASSERT_EQ(run(Words{"run", "room.toml", "--quiet"} + quick()).code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "room-output/door.png"));
