@@ -13,7 +13,7 @@ namespace {
 constexpr int ray_count = 64;
 constexpr int most_bounces = 16;
 // Keeps these random numbers apart from those of gathers.
-constexpr std::uint64_t own = 0x4ead;
+constexpr std::uint64_t own_key = 0x4ead;
 
 class ReadErrors {
  public:
@@ -29,9 +29,9 @@ class ReadErrors {
     double sum = 0.0;
     for (int i = 0; i < ray_count; ++i) {
       const Eigen::Array4f u =
-          directions_.point(i, random_key(key, RandomPurpose::gather_rays, own));
+          directions_.point(i, random_key(key, RandomPurpose::gather_rays, own_key));
       const auto number = static_cast<std::uint64_t>(i);
-      sum += along(point, u, random_key(key, RandomPurpose::gather_paths, number, own));
+      sum += along(point, u, random_key(key, RandomPurpose::gather_paths, number, own_key));
     }
     return sum / ray_count;
   }

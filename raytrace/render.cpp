@@ -15,6 +15,7 @@
 
 #include "radiosity/journal/journal_phase.h"
 #include "raytrace/camera_ray.h"
+#include "raytrace/gloss_mask.h"
 #include "raytrace/layer_film.h"
 #include "raytrace/pixel_samples.h"
 #include "raytrace/sampled_rows.h"
@@ -59,6 +60,10 @@ class Eye {
     return sample;
   }
   std::uint64_t fingerprint(double x, double y) const { return tree_.fingerprint(ray(x, y)); }
+  /// Returns the pixels with gloss of rows `first` to `end` of a picture of `width` columns.
+  GlossMask gloss(int width, int first, int end) const {
+    return GlossMask(rays_, tree_, width, first, end);
+  }
 
  private:
   Ray ray(double x, double y) const {
@@ -98,6 +103,7 @@ class PixelMean {
 
   // `corners`: top left, top right, bottom left, bottom right.
   PixelValue operator()(int x, int y, const std::array<const RaySample*, 4>& corners) {
+    met_gloss_ = false;
     x_ = x * lattice_steps;
     y_ = y * lattice_steps;
     if (!must_split(0, 0, cells_, corners) && (cells_ > 1 || are_alike(corners))) {
@@ -107,6 +113,9 @@ class PixelMean {
     for (int c = 0; c < 4; ++c) keep(cells_ * (c & 1), cells_ * (c >> 1), *corners[c]);
     return cell_mean(0, 0, cells_);
   }
+
+  /// Whether a sample of the last pixel, beside its corners, met a rough surface.
+  bool met_gloss() const { return met_gloss_; }
 
  private:
   using Corners = std::array<const RaySample*, 4>;
@@ -124,7 +133,9 @@ class PixelMean {
       int step = cells_;
       while ((i | j) % step != 0) step /= 2;
       const float effort = static_cast<float>(step) / static_cast<float>(cells_);
-      keep(i, j, eye_.trace(x_ + i * steps_per_cell_, y_ + j * steps_per_cell_, effort));
+      RaySample sample = eye_.trace(x_ + i * steps_per_cell_, y_ + j * steps_per_cell_, effort);
+      met_gloss_ = met_gloss_ || sample.sees_gloss;
+      keep(i, j, std::move(sample));
     }
     return &lattice_samples_[slot(i, j)];
   }
@@ -215,6 +226,7 @@ class PixelMean {
   const SobolPoints edge_points_{16};
   int cells_, steps_per_cell_;
   int x_ = 0, y_ = 0;
+  bool met_gloss_ = false;
   std::vector<RaySample> lattice_samples_;  // samples at this pixel's lattice points
   std::vector<char> known_;
 };
@@ -222,28 +234,53 @@ class PixelMean {
 // A row of pixel corners.
 using CornerRow = std::vector<RaySample>;
 
-void trace_corners(const Eye& eye, int first_row, std::span<CornerRow> rows) {
+// Pixels that many samples are taken of, beside subdivision.
+struct SampledPixels {
+  const PixelSamples& samples;
+  const GlossMask& mask;
+};
+
+void trace_corners(const Eye& eye, int first_row, std::span<CornerRow> rows,
+                   const GlossMask* mask = nullptr) {
   constexpr int grain = 32;
   const int columns = static_cast<int>(rows.front().size());
   parallel_for(static_cast<int>(rows.size()) * columns, grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const int row = i / columns, column = i % columns;
+      if (mask && !mask->is_corner_of_matt_pixel(column, first_row + row)) continue;
       rows[row][column] = eye.trace(column * lattice_steps, (first_row + row) * lattice_steps);
     }
   });
 }
 
+void count_samples(const PixelTally& tally, Counters& counters) {
+  counters.eye_rays += tally.count;
+  counters.depth_cut += tally.sum.depth_cut;
+  counters.add_cut(double{tally.sum.cut_weight});
+}
+
+// Fills pixels by subdivision. Those of `sampled` are left out, except where subdivision finds
+// gloss that no corner shows.
 void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
-                    std::span<const CornerRow> corners, Image& image, LayerFilm& layers) {
+                    std::span<const CornerRow> corners, const SampledPixels* sampled,
+                    Counters& counters, Image& image, LayerFilm& layers) {
   constexpr int grain = 32;
   const int rows = static_cast<int>(corners.size()) - 1;
   parallel_for(rows * image.width, grain, [&](int begin, int end) {
     PixelMean pixel_mean(eye, options);
     for (int i = begin; i < end; ++i) {
       const int row = i / image.width, x = i % image.width, y = first_row + row;
+      if (sampled && sampled->mask.has_gloss(x, y)) continue;
       const CornerRow& top = corners[row];
       const CornerRow& bottom = corners[row + 1];
       const PixelValue value = pixel_mean(x, y, {&top[x], &top[x + 1], &bottom[x], &bottom[x + 1]});
+      if (sampled && pixel_mean.met_gloss()) {
+        PixelTally tally = sampled->samples.first_samples(x, y);
+        sampled->samples.take_more(x, y, true, tally);
+        set_pixel(tally, x, y, image, layers);
+        count_samples(tally, counters);
+        continue;
+      }
       const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
       image.radiance.row(pixel) = value.radiance.transpose();
       layers.set_sampled(pixel, value.layers);
@@ -273,16 +310,16 @@ std::optional<Exposure> exposure_of(const Scene& scene, const PatchMesh& mesh,
   return exposure;
 }
 
-// Returns the options of many samples per pixel, by default for rough surfaces, lenses and motion,
-// which have no sharp edges for subdivision to find.
-SampleOptions sampling_for(const Scene& scene, const CameraRays& rays, bool is_exposure,
-                           const RenderOptions& options) {
-  SampleOptions sampling = options.sampling;
+// Which pixels get many samples.
+enum class Sampled { none, with_gloss, all };
+
+// Returns which pixels get many samples: by default those that show rough surfaces, and all with
+// lenses and motion, which have no sharp edges for subdivision to find.
+Sampled sampled_pixels(const Scene& scene, const CameraRays& rays, bool is_exposure,
+                       const RenderOptions& options) {
+  if (options.sampling.most > 0 || is_exposure || rays.has_lens()) return Sampled::all;
   const auto is_rough = [](const Material& m) { return m.gloss_roughness() > 0.0f; };
-  const bool needed =
-      is_exposure || rays.has_lens() || std::ranges::any_of(scene.materials, is_rough);
-  if (sampling.most == 0 && needed) sampling.most = SampleOptions::most_by_default;
-  return sampling;
+  return std::ranges::any_of(scene.materials, is_rough) ? Sampled::with_gloss : Sampled::none;
 }
 
 void add_motion(Fingerprint& print, const RigidMotion& motion) {
@@ -350,14 +387,15 @@ std::span<float> rows_of(BandArray& values, int width, int first_row, int rows) 
   return {values.data() + first_row * row, rows * row};
 }
 
-// Renderer of tiles, which are strips of full rows. Strips share a row of corners, or hold many
-// samples per pixel if there are `samples`.
+// Renderer of tiles, which are strips of full rows. Strips share a row of corners; pixels that are
+// `sampled` hold many samples instead.
 class TileRenderer {
  public:
-  TileRenderer(const Eye& eye, const PixelSamples* samples, const RenderOptions& options,
-               Counters& counters, Image& image, LayerFilm& layers)
+  TileRenderer(const Eye& eye, const PixelSamples& samples, Sampled sampled,
+               const RenderOptions& options, Counters& counters, Image& image, LayerFilm& layers)
       : eye_(eye),
         samples_(samples),
+        sampled_(sampled),
         options_(options),
         counters_(counters),
         image_(image),
@@ -368,32 +406,46 @@ class TileRenderer {
   int tile_rows() const {
     // Each tile also takes, and discards, the first samples of a row on either side.
     constexpr int sampled_rows = 16;
-    if (samples_) return sampled_rows;
+    if (sampled_ != Sampled::none) return sampled_rows;
     constexpr int pixels_per_tile = 8192;
     return std::max(1, pixels_per_tile / image_.width);
   }
   /// Fills radiance and sampled layers of a tile.
   void render(int first_row, int rows) {
-    if (samples_) {
-      const double part = static_cast<double>(first_row) / image_.height;
-      const SampledRows took =
-          sample_rows(*samples_, first_row, rows, options_.run.progress, part, image_, layers_);
-      counters_.eye_rays += took.samples;
-      counters_.depth_cut += took.depth_cut;
-      counters_.add_cut(took.cut_weight);
-      return;
-    }
-    if (row_of_corners_ != first_row) trace_corners(eye_, first_row, {corners_.data(), 1});
-    trace_corners(eye_, first_row + 1, {corners_.data() + 1, static_cast<std::size_t>(rows)});
-    average_pixels(eye_, options_, first_row, {corners_.data(), static_cast<std::size_t>(rows) + 1},
-                   image_, layers_);
+    if (sampled_ == Sampled::all) return sample(first_row, rows, nullptr);
+    if (sampled_ == Sampled::none) return subdivide(first_row, rows, nullptr);
+    const int above = std::max(0, first_row - 1);
+    const int below = std::min(image_.height, first_row + rows + 1);
+    const GlossMask mask = eye_.gloss(image_.width, above, below);
+    subdivide(first_row, rows, &mask);
+    sample(first_row, rows, &mask);
+  }
+
+ private:
+  void sample(int first_row, int rows, const GlossMask* only) {
+    const double part = static_cast<double>(first_row) / image_.height;
+    const SampledRows took =
+        sample_rows(samples_, first_row, rows, options_.run.progress, part, image_, layers_, only);
+    counters_.eye_rays += took.samples;
+    counters_.depth_cut += took.depth_cut;
+    counters_.add_cut(took.cut_weight);
+  }
+
+  void subdivide(int first_row, int rows, const GlossMask* mask) {
+    const auto count = static_cast<std::size_t>(rows);
+    if (row_of_corners_ != first_row) trace_corners(eye_, first_row, {corners_.data(), 1}, mask);
+    trace_corners(eye_, first_row + 1, {corners_.data() + 1, count}, mask);
+    std::optional<SampledPixels> sampled;
+    if (mask) sampled.emplace(SampledPixels{.samples = samples_, .mask = *mask});
+    average_pixels(eye_, options_, first_row, {corners_.data(), count + 1},
+                   sampled ? &*sampled : nullptr, counters_, image_, layers_);
     std::swap(corners_.front(), corners_[rows]);
     row_of_corners_ = first_row + rows;
   }
 
- private:
   const Eye& eye_;
-  const PixelSamples* samples_;
+  const PixelSamples& samples_;
+  Sampled sampled_;
   const RenderOptions& options_;
   Counters& counters_;
   Image& image_;
@@ -447,10 +499,11 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
     if (const FacetNormals normals(scene); !normals.is_empty()) print.add(normals.hash());
     for (const std::string& name : image.layers.names) print.add(name);
   });
-  const SampleOptions sampling = sampling_for(scene, rays, exposure.has_value(), options);
-  std::optional<PixelSamples> samples;
-  if (sampling.most > 0) samples.emplace(rays, tree, sampling, std::move(exposure));
-  TileRenderer tiles(eye, samples ? &*samples : nullptr, options, counters, image, layers);
+  const Sampled sampled = sampled_pixels(scene, rays, exposure.has_value(), options);
+  SampleOptions sampling = options.sampling;
+  if (sampling.most == 0) sampling.most = SampleOptions::most_by_default;
+  const PixelSamples samples(rays, tree, sampling, std::move(exposure));
+  TileRenderer tiles(eye, samples, sampled, options, counters, image, layers);
   report(options.run.progress, "render", 0.0);
   int tile = 0, recalled = 0;
   for (int y = 0; y < camera.height; y += tiles.tile_rows(), ++tile) {

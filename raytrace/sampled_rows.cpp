@@ -25,17 +25,27 @@ void for_each_pixel(int width, int first, int end, const Progress& progress, dou
 
 }  // namespace
 
+void set_pixel(const PixelTally& tally, int x, int y, Image& image, LayerFilm& layers) {
+  const float share = 1.0f / static_cast<float>(tally.count);
+  const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
+  image.radiance.row(pixel) = share * tally.sum.radiance.transpose();
+  layers.set_sampled(pixel, share * tally.sum.layers);
+}
+
 SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
-                        const Progress& progress, double part, Image& image, LayerFilm& layers) {
+                        const Progress& progress, double part, Image& image, LayerFilm& layers,
+                        const GlossMask* only) {
   const int top = std::max(0, first_row - 1), bottom = std::min(image.height, first_row + rows + 1);
   std::vector<PixelTally> tallies(static_cast<std::size_t>(bottom - top) *
                                   static_cast<std::size_t>(image.width));
-  std::vector<char> good(tallies.size());
+  std::vector<char> good(tallies.size(), 1);
   const auto slot = [&](int x, int y) {
     return static_cast<std::size_t>(y - top) * static_cast<std::size_t>(image.width) +
            static_cast<std::size_t>(x);
   };
+  const auto is_sampled = [&](int x, int y) { return !only || only->has_gloss(x, y); };
   for_each_pixel(image.width, top, bottom, progress, part, [&](int x, int y) {
+    if (!is_sampled(x, y)) return;
     PixelTally& tally = tallies[slot(x, y)] = samples.first_samples(x, y);
     good[slot(x, y)] = tally.is_good(samples.options().noise);
   });
@@ -48,12 +58,10 @@ SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
     return false;
   };
   for_each_pixel(image.width, first_row, first_row + rows, progress, part, [&](int x, int y) {
+    if (!is_sampled(x, y)) return;
     PixelTally& tally = tallies[slot(x, y)];
     samples.take_more(x, y, is_beside_noise(x, y), tally);
-    const float share = 1.0f / static_cast<float>(tally.count);
-    const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
-    image.radiance.row(pixel) = share * tally.sum.radiance.transpose();
-    layers.set_sampled(pixel, share * tally.sum.layers);
+    set_pixel(tally, x, y, image, layers);
   });
   SampledRows result;
   for (int y = first_row; y < first_row + rows; ++y) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "raytrace/gloss_mask.h"
 #include "raytrace/image.h"
 #include "raytrace/layer_film.h"
 #include "raytrace/pixel_samples.h"
@@ -15,11 +16,17 @@ struct SampledRows {
   double cut_weight = 0.0;
 };
 
+/// Sets a pixel, and its sampled layers, to the mean of its samples, of which there is at least
+/// one.
+void set_pixel(const PixelTally& tally, int x, int y, Image& image, LayerFilm& layers);
+
 /// Fills `rows` rows of a picture from `first_row` on, and their sampled layers, by many samples
 /// per pixel. The result of a row does not depend on the other rows filled with it: the first
-/// samples of the rows above and below are taken too, see PixelSamples::take_more. Reports progress
-/// `part` throughout.
+/// samples of the rows above and below are taken too, see PixelSamples::take_more. With `only`,
+/// which covers these rows, pixels without gloss keep their values. Reports progress `part`
+/// throughout.
 SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
-                        const Progress& progress, double part, Image& image, LayerFilm& layers);
+                        const Progress& progress, double part, Image& image, LayerFilm& layers,
+                        const GlossMask* only = nullptr);
 
 }  // namespace lightwell

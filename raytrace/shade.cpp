@@ -179,10 +179,11 @@ void RayTree::trace_chain(const Ray& ray, const ChainTurns& turns,
   follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, state);
 }
 
-std::uint64_t RayTree::fingerprint(const Ray& ray) const {
+// Traces a ray without shading: the result has no radiance.
+RaySample RayTree::outline(const Ray& ray) const {
   TreeState state{.caster = &caster_, .shades = false};
   follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, state);
-  return state.result.fingerprint;
+  return state.result;
 }
 
 void RayTree::follow(Branch branch, TreeState& state) const {

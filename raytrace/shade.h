@@ -30,6 +30,7 @@ struct RaySample {
   /// sampled layers.
   SampledLayers layers = SampledLayers::Zero();
   std::uint64_t fingerprint = 0;  ///< identifies the surfaces seen, see RayTree
+  bool sees_gloss = false;        ///< a rough surface was met, at first or behind smooth ones
   std::int64_t depth_cut = 0;     ///< branches that ended at max_depth
   float cut_weight = 0.0f;        ///< sum over these branches of the largest weight of any band
 };
@@ -117,7 +118,9 @@ class RayTree {
   void trace_chain(const Ray& ray, const ChainTurns& turns,
                    const std::function<void(const SpecularSegment&)>& visit) const;
   /// Returns the fingerprint of a ray, without shadow rays.
-  std::uint64_t fingerprint(const Ray& ray) const;
+  std::uint64_t fingerprint(const Ray& ray) const { return outline(ray).fingerprint; }
+  /// Returns RaySample::sees_gloss of a ray, without shadow rays.
+  bool sees_gloss(const Ray& ray) const { return outline(ray).sees_gloss; }
 
  private:
   /// Geometry and material of a facet.
@@ -183,6 +186,7 @@ class RayTree {
     std::uint64_t gloss_key = 0;  ///< the same for all samples of one key
   };
 
+  RaySample outline(const Ray& ray) const;
   void follow(Branch branch, TreeState& state) const;
   void add_background(const Branch& branch, TreeState& state) const;
   void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,

@@ -23,6 +23,7 @@ bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d
 // Adds the mean over sampled directions of a rough surface's lobe.
 void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interaction,
                       const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
+  state.result.sees_gloss = state.result.sees_gloss || branch.is_sharp;
   if (!state.shades) return;
   const bool is_first = branch.is_sharp && !state.number && !state.lamps_alone;
   const int count =
