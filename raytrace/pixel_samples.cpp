@@ -42,12 +42,14 @@ double FilterSampler::offset(double u) const {
 }
 
 PixelSamples::PixelSamples(const CameraRays& rays, const RayTree& tree,
-                           const SampleOptions& options, std::optional<Exposure> exposure)
+                           const SampleOptions& options, PixelFilter filter,
+                           std::optional<Exposure> exposure)
     : rays_(rays),
       tree_(tree),
       options_(options),
       exposure_(std::move(exposure)),
-      points_(options.most) {}
+      points_(options.most),
+      filter_(filter) {}
 
 PixelTally PixelSamples::first_samples(int x, int y) const {
   PixelTally tally;
@@ -74,14 +76,18 @@ RaySample PixelSamples::sample_at_time(Ray ray, double time, std::uint64_t key, 
   return tree_.trace_one_of_many(ray, key, number, exposure_->caster.at(time));
 }
 
+// Offset of a sample from the pixel's centre along one axis.
+double PixelSamples::offset(double u) const {
+  return filter_ == PixelFilter::square ? u - 0.5 : window_.offset(u);
+}
+
 void PixelSamples::take(int x, int y, int until, PixelTally& tally) const {
   const auto column = static_cast<std::uint64_t>(x), row = static_cast<std::uint64_t>(y);
   const std::uint64_t sample_key = random_key(column, row, RandomPurpose::pixel_points);
   const std::uint64_t shading_key = random_key(column, row, RandomPurpose::pixel_shading);
   for (; tally.count < until; ++tally.count) {
     const Eigen::Array4d u = points_.point(tally.count, sample_key).cast<double>();
-    const Ray ray =
-        rays_.ray(x + 0.5 + filter_.offset(u[0]), y + 0.5 + filter_.offset(u[1]), u[2], u[3]);
+    const Ray ray = rays_.ray(x + 0.5 + offset(u[0]), y + 0.5 + offset(u[1]), u[2], u[3]);
     const double part = exposure_ ? SobolPoints::fifth(tally.count, sample_key) : 0.0;
     RaySample sample =
         exposure_

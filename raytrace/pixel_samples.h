@@ -42,6 +42,9 @@ struct Exposure {
   std::optional<RigidMotion> camera{};  ///< motion of the camera; none: the camera stands still
 };
 
+/// Which samples a pixel is the mean of: those of its square, or those of FilterSampler's window.
+enum class PixelFilter { square, window };
+
 /// Sampler of a pixel by many samples, each through its own point of picture and lens: for gloss,
 /// depth of field and motion, which no subdivision of the pixel's square resolves (Cook, Porter &
 /// Carpenter 1984). The samples are points of one scrambled Sobol sequence per pixel, in picture,
@@ -49,7 +52,7 @@ struct Exposure {
 class PixelSamples {
  public:
   PixelSamples(const CameraRays& rays, const RayTree& tree, const SampleOptions& options,
-               std::optional<Exposure> exposure = {});
+               PixelFilter filter = PixelFilter::window, std::optional<Exposure> exposure = {});
 
   /// Takes the first SampleOptions::least samples of pixel (x, y), but at most SampleOptions::most.
   PixelTally first_samples(int x, int y) const;
@@ -63,6 +66,7 @@ class PixelSamples {
 
  private:
   void take(int x, int y, int until, PixelTally& tally) const;
+  double offset(double u) const;
   RaySample sample_at_time(Ray ray, double time, std::uint64_t key, int number) const;
 
   const CameraRays& rays_;
@@ -70,7 +74,8 @@ class PixelSamples {
   SampleOptions options_;
   std::optional<Exposure> exposure_;  // empty: nothing moves
   SobolPoints points_;
-  FilterSampler filter_;
+  PixelFilter filter_;
+  FilterSampler window_;
 };
 
 }  // namespace lightwell

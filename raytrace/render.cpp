@@ -502,7 +502,10 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   const Sampled sampled = sampled_pixels(scene, rays, exposure.has_value(), options);
   SampleOptions sampling = options.sampling;
   if (sampling.most == 0) sampling.most = SampleOptions::most_by_default;
-  const PixelSamples samples(rays, tree, sampling, std::move(exposure));
+  // Beside subdivided pixels, which are means over their squares, the window would count the light
+  // of some points twice and that of others not at all.
+  const PixelFilter filter = sampled == Sampled::all ? PixelFilter::window : PixelFilter::square;
+  const PixelSamples samples(rays, tree, sampling, filter, std::move(exposure));
   TileRenderer tiles(eye, samples, sampled, options, counters, image, layers);
   report(options.run.progress, "render", 0.0);
   int tile = 0, recalled = 0;

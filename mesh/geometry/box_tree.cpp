@@ -90,10 +90,14 @@ void BoxTree::find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>
 
 bool BoxTree::find_before(std::span<const Eigen::Hyperplane<double, 3>> planes, double least,
                           std::int64_t& visits, std::vector<int>& found) const {
+  // A box is before a plane where its corner farthest along the normal is.
   const auto meets = [&](const Box& box) {
-    const Eigen::Vector3d center = box.center(), half = 0.5 * box.sizes();
     return std::ranges::all_of(planes, [&](const Eigen::Hyperplane<double, 3>& plane) {
-      return plane.signedDistance(center) + half.dot(plane.normal().cwiseAbs()) > least;
+      const auto farthest = [&](int c) {
+        const double n = plane.normal()[c];
+        return std::max(n * box.min()[c], n * box.max()[c]);
+      };
+      return farthest(0) + farthest(1) + farthest(2) + plane.offset() > least;
     });
   };
   return collect(meets, visits, found);
