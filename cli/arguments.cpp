@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -331,11 +332,35 @@ std::string SolveArguments::text(const Scene& scene) const {
       look_from.text());
 }
 
+// Half the noise takes four times the samples; `good` are the defaults of RenderOptions.
+constexpr std::array<PictureQuality, 3> picture_qualities{{
+    {.name = "draft", .shadow_rays = 16, .photons = 1 << 16, .noise = 0.1},
+    {.name = "good", .shadow_rays = 64, .photons = 1 << 19, .noise = 0.02},
+    {.name = "final", .shadow_rays = most_shadow_rays, .photons = 1 << 21, .noise = 0.01},
+}};
+
+PictureQuality RenderArguments::effective_quality() const {
+  const auto named = std::ranges::find_if(
+      picture_qualities, [&](const PictureQuality& each) { return quality == each.name; });
+  PictureQuality result = *named;
+  result.shadow_rays = shadow_rays.value_or(result.shadow_rays);
+  result.photons = photons.value_or(result.photons);
+  result.noise = noise.value_or(result.noise);
+  return result;
+}
+
 void RenderArguments::add_to(CLI::App& command) {
   const std::string group = "How pictures are made";
   add_size(command, size);
   add_exposure(command, exposure_ev);
   for (const char* name : {"--size", "--exposure"}) command.get_option(name)->group(group);
+  command
+      .add_option("--quality", quality,
+                  "draft, good (default) or final: shadow rays, photons and noise together; "
+                  "options of their own come before it")
+      ->type_name("QUALITY")
+      ->check(one_of("quality", {"draft", "good", "final"}))
+      ->group(group);
   command
       .add_option("--pass", pass,
                   "direct: direct light anew at every pixel (default); gather: indirect light "
@@ -345,7 +370,7 @@ void RenderArguments::add_to(CLI::App& command) {
       ->group(group);
   command
       .add_option("--shadow-rays", shadow_rays,
-                  "most shadow rays per emitter and point (default 64)")
+                  "most shadow rays per emitter and point (default: of the quality, 64)")
       ->type_name("N")
       ->check(whole_number(1, most_shadow_rays))
       ->group(group);
@@ -357,7 +382,8 @@ void RenderArguments::add_to(CLI::App& command) {
       ->group(group);
   command
       .add_option("--photons", photons,
-                  "photons for the caustics of mirrors and glass (default 524288); 0: caustics "
+                  "photons for the caustics of mirrors and glass (default: of the quality, "
+                  "524288); 0: caustics "
                   "from the solution's mesh")
       ->type_name("N")
       ->check(whole_number(0, most_photons))
@@ -368,8 +394,8 @@ void RenderArguments::add_to(CLI::App& command) {
       ->group(group);
   command
       .add_option("--samples", samples,
-                  "most samples per pixel (default: 256 with gloss or a lens; otherwise only "
-                  "edges are supersampled)")
+                  "most samples of every pixel (default: 256 where gloss is seen or with a lens; "
+                  "otherwise only edges are supersampled)")
       ->type_name("N")
       ->check(whole_number(1, SampleOptions::limit))
       ->group(group);
@@ -387,7 +413,9 @@ void RenderArguments::add_to(CLI::App& command) {
             }
             noise = *share;
           },
-          "relative standard error at which the sampling of a pixel stops (default 2%)")
+          "relative standard error at which the sampling of a pixel stops (default: of the "
+          "quality, "
+          "2%)")
       ->type_name("ERROR")
       ->group(group);
 }
@@ -398,22 +426,24 @@ RenderOptions RenderArguments::options() const {
                  : pass == "gather"    ? Pass::gather
                                        : Pass::direct;
   options.gather_rays = gather_samples;
-  options.photons = photons;
+  const PictureQuality chosen = effective_quality();
+  options.photons = chosen.photons;
   options.max_depth = depth;
   options.sampling.most = samples;
-  options.sampling.noise = static_cast<float>(noise);
-  options.shadows.max_rays = shadow_rays;
-  options.shadows.min_rays = std::min(options.shadows.min_rays, shadow_rays);
+  options.sampling.noise = static_cast<float>(chosen.noise);
+  options.shadows.max_rays = chosen.shadow_rays;
+  options.shadows.min_rays = std::min(options.shadows.min_rays, chosen.shadow_rays);
   return options;
 }
 
 std::string RenderArguments::text() const {
-  std::string text = fmt::format("--pass {} --shadow-rays {}", pass, shadow_rays);
+  const PictureQuality chosen = effective_quality();
+  std::string text = fmt::format("--pass {} --shadow-rays {}", pass, chosen.shadow_rays);
   if (pass == "gather") text += fmt::format(" --gather-samples {}", gather_samples);
-  if (pass != "interpolate") text += fmt::format(" --photons {}", photons);
+  if (pass != "interpolate") text += fmt::format(" --photons {}", chosen.photons);
   if (depth != RenderOptions{}.max_depth) text += fmt::format(" --depth {}", depth);
   if (samples > 0) text += fmt::format(" --samples {}", samples);
-  return text + fmt::format(" --noise {:g}%", 100.0 * noise);
+  return text + fmt::format(" --noise {:g}%", 100.0 * chosen.noise);
 }
 
 Camera RenderArguments::sized(Camera camera) const {

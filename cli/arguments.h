@@ -47,22 +47,32 @@ struct SolveArguments {
   std::string text(const Scene& scene) const;
 };
 
+/// Options that a picture's quality stands for.
+struct PictureQuality {
+  const char* name;
+  int shadow_rays, photons;
+  double noise;
+};
+
 /// Options of the second pass.
 struct RenderArguments {
   std::optional<std::pair<int, int>> size{};  ///< width and height in pixels; unset: the camera's
   std::string pass = "direct";
-  int shadow_rays = 64;
+  std::string quality = "good";
+  std::optional<int> shadow_rays{};  ///< unset, like photons and noise: those of `quality`
   int gather_samples = 256;
-  int photons = RenderOptions{}.photons;
+  std::optional<int> photons{};
   int depth = RenderOptions{}.max_depth;
-  int samples = 0;      ///< most per pixel; 0: see SampleOptions
-  double noise = 0.02;  ///< relative standard error at which the sampling of a pixel ends
+  int samples = 0;                ///< most per pixel; 0: see SampleOptions
+  std::optional<double> noise{};  ///< relative standard error at which sampling of a pixel ends
   double exposure_ev = 0.0;
   FilmArguments film{};
 
   void add_to(CLI::App& command);
   RenderOptions options() const;
   std::string text() const;
+  /// The quality, with the options in place that are set themselves.
+  PictureQuality effective_quality() const;
   /// `camera` with the pixels of `size`, where `size` is set.
   Camera sized(Camera camera) const;
 };

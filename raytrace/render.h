@@ -23,10 +23,11 @@ enum class Pass {
   gather,       ///< direct light by shadow rays, indirect light by a final gather at every hit
 };
 
-/// Options of many samples per pixel in place of subdivision, for pictures with gloss, a lens or
-/// motion.
+/// Options of many samples per pixel in place of subdivision: for pictures with a lens or motion,
+/// and for pixels that show gloss.
 struct SampleOptions {
-  /// Most samples; 0: most_by_default with a lens, motion or rough surfaces, else none.
+  /// Most samples of every pixel; 0: most_by_default with a lens or motion and in pixels that show
+  /// rough surfaces, else none.
   int most = 0;
   int least = 16;  ///< first samples of every pixel
   /// Greatest standard error of a pixel, relative to its mean. Half the error takes four times as
@@ -91,8 +92,8 @@ struct RenderReport {
 };
 
 /// Second pass: Whitted's recursive ray tracing (1980) over the radiosity solution. A pixel is the
-/// mean radiance over its square, or the result of PixelSamples with a lens, gloss or motion.
-/// Pictures have the same bits for any number of threads.
+/// mean radiance over its square, or the result of PixelSamples with a lens, motion or where it
+/// shows gloss. Pictures have the same bits for any number of threads.
 ///
 /// Light is solved for one instant and moves with the surfaces; shadows and gathers are sampled in
 /// time. Throws:

@@ -45,6 +45,23 @@ std::string relative_scene() {
       <integer name="width" value="8"/><integer name="height" value="8"/></film></sensor></scene>)";
 }
 
+TEST_F(Pictures, QualitiesStandForOptions) {
+  const auto picture = [&](const Words& options) {
+    EXPECT_EQ(
+        run(Words{"render", "room.toml", "S.vtp", "--size", "12x9", "-o", "q.exr"} + options).code,
+        0);
+    return read_exr(folder / "q.exr").radiance;
+  };
+  const BandArray draft = picture({"--quality", "draft"}), good = picture({});
+  EXPECT_TRUE(
+      (draft == picture({"--shadow-rays", "16", "--photons", "65536", "--noise", "10%"})).all());
+  EXPECT_TRUE((good == picture({"--quality", "good"})).all());
+  // An option of its own comes before the quality, in any order.
+  EXPECT_TRUE((good == picture({"--shadow-rays", "64", "--photons", "524288", "--noise", "2%",
+                                "--quality", "draft"}))
+                  .all());
+}
+
 TEST_F(Pictures, LayersComeIntoTheExr) {
   ASSERT_EQ(run(render({"-o", "a.exr", "--layers", "normal,depth", "--layers", "patch"})).code, 0);
   const Image some = read_exr(folder / "a.exr", ExrChannels::all);
