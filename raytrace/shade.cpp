@@ -452,9 +452,10 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   }
   const Eigen::Vector3d normal = smooth_normal(hit, at);
   const float share = state.effort * branch.weight.maxCoeff();
-  // Many samples of a pixel average their shadows: two first rays of each are enough.
-  const ShadowOptions shadows = state.number ? shadows_for(options_.shadows, 0.5f * share, 2)
-                                             : shadows_for(options_.shadows, share, 8);
+  ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? 4 : 8);
+  // Many samples of a pixel average their shadows. A second stage of rays, cast only where the
+  // first disagree, would leave a part of thin shadows out of that mean.
+  if (state.number) shadows.max_rays = shadows.min_rays;
   Arriving E;
   const ShadowOrigin from = shadow_origin(hit, at);
   E.direct = direct_light_.irradiance(
