@@ -139,7 +139,10 @@ Action add_run(CLI::App& command) {
   arguments->checkpoint.pictures_follow = true;
   arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
-  command.get_option("--depth")->group("");  // hidden, as rarely needed; 'render --help' shows it
+  // Hidden, as rarely needed beside --quality; 'render --help' shows them.
+  for (const char* name : {"--depth", "--photons", "--samples"}) {
+    command.get_option(name)->group("");
+  }
   arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::hidden);
   command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");
   return [arguments](Console& console) { return run(*arguments, console); };
