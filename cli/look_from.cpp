@@ -54,6 +54,9 @@ void LookFromArguments::add_to(CLI::App& command, const std::string& group) {
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->check([](const std::string& name) {
+        return name.empty() ? "name a camera, a .csv file of places, or everywhere" : "";
+      })
       ->group(group);
 }
 
