@@ -184,8 +184,9 @@ BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const Ga
     const GatheredIrradiance E = gather_irradiance(lit, radiosity, points, at_probes);
     return E.direct + E.indirect;
   }
-  const SureGoal goal{.accuracy = bounds->accuracy,
-                      .besides = of_read_error * read_errors(lit, solution, radiosity, points)};
+  const SureGoal goal{
+      .accuracy = bounds->accuracy,
+      .besides = of_read_error * read_errors(lit, solution, radiosity, points, at_probes.rays)};
   SureIrradiance sure = sure_gather(lit, radiosity, points, at_probes, goal);
   for (int i = 0; i < points.size(); ++i) {
     const double lux = luminous(lit.scene.bands, caustic.row(i).transpose());

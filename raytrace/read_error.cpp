@@ -1,6 +1,9 @@
 #include "raytrace/read_error.h"
 
+#include <algorithm>
+
 #include "radiosity/gather/gap_light.h"
+#include "radiosity/gather/patch_power.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/refine/illuminance_bound.h"
 #include "scene/parallel.h"
@@ -25,20 +28,24 @@ class ReadErrors {
         error_(error),
         directions_(ray_count) {}
 
-  double at(const GatherPoint& point, std::uint64_t key) const {
+  // `missed` is the light that a path out of a gap, met by no ray, may bring, lx.
+  double at(const GatherPoint& point, std::uint64_t key, double missed) const {
     double sum = 0.0;
+    int in_gap = 0;
     for (int i = 0; i < ray_count; ++i) {
       const Eigen::Array4f u =
           directions_.point(i, random_key(key, RandomPurpose::gather_rays, own_key));
       const auto number = static_cast<std::uint64_t>(i);
-      sum += along(point, u, random_key(key, RandomPurpose::gather_paths, number, own_key));
+      sum += along(point, u, random_key(key, RandomPurpose::gather_paths, number, own_key), in_gap);
     }
-    return sum / ray_count;
+    return (sum + in_gap * missed) / ray_count;
   }
 
  private:
-  // rho e at the end of the path that begins with a direction from `u`.
-  double along(const GatherPoint& point, const Eigen::Array4f& u, std::uint64_t key) const {
+  // rho e at the end of the path that begins with a direction from `u`. Counts in `in_gap` if the
+  // path begins in a gap.
+  double along(const GatherPoint& point, const Eigen::Array4f& u, std::uint64_t key,
+               int& in_gap) const {
     Eigen::Vector3d normal = point.normal;
     Ray ray = cosine_ray(point.position, normal, point.facet, u[0], u[1]);
     double share = 1.0;
@@ -47,6 +54,7 @@ class ReadErrors {
       caster_.closest_hits({&ray, 1}, {&hit, 1});
       if (hit.facet < 0) return 0.0;
       if (point.facet < 0 || !gaps_.is_gap(normal, ray, hit)) return end(ray, hit, share, key);
+      if (bounce == 0) ++in_gap;
       share *= reflectance(hit.element);
       normal = element_center(mesh_, hit.element).normal;
       if (normal.dot(ray.direction) > 0.0) normal = -normal;
@@ -91,18 +99,36 @@ class ReadErrors {
   SobolPoints directions_;
 };
 
+// Mean of rho E over the lit surfaces, lx.
+double mean_reflected(const LitScene& lit, const RadiositySolution& solution) {
+  const PatchMesh& mesh = lit.mesh();
+  const BandArray E = solution.irradiance();
+  const Eigen::ArrayXXd of_patch = patch_integral(mesh, E);
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(E.cols());
+  double area = 0.0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (!(of_patch.row(p) > 0.0).any()) continue;
+    sum += of_patch.row(p).transpose() * mesh.reflectance.row(p).transpose().cast<double>();
+    area += mesh.area[p];
+  }
+  const Spectrum mean = (area > 0.0 ? Eigen::ArrayXd(sum / area) : sum).cast<float>();
+  return luminous(lit.scene.bands, mean);
+}
+
 }  // namespace
 
 Eigen::ArrayXd read_errors(const LitScene& lit, const RadiositySolution& solution,
-                           const BandArray& radiosity, const GatherPoints& points) {
+                           const BandArray& radiosity, const GatherPoints& points, int rays) {
   Eigen::ArrayXd errors = Eigen::ArrayXd::Zero(points.size());
   const Eigen::ArrayXf of_elements = illuminance_errors(lit.mesh(), solution);
   if (of_elements.size() != lit.mesh().element_count()) return errors;
   const ReadErrors read(lit, radiosity, of_elements);
+  constexpr double unseen = 3.0;  // of n trials, at odds of 19 to 1
+  const double missed = unseen / std::max(rays, 1) * mean_reflected(lit, solution);
   parallel_for(points.size(), 8, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const GatherPoint point = points[i];
-      errors[i] = read.at(point, point.key.value_or(static_cast<std::uint64_t>(i)));
+      errors[i] = read.at(point, point.key.value_or(static_cast<std::uint64_t>(i)), missed);
     }
   });
   return errors;
