@@ -212,6 +212,9 @@ void Report::add_solution(const SolvedScene& solved, bool solved_now) {
   if (!solution.provenance.refinement.empty()) {
     facts_["refined"] = solution.provenance.refinement;
   }
+  if (!solution.provenance.looked_from.empty()) {
+    facts_["looked_from"] = solution.provenance.looked_from;
+  }
   facts_["bands"] = solution.bands.count();
   facts_["light"] = light_name(solution.relative_units);
   facts_["energy"] = energy_json(solution.energy);

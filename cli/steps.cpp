@@ -167,7 +167,9 @@ SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& ch
   note_mesh(scene, solved.mesh, console, report);
   solved.solution.provenance.version = LIGHTWELL_VERSION;
   solved.solution.provenance.options = arguments.text(scene);
-  if (!options.view_rays.empty()) report.add("looked_from", arguments.look_from.names);
+  if (!options.view_rays.empty()) {
+    solved.solution.provenance.looked_from = arguments.look_from.names;
+  }
   report.add_solution(solved, true);
   report.add("refinement", refinement_json(solve_report.refinement));
   report.add("unlit", unlit_json(scene, solved));

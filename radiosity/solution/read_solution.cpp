@@ -222,6 +222,7 @@ void read_record(const SolutionArrays& in, RadiositySolution& s) {
   s.provenance = {in.text("version"), in.text("scene_file"), 0, in.text("options")};
   const auto refinement = in.strings("refinement");
   if (!refinement.empty()) s.provenance.refinement = refinement.front();
+  s.provenance.looked_from = in.strings("looked_from");
   const std::string hash = in.text("scene_hash");
   const auto parsed =
       std::from_chars(hash.data(), hash.data() + hash.size(), s.provenance.scene_hash, 16);

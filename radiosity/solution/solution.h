@@ -45,6 +45,9 @@ struct Provenance {
   std::uint64_t scene_hash = 0;
   std::string options{};     ///< effective options, as on the command line
   std::string refinement{};  ///< reason for the fineness of the elements; empty: not refined
+  /// Cameras and files of places from which the surfaces are seen that the error estimate is of;
+  /// empty: it is of all surfaces.
+  std::vector<std::string> looked_from{};
 };
 
 /// A view-independent solution on a PatchMesh, as in a solution file.

@@ -194,6 +194,7 @@ void add_record(vtkFieldData* data, const RadiositySolution& s) {
   add_strings(data, "scene_hash", {fmt::format("{:016x}", s.provenance.scene_hash)});
   add_strings(data, "options", {s.provenance.options});
   if (!s.provenance.refinement.empty()) add_strings(data, "refinement", {s.provenance.refinement});
+  if (!s.provenance.looked_from.empty()) add_strings(data, "looked_from", s.provenance.looked_from);
 }
 
 void add_parts(vtkFieldData* data, const SceneParts& parts) {
@@ -252,7 +253,7 @@ std::string summary(const SolvedScene& solved) {
       "bands: {}, {} lm/W\n"
       "outcome: {} after {} sweeps, residual {:.3g}\n"
       "energy: {:.6g} {} emitted, {:.6g} absorbed, {:.6g} escaped, {:.3g} unshot\n"
-      "error estimate: {:.3g} % of irradiance\n"
+      "error estimate: {:.3g} % of irradiance{}\n"
       "seconds: {:.3g}\n",
       s.provenance.version, s.provenance.scene_file, s.provenance.scene_hash, s.unit_name,
       s.metres_per_unit, s.provenance.options, mesh.patch_count(), mesh.element_count(),
@@ -260,7 +261,11 @@ std::string summary(const SolvedScene& solved) {
       s.provenance.refinement.empty() ? "" : "refined: " + s.provenance.refinement + "\n",
       channel_line(s), band_list, s.bands.lumens_per_watt, how_it_ended(s.outcome),
       s.history.size(), s.residual, s.energy.emitted, s.relative_units ? "(no known unit)" : "W",
-      s.energy.absorbed, s.energy.escaped, s.energy.unshot, 100.0 * s.error_estimate, total);
+      s.energy.absorbed, s.energy.escaped, s.energy.unshot, 100.0 * s.error_estimate,
+      s.provenance.looked_from.empty()
+          ? ""
+          : fmt::format(" seen from {}", fmt::join(s.provenance.looked_from, ", ")),
+      total);
 }
 
 [[noreturn]] void fail_solution_write(const std::filesystem::path& path,

@@ -92,6 +92,10 @@ TEST_F(Output, SolveSaysFromWhereItLooked) {
     EXPECT_TRUE(says(json["options"].get<std::string>(), std::string(" --look-from ") + name));
     EXPECT_LE(json["error_estimate"].get<double>(), 0.2);
   }
+  // The solution's file keeps the names, and whoever reads it is told them.
+  const auto render =
+      run_json({"render", "room.toml", "S.vtp", "-o", "door.png", "--size", "16x12"});
+  EXPECT_EQ(render["looked_from"], nlohmann::json::array({"desk.csv"}));
   EXPECT_FALSE(run_json(solve).contains("looked_from"));
   EXPECT_FALSE(run_json(solve + Words{"--look-from", "everywhere"}).contains("looked_from"));
 }

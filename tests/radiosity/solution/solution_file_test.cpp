@@ -100,6 +100,7 @@ void expect_same_solution(const RadiositySolution& a, const RadiositySolution& b
   EXPECT_EQ(a.provenance.scene_hash, b.provenance.scene_hash);
   EXPECT_EQ(a.provenance.options, b.provenance.options);
   EXPECT_EQ(a.provenance.refinement, b.provenance.refinement);
+  EXPECT_EQ(a.provenance.looked_from, b.provenance.looked_from);
 }
 
 class SolutionFileBands : public SolutionFile, public testing::WithParamInterface<int> {};
@@ -119,6 +120,7 @@ TEST_F(SolutionFile, RestoresWhatRefinementFound) {
   solved.solution.interpolation_error =
       Eigen::ArrayXf::LinSpaced(solved.mesh.element_count(), 0.0f, 0.3f);
   solved.solution.provenance.refinement = "the tolerance is reached";
+  solved.solution.provenance.looked_from = {"desk.csv", "door"};
   write_solution(folder_ / "s.vtp", solved);
   expect_same_solution(solved.solution, read_solution(folder_ / "s.vtp").solution);
 }
