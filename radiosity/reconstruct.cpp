@@ -222,10 +222,7 @@ struct VertexGatherTask {
   const SceneParts& parts;
   std::vector<int> rays{};  // in each part
   int one_in = 1;           // the gather casts one in so many of the rays
-  // At least so many of them. Through a door only a few vertices of the next room are seen, and
-  // their noise is not averaged over all directions.
-  int fewest() const { return parts.judged_count() > 1 ? 128 : 1; }
-  int cast_of(int all) const { return std::max(std::min(all, fewest()), all / one_in); }
+  int cast_of(int all) const { return all > 0 ? std::max(1, all / one_in) : 0; }
 };
 
 // The vertices at which rays are missing, and how many.
