@@ -20,41 +20,43 @@ constexpr std::uint64_t own_key = 0x4ead;
 
 class ReadErrors {
  public:
-  ReadErrors(const LitScene& lit, const BandArray& radiosity, const Eigen::ArrayXf& error)
+  // `missed` is the light that a path out of a gap at each patch, met by no ray, may bring, lx.
+  ReadErrors(const LitScene& lit, const BandArray& radiosity, const Eigen::ArrayXf& error,
+             const Eigen::ArrayXd& missed)
       : mesh_(lit.mesh()),
         caster_(lit.caster),
         paths_(lit.scene, lit.caster, most_bounces),
         gaps_(lit, radiosity, paths_),
         error_(error),
+        missed_(missed),
         directions_(ray_count) {}
 
-  // `missed` is the light that a path out of a gap, met by no ray, may bring, lx.
-  double at(const GatherPoint& point, std::uint64_t key, double missed) const {
+  double at(const GatherPoint& point, std::uint64_t key) const {
     double sum = 0.0;
-    int in_gap = 0;
     for (int i = 0; i < ray_count; ++i) {
       const Eigen::Array4f u =
           directions_.point(i, random_key(key, RandomPurpose::gather_rays, own_key));
       const auto number = static_cast<std::uint64_t>(i);
-      sum += along(point, u, random_key(key, RandomPurpose::gather_paths, number, own_key), in_gap);
+      sum += along(point, u, random_key(key, RandomPurpose::gather_paths, number, own_key));
     }
-    return (sum + in_gap * missed) / ray_count;
+    return sum / ray_count;
   }
 
  private:
-  // rho e at the end of the path that begins with a direction from `u`. Counts in `in_gap` if the
+  // rho e at the end of the path that begins with a direction from `u`, and the light missed if the
   // path begins in a gap.
-  double along(const GatherPoint& point, const Eigen::Array4f& u, std::uint64_t key,
-               int& in_gap) const {
+  double along(const GatherPoint& point, const Eigen::Array4f& u, std::uint64_t key) const {
     Eigen::Vector3d normal = point.normal;
     Ray ray = cosine_ray(point.position, normal, point.facet, u[0], u[1]);
-    double share = 1.0;
+    double share = 1.0, missed = 0.0;
     for (std::uint64_t bounce = 0; bounce < most_bounces; ++bounce) {
       ElementHit hit;
       caster_.closest_hits({&ray, 1}, {&hit, 1});
-      if (hit.facet < 0) return 0.0;
-      if (point.facet < 0 || !gaps_.is_gap(normal, ray, hit)) return end(ray, hit, share, key);
-      if (bounce == 0) ++in_gap;
+      if (hit.facet < 0) return missed;
+      if (point.facet < 0 || !gaps_.is_gap(normal, ray, hit)) {
+        return missed + end(ray, hit, share, key);
+      }
+      if (bounce == 0) missed = missed_[mesh_.patch[hit.element]];
       share *= reflectance(hit.element);
       normal = element_center(mesh_, hit.element).normal;
       if (normal.dot(ray.direction) > 0.0) normal = -normal;
@@ -63,7 +65,7 @@ class ReadErrors {
       };
       ray = cosine_ray(ray.origin + hit.t * ray.direction, normal, hit.facet, random(1), random(2));
     }
-    return 0.0;
+    return missed;
   }
 
   double end(const Ray& ray, const ElementHit& hit, double share, std::uint64_t key) const {
@@ -96,23 +98,31 @@ class ReadErrors {
   LightPaths paths_;
   GapLight gaps_;
   const Eigen::ArrayXf& error_;
+  const Eigen::ArrayXd& missed_;
   SobolPoints directions_;
 };
 
-// Mean of rho E over the lit surfaces, lx.
-double mean_reflected(const LitScene& lit, const RadiositySolution& solution) {
+// Mean of rho E over the lit surfaces of each patch's part, lx.
+Eigen::ArrayXd mean_reflected(const LitScene& lit, const RadiositySolution& solution) {
   const PatchMesh& mesh = lit.mesh();
+  const SceneParts& parts = solution.parts;
   const BandArray E = solution.irradiance();
   const Eigen::ArrayXXd of_patch = patch_integral(mesh, E);
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(E.cols());
-  double area = 0.0;
+  Eigen::ArrayXXd sum = Eigen::ArrayXXd::Zero(parts.judged_count(), E.cols());
+  Eigen::ArrayXd area = Eigen::ArrayXd::Zero(parts.judged_count());
   for (int p = 0; p < mesh.patch_count(); ++p) {
     if (!(of_patch.row(p) > 0.0).any()) continue;
-    sum += of_patch.row(p).transpose() * mesh.reflectance.row(p).transpose().cast<double>();
-    area += mesh.area[p];
+    sum.row(parts.judged_with(p)) += of_patch.row(p) * mesh.reflectance.row(p).cast<double>();
+    area[parts.judged_with(p)] += mesh.area[p];
   }
-  const Spectrum mean = (area > 0.0 ? Eigen::ArrayXd(sum / area) : sum).cast<float>();
-  return luminous(lit.scene.bands, mean);
+  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(mesh.patch_count());
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const int part = parts.judged_with(p);
+    if (!(area[part] > 0.0)) continue;
+    const Spectrum of_part = (sum.row(part) / area[part]).transpose().cast<float>();
+    mean[p] = luminous(lit.scene.bands, of_part);
+  }
+  return mean;
 }
 
 }  // namespace
@@ -122,13 +132,13 @@ Eigen::ArrayXd read_errors(const LitScene& lit, const RadiositySolution& solutio
   Eigen::ArrayXd errors = Eigen::ArrayXd::Zero(points.size());
   const Eigen::ArrayXf of_elements = illuminance_errors(lit.mesh(), solution);
   if (of_elements.size() != lit.mesh().element_count()) return errors;
-  const ReadErrors read(lit, radiosity, of_elements);
   constexpr double unseen = 3.0;  // of n trials, at odds of 19 to 1
-  const double missed = unseen / std::max(rays, 1) * mean_reflected(lit, solution);
+  const Eigen::ArrayXd missed = unseen / std::max(rays, 1) * mean_reflected(lit, solution);
+  const ReadErrors read(lit, radiosity, of_elements, missed);
   parallel_for(points.size(), 8, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const GatherPoint point = points[i];
-      errors[i] = read.at(point, point.key.value_or(static_cast<std::uint64_t>(i)), missed);
+      errors[i] = read.at(point, point.key.value_or(static_cast<std::uint64_t>(i)));
     }
   });
   return errors;

@@ -19,7 +19,7 @@ namespace lightwell {
 /// so that its own noise says nothing of them. What none of n trials meets has a probability below
 /// 3/n (odds of 19 to 1), so for the share g of rays that begin in a gap
 ///
-///     e += g 3 / rays mean(rho E)     the mean over the lit surfaces of the scene
+///     e += g 3 / rays mean(rho E)     the mean over the lit surfaces of the part of the gap
 Eigen::ArrayXd read_errors(const LitScene& lit, const RadiositySolution& solution,
                            const BandArray& radiosity, const GatherPoints& points, int rays);
 
