@@ -15,6 +15,9 @@ namespace lightwell {
 namespace {
 
 constexpr std::size_t most_parts = 32;
+// Sample points in each part. Even independent points leave less than 1/sqrt(512) = 4 % of the
+// spread of light in the part, and stratified ones are better.
+constexpr int points_per_part = 512;
 // Parts with less of the brightest part's mean radiosity are dark.
 constexpr double least_light = 1e-7;
 
@@ -102,8 +105,8 @@ class ReflectedPower {
     for (std::size_t i = 0; i < chosen_.size(); ++i) place_[chosen_[i]] = static_cast<int>(i);
   }
 
-  // What gathers read: emission and all that is not scaled in the first columns, then the light
-  // that each part reflects.
+  // Radiosity that gathers read. Its first columns are emission and all that is not scaled; those
+  // after them are the light that each part reflects.
   BandArray columns_by_part() const {
     const Eigen::Index bands = reflected_.cols();
     BandArray columns =
@@ -145,16 +148,16 @@ class ReflectedPower {
     double sum = 0.0;
     const auto chance = [&](const Candidate& c) { return 0.5 * (c.area / area + c.power / power); };
     for (Candidate& c : candidates) c.up_to = sum += chance(c);
-    const SobolPoints sobol(balance_.points);
+    const SobolPoints sobol(points_per_part);
     const std::uint64_t key = random_key(static_cast<std::uint64_t>(part),
                                          RandomPurpose::balance_points, balance_.gather.replica);
-    for (int i = 0; i < balance_.points; ++i) {
+    for (int i = 0; i < points_per_part; ++i) {
       const Eigen::Array4f u = sobol.point(i, key);
       const auto at = std::ranges::upper_bound(candidates.begin(), candidates.end() - 1,
                                                double{u[0]} * sum, {}, &Candidate::up_to);
       const int e = at->element;
       samples.push_back({PatchSampler(mesh_, mesh_.patch[e], e).point(u[1], u[2]),
-                         at->area / (chance(*at) * balance_.points)});
+                         at->area / (chance(*at) * points_per_part)});
     }
     return samples;
   }

@@ -8,11 +8,10 @@
 
 namespace lightwell {
 
-/// What balance_parts() balances.
+/// Parts whose light is balanced, and the gathers that find it.
 struct PartBalance {
   const SceneParts& parts;
   std::vector<int> rays{};  ///< hemisphere rays at a sample point, by part
-  int points = 512;         ///< sample points in each part
   GatherOptions gather{};   ///< all else of the gathers at the sample points
 };
 

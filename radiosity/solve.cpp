@@ -230,13 +230,13 @@ std::optional<DirectLight> light_by_channel(const Scene& scene, const PatchMesh&
   return std::make_optional<DirectLight>(scene, mesh, channels, &all_light);
 }
 
-void add_importance(const LitScene& lit, const SolveOptions& options, SolvedScene& solved) {
-  if (options.view_rays.empty()) return;
-  const LightPaths paths(lit.scene, lit.caster, options.form_factors.max_specular_depth);
+void add_importance(const Scene& scene, const ElementCaster& caster, const SolveOptions& options,
+                    SolvedScene& solved) {
+  const LightPaths paths(scene, caster, options.form_factors.max_specular_depth);
   const BandArray reflected = solved.solution.patch_radiosity - solved.mesh.emission;
   const Eigen::ArrayXf brightness = reflected.max(0.0f).rowwise().sum();
   solved.solution.parts.importance =
-      find_importance(lit.caster, paths, solved.solution.parts, options.view_rays,
+      find_importance(caster, paths, solved.solution.parts, options.view_rays,
                       {brightness.data(), static_cast<std::size_t>(brightness.size())});
 }
 
@@ -263,7 +263,7 @@ SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const So
   }
   const DirectLight direct_light(scene, solved.mesh);
   if (!options.view_rays.empty()) {
-    add_importance({scene, ElementCaster(solved.mesh), direct_light}, options, solved);
+    add_importance(scene, ElementCaster(solved.mesh), options, solved);
   }
   const auto by_channel = light_by_channel(scene, solved.mesh, direct_light, options.channels);
   illuminate_elements(scene, {direct_light, by_channel ? *by_channel : direct_light}, options,
@@ -334,7 +334,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
 
   solution.seconds = std::move(seconds);
   solution.parts = std::move(parts);
-  add_importance({scene, *caster, direct_light}, options, solved);
+  if (!options.view_rays.empty()) add_importance(scene, *caster, options, solved);
 
   caster.reset();
   illuminate_elements(scene, {direct_light, kept_apart}, options, solved, report);

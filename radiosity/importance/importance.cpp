@@ -65,7 +65,7 @@ class ImportanceWalks {
   const LightPaths& paths_;
 };
 
-// Of each patch: the view rays that end there, the walks that arrive there, and its radiosity.
+// Counts of each patch, and its radiosity: view rays that end there, walks that arrive there.
 struct PatchArrivals {
   std::vector<double> view_rays{}, walks{};
   std::span<const float> brightness{};

@@ -146,14 +146,7 @@ double error_where_seen(const SolvedScene& solved, const std::vector<float>& imp
 }
 
 TEST(Importance, SavesEffortAndKeepsTheErrorWhereSomebodyLooks) {
-  Scene scene =
-      rooms_with_doors({{"first", {0, 0, 0}, {4, 5, 3}},
-                        {"second", {4.1, 0, 0}, {8.1, 5, 3}},
-                        {"third", {8.2, 0, 0}, {12.2, 5, 3}}},
-                       {{.x = 4.0, .y = 0.4, .width = 0.9}, {.x = 8.1, .y = 3.7, .width = 0.9}});
-  const int lamp = add_material(scene, diffuse(scene.bands, 0.0f, 100.0f));
-  add_polygon(scene, "lamp", lamp,
-              {{1.8, 2.3, 2.9}, {1.8, 2.7, 2.9}, {2.2, 2.7, 2.9}, {2.2, 2.3, 2.9}});
+  const Scene scene = three_rooms();
   constexpr double accuracy = 0.08;
   SolveOptions options{.accuracy = Accuracy{.share = accuracy}};
   SolveReport of_all, of_seen;

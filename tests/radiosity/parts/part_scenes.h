@@ -107,6 +107,20 @@ inline Scene bright_and_dim(double door_width, float rho = 0.6f) {
   return scene;
 }
 
+/// Three rooms in a row, whose doors of 0.9 m do not lie opposite each other, with a lamp in the
+/// first.
+inline Scene three_rooms() {
+  Scene scene =
+      rooms_with_doors({{"first", {0, 0, 0}, {4, 5, 3}},
+                        {"second", {4.1, 0, 0}, {8.1, 5, 3}},
+                        {"third", {8.2, 0, 0}, {12.2, 5, 3}}},
+                       {{.x = 4.0, .y = 0.4, .width = 0.9}, {.x = 8.1, .y = 3.7, .width = 0.9}});
+  const int lamp = add_material(scene, diffuse(scene.bands, 0.0f, 100.0f));
+  add_polygon(scene, "lamp", lamp,
+              {{1.8, 2.3, 2.9}, {1.8, 2.7, 2.9}, {2.2, 2.7, 2.9}, {2.2, 2.3, 2.9}});
+  return scene;
+}
+
 /// Turns and moves all polygons of a scene.
 inline void turn(Scene& scene, double angle, const Eigen::Vector3d& axis) {
   const Eigen::Isometry3d motion =
