@@ -20,6 +20,7 @@ class ImportanceWalks {
       : caster_(caster), paths_(paths) {}
 
   Walk walk(const Ray& view_ray, std::uint64_t number) const {
+    // Light of 16 reflections at 0.7 is 0.3 % of that of the first.
     constexpr std::size_t most = 16;
     Walk visited;
     Ray ray = view_ray;
@@ -56,7 +57,6 @@ class ImportanceWalks {
 
   PatchPoint place(int element, const Eigen::Vector3d& position) const {
     PatchPoint at = element_center(caster_.mesh(), element);
-    at.element = element;
     at.position = position;
     return at;
   }
@@ -83,6 +83,8 @@ std::vector<char> parts_that_count(const SceneParts& parts, const PatchArrivals&
     all_seen += of.view_rays[p];
     light[part] += of.walks[p] * double{of.brightness[p]};
   }
+  // A hundredth of a picture is a door far away. A part that sends a twentieth of the light has to
+  // be wrong by its half before what is seen is off by 2.5 %.
   constexpr double share_seen = 0.01, share_of_light = 0.05;
   std::vector<char> counts(count, 0);
   for (std::size_t p = 0; p < count; ++p) {
@@ -127,6 +129,8 @@ std::vector<float> find_importance(const ElementCaster& caster, const LightPaths
   std::vector<float> importance(count, 1.0f);
   if (!(seen_area > 0.0)) return importance;
   const std::vector<char> counts = parts_that_count(parts, arrivals);
+  // A patch that sends a quarter of what seen patches send is as important as they are: few walks
+  // end on a patch, and too little importance costs more than too much.
   constexpr double scale = 4.0;
   for (std::size_t p = 0; p < count; ++p) {
     const bool in_view = counts[static_cast<std::size_t>(parts.judged_with(static_cast<int>(p)))];
