@@ -179,6 +179,22 @@ void Checkpoint::rethrow_stopped() {
   }
 }
 
+void Checkpoint::add_to(Report& report, const std::string& key) const {
+  constexpr double megabyte = 1 << 20;
+  report.add(key, {{"file", arguments_.file.string()},
+                   {"mb", static_cast<double>(journal_->size()) / megabyte},
+                   {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});
+}
+
+void Checkpoint::keep_to_resume(Report& report, const std::string& key) {
+  if (!journal_ || journal_->is_read_only()) return;
+  journal_->close();
+  add_to(report, key);
+  console_.say(fmt::format("finished work is in '{}' ({}). To resume:\n  {}",
+                           arguments_.file.string(), bytes_text(journal_->size()),
+                           command_to_resume(console_.options())));
+}
+
 void Checkpoint::finish(Report& report, const std::string& key) {
   if (!journal_) return;
   constexpr double megabyte = 1 << 20;
@@ -197,9 +213,7 @@ void Checkpoint::finish(Report& report, const std::string& key) {
     return;
   }
   journal_->close();
-  report.add(key, {{"file", arguments_.file.string()},
-                   {"mb", static_cast<double>(journal_->size()) / megabyte},
-                   {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});
+  add_to(report, key);
   const std::string text = fmt::format("the checkpoint '{}' ({})", arguments_.file.string(),
                                        bytes_text(journal_->size()));
   if (arguments_.keep) {
@@ -225,7 +239,7 @@ std::optional<SolvedScene> finished_solution(const CheckpointArguments& argument
   }
   const Provenance& found = solved->solution.provenance;
   if (found.version != of.version || found.scene_hash != of.scene_hash ||
-      found.options != of.options) {
+      found.options != of.options || solved->solution.outcome == Outcome::cut_short) {
     return std::nullopt;
   }
   console.say(fmt::format("'{}' is finished: it was solved from this scene with these options",

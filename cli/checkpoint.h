@@ -57,8 +57,13 @@ class Checkpoint {
   /// To be called once the result is written. Removes the checkpoint unless --keep-checkpoint was
   /// given, and adds its size to the report under `key`.
   void finish(Report& report, const std::string& key = "checkpoint");
+  /// To be called in place of finish() if the result was ended early: keeps the checkpoint, and
+  /// prints the command to resume.
+  void keep_to_resume(Report& report, const std::string& key = "checkpoint");
 
  private:
+  void add_to(Report& report, const std::string& key) const;
+
   CheckpointArguments arguments_;
   Console& console_;
   std::unique_ptr<Journal> journal_{};

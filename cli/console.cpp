@@ -45,9 +45,28 @@ Console::~Console() {
 
 Progress Console::progress() {
   return [this](std::string_view phase, double share) {
+    if (early_end_requested() && !has_said_early_end_) {
+      has_said_early_end_ = true;
+      say("ending with what there is; another Ctrl-C ends at once");
+    }
     show(phase, share);
     return !interrupt_requested();
   };
+}
+
+void Console::draw(const std::string& line) {
+  // Carriage return, then the ANSI sequence that clears to the end of the line.
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+}
+
+void Console::begin(std::string_view phase) {
+  if (options_.quiet) return;
+  finish_phase();
+  phase_ = phase;
+  is_without_progress_ = true;
+  phase_time_ = Stopwatch();
+  if (on_terminal_) draw(phase_ + " ...");
 }
 
 void Console::show(std::string_view phase, double share) {
@@ -55,6 +74,7 @@ void Console::show(std::string_view phase, double share) {
   if (phase != phase_) {
     finish_phase();
     phase_ = phase;
+    is_without_progress_ = false;
     phase_time_ = Stopwatch();
     last_drawn_ = -redraw_seconds;
   }
@@ -70,15 +90,21 @@ void Console::show(std::string_view phase, double share) {
     const double left_seconds = (seconds - start_.seconds) * (1.0 - share) / done;
     left = fmt::format(", {:.0f} s left", std::ceil(left_seconds));
   }
-  // Carriage return, then the ANSI sequence that clears to the end of the line.
-  fmt::print(stderr, "\r\033[K{}: {:.0f} %{}", phase_, std::floor(100.0 * share), left);
-  std::fflush(stderr);
+  const double of_limit = time_left_ ? time_left_() : 0.0;
+  if (of_limit > 0.0 && std::isfinite(of_limit)) {
+    left += fmt::format(" ({:.0f} s of the time left)", of_limit);
+  }
+  draw(fmt::format("{}: {:.0f} %{}", phase_, std::floor(100.0 * share), left));
 }
 
 void Console::finish_phase() {
   if (phase_.empty()) return;
   if (on_terminal_) fmt::print(stderr, "\r\033[K");
-  fmt::print(stderr, "{}: {:.1f} s\n", phase_, phase_time_.seconds());
+  constexpr double worth_a_line = 1.0;
+  const double seconds = phase_time_.seconds();
+  if (!is_without_progress_ || seconds > worth_a_line) {
+    fmt::print(stderr, "{}: {:.1f} s\n", phase_, seconds);
+  }
   phase_.clear();
 }
 

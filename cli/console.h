@@ -1,8 +1,10 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scene/progress.h"
@@ -42,9 +44,16 @@ class Console {
   Console& operator=(const Console&) = delete;
 
   const CommonOptions& options() const { return options_; }
-  /// A callback that shows the phase and share, and returns false once an interrupt has arrived.
+  /// A callback that shows the phase and share, and returns false once interrupt_requested().
   /// The callback is valid during the console's life.
   Progress progress();
+  /// Shows that work without progress of its own has begun. On a file or pipe there is a line only
+  /// if the work takes more than a second.
+  void begin(std::string_view phase);
+  /// Shows beside the progress how much of a limited time is left; see RunControl::seconds_left.
+  void show_time_left(std::function<double()> seconds_left) {
+    time_left_ = std::move(seconds_left);
+  }
   /// Ends the progress line, if one is being drawn.
   void finish_phase();
   /// Prints a line, unless --quiet was given.
@@ -59,8 +68,13 @@ class Console {
 
   CommonOptions options_;
   bool on_terminal_ = false;
+  void draw(const std::string& line);
+
+  std::function<double()> time_left_{};
   std::string phase_{};
+  bool is_without_progress_ = false;
   Stopwatch phase_time_{};
+  bool has_said_early_end_ = false;
   double last_drawn_ = 0.0;  // seconds into the phase
   struct Start {
     double share = 0.0, seconds = 0.0;

@@ -1,14 +1,16 @@
 #include "cli/interrupt.h"
 
+#include <atomic>
 #include <csignal>
 
 namespace lightwell {
 namespace {
 
 volatile std::sig_atomic_t requested = 0;  // the type that a signal handler may write
+std::atomic<bool> ends_early{false};
 
-void request(int) {
-  requested = 1;
+void request(int signal) {
+  requested = signal;
 }
 
 }  // namespace
@@ -24,7 +26,19 @@ void catch_interrupts() {
 }
 
 bool interrupt_requested() {
-  return requested != 0;
+  return requested != 0 && !early_end_requested();
+}
+
+bool early_end_requested() {
+  return requested == SIGINT && ends_early;
+}
+
+InterruptEndsEarly::InterruptEndsEarly() {
+  ends_early = true;
+}
+
+InterruptEndsEarly::~InterruptEndsEarly() {
+  ends_early = false;
 }
 
 void stop_if_interrupted() {

@@ -12,8 +12,21 @@ namespace lightwell {
 /// - SIGXFSZ is ignored, so that a file at the allowed size fails to be written with an error.
 void catch_interrupts();
 
-/// True once SIGINT or SIGTERM has arrived.
+/// True once SIGTERM has arrived, or SIGINT while no InterruptEndsEarly lives.
 bool interrupt_requested();
+
+/// True once SIGINT has arrived while an InterruptEndsEarly lives.
+bool early_end_requested();
+
+/// While one lives, SIGINT asks for an early end with the best result so far, which is written. One
+/// lives at a time.
+class InterruptEndsEarly {
+ public:
+  InterruptEndsEarly();
+  ~InterruptEndsEarly();
+  InterruptEndsEarly(const InterruptEndsEarly&) = delete;
+  InterruptEndsEarly& operator=(const InterruptEndsEarly&) = delete;
+};
 
 /// An Interrupted with a message of its own in place of the usual one.
 class InterruptedWith : public Interrupted {

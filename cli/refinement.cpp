@@ -43,6 +43,8 @@ const char* refine_outcome_name(RefineOutcome outcome) {
       return "max_elements_reached";
     case RefineOutcome::memory_limit_reached:
       return "memory_limit_reached";
+    case RefineOutcome::time_limit_reached:
+      return "time_limit_reached";
     case RefineOutcome::smallest_size_reached:
       return "smallest_size_reached";
     case RefineOutcome::off:

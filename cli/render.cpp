@@ -8,6 +8,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "cli/time_limit.h"
 #include "raytrace/camera_ray.h"
 
 namespace lightwell {
@@ -18,9 +19,11 @@ struct RenderCommandArguments {
   std::vector<std::string> outputs;
   RenderArguments render;
   CheckpointArguments checkpoint;
+  double seconds = 0.0;  // 0: any time
 };
 
 int render_scene(const RenderCommandArguments& arguments, Console& console) {
+  const TimeLimit time(arguments.seconds);
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
   const Camera& camera = choose_camera(scene, arguments.camera);
@@ -30,15 +33,23 @@ int render_scene(const RenderCommandArguments& arguments, Console& console) {
   static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws for a bad camera
   for (const std::filesystem::path& file : files) require_writable(file);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  const InterruptEndsEarly on_interrupt;
+  console.show_time_left(time.seconds_left());
   report.add("camera", camera.name);
   Checkpoint checkpoint(arguments.checkpoint,
                         picture_provenance(scene, solved.solution, arguments.render), files,
                         console);
   RenderableScene renderable(scene, solved);
-  render_step(renderable, {camera, arguments.render, files}, checkpoint, {console, report});
-  checkpoint.finish(report);
+  const bool is_as_asked =
+      render_step(renderable, {camera, arguments.render, files, time.seconds_left()}, checkpoint,
+                  {console, report});
+  if (is_as_asked) {
+    checkpoint.finish(report);
+  } else {
+    checkpoint.keep_to_resume(report);
+  }
   report.print();
-  return exit_done;
+  return is_as_asked ? exit_done : exit_not_accurate;
 }
 
 }  // namespace
@@ -63,6 +74,7 @@ Action add_render(CLI::App& command) {
   arguments->render.film.add_to(command, group, FilmArguments::HelpOn::shown);
   arguments->render.film.add_false_colour_to(command, group);
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first, group);
+  add_time_limit(command, arguments->seconds, group);
   command.footer(
       "Example: lightwell render cornell/cornell.toml cornell.vtp --size 256x256 -o small.png");
   return [arguments](Console& console) { return render_scene(*arguments, console); };

@@ -312,6 +312,8 @@ std::string outcome_name(Outcome outcome) {
       return "max_sweeps_reached";
     case Outcome::accuracy_missed:
       return "accuracy_missed";
+    case Outcome::cut_short:
+      return "cut_short";
     case Outcome::converged:
       break;
   }

@@ -67,7 +67,7 @@ Json clean_up_json(const CleanUpReport& report);
 /// Emitted, absorbed, escaped and unshot power for JSON, in watts or relative units.
 Json energy_json(const EnergyBalance& energy);
 
-/// "converged", "max_sweeps_reached" or "accuracy_missed".
+/// "converged", "max_sweeps_reached", "accuracy_missed" or "cut_short".
 std::string outcome_name(Outcome outcome);
 
 }  // namespace lightwell

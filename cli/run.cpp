@@ -9,6 +9,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "cli/time_limit.h"
 #include "mesh/patches/patch_textures.h"
 #include "raytrace/camera_ray.h"
 
@@ -21,6 +22,7 @@ struct RunArguments {
   SolveArguments solve;
   CheckpointArguments checkpoint;
   RenderArguments render;
+  double seconds = 0.0;  // 0: any time
 };
 
 fs::path default_folder(const fs::path& scene) {
@@ -36,13 +38,14 @@ struct Job {
   const RunArguments& arguments;
   const Scene& scene;
   const Outputs& outputs;
+  const TimeLimit& time;
   Feedback feedback;
 };
 
 // The solution in its file if --resume was given and the file is finished; otherwise solves the
 // scene and writes the file.
 SolvedScene solved_scene(const Job& job) {
-  const auto& [arguments, scene, outputs, feedback] = job;
+  const auto& [arguments, scene, outputs, time, feedback] = job;
   Console& console = feedback.console;
   Report& report = feedback.report;
   const Provenance of = provenance(scene, arguments.solve);
@@ -52,28 +55,42 @@ SolvedScene solved_scene(const Job& job) {
     return std::move(*done);
   }
   Checkpoint checkpoint(arguments.checkpoint, of, {outputs.solution}, console);
-  SolvedScene solved = solve_step(scene, {arguments.solve, outputs.solution}, checkpoint, feedback);
+  constexpr double share_of_solve = 0.6;  // the rest is for pictures
+  SolvedScene solved =
+      solve_step(scene, {arguments.solve, outputs.solution, time.seconds_left(share_of_solve)},
+                 checkpoint, feedback);
   write_solution_step(outputs.solution, solved, console, report);
-  checkpoint.finish(report);
+  if (solved.solution.outcome == Outcome::cut_short) {
+    checkpoint.keep_to_resume(report);
+  } else {
+    checkpoint.finish(report);
+  }
   return solved;
 }
 
-void render_pictures(const Job& job, const SolvedScene& solved) {
-  const auto& [arguments, scene, outputs, feedback] = job;
+// Renders the pictures; returns whether all of them are as asked for.
+bool render_pictures(const Job& job, const SolvedScene& solved) {
+  const auto& [arguments, scene, outputs, time, feedback] = job;
   Console& console = feedback.console;
   CheckpointArguments kept = arguments.checkpoint;
   kept.reuse.clear();
-  if (kept.keep) kept.file.clear();                    // the file holds the solve
+  if (solved.solution.outcome == Outcome::cut_short) kept.file.clear();  // holds the solve
+  if (kept.keep) kept.file.clear();                                      // the file holds the solve
   kept.resume = kept.resume && fs::exists(kept.file);  // none exists before the first tiles
   std::vector<fs::path> files = {outputs.solution};
   for (const auto& each : outputs.pictures) files.insert(files.end(), each.begin(), each.end());
   Checkpoint checkpoint(kept, picture_provenance(scene, solved.solution, arguments.render), files,
                         console);
   RenderableScene renderable(scene, solved);
+  const std::size_t count = scene.cameras.size();
+  bool are_as_asked = true;
   try {
-    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-      render_step(renderable, {scene.cameras[i], arguments.render, outputs.pictures[i]}, checkpoint,
-                  feedback);
+    for (std::size_t i = 0; i < count; ++i) {
+      const RunControl all{.seconds_left = time.seconds_left()};
+      const RunControl own = all.with_share(1.0 / static_cast<double>(count - i));
+      const PictureTask task{scene.cameras[i], arguments.render, outputs.pictures[i],
+                             own.seconds_left};
+      are_as_asked = render_step(renderable, task, checkpoint, feedback) && are_as_asked;
     }
   } catch (const InterruptedWith&) {
     throw;
@@ -83,20 +100,30 @@ void render_pictures(const Job& job, const SolvedScene& solved) {
         fmt::format("interrupted; the solution is in '{}'. To resume with the pictures:\n  {}",
                     outputs.solution.string(), command_to_resume(console.options())));
   }
-  checkpoint.finish(feedback.report, "picture_checkpoint");
+  if (are_as_asked) {
+    checkpoint.finish(feedback.report, "picture_checkpoint");
+  } else {
+    checkpoint.keep_to_resume(feedback.report, "picture_checkpoint");
+  }
+  return are_as_asked;
 }
 
-// With an accuracy, errors matter where the cameras look, unless --look-from says otherwise.
+// With an accuracy or a limited time, errors matter where the cameras look, unless --look-from says
+// otherwise.
 RunArguments looking_from_cameras(RunArguments arguments, const Scene& scene) {
   std::vector<std::string>& names = arguments.solve.look_from.names;
-  if (!arguments.solve.solve.accuracy || !names.empty()) return arguments;
+  const bool is_by_error = arguments.solve.solve.accuracy || arguments.seconds > 0.0;
+  if (!is_by_error || !names.empty()) return arguments;
   for (const Camera& camera : scene.cameras) names.push_back(camera.name);
   return arguments;
 }
 
 int run(const RunArguments& given, Console& console) {
+  const TimeLimit time(given.seconds);
   Report report(console.options());
   const Scene scene = read_scene_step(given.scene, console, report);
+  const InterruptEndsEarly on_interrupt;
+  console.show_time_left(time.seconds_left());
   const RunArguments arguments = looking_from_cameras(given, scene);
   choose_camera(scene, "");  // throws before the work if the scene has no camera
   const OutputFolder folder(arguments.output.empty() ? default_folder(arguments.scene)
@@ -112,13 +139,13 @@ int run(const RunArguments& given, Console& console) {
   require_writable(outputs.solution);
   require_writable(report_file);
 
-  const Job job{arguments, scene, outputs, {console, report}};
+  const Job job{arguments, scene, outputs, time, {console, report}};
   const SolvedScene solved = solved_scene(job);
-  render_pictures(job, solved);
+  const bool are_as_asked = render_pictures(job, solved);
   report.add_file(report_file);
   report.write(report_file);
   report.print();
-  return exit_code(solved.solution);
+  return are_as_asked ? exit_code(solved.solution) : exit_not_accurate;
 }
 
 }  // namespace
@@ -139,11 +166,12 @@ Action add_run(CLI::App& command) {
   arguments->checkpoint.pictures_follow = true;
   arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
-  // Hidden, as rarely needed beside --quality; 'render --help' shows them.
-  for (const char* name : {"--depth", "--photons", "--samples"}) {
+  // Hidden, as rarely needed; 'render --help' and 'solve --help' show them.
+  for (const char* name : {"--depth", "--photons", "--samples", "--max-sweeps"}) {
     command.get_option(name)->group("");
   }
   arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::hidden);
+  add_time_limit(command, arguments->seconds, "How the light is solved");
   command.footer("Example: lightwell run cornell/cornell.toml -o cornell-results --size 1024x1024");
   return [arguments](Console& console) { return run(*arguments, console); };
 }

@@ -8,6 +8,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "cli/time_limit.h"
 #include "radiosity/solution/solution_file.h"
 #include "scene/io/read_scene.h"
 
@@ -18,11 +19,15 @@ struct SolveCommandArguments {
   std::string scene, output;
   SolveArguments solve;
   CheckpointArguments checkpoint;
+  double seconds = 0.0;  // 0: any time
 };
 
 int solve(const SolveCommandArguments& arguments, Console& console) {
+  const TimeLimit time(arguments.seconds);
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
+  const InterruptEndsEarly on_interrupt;
+  console.show_time_left(time.seconds_left());
   require_writable(arguments.output);
   const Provenance of = provenance(scene, arguments.solve);
   if (const auto done = finished_solution(arguments.checkpoint, of, arguments.output, console)) {
@@ -32,9 +37,14 @@ int solve(const SolveCommandArguments& arguments, Console& console) {
   }
   Checkpoint checkpoint(arguments.checkpoint, of, {arguments.output}, console);
   const SolvedScene solved =
-      solve_step(scene, {arguments.solve, arguments.output}, checkpoint, {console, report});
+      solve_step(scene, {arguments.solve, arguments.output, time.seconds_left()}, checkpoint,
+                 {console, report});
   write_solution_step(arguments.output, solved, console, report);
-  checkpoint.finish(report);
+  if (solved.solution.outcome == Outcome::cut_short) {
+    checkpoint.keep_to_resume(report);
+  } else {
+    checkpoint.finish(report);
+  }
   report.print();
   return exit_code(solved.solution);
 }
@@ -60,6 +70,7 @@ Action add_solve(CLI::App& command) {
       ->type_name("SOLUTION");
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::all);
   arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::all);
+  add_time_limit(command, arguments->seconds, "How the light is solved");
   command.footer(
       "Example: lightwell solve cornell/cornell.toml -o cornell.vtp --max-patch-size 25");
   return [arguments](Console& console) { return solve(*arguments, console); };

@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/picture_in_time.h"
 #include "cli/refinement.h"
 #include "mesh/patches/patch_textures.h"
 #include "radiosity/dark_rooms.h"
@@ -26,6 +27,8 @@ std::string way_to_smaller_elements(RefineOutcome outcome) {
       return fmt::format("Allow more --memory, or {}", smaller);
     case RefineOutcome::max_elements_reached:
       return "Allow more --max-elements";
+    case RefineOutcome::time_limit_reached:
+      return "Allow more --time";
     case RefineOutcome::smallest_size_reached:
     case RefineOutcome::tolerance_reached:
       break;
@@ -66,6 +69,12 @@ void warn_of_outcome(const RadiositySolution& solution, const SolveReport& solve
                     100.0 * solution.error_estimate, place_of_worst(solution.parts),
                     100.0 * solve_report.accuracy, way_to_smaller_elements(refined)));
   }
+  if (solution.outcome == Outcome::cut_short) {
+    console.say(fmt::format(
+        "warning: the solve was ended early; the solution is the best there was, with an estimated "
+        "error of {:.3g} %{}",
+        100.0 * solution.error_estimate, place_of_worst(solution.parts)));
+  }
   if (solution.outcome == Outcome::max_sweeps_reached) {
     console.say(
         fmt::format("warning: the solver ({}) stopped after {} sweeps at a residual of {:.2g}, "
@@ -93,6 +102,24 @@ void note_depth_cut(const Camera& camera, const RenderReport& rendered, int max_
   }
 }
 
+// Whether the picture is as asked for; warns of one that is not.
+bool is_as_asked(const Camera& camera, const RenderArguments& asked, const PictureInTime& picture,
+                 Console& console, Report& report) {
+  const bool is_whole = picture.rows == picture.image.height;
+  const std::string options = picture.arguments.text();
+  if (is_whole && options == asked.text()) return true;
+  std::string what = fmt::format("rendered with {}", options);
+  if (!is_whole) {
+    what += fmt::format(
+        " as far as row {} of {}; below, one sample for each pixel shows the light "
+        "of the solution",
+        picture.rows, picture.image.height);
+  }
+  console.say(fmt::format("warning: {}: for want of time the picture is {}", camera.name, what));
+  report.add("cut_short_" + camera.name, {{"options", options}, {"rows", picture.rows}});
+  return false;
+}
+
 }  // namespace
 
 void refuse_losses(const Scene& scene, const CommonOptions& options) {
@@ -107,7 +134,9 @@ void refuse_losses(const Scene& scene, const CommonOptions& options) {
 Scene read_scene_step(const fs::path& file, Console& console, Report& report,
                       CleanUpReport* clean_up) {
   const Stopwatch watch;
+  console.begin("reading");
   const Scene scene = read_scene(file);
+  console.finish_phase();
   refuse_losses(scene, console.options());
   console.say_notes(scene);
   report.add("light", light_name(scene.relative_units));
@@ -115,7 +144,9 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report,
   stop_if_interrupted();
   const Stopwatch clean_up_watch;
   CleanUpReport done;
+  console.begin("clean-up");
   Scene clean = merge_planar_regions(scene, &done);
+  console.finish_phase();
   console.say_verbose(sentence(done));
   report.add("cleaned", clean_up_json(done));
   if (clean_up) *clean_up = done;
@@ -143,7 +174,12 @@ SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& ch
   const SolveArguments& arguments = task.arguments;
   const auto& [console, report] = feedback;
   SolveOptions options = arguments.options(scene);
-  options.run.progress = checkpoint.watched(console.progress());
+  options.run.progress = [watched = checkpoint.watched(console.progress())](std::string_view phase,
+                                                                            double share) {
+    const bool is_nothing_there = phase == "mesh" && early_end_requested();
+    return watched(phase, share) && !is_nothing_there;
+  };
+  options.run.seconds_left = task.seconds_left;
   Journal* const journal = checkpoint.journal();
   const bool is_of_another = journal && journal->is_read_only();
   (is_of_another ? options.form_factors.run.journal : options.run.journal) = journal;
@@ -215,39 +251,40 @@ Provenance picture_provenance(const Scene& scene, const RadiositySolution& solut
                                  solution.provenance.options)};
 }
 
-void render_step(RenderableScene& renderable, const PictureTask& task, Checkpoint& checkpoint,
+bool render_step(RenderableScene& renderable, const PictureTask& task, Checkpoint& checkpoint,
                  const Feedback& feedback) {
   const Camera& camera = task.camera;
-  const RenderArguments& arguments = task.arguments;
+  const RenderArguments& asked = task.arguments;
   const auto& [console, report] = feedback;
   const Stopwatch watch;
-  console.say_verbose(fmt::format("rendering {} with {}", camera.name, arguments.text()));
-  RenderOptions options = arguments.options();
-  options.layers = arguments.film.rendered_layers(renderable.scene);
-  options.run.progress = checkpoint.watched(console.progress());
-  options.run.journal = checkpoint.journal();
-  RenderReport rendered;
-  const Camera view = arguments.sized(camera);
-  Image image;
+  console.say_verbose(fmt::format("rendering {} with {}", camera.name, asked.text()));
+  RenderOptions options;
+  options.layers = asked.film.rendered_layers(renderable.scene);
+  options.run = {.progress = checkpoint.watched(console.progress()),
+                 .journal = checkpoint.journal(),
+                 .seconds_left = task.seconds_left};
+  const Camera view = asked.sized(camera);
+  PictureInTime rendered;
   try {
-    image = renderable.renderer.render(view, options, &rendered);
+    rendered = render_in_time(renderable.renderer, view, asked, options);
     stop_if_interrupted();
   } catch (const std::exception&) {
     checkpoint.rethrow_stopped();
   }
   console.finish_phase();
-  const Picture picture{.image = image,
+  const Picture picture{.image = rendered.image,
                         .solution = renderable.solved.solution,
                         .camera = view,
-                        .render_options = arguments.text(),
-                        .exposure_ev = arguments.exposure_ev};
+                        .render_options = rendered.arguments.text(),
+                        .exposure_ev = asked.exposure_ev};
   for (const fs::path& file : task.files) {
-    write_picture(file, picture, arguments.film);
+    write_picture(file, picture, asked.film);
     report.add_file(file);
   }
   report.add_phase("render_" + camera.name, watch.seconds());
-  report.add("depth_cut_" + camera.name, rendered.cut_share);
-  note_depth_cut(camera, rendered, options.max_depth, console);
+  report.add("depth_cut_" + camera.name, rendered.rendered.cut_share);
+  note_depth_cut(camera, rendered.rendered, asked.depth, console);
+  return is_as_asked(camera, asked, rendered, console, report);
 }
 
 int exit_code(const RadiositySolution& solution) {

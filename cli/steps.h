@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,11 +39,12 @@ Provenance provenance(const Scene& scene, const SolveArguments& arguments);
 struct SolveTask {
   const SolveArguments& arguments;
   const std::filesystem::path& output;
+  std::function<double()> seconds_left{};  ///< RunControl::seconds_left
 };
 
 /// Solves the scene. Form factors that do not fit into memory go to disk beside the task's
 /// `output`. Work that the checkpoint holds is reused; more finished work is added to the
-/// checkpoint.
+/// checkpoint. An early end before there is a mesh throws Interrupted.
 SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& checkpoint,
                        const Feedback& feedback);
 
@@ -72,11 +74,13 @@ struct PictureTask {
   const Camera& camera;
   const RenderArguments& arguments;
   const std::vector<std::filesystem::path>& files;
+  std::function<double()> seconds_left{};  ///< RunControl::seconds_left
 };
 
 /// Renders a picture and writes its files. Finished tiles that the checkpoint holds are reused;
-/// more are added to the checkpoint.
-void render_step(RenderableScene& renderable, const PictureTask& task, Checkpoint& checkpoint,
+/// more are added to the checkpoint. Returns whether the whole picture is as asked for; if not, a
+/// warning says what is missing.
+bool render_step(RenderableScene& renderable, const PictureTask& task, Checkpoint& checkpoint,
                  const Feedback& feedback);
 
 /// exit_done if the solver converged, otherwise exit_not_accurate.

@@ -116,12 +116,20 @@ class GatherAttempts {
     take(std::move(efforts));
   }
 
+  // Ends with the best result so far once the time is up.
   void run() {
-    do {
-      if (!pilot_) refine();
-      gather();
-      estimate();
-    } while (raise_effort());
+    const RunControl run = options_.run;
+    const bool is_finished = finishes_in_time(run, [this](const RunControl& in_time) {
+      options_.run = in_time;
+      do {
+        if (!pilot_) refine();
+        gather();
+        estimate();
+      } while (raise_effort());
+    });
+    options_.run = run;
+    if (!is_finished) end_early();
+    if (!caster_) caster_.emplace(solved_.mesh);
     GatherOptions gather = options_.gather;
     gather.run = options_.run;
     add_gap_errors({scene_, *caster_, direct_light_.all}, gather, solved_.solution);
@@ -133,8 +141,8 @@ class GatherAttempts {
       if (spent_[phase] > 0.0) seconds.push_back({phase, spent_[phase]});
     }
   }
-  bool has_refined() const { return pilot_->tree != nullptr; }
-  const RefineReport& refinement() const { return pilot_->refinement; }
+  bool has_refined() const { return has_refined_; }
+  const RefineReport& refinement() const { return refinement_; }
   double target() const { return target_; }
   int gather_rays() const { return options_.gather.rays; }
 
@@ -173,21 +181,31 @@ class GatherAttempts {
       }
       take(std::move(efforts));
     }
-    if (pilot_->refined) {
-      solved_.mesh = std::move(*pilot_->refined);
-    } else {
-      solved_.mesh = may_repeat() ? pilot_gathers_->base() : std::move(pilot_gathers_->base());
-    }
-    caster_.emplace(pilot_gathers_->caster(solved_.mesh, *pilot_));
-    if (!may_repeat()) pilot_gathers_.reset();
+    take_mesh(may_repeat());
     give_back_free_pages();  // splitting elements leaves many
     if (pilot_->tree) spent_["refine"] += watch_.lap();
   }
 
+  // Makes the mesh of the pilot gather that of the solution.
+  void take_mesh(bool keeps_base) {
+    state_ = State::has_pilot;
+    refinement_ = pilot_->refinement;
+    has_refined_ = pilot_->tree != nullptr;
+    if (pilot_->refined) {
+      solved_.mesh = std::move(*pilot_->refined);
+    } else {
+      solved_.mesh = keeps_base ? pilot_gathers_->base() : std::move(pilot_gathers_->base());
+    }
+    caster_.emplace(pilot_gathers_->caster(solved_.mesh, *pilot_));
+    if (!keeps_base) pilot_gathers_.reset();
+  }
+
   void gather() {
+    state_ = State::has_pilot;
     reconstruct({scene_, *caster_, direct_light_.by_channel}, options_, *pilot_, solved_.solution,
                 may_repeat() ? &kept_ : nullptr);
     relight(solved_, effective_scales(solved_.solution));
+    state_ = State::is_gathered;
     give_back_free_pages();
     spent_["gather"] += watch_.lap();
   }
@@ -222,7 +240,33 @@ class GatherAttempts {
       }
     }
     keep_estimates();
+    state_ = State::is_estimated;
     spent_["error_estimate"] += watch_.lap();
+  }
+
+  // Completes the solution with what there is, by as little work as possible:
+  // - the attempt before, if refinement was stopped in a later one;
+  // - the light at patches, if refinement was stopped in the first attempt;
+  // - the light of the pilot gather, if the gather was stopped.
+  void end_early() {
+    spent_["gather"] += watch_.lap();
+    RadiositySolution& solution = solved_.solution;
+    if (solution.outcome == Outcome::converged) solution.outcome = Outcome::cut_short;
+    if (state_ == State::is_estimated) return;
+    options_.run.journal = nullptr;
+    constexpr int few_rays = 128;
+    options_.gather.rays = std::min(few_rays, options_.gather.rays);
+    options_.refine.efforts.clear();
+    if (state_ == State::has_nothing) {
+      pilot_ = pilot_gathers_->gather_at_patches(options_);
+      take_mesh(false);
+    }
+    if (state_ == State::has_pilot) {
+      take_pilot_light({scene_, *caster_, direct_light_.by_channel}, *pilot_,
+                       may_repeat() ? &kept_ : nullptr, solution);
+      relight(solved_, effective_scales(solution));
+    }
+    estimate();
   }
 
   // Writes the estimates into the solution. The largest error counts for the whole: largest against
@@ -297,6 +341,11 @@ class GatherAttempts {
   SolveOptions options_;
   std::vector<Effort> efforts_{};  // of each part
   int attempt_ = 0;
+  // What the solution holds.
+  enum class State { has_nothing, has_pilot, is_gathered, is_estimated };
+  State state_ = State::has_nothing;
+  RefineReport refinement_{};
+  bool has_refined_ = false;
   std::optional<PilotGathers> pilot_gathers_;
   std::optional<PilotGather> pilot_{};
   std::optional<ElementCaster> caster_{};
@@ -306,20 +355,115 @@ class GatherAttempts {
   std::map<std::string, double> spent_{};
 };
 
-}  // namespace
-
-void illuminate_elements(const Scene& scene, const DirectLightSums& direct_light,
-                         const SolveOptions& options, SolvedScene& solved, SolveReport* report) {
+// Refines, gathers and estimates until the accuracy is reached, or until the time is up.
+void illuminate(const Scene& scene, const DirectLightSums& direct_light,
+                const SolveOptions& options, SolvedScene& solved, SolveReport& report) {
   GatherAttempts attempts(scene, direct_light, options, solved);
   attempts.run();
   RadiositySolution& solution = solved.solution;
   require_finite(scene, solution);
   if (attempts.has_refined()) solution.provenance.refinement = sentence(attempts.refinement());
   attempts.add_seconds(solution.seconds);
-  if (!report) return;
-  report->refinement = attempts.refinement();
-  report->accuracy = attempts.target();
-  report->gather_rays = attempts.gather_rays();
+  report.refinement = attempts.refinement();
+  report.accuracy = attempts.target();
+  report.gather_rays = attempts.gather_rays();
+}
+
+// The error to reach next, below `error`, which took `spent` seconds, where `left` seconds are
+// left; empty if there is not enough time for a notable difference.
+std::optional<double> next_error(double error, double least, double spent, double left) {
+  // Noise falls with the power 2/3 of the rays, and the elements grow besides.
+  constexpr double order = 2.0, most_of_time = 0.8;
+  constexpr double largest_step = 0.25, notable_step = 0.8;
+  const double step = std::pow(spent / (most_of_time * left), 1.0 / order);
+  if (!(error > least) || !(step < notable_step)) return std::nullopt;
+  return std::max(least, std::max(step, largest_step) * error);
+}
+
+// Reaches smaller and smaller errors as long as there is time. Each stage repeats what the one
+// before did with less effort, so that all before the last take a third to a half of its time.
+class StagesInTime {
+ public:
+  StagesInTime(const Scene& scene, const DirectLightSums& direct_light, const SolveOptions& options,
+               SolvedScene& solved)
+      : scene_(scene),
+        direct_light_(direct_light),
+        options_(options),
+        patches_(solved),
+        solved_(solved),
+        target_(options.accuracy ? target_of(scene, options, solved) : finest) {}
+
+  void run(SolveReport& report) {
+    constexpr double first = 0.16, for_the_first = 0.9, for_a_later = 0.95;
+    Stopwatch watch;
+    double error = std::max(first, target_), spent = 0.0;
+    SolveOptions stage = options_at(error);
+    stage.run = options_.run.with_share(for_the_first);
+    illuminate(scene_, direct_light_, stage, solved_, report);
+    while (solved_.solution.outcome == patches_.solution.outcome) {
+      const double seconds = watch.lap();
+      const auto next = next_error(error, target_, seconds, options_.run.time_left());
+      if (!next) break;
+      error = *next;
+      SolvedScene better = patches_;
+      SolveReport of_better = report;
+      stage = options_at(error);
+      if (!finishes_in_time(options_.run.with_share(for_a_later), [&](const RunControl& in_time) {
+            stage.run = in_time;
+            stage.run.seconds_left = {};
+            illuminate(scene_, direct_light_, stage, better, of_better);
+          })) {
+        break;
+      }
+      spent += seconds;
+      solved_ = std::move(better);
+      report = of_better;
+    }
+    if (spent > 0.0) solved_.solution.seconds.push_back({"earlier_stages", spent});
+    judge();
+    report.accuracy = options_.accuracy ? target_ : 0.0;
+  }
+
+ private:
+  static constexpr double finest = 0.005;  // if no accuracy is asked for
+
+  SolveOptions options_at(double error) const {
+    SolveOptions options = options_;
+    options.run.journal = nullptr;
+    if (error > target_ || !options.accuracy) options.accuracy = Accuracy{.share = error};
+    return options;
+  }
+
+  // The outcome against what was asked for, in place of the last stage's own.
+  void judge() {
+    RadiositySolution& solution = solved_.solution;
+    if (solution.outcome == Outcome::cut_short) return;
+    solution.outcome = patches_.solution.outcome;
+    const bool is_missed = options_.accuracy && !(solution.error_estimate <= target_);
+    if (is_missed && solution.outcome == Outcome::converged) {
+      solution.outcome = Outcome::accuracy_missed;
+    }
+  }
+
+  const Scene& scene_;
+  DirectLightSums direct_light_;
+  const SolveOptions& options_;
+  SolvedScene patches_;  // before any light of elements
+  SolvedScene& solved_;
+  double target_;
+};
+
+}  // namespace
+
+void illuminate_elements(const Scene& scene, const DirectLightSums& direct_light,
+                         const SolveOptions& options, SolvedScene& solved, SolveReport* report) {
+  SolveReport unread;
+  SolveReport& of_this = report ? *report : unread;
+  if (options.run.has_limit()) {
+    StagesInTime(scene, direct_light, options, solved).run(of_this);
+  } else {
+    illuminate(scene, direct_light, options, solved, of_this);
+  }
 }
 
 }  // namespace lightwell

@@ -18,7 +18,14 @@ struct DirectLightSums {
 /// 3. Estimates the error.
 ///
 /// With `options.accuracy` the steps are repeated with more rays or smaller elements until the
-/// estimate meets the accuracy, or until more effort would not help. `solved` has the light of
+/// estimate meets the accuracy, or until more effort would not help.
+///
+/// If the time of `options.run` is limited, the errors to reach fall from 16 % to the accuracy (0.5
+/// % if there is none), each stage as long as it fits into the time. Once the time is up, the last
+/// stage that was finished counts. If there is none, or if a limit comes by surprise, the solution
+/// is completed from what there is, with Outcome::cut_short.
+///
+/// `solved` has the light of
 /// patches, and gets the refined mesh, the light of vertices and the seconds of each phase;
 /// `report`, if given, gets the refinement, the accuracy and the rays. Throws InputError if light
 /// is not finite, Interrupted when progress says stop.

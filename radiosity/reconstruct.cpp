@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/patches/patch_sampler.h"
+#include "radiosity/accuracy.h"
 #include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/part_balance.h"
@@ -352,6 +354,7 @@ struct PilotGathers::Impl {
       : scene(of), base(std::move(mesh)), caster(base), direct_light(direct) {}
 
   PilotGather unrefined(const SolveOptions& options);
+  PilotGather at_patches(const SolveOptions& options);
   void prepare(const SolveOptions& options);
   PilotGather refined(const SolveOptions& options);
 
@@ -388,6 +391,10 @@ PilotGather PilotGathers::gather(const SolveOptions& options) {
   return options.refine.tolerance > 0.0 ? impl_->refined(options) : impl_->unrefined(options);
 }
 
+PilotGather PilotGathers::gather_at_patches(const SolveOptions& options) {
+  return impl_->at_patches(options);
+}
+
 ElementCaster PilotGathers::caster(const PatchMesh& mesh, const PilotGather& pilot) const {
   return {mesh, impl_->caster, pilot.tree};
 }
@@ -404,6 +411,24 @@ PilotGather PilotGathers::Impl::unrefined(const SolveOptions& options) {
       gather_indirect({scene, caster, direct_light}, radiosity, points, gather).indirect;
   pilot.caustic = caustics({scene, caster, direct_light}, options);
   return pilot;
+}
+
+PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
+  constexpr int few_rays = 64;
+  GatherOptions gather = gather_options(options);
+  gather.rays = std::min(few_rays, gather.rays);
+  gather.shadows = Effort{.gather_rays = gather.rays}.shadows();
+  gather.replica += pilot_replica;
+  const GatherPoints centers(base.patch_count(), [this](int p) {
+    const PatchPoint at = PatchSampler(base, p).point(0.5, 0.5);
+    return GatherPoint{at.position, at.normal, base.facet[at.element]};
+  });
+  const GatheredIrradiance found =
+      gather_irradiance({scene, caster, direct_light}, radiosity, centers, gather);
+  return {.direct = to_vertices(base, found.direct),
+          .indirect = to_vertices(base, found.indirect),
+          .shadows = gather.shadows,
+          .gather_rays = rays_by_part(options)};
 }
 
 void PilotGathers::Impl::prepare(const SolveOptions& options) {
@@ -519,6 +544,27 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
   if (pilot.caustic.size() > 0) solution.indirect_irradiance += pilot.caustic;
   solution.caustic_irradiance = pilot.caustic;
   solution.interpolation_error = pilot.interpolation_error;
+  split_by_channel(solution);
+}
+
+void take_pilot_light(const LitScene& lit, const PilotGather& pilot, KeptGathers* kept,
+                      RadiositySolution& solution) {
+  BandArray indirect = pilot.indirect;
+  if (kept) {
+    carry_over(pilot.number, *kept);
+    const KeptGather& last = kept->last;
+    for (std::size_t v = 0; v < last.rays.size(); ++v) {
+      const auto row = static_cast<Eigen::Index>(v);
+      if (last.rays[v] > 0) indirect.row(row) = last.indirect.row(row);
+    }
+    interpolate_vertices(pilot.interpolated, indirect);
+  }
+  solution.direct_irradiance = pilot.direct;
+  solution.indirect_irradiance = indirect.max(0.0f);
+  if (pilot.caustic.size() > 0) solution.indirect_irradiance += pilot.caustic;
+  solution.caustic_irradiance = pilot.caustic;
+  solution.interpolation_error.resize(0);
+  solution.gather_noise = Eigen::ArrayXf::Zero(lit.mesh().element_count());
   split_by_channel(solution);
 }
 

@@ -47,6 +47,11 @@ class PilotGathers {
   /// more elements than allowed, Interrupted when progress says stop.
   PilotGather gather(const SolveOptions& options);
 
+  /// In place of gather() for want of time: a gather of few rays at one point of each patch, which
+  /// the vertices of the base share. Caustics are left out. Throws Interrupted when progress says
+  /// stop.
+  PilotGather gather_at_patches(const SolveOptions& options);
+
   /// The mesh before refinement; may be moved from after the last pilot gather.
   PatchMesh& base();
   /// A caster of the mesh of a pilot gather; `mesh` is that mesh, wherever it was moved to.
@@ -85,5 +90,12 @@ struct KeptGathers {
 /// when progress says stop.
 void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGather& pilot,
                  RadiositySolution& solution, KeptGathers* kept = nullptr);
+
+/// In place of reconstruct() for want of time: fills in the irradiances of `solution` with the light
+/// of the pilot gather, and of the final gathers in `kept` at the vertices that have any (null:
+/// none). Their errors are left to the error estimate: gather noise is 0, and the interpolation
+/// error is empty.
+void take_pilot_light(const LitScene& lit, const PilotGather& pilot, KeptGathers* kept,
+                      RadiositySolution& solution);
 
 }  // namespace lightwell

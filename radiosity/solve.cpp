@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -67,7 +68,14 @@ RadiositySolution shoot(const LitScene& lit, const SolveOptions& options) {
     print.add(overshooting);
     print.add(options.channels.of_surface);
   });
-  RadiositySolution solution = shoot_to_the_end(progressive, options.run.progress, &phase);
+  RadiositySolution solution;
+  const bool is_finished = finishes_in_time(options.run, [&](const RunControl& in_time) {
+    solution = shoot_to_the_end(progressive, in_time.progress, &phase);
+  });
+  if (!is_finished) {
+    solution = progressive.solution();
+    solution.outcome = Outcome::cut_short;
+  }
   solution.seconds.push_back({"solve", watch.lap()});
   return solution;
 }
@@ -140,9 +148,15 @@ void note_energy(const LitScene& lit, const FormFactorReport& rows,
   }
 }
 
-RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_apart,
-                                  const SolveOptions& options, SolveReport* report,
-                                  std::vector<std::string>& notes) {
+// The light of patches, with the rows that it was found from.
+struct SolvedEquations {
+  RadiositySolution solution{};
+  FormFactorReport rows{};
+  std::vector<std::string> notes{};
+};
+
+SolvedEquations solve_equations(const LitScene& lit, const DirectLight& kept_apart,
+                                const SolveOptions& options) {
   const Scene& scene = lit.scene;
   const PatchMesh& mesh = lit.mesh();
   Stopwatch watch;
@@ -158,8 +172,8 @@ RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_a
   SolverOptions pilot = options.solver;
   pilot.run = options.run;
   form_factor_options.portals = portals_of_rows(lit, form_factor_options, free_light, pilot);
-  FormFactorReport found;
-  const auto form_factors = compute_form_factors(lit, form_factor_options, &found);
+  SolvedEquations solved;
+  const auto form_factors = compute_form_factors(lit, form_factor_options, &solved.rows);
   const double form_factor_seconds = watch.lap();
 
   SolverOptions solver_options = options.solver;
@@ -169,8 +183,8 @@ RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_a
   };
   if (options.start) solver_options.start = start_radiosity(mesh, *options.start);
   solver_options.arriving = free_light.irradiance;
-  RadiositySolution solution =
-      solve_radiosity(options.solver_method, mesh, *form_factors, solver_options);
+  RadiositySolution& solution = solved.solution;
+  solution = solve_radiosity(options.solver_method, mesh, *form_factors, solver_options);
   if (!options.channels.empty()) {
     solver_options.start = start_by_channel(options.start, options.channels);
     solve_channels(scene, mesh, *form_factors, by_channel, options.channels, options.solver_method,
@@ -178,10 +192,72 @@ RadiositySolution solve_equations(const LitScene& lit, const DirectLight& kept_a
   }
   solution.energy =
       energy_balance(scene, mesh, *form_factors, solution.patch_radiosity, free_light);
-  note_energy(lit, found, solution, notes);
-  if (report) report->form_factors = std::move(found);
+  note_energy(lit, solved.rows, solution, solved.notes);
   solution.seconds = {{"form_factors", form_factor_seconds}, {"solve", watch.lap()}};
-  return solution;
+  return solved;
+}
+
+constexpr int few_row_rays = 64;  // the fewest of form_factor_rays()
+
+// Options of a solve that takes an eighth of the usual time.
+SolveOptions with_few_rays(const SolveOptions& options) {
+  SolveOptions few = options;
+  FormFactorOptions& rows = few.form_factors;
+  if (rows.method != FormFactorMethod::automatic) rows.method = FormFactorMethod::ray_cast;
+  rows.rays_per_patch = std::min(few_row_rays, rows.rays_per_patch);
+  constexpr double tolerance = 1e-3;
+  few.solver.tolerance = std::max(tolerance, few.solver.tolerance);
+  few.run.journal = nullptr;
+  return few;
+}
+
+// The rays of each patch that take about `allowed` seconds, where few_row_rays take `spent`; a
+// power of two.
+int rays_in_time(double spent, double allowed, int most) {
+  int rays = few_row_rays;
+  double seconds = spent;
+  while (2 * rays <= most && 2.0 * seconds <= allowed) {
+    rays *= 2;
+    seconds *= 2.0;
+  }
+  return rays;
+}
+
+// Solves the equations; once the time is up, with rows of few rays. If the time is limited from the
+// start, these are solved first, and tell how many rays there is time for.
+SolvedEquations solve_in_time(const LitScene& lit, const DirectLight& kept_apart,
+                              const SolveOptions& options) {
+  constexpr double share_of_rows = 0.25;
+  std::optional<SolvedEquations> rough;
+  SolveOptions full = options;
+  const int wanted = rays_per_patch(options);
+  if (options.run.has_limit() && wanted > few_row_rays) {
+    Stopwatch watch;
+    rough = solve_equations(lit, kept_apart, with_few_rays(options));
+    const double allowed = share_of_rows * options.run.time_left();
+    const int rays = rays_in_time(watch.lap(), allowed, wanted);
+    if (rays < wanted) {
+      rough->notes.push_back(
+          fmt::format("the time allows rows of {} rays a patch instead of {}", rays, wanted));
+      full.form_factors.rays_per_patch = rays;
+    }
+    if (rays <= few_row_rays) return std::move(*rough);
+  }
+  SolvedEquations solved;
+  const bool is_finished = finishes_in_time(options.run, [&](const RunControl& in_time) {
+    full.run = in_time;
+    solved = solve_equations(lit, kept_apart, full);
+  });
+  if (is_finished) {
+    if (rough) solved.notes.insert(solved.notes.end(), rough->notes.begin(), rough->notes.end());
+    return solved;
+  }
+  if (!rough) rough = solve_equations(lit, kept_apart, with_few_rays(options));
+  rough->notes.push_back(fmt::format(
+      "the solve was ended while its form factors were computed: rows of {} rays a patch serve",
+      few_row_rays));
+  rough->solution.outcome = Outcome::cut_short;
+  return std::move(*rough);
 }
 
 // Options of shooting: the given ones, or the defaults if no method was chosen and form factors do
@@ -322,11 +398,14 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   if (options.form_factors.memory) options.form_factors.memory->plan(bytes_to_gather(solved.mesh));
   SolveOptions exchange = options;
   exchange.progressive = without_rows(direct_light, options, solved.mesh);
-  std::vector<std::string> notes;
-  solved.solution = exchange.progressive ? shoot({scene, *caster, kept_apart}, exchange)
-                                         : solve_equations({scene, *caster, direct_light},
-                                                           kept_apart, exchange, report, notes);
-  solved.mesh.notes.insert(solved.mesh.notes.end(), notes.begin(), notes.end());
+  if (exchange.progressive) {
+    solved.solution = shoot({scene, *caster, kept_apart}, exchange);
+  } else {
+    SolvedEquations equations = solve_in_time({scene, *caster, direct_light}, kept_apart, exchange);
+    solved.solution = std::move(equations.solution);
+    std::ranges::move(equations.notes, std::back_inserter(solved.mesh.notes));
+    if (report) report->form_factors = std::move(equations.rows);
+  }
   RadiositySolution& solution = solved.solution;
   for (const PhaseSeconds& phase : solution.seconds) seconds.push_back(phase);
   watch.lap();

@@ -77,6 +77,10 @@ bool starts_coarse(const SolveOptions& options);
 /// scene without units, if the mesh has more elements than allowed, or if light is not finite.
 /// Throws Interrupted when progress says stop, and std::invalid_argument if the journal is of
 /// another scene.
+///
+/// If `options.run` limits the time, steps 2 to 4 take as many rays and elements as there is time
+/// for (see illuminate_elements). Once the time is up, the result is the best there is; the outcome
+/// is Outcome::cut_short if a step could not be finished. Step 1 takes the time that it takes.
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);
 

@@ -1,17 +1,49 @@
 #pragma once
 
+#include <functional>
+#include <utility>
+
+#include "scene/errors.h"
 #include "scene/progress.h"
 
 namespace lightwell {
 
 class Journal;
 
-/// Progress, interruption and journal of a run. The result does not depend on any of them.
+/// Progress, interruption, journal and time of a run. Only the time affects the result.
 struct RunControl {
   Progress progress{};
   /// Journal of the same scene, which keeps finished work and recalls it in a resumed run. Null:
   /// nothing is kept.
   Journal* journal = nullptr;
+  /// Seconds of wall time that are left, asked for again and again; empty: any time. Infinity means
+  /// that there is no limit yet. When no time is left, solve_scene() ends with the best result that
+  /// it has; other functions pay no attention.
+  std::function<double()> seconds_left{};
+
+  /// Seconds left; infinity without a limit.
+  double time_left() const;
+  bool is_time_up() const;
+  /// True if the time is limited from now on.
+  bool has_limit() const;
+  /// The same run with a `share` of the time that is left now.
+  RunControl with_share(double share) const;
+  /// The same run, whose progress says stop once the time is up.
+  RunControl stopping_in_time() const;
 };
+
+/// Calls `work(run)` with a run that stops once the time is up. Returns false if the work was
+/// stopped for that reason; what the work has changed until then is as the work leaves it. Throws
+/// Interrupted if progress says stop.
+template <class Work>
+bool finishes_in_time(const RunControl& run, Work&& work) {
+  try {
+    std::forward<Work>(work)(run.stopping_in_time());
+  } catch (const Interrupted&) {
+    if (!run.is_time_up()) throw;
+    return false;
+  }
+  return true;
+}
 
 }  // namespace lightwell

@@ -46,6 +46,8 @@ class InterpolationError {
   void set_tolerance(const RefineOptions& options) { predictions_.set_tolerance(options); }
   /// True if measure() would find more now than before set_tolerance().
   bool is_stale(int cell) const { return predictions_.is_stale(cell); }
+  /// The run of the gathers.
+  const RunControl& run() const { return gathers_.options().run; }
   /// Rays of the final gather in each part.
   const std::vector<int>& rays() const { return gathers_.rays(); }
 

@@ -44,6 +44,7 @@ enum class RefineOutcome {
   tolerance_reached,
   max_elements_reached,
   memory_limit_reached,  ///< as many elements as RefineOptions::room
+  time_limit_reached,
   smallest_size_reached
 };
 

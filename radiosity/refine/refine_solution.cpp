@@ -96,6 +96,8 @@ class Refinement {
       if (marks.size() > most) marks.resize(most);
       if (are_reached()) {
         report_.outcome = RefineOutcome::tolerance_reached;
+      } else if (report_.rounds > 0 && error_.run().is_time_up()) {
+        report_.outcome = RefineOutcome::time_limit_reached;
       } else if (marks.empty()) {
         report_.outcome = RefineOutcome::smallest_size_reached;
       } else if (!measure(marks)) {
@@ -386,6 +388,10 @@ std::string sentence(const RefineReport& report) {
       end = fmt::format(
           "stopped at the most elements that '--memory' has room for, before the tolerance of {}",
           percent(report.tolerance));
+      break;
+    case RefineOutcome::time_limit_reached:
+      end = fmt::format("stopped for want of time, before the tolerance of {}",
+                        percent(report.tolerance));
       break;
     case RefineOutcome::smallest_size_reached:
       end = fmt::format("stopped at the smallest elements allowed, before the tolerance of {}",

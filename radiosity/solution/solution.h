@@ -12,7 +12,12 @@
 namespace lightwell {
 
 /// Reason for the end of a solve. accuracy_missed: converged, but short of the requested accuracy.
-enum class Outcome { converged, max_sweeps_reached, accuracy_missed };
+enum class Outcome {
+  converged,
+  max_sweeps_reached,
+  accuracy_missed,
+  cut_short  ///< the time was up, or somebody stopped the solve, before it was finished
+};
 
 struct StepRecord {
   double residual = 0.0;  ///< max over patches of |M + rho F B - B| relative to the largest B

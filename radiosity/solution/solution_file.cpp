@@ -228,6 +228,8 @@ const char* how_it_ended(Outcome outcome) {
       return "stopped at the most sweeps allowed";
     case Outcome::accuracy_missed:
       return "converged, short of the accuracy asked for,";
+    case Outcome::cut_short:
+      return "cut short";
     case Outcome::converged:
       break;
   }

@@ -1,11 +1,15 @@
-// SIGINT and SIGTERM: exit code 130 within seconds, and no new file.
+// SIGTERM: exit code 130 within seconds, and no new file. SIGINT and --time: the best result there
+// is.
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <string>
 #include <thread>
 
+#include "radiosity/solution/solution_file.h"
+#include "raytrace/image.h"
 #include "tests/cli/program.h"
 #include "tests/sanitizers.h"
 
@@ -13,20 +17,28 @@ namespace lightwell::interrupt_test {
 namespace {
 using namespace std::chrono_literals;
 
-class Interrupted : public testing::TestWithParam<int> {};
+// Options of a solve of small_room() that takes minutes.
+const std::vector<std::string> long_work = {"--max-patch-size", "0.1", "--rays", "65536"};
 
-TEST_P(Interrupted, SolveStopsWithinAMomentAndLeavesNothing) {
-  TemporaryFolder folder;
-  folder.write("room.toml", small_room());
-  // Without the signal, the solve would take minutes.
-  Running running(folder / "", {"solve", "room.toml", "-o", "S.vtp", "--max-patch-size", "0.1",
-                                "--rays", "65536"});
-  // The first line on standard error ends the phase "mesh"; form factors follow.
+// Waits until the phase "mesh" has ended: a line on standard error says so, and form factors
+// follow.
+void wait_for_form_factors(const Running& running) {
   for (int i = 0; i < 600 && running.err().empty(); ++i) std::this_thread::sleep_for(50ms);
   ASSERT_NE(running.err(), "") << "no sign of work after 30 s";
+}
 
+class InterruptTest : public CommandTest {
+ protected:
+  InterruptTest() { folder.write("room.toml", small_room()); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
+};
+
+TEST_F(InterruptTest, SigtermStopsASolveWithinAMomentAndLeavesNothing) {
+  const std::vector<std::string> solve = {"solve", "room.toml", "-o", "S.vtp"};
+  Running running(folder / "", solve + long_work);
+  wait_for_form_factors(running);
   const auto start = std::chrono::steady_clock::now();
-  running.signal(GetParam());
+  running.signal(SIGTERM);
   const Ended ended = running.wait();
   const auto taken = std::chrono::steady_clock::now() - start;
   EXPECT_EQ(ended.code, 130) << ended.err;
@@ -37,20 +49,99 @@ TEST_P(Interrupted, SolveStopsWithinAMomentAndLeavesNothing) {
   EXPECT_LT(taken, 5s * test::slowdown);
 }
 
-TEST_P(Interrupted, RunRemovesTheFolderItMade) {
-  TemporaryFolder folder;
-  folder.write("room.toml", small_room());
-  Running running(folder / "", {"run", "room.toml", "-o", "deep/results", "--max-patch-size", "0.1",
-                                "--rays", "65536"});
-  for (int i = 0; i < 600 && running.err().empty(); ++i) std::this_thread::sleep_for(50ms);
-  running.signal(GetParam());
+TEST_F(InterruptTest, SigtermRemovesTheFolderThatRunMade) {
+  const std::vector<std::string> run = {"run", "room.toml", "-o", "deep/results"};
+  Running running(folder / "", run + long_work);
+  wait_for_form_factors(running);
+  running.signal(SIGTERM);
   EXPECT_EQ(running.wait().code, 130);
   EXPECT_EQ(folder.file_count(), 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(By, Interrupted, testing::Values(SIGINT, SIGTERM), [](const auto& each) {
-  return each.param == SIGINT ? "SIGINT" : "SIGTERM";
-});
+TEST_F(InterruptTest, CtrlCWritesTheBestSolutionThereIs) {
+  const std::vector<std::string> solve = {"solve", "room.toml", "-o", "S.vtp", "--json"};
+  Running running(folder / "", solve + long_work);
+  wait_for_form_factors(running);
+  running.signal(SIGINT);
+  const Ended ended = running.wait();
+  EXPECT_EQ(ended.code, 4) << ended.err;
+  EXPECT_TRUE(says(ended.err, "ending with what there is; another Ctrl-C ends at once"));
+  EXPECT_TRUE(says(ended.err, "rows of 64 rays a patch"));
+  EXPECT_TRUE(says(ended.err, "warning: the solve was ended early"));
+  const auto json = nlohmann::json::parse(ended.out);
+  EXPECT_EQ(json["outcome"], "cut_short");
+  EXPECT_GT(json["error_estimate"].get<double>(), 0.0);
+  EXPECT_LT(json["error_estimate"].get<double>(), 0.5);
+  // Whoever reads the file is told as well.
+  EXPECT_EQ(read_solution(folder / "S.vtp").solution.outcome, Outcome::cut_short);
+  EXPECT_EQ(run_json({"info", "S.vtp"})["outcome"], "cut_short");
+}
+
+TEST_F(InterruptTest, CtrlCGivesRunWholePictures) {
+  const std::vector<std::string> words = {"run", "room.toml", "-o", "D", "--size", "60x40"};
+  Running running(folder / "", words + long_work);
+  wait_for_form_factors(running);
+  running.signal(SIGINT);
+  const Ended ended = running.wait();
+  EXPECT_EQ(ended.code, 4) << ended.err;
+  EXPECT_TRUE(says(ended.err, "warning: door: for want of time"));
+  for (const char* file : {"D/solution.vtp", "D/door.exr", "D/door.png", "D/report.json"}) {
+    EXPECT_TRUE(exists(file)) << file;
+  }
+  const Image picture = read_exr(folder / "D/door.exr");
+  EXPECT_EQ(picture.height, 40);
+  EXPECT_GT(picture.radiance.minCoeff(), 0.0f) << "every wall of the room is lit";
+  const auto report = nlohmann::json::parse(content_of(folder / "D/report.json"));
+  EXPECT_EQ(report["outcome"], "cut_short");
+  EXPECT_EQ(report["cut_short_door"]["rows"], 0);
+}
+
+TEST_F(InterruptTest, ASecondCtrlCEndsAtOnce) {
+  const std::vector<std::string> solve = {"solve", "room.toml", "-o", "S.vtp"};
+  Running running(folder / "", solve + std::vector<std::string>{"--max-patch-size", "0.05"});
+  wait_for_form_factors(running);
+  running.signal(SIGINT);
+  std::this_thread::sleep_for(20ms);  // two pending signals of a kind would be one
+  running.signal(SIGINT);
+  EXPECT_EQ(running.wait().code, -SIGINT);
+  EXPECT_FALSE(exists("S.vtp"));
+}
+
+TEST_F(InterruptTest, TimeIsKept) {
+  const auto json = run_json({"run", "room.toml", "-o", "D", "--size", "60x40", "--time", "4s"});
+  EXPECT_EQ(json["outcome"], "converged");
+  EXPECT_EQ(json["looked_from"], nlohmann::json::array({"door"}));
+  EXPECT_LT(json["error_estimate"].get<double>(), 0.16);
+  EXPECT_FALSE(json.contains("accuracy")) << "none was asked for";
+  // The last piece of work that no clock divides, and the files, come on top.
+  EXPECT_LT(json["seconds"]["total"].get<double>(), 4.0 + 4.0 * test::slowdown);
+  EXPECT_TRUE(exists("D/door.png"));
+}
+
+TEST_F(InterruptTest, TooLittleTimeIsSaid) {
+  const Ended ended =
+      run({"solve", "room.toml", "-o", "S.vtp", "--time", "0.1s", "--accuracy", "0.1%", "--json"});
+  EXPECT_EQ(ended.code, 4) << ended.err;
+  const auto json = nlohmann::json::parse(ended.out);
+  EXPECT_TRUE(json["outcome"] == "cut_short" || json["outcome"] == "accuracy_missed");
+  EXPECT_TRUE(exists("S.vtp"));
+}
+
+TEST_F(InterruptTest, WrongUseOfTimeIsRefused) {
+  const std::vector<std::string> solve = {"solve", "room.toml", "-o", "S.vtp"};
+  const auto refused = [&](const std::vector<std::string>& words, const char* reason) {
+    const Ended ended = run(solve + words);
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(says(ended.err, reason));
+  };
+  using Words = std::vector<std::string>;
+  refused(Words{"--time", "soon"}, "'soon' is no time from 0.1 s to 24 h");
+  refused(Words{"--time", "0"}, "'0' is no time");
+  refused(Words{"--time", "10s", "--checkpoint", "C"}, "cannot be combined with --checkpoint");
+  refused(Words{"--time", "10s", "--gather-rays", "64"}, "cannot be combined with --gather-rays");
+  refused(Words{"--time", "10s", "--refine", "1%"}, "cannot be combined with --refine");
+  EXPECT_EQ(run(solve + quick() + Words{"--time", "10s"}).code, 2) << "it has --gather-rays";
+}
 
 }  // namespace
 }  // namespace lightwell::interrupt_test

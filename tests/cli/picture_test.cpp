@@ -167,9 +167,9 @@ TEST_F(Pictures, InterruptedPictureGoesOnWithTheSameBits) {
   wait_for_a_tile("C", 25);
   running.signal(SIGINT);
   const Ended ended = running.wait();
-  ASSERT_EQ(ended.code, 130) << ended.err;
-  EXPECT_FALSE(exists("P.exr"));
-  EXPECT_TRUE(says(ended.err, "interrupted; finished work is in 'C' (")) << ended.err;
+  ASSERT_EQ(ended.code, 4) << ended.err;
+  EXPECT_TRUE(exists("P.exr"));
+  EXPECT_TRUE(says(ended.err, "finished work is in 'C' (")) << ended.err;
   const std::string before_command = "To resume:\n  ";
   const std::size_t at = ended.err.find(before_command);
   ASSERT_NE(at, std::string::npos) << ended.err;
@@ -211,14 +211,54 @@ TEST_F(Pictures, RunKeepsTheTilesOfItsPictures) {
       (read_exr(folder / "D/door.exr").radiance == read_exr(folder / "R/door.exr").radiance).all());
 }
 
-TEST_F(Pictures, InterruptWithoutACheckpointLeavesNothing) {
+TEST_F(Pictures, SigtermWithoutACheckpointLeavesNothing) {
   const int before = folder.file_count();
   Running running(folder / "", {"render", "room.toml", "S.vtp", "--size", "2000x2000", "-o",
                                 "P.exr", "--shadow-rays", "256"});
   std::this_thread::sleep_for(1s);  // the picture takes about 15 s
-  running.signal(SIGINT);
+  running.signal(SIGTERM);
   EXPECT_EQ(running.wait().code, 130);
   EXPECT_EQ(folder.file_count(), before);
+}
+
+// A picture that is ended early has the rows that were finished, and the solution's light below.
+TEST_F(Pictures, CtrlCCompletesThePictureQuickly) {
+  const Words slow = {"render", "room.toml",     "S.vtp", "--size",   "400x400", "-o",
+                      "P.exr",  "--shadow-rays", "256",   "--layers", "all"};
+  ASSERT_EQ(run(Words{"render", "room.toml", "S.vtp", "--size", "400x400", "-o", "R.exr",
+                      "--shadow-rays", "256", "--layers", "all"})
+                .code,
+            0);
+  Running running(folder / "", slow + Words{"--checkpoint", "C", "--every", "0.1s", "--json"});
+  wait_for_a_tile("C", 3);
+  running.signal(SIGINT);
+  const Ended ended = running.wait();
+  ASSERT_EQ(ended.code, 4) << ended.err;
+  EXPECT_TRUE(says(ended.err, "below, one sample for each pixel shows the light of the solution"));
+  const int rows = nlohmann::json::parse(ended.out)["cut_short_door"]["rows"];
+  ASSERT_GT(rows, 0);
+  ASSERT_LT(rows, 400);
+  const Image early = read_exr(folder / "P.exr", ExrChannels::all),
+              whole = read_exr(folder / "R.exr", ExrChannels::all);
+  const Eigen::Index finished = rows * 400;
+  EXPECT_TRUE((early.radiance.topRows(finished) == whole.radiance.topRows(finished)).all());
+  EXPECT_TRUE(
+      (early.layers.values.topRows(finished) == whole.layers.values.topRows(finished)).all());
+  const Eigen::Index left = 160000 - finished;
+  const double mean_early = early.radiance.bottomRows(left).cast<double>().mean();
+  const double mean_whole = whole.radiance.bottomRows(left).cast<double>().mean();
+  EXPECT_NEAR(mean_early / mean_whole, 1.0, 0.1);
+}
+
+TEST_F(Pictures, PicturesKeepTheTime) {
+  const auto json =
+      run_json({"render", "room.toml", "S.vtp", "--size", "64x64", "-o", "P.exr", "--time", "1h"});
+  EXPECT_FALSE(json.contains("cut_short_door")) << "there was time for the picture as asked for";
+  const Ended ended = run({"render", "room.toml", "S.vtp", "--size", "800x800", "-o", "Q.exr",
+                           "--shadow-rays", "256", "--time", "0.1s", "--json"});
+  EXPECT_EQ(ended.code, 4) << ended.err;
+  EXPECT_TRUE(nlohmann::json::parse(ended.out).contains("cut_short_door"));
+  EXPECT_TRUE(exists("Q.exr"));
 }
 
 TEST_F(Pictures, CompareFailsAboveTheErrorThatIsAllowed) {

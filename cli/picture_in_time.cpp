@@ -1,0 +1,119 @@
+#include "cli/picture_in_time.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lightwell {
+namespace {
+
+RenderOptions options_of(const RenderArguments& arguments, const RenderOptions& given) {
+  RenderOptions options = arguments.options();
+  options.layers = given.layers;
+  options.run = given.run;
+  return options;
+}
+
+// The same arguments, and those of quicker pictures.
+std::vector<RenderArguments> from_best_to_quickest(const RenderArguments& arguments) {
+  RenderArguments draft = arguments, interpolated = arguments;
+  draft.quality = interpolated.quality = "draft";
+  if (draft.pass == "gather") draft.pass = "direct";
+  interpolated.pass = "interpolate";
+  return {arguments, draft, interpolated};
+}
+
+// Says when a picture is to be given up for a quicker one: when its rows so far tell that it will
+// take much more than the time that was left at its beginning.
+class Pace {
+ public:
+  explicit Pace(double allowed) : allowed_(allowed) {}
+
+  bool is_too_slow(std::string_view phase, double share) {
+    if (phase != "render") return false;  // the photons of caustics, which all pictures share
+    if (!watch_) watch_.emplace();
+    constexpr double enough_to_judge = 0.1, too_much = 1.2;
+    const double spent = watch_->seconds();
+    return spent > enough_to_judge * allowed_ && spent > too_much * share * allowed_;
+  }
+
+ private:
+  double allowed_;
+  std::optional<Stopwatch> watch_{};
+};
+
+// One sample for each pixel, with light from the solution.
+RenderOptions quickest(const RenderOptions& given) {
+  RenderOptions options;
+  options.pass = Pass::interpolate;
+  options.glossy_rays = 1;
+  options.sampling.most = options.sampling.least = 1;
+  options.photons = 0;
+  options.layers = given.layers;
+  options.run = given.run;
+  options.run.journal = nullptr;
+  return options;
+}
+
+// Copies the rows of `from`, from the top to before `end`.
+void copy_rows(const Image& from, int first, int end, Image& to) {
+  const auto pixel = static_cast<Eigen::Index>(first) * from.width;
+  const auto pixels = static_cast<Eigen::Index>(end - first) * from.width;
+  to.radiance.middleRows(pixel, pixels) = from.radiance.middleRows(pixel, pixels);
+  if (from.layers.values.size() == 0) return;
+  to.layers.values.middleRows(pixel, pixels) = from.layers.values.middleRows(pixel, pixels);
+}
+
+// Renders with `picture.arguments` until the time is up, or until the pace is too slow. Returns
+// whether the picture was given up; otherwise its rows, or as many as there are, are in `picture`.
+bool is_given_up(SceneRenderer& renderer, const Camera& camera, const RenderOptions& given,
+                 bool may_give_up, PictureInTime& picture) {
+  RenderOptions options = options_of(picture.arguments, given);
+  Pace pace(given.run.time_left());
+  bool gave_up = false;
+  RunControl run = given.run;
+  run.progress = [&](std::string_view phase, double share) {
+    gave_up = may_give_up && pace.is_too_slow(phase, share);
+    return !gave_up && (!given.run.progress || given.run.progress(phase, share));
+  };
+  Image rows;
+  picture.rows = 0;
+  options.rows_done = [&](const Image& image, int first, int count) {
+    if (rows.radiance.size() == 0) rows = image;
+    copy_rows(image, first, first + count, rows);
+    picture.rows = first + count;
+  };
+  try {
+    finishes_in_time(run, [&](const RunControl& in_time) {
+      options.run = in_time;
+      rows = renderer.render(camera, options, &picture.rendered);
+    });
+  } catch (const Interrupted&) {
+    if (!gave_up) throw;
+  }
+  picture.image = std::move(rows);
+  return gave_up;
+}
+
+}  // namespace
+
+PictureInTime render_in_time(SceneRenderer& renderer, const Camera& camera,
+                             const RenderArguments& arguments, const RenderOptions& given) {
+  PictureInTime picture;
+  const std::vector<RenderArguments> candidates = from_best_to_quickest(arguments);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const bool may_give_up = given.run.has_limit() && i + 1 < candidates.size();
+    picture.arguments = candidates[i];
+    if (!is_given_up(renderer, camera, given, may_give_up, picture)) break;
+  }
+  if (picture.rows == camera.height) return picture;
+  const Image finished = std::move(picture.image);
+  picture.image = renderer.render(camera, quickest(given), &picture.rendered);
+  if (picture.rows > 0) copy_rows(finished, 0, picture.rows, picture.image);
+  return picture;
+}
+
+}  // namespace lightwell

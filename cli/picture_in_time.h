@@ -1,0 +1,31 @@
+#pragma once
+
+#include "cli/arguments.h"
+#include "raytrace/image.h"
+#include "raytrace/scene_renderer.h"
+
+namespace lightwell {
+
+/// A picture that had to be ready in time.
+struct PictureInTime {
+  Image image{};
+  RenderReport rendered{};
+  RenderArguments arguments{};  ///< with the pass and the quality that there was time for
+  /// Rows from the top that were rendered with `arguments`; those below are of the quickest pass.
+  int rows = 0;
+};
+
+/// Renders a picture within the time of `options.run`. `options` has the run and the layers; all
+/// else is that of `arguments`.
+///
+/// - If the time is limited, a picture whose rows so far tell that it will take much longer is
+/// given
+///   up: for the draft, then for light from the solution alone.
+/// - Once the time is up, the rows that are missing are filled in by one sample for each pixel with
+///   light from the solution.
+///
+/// Throws as SceneRenderer::render does.
+PictureInTime render_in_time(SceneRenderer& renderer, const Camera& camera,
+                             const RenderArguments& arguments, const RenderOptions& options);
+
+}  // namespace lightwell
