@@ -91,10 +91,10 @@ struct KeptGathers {
 void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGather& pilot,
                  RadiositySolution& solution, KeptGathers* kept = nullptr);
 
-/// In place of reconstruct() for want of time: fills in the irradiances of `solution` with the light
-/// of the pilot gather, and of the final gathers in `kept` at the vertices that have any (null:
-/// none). Their errors are left to the error estimate: gather noise is 0, and the interpolation
-/// error is empty.
+/// In place of reconstruct() for want of time: fills in the irradiances of `solution` with the
+/// light of the pilot gather, and of the final gathers in `kept` at the vertices that have any
+/// (null: none). Their errors are left to the error estimate: gather noise is 0, and the
+/// interpolation error is empty.
 void take_pilot_light(const LitScene& lit, const PilotGather& pilot, KeptGathers* kept,
                       RadiositySolution& solution);
 

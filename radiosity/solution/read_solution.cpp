@@ -205,8 +205,7 @@ void read_record(const SolutionArrays& in, RadiositySolution& s) {
   for (int i = 0; i < seconds.rows; ++i) s.seconds.push_back({phases[i], seconds.data[i]});
 
   s.outcome = static_cast<Outcome>(
-      in.integers(in.field(), "outcome", 1, 0, static_cast<int>(Outcome::cut_short) + 1)
-          .front());
+      in.integers(in.field(), "outcome", 1, 0, static_cast<int>(Outcome::cut_short) + 1).front());
   s.residual = in.number("residual");
   s.error_estimate = in.number("error_estimate");
   const double* energy =
