@@ -83,29 +83,29 @@ SolveOptions effective_options(const SolveOptions& options, double target,
 }
 
 // The options with the openings that gathers aim rays at.
-SolveOptions with_portals(const Scene& scene, const DirectLight& direct_light,
-                          const SolvedScene& patches, SolveOptions options) {
+SolveOptions with_portals(const GatherSources& sources, const SolvedScene& patches,
+                          SolveOptions options) {
   const ElementCaster caster(patches.mesh);
   options.gather.portals = find_portals(
-      scene, caster,
-      brightness_of_patches(patches.mesh, direct_light, patches.solution.patch_radiosity));
+      caster, brightness_of_patches(patches.mesh, sources.all, patches.solution.patch_radiosity),
+      sources.openings);
   return options;
 }
 
 // Gathers with rising effort until the error estimate meets the target.
 class GatherAttempts {
  public:
-  GatherAttempts(const Scene& scene, const DirectLightSums& direct_light,
-                 const SolveOptions& options, SolvedScene& solved)
+  GatherAttempts(const Scene& scene, const GatherSources& sources, const SolveOptions& options,
+                 SolvedScene& solved)
       : scene_(scene),
-        direct_light_(direct_light),
+        sources_(sources),
         solved_(solved),
         target_(target_of(scene, options, solved)),
         targets_(targets_of(scene, options, solved)),
         options_(with_portals(
-            scene, direct_light.all, solved,
-            effective_options(options, target_, solved, direct_light.by_channel.column_count()))),
-        pilot_gathers_(std::in_place, scene, std::move(solved.mesh), direct_light.by_channel,
+            sources, solved,
+            effective_options(options, target_, solved, sources.by_channel.column_count()))),
+        pilot_gathers_(std::in_place, scene, std::move(solved.mesh), sources.by_channel,
                        solved.solution) {
     options_.refine.parts = solved.solution.parts;
     std::vector<Effort> efforts;
@@ -132,7 +132,7 @@ class GatherAttempts {
     if (!caster_) caster_.emplace(solved_.mesh);
     GatherOptions gather = options_.gather;
     gather.run = options_.run;
-    add_gap_errors({scene_, *caster_, direct_light_.all}, gather, solved_.solution);
+    add_gap_errors({scene_, *caster_, sources_.all}, gather, solved_.solution);
     spent_["error_estimate"] += watch_.lap();
   }
 
@@ -202,7 +202,7 @@ class GatherAttempts {
 
   void gather() {
     state_ = State::has_pilot;
-    reconstruct({scene_, *caster_, direct_light_.by_channel}, options_, *pilot_, solved_.solution,
+    reconstruct({scene_, *caster_, sources_.by_channel}, options_, *pilot_, solved_.solution,
                 may_repeat() ? &kept_ : nullptr);
     relight(solved_, effective_scales(solved_.solution));
     state_ = State::is_gathered;
@@ -212,7 +212,7 @@ class GatherAttempts {
 
   std::vector<ErrorEstimate> estimate_batch(int batch, Eigen::ArrayXf* of_elements,
                                             std::span<const char> wanted) const {
-    return estimate_errors({scene_, *caster_, direct_light_.all}, options_, solved_.solution,
+    return estimate_errors({scene_, *caster_, sources_.all}, options_, solved_.solution,
                            of_elements, batch, wanted);
   }
 
@@ -262,7 +262,7 @@ class GatherAttempts {
       take_mesh(false);
     }
     if (state_ == State::has_pilot) {
-      take_pilot_light({scene_, *caster_, direct_light_.by_channel}, *pilot_,
+      take_pilot_light({scene_, *caster_, sources_.by_channel}, *pilot_,
                        may_repeat() ? &kept_ : nullptr, solution);
       relight(solved_, effective_scales(solution));
     }
@@ -334,7 +334,7 @@ class GatherAttempts {
   }
 
   const Scene& scene_;
-  DirectLightSums direct_light_;
+  GatherSources sources_;
   SolvedScene& solved_;
   double target_;                // relative to the mean irradiance of the scene
   std::vector<double> targets_;  // relative to the mean irradiance of each part
@@ -356,9 +356,9 @@ class GatherAttempts {
 };
 
 // Refines, gathers and estimates until the accuracy is reached, or until the time is up.
-void illuminate(const Scene& scene, const DirectLightSums& direct_light,
-                const SolveOptions& options, SolvedScene& solved, SolveReport& report) {
-  GatherAttempts attempts(scene, direct_light, options, solved);
+void illuminate(const Scene& scene, const GatherSources& sources, const SolveOptions& options,
+                SolvedScene& solved, SolveReport& report) {
+  GatherAttempts attempts(scene, sources, options, solved);
   attempts.run();
   RadiositySolution& solution = solved.solution;
   require_finite(scene, solution);
@@ -384,10 +384,10 @@ std::optional<double> next_error(double error, double least, double spent, doubl
 // before did with less effort, so that all before the last take a third to a half of its time.
 class StagesInTime {
  public:
-  StagesInTime(const Scene& scene, const DirectLightSums& direct_light, const SolveOptions& options,
+  StagesInTime(const Scene& scene, const GatherSources& sources, const SolveOptions& options,
                SolvedScene& solved)
       : scene_(scene),
-        direct_light_(direct_light),
+        sources_(sources),
         options_(options),
         patches_(solved),
         solved_(solved),
@@ -399,7 +399,7 @@ class StagesInTime {
     double error = std::max(first, target_), spent = 0.0;
     SolveOptions stage = options_at(error);
     stage.run = options_.run.with_share(for_the_first);
-    illuminate(scene_, direct_light_, stage, solved_, report);
+    illuminate(scene_, sources_, stage, solved_, report);
     while (solved_.solution.outcome == patches_.solution.outcome) {
       const double seconds = watch.lap();
       const auto next = next_error(error, target_, seconds, options_.run.time_left());
@@ -411,7 +411,7 @@ class StagesInTime {
       if (!finishes_in_time(options_.run.with_share(for_a_later), [&](const RunControl& in_time) {
             stage.run = in_time;
             stage.run.seconds_left = {};
-            illuminate(scene_, direct_light_, stage, better, of_better);
+            illuminate(scene_, sources_, stage, better, of_better);
           })) {
         break;
       }
@@ -446,7 +446,7 @@ class StagesInTime {
   }
 
   const Scene& scene_;
-  DirectLightSums direct_light_;
+  GatherSources sources_;
   const SolveOptions& options_;
   SolvedScene patches_;  // before any light of elements
   SolvedScene& solved_;
@@ -455,14 +455,14 @@ class StagesInTime {
 
 }  // namespace
 
-void illuminate_elements(const Scene& scene, const DirectLightSums& direct_light,
+void illuminate_elements(const Scene& scene, const GatherSources& sources,
                          const SolveOptions& options, SolvedScene& solved, SolveReport* report) {
   SolveReport unread;
   SolveReport& of_this = report ? *report : unread;
   if (options.run.has_limit()) {
-    StagesInTime(scene, direct_light, options, solved).run(of_this);
+    StagesInTime(scene, sources, options, solved).run(of_this);
   } else {
-    illuminate(scene, direct_light, options, solved, of_this);
+    illuminate(scene, sources, options, solved, of_this);
   }
 }
 

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <vector>
+
+#include "radiosity/openings/find_openings.h"
 #include "radiosity/solve.h"
 
 namespace lightwell {
 
-/// Direct light of one scene and mesh; both are the same object if light is not kept apart by
-/// channels.
-struct DirectLightSums {
-  const DirectLight& all;         ///< all channels together
-  const DirectLight& by_channel;  ///< columns for each channel
+/// What gathers take from a scene beside its surfaces: direct light of the scene and its mesh, and
+/// openings that rays may be aimed at. Both sums of direct light are the same object if light is
+/// not kept apart by channels.
+struct GatherSources {
+  const DirectLight& all;                ///< all channels together
+  const DirectLight& by_channel;         ///< columns for each channel
+  const std::vector<Opening>& openings;  ///< of find_openings()
 };
 
 /// Finds the irradiance at vertices from the radiosity of patches.
@@ -29,7 +34,7 @@ struct DirectLightSums {
 /// patches, and gets the refined mesh, the light of vertices and the seconds of each phase;
 /// `report`, if given, gets the refinement, the accuracy and the rays. Throws InputError if light
 /// is not finite, Interrupted when progress says stop.
-void illuminate_elements(const Scene& scene, const DirectLightSums& direct_light,
+void illuminate_elements(const Scene& scene, const GatherSources& sources,
                          const SolveOptions& options, SolvedScene& solved, SolveReport* report);
 
 }  // namespace lightwell

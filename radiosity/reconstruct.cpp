@@ -414,7 +414,7 @@ PilotGather PilotGathers::Impl::unrefined(const SolveOptions& options) {
 }
 
 PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
-  constexpr int few_rays = 64;
+  constexpr int few_rays = 32;
   GatherOptions gather = gather_options(options);
   gather.rays = std::min(few_rays, gather.rays);
   gather.shadows = Effort{.gather_rays = gather.rays}.shadows();

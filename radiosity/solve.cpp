@@ -80,16 +80,32 @@ RadiositySolution shoot(const LitScene& lit, const SolveOptions& options) {
   return solution;
 }
 
+// The openings of the scene; none if the time is up before they are found.
+std::vector<Opening> openings_in_time(const Scene& scene, const RunControl& run) {
+  std::vector<Opening> openings;
+  finishes_in_time(
+      run, [&](const RunControl& in_time) { openings = find_openings(scene, in_time.progress); });
+  return openings;
+}
+
+// What rows and equations are found from.
+struct EquationTask {
+  const LitScene& lit;
+  const DirectLight& kept_apart;  // by channel
+  const std::vector<Opening>& openings;
+};
+
 // Narrow openings between bright and dim parts, by a solve with few rays; null: none.
-std::shared_ptr<const Portals> portals_of_rows(const LitScene& lit,
+std::shared_ptr<const Portals> portals_of_rows(const EquationTask& task,
                                                const FormFactorOptions& options,
                                                const FreeLight& free_light,
                                                const SolverOptions& solver) {
+  const LitScene& lit = task.lit;
   if (options.method != FormFactorMethod::automatic &&
       options.method != FormFactorMethod::ray_cast) {
     return nullptr;
   }
-  const std::vector<Opening> openings = narrow_openings(lit.caster, find_openings(lit.scene));
+  const std::vector<Opening> openings = narrow_openings(lit.caster, task.openings);
   if (openings.empty()) return nullptr;
   constexpr int few_rays = 32, few_of_emitters = 1024;
   constexpr double tolerance = 1e-3;
@@ -155,8 +171,8 @@ struct SolvedEquations {
   std::vector<std::string> notes{};
 };
 
-SolvedEquations solve_equations(const LitScene& lit, const DirectLight& kept_apart,
-                                const SolveOptions& options) {
+SolvedEquations solve_equations(const EquationTask& task, const SolveOptions& options) {
+  const auto& [lit, kept_apart, openings] = task;
   const Scene& scene = lit.scene;
   const PatchMesh& mesh = lit.mesh();
   Stopwatch watch;
@@ -171,7 +187,7 @@ SolvedEquations solve_equations(const LitScene& lit, const DirectLight& kept_apa
   const FreeLight free_light = all_channels(by_channel, bands);
   SolverOptions pilot = options.solver;
   pilot.run = options.run;
-  form_factor_options.portals = portals_of_rows(lit, form_factor_options, free_light, pilot);
+  form_factor_options.portals = portals_of_rows(task, form_factor_options, free_light, pilot);
   SolvedEquations solved;
   const auto form_factors = compute_form_factors(lit, form_factor_options, &solved.rows);
   const double form_factor_seconds = watch.lap();
@@ -225,15 +241,14 @@ int rays_in_time(double spent, double allowed, int most) {
 
 // Solves the equations; once the time is up, with rows of few rays. If the time is limited from the
 // start, these are solved first, and tell how many rays there is time for.
-SolvedEquations solve_in_time(const LitScene& lit, const DirectLight& kept_apart,
-                              const SolveOptions& options) {
+SolvedEquations solve_in_time(const EquationTask& task, const SolveOptions& options) {
   constexpr double share_of_rows = 0.25;
   std::optional<SolvedEquations> rough;
   SolveOptions full = options;
   const int wanted = rays_per_patch(options);
   if (options.run.has_limit() && wanted > few_row_rays) {
     Stopwatch watch;
-    rough = solve_equations(lit, kept_apart, with_few_rays(options));
+    rough = solve_equations(task, with_few_rays(options));
     const double allowed = share_of_rows * options.run.time_left();
     const int rays = rays_in_time(watch.lap(), allowed, wanted);
     if (rays < wanted) {
@@ -246,13 +261,13 @@ SolvedEquations solve_in_time(const LitScene& lit, const DirectLight& kept_apart
   SolvedEquations solved;
   const bool is_finished = finishes_in_time(options.run, [&](const RunControl& in_time) {
     full.run = in_time;
-    solved = solve_equations(lit, kept_apart, full);
+    solved = solve_equations(task, full);
   });
   if (is_finished) {
     if (rough) solved.notes.insert(solved.notes.end(), rough->notes.begin(), rough->notes.end());
     return solved;
   }
-  if (!rough) rough = solve_equations(lit, kept_apart, with_few_rays(options));
+  if (!rough) rough = solve_equations(task, with_few_rays(options));
   rough->notes.push_back(fmt::format(
       "the solve was ended while its form factors were computed: rows of {} rays a patch serve",
       few_row_rays));
@@ -342,8 +357,9 @@ SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const So
     add_importance(scene, ElementCaster(solved.mesh), options, solved);
   }
   const auto by_channel = light_by_channel(scene, solved.mesh, direct_light, options.channels);
-  illuminate_elements(scene, {direct_light, by_channel ? *by_channel : direct_light}, options,
-                      solved, report);
+  const std::vector<Opening> openings = openings_in_time(scene, options.run);
+  illuminate_elements(scene, {direct_light, by_channel ? *by_channel : direct_light, openings},
+                      options, solved, report);
   return solved;
 }
 
@@ -393,6 +409,8 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
                                 LightPaths(scene, *caster, options.form_factors.max_specular_depth),
                                 options.run.progress);
   seconds.push_back({"parts", watch.lap()});
+  const std::vector<Opening> openings = openings_in_time(scene, options.run);
+  seconds.push_back({"openings", watch.lap()});
 
   // The memory of the gathers is reserved before rows of form factors take it.
   if (options.form_factors.memory) options.form_factors.memory->plan(bytes_to_gather(solved.mesh));
@@ -401,7 +419,8 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   if (exchange.progressive) {
     solved.solution = shoot({scene, *caster, kept_apart}, exchange);
   } else {
-    SolvedEquations equations = solve_in_time({scene, *caster, direct_light}, kept_apart, exchange);
+    SolvedEquations equations =
+        solve_in_time({{scene, *caster, direct_light}, kept_apart, openings}, exchange);
     solved.solution = std::move(equations.solution);
     std::ranges::move(equations.notes, std::back_inserter(solved.mesh.notes));
     if (report) report->form_factors = std::move(equations.rows);
@@ -416,7 +435,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   if (!options.view_rays.empty()) add_importance(scene, *caster, options, solved);
 
   caster.reset();
-  illuminate_elements(scene, {direct_light, kept_apart}, options, solved, report);
+  illuminate_elements(scene, {direct_light, kept_apart, openings}, options, solved, report);
   return solved;
 }
 

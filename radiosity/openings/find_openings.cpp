@@ -186,16 +186,21 @@ bool is_same(const Opening& opening, const Opening& other) {
 
 }  // namespace
 
-std::vector<Opening> find_openings(const Scene& scene) {
+std::vector<Opening> find_openings(const Scene& scene, const Progress& progress) {
   if (scene.surfaces.empty()) return {};
   const std::vector<Edge> edges = long_edges(scene, shortest_edge * scene_bounds(scene).diagonal());
   const OpeningSearch search(scene);
   std::vector<std::vector<Opening>> beside(edges.size());
-  parallel_for(static_cast<int>(edges.size()), 8, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      search.search(edges[static_cast<std::size_t>(i)], beside[static_cast<std::size_t>(i)]);
-    }
-  });
+  const int count = static_cast<int>(edges.size());
+  constexpr int slice = 128;
+  for (int first = 0; first < count; first += slice) {
+    report(progress, "openings", static_cast<double>(first) / count);
+    parallel_for(std::min(slice, count - first), 8, [&](int begin, int end) {
+      for (int i = first + begin; i < first + end; ++i) {
+        search.search(edges[static_cast<std::size_t>(i)], beside[static_cast<std::size_t>(i)]);
+      }
+    });
+  }
   std::vector<Opening> openings;
   for (const auto& of_edge : beside) {
     for (const Opening& opening : of_edge) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "scene/progress.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -27,7 +28,8 @@ struct Opening {
 ///
 /// Openings are at most a tenth of the scene's diagonal wide and at least a millionth. Only the
 /// 4096 longest edges are looked at, and those longer than 0.2 % of the diagonal. Clear surfaces
-/// leave light through and are looked through; surfaces that move are left out.
-std::vector<Opening> find_openings(const Scene& scene);
+/// leave light through and are looked through; surfaces that move are left out. Throws Interrupted
+/// when progress says stop.
+std::vector<Opening> find_openings(const Scene& scene, const Progress& progress = {});
 
 }  // namespace lightwell

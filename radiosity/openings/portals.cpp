@@ -278,12 +278,18 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
   return result;
 }
 
+std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,
+                                            const std::vector<float>& brightness,
+                                            const std::vector<Opening>& openings) {
+  const std::vector<Opening> narrow = narrow_openings(caster, openings);
+  if (narrow.empty()) return nullptr;
+  auto portals = std::make_shared<const Portals>(caster, brightness, narrow);
+  return portals->is_empty() ? nullptr : portals;
+}
+
 std::shared_ptr<const Portals> find_portals(const Scene& scene, const ElementCaster& caster,
                                             const std::vector<float>& brightness) {
-  const std::vector<Opening> openings = narrow_openings(caster, find_openings(scene));
-  if (openings.empty()) return nullptr;
-  auto portals = std::make_shared<const Portals>(caster, brightness, openings);
-  return portals->is_empty() ? nullptr : portals;
+  return find_portals(caster, brightness, find_openings(scene));
 }
 
 std::vector<float> brightness_of_vertices(const PatchMesh& mesh, const BandArray& radiosity) {

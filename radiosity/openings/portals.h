@@ -96,8 +96,13 @@ class Portals {
 /// through either side. Rays over a hemisphere meet wider ones often enough for form factors.
 std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings);
 
-/// The narrow openings of a scene that are portals; null if there are none. `brightness` as in
+/// The narrow ones of `openings` that are portals; null if there are none. `brightness` as in
 /// Portals.
+std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,
+                                            const std::vector<float>& brightness,
+                                            const std::vector<Opening>& openings);
+
+/// The portals of a scene, among its find_openings().
 std::shared_ptr<const Portals> find_portals(const Scene& scene, const ElementCaster& caster,
                                             const std::vector<float>& brightness);
 
