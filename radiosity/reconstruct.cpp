@@ -432,7 +432,9 @@ PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
 }
 
 void PilotGathers::Impl::prepare(const SolveOptions& options) {
+  report(options.run.progress, "refine", 0.0);
   elements.emplace(base);
+  report(options.run.progress, "refine", 0.0);
   even_caustics.emplace(scene, direct_light, options, *elements);
   std::vector<int> base_vertices(static_cast<std::size_t>(base.vertex_count()));
   std::iota(base_vertices.begin(), base_vertices.end(), 0);
