@@ -111,7 +111,7 @@ bool is_as_asked(const Camera& camera, const RenderArguments& asked, const Pictu
   std::string what = fmt::format("rendered with {}", options);
   if (!is_whole) {
     what += fmt::format(
-        " as far as row {} of {}; below, one sample for each pixel shows the light "
+        " as far as row {} of {}; below, four samples for each pixel show the light "
         "of the solution",
         picture.rows, picture.image.height);
   }

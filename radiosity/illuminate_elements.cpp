@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <span>
@@ -431,6 +432,13 @@ class StagesInTime {
     SolveOptions options = options_;
     options.run.journal = nullptr;
     if (error > target_ || !options.accuracy) options.accuracy = Accuracy{.share = error};
+    // Caustics take the same time at every error otherwise. Their noise falls with the square root
+    // of the rays.
+    constexpr double all_rays_for = 0.02;
+    if (error > target_) {
+      const double share = std::pow(std::min(1.0, all_rays_for / error), 2);
+      options.caustic_rays = std::max(1, static_cast<int>(share * options.caustic_rays));
+    }
     return options;
   }
 

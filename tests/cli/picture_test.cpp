@@ -234,7 +234,7 @@ TEST_F(Pictures, CtrlCCompletesThePictureQuickly) {
   running.signal(SIGINT);
   const Ended ended = running.wait();
   ASSERT_EQ(ended.code, 4) << ended.err;
-  EXPECT_TRUE(says(ended.err, "below, one sample for each pixel shows the light of the solution"));
+  EXPECT_TRUE(says(ended.err, "below, four samples for each pixel show the light of the solution"));
   const int rows = nlohmann::json::parse(ended.out)["cut_short_door"]["rows"];
   ASSERT_GT(rows, 0);
   ASSERT_LT(rows, 400);
