@@ -21,7 +21,8 @@ struct PictureInTime {
 /// - If the time is limited, a picture whose rows so far tell that it will take much longer is
 /// given
 ///   up: for the draft, then for light from the solution alone.
-/// - Once the time is up, the rows that are missing are filled in by four samples for each pixel with
+/// - Once the time is up, the rows that are missing are filled in by four samples for each pixel
+/// with
 ///   light from the solution.
 ///
 /// Throws as SceneRenderer::render does.
