@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -385,12 +385,12 @@ TEST(PlanarRegions, HeapsOfOverlapsAndFansFinish) {
     add_triangle(fan, {0, 0, 0}, {0, 0, 1}, at + Vector3d(1, 0, 0));
     add_triangle(twins, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   }
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of the process: other tests run beside this one
   EXPECT_EQ(mesh_of(merge_planar_regions(scene_of(heap))).facets.size(), 20000u);
   EXPECT_EQ(mesh_of(merge_planar_regions(scene_of(fan))).facets.size(), 20000u);
   EXPECT_EQ(mesh_of(merge_planar_regions(scene_of(twins))).facets.size(), 1u);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  EXPECT_LT(seconds.count(), 10.0 * test::slowdown);  // about 0.2 s
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  EXPECT_LT(seconds, 10.0 * test::slowdown);  // about 2 s
 }
 
 }  // namespace
