@@ -56,9 +56,8 @@ SolvedScene solved_scene(const Job& job) {
   }
   Checkpoint checkpoint(arguments.checkpoint, of, {outputs.solution}, console);
   constexpr double share_of_solve = 0.6;  // the rest is for pictures
-  SolvedScene solved =
-      solve_step(scene, {arguments.solve, outputs.solution, time.seconds_left(share_of_solve)},
-                 checkpoint, feedback);
+  SolvedScene solved = solve_step(scene, {arguments.solve, outputs.solution, time, share_of_solve},
+                                  checkpoint, feedback);
   write_solution_step(outputs.solution, solved, console, report);
   if (solved.solution.outcome == Outcome::cut_short) {
     checkpoint.keep_to_resume(report);

@@ -37,8 +37,7 @@ int solve(const SolveCommandArguments& arguments, Console& console) {
   }
   Checkpoint checkpoint(arguments.checkpoint, of, {arguments.output}, console);
   const SolvedScene solved =
-      solve_step(scene, {arguments.solve, arguments.output, time.seconds_left()}, checkpoint,
-                 {console, report});
+      solve_step(scene, {arguments.solve, arguments.output, time}, checkpoint, {console, report});
   write_solution_step(arguments.output, solved, console, report);
   if (solved.solution.outcome == Outcome::cut_short) {
     checkpoint.keep_to_resume(report);

@@ -179,7 +179,7 @@ SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& ch
     const bool is_nothing_there = phase == "mesh" && early_end_requested();
     return watched(phase, share) && !is_nothing_there;
   };
-  options.run.seconds_left = task.seconds_left;
+  options.run.seconds_left = task.time.seconds_left(task.share_of_time);
   Journal* const journal = checkpoint.journal();
   const bool is_of_another = journal && journal->is_read_only();
   (is_of_another ? options.form_factors.run.journal : options.run.journal) = journal;
@@ -202,7 +202,7 @@ SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& ch
   console.finish_phase();
   note_mesh(scene, solved.mesh, console, report);
   solved.solution.provenance.version = LIGHTWELL_VERSION;
-  solved.solution.provenance.options = arguments.text(scene);
+  solved.solution.provenance.options = arguments.text(scene) + task.time.text();
   if (!options.view_rays.empty()) {
     solved.solution.provenance.looked_from = arguments.look_from.names;
   }
@@ -214,6 +214,9 @@ SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& ch
     report.add("accuracy", {{"asked", solve_report.accuracy},
                             {"reached", solved.solution.error_estimate},
                             {"gather_rays", solve_report.gather_rays}});
+  }
+  if (task.time.seconds() > 0.0) {
+    report.add("time", {{"asked", task.time.seconds()}, {"aimed_at", solve_report.stage}});
   }
   warn_of_outcome(solved.solution, solve_report, options.solver.tolerance, console);
   return solved;

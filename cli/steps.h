@@ -9,6 +9,7 @@
 #include "cli/checkpoint.h"
 #include "cli/console.h"
 #include "cli/report.h"
+#include "cli/time_limit.h"
 #include "radiosity/solve.h"
 #include "raytrace/image.h"
 #include "raytrace/scene_renderer.h"
@@ -39,7 +40,8 @@ Provenance provenance(const Scene& scene, const SolveArguments& arguments);
 struct SolveTask {
   const SolveArguments& arguments;
   const std::filesystem::path& output;
-  std::function<double()> seconds_left{};  ///< RunControl::seconds_left
+  const TimeLimit& time;
+  double share_of_time = 1.0;  ///< that the solve may take
 };
 
 /// Solves the scene. Form factors that do not fit into memory go to disk beside the task's

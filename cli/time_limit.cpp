@@ -44,6 +44,10 @@ void add_time_limit(CLI::App& command, double& seconds, const std::string& group
       ->group(group);
 }
 
+std::string TimeLimit::text() const {
+  return seconds_ > 0.0 ? fmt::format(" --time {:g}s", seconds_) : "";
+}
+
 std::function<double()> TimeLimit::seconds_left(double share) const {
   return [this, share] {
     if (early_end_requested()) return 0.0;

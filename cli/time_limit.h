@@ -20,6 +20,8 @@ class TimeLimit {
 
   /// Seconds of the limit; 0: none.
   double seconds() const { return seconds_; }
+  /// Command-line option that repeats the limit, after a space; "" without one.
+  std::string text() const;
   /// Returns RunControl::seconds_left for work that has to end when a `share` of the time is over:
   /// 0 once SIGINT has asked for an early end, infinity without a limit. The function refers to
   /// this object.

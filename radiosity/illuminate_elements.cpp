@@ -401,6 +401,7 @@ class StagesInTime {
     SolveOptions stage = options_at(error);
     stage.run = options_.run.with_share(for_the_first);
     illuminate(scene_, sources_, stage, solved_, report);
+    report.stage = error;
     while (solved_.solution.outcome == patches_.solution.outcome) {
       const double seconds = watch.lap();
       const auto next = next_error(error, target_, seconds, options_.run.time_left());
@@ -419,6 +420,7 @@ class StagesInTime {
       spent += seconds;
       solved_ = std::move(better);
       report = of_better;
+      report.stage = error;
     }
     if (spent > 0.0) solved_.solution.seconds.push_back({"earlier_stages", spent});
     judge();

@@ -57,6 +57,9 @@ struct SolveReport {
   RefineReport refinement{};
   double accuracy = 0.0;  ///< the requested share of the mean irradiance; 0: none was requested
   int gather_rays = 0;    ///< rays of the last final gather
+  /// In limited time, the error that the last finished stage was to reach, relative to the mean
+  /// irradiance; 0 without a limit.
+  double stage = 0.0;
 };
 
 /// True if elements start at twice the given length, since refinement splits them. False if nothing

@@ -113,6 +113,9 @@ TEST_F(InterruptTest, TimeIsKept) {
   EXPECT_EQ(json["looked_from"], nlohmann::json::array({"door"}));
   EXPECT_LT(json["error_estimate"].get<double>(), 0.16);
   EXPECT_FALSE(json.contains("accuracy")) << "none was asked for";
+  EXPECT_EQ(json["time"]["asked"], 4.0);
+  EXPECT_LE(json["time"]["aimed_at"].get<double>(), 0.16);
+  EXPECT_TRUE(says(json["options"].get<std::string>(), " --time 4s"));
   // The last piece of work that no clock divides, and the files, come on top.
   EXPECT_LT(json["seconds"]["total"].get<double>(), 4.0 + 4.0 * test::slowdown);
   EXPECT_TRUE(exists("D/door.png"));
