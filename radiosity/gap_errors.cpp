@@ -7,6 +7,7 @@
 
 #include "mesh/patches/sphere_grid.h"
 #include "radiosity/refine/error_reference.h"
+#include "radiosity/refine/shared_gathers.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -105,6 +106,24 @@ double squared_error(const PatchMesh& mesh, const BandArray& irradiance, const I
   return (E - gathered).cast<double>().square().mean();
 }
 
+// Of the elements of a crumb, the first and one in eight after it are measured. The others, which
+// are small against the scene, take the mean square of the patch's.
+class CrumbSample {
+ public:
+  explicit CrumbSample(const PatchMesh& mesh) : mesh_(mesh), crumbs_(crumb_patches(mesh)) {}
+
+  bool takes(int element) const {
+    constexpr int one_in = 8;
+    const int p = mesh_.patch[element];
+    return crumbs_[static_cast<std::size_t>(p)] == 0 ||
+           (element - mesh_.first_element[p]) % one_in == 0;
+  }
+
+ private:
+  const PatchMesh& mesh_;
+  std::vector<char> crumbs_;
+};
+
 void raise_to(float& value, double to) {
   value = std::max(value, static_cast<float>(to));
 }
@@ -119,6 +138,8 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
   const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
   const Eigen::ArrayXd reference = error_references(mesh, irradiance, solution.parts);
   std::vector<InnerPoint> inner;
+  const CrumbSample measured(mesh);
+  std::vector<int> others;
   for (const int e : elements_in_gaps(lit.caster)) {
     const int corners = mesh.corner_count(e), dark = dark_corners(mesh, irradiance, e);
     // Where none of N rays found light, light from less than 3 / N of the directions may be missed
@@ -126,6 +147,10 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
     const double rays = static_cast<double>(corners) * gather.rays;
     if (dark > 0) raise_to(solution.interpolation_error[e], 0.5 * 3.0 / rays);
     if (dark == corners) continue;
+    if (!measured.takes(e)) {
+      others.push_back(e);
+      continue;
+    }
     for (int k = 0; k < point_count; ++k) inner.push_back(inner_point(mesh, e, k));
   }
   if (inner.empty()) return;
@@ -142,6 +167,7 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
                        .facet = mesh.facet[e]};
   });
   const GatheredIrradiance found = gather_irradiance(lit, radiosity, points, options);
+  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(mesh.patch_count()), counts = squares;
   for (std::size_t i = 0; i < inner.size(); i += point_count) {
     double square = 0.0;
     for (std::size_t k = i; k < i + point_count; ++k) {
@@ -152,6 +178,13 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
     const int e = inner[i].element;
     if (!(reference[e] > 0.0)) continue;
     raise_to(solution.interpolation_error[e], std::sqrt(square) / reference[e]);
+    squares[mesh.patch[e]] += square;
+    counts[mesh.patch[e]] += 1.0;
+  }
+  for (const int e : others) {
+    const int p = mesh.patch[e];
+    if (!(reference[e] > 0.0) || !(counts[p] > 0.0)) continue;
+    raise_to(solution.interpolation_error[e], std::sqrt(squares[p] / counts[p]) / reference[e]);
   }
 }
 
