@@ -14,6 +14,7 @@
 #include "radiosity/paths/light_path.h"
 #include "radiosity/refine/gather_noise.h"
 #include "radiosity/refine/refine_solution.h"
+#include "radiosity/refine/shared_gathers.h"
 
 namespace lightwell {
 namespace {
@@ -25,6 +26,49 @@ GatherPoints vertex_points(const ElementCaster& caster) {
             constexpr double inset = 0.02;  // of vertex_gather_points
             return moved_into_gap(caster, caster.mesh().position(v), inset, (*all)[v]);
           }};
+}
+
+// The points of some vertices, with the random numbers that they have among all.
+GatherPoints points_of(const GatherPoints& all, const std::vector<int>& vertices) {
+  return {static_cast<int>(vertices.size()), [&all, &vertices](int i) {
+            const int v = vertices[static_cast<std::size_t>(i)];
+            GatherPoint point = all[v];
+            point.key = static_cast<std::uint64_t>(v);
+            return point;
+          }};
+}
+
+// Direct light at all vertices; those of unread crumbs take the mean of their records.
+BandArray direct_beside(const LitScene& lit, const std::vector<InterpolatedVertex>& unread,
+                        const GatherOptions& options) {
+  const GatherPoints all = vertex_points(lit.caster);
+  const std::vector<int> others = indices_without(unread, static_cast<std::size_t>(all.size()));
+  const BandArray found = gather_direct(lit, points_of(all, others), options);
+  BandArray direct(all.size(), found.cols());
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    direct.row(others[i]) = found.row(static_cast<Eigen::Index>(i));
+  }
+  interpolate_vertices(unread, direct);
+  return direct;
+}
+
+// Indirect light at all vertices where rays read it; elsewhere 0.
+BandArray read_indirect(const LitScene& lit, const BandArray& radiosity,
+                        const GatherOptions& options) {
+  const GatherPoints all = vertex_points(lit.caster);
+  const std::vector<char> unread = unread_patches(lit.scene, lit.mesh());
+  const std::vector<int> patch = vertex_patches(lit.mesh());
+  std::vector<int> vertices;
+  for (int v = 0; v < all.size(); ++v) {
+    if (unread[patch[v]] == 0) vertices.push_back(v);
+  }
+  const BandArray found =
+      gather_indirect(lit, radiosity, points_of(all, vertices), options).indirect;
+  BandArray indirect = BandArray::Zero(all.size(), found.cols());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    indirect.row(vertices[i]) = found.row(static_cast<Eigen::Index>(i));
+  }
+  return indirect;
 }
 
 constexpr std::uint64_t pilot_replica = 1000, later_replicas = 2000, first_replicas = 3000;
@@ -118,18 +162,29 @@ BandArray caustics(const LitScene& lit, const SolveOptions& options) {
                             options.run);
 }
 
+// The leaves that are not much smaller than most of the area is cut into.
+std::vector<int> large_leaves(const RefinedElements& elements) {
+  const double typical = typical_leaf_area(elements);
+  constexpr double small = 1.0 / 64.0;
+  std::vector<int> large;
+  for (const int cell : elements.leaves()) {
+    if (elements.area(cell) > small * typical) large.push_back(cell);
+  }
+  return large;
+}
+
 // Caustics on elements of even size; vertices of refined elements interpolate them. Refined
-// elements would be too small for the number of rays.
+// elements would be too small for the number of rays, and so are those of crumbs.
 class EvenCaustics {
  public:
   EvenCaustics(const Scene& scene, const DirectLight& direct_light, const SolveOptions& options,
                RefinedElements& elements) {
     const LightPaths paths(scene, ElementCaster(elements.base()), 1);
     if (!paths.has_specular()) return;
-    const std::vector<int> all = elements.leaves();
-    if (starts_coarse(options) && options.mesh.elements_per_patch_edge > 1) elements.split(all);
+    const std::vector<int> large = large_leaves(elements);
+    if (starts_coarse(options) && options.mesh.elements_per_patch_edge > 1) elements.split(large);
     const RefinedMesh even = elements.mesh();
-    elements.merge(all);
+    elements.merge(large);
     values_ = BandArray::Zero(elements.vertex_count(), direct_light.column_count());
     const BandArray found = caustics({scene, ElementCaster(even.mesh), direct_light}, options);
     if (found.size() == 0) return;
@@ -232,13 +287,28 @@ struct MissingRays {
   std::vector<int> vertex{}, rays{};
 };
 
-// Each vertex wants one in `one_in` of the rays that share_rays() gives it, less those already
-// kept; interpolated vertices want none.
+// Rays of each vertex: those that share_rays() gives it, or fewer where no ray reads the light. A
+// pilot gather has none there, and the final gather few at the records of crumbs.
+std::vector<int> rays_of_vertices(const VertexGatherTask& task) {
+  const PatchMesh& mesh = task.lit.mesh();
+  std::vector<int> rays = share_rays(mesh, task.pilot.interpolated, task.parts, task.rays);
+  constexpr int few = 32;
+  for (const int v : task.pilot.rough) {
+    rays[v] = std::min(rays[v], std::max(1, task.options.rays / few));
+  }
+  if (task.one_in == 1) return rays;
+  const std::vector<char> unread = unread_patches(task.lit.scene, mesh);
+  const std::vector<int> patch = vertex_patches(mesh);
+  for (int v = 0; v < mesh.vertex_count(); ++v) rays[v] = unread[patch[v]] != 0 ? 0 : rays[v];
+  return rays;
+}
+
+// Each vertex wants one in `one_in` of its rays, less those already kept; interpolated vertices
+// want none.
 MissingRays missing_rays(const VertexGatherTask& task, const KeptGather& kept) {
   const PatchMesh& mesh = task.lit.mesh();
   MissingRays missing;
-  const std::vector<int> share_of =
-      share_rays(mesh, task.pilot.interpolated, task.parts, task.rays);
+  const std::vector<int> share_of = rays_of_vertices(task);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int wanted = task.cast_of(share_of[v]);
     const int more = wanted - (kept.rays.empty() ? 0 : kept.rays[v]);
@@ -340,7 +410,8 @@ VertexGather gather_once(const VertexGatherTask& task, const BandArray& radiosit
   gather_more(task, radiosity, kept);
   VertexGather gather{.found = {.indirect = kept.indirect, .variance = kept.variance}};
   const int count = task.lit.mesh().vertex_count();
-  gather.rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>();
+  // Vertices that cast no rays have no noise.
+  gather.rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>().max(1.0f);
   gather.found.variance *= gather.rays;
   fill_interpolated(task.pilot.interpolated, gather);
   join_predictions(task.lit, task.pilot, gather);
@@ -400,15 +471,17 @@ ElementCaster PilotGathers::caster(const PatchMesh& mesh, const PilotGather& pil
 }
 
 PilotGather PilotGathers::Impl::unrefined(const SolveOptions& options) {
-  const GatherPoints points = vertex_points(caster);
+  const LitScene lit{scene, caster, direct_light};
   GatherOptions gather = gather_options(options);
-  PilotGather pilot{.direct = gather_direct({scene, caster, direct_light}, points, gather),
-                    .shadows = gather.shadows,
-                    .gather_rays = rays_by_part(options)};
+  PilotGather pilot{.shadows = gather.shadows, .gather_rays = rays_by_part(options)};
+  SharedGathers shared = find_shared_gathers(scene, base);
+  pilot.unread = std::move(shared.unread);
+  pilot.rough = std::move(shared.rough);
+  pilot.interpolated = pilot.unread;
+  pilot.direct = direct_beside(lit, pilot.unread, gather);
   gather.rays = std::max(1, gather.rays / 4);
   gather.replica += pilot_replica;
-  pilot.indirect =
-      gather_indirect({scene, caster, direct_light}, radiosity, points, gather).indirect;
+  pilot.indirect = read_indirect(lit, radiosity, gather);
   pilot.caustic = caustics({scene, caster, direct_light}, options);
   return pilot;
 }
@@ -464,6 +537,8 @@ PilotGather PilotGathers::Impl::refined(const SolveOptions& options) {
           .refinement = found.report,
           .interpolated = std::move(found.interpolated),
           .predictions = std::move(found.predictions),
+          .unread = std::move(found.unread),
+          .rough = std::move(found.rough),
           .number = std::move(found.refined.vertex),
           .gather_rays = found.gather_rays};
 }
@@ -499,7 +574,7 @@ BandArray final_direct(const LitScene& lit, const GatherOptions& options,
                      pilot.shadows.max_rays >= options.shadows.max_rays)) {
     return pilot.direct;
   }
-  return gather_direct(lit, vertex_points(lit.caster), options);
+  return direct_beside(lit, pilot.unread, options);
 }
 
 void split_by_channel(RadiositySolution& solution) {
@@ -546,6 +621,11 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
   if (pilot.caustic.size() > 0) solution.indirect_irradiance += pilot.caustic;
   solution.caustic_irradiance = pilot.caustic;
   solution.interpolation_error = pilot.interpolation_error;
+  if (pilot.tree) {
+    add_record_errors(lit.mesh(), pilot.unread,
+                      channel_sum(solution.irradiance(), lit.scene.bands.count()), solution.parts,
+                      solution.interpolation_error);
+  }
   split_by_channel(solution);
 }
 

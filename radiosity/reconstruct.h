@@ -25,6 +25,9 @@ struct PilotGather {
   RefineReport refinement{};
   std::vector<InterpolatedVertex> interpolated{};  ///< later gathers leave indirect light out here
   std::vector<VertexPrediction> predictions{};     ///< joined with the final gather
+  /// SharedGathers::unread, whose entries are also in `interpolated`, and SharedGathers::rough.
+  std::vector<InterpolatedVertex> unread{};
+  std::vector<int> rough{};
   /// Per vertex, its number in RefinedElements, which later pilot gathers share; empty without
   /// refinement.
   std::vector<int> number{};
@@ -84,6 +87,7 @@ struct KeptGathers {
 /// - Indirect light of a refined mesh is gathered twice. The pilot gather read the light of
 ///   unrefined elements, in the same few directions all over a surface. A second pilot gather with
 ///   an eighth of the rays reads the first, and the final gather reads the second.
+/// - On unread_patches() there is the final gather alone, on crumbs with a 32nd of the rays.
 /// - With channels, the light of each is filled in, and relight() forms the sum.
 ///
 /// Work in `kept` (null: none) is not repeated, and new work is added to it. Throws Interrupted

@@ -91,6 +91,22 @@ void LightPaths::absorb(const Ray& ray, const ElementHit& hit, PathLight& light,
   light.throughput *= passed;
 }
 
+// Ends weak paths by chance (Arvo & Kirk 1990), and strengthens the others. What is lost and won
+// counts as absorbed, so that the shares of each path still add up to 1.
+bool LightPaths::survives(std::uint64_t key, PathLight& light, PathLosses& losses) const {
+  constexpr float weak = 0.5f;
+  const float strongest = light.throughput.maxCoeff();
+  if (!(strongest < weak)) return true;
+  const float chance = strongest / weak;
+  const bool is_over = random_uniform(random_key(key, RandomPurpose::path_microfacets, 3)) >=
+                       static_cast<double>(chance);
+  const Spectrum left = is_over ? Spectrum(Spectrum::Zero(light.throughput.size()))
+                                : Spectrum(light.throughput / chance);
+  losses.absorbed += light.throughput - left;
+  light.throughput = left;
+  return !is_over;
+}
+
 PathLosses LightPaths::follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                               const std::function<void(const LightArrival&)>& arrive) const {
   return follow(caster_, ray, hit, key, arrive);
@@ -114,10 +130,9 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
       losses.cut += throughput;
       return losses;
     }
-    if (!continue_at(caster, ray, hit, random_key(key, static_cast<std::uint64_t>(depth)), light,
-                     losses)) {
-      return losses;
-    }
+    const std::uint64_t key_here = random_key(key, static_cast<std::uint64_t>(depth));
+    if (!continue_at(caster, ray, hit, key_here, light, losses)) return losses;
+    if (depth >= max_depth_ && !survives(key_here, light, losses)) return losses;
     caster.closest_hits({&ray, 1}, {&hit, 1});
     absorb(ray, hit, light, losses);
     const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));

@@ -40,7 +40,9 @@ enum class PathNormals {
 /// & Puech 1989). One scattering sample continues each ray: a branch of glass with Fresnel's
 /// probability, a direction of a rough surface's lobe (see sample_scattering). The mean is exact.
 /// Absorbing bodies attenuate along the path (see Media). Smooth surfaces polarise the light, which
-/// decides over its share at the surfaces behind them (see Polarisation).
+/// decides over its share at the surfaces behind them (see Polarisation). Paths that go on beyond
+/// `max_depth` (see deepest_path()) end by Russian roulette once they are weak: light in a closed
+/// body of brushed metal would be followed to the last of 128 surfaces otherwise.
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
@@ -74,6 +76,7 @@ class LightPaths {
   };
   bool continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit, std::uint64_t key,
                    PathLight& light, PathLosses& losses) const;
+  bool survives(std::uint64_t key, PathLight& light, PathLosses& losses) const;
   void absorb(const Ray& ray, const ElementHit& hit, PathLight& light, PathLosses& losses) const;
 
   const Scene& scene_;

@@ -41,7 +41,7 @@ Prediction predict(const VertexPrediction& b, const BandArray& pilot, const Band
 }
 
 bool is_predicted(const VertexPrediction& b) {
-  return !b.is_interpolated && std::isfinite(b.spread) && std::isfinite(b.noise);
+  return !b.is_interpolated && !b.is_shared && std::isfinite(b.spread) && std::isfinite(b.noise);
 }
 
 // Per group, the mean squared error of predictions beyond the part that noise explains, (W/m^2)^2.
@@ -84,6 +84,11 @@ void combine_with_predictions(std::span<const VertexPrediction> predictions, con
     if (b.is_interpolated) {
       values.row(v) = mean_of_ends(b.at, values);
       variance[v] = of_ends;
+    }
+    if (b.is_shared) {
+      const Prediction predicted = predict(b, pilot, values);
+      values.row(v) = predicted.value;
+      variance[v] = of_ends + predicted.variance;
     }
     if (!is_predicted(b) || !(variance[v] > 0.0f)) continue;
     const Prediction predicted = predict(b, pilot, values);

@@ -25,7 +25,8 @@ struct InterpolatedVertex {
 /// light and the mean of its ends. Squares are in (W/m^2)^2, mean of the bands, channels added.
 struct VertexPrediction {
   InterpolatedVertex at{};
-  bool is_interpolated = false;                           ///< the vertex takes its ends' mean
+  bool is_interpolated = false;  ///< the vertex takes its ends' mean
+  bool is_shared = false;        ///< the vertex has no final gather of its own (see SharedGathers)
   float spread = std::numeric_limits<float>::infinity();  ///< mean square of the difference
   float noise = std::numeric_limits<float>::infinity();   ///< squared noise in the difference
 };
@@ -35,7 +36,8 @@ struct VertexPrediction {
 /// A prediction is the light of the vertex's ends plus the pilot gather's difference from these
 /// ends, shrunk by its noise (Wiener 1949). Pilot rays take the same directions at neighbours, so
 /// the difference has little noise. A small element thus takes its light from the many rays of
-/// large ones, and keeps its own difference. Interpolated vertices get their ends' mean.
+/// large ones, and keeps its own difference. Interpolated vertices get their ends' mean, and shared
+/// ones the prediction alone.
 ///
 /// Each entry of `predictions` must come after the entries of its ends. `pilot` and `values` are
 /// vertices x columns (`bands` for each channel), W/m^2. `variance` is that of `values`, (W/m^2)^2,

@@ -88,6 +88,9 @@ class InterpolationError {
                                        const ChannelLight& light) const {
     return gathers_.values_by_channel(vertices, interpolated, light);
   }
+  /// VertexGathers::shared() and VertexGathers::shared_predictions().
+  const SharedGathers& shared() const { return gathers_.shared(); }
+  std::vector<VertexPrediction> shared_predictions() const { return gathers_.shared_predictions(); }
   /// Number of points at which direct light was gathered.
   std::int64_t gathers() const { return gathers_.gathers(); }
   /// Gives back memory that was reserved for further cells and vertices.

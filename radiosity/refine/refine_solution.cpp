@@ -26,19 +26,7 @@ constexpr double about_equal = 0.999;
 
 // About the number of elements of a quarter of the edge everywhere, both sides counted. Elements
 // that are small already are not split.
-std::int64_t default_room(const RefinedElements& elements) {
-  std::vector<double> areas;
-  double total = 0.0;
-  for (const int cell : elements.leaves()) {
-    areas.push_back(elements.area(cell));
-    total += elements.area(cell);
-  }
-  std::sort(areas.begin(), areas.end(), std::greater<>());
-  double typical = 0.0, larger = 0.0;  // half of all area lies in elements of at least `typical`
-  for (std::size_t i = 0; i < areas.size() && larger < 0.5 * total; ++i) {
-    typical = areas[i];
-    larger += areas[i];
-  }
+std::int64_t default_room(const RefinedElements& elements, double typical) {
   std::int64_t count = elements.element_count();
   for (const int cell : elements.leaves()) {
     if (elements.area(cell) > 0.25 * typical) count += 15 * elements.side_count(cell);
@@ -53,7 +41,9 @@ class Refinement {
       : elements_(elements),
         error_(error),
         options_(options),
-        max_elements_(options.max_elements > 0 ? options.max_elements : default_room(elements)),
+        typical_area_(typical_leaf_area(elements)),
+        max_elements_(options.max_elements > 0 ? options.max_elements
+                                               : default_room(elements, typical_area_)),
         is_memory_short_(options.room >= 0 && options.room < max_elements_),
         may_go_on_(may_go_on),
         of_children_(may_go_on ? of_a_split : 1.0),
@@ -134,6 +124,13 @@ class Refinement {
     is_known_[cell] = 1;
   }
 
+  // False for the smallest cells: those of the deepest level, and those of the start that are
+  // smaller by a level than such cells of most of the area are.
+  bool may_be_split(int cell) const {
+    const double smallest = std::ldexp(typical_area_, -2 * (options_.max_level + 1));
+    return elements_.level(cell) < options_.max_level && elements_.area(cell) > smallest;
+  }
+
   bool are_reached() const {
     for (int p = 0; p < part_count_; ++p) {
       if (sum_[p] > allowed_[p]) return false;
@@ -192,7 +189,7 @@ class Refinement {
       for_each_part(cell, [&](int p) {
         const double square = counted(cell, p);
         sum_[p] += square;
-        if (elements_.level(cell) < options_.max_level && square > 0.0) {
+        if (may_be_split(cell) && square > 0.0) {
           by_error[p].emplace_back(-square, cell);
           rest[p] += square;
         }
@@ -347,6 +344,7 @@ class Refinement {
   RefinedElements& elements_;
   InterpolationError& error_;
   RefineOptions options_;
+  double typical_area_;  // of the start's cells
   std::int64_t max_elements_;
   bool is_memory_short_;
   bool may_go_on_;
@@ -369,6 +367,22 @@ void require_room(const PatchMesh& mesh, const RefineOptions& options) {
       "at most {} elements are allowed, but the scene makes {} before any is refined; allow more, "
       "or use a larger patch size",
       options.max_elements, mesh.element_count()));
+}
+
+double typical_leaf_area(const RefinedElements& elements) {
+  std::vector<double> areas;
+  double total = 0.0;
+  for (const int cell : elements.leaves()) {
+    areas.push_back(elements.area(cell));
+    total += elements.area(cell);
+  }
+  std::sort(areas.begin(), areas.end(), std::greater<>());
+  double typical = 0.0, larger = 0.0;
+  for (std::size_t i = 0; i < areas.size() && larger < 0.5 * total; ++i) {
+    typical = areas[i];
+    larger += areas[i];
+  }
+  return typical;
 }
 
 std::string sentence(const RefineReport& report) {
@@ -402,6 +416,38 @@ std::string sentence(const RefineReport& report) {
                      percent(report.estimate), report.elements_at_first, report.elements,
                      report.rounds);
 }
+
+namespace {
+
+// The entry with the mesh's numbers of vertices in place of those of RefinedElements.
+InterpolatedVertex renumbered(const InterpolatedVertex& at, const std::vector<int>& number) {
+  InterpolatedVertex result{.vertex = number[at.vertex]};
+  for (int i = 0; i < at.end_count(); ++i) result.ends[i] = number[at.ends[i]];
+  return result;
+}
+
+// Adds the vertices that share gathers. All are the base's, and come before those of splits.
+void add_shared(const InterpolationError& error, const PatchMesh& base, RefinedSolution& result) {
+  std::vector<int> number(static_cast<std::size_t>(base.vertex_count()), -1);
+  for (std::size_t v = 0; v < result.refined.vertex.size(); ++v) {
+    const int of_base = result.refined.vertex[v];
+    if (of_base < base.vertex_count()) number[of_base] = static_cast<int>(v);
+  }
+  for (const InterpolatedVertex& at : error.shared().unread) {
+    result.unread.push_back(renumbered(at, number));
+  }
+  for (const int v : error.shared().rough) result.rough.push_back(number[v]);
+  std::vector<InterpolatedVertex> first = result.unread;
+  std::vector<VertexPrediction> predictions = error.shared_predictions();
+  for (VertexPrediction& prediction : predictions) {
+    prediction.at = renumbered(prediction.at, number);
+    first.push_back(prediction.at);
+  }
+  result.interpolated.insert(result.interpolated.begin(), first.begin(), first.end());
+  result.predictions.insert(result.predictions.begin(), predictions.begin(), predictions.end());
+}
+
+}  // namespace
 
 struct SolutionRefinement::Impl {
   Impl(const LitScene& lit, const BandArray& radiosity, const BandArray& caustic,
@@ -453,6 +499,7 @@ RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
     const bool is_back_of_two = elements.side_count(cell) == 2 && mesh.twin[e] < e;
     result.error[e] = refinement.relative_error(cell, is_back_of_two ? 1 : 0);
   }
+  add_shared(error, elements.base(), result);
   result.report.gathers = error.gathers();
   result.gather_rays = error.rays();
   return result;

@@ -14,6 +14,9 @@ namespace lightwell {
 /// Throws InputError if `mesh` has more elements than `options` allow.
 void require_room(const PatchMesh& mesh, const RefineOptions& options);
 
+/// The least area of the leaves that make up the larger half of all area, m^2, one side counted.
+double typical_leaf_area(const RefinedElements& elements);
+
 /// Light at the base's vertices with the columns of each channel side by side (see DirectLight);
 /// W/m^2, vertices x columns.
 struct ChannelLight {
@@ -28,6 +31,9 @@ struct RefinedSolution {
   GatheredIrradiance pilot{};  ///< vertices x columns; direct light is as for the final solution
   std::vector<InterpolatedVertex> interpolated{};  ///< without a final gather of indirect light
   std::vector<VertexPrediction> predictions{};     ///< see combine_with_predictions
+  /// SharedGathers::unread, whose entries are also in `interpolated`, and SharedGathers::rough.
+  std::vector<InterpolatedVertex> unread{};
+  std::vector<int> rough{};
   /// Per element, the estimated RMS error of interpolation, relative to error_reference(). Includes
   /// (in the square) half of the error that noise may hide.
   Eigen::ArrayXf error{};
@@ -44,7 +50,8 @@ struct RefinedSolution {
 /// squared errors, as many as it takes for the others to hold at most half of the squared error
 /// that the tolerance allows (Doerfler 1996, "A convergent adaptive algorithm for Poisson's
 /// equation"). Cells are not measured if a bound by their corners' values shows that their errors
-/// are too small.
+/// are too small, and not split if they are smaller by a level than cells of typical_leaf_area()
+/// are on the deepest level, as those of chains and leaves are from the start.
 class SolutionRefinement {
  public:
   /// `radiosity` (as gatherable_radiosity makes it) and `caustic` irradiance (or an empty array)

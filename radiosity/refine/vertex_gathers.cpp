@@ -49,7 +49,9 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
       rays_of_part_(static_cast<std::size_t>(parts_.judged_count()), options.rays),
       has_noise_goal_(!refine.efforts.empty() && refine.efforts.front().noise > 0.0),
       inset_(std::ldexp(finest_inset, -refine.max_level)),
-      visibility_(lit.direct_light.light_count()) {
+      visibility_(lit.direct_light.light_count()),
+      unread_patch_(unread_patches(lit.scene, elements.base())),
+      shared_(find_shared_gathers(lit.scene, elements.base())) {
   if (options.run.progress) {
     options_.run.progress = [progress = options.run.progress](std::string_view, double share) {
       return progress("refine", share);
@@ -61,15 +63,19 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
 }
 
 // Vertices of small elements cast fewer rays, but a quarter at least: with fewer, noise would hide
-// the differences that the gathers are made for.
+// the differences that the gathers are made for. Vertices that share gathers cast an eighth: what
+// the noise hides is left out for the whole group.
 void VertexGathers::share_pilot_rays() {
   const PatchMesh& mesh = elements_.base();
   std::vector<int> rays;
   for (const int of_part : rays_of_part_) rays.push_back(pilot_rays(of_part, has_noise_goal_));
   rays_ = share_rays(mesh, {}, parts_, rays);
   const std::vector<int> patch = vertex_patches(mesh);
+  std::vector<char> shares(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  for (const InterpolatedVertex& at : shared_.read) shares[at.vertex] = 1;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    rays_[v] = std::min(2 * rays_[v], rays[parts_.judged_with(patch[v])]);
+    const int times = shares[v] != 0 ? 1 : 2;
+    rays_[v] = std::min(times * rays_[v], rays[parts_.judged_with(patch[v])]);
   }
 }
 
@@ -121,6 +127,20 @@ void VertexGathers::shrink_to_fit() {
   visibility_.shrink_to_fit();
 }
 
+// True if no ray reads the light at a vertex.
+bool VertexGathers::is_unread(int vertex) const {
+  const PatchMesh& mesh = elements_.base();
+  return unread_patch_[mesh.patch[elements_.inside(vertex, 0.0).element]] != 0;
+}
+
+// Gathers direct light at the base's vertices; on unread crumbs at the records alone.
+void VertexGathers::gather_direct_at_base() {
+  const auto count = static_cast<std::size_t>(elements_.base().vertex_count());
+  gather_direct_at(indices_without(shared_.unread, count));
+  interpolate_vertices(shared_.unread, direct_);
+  for (const InterpolatedVertex& at : shared_.unread) has_direct_[at.vertex] = 1;
+}
+
 void VertexGathers::gather_direct_at(const std::vector<int>& vertices) {
   std::vector<int> fresh;
   std::vector<GatherPoint> points;
@@ -140,13 +160,18 @@ void VertexGathers::gather_direct_at(const std::vector<int>& vertices) {
   gathers_ += static_cast<std::int64_t>(points.size());
 }
 
-// One gather of indirect light, with the same random numbers all over a side of a surface.
+// One gather of indirect light, with the same random numbers all over a side of a surface; 0 where
+// no ray reads the light.
 GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
                                               std::uint64_t replica,
                                               const BandArray& radiosity) const {
   const PatchMesh& mesh = elements_.base();
+  std::vector<Eigen::Index> rows;
   std::vector<GatherPoint> points;
-  for (const int v : vertices) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const int v = vertices[i];
+    if (is_unread(v)) continue;
+    rows.push_back(static_cast<Eigen::Index>(i));
     GatherPoint& point = points.emplace_back(gather_point(v));
     const int patch = mesh.patch[elements_.inside(v, 0.0).element];
     point.key = random_key(static_cast<std::uint64_t>(mesh.surface[patch]),
@@ -156,7 +181,41 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
   GatherOptions options = options_;
   options.rays = pilot_rays(options_.rays, has_noise_goal_);
   options.replica = options_.replica + first_pilot_replica + replica;
-  return gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);
+  GatheredIrradiance found =
+      gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  if (found.variance.size() == count) return found;
+  GatheredIrradiance all{.indirect = BandArray::Zero(count, found.indirect.cols()),
+                         .variance = Eigen::ArrayXf::Zero(count)};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    all.indirect.row(rows[i]) = found.indirect.row(static_cast<Eigen::Index>(i));
+    all.variance[rows[i]] = found.variance[static_cast<Eigen::Index>(i)];
+  }
+  return all;
+}
+
+// A gather at the base's vertices, of each group of crumbs at the records alone. Their variance
+// times the rays of a vertex is that of a ray of theirs.
+GatheredIrradiance VertexGathers::sharpened_indirect(const BandArray& radiosity) const {
+  const auto count = static_cast<Eigen::Index>(elements_.base().vertex_count());
+  const std::vector<int> own = indices_without(shared_.read, static_cast<std::size_t>(count));
+  GatheredIrradiance found = indirect_at(own, 2, radiosity);
+  if (found.variance.size() == count) return found;
+  GatheredIrradiance all{.indirect = BandArray::Zero(count, found.indirect.cols()),
+                         .variance = Eigen::ArrayXf::Zero(count)};
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    all.indirect.row(own[i]) = found.indirect.row(static_cast<Eigen::Index>(i));
+    all.variance[own[i]] = found.variance[static_cast<Eigen::Index>(i)];
+  }
+  interpolate_vertices(shared_.read, all.indirect);
+  for (const InterpolatedVertex& at : shared_.read) {
+    for (int i = 0; i < at.end_count(); ++i) {
+      const auto share = static_cast<float>(rays_[at.ends[i]]) /
+                         static_cast<float>(rays_[at.vertex] * at.end_count());
+      all.variance[at.vertex] += share * all.variance[at.ends[i]];
+    }
+  }
+  return all;
 }
 
 // Replaces the radiosity of patches, one value each, by what a gather finds at the base's vertices.
@@ -164,10 +223,9 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
 void VertexGathers::sharpen_radiosity(const BandArray& caustic,
                                       const std::vector<PartEffort>& efforts) {
   const PatchMesh& mesh = elements_.base();
-  const std::vector<int> all = vertices_of(mesh);
   make_room();
-  gather_direct_at(all);
-  GatheredIrradiance gathered = indirect_at(all, 2, radiosity_);
+  gather_direct_at_base();
+  GatheredIrradiance gathered = sharpened_indirect(radiosity_);
   BandArray irradiance = direct_.topRows(mesh.vertex_count()) + gathered.indirect;
   if (caustic.size() > 0) irradiance += caustic;
   radiosity_ = with_pools(mesh, radiosity_, gatherable_radiosity(mesh, direct_light_, irradiance));
@@ -226,13 +284,42 @@ GatheredIrradiance VertexGathers::values(const std::vector<int>& vertices) const
   return result;
 }
 
+std::vector<VertexPrediction> VertexGathers::shared_predictions() const {
+  std::vector<VertexPrediction> predictions;
+  const std::vector<InterpolatedVertex>& read = shared_.read;
+  const auto off = [](const BandArray& values, const InterpolatedVertex& at) -> Eigen::ArrayXd {
+    Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(values.cols());
+    for (int i = 0; i < at.end_count(); ++i) {
+      mean += values.row(at.ends[i]).transpose().cast<double>() / at.end_count();
+    }
+    return values.row(at.vertex).transpose().cast<double>() - mean;
+  };
+  for (std::size_t begin = 0, end = 0; begin < read.size(); begin = end) {
+    double spread = 0.0, noise = 0.0;
+    for (; end < read.size() && read[end].ends == read[begin].ends; ++end) {
+      // The noise of the two gathers is independent, so the mean of their product has none.
+      const Eigen::ArrayXd a = off(first_, read[end]), b = off(second_, read[end]);
+      spread += (a * b).mean();
+      noise += 0.25 * (a - b).square().mean();
+    }
+    const auto count = static_cast<double>(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      predictions.push_back({.at = read[i],
+                             .is_shared = true,
+                             .spread = static_cast<float>(std::max(spread / count, 0.0)),
+                             .noise = static_cast<float>(noise / count)});
+    }
+  }
+  return predictions;
+}
+
 // The radiosity of sharpen_radiosity() for the light of channels; `direct` begins with the base's
 // vertices.
 BandArray VertexGathers::sharpened_by_channel(const BandArray& direct,
                                               const ChannelLight& light) const {
   const PatchMesh& mesh = elements_.base();
-  BandArray irradiance = direct.topRows(mesh.vertex_count()) +
-                         indirect_at(vertices_of(mesh), 2, light.radiosity).indirect;
+  BandArray irradiance =
+      direct.topRows(mesh.vertex_count()) + sharpened_indirect(light.radiosity).indirect;
   if (light.caustic.size() > 0) irradiance += light.caustic;
   return with_pools(mesh, light.radiosity,
                     gatherable_radiosity(mesh, light.direct_light, irradiance));
@@ -251,8 +338,14 @@ GatheredIrradiance VertexGathers::values_by_channel(
     lit_vertices.push_back(v);
   }
   std::vector<GatherPoint> points;
-  for (const int v : lit_vertices) points.push_back(keyed_point(v));
-  const BandArray direct = gather_direct({scene_, caster_, light.direct_light}, points, options_);
+  const std::vector<int> own = indices_without(shared_.unread, lit_vertices.size());
+  for (const int i : own) points.push_back(keyed_point(lit_vertices[i]));
+  const BandArray found = gather_direct({scene_, caster_, light.direct_light}, points, options_);
+  BandArray direct(static_cast<Eigen::Index>(lit_vertices.size()), found.cols());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    direct.row(own[i]) = found.row(static_cast<Eigen::Index>(i));
+  }
+  interpolate_vertices(shared_.unread, direct);
   const BandArray sharpened = sharpened_by_channel(direct, light);
 
   const std::vector<int> gathered = indices_without(interpolated, vertices.size());

@@ -10,6 +10,7 @@
 #include "radiosity/refine/emitter_visibility_list.h"
 #include "radiosity/refine/interpolated_vertices.h"
 #include "radiosity/refine/refine_options.h"
+#include "radiosity/refine/shared_gathers.h"
 
 namespace lightwell {
 
@@ -20,11 +21,14 @@ struct ChannelLight;
 /// - Direct light is gathered as for the final solution.
 /// - Indirect light is gathered twice, independently. Each gather casts an eighth of the final
 ///   gather's rays (a sixteenth if the noise of that has a goal), rounded up to a power of two, and
-///   down to a quarter of that at the smallest elements of the start. The rays take the same
+///   down to a quarter of that at the smallest elements of the start (an eighth at vertices of
+///   SharedGathers::read). The rays take the same
 ///   directions all over a side of a surface, so that most of the noise is alike at neighbours and
 ///   not in the difference between them.
 /// - The rays read the light at the base's vertices, which a gather of the same kind has sharpened
 ///   before.
+/// - On unread_patches() no indirect light is gathered, and direct light of crumbs at records
+/// alone.
 ///
 /// Vertices are numbered as in RefinedElements. Values are in W/m^2, vertices x bands.
 class VertexGathers {
@@ -73,18 +77,27 @@ class VertexGathers {
   GatheredIrradiance values_by_channel(const std::vector<int>& vertices,
                                        std::span<const InterpolatedVertex> interpolated,
                                        const ChannelLight& light) const;
+  /// Vertices of the base that share gathers.
+  const SharedGathers& shared() const { return shared_; }
+  /// Predictions of the vertices of SharedGathers::read, by base vertex. The spread and the noise
+  /// are those of the differences between the two gathers at the vertices of a group and the mean
+  /// of the group's records.
+  std::vector<VertexPrediction> shared_predictions() const;
   /// Number of points at which direct light was gathered.
   std::int64_t gathers() const { return gathers_; }
   /// Gives back memory that was reserved for further vertices.
   void shrink_to_fit();
 
  private:
+  bool is_unread(int vertex) const;
+  void gather_direct_at_base();
   void share_pilot_rays();
   void sharpen_radiosity(const BandArray& caustic, const std::vector<PartEffort>& efforts);
   GatherPoint gather_point(int vertex) const;
   GatherPoint keyed_point(int vertex) const;
   GatheredIrradiance indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
                                  const BandArray& radiosity) const;
+  GatheredIrradiance sharpened_indirect(const BandArray& radiosity) const;
   BandArray sharpened_by_channel(const BandArray& direct, const ChannelLight& light) const;
 
   const Scene& scene_;
@@ -104,6 +117,8 @@ class VertexGathers {
   std::vector<int> rays_;  // of each of the two gathers of indirect light
   BandArray direct_, first_, second_;
   EmitterVisibilityList visibility_;
+  std::vector<char> unread_patch_;  // per patch
+  SharedGathers shared_;
   std::int64_t gathers_ = 0;
 };
 

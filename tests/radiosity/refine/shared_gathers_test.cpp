@@ -1,0 +1,282 @@
+// Gathers that the vertices of crumbs share, and those that nobody reads.
+#include "radiosity/refine/shared_gathers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "mesh/build_patches.h"
+#include "radiosity/gather/patch_power.h"
+#include "radiosity/reconstruct.h"
+#include "radiosity/refine/illuminance_bound.h"
+#include "radiosity/solve.h"
+#include "tests/radiosity/test_scenes.h"
+
+namespace lightwell::shared_gathers_test {
+namespace {
+
+/// A ball of n rings and 2 n sectors of one surface, facing outwards.
+void add_ball(Scene& scene, const Eigen::Vector3d& center, double radius, int n, int material) {
+  PolygonMesh ball;
+  const auto at = [&](int ring, int sector) {
+    const double theta = std::numbers::pi * ring / n, phi = std::numbers::pi * sector / n;
+    return Eigen::Vector3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                           std::cos(theta));
+  };
+  ball.vertices = {center + radius * at(0, 0), center + radius * at(n, 0)};
+  for (int ring = 1; ring < n; ++ring) {
+    for (int s = 0; s < 2 * n; ++s) ball.vertices.push_back(center + radius * at(ring, s));
+  }
+  const auto number = [n](int ring, int sector) {
+    if (ring == 0) return 0;
+    return ring == n ? 1 : 2 + (ring - 1) * 2 * n + sector % (2 * n);
+  };
+  for (int ring = 0; ring < n; ++ring) {
+    for (int s = 0; s < 2 * n; ++s) {
+      Facet facet;
+      facet.boundary = {number(ring, s), number(ring + 1, s)};
+      if (ring + 1 < n) facet.boundary.push_back(number(ring + 1, s + 1));
+      if (ring > 0) facet.boundary.push_back(number(ring, s + 1));
+      ball.facets.push_back(facet);
+    }
+  }
+  scene.surfaces.push_back({.name = "ball", .material = material, .shape = ball});
+}
+
+/// A room of 4 x 4 x 3 m with a lamp under its ceiling, and a ball of 5 cm in 1152 facets over its
+/// floor, of a material that `ball` adds.
+template <class AddMaterial>
+Scene room_with_ball(AddMaterial&& ball) {
+  Scene scene;
+  const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.6f));
+  const int red = test::add_material(scene, test::diffuse(scene.bands, 0.1f));
+  const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 100.0f));
+  test::add_box(scene, {0, 0, 0}, {4, 4, 3}, {red, wall, wall, wall, wall, wall}, true);
+  test::add_polygon(scene, "lamp", lamp,
+                    {{2.5, 2.5, 2.9}, {2.5, 3.0, 2.9}, {3.0, 3.0, 2.9}, {3.0, 2.5, 2.9}});
+  add_ball(scene, {1.3, 1.6, 0.3}, 0.05, 24, ball(scene));
+  return scene;
+}
+
+Scene room_with_grey_ball() {
+  return room_with_ball(
+      [](Scene& scene) { return test::add_material(scene, test::diffuse(scene.bands, 0.5f)); });
+}
+
+/// A ball of brushed metal, which mirrors on both sides.
+Scene room_with_metal_ball() {
+  return room_with_ball([](Scene& scene) {
+    Material metal = test::mirror(scene.bands, 0.8f);
+    metal.specular_roughness = 0.2f;
+    metal.one_sided = false;
+    return test::add_material(scene, metal);
+  });
+}
+
+constexpr int ball_surface = 7;
+
+const MeshOptions mesh_options{.max_patch_size = 0.5, .to_be_refined = true};
+
+SolveOptions options() {
+  SolveOptions options{.mesh = mesh_options, .refine = {.tolerance = 0.05}};
+  options.gather.rays = 256;
+  options.caustic_rays = 1 << 12;
+  return options;
+}
+
+TEST(SharedGathers, AreOfCrumbsAlone) {
+  const Scene scene = room_with_grey_ball();
+  const PatchMesh mesh = build_patches(scene, mesh_options);
+  const std::vector<int> patch = vertex_patches(mesh);
+  const SharedGathers shared = find_shared_gathers(scene, mesh);
+  EXPECT_TRUE(shared.unread.empty());
+  std::set<int> sharing, records;
+  for (const InterpolatedVertex& at : shared.read) {
+    EXPECT_EQ(mesh.surface[patch[at.vertex]], ball_surface);
+    EXPECT_TRUE(sharing.insert(at.vertex).second);
+    const std::set<int> ends(at.ends.begin(), at.ends.end());
+    EXPECT_EQ(ends.size(), 4u);
+    records.insert(ends.begin(), ends.end());
+    for (const int end : ends) EXPECT_EQ(patch[end], patch[at.vertex]);
+  }
+  for (const int record : records) EXPECT_FALSE(sharing.contains(record));
+  const auto of_ball = static_cast<std::size_t>(
+      std::ranges::count_if(patch, [&](int p) { return mesh.surface[p] == ball_surface; }));
+  std::printf("%zu vertices of %zu of the ball share the gathers of %zu\n", sharing.size(), of_ball,
+              records.size());
+  // Groups have more than 16 vertices and 4 records.
+  EXPECT_GT(4 * sharing.size(), 3 * of_ball);
+}
+
+TEST(SharedGathers, AreNoneInRoomsOfLargeFacets) {
+  Scene scene = room_with_grey_ball();
+  scene.surfaces.pop_back();
+  const SharedGathers shared = find_shared_gathers(scene, build_patches(scene, mesh_options));
+  EXPECT_TRUE(shared.read.empty() && shared.unread.empty());
+}
+
+TEST(SharedGathers, OfMetalAreUnread) {
+  const Scene scene = room_with_metal_ball();
+  const PatchMesh mesh = build_patches(scene, mesh_options);
+  const std::vector<char> unread = unread_patches(scene, mesh);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    EXPECT_EQ(unread[static_cast<std::size_t>(p)] != 0, mesh.surface[p] == ball_surface);
+  }
+  const SharedGathers shared = find_shared_gathers(scene, mesh);
+  EXPECT_TRUE(shared.read.empty());
+  EXPECT_FALSE(shared.unread.empty());
+}
+
+TEST(SharedGathers, BlackSurfacesAreMeasuredAndRead) {
+  const Scene scene = room_with_ball(
+      [](Scene& made) { return test::add_material(made, test::diffuse(made.bands, 0.0f)); });
+  const std::vector<char> unread = unread_patches(scene, build_patches(scene, mesh_options));
+  EXPECT_EQ(std::ranges::count(unread, 1), 0);
+}
+
+/// The pilot and the final gathers of a scene, with the rays that they cast.
+struct Gathers {
+  explicit Gathers(const Scene& scene) {
+    const SolveOptions o = options();
+    PatchMesh base = build_patches(scene, o.mesh);
+    const ElementCaster base_caster(base);
+    const DirectLight direct_light(scene, base);
+    const auto form_factors =
+        compute_form_factors({scene, base_caster, direct_light}, {.rays_per_patch = 128});
+    solution = solve_radiosity(SolverMethod::automatic, base, *form_factors, o.solver);
+    base_vertices = base.vertex_count();
+    PilotGathers pilots(scene, base, direct_light, solution);
+    pilot = pilots.gather(o);
+    const ElementCaster caster = pilots.caster(*pilot.refined, pilot);
+    reconstruct({scene, caster, direct_light}, o, pilot, solution, &kept);
+  }
+
+  RadiositySolution solution{};
+  PilotGather pilot{};
+  KeptGathers kept{};
+  int base_vertices = 0;
+  int on_ball(int vertex) const {
+    const std::vector<int> patch = vertex_patches(*pilot.refined);
+    return pilot.refined->surface[patch[vertex]] == ball_surface ? 1 : 0;
+  }
+  // Rays of the kept gather at the vertices of the ball, and their number.
+  std::pair<std::int64_t, int> rays_on_ball(const KeptGather& of) const {
+    const std::vector<int> patch = vertex_patches(*pilot.refined);
+    std::int64_t rays = 0;
+    int count = 0;
+    for (int v = 0; v < pilot.refined->vertex_count(); ++v) {
+      if (pilot.refined->surface[patch[v]] != ball_surface) continue;
+      rays += of.rays[static_cast<std::size_t>(v)];
+      ++count;
+    }
+    return {rays, count};
+  }
+};
+
+TEST(SharedGathers, TakeAQuarterOfTheRaysAtMost) {
+  const Gathers grey(room_with_grey_ball());
+  const auto [rays, count] = grey.rays_on_ball(grey.kept.last);
+  std::printf("grey ball: %lld rays at %d vertices\n", static_cast<long long>(rays), count);
+  // Without sharing each vertex casts an eighth of 256 rays at least. Of more than 16 vertices of a
+  // group, four cast those, or twice as many for the area that they stand for.
+  EXPECT_LT(rays, std::int64_t{256 / 8} * count / 2);
+  EXPECT_GT(rays, 0);
+}
+
+TEST(SharedGathers, OnMetalTakeFewRaysAndNoPilot) {
+  const Scene scene = room_with_metal_ball();
+  const Gathers metal(scene);
+  const auto [pilot_rays, count] = metal.rays_on_ball(metal.kept.of_pilot);
+  EXPECT_EQ(pilot_rays, 0);
+  const auto [rays, all] = metal.rays_on_ball(metal.kept.last);
+  std::printf("metal ball: %lld rays at %d vertices\n", static_cast<long long>(rays), all);
+  // Two records of more than 32 vertices of a group, or of all of a smaller patch (8 at least),
+  // with 256 / 32 rays each.
+  EXPECT_LE(rays, std::int64_t{2} * 8 * all / 8);
+  EXPECT_GT(rays, 0);
+  // Direct light is gathered once at all other vertices.
+  const auto shared = static_cast<std::int64_t>(metal.pilot.unread.size());
+  EXPECT_GT(2 * shared, all);
+  EXPECT_LE(metal.pilot.refinement.gathers,
+            static_cast<std::int64_t>(metal.pilot.refined->vertex_count()) - shared +
+                metal.pilot.refinement.gathers -
+                (static_cast<std::int64_t>(metal.base_vertices) - shared));
+}
+
+/// The light of a solution at the vertices of its ball, against a gather of 16384 rays that reads
+/// the same solution.
+struct BallErrors {
+  explicit BallErrors(const Scene& scene) {
+    const SolvedScene solved = solve_scene(scene, options());
+    const PatchMesh& mesh = solved.mesh;
+    const ElementCaster caster(mesh);
+    const DirectLight direct_light(scene, mesh);
+    const BandArray E = solved.solution.irradiance();
+    const Eigen::ArrayXf within = error_bound(solved.solution);
+    std::vector<GatherPoint> points;
+    std::vector<int> elements;
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const int p = mesh.patch[e];
+      if (mesh.surface[p] != ball_surface || mesh.is_back[p] != 0) continue;
+      const PatchPoint at = element_center(mesh, e);
+      points.push_back({at.position, at.normal, mesh.facet[e]});
+      elements.push_back(e);
+    }
+    GatherOptions gather{.rays = 16384, .replica = 77};
+    const GatheredIrradiance truth = gather_irradiance(
+        {scene, caster, direct_light}, gatherable_radiosity(mesh, direct_light, E), points, gather);
+    double square = 0.0, light = 0.0, bound = 0.0;
+    int exceeded = 0;
+    double mean = 0.0, area = 0.0;
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      mean += mesh.element_area[e] * element_mean(mesh, E)(e, 0);
+      area += mesh.element_area[e];
+      if (area > 1e9) break;
+    }
+    mean /= area;
+    const BandArray of_element = element_mean(mesh, E);
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const double found = of_element(elements[i], 0);
+      const double own = truth.direct(row, 0) + truth.indirect(row, 0);
+      square += std::pow(found - own, 2);
+      light += own;
+      // Bounds are relative to the mean or a quarter of the own light, whichever is more.
+      const double allowed = double{within[elements[i]]} * std::max(mean, 0.25 * found);
+      bound += allowed * allowed;
+      exceeded += std::abs(found - own) > allowed ? 1 : 0;
+    }
+    const auto count = static_cast<double>(elements.size());
+    rms = std::sqrt(square / count) / (light / count);
+    rms_bound = std::sqrt(bound / count) / (light / count);
+    share_exceeded = exceeded / count;
+    std::printf(
+        "%zu elements: RMS error %.2f %% of their mean light, bound %.2f %%, exceeded %.1f %%\n",
+        elements.size(), 100.0 * rms, 100.0 * rms_bound, 100.0 * share_exceeded);
+  }
+  double rms = 0.0, rms_bound = 0.0, share_exceeded = 0.0;
+};
+
+TEST(SharedGathers, AgreeWithAConvergedGather) {
+  const BallErrors errors(room_with_grey_ball());
+  // Facets of 7.5 degrees: the chord of a half turn's cosine is off by (7.5 degrees)^2 / 8 = 0.2 %
+  // inside; noise of 32 to 64 rays at four records, 128 and more for a group, is below 5 %.
+  EXPECT_LT(errors.rms, 0.05);
+  EXPECT_LT(errors.share_exceeded, 0.05);
+}
+
+TEST(SharedGathers, OnMetalKnowHowRoughTheyAre) {
+  const BallErrors errors(room_with_metal_ball());
+  // A group reaches over a patch, whose normals turn by 20 degrees about their mean; the records
+  // tell by how much the light differs. Two of them tell it to a factor of two, for each group.
+  EXPECT_LT(errors.rms, errors.rms_bound);
+  EXPECT_LT(errors.share_exceeded, 0.15);
+}
+
+}  // namespace
+}  // namespace lightwell::shared_gathers_test
