@@ -263,7 +263,7 @@ class GatherAttempts {
       take_mesh(false);
     }
     if (state_ == State::has_pilot) {
-      take_pilot_light({scene_, *caster_, sources_.by_channel}, *pilot_,
+      take_pilot_light({scene_, *caster_, sources_.by_channel}, options_, *pilot_,
                        may_repeat() ? &kept_ : nullptr, solution);
       relight(solved_, effective_scales(solution));
     }

@@ -533,6 +533,7 @@ PilotGather PilotGathers::Impl::refined(const SolveOptions& options) {
           .direct = std::move(found.pilot.direct),
           .indirect = std::move(found.pilot.indirect),
           .caustic = std::move(at_vertices),
+          .lacks_unread = true,
           .interpolation_error = std::move(found.error),
           .refinement = found.report,
           .interpolated = std::move(found.interpolated),
@@ -629,9 +630,42 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
   split_by_channel(solution);
 }
 
-void take_pilot_light(const LitScene& lit, const PilotGather& pilot, KeptGathers* kept,
-                      RadiositySolution& solution) {
+namespace {
+
+// Gives the vertices of unread patches the light at one point of the patch.
+void light_unread_patches(const LitScene& lit, const SolveOptions& options,
+                          const PilotGather& pilot, BandArray& indirect) {
+  const PatchMesh& mesh = lit.mesh();
+  const std::vector<char> unread = unread_patches(lit.scene, mesh);
+  std::vector<int> patches;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (unread[p] != 0) patches.push_back(p);
+  }
+  if (patches.empty()) return;
+  constexpr int few_rays = 16;
+  GatherOptions gather = gather_options(options);
+  gather.rays = std::min(few_rays, gather.rays);
+  const GatherPoints centers(static_cast<int>(patches.size()), [&](int i) {
+    const PatchPoint at = PatchSampler(mesh, patches[i]).point(0.5, 0.5);
+    return GatherPoint{at.position, at.normal, mesh.facet[at.element]};
+  });
+  const BandArray radiosity =
+      gatherable_radiosity(mesh, lit.direct_light, with_indirect(pilot, indirect));
+  const BandArray found = gather_indirect(lit, radiosity, centers, gather).indirect;
+  std::vector<int> row(static_cast<std::size_t>(mesh.patch_count()), -1);
+  for (std::size_t i = 0; i < patches.size(); ++i) row[patches[i]] = static_cast<int>(i);
+  const std::vector<int> patch = vertex_patches(mesh);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (row[patch[v]] >= 0) indirect.row(v) = found.row(row[patch[v]]);
+  }
+}
+
+}  // namespace
+
+void take_pilot_light(const LitScene& lit, const SolveOptions& options, const PilotGather& pilot,
+                      KeptGathers* kept, RadiositySolution& solution) {
   BandArray indirect = pilot.indirect;
+  if (pilot.lacks_unread) light_unread_patches(lit, options, pilot, indirect);
   if (kept) {
     carry_over(pilot.number, *kept);
     const KeptGather& last = kept->last;

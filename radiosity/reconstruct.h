@@ -21,6 +21,7 @@ struct PilotGather {
   BandArray direct{}, indirect{};        ///< W/m^2, vertices x columns
   ShadowOptions shadows{};               ///< those of `direct`
   BandArray caustic{};                   ///< W/m^2; empty if the scene has no mirrors or glass
+  bool lacks_unread = false;             ///< indirect light is 0 on unread_patches()
   Eigen::ArrayXf interpolation_error{};  ///< see RadiositySolution; empty without refinement
   RefineReport refinement{};
   std::vector<InterpolatedVertex> interpolated{};  ///< later gathers leave indirect light out here
@@ -97,9 +98,10 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
 
 /// In place of reconstruct() for want of time: fills in the irradiances of `solution` with the
 /// light of the pilot gather, and of the final gathers in `kept` at the vertices that have any
-/// (null: none). Their errors are left to the error estimate: gather noise is 0, and the
-/// interpolation error is empty.
-void take_pilot_light(const LitScene& lit, const PilotGather& pilot, KeptGathers* kept,
-                      RadiositySolution& solution);
+/// (null: none). Vertices that the pilot gather left out share a gather of few rays on each patch.
+/// Errors are left to the error estimate: gather noise is 0, and the interpolation error is empty.
+/// Throws Interrupted when progress says stop.
+void take_pilot_light(const LitScene& lit, const SolveOptions& options, const PilotGather& pilot,
+                      KeptGathers* kept, RadiositySolution& solution);
 
 }  // namespace lightwell
