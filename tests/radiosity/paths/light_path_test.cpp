@@ -133,5 +133,59 @@ TEST(LightPaths, StackOfSlabsPassesTheSumOfAllItsReflections) {
   }
 }
 
+/// Light from the floor of a closed box of brushed metal that reflects 0.7, to the floor again;
+/// mean of one path of each of `count`, its standard error, and the surfaces that are met.
+struct BrushedBox {
+  double mean = 0.0, deviation = 0.0, absorbed = 0.0, worst_sum = 0.0;
+
+  explicit BrushedBox(int max_depth) {
+    Scene scene;
+    Material metal = test::mirror(scene.bands, 0.7f);
+    metal.specular_roughness = 0.3f;
+    const int walls = add_material(scene, metal);
+    const int floor = add_material(scene, diffuse(scene.bands, 0.5f, 1.0f));
+    // A small floor in a large box: most paths are long.
+    add_box(scene, {0, 0, 0}, {1, 1, 1}, {walls, walls, walls, walls, walls, walls}, true);
+    test::add_polygon(scene, "target", floor,
+                      {{0.4, 0.4, 0.01}, {0.6, 0.4, 0.01}, {0.6, 0.6, 0.01}, {0.4, 0.6, 0.01}});
+    const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
+    const ElementCaster caster(mesh);
+    const LightPaths paths(scene, caster, max_depth);
+    constexpr int count = 40000;
+    double squares = 0.0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const Eigen::Vector3d d =
+          cosine_direction(static_cast<float>(random_uniform(random_key(i, 1))),
+                           static_cast<float>(random_uniform(random_key(i, 2))));
+      const Ray ray{.origin = {0.5, 0.5, 0.01}, .direction = d, .origin_group = 6};
+      ElementHit hit;
+      caster.closest_hits({&ray, 1}, {&hit, 1});
+      double arrived = 0.0;
+      const PathLosses losses = paths.follow(ray, hit, random_key(i, 3),
+                                             [&](const ElementHit&, const Spectrum& throughput) {
+                                               arrived += static_cast<double>(throughput[0]);
+                                             });
+      const double lost =
+          static_cast<double>(losses.absorbed[0] + losses.cut[0] + losses.escaped[0]);
+      worst_sum = std::max(worst_sum, std::abs(arrived + lost - 1.0));
+      mean += arrived / count;
+      absorbed += static_cast<double>(losses.absorbed[0]) / count;
+      squares += arrived * arrived / count;
+    }
+    deviation = std::sqrt((squares - mean * mean) / count);
+  }
+};
+
+// Paths that may meet 128 mirrors anyway are not ended by chance.
+TEST(LightPaths, WeakPathsEndByChanceAndLoseNothingInTheMean) {
+  const BrushedBox by_chance(2), to_the_end(128);
+  const double both = std::hypot(by_chance.deviation, to_the_end.deviation);
+  EXPECT_NEAR(by_chance.mean, to_the_end.mean, 3.0 * both);
+  EXPECT_NEAR(by_chance.absorbed, to_the_end.absorbed, 3.0 * both);
+  // Some two hundred roundings of float.
+  EXPECT_LT(by_chance.worst_sum, 1e-5);
+  EXPECT_LT(to_the_end.worst_sum, 1e-5);
+}
+
 }  // namespace
 }  // namespace lightwell::light_path_test
