@@ -142,6 +142,32 @@ TEST(TimeLimit, LightOfChannelsAddsUpAfterAnEarlyEnd) {
   }
 }
 
+// No gather reads the light on a mirror, so the pilot gather leaves it out.
+TEST(TimeLimit, AMirrorIsLitAfterAnEarlyEnd) {
+  const Scene scene = test::two_lamps({.with_mirror = true});
+  SolveOptions options;
+  options.mesh.max_patch_size = 0.35;
+  const SolvedScene whole = solve_scene(scene, options);
+  UpDuring clock("gather", 0.1);
+  options.run = clock.run();
+  const SolvedScene early = solve_scene(scene, options);
+  ASSERT_EQ(early.solution.outcome, Outcome::cut_short);
+  const auto mean_on_mirror = [&](const SolvedScene& solved) {
+    const Eigen::ArrayXXd of_patch =
+        patch_integral(solved.mesh, solved.solution.indirect_irradiance);
+    double light = 0.0, area = 0.0;
+    for (int p = 0; p < solved.mesh.patch_count(); ++p) {
+      if (!scene.materials[solved.mesh.material[p]].is_specular()) continue;
+      light += of_patch.row(p).mean();
+      area += solved.mesh.area[p];
+    }
+    return light / area;
+  };
+  ASSERT_GT(mean_on_mirror(whole), 0.0);
+  // Some 60 patches with 16 rays each.
+  EXPECT_NEAR(mean_on_mirror(early) / mean_on_mirror(whole), 1.0, 0.15);
+}
+
 TEST(TimeLimit, AStageForEachErrorUntilTheAccuracy) {
   const Scene scene = test::two_lamps();
   SolveOptions options;
