@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mesh/patches/patch_sampler.h"
+#include "radiosity/gather/patch_power.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solve.h"
 #include "scene/sampling.h"
