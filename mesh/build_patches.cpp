@@ -133,13 +133,41 @@ std::vector<std::string> discontinuity_notes(const CriticalLines& critical,
   return notes;
 }
 
+// Counts facets, and names the first of them.
+class CountedFacets {
+ public:
+  void add(int facet) {
+    if (count_++ == 0) first_ = facet;
+  }
+  int count() const { return count_; }
+  /// "`one` ..." or "3 `many` ...", with the name of the first facet; `notes` gets it if there are
+  /// any.
+  void note(const Scene& scene, const char* one, const char* many,
+            std::vector<std::string>& notes) const {
+    if (count_ == 0) return;
+    const FacetRef ref = scene_facets(scene)[static_cast<std::size_t>(first_)];
+    const std::string& name = scene.surfaces[static_cast<std::size_t>(ref.surface)].name;
+    notes.push_back(fmt::format("{} {} (polygon {} of '{}'{})", count_, count_ == 1 ? one : many,
+                                ref.facet, name, count_ == 1 ? "" : " is the first"));
+  }
+
+ private:
+  int count_ = 0, first_ = 0;
+};
+
 // The polygon facets of a scene cut to size, with points welded to one tolerance.
 struct FacetMeshes {
   std::vector<FacetPlane> planes{};
   std::vector<FacetMesh> meshes{};  ///< one per plane
-  int empty = 0;                    ///< facets without a mesh
-  int flawed = 0;                   ///< facets whose mesh lacks lines
+  CountedFacets empty{};            ///< facets without a mesh
+  CountedFacets crossing{};         ///< facets that cross themselves
+  CountedFacets flawed{};           ///< facets whose mesh lacks lines
+  CountedFacets crowded{};          ///< facets that too many others touch or cross
   std::vector<std::string> notes{};
+
+  // Fewer of these are better, the first counting most.
+  std::array<int, 3> faults() const { return {empty.count(), crossing.count(), flawed.count()}; }
+  bool is_sound() const { return faults() == std::array<int, 3>{}; }
 };
 
 FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut,
@@ -165,9 +193,17 @@ FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut
     });
   }
   int without_creases = 0;
-  for (const FacetMesh& mesh : result.meshes) {
-    result.empty += mesh.corners.empty() ? 1 : 0;
-    result.flawed += mesh.is_flawed ? 1 : 0;
+  for (int i = 0; i < count; ++i) {
+    const FacetMesh& mesh = result.meshes[i];
+    const int facet = result.planes[i].facet;
+    if (graph.lacks_contacts(i)) result.crowded.add(facet);
+    if (mesh.corners.empty()) {
+      result.empty.add(facet);
+    } else if (mesh.crosses_itself) {
+      result.crossing.add(facet);
+    } else if (mesh.is_flawed) {
+      result.flawed.add(facet);
+    }
     without_creases += mesh.lacks_creases ? 1 : 0;
   }
   if (options.discontinuity) {
@@ -191,7 +227,7 @@ double area_to_mesh(const Scene& scene) {
 }
 
 // Meshes with the smallest tolerance that keeps all contact lines, or else with the one that leaves
-// fewest facets without a mesh and, of those, keeps most lines.
+// fewest facets without a mesh and, of those, lets fewest cross themselves and keeps most lines.
 FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOptions& options,
                         const Progress& progress) {
   const double diagonal = scene_bounds(scene).diagonal();
@@ -199,11 +235,21 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOption
   for (const double share : weld_shares) {
     FacetMeshes next = mesh_facets(scene, share * diagonal, cut, options, progress);
     const bool is_first = share == weld_shares.front();
-    if (!is_first && std::pair(next.empty, next.flawed) >= std::pair(best.empty, best.flawed))
-      break;
+    if (!is_first && next.faults() >= best.faults()) break;
     best = std::move(next);
-    if (best.flawed == 0 && best.empty == 0) break;
+    if (best.is_sound()) break;
   }
+  best.empty.note(scene, "polygon has no area to mesh and was left out",
+                  "polygons have no area to mesh and were left out", best.notes);
+  best.crossing.note(scene, "polygon crosses itself; all that its boundary goes round was meshed",
+                     "polygons cross themselves; all that their boundaries go round was meshed",
+                     best.notes);
+  best.flawed.note(scene, "polygon lacks contact lines that lie too close together to mesh",
+                   "polygons lack contact lines that lie too close together to mesh", best.notes);
+  best.crowded.note(
+      scene, "polygon is crossed by too many others for all contact lines; the longest were kept",
+      "polygons are crossed by too many others for all contact lines; the longest were kept",
+      best.notes);
   return best;
 }
 
@@ -251,18 +297,18 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Pr
       continue;
     }
     FacetMesh& mesh = facet_meshes.meshes[plane];
-    if (mesh.corners.empty()) {
-      throw InputError(fmt::format(
-          "{}{}surface '{}', polygon {}: its boundary crosses or overlaps itself; correct the "
-          "order of its vertices or split it",
-          scene.file.string(), scene.file.empty() ? "" : ": ", surface.name, facets[f].facet));
+    if (!mesh.corners.empty()) {
+      builder.add_facet(f, facets[f].surface, facet_meshes.planes[plane].normal, std::move(mesh));
     }
-    builder.add_facet(f, facets[f].surface, facet_meshes.planes[plane].normal, std::move(mesh));
     ++plane;
   }
   std::vector<std::string> notes = std::move(facet_meshes.notes);
   facet_meshes = {};
   PatchMesh mesh = builder.finish();
+  if (mesh.patch_count() == 0) {
+    throw InputError(fmt::format("{}{}no surface has an area; there is nothing to mesh",
+                                 scene.file.string(), scene.file.empty() ? "" : ": "));
+  }
   lay_on_textures(scene, mesh);
   mesh.notes = std::move(notes);
   report(progress, "mesh", 1.0);

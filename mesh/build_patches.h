@@ -42,9 +42,12 @@ struct MeshOptions {
 /// by another surface lying on the facet become elements of their own. With `discontinuity`, no
 /// element straddles an important bound of a shadow.
 ///
-/// Throws InputError for a scene without surfaces, for a polygon whose boundary crosses itself, for
-/// options out of range, for too many contacts (see ContactEffort), and for sizes that would make
-/// more than 20 million elements.
+/// A polygon that crosses itself is meshed as convex_pieces() would cut it, but without the lines
+/// where others touch it; emitters should be cut before (see merge_planar_regions()). A polygon
+/// without area is left out. PatchMesh::notes counts both.
+///
+/// Throws InputError for a scene without surfaces, for options out of range, and for sizes that
+/// would make more than 20 million elements.
 PatchMesh build_patches(const Scene& scene, const MeshOptions& options = {},
                         const Progress& progress = {});
 

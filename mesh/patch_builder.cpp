@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mesh/facets/reflex_corners.h"
+#include "mesh/patches/parted_topology.h"
 
 namespace lightwell {
 namespace {
@@ -300,7 +301,7 @@ PatchMesh PatchBuilder::finish() {
     if (!is_back || m.emits_both_sides) out.emission.row(p) = m.emission.transpose();
   }
   out.sphere_grids = std::move(grids_);
-  build_topology(out, positions);
+  build_parted_topology(out, positions);
   return out;
 }
 

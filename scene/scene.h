@@ -157,7 +157,7 @@ struct Scene {
   /// What the reader left out, approximated or did not find, one sentence for each kind with all
   /// names; `notes` has each of them with a few names. Empty: nothing of the file is lost.
   std::vector<std::string> losses{};
-  int dropped_polygons = 0;  ///< polygons left out: without area, or crossing themselves
+  int dropped_polygons = 0;  ///< polygons left out for having no area
   /// True if the unit of emission is unknown: values of light are then meaningful only relative to
   /// each other.
   bool relative_units = false;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "mesh/cleaning/crossing_polygons.h"
 #include "mesh/cleaning/facet_loops.h"
 #include "mesh/cleaning/hanging_points.h"
 #include "mesh/cleaning/joined_surfaces.h"
@@ -199,13 +200,15 @@ Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {
   CleanUpReport total;
   total.facets_before = static_cast<std::int64_t>(scene_facets(scene).size());
   total.facets_after = total.facets_before;
+  cut_crossing_polygons(result);
+  total.area_before = total.facets_before > 0 ? scene_area(result) : 0.0;
   const int count = static_cast<int>(scene.surfaces.size());
   if (total.facets_before > 0) {
     const double diagonal = scene_bounds(scene).diagonal();
     WeldedPoints welded(weld_share * diagonal);
     std::vector<std::vector<int>> point(scene.surfaces.size());
     for (int s = 0; s < count; ++s) {
-      const auto* mesh = std::get_if<PolygonMesh>(&scene.surfaces[s].shape);
+      const auto* mesh = std::get_if<PolygonMesh>(&result.surfaces[s].shape);
       if (!mesh) continue;
       const std::vector<double> radius = weld_radii(*mesh, welded.tolerance());
       point[s].assign(mesh->vertices.size(), -1);
@@ -222,7 +225,7 @@ Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {
     std::vector<CleanUpReport> found(scene.surfaces.size());
     parallel_for(count, 1, [&](int begin, int end) {
       for (int s = begin; s < end; ++s) {
-        const auto* mesh = std::get_if<PolygonMesh>(&scene.surfaces[s].shape);
+        const auto* mesh = std::get_if<PolygonMesh>(&result.surfaces[s].shape);
         if (!mesh) continue;
         auto clean = cleaned(*mesh, point[s], welded, scene.materials[scene.surfaces[s].material],
                              diagonal, found[s]);
@@ -242,7 +245,6 @@ Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {
     total.names = join_surfaces(result);
     total.facets_after = static_cast<std::int64_t>(scene_facets(result).size());
     if (total.names) total.joined = apart - total.facets_after;
-    total.area_before = scene_area(scene);
     total.area_after = scene_area(result);
   }
   if (report) *report = total;

@@ -35,7 +35,70 @@ bool closest_parameters(const Vector3d& p, const Vector3d& u, const Vector3d& q,
 
 }  // namespace
 
-void ContactGraph::cut_at_crossings(const Scene& scene) {
+struct ContactGraph::Crossing {
+  int other = 0;
+  double s = 0.0, t = 0.0;  // parameters on the segment and on the other
+  Vector3d point = Vector3d::Zero();
+};
+
+std::vector<ContactGraph::Crossing> ContactGraph::crossings_of(
+    int segment, const std::vector<int>& others) const {
+  const double tolerance = welded_.tolerance();
+  const Segment& si = segments_[segment];
+  const Vector3d p = welded_[si.a], u = welded_[si.b] - p;
+  std::vector<Crossing> crossings;
+  for (const int j : others) {
+    if (j <= segment) continue;
+    const Segment& sj = segments_[j];
+    if (si.a == sj.a || si.a == sj.b || si.b == sj.a || si.b == sj.b) continue;
+    const Vector3d q = welded_[sj.a], v = welded_[sj.b] - q;
+    double s, t;
+    if (!closest_parameters(p, u, q, v, s, t)) continue;
+    // A crossing near an end is that end, which cut_at_points finds.
+    const double end_s = tolerance / u.norm(), end_t = tolerance / v.norm();
+    if (!(s > end_s && s < 1.0 - end_s && t > end_t && t < 1.0 - end_t)) continue;
+    const Vector3d on_i = p + s * u, on_j = q + t * v;
+    if ((on_i - on_j).norm() <= tolerance) crossings.push_back({j, s, t, 0.5 * (on_i + on_j)});
+  }
+  return crossings;
+}
+
+// Crossings of the lines of one facet alone. Where lines were left out, others that lie in the same
+// place would be cut by lines that are not theirs.
+std::vector<std::vector<ContactGraph::Crossing>> ContactGraph::crossings_within_facets() const {
+  const int count = static_cast<int>(planes_.size());
+  std::vector<std::vector<std::vector<Crossing>>> of_facet(planes_.size());
+  const auto lines_of = [&](int i) {
+    std::vector<int> lines;
+    for (int e = 0; e < planes_[i].corner_count(); ++e) {
+      lines.push_back(edge_segment_[first_edge_[i] + e]);
+    }
+    for (const auto* more : {&contact_segments_[i], &crease_segments_[i]}) {
+      lines.insert(lines.end(), more->begin(), more->end());
+    }
+    std::sort(lines.begin(), lines.end());
+    lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+    return lines;
+  };
+  parallel_for(count, 32, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const std::vector<int> lines = lines_of(i);
+      for (const int line : lines) of_facet[i].push_back(crossings_of(line, lines));
+    }
+  });
+  std::vector<std::vector<Crossing>> crossings(segments_.size());
+  for (int i = 0; i < count; ++i) {
+    const std::vector<int> lines = lines_of(i);
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+      auto& all = crossings[lines[l]];
+      all.insert(all.end(), of_facet[i][l].begin(), of_facet[i][l].end());
+    }
+  }
+  return crossings;
+}
+
+std::vector<std::vector<ContactGraph::Crossing>> ContactGraph::all_crossings(
+    ContactEffort& effort) const {
   const double tolerance = welded_.tolerance();
   const int count = static_cast<int>(segments_.size());
   std::vector<BoxTree::Box> boxes(count);
@@ -43,40 +106,28 @@ void ContactGraph::cut_at_crossings(const Scene& scene) {
     boxes[i] = segment_box(welded_[segments_[i].a], welded_[segments_[i].b], tolerance);
   }
   const BoxTree tree(boxes);
-  struct Crossing {
-    int other;
-    double s, t;
-    Vector3d point;
-  };
   std::vector<std::vector<Crossing>> crossings(count);
-  ContactEffort effort(scene, static_cast<int>(planes_.size()));
   parallel_for(count, 64, [&](int begin, int end) {
     std::vector<int> near;
-    for (int i = begin; i < end; ++i) {
-      const Segment& si = segments_[i];
-      const Vector3d p = welded_[si.a], u = welded_[si.b] - p;
+    for (int i = begin; i < end && !effort.is_exceeded(); ++i) {
       tree.find_overlaps(boxes[i], near);
       effort.count(near.size());
-      for (int j : near) {
-        if (j <= i) continue;
-        const Segment& sj = segments_[j];
-        if (si.a == sj.a || si.a == sj.b || si.b == sj.a || si.b == sj.b) continue;
-        const Vector3d q = welded_[sj.a], v = welded_[sj.b] - q;
-        double s, t;
-        if (!closest_parameters(p, u, q, v, s, t)) continue;
-        // A crossing near an end is that end, which cut_at_points finds.
-        const double end_s = tolerance / u.norm(), end_t = tolerance / v.norm();
-        if (!(s > end_s && s < 1.0 - end_s && t > end_t && t < 1.0 - end_t)) continue;
-        const Vector3d on_i = p + s * u, on_j = q + t * v;
-        if ((on_i - on_j).norm() <= tolerance)
-          crossings[i].push_back({j, s, t, 0.5 * (on_i + on_j)});
-      }
-      if (!crossings[i].empty()) effort.found(crossings[i].size());
+      crossings[i] = crossings_of(i, near);
+      effort.found(crossings[i].size());
     }
   });
-  for (int i = 0; i < count; ++i) {
+  return crossings;
+}
+
+void ContactGraph::cut_at_crossings() {
+  std::vector<std::vector<Crossing>> crossings;
+  ContactEffort effort(static_cast<int>(planes_.size()));
+  const bool is_whole = std::ranges::find(lacks_contacts_, 1) == lacks_contacts_.end();
+  if (is_whole) crossings = all_crossings(effort);
+  if (!is_whole || effort.is_exceeded()) crossings = crossings_within_facets();
+  for (int i = 0; i < static_cast<int>(segments_.size()); ++i) {
     for (const Crossing& crossing : crossings[i]) {
-      const int point = welded_.add(crossing.point, tolerance);
+      const int point = welded_.add(crossing.point, welded_.tolerance());
       cuts_[i].emplace_back(crossing.s, point);
       cuts_[crossing.other].emplace_back(crossing.t, point);
     }

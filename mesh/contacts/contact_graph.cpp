@@ -29,14 +29,14 @@ ContactGraph::ContactGraph(const Scene& scene, const std::vector<FacetPlane>& pl
       size_(size),
       welded_(std::move(points)),
       contact_segments_(planes.size()),
+      lacks_contacts_(planes.size(), 0),
       crease_segments_(planes.size()) {
   add_boundaries();
   add_contacts(scene, progress);
-  add_gap_lines();
   cuts_.resize(segments_.size());
-  cut_at_crossings(scene);
+  cut_at_crossings();
   cut_at_points();
-  if (!critical.empty()) add_creases(scene, critical, most_elements);
+  if (!critical.empty()) add_creases(critical, most_elements);
   make_atoms();
   count_pieces();
   divide();
@@ -95,8 +95,7 @@ std::vector<FixedPiece> ContactGraph::fixed_pieces(int index) const {
   return pieces;
 }
 
-void ContactGraph::add_creases(const Scene& scene, const std::vector<CriticalLine>& critical,
-                               double most_elements) {
+void ContactGraph::add_creases(const std::vector<CriticalLine>& critical, double most_elements) {
   std::vector<std::vector<FixedPiece>> fixed(planes_.size());
   for (const CriticalLine& line : critical) {
     if (fixed[line.plane].empty()) fixed[line.plane] = fixed_pieces(line.plane);
@@ -118,7 +117,7 @@ void ContactGraph::add_creases(const Scene& scene, const std::vector<CriticalLin
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
   cuts_.assign(segments_.size(), {});
-  cut_at_crossings(scene);
+  cut_at_crossings();
   cut_at_points();
 }
 

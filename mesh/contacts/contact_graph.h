@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "mesh/contacts/contact_effort.h"
+#include "mesh/contacts/line_selection.h"
 #include "mesh/discontinuity/crease_selection.h"
 #include "mesh/geometry/cut_size.h"
 #include "mesh/geometry/facet_plane.h"
@@ -17,6 +19,8 @@ struct FacetOutline {
   std::vector<std::vector<int>> loops{};       ///< boundary, then holes, divided into pieces
   std::vector<std::array<int, 2>> contacts{};  ///< pieces of contact lines inside the facet
   std::vector<std::array<int, 2>> creases{};   ///< pieces of other critical lines: D1 and D2
+  /// True if a loop crosses, overlaps or repeats itself, or a hole leaves the boundary.
+  bool crosses_itself = false;
 
   bool has_lines() const { return !contacts.empty() || !creases.empty(); }
 };
@@ -27,8 +31,11 @@ struct FacetOutline {
 class ContactGraph {
  public:
   /// Keeps a reference to `planes`. `points` must hold the planes' corners. The mesh is cut along
-  /// `critical` lines too, as far as these add no more than about `most_elements` elements. Throws
-  /// InputError where facets touch and cross in too many places (see ContactEffort).
+  /// `critical` lines too, as far as these add no more than about `most_elements` elements.
+  ///
+  /// Facets keep only their longest contact lines where there are more contacts than ContactEffort
+  /// allows, or where contact lines cross in more than 4000 places and in more than three per
+  /// element (see lacks_contacts()).
   ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes, WeldedPoints points,
                const CutSize& size, const std::vector<CriticalLine>& critical, double most_elements,
                const Progress& progress);
@@ -37,8 +44,11 @@ class ContactGraph {
   /// The outline of the facet of planes[index].
   FacetOutline outline(int index) const;
   const CreaseCounts& crease_counts() const { return crease_counts_; }
+  /// True if too many others touch or cross the facet of planes[index] to keep all contact lines.
+  bool lacks_contacts(int index) const { return lacks_contacts_[index] != 0; }
 
  private:
+  class Search;
   /// A boundary edge, a contact line or a crease.
   struct Segment {
     int a = 0, b = 0;                 ///< points, a < b
@@ -54,14 +64,28 @@ class ContactGraph {
   int segment(int a, int b);
   void add_boundaries();
   void add_contacts(const Scene& scene, const Progress& progress);
+  void add_contact(int index, const std::array<Eigen::Vector3d, 2>& ends);
+  /// Adds the contacts of all facets; false if the effort is exceeded.
+  bool add_all_contacts(const Search& search, ContactEffort& effort, const Progress& progress);
+  /// Adds the longest contacts of each facet with its largest neighbours.
+  void add_longest_contacts(const Search& search, const ContactEffort& effort,
+                            const Progress& progress);
+  void thin_out_contacts(const WeldedPoints& corners);
+  void remove_contacts(const WeldedPoints& corners);
+  std::vector<FlatLine> contact_lines(int index) const;
   void add_gap_lines();
   void sort_contacts();
-  void add_creases(const Scene& scene, const std::vector<CriticalLine>& critical,
-                   double most_elements);
+  void add_creases(const std::vector<CriticalLine>& critical, double most_elements);
   std::vector<FixedPiece> fixed_pieces(int index) const;
   /// The points along a segment: a, the cuts in order, b.
   std::vector<int> chain(int segment) const;
-  void cut_at_crossings(const Scene& scene);
+  void cut_at_crossings();
+  struct Crossing;
+  /// The crossings of a segment with those of the others that have larger numbers.
+  std::vector<Crossing> crossings_of(int segment, const std::vector<int>& others) const;
+  /// All crossings; not all if the effort is exceeded.
+  std::vector<std::vector<Crossing>> all_crossings(ContactEffort& effort) const;
+  std::vector<std::vector<Crossing>> crossings_within_facets() const;
   void cut_at_points();
   void make_atoms();
   void count_pieces();
@@ -80,6 +104,7 @@ class ContactGraph {
   std::vector<int> edge_segment_;  ///< segment of every boundary edge of every plane
   /// Per plane, ascending, unique; contact lines, and lines where narrow gaps begin.
   std::vector<std::vector<int>> contact_segments_;
+  std::vector<char> lacks_contacts_;               ///< per plane
   std::vector<std::vector<int>> crease_segments_;  ///< per plane, ascending, unique
   CreaseCounts crease_counts_{};
   std::vector<std::vector<std::pair<double, int>>> cuts_;  ///< per segment: (parameter, point)

@@ -1,77 +1,260 @@
 // The part of ContactGraph that finds the facets that touch or cross, their contact lines, and the
 // lines where narrow gaps between facets begin.
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "mesh/contacts/contact_effort.h"
 #include "mesh/contacts/contact_graph.h"
 #include "mesh/contacts/contact_lines.h"
 #include "mesh/contacts/gap_lines.h"
+#include "mesh/contacts/line_selection.h"
 #include "mesh/geometry/box_tree.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
 using Eigen::Vector3d;
 
-void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
-  const double tolerance = welded_.tolerance();
-  std::vector<BoxTree::Box> boxes;
-  for (const FacetPlane& plane : planes_) {
-    const Vector3d d = Vector3d::Constant(tolerance);
-    boxes.emplace_back(plane.box.min() - d, plane.box.max() + d);
-  }
+namespace {
+
+constexpr int batch = 4096;  // facets between two checks of the stop request
+
+// Crossings of contact lines in all facets and per element, above which these are thinned out.
+// Furnished rooms of 20 000 to 120 000 facets have one in 100 to 400 elements, an office with
+// blinds has one in 5, and a staircase of 260 000 triangles has 1.4 per element.
+constexpr double many_crossings = 4000.0, many_per_element = 3.0;
+// Crossings that are then left: in all facets, per element, and in each facet at least.
+constexpr double left_crossings = 1000.0, left_per_element = 0.1, left_in_facet = 4.0;
+
+std::vector<Sphere> spheres_of(const Scene& scene) {
   std::vector<Sphere> spheres;
   for (const Surface& surface : scene.surfaces) {
     if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) spheres.push_back(*sphere);
   }
-  for (const Sphere& s : spheres) {
-    const Vector3d r = Vector3d::Constant(s.radius);
-    boxes.push_back({s.center - r, s.center + r});
-  }
-  const BoxTree tree(boxes);
+  return spheres;
+}
 
-  const int count = static_cast<int>(planes_.size());
-  ContactEffort effort(scene, count);
+}  // namespace
+
+/// The search for contacts of facets, numbered as the planes, with each other and with spheres,
+/// numbered behind the facets.
+class ContactGraph::Search {
+ public:
   struct Contact {
-    int other;
-    ContactSegment segment;
+    int other = 0;
+    ContactSegment segment{};
+
+    double length() const { return (segment[1] - segment[0]).norm(); }
   };
-  constexpr int batch = 4096;  // facets between two checks of the stop request
+
+  Search(const Scene& scene, const ContactGraph& graph)
+      : planes_(graph.planes_),
+        spheres_(spheres_of(scene)),
+        element_size_(graph.size_.element_size()),
+        tolerance_(graph.welded_.tolerance()),
+        boxes_(boxes()),
+        tree_(boxes_) {}
+
+  /// Numbers of the facets and spheres whose boxes meet that of facet i, ascending.
+  void find_near(int i, std::vector<int>& near) const {
+    tree_.find_overlaps(boxes_[static_cast<std::size_t>(i)], near);
+  }
+
+  /// Keeps the `most` largest of `near` and returns true if there are more.
+  bool keep_largest(std::size_t most, std::vector<int>& near) const {
+    if (near.size() <= most) return false;
+    const auto diagonal = [&](int i) {
+      return boxes_[static_cast<std::size_t>(i)].sizes().squaredNorm();
+    };
+    const auto end = near.begin() + static_cast<std::ptrdiff_t>(most);
+    std::nth_element(near.begin(), end, near.end(), [&](int a, int b) {
+      return std::pair(-diagonal(a), a) < std::pair(-diagonal(b), b);
+    });
+    near.erase(end, near.end());
+    std::sort(near.begin(), near.end());
+    return true;
+  }
+
+  /// Appends the contacts of facet i with j, a facet or a sphere.
+  void add(int i, int j, std::vector<Contact>& contacts) const {
+    // A circle much smaller than an element would only make slivers (radius as a share of an
+    // element).
+    constexpr double least_circle = 0.05;
+    const auto count = static_cast<int>(planes_.size());
+    const auto plane = [&](int f) -> const FacetPlane& {
+      return planes_[static_cast<std::size_t>(f)];
+    };
+    const auto segments =
+        j < count ? facet_contact(plane(std::min(i, j)), plane(std::max(i, j)), tolerance_)
+                  : sphere_contact(plane(i), spheres_[static_cast<std::size_t>(j - count)],
+                                   element_size_, least_circle * element_size_, tolerance_);
+    for (const ContactSegment& segment : segments) contacts.push_back({j, segment});
+  }
+
+ private:
+  std::vector<BoxTree::Box> boxes() const {
+    std::vector<BoxTree::Box> boxes;
+    for (const FacetPlane& plane : planes_) {
+      const Vector3d d = Vector3d::Constant(tolerance_);
+      boxes.emplace_back(plane.box.min() - d, plane.box.max() + d);
+    }
+    for (const Sphere& s : spheres_) {
+      const Vector3d r = Vector3d::Constant(s.radius);
+      boxes.emplace_back(s.center - r, s.center + r);
+    }
+    return boxes;
+  }
+
+  const std::vector<FacetPlane>& planes_;
+  std::vector<Sphere> spheres_;
+  double element_size_, tolerance_;
+  std::vector<BoxTree::Box> boxes_;
+  BoxTree tree_;
+};
+
+void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
+  const WeldedPoints corners = welded_;
+  const Search search(scene, *this);
+  ContactEffort effort(static_cast<int>(planes_.size()));
+  if (!add_all_contacts(search, effort, progress)) {
+    remove_contacts(corners);
+    add_longest_contacts(search, effort, progress);
+  }
+  add_gap_lines();
+  sort_contacts();
+  thin_out_contacts(corners);
+}
+
+// Leaves the boundaries alone, whose points are `corners`.
+void ContactGraph::remove_contacts(const WeldedPoints& corners) {
+  welded_ = corners;
+  const int boundaries = *std::max_element(edge_segment_.begin(), edge_segment_.end()) + 1;
+  segments_.resize(static_cast<std::size_t>(boundaries));
+  std::erase_if(segment_of_ends_, [&](const auto& entry) { return entry.second >= boundaries; });
+  contact_segments_.assign(planes_.size(), {});
+}
+
+void ContactGraph::add_contact(int index, const std::array<Vector3d, 2>& ends) {
+  const int a = welded_.add(ends[0], welded_.tolerance());
+  const int b = welded_.add(ends[1], welded_.tolerance());
+  if (a != b) contact_segments_[static_cast<std::size_t>(index)].push_back(segment(a, b));
+}
+
+bool ContactGraph::add_all_contacts(const Search& search, ContactEffort& effort,
+                                    const Progress& progress) {
+  const int count = static_cast<int>(planes_.size());
   for (int begin = 0; begin < count; begin += batch) {
     report(progress, "mesh", 0.3 * begin / count);
     const int end = std::min(count, begin + batch);
-    std::vector<std::vector<Contact>> contacts(end - begin);
+    std::vector<std::vector<Search::Contact>> contacts(static_cast<std::size_t>(end - begin));
     parallel_for(end - begin, 32, [&](int from, int to) {
       std::vector<int> near;
-      for (int k = from; k < to; ++k) {
-        const int i = begin + k;
-        tree.find_overlaps(boxes[i], near);
+      for (int k = from; k < to && !effort.is_exceeded(); ++k) {
+        search.find_near(begin + k, near);
         effort.count(near.size());
-        for (int j : near) {
-          if (j <= i) continue;
-          // A circle much smaller than an element would only make slivers (radius as a share of an
-          // element).
-          constexpr double least_circle = 0.05;
-          const auto segments =
-              j < count ? facet_contact(planes_[i], planes_[j], tolerance)
-                        : sphere_contact(planes_[i], spheres[j - count], size_.element_size(),
-                                         least_circle * size_.element_size(), tolerance);
-          if (!segments.empty()) effort.found(segments.size());
-          for (const auto& segment : segments) contacts[k].push_back({j, segment});
+        auto& found = contacts[static_cast<std::size_t>(k)];
+        for (const int j : near) {
+          if (j > begin + k) search.add(begin + k, j, found);
+          if (effort.is_exceeded()) break;
         }
+        effort.found(found.size());
       }
     });
-    for (int k = 0; k < end - begin; ++k) {
-      for (const Contact& contact : contacts[k]) {
-        const int a = welded_.add(contact.segment[0], tolerance);
-        const int b = welded_.add(contact.segment[1], tolerance);
-        if (a == b) continue;
-        const int s = segment(a, b);
-        contact_segments_[begin + k].push_back(s);
-        if (contact.other < count) contact_segments_[contact.other].push_back(s);
+    if (effort.is_exceeded()) return false;
+    for (int i = begin; i < end; ++i) {
+      for (const Search::Contact& contact : contacts[static_cast<std::size_t>(i - begin)]) {
+        add_contact(i, contact.segment);
+        if (contact.other < count) add_contact(contact.other, contact.segment);
       }
     }
   }
+  return true;
+}
+
+void ContactGraph::add_longest_contacts(const Search& search, const ContactEffort& effort,
+                                        const Progress& progress) {
+  const int count = static_cast<int>(planes_.size());
+  for (int begin = 0; begin < count; begin += batch) {
+    report(progress, "mesh", 0.3 * begin / count);
+    const int end = std::min(count, begin + batch);
+    std::vector<std::vector<Search::Contact>> contacts(static_cast<std::size_t>(end - begin));
+    parallel_for(end - begin, 8, [&](int from, int to) {
+      std::vector<int> near;
+      for (int i = begin + from; i < begin + to; ++i) {
+        auto& found = contacts[static_cast<std::size_t>(i - begin)];
+        char& lacks = lacks_contacts_[static_cast<std::size_t>(i)];
+        search.find_near(i, near);
+        std::erase(near, i);
+        if (search.keep_largest(effort.pairs_of_facet(), near)) lacks = 1;
+        for (const int j : near) search.add(i, j, found);
+        if (found.size() <= effort.contacts_of_facet()) continue;
+        lacks = 1;
+        std::stable_sort(found.begin(), found.end(),
+                         [](const auto& a, const auto& b) { return a.length() > b.length(); });
+        found.resize(effort.contacts_of_facet());
+        found.shrink_to_fit();
+      }
+    });
+    for (int i = begin; i < end; ++i) {
+      for (const Search::Contact& contact : contacts[static_cast<std::size_t>(i - begin)]) {
+        add_contact(i, contact.segment);
+      }
+    }
+  }
+}
+
+// Where contact lines cross in too many places, facets keep their longest lines. A pile of n sheets
+// that all cross has n^3 crossings, each of which makes elements, whatever their size should be.
+void ContactGraph::thin_out_contacts(const WeldedPoints& corners) {
+  const int count = static_cast<int>(planes_.size());
+  std::vector<double> elements;
+  const double size = size_.element_size();
+  for (const FacetPlane& plane : planes_) {
+    elements.push_back(
+        std::max({1.0, plane.area() / (size * size), plane.boundary_length() / (2.0 * size)}));
+  }
+  const double all_elements = std::accumulate(elements.begin(), elements.end(), 0.0);
+  const double many = std::max(many_crossings, many_per_element * all_elements);
+  const double left = std::max(left_crossings, left_per_element * all_elements);
+  std::vector<std::size_t> crossings(planes_.size(), 0);
+  parallel_for(count, 32, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      crossings[static_cast<std::size_t>(i)] =
+          count_crossings(contact_lines(i), static_cast<std::size_t>(many));
+    }
+  });
+  if (std::accumulate(crossings.begin(), crossings.end(), 0.0) <= many) return;
+  std::vector<std::vector<std::array<Vector3d, 2>>> kept(planes_.size());
+  parallel_for(count, 32, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const double share = std::max(left_in_facet, left * elements[i] / all_elements);
+      const std::vector<char> is_kept =
+          longest_lines(contact_lines(k), static_cast<std::size_t>(share));
+      for (std::size_t l = 0; l < is_kept.size(); ++l) {
+        const Segment& line = segments_[static_cast<std::size_t>(contact_segments_[i][l])];
+        if (is_kept[l]) kept[i].push_back({welded_[line.a], welded_[line.b]});
+      }
+      if (kept[i].size() < is_kept.size()) lacks_contacts_[i] = 1;
+    }
+  });
+  remove_contacts(corners);
+  for (int i = 0; i < count; ++i) {
+    for (const auto& ends : kept[static_cast<std::size_t>(i)]) add_contact(i, ends);
+  }
   sort_contacts();
+}
+
+std::vector<FlatLine> ContactGraph::contact_lines(int index) const {
+  const auto i = static_cast<std::size_t>(index);
+  std::vector<FlatLine> lines;
+  for (const int s : contact_segments_[i]) {
+    const Segment& segment = segments_[static_cast<std::size_t>(s)];
+    lines.push_back(
+        {{segment.a, segment.b},
+         {planes_[i].project(welded_[segment.a]), planes_[i].project(welded_[segment.b])}});
+  }
+  return lines;
 }
 
 // Adds the lines where gaps begin that are narrow against an element. Only facets that are wide
@@ -110,12 +293,9 @@ void ContactGraph::add_gap_lines() {
   });
   for (std::size_t k = 0; k < wide.size(); ++k) {
     for (const auto& [from, to] : lines[k]) {
-      const int a = welded_.add(from, welded_.tolerance());
-      const int b = welded_.add(to, welded_.tolerance());
-      if (a != b) contact_segments_[static_cast<std::size_t>(wide[k])].push_back(segment(a, b));
+      add_contact(wide[k], {from, to});
     }
   }
-  sort_contacts();
 }
 
 void ContactGraph::sort_contacts() {

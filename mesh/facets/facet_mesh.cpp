@@ -229,6 +229,15 @@ FacetOutline bare_outline(const FacetPlane& plane) {
   return bare;
 }
 
+// Meshes a polygon that crosses or overlaps itself.
+FacetMesh crossing_mesh(const FacetPlane& plane, FacetOutline outline,
+                        const std::vector<Vector3d>& points, const CutSize& size) {
+  outline.crosses_itself = true;
+  FacetMesh mesh = free_mesh(plane, outline, points, size);
+  mesh.crosses_itself = true;
+  return mesh;
+}
+
 }  // namespace
 
 double quad_quality(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
@@ -266,8 +275,14 @@ FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
   // Elements thinner than the tolerance may lean: their share of the area is smaller than what
   // welding changes. A triangle so thin that no mesh covers it stays one element.
   if (covers(plane, mesh) && !mesh.has_cut_lines) return mesh;
-  mesh = {.is_flawed = outline.has_lines() || outline.loops != bare.loops};
-  if (plane.is_triangle()) make_element(bare.loops.front(), points, mesh);
+  const bool is_flawed = outline.has_lines() || outline.loops != bare.loops;
+  if (plane.is_triangle()) {
+    mesh = {};
+    make_element(bare.loops.front(), points, mesh);
+  } else {
+    mesh = crossing_mesh(plane, bare, points, size);
+  }
+  mesh.is_flawed = is_flawed;
   return mesh;
 }
 

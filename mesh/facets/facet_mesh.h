@@ -25,6 +25,9 @@ struct FacetMesh {
   bool is_flawed = false;
   bool lacks_creases = false;  ///< true if creases were left out for that reason
   bool has_cut_lines = false;  ///< true if vertices were added where lines cross
+  /// True if the polygon crosses or overlaps itself: the elements cover what its boundary winds
+  /// round and no hole does.
+  bool crosses_itself = false;
 
   int patch_count() const { return static_cast<int>(first_element.size()) - 1; }
 };
@@ -36,8 +39,8 @@ struct FacetMesh {
 ///   points, paired into quadrilaterals.
 ///
 /// Vertices on contact lines are split, one for each side; on creases both sides share a vertex.
-/// The outline's numbers are indices into `points`. Returns an empty mesh if the elements do not
-/// add up to the polygon, because its boundary crosses itself.
+/// The outline's numbers are indices into `points`. Returns an empty mesh if the polygon has no
+/// area.
 FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
                      const std::vector<Eigen::Vector3d>& points, const CutSize& size);
 

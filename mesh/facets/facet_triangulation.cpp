@@ -91,15 +91,26 @@ std::vector<char> inside_by_parity(const PlanarTriangulation& t,
   return inside;
 }
 
-// Marks the triangles whose centres lie inside the polygon, for the rare case that lines had to be
-// cut because rounding makes them cross.
+// Marks the triangles whose centres lie inside the polygon, for polygons that cross themselves, and
+// for the rare case that lines had to be cut because rounding makes them cross.
 std::vector<char> inside_by_place(const FacetPlane& plane, const PlanarTriangulation& t) {
   std::vector<char> inside;
   for (const auto& [a, b, c] : t.triangles) {
     const Vector2d center = (t.points[a] + t.points[b] + t.points[c]) / 3.0;
-    inside.push_back(plane.contains(center, 0.0) ? 1 : 0);
+    inside.push_back(plane.winds_round(center) ? 1 : 0);
   }
   return inside;
+}
+
+// Leaves out triangles without area, which lines that cross near their ends make.
+void drop_flat(const PlanarTriangulation& t, std::vector<char>& inside) {
+  constexpr double flat = 1e-12;  // height over length
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    const auto& [a, b, c] = t.triangles[i];
+    const Vector2d u = t.points[b] - t.points[a], v = t.points[c] - t.points[a];
+    const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
+    if (!(cross(u, v) > flat * longest)) inside[i] = 0;
+  }
 }
 
 // Triangulates on coordinates rounded to 2^-30 = 1e-9 of an element. The corners of a square are
@@ -158,9 +169,11 @@ FacetTriangulation triangulate_facet(const FacetPlane& plane, const FacetOutline
   xy.insert(xy.end(), inner.begin(), inner.end());
   PlanarTriangulation& t = facet.triangulation;
   t = triangulate_places(xy, lines, size.element_size());
-  facet.inside = t.is_as_given ? inside_by_parity(t, lines.boundary) : inside_by_place(plane, t);
+  const bool by_parity = t.is_as_given && !outline.crosses_itself;
+  facet.inside = by_parity ? inside_by_parity(t, lines.boundary) : inside_by_place(plane, t);
+  if (outline.crosses_itself) drop_flat(t, facet.inside);
   // Creases are meant to be divided finely.
-  if (t.is_as_given && lines.creases.empty()) grade(lines, size.element_size(), t, facet.inside);
+  if (by_parity && lines.creases.empty()) grade(lines, size.element_size(), t, facet.inside);
   return facet;
 }
 

@@ -135,6 +135,22 @@ bool FacetPlane::contains(const Vector2d& q, double tolerance) const {
   return on_boundary || inside;
 }
 
+bool FacetPlane::winds_round(const Vector2d& q) const {
+  std::vector<int> winding(static_cast<std::size_t>(loop_count()), 0);
+  for (std::size_t l = 0; l < winding.size(); ++l) {
+    const auto begin = static_cast<std::size_t>(loop_begin[l]),
+               end = static_cast<std::size_t>(loop_begin[l + 1]);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector2d &a = xy[i], &b = xy[i + 1 < end ? i + 1 : begin];
+      if ((a.y() > q.y()) == (b.y() > q.y())) continue;
+      const double x = a.x() + (q.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+      if (x > q.x()) winding[l] += b.y() > a.y() ? 1 : -1;
+    }
+  }
+  return winding[0] != 0 &&
+         std::all_of(winding.begin() + 1, winding.end(), [](int w) { return w == 0; });
+}
+
 std::vector<FacetPlane> facet_planes(const Scene& scene, WeldedPoints& points) {
   std::vector<FacetPlane> planes;
   int number = 0;

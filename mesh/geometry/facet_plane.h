@@ -53,6 +53,9 @@ struct FacetPlane {
   double boundary_length() const;
   /// True if q lies inside the polygon or within `tolerance` (metres) of the boundary.
   bool contains(const Eigen::Vector2d& q, double tolerance) const;
+  /// True if the boundary winds round q, in whatever direction and however often, and no hole does:
+  /// contains() without tolerance, but for loops that cross, overlap or repeat themselves.
+  bool winds_round(const Eigen::Vector2d& q) const;
 };
 
 /// Distance of q from the segment a-b, in the units of the arguments.

@@ -1,9 +1,11 @@
+#include <OpenMesh/Core/System/omstream.hh>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "mesh/patches/parted_topology.h"
 #include "mesh/patches/patch_mesh.h"
 #include "mesh/patches/sphere_grid.h"
 
@@ -71,6 +73,36 @@ bool fits(const HalfedgeMesh& elements, const std::array<HalfedgeMesh::VertexHan
   return true;
 }
 
+// Silences OpenMesh, which prints why it refuses a face.
+class QuietOpenMesh {
+ public:
+  QuietOpenMesh() { omerr().disable(); }
+  ~QuietOpenMesh() { omerr().enable(); }
+  QuietOpenMesh(const QuietOpenMesh&) = delete;
+  QuietOpenMesh& operator=(const QuietOpenMesh&) = delete;
+};
+
+// Begins a topology of vertices alone.
+void begin_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
+  mesh.elements->clear();
+  // Euler: a connected mesh has one edge less than vertices and faces together, and one more for
+  // every hole.
+  const std::size_t count = positions.size() + mesh.corners.size();
+  mesh.elements->reserve(positions.size(), count + count / 16, mesh.corners.size());
+  for (const Vector3d& p : positions) mesh.elements->add_vertex({p.x(), p.y(), p.z()});
+}
+
+// Adds an element, whose vertices exist; false if it does not fit its neighbours.
+bool add_face(PatchMesh& mesh, std::size_t element) {
+  std::array<HalfedgeMesh::VertexHandle, 4> face;
+  std::size_t n = 0;
+  for (const int v : mesh.corners[element]) {
+    if (v < 0) break;
+    face[n++] = HalfedgeMesh::VertexHandle(v);
+  }
+  return fits(*mesh.elements, face, n) && mesh.elements->add_face(face.data(), n).is_valid();
+}
+
 }  // namespace
 
 PatchPoint element_center(const PatchMesh& mesh, int element) {
@@ -86,31 +118,38 @@ PatchPoint element_center(const PatchMesh& mesh, int element) {
 }
 
 void build_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
-  using Vertex = HalfedgeMesh::VertexHandle;
-  mesh.elements->clear();
-  // Euler: a connected mesh has one edge less than vertices and faces together, and one more for
-  // every hole.
-  const std::size_t count = positions.size() + mesh.corners.size();
-  mesh.elements->reserve(positions.size(), count + count / 16, mesh.corners.size());
-  for (const Vector3d& p : positions) mesh.elements->add_vertex({p.x(), p.y(), p.z()});
+  begin_topology(mesh, positions);
   const int vertex_count = static_cast<int>(positions.size());
   for (std::size_t e = 0; e < mesh.corners.size(); ++e) {
-    std::array<Vertex, 4> face;
-    std::size_t n = 0;
-    for (int v : mesh.corners[e]) {
-      if (v < 0) break;
-      if (v >= vertex_count) {
-        throw std::runtime_error("element " + std::to_string(e) + " of the mesh names vertex " +
-                                 std::to_string(v) + ", but there are only " +
-                                 std::to_string(vertex_count));
-      }
-      face[n++] = Vertex(v);
+    for (const int v : mesh.corners[e]) {
+      if (v < vertex_count) continue;
+      throw std::runtime_error("element " + std::to_string(e) + " of the mesh names vertex " +
+                               std::to_string(v) + ", but there are only " +
+                               std::to_string(vertex_count));
     }
-    if (!fits(*mesh.elements, face, n) || !mesh.elements->add_face(face.data(), n).is_valid()) {
+    if (!add_face(mesh, e)) {
       throw std::runtime_error("element " + std::to_string(e) +
                                " of the mesh does not fit its neighbours: more than two elements "
                                "share an edge, or two run along it in one direction");
     }
+  }
+  set_vertex_normals(mesh, vertex_count);
+}
+
+void build_parted_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
+  const QuietOpenMesh quiet;
+  begin_topology(mesh, positions);
+  int vertex_count = static_cast<int>(positions.size());
+  for (std::size_t e = 0; e < mesh.corners.size(); ++e) {
+    if (add_face(mesh, e)) continue;
+    for (int& v : mesh.corners[e]) {
+      if (v < 0) break;
+      const auto old = static_cast<std::size_t>(v);
+      mesh.elements->add_vertex(mesh.elements->point(HalfedgeMesh::VertexHandle(v)));
+      mesh.at_reflex_corner.push_back(mesh.at_reflex_corner[old]);
+      v = vertex_count++;
+    }
+    add_face(mesh, e);
   }
   set_vertex_normals(mesh, vertex_count);
 }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "scene/io/crossing_polygon.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -161,6 +162,13 @@ std::string holes_fault(const Polygon& polygon, const Plane& plane, const FlatLo
   return {};
 }
 
+// True if an area (m^2) inside a loop is more than nothing. The test value, twice the area over the
+// squared size, is about width over length for a thin strip.
+bool has_area(double area, const Loop& loop) {
+  const double size = size_of(loop);
+  return area > 0.5 * flatness * size * size;
+}
+
 bool blocks_ear(const Point& p, const Point& a, const Point& b, const Point& c) {
   if (p == a || p == b || p == c) return false;
   return orientation(a, b, p) >= 0.0 && orientation(b, c, p) >= 0.0 && orientation(c, a, p) >= 0.0;
@@ -183,11 +191,8 @@ double size_of(const Loop& loop) {
   return 2.0 * radius;
 }
 
-// The test value, twice the area over the squared size, is about width over length for a thin
-// strip.
 bool is_thin(const Loop& loop) {
-  const double size = size_of(loop);
-  return !(newell(loop).norm() > 0.5 * flatness * size * size);
+  return !has_area(newell(loop).norm(), loop);
 }
 
 double deviation_from_plane(const Polygon& polygon) {
@@ -407,8 +412,8 @@ std::vector<std::string> Repairs::notes() const {
   add(split, "polygon was not planar and was split into triangles",
       "polygons were not planar and were split into triangles");
   add(thin, "polygon without area was dropped", "polygons without area were dropped");
-  add(crossing, "polygon that crosses itself was dropped, leaving a gap",
-      "polygons that cross themselves were dropped, leaving gaps");
+  add(crossing, "polygon that crosses itself was cut into pieces that do not",
+      "polygons that cross themselves were cut into pieces that do not");
   return result;
 }
 
@@ -429,27 +434,28 @@ void join_repeated(Loop& loop, UvLoop& uv, NormalLoop& normals) {
   if (!normals.empty()) normals.resize(kept);
 }
 
-}  // namespace
+// Values of a loop's corners at the corners of a piece.
+template <class Value>
+std::vector<Value> values_of(const std::vector<PieceCorner>& piece,
+                             const std::vector<Value>& values) {
+  std::vector<Value> result;
+  for (const PieceCorner& corner : piece) {
+    if (!values.empty()) result.push_back(corner.of(values));
+  }
+  return result;
+}
 
-void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv, NormalLoop normals) {
-  join_repeated(loop, uv, normals);
-  if (loop.size() < 3 || is_thin(loop)) {
-    ++(loop.size() > 3 && !fault({loop}).empty() ? repairs.crossing : repairs.thin);
-    return;
+// True if a loop with an area can be a facet as it is.
+bool is_sound(const Loop& loop, const UvLoop& uv, const NormalLoop& normals) {
+  if (loop.size() > 3 && !(fault({loop}).empty() && deviation_from_plane({loop}) <= flatness)) {
+    return false;
   }
-  if (loop.size() == 3) return mesh.add({std::move(loop)}, uv, normals);
-  const bool sound = fault({loop}).empty() && deviation_from_plane({loop}) <= flatness;
-  if (sound && (uv.empty() || uv_map_over(loop, uv)) && is_even(loop, normals)) {
-    return mesh.add({std::move(loop)}, uv, normals);
-  }
-  // Some exporters join a hole to its polygon by a bridge, an edge in both directions. Such a loop
-  // is no simple polygon, but ear clipping triangulates it.
-  const auto triangles = split_into_triangles(loop);
-  if (triangles.empty()) {
-    ++repairs.crossing;
-    return;
-  }
-  if (!sound) ++repairs.split;
+  return (uv.empty() || uv_map_over(loop, uv)) && is_even(loop, normals);
+}
+
+// Adds the triangles of a loop that have an area.
+void add_triangles(MeshBuilder& mesh, const Loop& loop, const UvLoop& uv, const NormalLoop& normals,
+                   const std::vector<std::array<int, 3>>& triangles) {
   for (const auto& t : triangles) {
     const Loop corners = {loop[t[0]], loop[t[1]], loop[t[2]]};
     const UvLoop of_corners = uv.empty() ? uv : UvLoop{uv[t[0]], uv[t[1]], uv[t[2]]};
@@ -457,6 +463,49 @@ void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv, Nor
         normals.empty() ? normals : NormalLoop{normals[t[0]], normals[t[1]], normals[t[2]]};
     if (!is_thin(corners)) mesh.add({corners}, of_corners, normals_there);
   }
+}
+
+// Adds the convex pieces of a loop; false if these have no area.
+bool add_pieces(MeshBuilder& mesh, const Loop& loop, const UvLoop& uv, const NormalLoop& normals) {
+  const auto pieces = convex_pieces({loop});
+  double area = 0.0;
+  for (const auto& piece : pieces) area += newell(values_of(piece, loop)).norm();
+  if (!has_area(area, loop)) return false;
+  for (const auto& piece : pieces) {
+    const Loop corners = values_of(piece, loop);
+    const UvLoop of_corners = values_of(piece, uv);
+    const NormalLoop normals_there = values_of(piece, normals);
+    if (is_thin(corners)) continue;
+    if (corners.size() == 3 || is_sound(corners, of_corners, normals_there)) {
+      mesh.add({corners}, of_corners, normals_there);
+    } else {
+      add_triangles(mesh, corners, of_corners, normals_there, {{0, 1, 2}, {0, 2, 3}});
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv, NormalLoop normals) {
+  join_repeated(loop, uv, normals);
+  const bool thin = loop.size() < 3 || is_thin(loop);
+  if (thin && loop.size() <= 3) {
+    ++repairs.thin;
+    return;
+  }
+  if (!thin && (loop.size() == 3 || is_sound(loop, uv, normals))) {
+    return mesh.add({std::move(loop)}, uv, normals);
+  }
+  // Some exporters join a hole to its polygon by a bridge, an edge in both directions. Such a loop
+  // is no simple polygon, but ear clipping triangulates it.
+  const auto triangles = thin ? std::vector<std::array<int, 3>>{} : split_into_triangles(loop);
+  if (triangles.empty()) {
+    ++(add_pieces(mesh, loop, uv, normals) ? repairs.crossing : repairs.thin);
+    return;
+  }
+  if (!is_sound(loop, {}, {})) ++repairs.split;
+  add_triangles(mesh, loop, uv, normals, triangles);
 }
 
 }  // namespace lightwell

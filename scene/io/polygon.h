@@ -84,9 +84,8 @@ class MeshBuilder {
 struct Repairs {
   int split = 0;     ///< not planar, or with a hole joined by a bridge: cut into triangles
   int thin = 0;      ///< without area: dropped
-  int crossing = 0;  ///< crossing themselves: dropped
+  int crossing = 0;  ///< crossing themselves: cut into convex_pieces()
 
-  int dropped() const { return thin + crossing; }
   void add(const Repairs& other) {
     split += other.split;
     thin += other.thin;
@@ -98,7 +97,7 @@ struct Repairs {
 
 /// Adds a polygon of a mesh file, repaired where possible. A polygon is cut into triangles if it is
 /// not planar, if a bridge joins a hole to its boundary, or if its texture coordinates or normals
-/// are not linear.
+/// are not linear; and into convex_pieces() if it crosses itself.
 void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv = {},
                   NormalLoop normals = {});
 

@@ -70,9 +70,9 @@ void add_loss(Scene& scene, const std::string& sentence) {
 
 void note_repairs(const Repairs& repairs, Scene& scene) {
   for (const std::string& note : repairs.notes()) scene.notes.push_back(note + ".");
-  const Repairs dropped{.thin = repairs.thin, .crossing = repairs.crossing};
-  for (const std::string& note : dropped.notes()) scene.losses.push_back(note + ".");
-  scene.dropped_polygons = dropped.dropped();
+  const Repairs losses{.thin = repairs.thin, .crossing = repairs.crossing};
+  for (const std::string& note : losses.notes()) scene.losses.push_back(note + ".");
+  scene.dropped_polygons = repairs.thin;
 }
 
 void fail_without_surfaces(const std::filesystem::path& file, std::string_view problem,

@@ -60,7 +60,8 @@ class Remarks {
 /// Appends a sentence on something left out, approximated or missing to Scene::notes and losses.
 void add_loss(Scene& scene, const std::string& sentence);
 
-/// Appends the notes on repaired polygons and counts the dropped ones, which are losses.
+/// Appends the notes on repaired polygons. Dropped polygons, which are counted, and polygons that
+/// cross themselves are losses.
 void note_repairs(const Repairs& repairs, Scene& scene);
 
 /// The error of a scene of which nothing can be used: `problem`, then what the remarks say.

@@ -148,7 +148,10 @@ TEST(AddRepaired, KeepsWhatIsSoundAndCountsTheRest) {
   add_repaired(builder, {{0, 0, 0}, {1, 0, 0}}, repairs);
   add_repaired(builder, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, repairs);
   add_repaired(builder, {{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}}, repairs);
-  EXPECT_EQ(builder.mesh().facets.size(), 3u);
+  // The square, two triangles of the bent one, and the two wings of the bow tie.
+  EXPECT_EQ(builder.mesh().facets.size(), 5u);
+  EXPECT_NEAR(area(builder.mesh()), 1.0 + 0.5 * (std::sqrt(1.0 + 2.0 * 0.2 * 0.2) + 1.0) + 2.0,
+              1e-12);
   EXPECT_EQ(repairs.split, 1);
   EXPECT_EQ(repairs.thin, 3);
   EXPECT_EQ(repairs.crossing, 1);

@@ -98,10 +98,10 @@ TEST(ReadObj, NamesTheLineWhereAContinuedOneBegins) {
 }
 
 TEST(ReadObj, RepairsWhatItCanAndCountsIt) {
-  EXPECT_EQ(mesh(room(), "fittings/repaired").facets.size(), 2u);
+  EXPECT_EQ(mesh(room(), "fittings/repaired").facets.size(), 2u + 2u);
   EXPECT_TRUE(is_noted(room(), "1 polygon was not planar and was split"));
   EXPECT_TRUE(is_noted(room(), "1 polygon without area was dropped"));
-  EXPECT_TRUE(is_noted(room(), "1 polygon that crosses itself was dropped"));
+  EXPECT_TRUE(is_noted(room(), "1 polygon that crosses itself was cut"));
 }
 
 TEST(ReadObj, KsIsAMirrorOnlyWhereIllumSaysSo) {

@@ -246,7 +246,7 @@ TEST(ReadToml, MeshesComeWithTheirMaterialsUnlessReplaced) {
     EXPECT_EQ(note.find("block"), std::string::npos)
         << "its lack of materials is no news: " << note;
   }
-  EXPECT_EQ(s.dropped_polygons, 2) << "of the model: one without area, one that crosses itself";
+  EXPECT_EQ(s.dropped_polygons, 1) << "of the model: one without area";
 }
 
 TEST(ReadToml, CamerasAreNormalisedAndNamed) {
