@@ -94,7 +94,7 @@ void LightPaths::absorb(const Ray& ray, const ElementHit& hit, PathLight& light,
 // Ends weak paths by chance (Arvo & Kirk 1990), and strengthens the others. What is lost and won
 // counts as absorbed, so that the shares of each path still add up to 1.
 bool LightPaths::survives(std::uint64_t key, PathLight& light, PathLosses& losses) const {
-  constexpr float weak = 0.5f;
+  constexpr float weak = 0.125f;
   const float strongest = light.throughput.maxCoeff();
   if (!(strongest < weak)) return true;
   const float chance = strongest / weak;
