@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -56,7 +57,8 @@ Scene room_with_ball(AddMaterial&& ball) {
   const int wall = test::add_material(scene, test::diffuse(scene.bands, 0.6f));
   const int red = test::add_material(scene, test::diffuse(scene.bands, 0.1f));
   const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 100.0f));
-  test::add_box(scene, {0, 0, 0}, {4, 4, 3}, {red, wall, wall, wall, wall, wall}, true);
+  const std::array faces{red, wall, wall, wall, wall, wall};
+  test::add_box(scene, {0, 0, 0}, {4, 4, 3}, faces, true);
   test::add_polygon(scene, "lamp", lamp,
                     {{2.5, 2.5, 2.9}, {2.5, 3.0, 2.9}, {3.0, 3.0, 2.9}, {3.0, 2.5, 2.9}});
   add_ball(scene, {1.3, 1.6, 0.3}, 0.05, 24, ball(scene));
