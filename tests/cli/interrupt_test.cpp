@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -29,6 +30,13 @@ void wait_for_form_factors(const Running& running) {
 
 class InterruptTest : public CommandTest {
  protected:
+  // The end of long work that got a signal during form factors.
+  Ended ended_by(int signal, const std::vector<std::string>& words) {
+    Running running(folder / "", words + long_work);
+    wait_for_form_factors(running);
+    running.signal(signal);
+    return running.wait();
+  }
   InterruptTest() { folder.write("room.toml", small_room()); }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
 };
@@ -50,20 +58,12 @@ TEST_F(InterruptTest, SigtermStopsASolveWithinAMomentAndLeavesNothing) {
 }
 
 TEST_F(InterruptTest, SigtermRemovesTheFolderThatRunMade) {
-  const std::vector<std::string> run = {"run", "room.toml", "-o", "deep/results"};
-  Running running(folder / "", run + long_work);
-  wait_for_form_factors(running);
-  running.signal(SIGTERM);
-  EXPECT_EQ(running.wait().code, 130);
+  EXPECT_EQ(ended_by(SIGTERM, {"run", "room.toml", "-o", "deep/results"}).code, 130);
   EXPECT_EQ(folder.file_count(), 1);
 }
 
 TEST_F(InterruptTest, CtrlCWritesTheBestSolutionThereIs) {
-  const std::vector<std::string> solve = {"solve", "room.toml", "-o", "S.vtp", "--json"};
-  Running running(folder / "", solve + long_work);
-  wait_for_form_factors(running);
-  running.signal(SIGINT);
-  const Ended ended = running.wait();
+  const Ended ended = ended_by(SIGINT, {"solve", "room.toml", "-o", "S.vtp", "--json"});
   EXPECT_EQ(ended.code, 4) << ended.err;
   EXPECT_TRUE(says(ended.err, "ending with what there is; another Ctrl-C ends at once"));
   EXPECT_TRUE(says(ended.err, "rows of 64 rays a patch"));
@@ -71,18 +71,15 @@ TEST_F(InterruptTest, CtrlCWritesTheBestSolutionThereIs) {
   const auto json = nlohmann::json::parse(ended.out);
   EXPECT_EQ(json["outcome"], "cut_short");
   EXPECT_GT(json["error_estimate"].get<double>(), 0.0);
-  EXPECT_LT(json["error_estimate"].get<double>(), 0.5);
+  // 32 rays leave 1/sqrt(32) of the spread of light among them, which is at most the mean light.
+  EXPECT_LT(json["error_estimate"].get<double>(), 1.0 / std::sqrt(32.0));
   // Whoever reads the file is told as well.
   EXPECT_EQ(read_solution(folder / "S.vtp").solution.outcome, Outcome::cut_short);
   EXPECT_EQ(run_json({"info", "S.vtp"})["outcome"], "cut_short");
 }
 
 TEST_F(InterruptTest, CtrlCGivesRunWholePictures) {
-  const std::vector<std::string> words = {"run", "room.toml", "-o", "D", "--size", "60x40"};
-  Running running(folder / "", words + long_work);
-  wait_for_form_factors(running);
-  running.signal(SIGINT);
-  const Ended ended = running.wait();
+  const Ended ended = ended_by(SIGINT, {"run", "room.toml", "-o", "D", "--size", "60x40"});
   EXPECT_EQ(ended.code, 4) << ended.err;
   EXPECT_TRUE(says(ended.err, "warning: door: for want of time"));
   for (const char* file : {"D/solution.vtp", "D/door.exr", "D/door.png", "D/report.json"}) {
@@ -111,7 +108,8 @@ TEST_F(InterruptTest, TimeIsKept) {
   const auto json = run_json({"run", "room.toml", "-o", "D", "--size", "60x40", "--time", "4s"});
   EXPECT_EQ(json["outcome"], "converged");
   EXPECT_EQ(json["looked_from"], nlohmann::json::array({"door"}));
-  EXPECT_LT(json["error_estimate"].get<double>(), 0.16);
+  // The first step ends when 16 % is reached.
+  EXPECT_LE(json["error_estimate"].get<double>(), 0.16);
   EXPECT_FALSE(json.contains("accuracy")) << "none was asked for";
   EXPECT_EQ(json["time"]["asked"], 4.0);
   EXPECT_LE(json["time"]["aimed_at"].get<double>(), 0.16);
