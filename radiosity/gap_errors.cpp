@@ -17,9 +17,6 @@ constexpr int point_count = 4;
 constexpr double widest_covered = 0.15;  // width of a gap as a share of a patch, as for GapLight
 constexpr int gap_rays = 64;
 constexpr std::uint64_t gap_replica = 4000;
-// Most elements at which light is gathered, a million rays' worth of hemispheres. Models of many
-// crumbs have a hundred thousand elements in gaps, and those of a surface are much alike.
-constexpr std::size_t most_measured = 8192;
 
 // A point inside an element.
 struct InnerPoint {
@@ -149,7 +146,8 @@ void spread_to_surfaces(const PatchMesh& mesh, std::vector<GapElement>& elements
 
 }  // namespace
 
-void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiositySolution& solution) {
+void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiositySolution& solution,
+                    int most) {
   const PatchMesh& mesh = lit.mesh();
   if (solution.interpolation_error.size() != mesh.element_count()) return;
   // Caustics are in the mesh alone, and no gather at a point finds them.
@@ -165,8 +163,8 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
     if (dark > 0) raise_to(solution.interpolation_error[e], 0.5 * 3.0 / rays);
     if (dark != corners && reference[e] > 0.0) lit_elements.push_back({e});
   }
-  const std::size_t step =
-      std::max<std::size_t>(1, (lit_elements.size() + most_measured - 1) / most_measured);
+  const auto all = static_cast<int>(lit_elements.size());
+  const auto step = static_cast<std::size_t>(std::max(1, (all + most - 1) / most));
   std::vector<InnerPoint> inner;
   for (std::size_t i = 0; i < lit_elements.size(); i += step) {
     for (int k = 0; k < point_count; ++k) {

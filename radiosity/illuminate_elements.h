@@ -7,9 +7,9 @@
 
 namespace lightwell {
 
-/// What gathers take from a scene beside its surfaces: direct light of the scene and its mesh, and
-/// openings that rays may be aimed at. Both sums of direct light are the same object if light is
-/// not kept apart by channels.
+/// Direct light of a scene and its mesh, and the openings that rays may be aimed at: all that
+/// gathers take from a scene beside its surfaces. Both sums of direct light are the same object if
+/// light is not kept apart by channels.
 struct GatherSources {
   const DirectLight& all;                ///< all channels together
   const DirectLight& by_channel;         ///< columns for each channel

@@ -43,11 +43,8 @@ BandArray direct_beside(const LitScene& lit, const std::vector<InterpolatedVerte
                         const GatherOptions& options) {
   const GatherPoints all = vertex_points(lit.caster);
   const std::vector<int> others = indices_without(unread, static_cast<std::size_t>(all.size()));
-  const BandArray found = gather_direct(lit, points_of(all, others), options);
-  BandArray direct(all.size(), found.cols());
-  for (std::size_t i = 0; i < others.size(); ++i) {
-    direct.row(others[i]) = found.row(static_cast<Eigen::Index>(i));
-  }
+  BandArray direct =
+      spread_rows(gather_direct(lit, points_of(all, others), options), others, all.size());
   interpolate_vertices(unread, direct);
   return direct;
 }
@@ -62,13 +59,8 @@ BandArray read_indirect(const LitScene& lit, const BandArray& radiosity,
   for (int v = 0; v < all.size(); ++v) {
     if (unread[patch[v]] == 0) vertices.push_back(v);
   }
-  const BandArray found =
-      gather_indirect(lit, radiosity, points_of(all, vertices), options).indirect;
-  BandArray indirect = BandArray::Zero(all.size(), found.cols());
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    indirect.row(vertices[i]) = found.row(static_cast<Eigen::Index>(i));
-  }
-  return indirect;
+  return spread_rows(gather_indirect(lit, radiosity, points_of(all, vertices), options).indirect,
+                     vertices, all.size());
 }
 
 constexpr std::uint64_t pilot_replica = 1000, later_replicas = 2000, first_replicas = 3000;
@@ -165,7 +157,7 @@ BandArray caustics(const LitScene& lit, const SolveOptions& options) {
 // The leaves that are not much smaller than most of the area is cut into.
 std::vector<int> large_leaves(const RefinedElements& elements) {
   const double typical = typical_leaf_area(elements);
-  constexpr double small = 1.0 / 64.0;
+  constexpr double small = 1.0 / 64.0;  // as crumbs are small
   std::vector<int> large;
   for (const int cell : elements.leaves()) {
     if (elements.area(cell) > small * typical) large.push_back(cell);
@@ -486,18 +478,30 @@ PilotGather PilotGathers::Impl::unrefined(const SolveOptions& options) {
   return pilot;
 }
 
+namespace {
+
+// One point of each of the `patches`.
+GatherPoints points_on(const PatchMesh& mesh, const std::vector<int>& patches) {
+  return {static_cast<int>(patches.size()), [&mesh, &patches](int i) {
+            const PatchPoint at =
+                PatchSampler(mesh, patches[static_cast<std::size_t>(i)]).point(0.5, 0.5);
+            return GatherPoint{at.position, at.normal, mesh.facet[at.element]};
+          }};
+}
+
+}  // namespace
+
 PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
+  // 1/sqrt(32) = 18 % of the spread of light among rays, as rough as one point of a patch is.
   constexpr int few_rays = 32;
   GatherOptions gather = gather_options(options);
   gather.rays = std::min(few_rays, gather.rays);
   gather.shadows = Effort{.gather_rays = gather.rays}.shadows();
   gather.replica += pilot_replica;
-  const GatherPoints centers(base.patch_count(), [this](int p) {
-    const PatchPoint at = PatchSampler(base, p).point(0.5, 0.5);
-    return GatherPoint{at.position, at.normal, base.facet[at.element]};
-  });
+  std::vector<int> patches(static_cast<std::size_t>(base.patch_count()));
+  std::iota(patches.begin(), patches.end(), 0);
   const GatheredIrradiance found =
-      gather_irradiance({scene, caster, direct_light}, radiosity, centers, gather);
+      gather_irradiance({scene, caster, direct_light}, radiosity, points_on(base, patches), gather);
   return {.direct = to_vertices(base, found.direct),
           .indirect = to_vertices(base, found.indirect),
           .shadows = gather.shadows,
@@ -642,21 +646,18 @@ void light_unread_patches(const LitScene& lit, const SolveOptions& options,
     if (unread[p] != 0) patches.push_back(p);
   }
   if (patches.empty()) return;
+  // Nothing but displays and probes on the surface itself show this light.
   constexpr int few_rays = 16;
   GatherOptions gather = gather_options(options);
   gather.rays = std::min(few_rays, gather.rays);
-  const GatherPoints centers(static_cast<int>(patches.size()), [&](int i) {
-    const PatchPoint at = PatchSampler(mesh, patches[i]).point(0.5, 0.5);
-    return GatherPoint{at.position, at.normal, mesh.facet[at.element]};
-  });
   const BandArray radiosity =
       gatherable_radiosity(mesh, lit.direct_light, with_indirect(pilot, indirect));
-  const BandArray found = gather_indirect(lit, radiosity, centers, gather).indirect;
-  std::vector<int> row(static_cast<std::size_t>(mesh.patch_count()), -1);
-  for (std::size_t i = 0; i < patches.size(); ++i) row[patches[i]] = static_cast<int>(i);
+  const BandArray of_patch =
+      spread_rows(gather_indirect(lit, radiosity, points_on(mesh, patches), gather).indirect,
+                  patches, mesh.patch_count());
   const std::vector<int> patch = vertex_patches(mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    if (row[patch[v]] >= 0) indirect.row(v) = found.row(row[patch[v]]);
+    if (unread[patch[v]] != 0) indirect.row(v) = of_patch.row(patch[v]);
   }
 }
 

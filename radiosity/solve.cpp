@@ -88,7 +88,7 @@ std::vector<Opening> openings_in_time(const Scene& scene, const RunControl& run)
   return openings;
 }
 
-// What rows and equations are found from.
+// A scene's light, and the openings that rows aim rays at.
 struct EquationTask {
   const LitScene& lit;
   const DirectLight& kept_apart;  // by channel
@@ -242,6 +242,7 @@ int rays_in_time(double spent, double allowed, int most) {
 // Solves the equations; once the time is up, with rows of few rays. If the time is limited from the
 // start, these are solved first, and tell how many rays there is time for.
 SolvedEquations solve_in_time(const EquationTask& task, const SolveOptions& options) {
+  // As much as each of the three gathers that follow: two pilots and the final one.
   constexpr double share_of_rows = 0.25;
   std::optional<SolvedEquations> rough;
   SolveOptions full = options;

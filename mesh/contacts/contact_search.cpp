@@ -91,6 +91,30 @@ class ContactGraph::Search {
     for (const ContactSegment& segment : segments) contacts.push_back({j, segment});
   }
 
+  /// Calls find(i, near, contacts) for all facets, many at once, with scratch for find_near(). Then
+  /// calls take(i, contact) in order, until take returns false; returns whether it never did.
+  template <class Find, class Take>
+  bool in_batches(const Progress& progress, Find find, Take take) const {
+    const int count = static_cast<int>(planes_.size());
+    for (int begin = 0; begin < count; begin += batch) {
+      report(progress, "mesh", 0.3 * begin / count);
+      const int size = std::min(count - begin, batch);
+      std::vector<std::vector<Contact>> contacts(static_cast<std::size_t>(size));
+      parallel_for(size, 8, [&](int from, int to) {
+        std::vector<int> near;
+        for (int k = from; k < to; ++k) {
+          find(begin + k, near, contacts[static_cast<std::size_t>(k)]);
+        }
+      });
+      for (int k = 0; k < size; ++k) {
+        for (const Contact& contact : contacts[static_cast<std::size_t>(k)]) {
+          if (!take(begin + k, contact)) return false;
+        }
+      }
+    }
+    return true;
+  }
+
  private:
   std::vector<BoxTree::Box> boxes() const {
     std::vector<BoxTree::Box> boxes;
@@ -143,67 +167,46 @@ void ContactGraph::add_contact(int index, const std::array<Vector3d, 2>& ends) {
 bool ContactGraph::add_all_contacts(const Search& search, ContactEffort& effort,
                                     const Progress& progress) {
   const int count = static_cast<int>(planes_.size());
-  for (int begin = 0; begin < count; begin += batch) {
-    report(progress, "mesh", 0.3 * begin / count);
-    const int end = std::min(count, begin + batch);
-    std::vector<std::vector<Search::Contact>> contacts(static_cast<std::size_t>(end - begin));
-    parallel_for(end - begin, 32, [&](int from, int to) {
-      std::vector<int> near;
-      for (int k = from; k < to && !effort.is_exceeded(); ++k) {
-        search.find_near(begin + k, near);
-        effort.count(near.size());
-        auto& found = contacts[static_cast<std::size_t>(k)];
-        for (const int j : near) {
-          if (j > begin + k) search.add(begin + k, j, found);
-          if (effort.is_exceeded()) break;
-        }
-        effort.found(found.size());
-      }
-    });
-    if (effort.is_exceeded()) return false;
-    for (int i = begin; i < end; ++i) {
-      for (const Search::Contact& contact : contacts[static_cast<std::size_t>(i - begin)]) {
-        add_contact(i, contact.segment);
-        if (contact.other < count) add_contact(contact.other, contact.segment);
-      }
+  const auto find = [&](int i, std::vector<int>& near, std::vector<Search::Contact>& found) {
+    if (effort.is_exceeded()) return;
+    search.find_near(i, near);
+    effort.count(near.size());
+    for (const int j : near) {
+      if (j > i) search.add(i, j, found);
+      if (effort.is_exceeded()) break;
     }
-  }
-  return true;
+    effort.found(found.size());
+  };
+  return search.in_batches(progress, find, [&](int i, const Search::Contact& contact) {
+    if (effort.is_exceeded()) return false;
+    add_contact(i, contact.segment);
+    if (contact.other < count) add_contact(contact.other, contact.segment);
+    return true;
+  }) && !effort.is_exceeded();
 }
 
 void ContactGraph::add_longest_contacts(const Search& search, const ContactEffort& effort,
                                         const Progress& progress) {
-  const int count = static_cast<int>(planes_.size());
-  for (int begin = 0; begin < count; begin += batch) {
-    report(progress, "mesh", 0.3 * begin / count);
-    const int end = std::min(count, begin + batch);
-    std::vector<std::vector<Search::Contact>> contacts(static_cast<std::size_t>(end - begin));
-    parallel_for(end - begin, 8, [&](int from, int to) {
-      std::vector<int> near;
-      for (int i = begin + from; i < begin + to; ++i) {
-        auto& found = contacts[static_cast<std::size_t>(i - begin)];
-        char& lacks = lacks_contacts_[static_cast<std::size_t>(i)];
-        search.find_near(i, near);
-        std::erase(near, i);
-        if (search.keep_largest(effort.pairs_of_facet(), near)) lacks = 1;
-        for (const int j : near) search.add(i, j, found);
-        if (found.size() <= effort.contacts_of_facet()) continue;
-        lacks = 1;
-        std::stable_sort(found.begin(), found.end(),
-                         [](const auto& a, const auto& b) { return a.length() > b.length(); });
-        found.resize(effort.contacts_of_facet());
-        found.shrink_to_fit();
-      }
-    });
-    for (int i = begin; i < end; ++i) {
-      for (const Search::Contact& contact : contacts[static_cast<std::size_t>(i - begin)]) {
-        add_contact(i, contact.segment);
-      }
-    }
-  }
+  const auto find = [&](int i, std::vector<int>& near, std::vector<Search::Contact>& found) {
+    char& lacks = lacks_contacts_[static_cast<std::size_t>(i)];
+    search.find_near(i, near);
+    std::erase(near, i);
+    if (search.keep_largest(effort.pairs_of_facet(), near)) lacks = 1;
+    for (const int j : near) search.add(i, j, found);
+    if (found.size() <= effort.contacts_of_facet()) return;
+    lacks = 1;
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.length() > b.length(); });
+    found.resize(effort.contacts_of_facet());
+    found.shrink_to_fit();
+  };
+  search.in_batches(progress, find, [&](int i, const Search::Contact& contact) {
+    add_contact(i, contact.segment);
+    return true;
+  });
 }
 
-// Where contact lines cross in too many places, facets keep their longest lines. A pile of n sheets
+// Facets keep their longest contact lines where these cross in too many places. A pile of n sheets
 // that all cross has n^3 crossings, each of which makes elements, whatever their size should be.
 void ContactGraph::thin_out_contacts(const WeldedPoints& corners) {
   const int count = static_cast<int>(planes_.size());

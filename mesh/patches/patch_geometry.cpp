@@ -149,7 +149,9 @@ void build_parted_topology(PatchMesh& mesh, const std::vector<Vector3d>& positio
       mesh.at_reflex_corner.push_back(mesh.at_reflex_corner[old]);
       v = vertex_count++;
     }
-    add_face(mesh, e);
+    if (!add_face(mesh, e)) {
+      throw std::runtime_error("element " + std::to_string(e) + " of the mesh repeats a corner");
+    }
   }
   set_vertex_normals(mesh, vertex_count);
 }

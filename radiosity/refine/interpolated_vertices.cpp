@@ -110,6 +110,14 @@ std::vector<int> indices_without(std::span<const InterpolatedVertex> interpolate
   return others;
 }
 
+BandArray spread_rows(const BandArray& values, std::span<const int> row, Eigen::Index count) {
+  BandArray all = BandArray::Zero(count, values.cols());
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    all.row(row[i]) = values.row(static_cast<Eigen::Index>(i));
+  }
+  return all;
+}
+
 std::vector<double> vertex_areas(const PatchMesh& mesh) {
   std::vector<double> area(mesh.vertex_count(), 0.0);
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -119,7 +127,7 @@ std::vector<double> vertex_areas(const PatchMesh& mesh) {
   return area;
 }
 
-std::vector<int> share_rays(std::span<const double> area, int rays) {
+double typical_area(std::span<const double> area) {
   std::vector<double> sorted(area.begin(), area.end());
   std::sort(sorted.begin(), sorted.end(), std::greater<>());
   const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
@@ -130,6 +138,11 @@ std::vector<int> share_rays(std::span<const double> area, int rays) {
     typical = sorted[i];
     larger += sorted[i];
   }
+  return typical;
+}
+
+std::vector<int> share_rays(std::span<const double> area, int rays) {
+  const double typical = typical_area(area);
   std::vector<int> shares(area.size(), rays);
   if (!(typical > 0.0)) return shares;
   for (std::size_t v = 0; v < shares.size(); ++v) {

@@ -57,9 +57,16 @@ void interpolate_vertices(std::span<const InterpolatedVertex> interpolated, Band
 std::vector<int> indices_without(std::span<const InterpolatedVertex> interpolated,
                                  std::size_t count);
 
+/// `count` rows, of which row[i] is row i of `values`; the others are 0.
+BandArray spread_rows(const BandArray& values, std::span<const int> row, Eigen::Index count);
+
 /// Area that each vertex stands for, m^2: of every element around, its area over the number of its
 /// corners.
 std::vector<double> vertex_areas(const PatchMesh& mesh);
+
+/// The area, m^2, of the vertices that are typical: the least area of the largest ones that stand
+/// for about half of all area. 0 without any area.
+double typical_area(std::span<const double> area);
 
 /// Rays of each vertex by the area that the vertex stands for. Rays proportional to the square root
 /// of the area make the mean noise over all area least for the work. Vertices of typical area, the

@@ -34,6 +34,18 @@ std::vector<int> vertices_of(const PatchMesh& mesh) {
   return all;
 }
 
+// `count` rows, of which row[i] is row i of a gather of indirect light; the others are 0.
+GatheredIrradiance spread(GatheredIrradiance found, const std::vector<int>& row,
+                          Eigen::Index count) {
+  if (found.variance.size() == count) return found;
+  GatheredIrradiance all{.indirect = spread_rows(found.indirect, row, count),
+                         .variance = Eigen::ArrayXf::Zero(count)};
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    all.variance[row[i]] = found.variance[static_cast<Eigen::Index>(i)];
+  }
+  return all;
+}
+
 }  // namespace
 
 VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
@@ -166,12 +178,12 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
                                               std::uint64_t replica,
                                               const BandArray& radiosity) const {
   const PatchMesh& mesh = elements_.base();
-  std::vector<Eigen::Index> rows;
+  std::vector<int> rows;
   std::vector<GatherPoint> points;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const int v = vertices[i];
     if (is_unread(v)) continue;
-    rows.push_back(static_cast<Eigen::Index>(i));
+    rows.push_back(static_cast<int>(i));
     GatherPoint& point = points.emplace_back(gather_point(v));
     const int patch = mesh.patch[elements_.inside(v, 0.0).element];
     point.key = random_key(static_cast<std::uint64_t>(mesh.surface[patch]),
@@ -183,15 +195,7 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
   options.replica = options_.replica + first_pilot_replica + replica;
   GatheredIrradiance found =
       gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);
-  const auto count = static_cast<Eigen::Index>(vertices.size());
-  if (found.variance.size() == count) return found;
-  GatheredIrradiance all{.indirect = BandArray::Zero(count, found.indirect.cols()),
-                         .variance = Eigen::ArrayXf::Zero(count)};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    all.indirect.row(rows[i]) = found.indirect.row(static_cast<Eigen::Index>(i));
-    all.variance[rows[i]] = found.variance[static_cast<Eigen::Index>(i)];
-  }
-  return all;
+  return spread(std::move(found), rows, static_cast<Eigen::Index>(vertices.size()));
 }
 
 // A gather at the base's vertices, of each group of crumbs at the records alone. Their variance
@@ -199,14 +203,7 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
 GatheredIrradiance VertexGathers::sharpened_indirect(const BandArray& radiosity) const {
   const auto count = static_cast<Eigen::Index>(elements_.base().vertex_count());
   const std::vector<int> own = indices_without(shared_.read, static_cast<std::size_t>(count));
-  GatheredIrradiance found = indirect_at(own, 2, radiosity);
-  if (found.variance.size() == count) return found;
-  GatheredIrradiance all{.indirect = BandArray::Zero(count, found.indirect.cols()),
-                         .variance = Eigen::ArrayXf::Zero(count)};
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    all.indirect.row(own[i]) = found.indirect.row(static_cast<Eigen::Index>(i));
-    all.variance[own[i]] = found.variance[static_cast<Eigen::Index>(i)];
-  }
+  GatheredIrradiance all = spread(indirect_at(own, 2, radiosity), own, count);
   interpolate_vertices(shared_.read, all.indirect);
   for (const InterpolatedVertex& at : shared_.read) {
     for (int i = 0; i < at.end_count(); ++i) {
@@ -340,11 +337,9 @@ GatheredIrradiance VertexGathers::values_by_channel(
   std::vector<GatherPoint> points;
   const std::vector<int> own = indices_without(shared_.unread, lit_vertices.size());
   for (const int i : own) points.push_back(keyed_point(lit_vertices[i]));
-  const BandArray found = gather_direct({scene_, caster_, light.direct_light}, points, options_);
-  BandArray direct(static_cast<Eigen::Index>(lit_vertices.size()), found.cols());
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    direct.row(own[i]) = found.row(static_cast<Eigen::Index>(i));
-  }
+  BandArray direct =
+      spread_rows(gather_direct({scene_, caster_, light.direct_light}, points, options_), own,
+                  static_cast<Eigen::Index>(lit_vertices.size()));
   interpolate_vertices(shared_.unread, direct);
   const BandArray sharpened = sharpened_by_channel(direct, light);
 
@@ -354,10 +349,7 @@ GatheredIrradiance VertexGathers::values_by_channel(
   const BandArray indirect =
       0.5f * (indirect_at(at, 0, sharpened).indirect + indirect_at(at, 1, sharpened).indirect);
   GatheredIrradiance result;
-  result.indirect.resize(static_cast<Eigen::Index>(vertices.size()), indirect.cols());
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    result.indirect.row(gathered[i]) = indirect.row(static_cast<Eigen::Index>(i));
-  }
+  result.indirect = spread_rows(indirect, gathered, static_cast<Eigen::Index>(vertices.size()));
   interpolate_vertices(interpolated, result.indirect);
   result.direct.resize(result.indirect.rows(), direct.cols());
   for (Eigen::Index i = 0; i < result.direct.rows(); ++i) {
