@@ -17,6 +17,8 @@ namespace lightwell {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr double mebibyte = 1 << 20;
+
 std::string bytes_text(std::int64_t bytes) {
   constexpr double kilobyte = 1e3, megabyte = 1e6;
   const auto size = static_cast<double>(bytes);
@@ -179,50 +181,42 @@ void Checkpoint::rethrow_stopped() {
   }
 }
 
-void Checkpoint::add_to(Report& report, const std::string& key) const {
-  constexpr double megabyte = 1 << 20;
-  report.add(key, {{"file", arguments_.file.string()},
-                   {"mb", static_cast<double>(journal_->size()) / megabyte},
-                   {"resumed_mb", static_cast<double>(journal_->found()) / megabyte}});
+void Checkpoint::report_reuse(Report& report) {
+  report.add("reused", {{"file", arguments_.reuse.string()},
+                        {"mb", static_cast<double>(journal_->recalled()) / mebibyte}});
+  if (journal_->recalled() == 0) {
+    console_.say(fmt::format(
+        "warning: nothing in '{}' could be used: the geometry, mirrors, glass, lamps or "
+        "form-factor options differ",
+        arguments_.reuse.string()));
+  } else {
+    console_.say_verbose(fmt::format("used {} of '{}'", bytes_text(journal_->recalled()),
+                                     arguments_.reuse.string()));
+  }
 }
 
-void Checkpoint::keep_to_resume(Report& report, const std::string& key) {
-  if (!journal_ || journal_->is_read_only()) return;
-  journal_->close();
-  add_to(report, key);
-  console_.say(fmt::format("finished work is in '{}' ({}). To resume:\n  {}",
-                           arguments_.file.string(), bytes_text(journal_->size()),
-                           command_to_resume(console_.options())));
-}
-
-void Checkpoint::finish(Report& report, const std::string& key) {
+void Checkpoint::finish(Report& report, bool is_whole, const std::string& key) {
   if (!journal_) return;
-  constexpr double megabyte = 1 << 20;
   if (journal_->is_read_only()) {
-    report.add("reused", {{"file", arguments_.reuse.string()},
-                          {"mb", static_cast<double>(journal_->recalled()) / megabyte}});
-    if (journal_->recalled() == 0) {
-      console_.say(fmt::format(
-          "warning: nothing in '{}' could be used: the geometry, mirrors, glass, lamps or "
-          "form-factor options differ",
-          arguments_.reuse.string()));
-    } else {
-      console_.say_verbose(fmt::format("used {} of '{}'", bytes_text(journal_->recalled()),
-                                       arguments_.reuse.string()));
-    }
+    report_reuse(report);
     return;
   }
   journal_->close();
-  add_to(report, key);
-  const std::string text = fmt::format("the checkpoint '{}' ({})", arguments_.file.string(),
-                                       bytes_text(journal_->size()));
-  if (arguments_.keep) {
+  const std::string file = arguments_.file.string(), size = bytes_text(journal_->size());
+  report.add(key, {{"file", file},
+                   {"mb", static_cast<double>(journal_->size()) / mebibyte},
+                   {"resumed_mb", static_cast<double>(journal_->found()) / mebibyte}});
+  if (!is_whole) {
+    console_.say(fmt::format("finished work is in '{}' ({}). To resume:\n  {}", file, size,
+                             command_to_resume(console_.options())));
+  } else if (arguments_.keep) {
     const std::string failure = journal_->failure();
     if (!failure.empty() && !has_warned_) console_.say("warning: " + failure);
-    console_.say("kept " + text);
+    console_.say(fmt::format("kept the checkpoint '{}' ({})", file, size));
   } else {
     journal_->remove();
-    console_.say("removed " + text + ", which is not needed any more");
+    console_.say(
+        fmt::format("removed the checkpoint '{}' ({}), which is not needed any more", file, size));
   }
 }
 

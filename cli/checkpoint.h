@@ -54,15 +54,13 @@ class Checkpoint {
   /// on the console and rethrows the exception; an Interrupted becomes an InterruptedWith that
   /// holds the command to resume.
   [[noreturn]] void rethrow_stopped();
-  /// To be called once the result is written. Removes the checkpoint unless --keep-checkpoint was
-  /// given, and adds its size to the report under `key`.
-  void finish(Report& report, const std::string& key = "checkpoint");
-  /// To be called in place of finish() if the result was ended early: keeps the checkpoint, and
-  /// prints the command to resume.
-  void keep_to_resume(Report& report, const std::string& key = "checkpoint");
+  /// To be called once the result is written; adds the size of the checkpoint to the report under
+  /// `key`. Removes the checkpoint of a whole result, unless --keep-checkpoint was given; keeps
+  /// that of a result that was ended early, and prints the command to resume.
+  void finish(Report& report, bool is_whole, const std::string& key = "checkpoint");
 
  private:
-  void add_to(Report& report, const std::string& key) const;
+  void report_reuse(Report& report);
 
   CheckpointArguments arguments_;
   Console& console_;

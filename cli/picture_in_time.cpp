@@ -35,6 +35,8 @@ class Pace {
   bool is_too_slow(std::string_view phase, double share) {
     if (phase != "render") return false;  // the photons of caustics, which all pictures share
     if (!watch_) watch_.emplace();
+    // A tenth of the time shows some rows in any picture. Rows from the top, often of a ceiling,
+    // may be cheaper or dearer than the rest, so a fifth too much is no reason yet.
     constexpr double enough_to_judge = 0.1, too_much = 1.2;
     const double spent = watch_->seconds();
     return spent > enough_to_judge * allowed_ && spent > too_much * share * allowed_;

@@ -19,11 +19,9 @@ struct PictureInTime {
 /// else is that of `arguments`.
 ///
 /// - If the time is limited, a picture whose rows so far tell that it will take much longer is
-/// given
-///   up: for the draft, then for light from the solution alone.
-/// - Once the time is up, the rows that are missing are filled in by four samples for each pixel
-/// with
-///   light from the solution.
+///   given up: for the draft, then for light from the solution alone.
+/// - Once the time is up, four samples for each pixel, with light from the solution, fill in the
+///   rows that are missing.
 ///
 /// Throws as SceneRenderer::render does.
 PictureInTime render_in_time(SceneRenderer& renderer, const Camera& camera,

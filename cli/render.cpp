@@ -43,11 +43,7 @@ int render_scene(const RenderCommandArguments& arguments, Console& console) {
   const bool is_as_asked =
       render_step(renderable, {camera, arguments.render, files, time.seconds_left()}, checkpoint,
                   {console, report});
-  if (is_as_asked) {
-    checkpoint.finish(report);
-  } else {
-    checkpoint.keep_to_resume(report);
-  }
+  checkpoint.finish(report, is_as_asked);
   report.print();
   return is_as_asked ? exit_done : exit_not_accurate;
 }

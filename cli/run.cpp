@@ -55,15 +55,12 @@ SolvedScene solved_scene(const Job& job) {
     return std::move(*done);
   }
   Checkpoint checkpoint(arguments.checkpoint, of, {outputs.solution}, console);
-  constexpr double share_of_solve = 0.6;  // the rest is for pictures
+  // The rest is for pictures. Every picture and number reads the light, so light gets more.
+  constexpr double share_of_solve = 0.6;
   SolvedScene solved = solve_step(scene, {arguments.solve, outputs.solution, time, share_of_solve},
                                   checkpoint, feedback);
   write_solution_step(outputs.solution, solved, console, report);
-  if (solved.solution.outcome == Outcome::cut_short) {
-    checkpoint.keep_to_resume(report);
-  } else {
-    checkpoint.finish(report);
-  }
+  checkpoint.finish(report, solved.solution.outcome != Outcome::cut_short);
   return solved;
 }
 
@@ -73,8 +70,8 @@ bool render_pictures(const Job& job, const SolvedScene& solved) {
   Console& console = feedback.console;
   CheckpointArguments kept = arguments.checkpoint;
   kept.reuse.clear();
-  if (solved.solution.outcome == Outcome::cut_short) kept.file.clear();  // holds the solve
-  if (kept.keep) kept.file.clear();                                      // the file holds the solve
+  const bool holds_the_solve = kept.keep || solved.solution.outcome == Outcome::cut_short;
+  if (holds_the_solve) kept.file.clear();
   kept.resume = kept.resume && fs::exists(kept.file);  // none exists before the first tiles
   std::vector<fs::path> files = {outputs.solution};
   for (const auto& each : outputs.pictures) files.insert(files.end(), each.begin(), each.end());
@@ -99,11 +96,7 @@ bool render_pictures(const Job& job, const SolvedScene& solved) {
         fmt::format("interrupted; the solution is in '{}'. To resume with the pictures:\n  {}",
                     outputs.solution.string(), command_to_resume(console.options())));
   }
-  if (are_as_asked) {
-    checkpoint.finish(feedback.report, "picture_checkpoint");
-  } else {
-    checkpoint.keep_to_resume(feedback.report, "picture_checkpoint");
-  }
+  checkpoint.finish(feedback.report, are_as_asked, "picture_checkpoint");
   return are_as_asked;
 }
 

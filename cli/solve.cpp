@@ -39,11 +39,7 @@ int solve(const SolveCommandArguments& arguments, Console& console) {
   const SolvedScene solved =
       solve_step(scene, {arguments.solve, arguments.output, time}, checkpoint, {console, report});
   write_solution_step(arguments.output, solved, console, report);
-  if (solved.solution.outcome == Outcome::cut_short) {
-    checkpoint.keep_to_resume(report);
-  } else {
-    checkpoint.finish(report);
-  }
+  checkpoint.finish(report, solved.solution.outcome != Outcome::cut_short);
   report.print();
   return exit_code(solved.solution);
 }
