@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks that the files the documentation names exist: targets of links, and paths of sources in backquotes. Prints one
-# line for each that is missing; exits with 1 if there is any.
+# Checks that every page begins with a heading, and that the files the documentation names exist: targets of links, and
+# paths of sources in backquotes. Prints one line for each fault; exits with 1 if there is any.
 #   cmake/check_docs.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -9,6 +9,7 @@ missing() { printf '%s names %s, which does not exist.\n' "$1" "$2"; status=1; }
 
 while IFS= read -r page; do
   folder=$(dirname "$page")
+  head -n 1 "$page" | grep -q '^# ' || { printf '%s does not begin with a heading.\n' "$page"; status=1; }
   while IFS= read -r target; do
     case $target in http*|mailto:*|'') continue ;; esac
     [ -e "$folder/${target%%#*}" ] || missing "$page" "$target"
@@ -18,5 +19,5 @@ while IFS= read -r page; do
     [ -e "$path" ] || [ -e "$folder/$path" ] || missing "$page" "$path"
   done < <(grep -oE '`(scene|mesh|radiosity|raytrace|viewer|cli|cmake|tests|bench|examples)/[A-Za-z0-9_/.-]+\.(h|cpp|txt|sh|js)`' "$page" | tr -d '`')
 done < <(find . -name '*.md' -not -path './build/*' -not -path './.git/*' | sed 's|^\./||' | sort)
-[ $status = 0 ] && echo "Every file that the documentation names exists."
+[ $status = 0 ] && echo "Every page has a heading, and every file that the documentation names exists."
 exit $status
