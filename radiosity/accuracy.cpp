@@ -23,8 +23,12 @@ double noise_share(double target) {
   return share_of_gather_noise * target;
 }
 
-std::vector<double> mean_illuminances(const Bands& bands, const PatchMesh& mesh,
-                                      const BandArray& patch_radiosity, const SceneParts& parts) {
+namespace {
+
+// The means of value(irradiance) over the patches of each part.
+template <class Value>
+std::vector<double> means_over_parts(const PatchMesh& mesh, const BandArray& patch_radiosity,
+                                     const SceneParts& parts, Value&& value) {
   std::vector<double> sum(static_cast<std::size_t>(parts.judged_count()), 0.0), area(sum);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const Eigen::ArrayXf rho = mesh.reflectance.row(p).transpose();
@@ -35,11 +39,25 @@ std::vector<double> mean_illuminances(const Bands& bands, const PatchMesh& mesh,
     const auto mean = static_cast<float>(E.cast<double>().sum() / known);
     E = (rho > 0.0f).select(E, mean);
     const int part = parts.judged_with(p);
-    sum[part] += mesh.area[p] * luminous(bands, E);
+    sum[part] += mesh.area[p] * value(E);
     area[part] += mesh.area[p];
   }
   for (std::size_t q = 0; q < sum.size(); ++q) sum[q] = area[q] > 0.0 ? sum[q] / area[q] : 0.0;
   return sum;
+}
+
+}  // namespace
+
+std::vector<double> mean_illuminances(const Bands& bands, const PatchMesh& mesh,
+                                      const BandArray& patch_radiosity, const SceneParts& parts) {
+  return means_over_parts(mesh, patch_radiosity, parts,
+                          [&](const Spectrum& E) { return luminous(bands, E); });
+}
+
+std::vector<double> mean_irradiances(const PatchMesh& mesh, const BandArray& patch_radiosity,
+                                     const SceneParts& parts) {
+  return means_over_parts(mesh, patch_radiosity, parts,
+                          [](const Spectrum& E) { return static_cast<double>(E.mean()); });
 }
 
 double mean_illuminance(const Bands& bands, const PatchMesh& mesh,

@@ -335,12 +335,16 @@ GatheredIrradiance rows(const GatheredIrradiance& all, int first, int n) {
 }
 
 // Rays at each sample point, by the rays of the solution in the point's part.
+// The noise of the sky's light is 0.3 of the target there.
 void choose_rays(const SolveOptions& options, const PatchMesh& mesh, const PartSamples& samples,
-                 int points, SampledSolution& sampled) {
+                 int points, const PartMeans& means, SampledSolution& sampled) {
+  constexpr double of_noise_share = 0.55;
   const auto& efforts = options.refine.efforts;
   for (std::size_t p = 0; p + 1 < samples.begin.size(); ++p) {
     const int rays = efforts.empty() ? options.gather.rays : efforts[p].rays;
+    const double noise = efforts.empty() ? 0.0 : of_noise_share * efforts[p].noise;
     for (int i = samples.begin[p]; i < samples.begin[p + 1]; ++i) {
+      sampled.points[i].sky_noise = noise_goal(means.of_part(static_cast<int>(p)), noise);
       sampled.points[i].rays = estimate_rays(rays, mesh.vertex_count(), points);
     }
   }
@@ -379,9 +383,9 @@ std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptio
   if (samples.drawn.empty()) return estimates;
 
   SampledSolution sampled = sample_solution(mesh, solution, irradiance, samples);
-  choose_rays(options, mesh, samples, points, sampled);
+  const PartMeans means_of_mesh = part_means(mesh, irradiance, parts);
+  choose_rays(options, mesh, samples, points, means_of_mesh, sampled);
   const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
-  const double least = part_means(mesh, irradiance, parts).least();
   irradiance.resize(0, 0);
   const GatheredIrradiance gathered =
       gather_irradiance(lit, radiosity, sampled.points, independent_gather(options, batch));
@@ -391,7 +395,7 @@ std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptio
     truth.push_back(
         corrected_truth(mesh, parts, rows(sampled, first, n), rows(gathered, first, n)));
   }
-  const std::vector<double> means = sampled_means(samples, sampled, truth, least);
+  const std::vector<double> means = sampled_means(samples, sampled, truth, means_of_mesh.least());
   Eigen::ArrayXf scaled;
   for (std::size_t p = 0; p < estimates.size(); ++p) {
     const int first = samples.begin[p], n = samples.begin[p + 1] - first;

@@ -8,7 +8,7 @@ namespace lightwell {
 
 /// Elements in gaps that are measured one by one: two million rays. Models of many crumbs have a
 /// hundred thousand elements in gaps, and those of a surface are much alike.
-inline constexpr int most_gap_elements = 8192;
+inline constexpr int most_gap_elements = 2048;
 
 /// Raises RadiositySolution::interpolation_error of the elements that lie in narrow gaps, at least
 /// in part: under another surface at less than 0.15 of the size of their patch. Light in a gap

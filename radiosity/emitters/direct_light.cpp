@@ -191,12 +191,13 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
   }
 }
 
-SkyEffort sky_effort(const ShadowOptions& options) {
+SkyEffort sky_effort(const ShadowOptions& options, const NoiseGoal& goal) {
   constexpr int fewest = 8, first_of = 8;
   const int most = options.sky_rays > 0 ? options.sky_rays : options.max_rays;
   const int first = options.sky_rays > 0 ? options.sky_rays / first_of : options.min_rays;
   return {.first = std::clamp(first, fewest, most_sky_rays),
-          .most = std::clamp(most, fewest, most_sky_rays)};
+          .most = std::clamp(most, fewest, most_sky_rays),
+          .goal = goal};
 }
 
 // The number of occluding polygons up to which an exact share costs no more than `rays` rays; below
@@ -418,9 +419,13 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
       cast_shadows(shadows, caster, samples_, query.at, panes_.empty() ? nullptr : &panes_);
   if (visibility) *visibility = {};
   if (dome) {
-    const SkyGlow glow = sky_->irradiance(caster, query.at, dome->key, sky_effort(query.shadows));
+    const double full = dome->light().mean();
+    NoiseGoal goal = query.sky_noise;
+    if (full > 0.0) goal.irradiance /= full;
+    const SkyGlow glow =
+        sky_->irradiance(caster, query.at, dome->key, sky_effort(query.shadows, goal));
     add(dome->channel, dome->light(), glow.irradiance);
-    if (visibility) visibility->sky_noise = dome->light().mean() * glow.noise;
+    if (visibility) visibility->sky_noise = full * glow.noise;
   }
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const LightShadow& s = shadows[i];

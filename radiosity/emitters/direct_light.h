@@ -10,6 +10,7 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/emitters/free_source.h"
+#include "radiosity/emitters/noise_goal.h"
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/sampling.h"
@@ -68,6 +69,9 @@ struct LightQuery {
   SurfacePoint at{};
   std::uint64_t key = 0;  ///< of the shadow rays' random numbers
   ShadowOptions shadows{};
+  /// Noise that the dome's light may have. If set, the rays that it takes are cast, from a sixth of
+  /// ShadowOptions::sky_rays to 16 times as many; otherwise `shadows` decides alone.
+  NoiseGoal sky_noise{};
   Lights lights = Lights::all;
 };
 

@@ -68,6 +68,8 @@ SkyCells::SkyCells(const Sky& sky, int bands) {
   row_cdf_.resize(static_cast<std::size_t>(count) * fine);
   column_cdf_.resize(radiance_.size());
   colour_ = BandArray::Ones(count, bands);
+  middle_.resize(count, 3);
+  vector_.resize(count, 3);
   parallel_for(count, 16, [&](int begin, int end) {
     for (int c = begin; c < end; ++c) tabulate(sky, c);
   });
@@ -82,7 +84,7 @@ void SkyCells::tabulate(const Sky& sky, int c) {
   constexpr double fine_angle = 4.0 * pi / (static_cast<double>(count) * in_cell);
   const int across = sky.kind == SkyKind::map ? 4 : 1;  // samples of a square, each way
   const Eigen::Index bands = colour_.cols();
-  Cell& cell = cell_[static_cast<std::size_t>(c)];
+  double& power = power_[static_cast<std::size_t>(c)];
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(bands);
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   const std::size_t first = static_cast<std::size_t>(c) * in_cell;
@@ -98,10 +100,10 @@ void SkyCells::tabulate(const Sky& sky, int c) {
     vector += L.mean() * fine_angle * direction(c, (column + 0.5) / fine, (row + 0.5) / fine);
     sum += L * fine_angle;
   }
-  cell.middle = direction(c, 0.5, 0.5).cast<float>();
-  cell.vector = vector.cast<float>();
-  cell.power = sum.mean();
-  if (cell.power > 0.0) colour_.row(c) = (sum / sum.mean()).cast<float>().transpose();
+  middle_.row(c) = direction(c, 0.5, 0.5).cast<float>().transpose();
+  vector_.row(c) = vector.cast<float>().transpose();
+  power = sum.mean();
+  if (power > 0.0) colour_.row(c) = (sum / sum.mean()).cast<float>().transpose();
   double rows = 0.0;
   for (int row = 0; row < fine; ++row) {
     double columns = 0.0;
@@ -132,21 +134,11 @@ SkyCells::Sample SkyCells::sample(int cell, double u, double v) const {
   const double L =
       static_cast<double>(radiance_[first + static_cast<std::size_t>(row * fine + column)]);
   return {.direction = direction(cell, (column + u) / fine, (row + v) / fine),
-          .density = L / cell_[c].power};
+          .density = L / power_[c]};
 }
 
-double SkyCells::irradiance(int c, const Eigen::Vector3f& normal) const {
-  const Cell& cell = cell_[static_cast<std::size_t>(c)];
-  if (!(cell.power > 0.0)) return 0.0;
-  // Sines of the largest angle between a cell's middle and its corners; the rings at the poles
-  // reach 20 degrees down.
-  constexpr float sine_of_reach = 0.087f, sine_at_pole = 0.36f;
-  const bool is_at_pole = c < around || c >= count - around;
-  const float reach = is_at_pole ? sine_at_pole : 1.5f * sine_of_reach;
-  const float height = cell.middle.dot(normal);
-  if (height < -reach) return 0.0;
-  const auto E = static_cast<double>(cell.vector.dot(normal));
-  if (height > reach) return E;
+// int L cos dw over the part of a cell that the horizon may cut.
+float SkyCells::cut_irradiance(int c, const Eigen::Vector3f& normal, float whole) const {
   // Made once, for all points.
   static const std::vector<Eigen::Vector3f> corners = dome_grid(around, rings, 2);
   static const std::vector<Eigen::Vector3f> middles = dome_grid(around, rings, fine);
@@ -156,7 +148,7 @@ double SkyCells::irradiance(int c, const Eigen::Vector3f& normal) const {
   const bool is_cut = std::any_of(of_cell, of_cell + 4, [&](const Eigen::Vector3f& corner) {
     return corner.dot(n) < -rounding;
   });
-  if (!is_cut) return E;
+  if (!is_cut) return whole;
   constexpr double fine_angle = 4.0 * pi / (static_cast<double>(count) * fine * fine);
   const std::size_t first = static_cast<std::size_t>(c) * fine * fine;
   double sum = 0.0;
@@ -164,14 +156,30 @@ double SkyCells::irradiance(int c, const Eigen::Vector3f& normal) const {
     const float cosine = middles[i].dot(n);
     if (cosine > 0.0f) sum += static_cast<double>(cosine * radiance_[i]);
   }
-  return sum * fine_angle;
+  return static_cast<float>(sum * fine_angle);
+}
+
+Eigen::ArrayXf SkyCells::irradiances(const Eigen::Vector3f& normal) const {
+  const Eigen::ArrayXf height = (middle_ * normal).array();
+  Eigen::ArrayXf E = (vector_ * normal).array();
+  // Sines of the largest angle between a cell's middle and its corners; the rings at the poles
+  // reach 20 degrees down.
+  constexpr float sine_of_reach = 0.087f, sine_at_pole = 0.36f;
+  for (int c = 0; c < count; ++c) {
+    const bool is_at_pole = c < around || c >= count - around;
+    const float reach = is_at_pole ? sine_at_pole : 1.5f * sine_of_reach;
+    if (height[c] > reach) continue;
+    const bool is_dark = !(power_[static_cast<std::size_t>(c)] > 0.0);
+    E[c] = height[c] < -reach || is_dark ? 0.0f : cut_irradiance(c, normal, E[c]);
+  }
+  return E;
 }
 
 Spectrum SkyCells::unobstructed(const Eigen::Vector3d& normal) const {
-  const Eigen::Vector3f n = normal.cast<float>();
+  const Eigen::ArrayXf of_cells = irradiances(normal.cast<float>());
   Eigen::ArrayXd E = Eigen::ArrayXd::Zero(colour_.cols());
   for (int c = 0; c < count; ++c) {
-    E += irradiance(c, n) * colour(c);
+    if (of_cells[c] > 0.0f) E += static_cast<double>(of_cells[c]) * colour(c);
   }
   return E.cast<float>();
 }

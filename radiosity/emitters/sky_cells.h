@@ -30,12 +30,13 @@ class SkyCells {
   Eigen::Vector3d direction(int cell, double u, double v) const;
 
   /// int L dw over the cell, W/m^2, mean of the bands.
-  double power(int cell) const { return cell_[static_cast<std::size_t>(cell)].power; }
+  double power(int cell) const { return power_[static_cast<std::size_t>(cell)]; }
   /// Radiance of each band over the mean of the bands.
   Eigen::ArrayXd colour(int cell) const { return colour_.row(cell).transpose().cast<double>(); }
-  /// int L cos dw over the part of a cell above the horizon of a unit normal, W/m^2, mean of the
+  double colour(int cell, int band) const { return static_cast<double>(colour_(cell, band)); }
+  /// int L cos dw over the part of each cell above the horizon of a unit normal, W/m^2, mean of the
   /// bands.
-  double irradiance(int cell, const Eigen::Vector3f& normal) const;
+  Eigen::ArrayXf irradiances(const Eigen::Vector3f& normal) const;
   /// Irradiance of an unobstructed point, W/m^2 per band: to 1e-4, and to 1e-6 for a uniform sky or
   /// a horizontal surface.
   Spectrum unobstructed(const Eigen::Vector3d& normal) const;
@@ -46,15 +47,13 @@ class SkyCells {
 
  private:
   static constexpr int fine = 8;  // squares of the grid within a cell, each way
-  struct Cell {
-    Eigen::Vector3f middle = Eigen::Vector3f::Zero();  // unit
-    Eigen::Vector3f vector = Eigen::Vector3f::Zero();  // int L w dw, W/m^2, mean of the bands
-    double power = 0.0;
-  };
   void tabulate(const Sky& sky, int c);
+  float cut_irradiance(int c, const Eigen::Vector3f& normal, float whole) const;
 
   Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // columns: north, east, up
-  std::array<Cell, count> cell_{};
+  std::array<double, count> power_{};
+  Eigen::MatrixX3f middle_{};  // unit, of each cell
+  Eigen::MatrixX3f vector_{};  // int L w dw over each cell, W/m^2, mean of the bands
   std::array<int, count> order_{};
   std::vector<float> radiance_{};    // of the fine grid, cell after cell, mean of the bands
   std::vector<float> row_cdf_{};     // of the rows of each cell's fine grid

@@ -1,68 +1,170 @@
 #include "radiosity/emitters/sky_light.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
-#include <optional>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "scene/random_purpose.h"
 
 namespace lightwell {
 
+// A cell above a point's horizon that emits.
+struct SkyLight::Share {
+  int cell = 0;
+  double E = 0.0;       // unobstructed, mean of the bands
+  double likely = 0.0;  // weight of the site; 0: not known to be open
+  double cdf = 0.0;     // running sum of weights
+  double weight = 0.0;  // of the cell's rays
+  bool is_open() const { return likely > 0.0; }
+};
+
+// All cells above a point's horizon, in the order of the curve.
+struct SkyLight::Shares {
+  std::vector<Share> cells{};
+  double rays_per_open_ray = 1.0;
+  Eigen::ArrayXd E_open{};  // unobstructed, of the open cells
+};
+
 SkyLight::SkyLight(const Scene& scene, const PatchMesh& mesh)
     : bands_(scene.bands.count()),
       panes_(scene),
       cells_(*scene.sky, bands_),
       sites_(cells_, panes_, scene_bounds(scene).diagonal(), mesh),
-      sobol_(most_sky_rays) {}
+      sobol_(most_sky_rays) {
+  static std::atomic<std::uint64_t> count{0};
+  number_ = ++count;
+}
+
+// Sets the weights of the cells' rays. At most a third as many rays as go to open cells go
+// elsewhere; if no cell is known as open, all do. Fewer would be as exact in the mean, but each ray
+// that gets out would weigh more and leave a bright dot in a picture.
+void SkyLight::set_weights(Shares& shares) const {
+  constexpr double most_elsewhere = 1.0 / 3.0;
+  double open = 0.0, elsewhere = 0.0, sum = 0.0;
+  for (const Share& share : shares.cells) {
+    (share.is_open() ? open : elsewhere) += share.E * (share.is_open() ? share.likely : 1.0);
+  }
+  const double thinning =
+      open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
+  for (Share& share : shares.cells) {
+    share.weight = share.E * (share.is_open() ? share.likely : thinning);
+    share.cdf = sum += share.weight;
+  }
+  shares.rays_per_open_ray = open > 0.0 ? sum / open : 1.0;
+  shares.E_open = Eigen::ArrayXd::Zero(bands_);
+  for (const Share& share : shares.cells) {
+    if (!share.is_open()) continue;
+    for (int k = 0; k < bands_; ++k) shares.E_open[k] += share.E * cells_.colour(share.cell, k);
+  }
+}
+
+namespace {
+
+// The irradiance of every cell for the normals of the last points; a table of one thread for one
+// sky.
+class RecentNormals {
+ public:
+  const Eigen::ArrayXf& irradiances(const SkyCells& cells, std::uint64_t sky,
+                                    const Eigen::Vector3f& normal) {
+    if (sky != sky_) entries_.assign(size, {});
+    sky_ = sky;
+    const auto bits = [&](int i) { return std::uint64_t{std::bit_cast<std::uint32_t>(normal[i])}; };
+    Entry& entry = entries_[random_key(bits(0), bits(1), bits(2)) % size];
+    if (entry.E.size() == 0 || entry.normal != normal) {
+      entry = {normal, cells.irradiances(normal)};
+    }
+    return entry.E;
+  }
+
+ private:
+  static constexpr std::size_t size = 128;  // 8 kB each
+  struct Entry {
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    Eigen::ArrayXf E{};
+  };
+  std::uint64_t sky_ = 0;
+  std::vector<Entry> entries_{};
+};
+
+}  // namespace
+
+SkyLight::Shares SkyLight::shares_of(const SkySites::Weights& site,
+                                     const Eigen::Vector3d& normal) const {
+  thread_local RecentNormals recent;
+  const Eigen::ArrayXf& E = recent.irradiances(cells_, number_, normal.cast<float>());
+  Shares shares;
+  shares.cells.reserve(SkyCells::count / 2 + 2 * SkyCells::around);
+  for (const int c : cells_.order()) {
+    if (!(E[c] > 0.0f)) continue;
+    const auto likely = static_cast<double>(site[static_cast<std::size_t>(c)]);
+    shares.cells.push_back({.cell = c, .E = static_cast<double>(E[c]), .likely = likely});
+  }
+  set_weights(shares);
+  return shares;
+}
+
+// The shares of the point before serve again where both lie in the same site and face the same way,
+// as most vertices of a facet do.
+std::shared_ptr<const SkyLight::Shares> SkyLight::shares_at(const ElementCaster& caster,
+                                                            const SurfacePoint& at,
+                                                            std::uint64_t key) const {
+  const SkySites::Weights* site = sites_.find(at);
+  if (!site) {
+    const SkySites::Weights own =
+        sites_.sample(caster, at, random_key(key, RandomPurpose::sky_point_rays));
+    return std::make_shared<const Shares>(shares_of(own, at.normal));
+  }
+  struct Last {
+    std::uint64_t sky = 0;
+    const SkySites::Weights* site = nullptr;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    std::shared_ptr<const Shares> shares{};
+  };
+  thread_local Last last;
+  if (last.sky != number_ || last.site != site || last.normal != at.normal) {
+    last = {number_, site, at.normal, std::make_shared<const Shares>(shares_of(*site, at.normal))};
+  }
+  return last.shares;
+}
 
 // The estimate at one point.
 class SkyLight::Estimate {
  public:
   Estimate(const SkyLight& sky, const ElementCaster& caster, const SurfacePoint& at,
            std::uint64_t key)
-      : sky_(sky), caster_(caster), at_(at), key_(key) {
-    std::optional<SkySites::Weights> own;
-    const SkySites::Weights* weights = sky.sites_.find(at);
-    if (!weights) {
-      weights = &own.emplace(
-          sky.sites_.sample(caster, at, random_key(key, RandomPurpose::sky_point_rays)));
-    }
-    const Eigen::Vector3f n = at.normal.cast<float>();
-    shares_.reserve(SkyCells::count / 2 + 2 * SkyCells::around);
-    for (const int c : sky.cells_.order()) {
-      const double E = sky.cells_.irradiance(c, n);
-      if (!(E > 0.0)) continue;
-      const auto likely = static_cast<double>((*weights)[static_cast<std::size_t>(c)]);
-      shares_.push_back({.cell = c, .E = E, .likely = likely});
-    }
-  }
+      : sky_(sky), caster_(caster), at_(at), key_(key), shares_(sky.shares_at(caster, at, key)) {}
 
   SkyGlow glow(const SkyEffort& effort) {
-    if (shares_.empty()) return {Spectrum::Zero(sky_.bands_)};
+    if (cells().empty()) return {Spectrum::Zero(sky_.bands_)};
     const bool sees_nothing =
-        std::ranges::none_of(shares_, [](const Share& share) { return share.is_open(); });
+        std::ranges::none_of(cells(), [](const Share& share) { return share.is_open(); });
     const int first = sees_nothing ? std::max(8, effort.first / 4) : effort.first;
-    set_weights();
     const Tally pilot = tally_of(first, 1);
     if (sees_nothing && pilot.clear == 0) return {result(pilot).cast<float>()};
     // A site may say little about the point, as beside a wall that parts light from dark; rays that
     // follow the site are then few for the light they find.
     constexpr double much = 0.2;
     if (pilot.seen_elsewhere.sum() > much * result(pilot).sum()) {
-      for (Share& share : shares_) share.likely = 1.0;
-      set_weights();
-      const Tally all = tally_of(effort.most, 2);
+      Shares all_alike = *shares_;
+      for (Share& share : all_alike.cells) share.likely = 1.0;
+      sky_.set_weights(all_alike);
+      shares_ = std::make_shared<const Shares>(std::move(all_alike));
+      const Tally all = tally_of(rays_after(pilot, first, effort), 2);
       return {result(all).cast<float>(), std::sqrt(all.squared_noise)};
     }
     // The first rays often miss a small opening, so the point may see sky although none of them
     // gets out. If all of them get out, the point is unobstructed, unless rays of the site were
     // blocked.
     const bool is_clear =
-        std::ranges::all_of(shares_, [](const Share& share) { return share.likely >= 1.0; });
+        std::ranges::all_of(cells(), [](const Share& share) { return share.likely >= 1.0; });
     if (is_clear && pilot.clear == pilot.rays) return {result(pilot).cast<float>()};
-    const Tally more = tally_of(effort.most, 2);
-    const double share = static_cast<double>(first) / (first + effort.most);
+    const int following = rays_after(pilot, first, effort);
+    const Tally more = tally_of(following, 2);
+    const double share = static_cast<double>(first) / (first + following);
     const Eigen::ArrayXd E =
         share * corrected(pilot, more) + (1.0 - share) * corrected(more, pilot);
     return {E.max(0.0).cast<float>(), std::hypot(share * std::sqrt(pilot.squared_noise),
@@ -70,48 +172,35 @@ class SkyLight::Estimate {
   }
 
  private:
-  // A cell above the point's horizon that emits.
-  struct Share {
-    int cell = 0;
-    double E = 0.0;       // unobstructed, mean of the bands
-    double likely = 0.0;  // weight of the site; 0: not known to be open
-    double cdf = 0.0;     // running sum of weights
-    double weight = 0.0;  // of the cell's rays
-    bool is_open() const { return likely > 0.0; }
-  };
   struct Tally {
     Eigen::ArrayXd seen_open, all_open, seen_elsewhere;  // per band
     int rays = 0, clear = 0;
     double squared_noise = 0.0;  // of `corrected`, mean of the bands
   };
 
-  // At most a third as many rays as go to open cells go elsewhere; if no cell is known as open, all
-  // do. Fewer would be as exact in the mean, but each ray that gets out would weigh more and leave
-  // a bright dot in a picture.
-  void set_weights() {
-    constexpr double most_elsewhere = 1.0 / 3.0;
-    double open = 0.0, elsewhere = 0.0, sum = 0.0;
-    for (const Share& share : shares_) {
-      (share.is_open() ? open : elsewhere) += share.E * (share.is_open() ? share.likely : 1.0);
-    }
-    const double thinning =
-        open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
-    for (Share& share : shares_) {
-      share.weight = share.E * (share.is_open() ? share.likely : thinning);
-      share.cdf = sum += share.weight;
-    }
-    rays_per_open_ray_ = open > 0.0 ? sum / open : 1.0;
-    E_open_ = Eigen::ArrayXd::Zero(sky_.bands_);
-    for (const Share& share : shares_) {
-      if (share.is_open()) E_open_ += share.E * sky_.cells_.colour(share.cell);
-    }
+  // The rays that follow the first. If all of these or none get out, a share of 1 / n of the open
+  // cells may still be of the other kind.
+  int rays_after(const Tally& pilot, int first, const SkyEffort& effort) const {
+    if (!effort.goal.is_set()) return effort.most;
+    constexpr int most_times = 16;
+    const bool is_even = pilot.clear == 0 || pilot.clear == pilot.rays;
+    const double unseen = is_even ? shares_->E_open.mean() / first : 0.0;
+    const double square = pilot.squared_noise + unseen * unseen;
+    const double enough =
+        std::max(effort.goal.irradiance, effort.goal.share * result(pilot).mean());
+    const double rays = enough > 0.0 ? first * square / (enough * enough) : effort.most;
+    return static_cast<int>(
+        std::lround(std::clamp(rays - first, std::max(1.0, 0.5 * first),
+                               std::min(1.0 * most_times * effort.most, 1.0 * most_sky_rays))));
   }
+
+  const std::vector<Share>& cells() const { return shares_->cells; }
 
   Tally tally_of(int rays, std::uint64_t round) const {
     Tally tally{.seen_open = Eigen::ArrayXd::Zero(sky_.bands_),
                 .all_open = Eigen::ArrayXd::Zero(sky_.bands_),
                 .seen_elsewhere = Eigen::ArrayXd::Zero(sky_.bands_)};
-    const auto count = static_cast<int>(std::lround(rays_per_open_ray_ * rays));
+    const auto count = static_cast<int>(std::lround(shares_->rays_per_open_ray * rays));
     cast(std::clamp(count, 1, most_sky_rays), random_key(key_, round), tally);
     return tally;
   }
@@ -127,14 +216,14 @@ class SkyLight::Estimate {
     std::vector<Sample> samples;
     ray.reserve(static_cast<std::size_t>(rays));
     samples.reserve(static_cast<std::size_t>(rays));
-    const double all = shares_.back().cdf;
+    const double all = cells().back().cdf;
     std::size_t s = 0;
     for (int i = 0; i < rays; ++i) {
       const double within =
           random_uniform(random_key(key, RandomPurpose::sky_rays, static_cast<std::uint64_t>(i)));
       const double wanted = (i + within) / rays * all;
-      while (s + 1 < shares_.size() && !(shares_[s].cdf > wanted)) ++s;
-      const Share& share = shares_[s];
+      while (s + 1 < cells().size() && !(cells()[s].cdf > wanted)) ++s;
+      const Share& share = cells()[s];
       const Eigen::Array4f u = sky_.sobol_.point(i, key);
       const SkyCells::Sample drawn =
           sky_.cells_.sample(share.cell, static_cast<double>(u[0]), static_cast<double>(u[1]));
@@ -184,21 +273,20 @@ class SkyLight::Estimate {
     return (tally.all_open > 0.0).select(tally.seen_open / tally.all_open.max(1e-300), 0.0);
   }
   Eigen::ArrayXd result(const Tally& tally) const {
-    return E_open_ * seen_share(tally) + tally.seen_elsewhere;
+    return shares_->E_open * seen_share(tally) + tally.seen_elsewhere;
   }
   // The control variate. The visible share comes from the other rays: from the same rays it would
   // be a ratio of two estimates, which is biased.
   Eigen::ArrayXd corrected(const Tally& tally, const Tally& other) const {
-    return tally.seen_open + seen_share(other) * (E_open_ - tally.all_open) + tally.seen_elsewhere;
+    return tally.seen_open + seen_share(other) * (shares_->E_open - tally.all_open) +
+           tally.seen_elsewhere;
   }
 
   const SkyLight& sky_;
   const ElementCaster& caster_;
   const SurfacePoint& at_;
   std::uint64_t key_;
-  std::vector<Share> shares_{};
-  double rays_per_open_ray_ = 1.0;
-  Eigen::ArrayXd E_open_{};  // unobstructed, of the open cells
+  std::shared_ptr<const Shares> shares_;
 };
 
 SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key,

@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 
 #include "mesh/elements/element_caster.h"
+#include "radiosity/emitters/noise_goal.h"
 #include "radiosity/emitters/sky_cells.h"
 #include "radiosity/emitters/sky_sites.h"
 #include "radiosity/visibility/clear_panes.h"
@@ -18,6 +20,9 @@ namespace lightwell {
 struct SkyEffort {
   int first = 32;
   int most = 128;  ///< 1 to most_sky_rays
+  /// If set, the first rays estimate the noise, and as many follow as bring it there: half of
+  /// `first` to 16 `most`. Otherwise `most` rays follow.
+  NoiseGoal goal{};
 };
 constexpr int most_sky_rays = 1 << 16;
 
@@ -62,7 +67,14 @@ class SkyLight {
 
  private:
   class Estimate;
+  struct Share;
+  struct Shares;
+  void set_weights(Shares& shares) const;
+  Shares shares_of(const SkySites::Weights& site, const Eigen::Vector3d& normal) const;
+  std::shared_ptr<const Shares> shares_at(const ElementCaster& caster, const SurfacePoint& at,
+                                          std::uint64_t key) const;
 
+  std::uint64_t number_ = 0;  // of this sky among all
   int bands_ = 0;
   ClearPanes panes_;
   SkyCells cells_;

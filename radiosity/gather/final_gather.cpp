@@ -28,7 +28,8 @@ constexpr int gather_batch = 128;
 LightQuery light_query(const GatherPoint& at, std::uint64_t key, const GatherOptions& options) {
   return {.at = {at.position, at.normal, at.facet},
           .key = random_key(key, RandomPurpose::gather_shadows),
-          .shadows = options.shadows};
+          .shadows = options.shadows,
+          .sky_noise = at.sky_noise};
 }
 
 int ray_count(const GatherPoint& at, const GatherOptions& options) {
@@ -298,13 +299,15 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
                        const GatherOptions& options) {
   print.add(mesh);
   for (int i = 0; i < points.size(); ++i) {
-    const auto [position, normal, facet, key, rays] = points[i];
+    const auto [position, normal, facet, key, rays, sky_noise] = points[i];
     print.add(position);
     print.add(normal);
     print.add(facet);
     print.add(key.has_value());
     print.add(key.value_or(0));
     print.add(rays);
+    print.add(sky_noise.irradiance);
+    print.add(sky_noise.share);
   }
   // The run decides no bit of a result.
   const auto& [rays, max_specular_depth, shadows, replica, portals, run] = options;

@@ -29,7 +29,8 @@ struct GatherPoint {
   /// Key of the random numbers; empty: the point's index in the list. Points with the same key have
   /// the same noise of light from afar, which is then not in the differences between them.
   std::optional<std::uint64_t> key{};
-  int rays = 0;  ///< hemisphere rays; 0: GatherOptions::rays
+  int rays = 0;           ///< hemisphere rays; 0: GatherOptions::rays
+  NoiseGoal sky_noise{};  ///< LightQuery::sky_noise
 };
 
 /// A list of gather points. Either a reference to a given list, or a function that makes each point

@@ -32,10 +32,10 @@ constexpr double most_shared_exchange = 0.05;
 /// Vectors begin with random numbers keyed by node.
 std::vector<int> cut_graph(const ExchangeGraph& graph);
 
-/// Joins the clusters of a graph with more than `most_shared_exchange` between them, the largest
-/// shares first, and those for which `joins_any` is set with the one that they exchange most with.
-/// `cluster` has numbers from 0 for each node, and gets the new ones. A cluster without neighbours
-/// stays.
+/// Joins the clusters of a graph for which `joins_any` is set with the one that they exchange most
+/// with; if it is empty, those with more than `most_shared_exchange` between them, the largest
+/// shares first. `cluster` has numbers from 0 for each node, and gets the new ones. A cluster
+/// without neighbours stays.
 void join_clusters(const ExchangeGraph& graph, std::span<const char> joins_any,
                    std::vector<int>& cluster);
 

@@ -107,21 +107,25 @@ std::vector<PatchArrivals> cast_part_rays(const ElementCaster& caster, const Lig
   return arrivals;
 }
 
+bool is_outside(const PatchArrivals& arrivals) {
+  constexpr double outside = 0.7;  // share of the rays that leave the scene
+  return arrivals.escaped > outside;
+}
+
 // The node of each patch, -1 for those that take no part. Patches that see little but the outside
 // share one.
 std::vector<int> nodes_of(const std::vector<PatchArrivals>& arrivals, int& count) {
-  constexpr double outside = 0.7;
   std::vector<int> node(arrivals.size(), -1);
   int of_outside = -1;
   count = 0;
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
     if (!arrivals[i].takes_part) continue;
-    const bool is_outside = arrivals[i].escaped > outside;
-    if (is_outside && of_outside >= 0) {
+    const bool is_of_outside = is_outside(arrivals[i]);
+    if (is_of_outside && of_outside >= 0) {
       node[i] = of_outside;
     } else {
       node[i] = count++;
-      if (is_outside) of_outside = node[i];
+      if (is_of_outside) of_outside = node[i];
     }
   }
   return node;
@@ -146,13 +150,21 @@ std::vector<ExchangeLink> links_of(const PatchMesh& mesh, const std::vector<int>
 class TinyClusters {
  public:
   TinyClusters(const PatchMesh& mesh, const std::vector<PatchArrivals>& arrivals)
-      : mesh_(mesh), arrivals_(arrivals) {}
+      : mesh_(mesh), arrivals_(arrivals) {
+    // A thousand rooms may be parts, and the inside of a table leg is none.
+    constexpr double smallest = 1.0 / 1024.0;
+    for (int i = 0; i < mesh.patch_count(); ++i) {
+      if (arrivals[i].takes_part && !is_outside(arrivals[i])) {
+        smallest_area_ += smallest * mesh.area[i];
+      }
+    }
+  }
 
   // 1 for each cluster that is to join another; `cluster` of each patch, -1: none.
   std::vector<char> find(const std::vector<int>& cluster) const {
     const auto count = static_cast<std::size_t>(*std::ranges::max_element(cluster) + 1);
     struct ClusterSums {
-      double area = 0.0, within = 0.0, length = 0.0;
+      double area = 0.0, within = 0.0, length = 0.0, escaped = 0.0;
       int patches = 0;
     };
     std::vector<ClusterSums> sums(count);
@@ -161,6 +173,7 @@ class TinyClusters {
       ClusterSums& of = sums[cluster[i]];
       of.area += mesh_.area[i];
       ++of.patches;
+      of.escaped += mesh_.area[i] * arrivals_[i].escaped;
       for (const Arrivals& at : arrivals_[i].at) {
         if (cluster[at.patch] != cluster[i]) continue;
         of.within += mesh_.area[i] * double{at.share};
@@ -172,8 +185,11 @@ class TinyClusters {
     std::vector<char> is_tiny(count, 0);
     for (std::size_t c = 0; c < count; ++c) {
       const ClusterSums& of = sums[c];
-      const bool is_crack = of.within > 0.0 && of.length / of.within < crack * std::sqrt(of.area);
-      is_tiny[c] = of.patches < fewest || is_crack;
+      // Rays that leave the scene are long: the outside of a house with deep window frames is no
+      // crack.
+      const bool is_crack =
+          of.within > of.escaped && of.length / of.within < crack * std::sqrt(of.area);
+      is_tiny[c] = of.patches < fewest || of.area < smallest_area_ || is_crack;
     }
     return is_tiny;
   }
@@ -181,6 +197,7 @@ class TinyClusters {
  private:
   const PatchMesh& mesh_;
   const std::vector<PatchArrivals>& arrivals_;
+  double smallest_area_ = 0.0;  // of a part, m^2
 };
 
 // Renumbers clusters in falling order of area. Tiny clusters that exchange nothing with any other

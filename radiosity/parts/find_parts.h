@@ -20,8 +20,9 @@ int rays_per_patch_for_parts(int patches);
 ///    outside.
 /// 2. cut_graph() parts the patches where the exchange is less than 5 % of the smaller side's area
 ///    and where the passage is a bottleneck.
-/// 3. A part of fewer than four patches, or a crack (mean length of the rays within below 1/32 of
-///    the root of the area), joins the part that it exchanges most with; without such, the largest.
+/// 3. A part of fewer than four patches or of less than 1/1024 of all area but the outside, or a
+///    crack (mean length of the rays within below 1/32 of the root of the area), joins the part
+///    that it exchanges most with; without such, the largest.
 ///    Patches that see nothing, such as those under a block that stands on them, join the largest.
 ///
 /// The sides of a two-sided surface are patches of their own, so the outside of a house is a part.

@@ -5,9 +5,18 @@
 
 namespace lightwell {
 
+namespace {
+
+constexpr double bright = 4.0;
+
+}  // namespace
+
 double error_reference(double mean_irradiance, double own_irradiance) {
-  constexpr double bright = 4.0;
   return std::max(mean_irradiance, own_irradiance / bright);
+}
+
+NoiseGoal noise_goal(double mean_irradiance, double share) {
+  return {.irradiance = share * mean_irradiance, .share = share / bright};
 }
 
 std::vector<char> judged_patches(const PatchMesh& mesh) {

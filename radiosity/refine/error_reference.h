@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/patches/patch_mesh.h"
+#include "radiosity/emitters/noise_goal.h"
 #include "radiosity/solution/scene_parts.h"
 
 namespace lightwell {
@@ -12,6 +13,9 @@ namespace lightwell {
 /// scene or a quarter of the point's own, whichever is more. (With the mean alone, the inside of a
 /// lamp shade, a thousand times as bright as the room, would decide over the whole room.)
 double error_reference(double mean_irradiance, double own_irradiance);
+
+/// The goal of a noise that is `share` of error_reference() for a part's mean irradiance, W/m^2.
+NoiseGoal noise_goal(double mean_irradiance, double share);
 
 /// Per patch, 1 if errors of its irradiance count: if it reflects, since others see its light;
 /// where nothing reflects, if it does not emit, since such surfaces are there to be measured.

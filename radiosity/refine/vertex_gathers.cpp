@@ -8,6 +8,7 @@
 #include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/refine/effort.h"
+#include "radiosity/refine/error_reference.h"
 #include "radiosity/refine/gather_noise.h"
 #include "radiosity/refine/refine_solution.h"
 
@@ -60,6 +61,7 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
       parts_(refine.parts),
       rays_of_part_(static_cast<std::size_t>(parts_.judged_count()), options.rays),
       has_noise_goal_(!refine.efforts.empty() && refine.efforts.front().noise > 0.0),
+      efforts_(refine.efforts),
       inset_(std::ldexp(finest_inset, -refine.max_level)),
       visibility_(lit.direct_light.light_count()),
       unread_patch_(unread_patches(lit.scene, elements.base())),
@@ -70,7 +72,7 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
     };
   }
   share_pilot_rays();
-  sharpen_radiosity(caustic, refine.efforts);
+  sharpen_radiosity(caustic);
   gather_indirect_at(vertices_of(elements.base()));
 }
 
@@ -101,7 +103,24 @@ GatherPoint VertexGathers::gather_point(int vertex) const {
 GatherPoint VertexGathers::keyed_point(int vertex) const {
   GatherPoint point = gather_point(vertex);
   point.key = static_cast<std::uint64_t>(vertex);
+  point.sky_noise = sky_noise_at(vertex);
   return point;
+}
+
+// The noise that the sky's light may have: more where fewer rays are cast than at a part's typical
+// vertices, and where errors matter less for what somebody looks at.
+NoiseGoal VertexGathers::sky_noise_at(int vertex) const {
+  // Interpolation averages vertices, so that half of the square is left on surfaces.
+  constexpr double averaged = 0.7;
+  constexpr float least_importance = 1.0f / 64.0f;
+  if (!has_noise_goal_) return {};
+  const int patch = elements_.base().patch[elements_.inside(vertex, 0.0).element];
+  const auto part = static_cast<std::size_t>(parts_.judged_with(patch));
+  const double typical = pilot_rays(rays_of_part_[part], true);
+  const double few = typical / rays_[static_cast<std::size_t>(vertex)];
+  const float importance = std::max(parts_.importance_of(patch), least_importance);
+  const double times = std::sqrt(std::max(few, 1.0) / static_cast<double>(importance));
+  return noise_goal(efforts_[part].irradiance, averaged * times * efforts_[part].noise);
 }
 
 Spectrum VertexGathers::total(int vertex) const {
@@ -217,8 +236,7 @@ GatheredIrradiance VertexGathers::sharpened_indirect(const BandArray& radiosity)
 
 // Replaces the radiosity of patches, one value each, by what a gather finds at the base's vertices.
 // Where the noise is limited, that of this gather decides over the rays of the final gather.
-void VertexGathers::sharpen_radiosity(const BandArray& caustic,
-                                      const std::vector<PartEffort>& efforts) {
+void VertexGathers::sharpen_radiosity(const BandArray& caustic) {
   const PatchMesh& mesh = elements_.base();
   make_room();
   gather_direct_at_base();
@@ -233,7 +251,7 @@ void VertexGathers::sharpen_radiosity(const BandArray& caustic,
       mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays, parts_), parts_);
   for (std::size_t p = 0; p < rays_of_part_.size(); ++p) {
     rays_of_part_[p] =
-        rays_for_noise(pilot_rays(rays_of_part_[p], true), found[p], efforts[p].noise);
+        rays_for_noise(pilot_rays(rays_of_part_[p], true), found[p], efforts_[p].noise);
   }
   options_.rays = *std::ranges::max_element(rays_of_part_);
   share_pilot_rays();

@@ -92,7 +92,8 @@ class VertexGathers {
   bool is_unread(int vertex) const;
   void gather_direct_at_base();
   void share_pilot_rays();
-  void sharpen_radiosity(const BandArray& caustic, const std::vector<PartEffort>& efforts);
+  NoiseGoal sky_noise_at(int vertex) const;
+  void sharpen_radiosity(const BandArray& caustic);
   GatherPoint gather_point(int vertex) const;
   GatherPoint keyed_point(int vertex) const;
   GatheredIrradiance indirect_at(const std::vector<int>& vertices, std::uint64_t replica,
@@ -109,6 +110,7 @@ class VertexGathers {
   SceneParts parts_;
   std::vector<int> rays_of_part_;
   bool has_noise_goal_;
+  std::vector<PartEffort> efforts_;  // of each part, or empty
   double inset_;
   // Per vertex.
   std::vector<char> has_direct_;

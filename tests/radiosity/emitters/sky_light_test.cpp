@@ -166,6 +166,30 @@ TEST(SkyLight, WindowGivesItsClosedFormWithLittleNoise) {
   EXPECT_NEAR(spread(room, {0, 0, 0.8}, Vector3d::UnitZ(), -1).mean, on_desk, 0.02 * on_desk);
 }
 
+TEST(SkyLight, MeetsAGoalOfNoise) {
+  const UnderSky room{room_with_window()};
+  constexpr int floor = 4, count = 64;
+  for (const double x : {2.0, -0.5, -2.5}) {
+    const SurfacePoint at{{x, 0.3, 0}, Vector3d::UnitZ(), floor};
+    const double expected = pi * window_form_factor(at.position, at.normal);
+    for (const double share : {0.05, 0.01}) {
+      for (const NoiseGoal& goal :
+           {NoiseGoal{.irradiance = share * expected}, NoiseGoal{.share = share}}) {
+        double squares = 0.0;
+        for (std::uint64_t key = 0; key < count; ++key) {
+          const SkyGlow glow =
+              room.light.irradiance(room.caster, at, key, {.first = 32, .most = 128, .goal = goal});
+          squares += std::pow(static_cast<double>(glow.irradiance[1]) - expected, 2) / count;
+        }
+        // The root of 64 squares is known to 1 / sqrt(128) = 9 %, three of which count. The rays
+        // follow from the noise of the first 32, of which half meet the window's edge: known to
+        // 1 / sqrt(2 * 16) = 18 %.
+        EXPECT_LT(std::sqrt(squares), 1.45 * share * expected) << x << " m, " << share;
+      }
+    }
+  }
+}
+
 // What a wall sees that a picture hides, none of the sky, tells nothing of the picture's face.
 TEST(SkyLight, APictureIsKnownAsTheWallBehindItIs) {
   Scene scene = room_with_window();
