@@ -52,10 +52,12 @@ class ReflectedPower {
     // Rows of parts; the columns of a band are the power, the constant part, and that of each part.
     std::vector<Eigen::MatrixXd> matrix(bands, Eigen::MatrixXd::Zero(count, count));
     std::vector<Eigen::VectorXd> right(bands, Eigen::VectorXd::Zero(count));
+    Eigen::ArrayXXd variance = Eigen::ArrayXXd::Zero(count, bands);  // of A s - b where all s are 1
     for (Eigen::Index p = 0; p < count; ++p) {
       const std::vector<BalanceSample> samples = draw(chosen_[p]);
       const GatheredIrradiance found = gather(samples, by_part, chosen_[p]);
       const BandArray direct = channel_sum(found.direct, static_cast<int>(bands));
+      Eigen::ArrayXXd excess(static_cast<Eigen::Index>(samples.size()), bands);
       for (std::size_t i = 0; i < samples.size(); ++i) {
         const auto& [point, weight] = samples[i];
         const auto row = static_cast<Eigen::Index>(i);
@@ -68,11 +70,17 @@ class ReflectedPower {
           for (Eigen::Index q = 0; q < count; ++q) {
             matrix[k](p, q) -= by_rho * double{found.indirect(row, (1 + q) * bands + k)};
           }
+          const double arriving =
+              double{direct(row, k)} + found_in(found.indirect.row(row), k, bands);
+          excess(row, k) = weight * double{own[k]} - by_rho * arriving;
         }
       }
+      if (samples.empty()) continue;
+      variance.row(p) = (excess.rowwise() - excess.colwise().mean()).square().colwise().sum();
     }
     Eigen::ArrayXXd scales = Eigen::ArrayXXd::Ones(count, bands);
-    for (Eigen::Index k = 0; k < bands; ++k) scales.col(k) = solved(matrix[k], right[k]);
+    for (Eigen::Index k = 0; k < bands; ++k)
+      scales.col(k) = solved(matrix[k], right[k], variance.col(k));
     return scales;
   }
 
@@ -178,15 +186,44 @@ class ReflectedPower {
     return gather_irradiance(lit_, columns, points, balance_.gather);
   }
 
-  // s of A s = b; parts without power in the band keep theirs.
-  static Eigen::ArrayXd solved(Eigen::MatrixXd matrix, Eigen::VectorXd right) {
+  // The light of all columns of a band.
+  template <class Row>
+  static double found_in(const Row& columns, Eigen::Index band, Eigen::Index bands) {
+    double sum = 0.0;
+    for (Eigen::Index k = band; k < columns.size(); k += bands) sum += double{columns[k]};
+    return sum;
+  }
+
+  // s of A s = b, drawn towards 1 by how sure the points are of it: the light of lamps within a
+  // part is balanced already (see keep_power in reconstruct), while A_pp is in a bright part a
+  // small difference between what the part reflects and what comes back. `variance` is that of each
+  // row of A s - b. Parts without power in the band keep theirs.
+  static Eigen::ArrayXd solved(Eigen::MatrixXd matrix, Eigen::VectorXd right,
+                               const Eigen::ArrayXd& variance) {
     for (Eigen::Index p = 0; p < right.size(); ++p) {
       if (matrix(p, p) > 0.0) continue;
       matrix.row(p).setZero();
       matrix(p, p) = right[p] = 1.0;
     }
-    constexpr double most = 4.0;  // a larger factor is not to be trusted
-    return matrix.partialPivLu().solve(right).array().max(1.0 / most).min(most);
+    const auto within_limits = [](const Eigen::VectorXd& scales) -> Eigen::ArrayXd {
+      constexpr double most = 4.0;  // a larger factor is not to be trusted
+      return scales.array().max(1.0 / most).min(most);
+    };
+    const Eigen::ArrayXd rough = within_limits(matrix.partialPivLu().solve(right));
+    // Errors to expect before: of light from the part's own lamps, and of light through doors.
+    constexpr double of_own = 0.003, through_doors = 0.3;
+    for (Eigen::Index p = 0; p < right.size(); ++p) {
+      const double own = matrix(p, p);
+      const double from_others = std::max(own * rough[p] - matrix.row(p).dot(rough.matrix()), 0.0);
+      const double all = from_others + std::max(right[p], 0.0);
+      const double expected =
+          of_own + (all > 0.0 ? through_doors * from_others / all : through_doors);
+      const double weight = expected * expected / (expected * expected + variance[p] / (own * own));
+      matrix.row(p) *= weight / own;
+      matrix(p, p) = 1.0;
+      right[p] = 1.0 - weight + weight * right[p] / own;
+    }
+    return within_limits(matrix.partialPivLu().solve(right));
   }
 
   const LitScene& lit_;

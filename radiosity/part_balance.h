@@ -20,6 +20,11 @@ struct PartBalance {
 ///
 ///     s_p P_p = P_p0 + sum_q s_q P_pq
 ///
+/// The factors are drawn towards 1 by the variance of the sample points against the error to expect
+/// (0.3 %, and up to 30 % more for light from other parts): the light of lamps within a part is
+/// balanced by the patches' equations already, and P_p - P_pp, a small difference in a bright part,
+/// has the noise of few points.
+///
 /// P_p is the power that part p reflects by `radiosity`, P_p0 what it would reflect of the light
 /// straight from lamps and of what other surfaces emit, and P_pq of the light that part q reflects,
 /// all by gathers at sample points. One band has one set of equations, for all channels together.
