@@ -56,30 +56,36 @@ TEST(BalanceParts, UndoesTheFactorsOfParts) {
   }
 }
 
-// Few rays say little about the small difference between what a bright room reflects and what comes
-// back. A factor off by x with a variance of v is drawn to x e^2 / (e^2 + v), where e = 0.003 is
-// expected in the room of the lamp: at most e / 2 for each standard deviation, and three count.
-TEST(BalanceParts, LeavesTheRoomOfTheLampAsItIs) {
-  const Scene scene = three_rooms();
+// Of white walls, nine tenths of the light comes back: noise and errors of the light that rays read
+// are ten times as large in the factor that would balance the room.
+TEST(BalanceParts, LeavesAWhiteRoomWithALampAsItIs) {
+  Scene scene =
+      rooms_with_doors({{"white", {0, 0, 0}, {4, 5, 3}}, {"dim", {4.1, 0, 0}, {8.1, 5, 3}}},
+                       {{.x = 4.0, .y = 0.4, .width = 0.01}}, 0.9f);
+  const int lamp = add_material(scene, diffuse(scene.bands, 0.0f, 100.0f));
+  add_polygon(scene, "lamp", lamp,
+              {{1.8, 2.3, 2.9}, {1.8, 2.7, 2.9}, {2.2, 2.7, 2.9}, {2.2, 2.3, 2.9}});
   const SolvedScene solved = solve_scene(scene, {.accuracy = Accuracy{.share = 0.1}});
   const PatchMesh& mesh = solved.mesh;
   const SceneParts& parts = solved.solution.parts;
-  ASSERT_EQ(parts.count(), 3);
+  ASSERT_EQ(parts.count(), 2);
   const DirectLight direct(scene, mesh);
   const BandArray before = gatherable_radiosity(mesh, direct, solved.solution.irradiance());
-  BandArray after = before;
-  balance_parts({scene, ElementCaster(mesh), direct},
-                {.parts = parts, .rays = std::vector<int>(3, 16)}, after);
-  const std::vector<int> patch = vertex_patches(mesh);
-  const int of_lamp = part_of_lamp(solved);
-  double changed = 0.0, largest = 0.0;
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    if (parts.judged_with(patch[v]) != of_lamp || !(before(v, 0) > 0.0f)) continue;
-    changed = std::max(changed, std::abs(double{after(v, 0)} / double{before(v, 0)} - 1.0));
-    largest = std::max(largest, double{before(v, 0)});
+  for (const float times : {0.97f, 1.0f, 1.03f}) {
+    BandArray after = times * before;
+    balance_parts({scene, ElementCaster(mesh), direct},
+                  {.parts = parts, .rays = std::vector<int>(2, 16)}, after);
+    const std::vector<int> patch = vertex_patches(mesh);
+    double changed = 0.0;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      if (parts.judged_with(patch[v]) != part_of_lamp(solved) || !(before(v, 0) > 0.0f)) continue;
+      changed = std::max(
+          changed, std::abs(double{after(v, 0)} / (double{times} * double{before(v, 0)}) - 1.0));
+    }
+    // A third of 3 % is left where the noise is 1.4 times the expected error of 0.3 %; 16 rays at
+    // 512 points have more.
+    EXPECT_LT(changed, 0.01);
   }
-  ASSERT_GT(largest, 0.0);
-  EXPECT_LT(changed, 3.0 * 0.003 / 2.0);
 }
 
 TEST(BalanceParts, LeavesASceneOfOnePartAsItIs) {
