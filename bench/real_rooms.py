@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""Lightwell on real rooms (Mitsuba scene files) beside the path tracer of Mitsuba 3: time, memory and error in one table.
+
+  PYTHON bench/real_rooms.py LIGHTWELL FOLDER SIZE SAMPLES SCENE.xml... [-- OPTION...]
+
+PYTHON is a Python 3.11 with Mitsuba 3 and numpy (PyPI: mitsuba, numpy). LIGHTWELL is the program; `OPTION...` go to `lightwell run`. FOLDER
+gets copies of the scenes, pictures and reports. SIZE is WxH; the scene's camera keeps its field of view across. Plastics are read as matt in
+both programs, since Lightwell reads them so: their diffuse reflectance stays, their gloss goes. The references are two pictures of SAMPLES
+paths a pixel each.
+
+Errors are those of means over squares of 8 x 8 pixels, luminance, relative to the mean of the references: sqrt(mean (P - A)(P - B)), which the
+noise of the references A and B does not raise; and the median of |P / reference - 1|. Squares above eight times the median of the
+reference are left out: they show lamps. Mitsuba's own error is sqrt(mean (A - B)^2 / 2). `equal` is the processor time of Mitsuba to
+Lightwell's error over Lightwell's: a path tracer's error falls as 1 / sqrt(time).
+"""
+import json
+import os
+import pathlib
+import re
+import resource
+import subprocess
+import sys
+
+import numpy as np
+
+
+def matt_copy(scene, folder):
+    """The scene with diffuse materials in place of plastics, beside links to its other files."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in scene.parent.iterdir():
+        link = folder / file.name
+        if file.name != scene.name and not link.exists():
+            link.symlink_to(file.resolve())
+    lines, in_plastic = [], False
+    of_gloss = re.compile(r'name="(alpha|distribution|nonlinear|(int|ext)_?ior|specular_?reflectance)"', re.IGNORECASE)
+    for line in scene.read_text().splitlines():
+        if "<bsdf" in line:
+            in_plastic = re.search(r'type="(rough)?plastic"', line) is not None
+        if in_plastic and of_gloss.search(line):
+            continue
+        if in_plastic:
+            line = re.sub(r'type="(rough)?plastic"', 'type="diffuse"', line)
+            line = re.sub(r'name="diffuse_?[rR]eflectance"', 'name="reflectance"', line)
+        if "</bsdf>" in line:
+            in_plastic = False
+        # A property of film that Mitsuba 3 no longer has, and integrators that it never had.
+        if "highQualityEdges" not in line and "high_quality_edges" not in line:
+            lines.append(re.sub(r'<integrator type="[^"]*"', '<integrator type="path"', line))
+    copy = folder / scene.name
+    copy.write_text("\n".join(lines))
+    return copy
+
+
+def seconds(who=resource.RUSAGE_SELF):
+    used = resource.getrusage(who)
+    return used.ru_utime + used.ru_stime
+
+
+def mitsuba_picture(mi, file, width, height, samples, seed):
+    """The picture as an array, and its processor seconds without reading the scene."""
+    scene = mi.load_file(str(file))
+    sensor = scene.sensors()[0]
+    parameters = mi.traverse(sensor)
+    parameters["film.size"] = [width, height]
+    parameters.update()
+    start = seconds()
+    picture = mi.load_dict({"type": "path", "max_depth": 65}).render(scene, sensor=sensor, spp=samples, seed=seed)
+    return np.array(picture, dtype=np.float64)[..., :3], seconds() - start
+
+
+def luminance_of_squares(picture):
+    """Luminance of means over squares of 8 x 8 pixels."""
+    height, width = picture.shape[0] // 8 * 8, picture.shape[1] // 8 * 8
+    squares = picture[:height, :width].reshape(height // 8, 8, width // 8, 8, 3).mean((1, 3))
+    return squares @ np.array([0.2126, 0.7152, 0.0722])
+
+
+def lightwell_picture(mi, program, file, folder, size, options):
+    """The picture of the first camera, processor seconds, and the report."""
+    start = seconds(resource.RUSAGE_CHILDREN)
+    subprocess.run([program, "run", str(file), "-o", str(folder), "--size", size, "--quiet", *options], check=False)
+    spent = seconds(resource.RUSAGE_CHILDREN) - start
+    report = json.loads((folder / "report.json").read_text())
+    picture = mi.Bitmap(str(sorted(folder.glob("*.exr"))[0])).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32)
+    return np.array(picture, dtype=np.float64), spent, report
+
+
+def main(arguments):
+    if len(arguments) < 5:
+        sys.exit(__doc__)
+    options = arguments[arguments.index("--") + 1:] if "--" in arguments else []
+    program, folder, size, samples, *scenes = arguments[:len(arguments) - len(options) - (1 if options else 0)]
+    import mitsuba as mi
+    mi.set_variant("scalar_rgb")
+    width, height = (int(n) for n in size.split("x"))
+    print("| scene | CPU s | MB | elements | bias | error | median | Mitsuba: CPU s | error | equal |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    for scene in (pathlib.Path(s) for s in scenes):
+        name = scene.parent.name
+        home = pathlib.Path(folder) / name
+        file = matt_copy(scene, home / "scene")
+        ours, spent, report = lightwell_picture(mi, program, file, home / "lightwell", size, options)
+        pairs = [mitsuba_picture(mi, file, width, height, int(samples), seed) for seed in (1, 2)]
+        a, b = (luminance_of_squares(picture) for picture, _ in pairs)
+        p, reference = luminance_of_squares(ours), 0.5 * (a + b)
+        shown = reference < 8.0 * np.median(reference)
+        mean = reference[shown].mean()
+        error = np.sqrt(max(((p - a) * (p - b))[shown].mean(), 0.0)) / mean
+        theirs = np.sqrt((((a - b) ** 2)[shown] / 2.0).mean()) / mean
+        median = np.median(np.abs(p / np.maximum(reference, 1e-12) - 1.0)[shown])
+        their_seconds = 0.5 * (pairs[0][1] + pairs[1][1])
+        equal = their_seconds * (theirs / max(error, 1e-12)) ** 2 / spent
+        print(f"| {name} | {spent:.0f} | {report['peak_memory_mb']:.0f} | {report['elements']} | "
+              f"{100.0 * (p[shown].mean() / mean - 1.0):+.1f} % | {100.0 * error:.1f} % | {100.0 * median:.1f} % | "
+              f"{their_seconds:.0f} | {100.0 * theirs:.1f} % | {equal:.2g} |", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
