@@ -103,18 +103,27 @@ std::string energy_text(const Json& facts) {
   return text;
 }
 
-// The error estimate, with the name of the part of the scene that it is of.
+// The error estimate of the largest part that has one, and that of the worst.
 std::string error_text(const Json& facts) {
-  const double error = facts["error_estimate"];
-  const char* const mean =
-      facts["parts"].size() > 1 ? "the mean irradiance of the worst part" : "the mean irradiance";
+  const double worst = facts["error_estimate"];
+  const Json& parts = facts["parts"];
+  const auto largest = std::ranges::find_if(
+      parts, [](const Json& part) { return !part["error_estimate"].is_null(); });
+  double error = worst;
+  std::string of, and_worst;
+  if (parts.size() > 1 && largest != parts.end()) {
+    error = (*largest)["error_estimate"];
+    of = fmt::format(" of the largest part, '{}'", (*largest)["name"].get<std::string>());
+    if (worst > error) and_worst = fmt::format("; {:.2f} % in the worst part", 100.0 * worst);
+  }
   std::string where;
   if (facts.contains("looked_from")) {
     std::vector<std::string> names = facts["looked_from"];
     for (std::string& name : names) name = "'" + name + "'";
     where = fmt::format(" in what is seen from {}", fmt::join(names, ", "));
   }
-  return fmt::format("{:.2f} % of {}, estimated (relative RMS){}", 100.0 * error, mean, where);
+  return fmt::format("{:.2f} % of the mean irradiance{}, estimated (relative RMS){}{}",
+                     100.0 * error, of, where, and_worst);
 }
 
 // The number of parts, and those with the largest errors.

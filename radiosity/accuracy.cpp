@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "radiosity/refine/effort.h"
+#include "radiosity/refine/error_reference.h"
 
 namespace lightwell {
 namespace {
@@ -25,39 +27,47 @@ double noise_share(double target) {
 
 namespace {
 
-// The means of value(irradiance) over the patches of each part.
-template <class Value>
-std::vector<double> means_over_parts(const PatchMesh& mesh, const BandArray& patch_radiosity,
-                                     const SceneParts& parts, Value&& value) {
-  std::vector<double> sum(static_cast<std::size_t>(parts.judged_count()), 0.0), area(sum);
-  for (int p = 0; p < mesh.patch_count(); ++p) {
-    const Eigen::ArrayXf rho = mesh.reflectance.row(p).transpose();
-    const double known = (rho > 0.0f).cast<double>().sum();
-    if (!(known > 0.0)) continue;
-    const Eigen::ArrayXf reflected = (patch_radiosity.row(p) - mesh.emission.row(p)).transpose();
-    Spectrum E = (rho > 0.0f).select(reflected / rho.max(1e-30f), 0.0f);
-    const auto mean = static_cast<float>(E.cast<double>().sum() / known);
-    E = (rho > 0.0f).select(E, mean);
-    const int part = parts.judged_with(p);
-    sum[part] += mesh.area[p] * value(E);
-    area[part] += mesh.area[p];
-  }
-  for (std::size_t q = 0; q < sum.size(); ++q) sum[q] = area[q] > 0.0 ? sum[q] / area[q] : 0.0;
-  return sum;
+// Irradiance of a patch, W/m^2; a band that the patch absorbs whole takes the mean of its other
+// bands. Empty if nothing reflects.
+std::optional<Spectrum> patch_irradiance(const PatchMesh& mesh, const BandArray& patch_radiosity,
+                                         int patch) {
+  const Eigen::ArrayXf rho = mesh.reflectance.row(patch).transpose();
+  const double known = (rho > 0.0f).cast<double>().sum();
+  if (!(known > 0.0)) return std::nullopt;
+  const Eigen::ArrayXf reflected =
+      (patch_radiosity.row(patch) - mesh.emission.row(patch)).transpose();
+  const Spectrum E = (rho > 0.0f).select(reflected / rho.max(1e-30f), 0.0f);
+  const auto mean = static_cast<float>(E.cast<double>().sum() / known);
+  return (rho > 0.0f).select(E, mean);
 }
 
 }  // namespace
 
 std::vector<double> mean_illuminances(const Bands& bands, const PatchMesh& mesh,
                                       const BandArray& patch_radiosity, const SceneParts& parts) {
-  return means_over_parts(mesh, patch_radiosity, parts,
-                          [&](const Spectrum& E) { return luminous(bands, E); });
+  std::vector<double> sum(static_cast<std::size_t>(parts.judged_count()), 0.0), area(sum);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const auto E = patch_irradiance(mesh, patch_radiosity, p);
+    if (!E) continue;
+    const int part = parts.judged_with(p);
+    sum[part] += mesh.area[p] * luminous(bands, *E);
+    area[part] += mesh.area[p];
+  }
+  for (std::size_t q = 0; q < sum.size(); ++q) sum[q] = area[q] > 0.0 ? sum[q] / area[q] : 0.0;
+  return sum;
 }
 
-std::vector<double> mean_irradiances(const PatchMesh& mesh, const BandArray& patch_radiosity,
-                                     const SceneParts& parts) {
-  return means_over_parts(mesh, patch_radiosity, parts,
-                          [](const Spectrum& E) { return static_cast<double>(E.mean()); });
+std::vector<double> reference_irradiances(const PatchMesh& mesh, const BandArray& patch_radiosity,
+                                          const SceneParts& parts) {
+  PartMeans means(parts);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const auto E = patch_irradiance(mesh, patch_radiosity, p);
+    if (E) means.add(p, mesh.area[p], E->cast<double>().mean());
+  }
+  means.finish();
+  std::vector<double> references;
+  for (int q = 0; q < parts.judged_count(); ++q) references.push_back(means.of_part(q));
+  return references;
 }
 
 double mean_illuminance(const Bands& bands, const PatchMesh& mesh,

@@ -35,9 +35,10 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
 std::vector<double> mean_illuminances(const Bands& bands, const PatchMesh& mesh,
                                       const BandArray& patch_radiosity, const SceneParts& parts);
 
-/// Mean irradiance of each part, mean of the bands, W/m^2.
-std::vector<double> mean_irradiances(const PatchMesh& mesh, const BandArray& patch_radiosity,
-                                     const SceneParts& parts);
+/// The irradiance by which errors in each part are judged (see PartMeans), from the light of
+/// patches, mean of the bands, W/m^2.
+std::vector<double> reference_irradiances(const PatchMesh& mesh, const BandArray& patch_radiosity,
+                                          const SceneParts& parts);
 
 /// The effort of the first attempt at `target`, an error relative to the mean irradiance: 95 % of
 /// the target for the tolerance of refinement (0 if `refines` is false), and 1024 rays for 1 %,

@@ -52,16 +52,6 @@ std::vector<double> targets_of(const Scene& scene, const SolveOptions& options,
   return targets;
 }
 
-// The mean irradiance of each part, W/m^2; of dark ones as PartMeans has it.
-std::vector<double> irradiances_of(const SolvedScene& patches) {
-  constexpr double least = 1e-4;
-  const RadiositySolution& s = patches.solution;
-  std::vector<double> means = mean_irradiances(patches.mesh, s.patch_radiosity, s.parts);
-  const double most = *std::ranges::max_element(means);
-  for (double& mean : means) mean = std::max(mean, least * most);
-  return means;
-}
-
 void require_finite(const Scene& scene, const RadiositySolution& solution) {
   const BandArray E = solution.irradiance();
   const Eigen::Index odd = E.rows() - E.isFinite().rowwise().all().count();
@@ -113,7 +103,8 @@ class GatherAttempts {
         solved_(solved),
         target_(target_of(scene, options, solved)),
         targets_(targets_of(scene, options, solved)),
-        irradiances_(irradiances_of(solved)),
+        irradiances_(reference_irradiances(solved.mesh, solved.solution.patch_radiosity,
+                                           solved.solution.parts)),
         options_(with_portals(
             sources, solved,
             effective_options(options, target_, solved, sources.by_channel.column_count()))),
@@ -355,7 +346,7 @@ class GatherAttempts {
   SolvedScene& solved_;
   double target_;                    // relative to the mean irradiance of the scene
   std::vector<double> targets_;      // relative to the mean irradiance of each part
-  std::vector<double> irradiances_;  // means of the parts, W/m^2
+  std::vector<double> irradiances_;  // by which errors in each part are judged, W/m^2
   SolveOptions options_;
   std::vector<Effort> efforts_{};  // of each part
   int attempt_ = 0;

@@ -79,8 +79,9 @@ class ReflectedPower {
       variance.row(p) = (excess.rowwise() - excess.colwise().mean()).square().colwise().sum();
     }
     Eigen::ArrayXXd scales = Eigen::ArrayXXd::Ones(count, bands);
-    for (Eigen::Index k = 0; k < bands; ++k)
+    for (Eigen::Index k = 0; k < bands; ++k) {
       scales.col(k) = solved(matrix[k], right[k], variance.col(k));
+    }
     return scales;
   }
 
@@ -210,7 +211,9 @@ class ReflectedPower {
       return scales.array().max(1.0 / most).min(most);
     };
     const Eigen::ArrayXd rough = within_limits(matrix.partialPivLu().solve(right));
-    // Errors to expect before: of light from the part's own lamps, and of light through doors.
+    // Errors to expect before. Rows of 512 rays have a noise of 1/sqrt(512), of which a fifteenth
+    // is left in the mean over 200 patches or more. Without balance, light behind two doors was off
+    // by 27 to 40 % with any mesh.
     constexpr double of_own = 0.003, through_doors = 0.3;
     for (Eigen::Index p = 0; p < right.size(); ++p) {
       const double own = matrix(p, p);

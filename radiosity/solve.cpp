@@ -242,7 +242,7 @@ int rays_in_time(double spent, double allowed, int most) {
 // Solves the equations; once the time is up, with rows of few rays. If the time is limited from the
 // start, these are solved first, and tell how many rays there is time for.
 SolvedEquations solve_in_time(const EquationTask& task, const SolveOptions& options) {
-  // As much as each of the three gathers that follow: two pilots and the final one.
+  // Rows get as much time as each of the three gathers that follow: two pilots and the final one.
   constexpr double share_of_rows = 0.25;
   std::optional<SolvedEquations> rough;
   SolveOptions full = options;

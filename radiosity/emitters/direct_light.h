@@ -69,7 +69,7 @@ struct LightQuery {
   SurfacePoint at{};
   std::uint64_t key = 0;  ///< of the shadow rays' random numbers
   ShadowOptions shadows{};
-  /// Noise that the dome's light may have. If set, the rays that it takes are cast, from a sixth of
+  /// Noise that the dome's light may have. If set, the rays that it takes are cast, from 3/16 of
   /// ShadowOptions::sky_rays to 16 times as many; otherwise `shadows` decides alone.
   NoiseGoal sky_noise{};
   Lights lights = Lights::all;

@@ -295,7 +295,8 @@ void join_clusters(const ExchangeGraph& graph, std::span<const char> joins_any,
         links, [](const auto& a, const auto& b) { return a.second < b.second; });
     clusters.join(most->first, c);
   }
-  // What joins is small, yet the links that it brings along may be more than two rooms share.
+  // Two rooms stay apart although a small cluster that joined one of them exchanges light with the
+  // other.
   if (joins_any.empty()) join_by_share(clusters);
   std::vector<int> number(static_cast<std::size_t>(clusters.count()), -1);
   int count = 0;

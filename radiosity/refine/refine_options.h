@@ -13,7 +13,7 @@ struct PartEffort {
   double tolerance = 0.0;   ///< RefineOptions::tolerance within the part
   double noise = 0.0;       ///< most noise of the final gather, relative to the part's mean; 0: any
   int rays = 0;             ///< of the final gather in the part
-  double irradiance = 0.0;  ///< mean over the part, of bands too, W/m^2
+  double irradiance = 0.0;  ///< by which errors in the part are judged, mean of bands, W/m^2
 };
 
 /// Options of refinement.

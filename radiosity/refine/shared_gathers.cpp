@@ -17,7 +17,7 @@ namespace {
 // The smallest crumbs that share: two records and one vertex, or enough to save half of the
 // gathers.
 constexpr std::size_t fewest_read = 8, fewest_unread = 3;
-// Of the typical area of a vertex: three levels of splits below.
+// Largest mean area of a crumb's vertices as a share of the typical one: three levels of splits.
 constexpr double largest_share = 1.0 / 64.0;
 // Vertices of a group. Four records of 32 save seven of eight gathers, two of 64 all but 3 %.
 constexpr std::size_t group_of_read = 32, group_of_unread = 64, fewest_of_four = 16;

@@ -56,8 +56,8 @@ TEST(BalanceParts, UndoesTheFactorsOfParts) {
   }
 }
 
-// Of white walls, nine tenths of the light comes back: noise and errors of the light that rays read
-// are ten times as large in the factor that would balance the room.
+// White walls send nine tenths of the light back: noise and errors of the light that rays read are
+// ten times as large in the factor that would balance the room.
 TEST(BalanceParts, LeavesAWhiteRoomWithALampAsItIs) {
   Scene scene =
       rooms_with_doors({{"white", {0, 0, 0}, {4, 5, 3}}, {"dim", {4.1, 0, 0}, {8.1, 5, 3}}},
