@@ -111,6 +111,8 @@ class GatherAttempts {
         pilot_gathers_(std::in_place, scene, std::move(solved.mesh), sources.by_channel,
                        solved.solution) {
     options_.refine.parts = solved.solution.parts;
+    estimates_.resize(targets_.size());
+    raised_.assign(targets_.size(), 1);
     std::vector<Effort> efforts;
     for (const double target : targets_) {
       efforts.push_back(target > 0.0 ? first_effort(target, options.refine.tolerance > 0.0)
@@ -231,14 +233,22 @@ class GatherAttempts {
 
   void estimate() {
     Eigen::ArrayXf& of_elements = solved_.solution.interpolation_error;
-    estimates_ = estimate_batch(0, of_elements.size() == 0 ? &of_elements : nullptr, {});
+    const bool has_errors = of_elements.size() > 0;
+    if (!has_errors) raised_.assign(estimates_.size(), 1);
+    const std::vector<ErrorEstimate> first =
+        estimate_batch(0, has_errors ? nullptr : &of_elements, raised_);
+    for (std::size_t p = 0; p < first.size(); ++p) {
+      if (raised_[p] != 0) estimates_[p] = first[p];
+    }
     // If the target lies between the ends of the estimate, more sample points cost less than
     // another attempt: a single point may hold a fifth of the squared error. Four batches halve the
     // standard error of one.
     constexpr int most_batches = 4;
     for (int batch = 1; batch < most_batches; ++batch) {
       std::vector<char> wanted(estimates_.size(), 0);
-      for (std::size_t p = 0; p < wanted.size(); ++p) wanted[p] = is_undecided(p) ? 1 : 0;
+      for (std::size_t p = 0; p < wanted.size(); ++p) {
+        wanted[p] = raised_[p] != 0 && is_undecided(p) ? 1 : 0;
+      }
       if (std::ranges::count(wanted, 1) == 0) break;
       const std::vector<ErrorEstimate> more = estimate_batch(batch, nullptr, wanted);
       for (std::size_t p = 0; p < wanted.size(); ++p) {
@@ -265,6 +275,7 @@ class GatherAttempts {
     options_.gather.rays = std::min(few_rays, options_.gather.rays);
     options_.error_points = std::min(few_points, options_.error_points);
     options_.refine.efforts.clear();
+    raised_.assign(estimates_.size(), 1);
     if (state_ == State::has_nothing) {
       pilot_ = pilot_gathers_->gather_at_patches(options_);
       take_mesh(false);
@@ -319,6 +330,7 @@ class GatherAttempts {
   bool raise_effort() {
     if (!may_repeat()) return false;
     std::vector<Effort> efforts = efforts_;
+    std::vector<char> raised(efforts.size(), 0);
     bool is_met = true, is_more = false, is_finer = false;
     for (std::size_t p = 0; p < efforts.size(); ++p) {
       if (estimates_[p].batches == 0 || estimates_[p].error() <= targets_[p]) continue;
@@ -326,6 +338,7 @@ class GatherAttempts {
       const std::optional<Effort> next = next_effort_of(p);
       if (!next) continue;
       is_more = true;
+      raised[p] = 1;
       is_finer = is_finer || next->refine_tolerance < efforts_[p].refine_tolerance;
       efforts[p] = *next;
     }
@@ -337,6 +350,7 @@ class GatherAttempts {
     }
     if (is_finer) pilot_.reset();
     take(std::move(efforts));
+    raised_ = std::move(raised);
     ++attempt_;
     return true;
   }
@@ -360,6 +374,7 @@ class GatherAttempts {
   std::optional<ElementCaster> caster_{};
   KeptGathers kept_{};
   std::vector<ErrorEstimate> estimates_{};  // of each part
+  std::vector<char> raised_{};  // 1 for each part whose light changed since its estimate
   Stopwatch watch_{};
   std::map<std::string, double> spent_{};
 };

@@ -385,6 +385,17 @@ int DirectLight::first_light(Lights lights) const {
   return static_cast<int>(first);
 }
 
+// The light of the sky's dome at scale 1; the scale is `full`.
+SkyGlow DirectLight::dome_glow(const ElementCaster& caster, const LightQuery& query, double full,
+                               std::uint64_t key) const {
+  NoiseGoal goal = query.sky_noise;
+  if (!goal.is_set() && query.shadows.is_one_ray()) {
+    return {sky_->irradiance_by_one_ray(caster, query.at, key)};
+  }
+  if (full > 0.0) goal.irradiance /= full;
+  return sky_->irradiance(caster, query.at, key, sky_effort(query.shadows, goal));
+}
+
 template <class Add>
 void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
                                  EmitterVisibility* visibility, Add&& add) const {
@@ -420,10 +431,7 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
   if (visibility) *visibility = {};
   if (dome) {
     const double full = dome->light().mean();
-    NoiseGoal goal = query.sky_noise;
-    if (full > 0.0) goal.irradiance /= full;
-    const SkyGlow glow =
-        sky_->irradiance(caster, query.at, dome->key, sky_effort(query.shadows, goal));
+    const SkyGlow glow = dome_glow(caster, query, full, dome->key);
     add(dome->channel, dome->light(), glow.irradiance);
     if (visibility) visibility->sky_noise = full * glow.noise;
   }

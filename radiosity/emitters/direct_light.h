@@ -21,6 +21,7 @@ namespace lightwell {
 
 class ExactShadows;
 class SkyLight;
+struct SkyGlow;
 
 /// An emitting facet whose light is a closed form times visibility, never left to random rays.
 struct Emitter {
@@ -49,6 +50,9 @@ struct ShadowOptions {
   /// Rays to the dome of the sky, of which an eighth come first; 0: as to an emitter. 1 to
   /// most_sky_rays.
   int sky_rays = 0;
+
+  /// True if each light and the sky get one ray at most, without an estimate of the noise.
+  bool is_one_ray() const { return max_rays == 1 && sky_rays == 0; }
 };
 
 /// Visibility of the lights from a point.
@@ -148,6 +152,8 @@ class DirectLight {
 
  private:
   int first_light(Lights lights) const;
+  SkyGlow dome_glow(const ElementCaster& caster, const LightQuery& query, double full,
+                    std::uint64_t key) const;
   template <class Add>
   void for_each_light(const ElementCaster& caster, const LightQuery& query,
                       EmitterVisibility* visibility, Add&& add) const;

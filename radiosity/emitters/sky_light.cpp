@@ -112,7 +112,7 @@ SkyLight::Shares SkyLight::shares_of(const SkySites::Weights& site,
 std::shared_ptr<const SkyLight::Shares> SkyLight::shares_at(const ElementCaster& caster,
                                                             const SurfacePoint& at,
                                                             std::uint64_t key) const {
-  const SkySites::Weights* site = sites_.find(at);
+  const SkySites::Site* site = sites_.find(at);
   if (!site) {
     const SkySites::Weights own =
         sites_.sample(caster, at, random_key(key, RandomPurpose::sky_point_rays));
@@ -120,13 +120,14 @@ std::shared_ptr<const SkyLight::Shares> SkyLight::shares_at(const ElementCaster&
   }
   struct Last {
     std::uint64_t sky = 0;
-    const SkySites::Weights* site = nullptr;
+    const SkySites::Site* site = nullptr;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     std::shared_ptr<const Shares> shares{};
   };
   thread_local Last last;
   if (last.sky != number_ || last.site != site || last.normal != at.normal) {
-    last = {number_, site, at.normal, std::make_shared<const Shares>(shares_of(*site, at.normal))};
+    last = {number_, site, at.normal,
+            std::make_shared<const Shares>(shares_of(site->weights, at.normal))};
   }
   return last.shares;
 }
@@ -292,6 +293,33 @@ class SkyLight::Estimate {
 SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key,
                              const SkyEffort& effort) const {
   return Estimate(*this, caster, at, key).glow(effort);
+}
+
+Spectrum SkyLight::irradiance_by_one_ray(const ElementCaster& caster, const SurfacePoint& at,
+                                         std::uint64_t key) const {
+  const SkySites::Site* found = sites_.find(at);
+  const SkySites::Site& site = found ? *found : sites_.unknown();
+  const auto u = [&](std::uint64_t i) {
+    return random_uniform(random_key(key, RandomPurpose::sky_rays, i));
+  };
+  const auto wanted = static_cast<float>(u(0) * static_cast<double>(site.sum.back()));
+  const auto drawn = std::upper_bound(site.sum.begin(), site.sum.end() - 1, wanted);
+  const auto cell = static_cast<int>(drawn - site.sum.begin());
+  const float step = *drawn - (drawn == site.sum.begin() ? 0.0f : *(drawn - 1));
+  const SkyCells::Sample sample = cells_.sample(cell, u(1), u(2));
+  const double cosine = sample.direction.dot(at.normal);
+  if (!(cosine > 0.0) || !(sample.density > 0.0) || !(step > 0.0f)) return Spectrum::Zero(bands_);
+  const Ray ray{.origin = at.position, .direction = sample.direction, .origin_group = at.facet};
+  Spectrum passed = Spectrum::Ones(bands_);
+  std::uint8_t blocked = 0;
+  caster.occluded({&ray, 1}, {&blocked, 1});
+  if (blocked != 0) {
+    if (panes_.empty()) return Spectrum::Zero(bands_);
+    passed = panes_.passed(caster, ray);
+  }
+  // L cos over the density of the direction: its density within the cell times step / all.
+  const double weight = cosine * cells_.power(cell) * static_cast<double>(site.sum.back() / step);
+  return passed * (weight * cells_.colour(cell)).cast<float>();
 }
 
 }  // namespace lightwell

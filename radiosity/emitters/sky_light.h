@@ -62,6 +62,11 @@ class SkyLight {
   SkyGlow irradiance(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key,
                      const SkyEffort& effort = {}) const;
 
+  /// An estimate of E by a single ray, unbiased, for points that are themselves many samples: the
+  /// noise is that of the light through the cells that the site knows as open.
+  Spectrum irradiance_by_one_ray(const ElementCaster& caster, const SurfacePoint& at,
+                                 std::uint64_t key) const;
+
   /// Irradiance of an unobstructed point: see SkyCells::unobstructed.
   Spectrum unobstructed(const Eigen::Vector3d& normal) const { return cells_.unobstructed(normal); }
 

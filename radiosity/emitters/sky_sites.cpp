@@ -26,6 +26,13 @@ int octant_of(const Eigen::Vector3d& position, double cube) {
   return octant;
 }
 
+// The axis that a normal is nearest to, and its sign.
+Eigen::Vector3d axis_of(const Eigen::Vector3d& normal) {
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  return (normal[axis] > 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(axis);
+}
+
 std::uint64_t site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
                        double cube) {
   int axis = 0;
@@ -145,12 +152,14 @@ SkySites::SkySites(const SkyCells& cells, const ClearPanes& panes, double scene_
           beside.push_back(&visibilities[static_cast<std::size_t>(found->second)]);
         }
       }
-      sites_[i] = weights_of(visibilities[i], beside);
+      sites_[i] = site_of(weights_of(visibilities[i], beside), axis_of(point.normal));
     }
   });
+  unknown_.weights.fill(1.0f);
+  unknown_ = site_of(unknown_.weights, Eigen::Vector3d::Zero());
 }
 
-const SkySites::Weights* SkySites::find(const SurfacePoint& at) const {
+const SkySites::Site* SkySites::find(const SurfacePoint& at) const {
   const auto found = site_of_.find(site_key(at.position, at.normal, cube_));
   return found == site_of_.end() ? nullptr : &sites_[static_cast<std::size_t>(found->second)];
 }
@@ -247,6 +256,31 @@ SkySites::Weights SkySites::weights_of(const CellVisibility& own,
         likely > 0.0f ? std::max(least, std::sqrt(likely)) : 0.0f;
   }
   return weights;
+}
+
+// Rays to cells that are not known as open are thinned to a third of the others, as in
+// SkyLight::set_weights.
+SkySites::Site SkySites::site_of(const Weights& weights, const Eigen::Vector3d& axis) const {
+  // Normals of a site lie up to 55 degrees from its axis, so cells at its horizon count, too. Cells
+  // more than 145 degrees away are below the horizon of all normals.
+  constexpr double least_cosine = 0.2, below_all = -0.82, most_elsewhere = 1.0 / 3.0;
+  Site site{.weights = weights};
+  std::vector<double> facing(SkyCells::count);
+  double open = 0.0, elsewhere = 0.0;
+  for (int c = 0; c < SkyCells::count; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const double cosine = cells_.direction(c, 0.5, 0.5).dot(axis);
+    facing[i] = cosine < below_all ? 0.0 : cells_.power(c) * std::max(cosine, least_cosine);
+    (weights[i] > 0.0f ? open : elsewhere) += facing[i] * (weights[i] > 0.0f ? weights[i] : 1.0f);
+  }
+  const double thinning =
+      open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < SkyCells::count; ++i) {
+    sum += facing[i] * (weights[i] > 0.0f ? double{weights[i]} : thinning);
+    site.sum[i] = static_cast<float>(sum);
+  }
+  return site;
 }
 
 }  // namespace lightwell

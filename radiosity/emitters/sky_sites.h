@@ -21,13 +21,21 @@ class SkySites {
   /// Per cell, the sampling weight of its rays beside its unobstructed irradiance; 0: no ray of the
   /// site got out.
   using Weights = std::array<float, SkyCells::count>;
+  struct Site {
+    Weights weights{};
+    /// Running sum over the cells of the weights that single rays are drawn by: power, times what
+    /// `weights` says, times the cosine to the axis that surfaces of the site face.
+    std::array<float, SkyCells::count> sum{};
+  };
 
   /// Casts rays from the surfaces of `mesh`; the same bits for any number of threads.
   SkySites(const SkyCells& cells, const ClearPanes& panes, double scene_diagonal,
            const PatchMesh& mesh);
 
   /// The site that holds a point; null: no surface lies there.
-  const Weights* find(const SurfacePoint& at) const;
+  const Site* find(const SurfacePoint& at) const;
+  /// The site of points of which nothing is known: all cells count by their power.
+  const Site& unknown() const { return unknown_; }
   /// Weights of a point that lies in no site, from rays of the point alone.
   Weights sample(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key) const;
 
@@ -43,12 +51,14 @@ class SkySites {
                               std::uint64_t key) const;
   static Weights weights_of(const CellVisibility& own,
                             std::span<const CellVisibility* const> beside);
+  Site site_of(const Weights& weights, const Eigen::Vector3d& axis) const;
 
   const SkyCells& cells_;
   const ClearPanes& panes_;
   double cube_ = 1.0;  // m, edge of a site
   std::unordered_map<std::uint64_t, int> site_of_{};
-  std::vector<Weights> sites_{};
+  std::vector<Site> sites_{};
+  Site unknown_{};
 };
 
 }  // namespace lightwell

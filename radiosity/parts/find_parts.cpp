@@ -146,6 +146,18 @@ std::vector<ExchangeLink> links_of(const PatchMesh& mesh, const std::vector<int>
   return links;
 }
 
+// A cluster's area, m^2, and area times rays: those that end within, their lengths (m^3), and those
+// that leave the scene.
+struct ClusterSums {
+  double area = 0.0, within = 0.0, length = 0.0, escaped = 0.0;
+  int patches = 0;
+
+  // Rays that leave the scene are long: the outside of a house with deep window frames is neither
+  // a crack nor a hollow.
+  bool is_enclosed() const { return within > escaped; }
+  double mean_length() const { return within > 0.0 ? length / within : 0.0; }
+};
+
 // The clusters of the patches that are too small, or too flat, to be parts of their own.
 class TinyClusters {
  public:
@@ -162,12 +174,23 @@ class TinyClusters {
 
   // 1 for each cluster that is to join another; `cluster` of each patch, -1: none.
   std::vector<char> find(const std::vector<int>& cluster) const {
-    const auto count = static_cast<std::size_t>(*std::ranges::max_element(cluster) + 1);
-    struct ClusterSums {
-      double area = 0.0, within = 0.0, length = 0.0, escaped = 0.0;
-      int patches = 0;
-    };
-    std::vector<ClusterSums> sums(count);
+    const std::vector<ClusterSums> sums = sums_of(cluster);
+    ClusterSums largest;
+    for (const ClusterSums& of : sums) {
+      if (of.is_enclosed() && of.area > largest.area) largest = of;
+    }
+    std::vector<char> is_tiny;
+    for (const ClusterSums& of : sums) {
+      constexpr int fewest = 4;  // a room has as many walls
+      is_tiny.push_back(of.patches < fewest || of.area < smallest_area_ || is_crack(of) ||
+                        is_hollow(of, largest));
+    }
+    return is_tiny;
+  }
+
+ private:
+  std::vector<ClusterSums> sums_of(const std::vector<int>& cluster) const {
+    std::vector<ClusterSums> sums(static_cast<std::size_t>(*std::ranges::max_element(cluster) + 1));
     for (int i = 0; i < mesh_.patch_count(); ++i) {
       if (cluster[i] < 0) continue;
       ClusterSums& of = sums[cluster[i]];
@@ -180,21 +203,23 @@ class TinyClusters {
         of.length += mesh_.area[i] * double{at.length};
       }
     }
-    constexpr int fewest = 4;  // a room has as many walls
-    constexpr double crack = 1.0 / 32.0;
-    std::vector<char> is_tiny(count, 0);
-    for (std::size_t c = 0; c < count; ++c) {
-      const ClusterSums& of = sums[c];
-      // Rays that leave the scene are long: the outside of a house with deep window frames is no
-      // crack.
-      const bool is_crack =
-          of.within > of.escaped && of.length / of.within < crack * std::sqrt(of.area);
-      is_tiny[c] = of.patches < fewest || of.area < smallest_area_ || is_crack;
-    }
-    return is_tiny;
+    return sums;
   }
 
- private:
+  static bool is_crack(const ClusterSums& of) {
+    constexpr double crack = 1.0 / 32.0;
+    return of.is_enclosed() && of.mean_length() < crack * std::sqrt(of.area);
+  }
+
+  // The inside of a drawer or a lampshade beside the room that it stands in. The mean length of
+  // rays is 4 V / A in a convex room (Cauchy): 2.6 m in a living room of 4 m x 5 m x 3 m, 1 m in
+  // the smallest toilet, 0.1 m in a drawer.
+  static bool is_hollow(const ClusterSums& of, const ClusterSums& largest) {
+    constexpr double small = 1.0 / 64.0, shallow = 1.0 / 8.0;
+    return of.is_enclosed() && of.area < small * largest.area &&
+           of.mean_length() < shallow * largest.mean_length();
+  }
+
   const PatchMesh& mesh_;
   const std::vector<PatchArrivals>& arrivals_;
   double smallest_area_ = 0.0;  // of a part, m^2

@@ -13,16 +13,19 @@ namespace lightwell {
 int rays_per_patch_for_parts(int patches);
 
 /// Finds the parts of a scene that exchange little light: rooms behind doors, the ground outside
-/// windows, the insides of cabinets.
+/// windows, the insides of large cabinets.
 ///
 /// 1. Cosine-distributed rays from each patch estimate the exchange A_i F_ij; mirrors and glass
 ///    pass the rays on. Patches of which 70 % of the rays leave the scene count as one, the
 ///    outside.
 /// 2. cut_graph() parts the patches where the exchange is less than 5 % of the smaller side's area
 ///    and where the passage is a bottleneck.
-/// 3. A part of fewer than four patches or of less than 1/1024 of all area but the outside, or a
-///    crack (mean length of the rays within below 1/32 of the root of the area), joins the part
-///    that it exchanges most with; without such, the largest.
+/// 3. These join the part that they exchange most with; without such, the largest:
+///     * a part of fewer than four patches, or of less than 1/1024 of all area but the outside;
+///     * a crack: the mean length of the rays within is below 1/32 of the root of the area;
+///     * a hollow, such as the inside of a drawer: area below 1/64, and mean length of the rays
+///       within below 1/8, of those of the largest part that is no outside.
+///
 ///    Patches that see nothing, such as those under a block that stands on them, join the largest.
 ///
 /// The sides of a two-sided surface are patches of their own, so the outside of a house is a part.

@@ -190,6 +190,28 @@ TEST(SkyLight, MeetsAGoalOfNoise) {
   }
 }
 
+// At surfaces, at a normal between the axes of sites, and where no site is near.
+TEST(SkyLight, SingleRaysHaveTheRightMean) {
+  const UnderSky room{room_with_window()};
+  constexpr int floor = 4, wall = 0, count = 40000;
+  const Vector3d oblique = Vector3d(1.0, 0.2, 0.7).normalized();
+  for (const SurfacePoint& at : {SurfacePoint{{-0.5, 0.3, 0}, Vector3d::UnitZ(), floor},
+                                 SurfacePoint{{-3, 0.3, 0.5}, Vector3d::UnitX(), wall},
+                                 SurfacePoint{{-2.9, 0.3, 0.5}, oblique, -1},
+                                 SurfacePoint{{0, 0, 0.8}, Vector3d::UnitZ(), -1}}) {
+    const double expected = pi * window_form_factor(at.position, at.normal);
+    double sum = 0.0, squares = 0.0;
+    for (std::uint64_t key = 0; key < count; ++key) {
+      const auto E = static_cast<double>(room.light.irradiance_by_one_ray(room.caster, at, key)[1]);
+      sum += E / count;
+      squares += E * E / count;
+    }
+    const double deviation = std::sqrt(squares - sum * sum);
+    std::printf("deviation of a ray: %.2f of %.4f\n", deviation / expected, expected);
+    EXPECT_NEAR(sum, expected, 4.0 * deviation / std::sqrt(double{count}));
+  }
+}
+
 // What a wall sees that a picture hides, none of the sky, tells nothing of the picture's face.
 TEST(SkyLight, APictureIsKnownAsTheWallBehindItIs) {
   Scene scene = room_with_window();

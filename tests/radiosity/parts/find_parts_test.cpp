@@ -178,6 +178,22 @@ TEST(FindParts, TheInsideOfATableLegIsNone) {
   EXPECT_NEAR(found.parts.parts[0].area, 94.0 + 2 * (4 * 0.021 + 2 * 0.0009), 1e-10);
 }
 
+// A closed drawer of 0.4 m x 0.4 m x 0.1 m has 0.48 m2, 1/200 of the room's area, and rays of
+// 4 V / A = 0.13 m, 1/19 of those in the room. A booth in a low hall has 1/200 of the area as well,
+// but rays of 0.8 m, 1/4 of those in the hall.
+TEST(FindParts, AHollowIsNoneAndABoothIs) {
+  const auto parts_of = [](const Eigen::Vector3d& room, const Eigen::Vector3d& body) {
+    Scene scene;
+    const int m = add_material(scene, diffuse(scene.bands, 0.5f)), board = add_two_sided(scene);
+    add_box(scene, {0, 0, 0}, room, {m, m, m, m, m, m}, true);
+    const Eigen::Vector3d low{1.0, 1.0, 0.01};
+    add_box(scene, low, low + body, {board, board, board, board, board, board}, false);
+    return found_in(scene).parts.count();
+  };
+  EXPECT_EQ(parts_of({4, 5, 3}, {0.4, 0.4, 0.1}), 1);
+  EXPECT_EQ(parts_of({30, 30, 2.1}, {1, 1, 2}), 2);
+}
+
 // Most rays of the outside get away, and those that meet a name plate are short: about 0.02 m,
 // where 1/32 of the root of the area is 0.3 m.
 TEST(FindParts, TheOutsideOfAHouseWithPlatesIsNoCrack) {
